@@ -1,0 +1,71 @@
+#include "withy/core/dynamics/equations.hpp"
+
+#include <Eigen/Dense>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+namespace withy {
+namespace {
+
+using DenseMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Eigen::Map<const DenseMatrix> mass_matrix(const DenseSystem& s) {
+  const auto n = static_cast<Eigen::Index>(s.size);
+  return {s.mass.data(), n, n};
+}
+
+}  // namespace
+
+Work::Work(std::size_t bytes) : storage_(bytes + 64), size_(bytes) {
+  const auto address = reinterpret_cast<std::uintptr_t>(storage_.data());
+  data_ = storage_.data() + (64 - address % 64) % 64;
+}
+
+void Work::poison() { std::memset(data_, 0xff, size_); }
+
+Conditioning conditioning(const DenseSystem& system) {
+  Conditioning c;
+  if (system.size == 0) return c;
+  const auto M = mass_matrix(system);
+  if (!M.allFinite()) {
+    c.condition = std::numeric_limits<double>::infinity();
+    return c;
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(M, Eigen::ComputeFullV);
+  const auto& s = svd.singularValues();
+  const Eigen::Index last = s.size() - 1;
+  c.condition = s[last] > 0 ? s[0] / s[last] : std::numeric_limits<double>::infinity();
+  const Eigen::VectorXd v = svd.matrixV().col(last);
+  c.weakest.assign(v.data(), v.data() + v.size());
+  // The sign alone: the determinant itself overflows for large systems.
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(M);
+  double sign = lu.permutationP().determinant();
+  for (Eigen::Index i = 0; i < M.rows(); ++i) {
+    const double u = lu.matrixLU()(i, i);
+    sign *= u > 0 ? 1.0 : (u < 0 ? -1.0 : 0.0);
+  }
+  c.determinant_sign = static_cast<int>(sign);
+  const Eigen::MatrixXd symmetric = 0.5 * (M + M.transpose());
+  c.smallest_eigenvalue =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  return c;
+}
+
+std::vector<double> solve(const DenseSystem& system) {
+  const auto n = static_cast<Eigen::Index>(system.size);
+  if (n == 0) return {};
+  // Scaled by the diagonal first: rows and columns carry different units.
+  const Eigen::MatrixXd M = mass_matrix(system);
+  const Eigen::VectorXd scale = M.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
+  if (!scale.allFinite()) throw std::domain_error("the mass matrix has a zero on its diagonal");
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(scale.asDiagonal() * M * scale.asDiagonal());
+  if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular");
+  const Eigen::VectorXd f = Eigen::Map<const Eigen::VectorXd>(system.force.data(), n) +
+                            Eigen::Map<const Eigen::VectorXd>(system.applied.data(), n);
+  const Eigen::VectorXd a = scale.asDiagonal() * lu.solve(scale.asDiagonal() * f);
+  return {a.data(), a.data() + n};
+}
+
+}  // namespace withy

@@ -1,0 +1,103 @@
+/// \file
+/// The equations of motion of one model in one formulation: what integrators and analyses call.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "withy/core/model/state.hpp"
+
+namespace withy {
+
+/// How an evaluation ended.
+struct Evaluation {
+  enum class Outcome { ok, singular, nonfinite };
+  Outcome outcome = Outcome::ok;
+  int body = -1;  ///< index in Model::bodies() of the body whose block could not be solved, or −1
+  [[nodiscard]] bool ok() const { return outcome == Outcome::ok; }
+};
+
+/// Scratch memory of an evaluation: allocated once, owned by a caller, never shared between threads. Its content
+/// between two calls does not matter.
+class Work {
+ public:
+  explicit Work(std::size_t bytes);
+  [[nodiscard]] std::byte* data() { return data_; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// Fills the memory with NaN patterns, for tests.
+  void poison();
+
+ private:
+  std::vector<std::byte> storage_;
+  std::byte* data_ = nullptr;  ///< aligned to 64
+  std::size_t size_ = 0;
+};
+
+/// Energies [J] and momenta [kg m/s, kg m²/s] of a state. They are those of the formulation's strain kinematics without
+/// truncation, so that a truncated formulation shows what it neglects.
+struct Energies {
+  double kinetic = 0;
+  double potential = 0;                      ///< strain energy, and weight measured from the world origin
+  std::array<double, 3> linear_momentum{};   ///< world axes
+  std::array<double, 3> angular_momentum{};  ///< about the world origin, world axes
+};
+
+/// The dense system M u̇ = f + applied, for eyes, tests and analyses. Row-major.
+struct DenseSystem {
+  std::size_t size = 0;
+  std::vector<double> mass;     ///< M; not symmetric in the strict formulations
+  std::vector<double> force;    ///< f: weight, stiffness, damping and velocity terms
+  std::vector<double> applied;  ///< efforts of the loads
+};
+
+/// What is known of the mass matrix at a state.
+struct Conditioning {
+  double condition = 0;            ///< κ(M), ratio of the extreme singular values
+  int determinant_sign = 0;        ///< sign of det M: −1, 0, +1
+  double smallest_eigenvalue = 0;  ///< of the symmetric part of M
+  std::vector<double> weakest;     ///< unit vector of generalized speeds along which M acts least
+};
+
+/// Position of a frame and rotation (row-major R_WF) in the world.
+struct WorldPose {
+  std::array<double, 3> position{};
+  std::array<double, 9> rotation{};
+};
+
+/// Made by Formulation::compile for one model; const, so that threads share it, each with its own Work.
+class EquationsOfMotion {
+ public:
+  virtual ~EquationsOfMotion() = default;
+  [[nodiscard]] virtual const Layout& layout() const = 0;
+  /// Number of elements of State::y: positions, speeds, work.
+  [[nodiscard]] std::size_t size() const { return layout().positions + layout().speeds + 1; }
+  [[nodiscard]] virtual Work make_work() const = 0;
+
+  /// The hot call: time derivatives of y at (t, y). Allocates nothing, throws nothing, logs nothing.
+  /// On an outcome other than ok the content of y_dot is meaningless.
+  virtual Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
+                                 Work& work) const noexcept = 0;
+  /// Scales quaternions in y back to unit length.
+  virtual void normalize(std::span<double> y) const noexcept = 0;
+
+  /// M, f and applied efforts, assembled by an algorithm independent of `derivatives`.
+  [[nodiscard]] virtual DenseSystem system(double t, std::span<const double> y) const = 0;
+  [[nodiscard]] virtual Energies energies(std::span<const double> y) const = 0;
+  [[nodiscard]] virtual WorldPose frame_pose(std::span<const double> y, int body, int frame) const = 0;
+  /// Displacement r − X of the section at a frame relative to the body frame, body axes [m].
+  [[nodiscard]] virtual std::array<double, 3> deflection(std::span<const double> y, int body, int frame) const = 0;
+  /// What the compilation merged, specialised or dropped, a line each, for `withy inspect`.
+  [[nodiscard]] virtual std::vector<std::string> savings() const = 0;
+};
+
+/// κ(M), the sign of det M and M's weakest direction.
+Conditioning conditioning(const DenseSystem& system);
+/// Solves M u̇ = f + applied by LU with complete pivoting.
+/// \throws std::domain_error where M is singular to working accuracy.
+std::vector<double> solve(const DenseSystem& system);
+
+}  // namespace withy

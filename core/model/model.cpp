@@ -1,0 +1,140 @@
+#include "withy/core/model/model.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace withy {
+namespace {
+
+const Slot* find_slot(const std::vector<Slot>& slots, std::string_view name) {
+  const auto it = std::find_if(slots.begin(), slots.end(), [&](const Slot& s) { return s.name == name; });
+  return it == slots.end() ? nullptr : &*it;
+}
+
+template <class Node>
+int find_index(const std::vector<Node>& nodes, std::string_view name) {
+  const auto it = std::find_if(nodes.begin(), nodes.end(), [&](const Node& n) { return n.name == name; });
+  return it == nodes.end() ? -1 : static_cast<int>(it - nodes.begin());
+}
+
+/// The undeformed body: its mass at q = 0, no modes.
+class RigidifiedBody final : public Body {
+ public:
+  explicit RigidifiedBody(std::shared_ptr<const Body> body) : body_(std::move(body)) {
+    for (const Particle& p : body_->shape().particles)
+      shape_.particles.push_back({p.mass, PointExpansion::rigid(p.at.X, 0)});
+    for (const Section& s : body_->shape().sections)
+      shape_.sections.push_back({s.inertia, PointExpansion::rigid(s.at.X, 0)});
+  }
+  const ModalShape& shape() const override { return shape_; }
+  std::optional<PointExpansion> station(const StationName& name) const override {
+    const auto s = body_->station(name);
+    if (!s) return {};
+    return PointExpansion::rigid(s->X, 0);
+  }
+  std::string stations() const override { return body_->stations(); }
+
+ private:
+  std::shared_ptr<const Body> body_;
+  ModalShape shape_;
+};
+
+}  // namespace
+
+const Slot* Layout::hinge(std::string_view name) const { return find_slot(hinges, name); }
+const Slot* Layout::body(std::string_view name) const { return find_slot(bodies, name); }
+
+int BodyNode::frame(std::string_view frame_name) const { return find_index(frames, frame_name); }
+
+Model::Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector3 gravity) : gravity_(gravity) {
+  const std::size_t n = bodies.size();
+  std::vector<int> inboard(n, -1);
+  for (std::size_t h = 0; h < hinges.size(); ++h) {
+    const auto child = static_cast<std::size_t>(hinges[h].child);
+    if (inboard[child] >= 0) {
+      throw std::invalid_argument("body '" + bodies[child].name + "' is the child of two hinges, '" +
+                                  hinges[static_cast<std::size_t>(inboard[child])].name + "' and '" + hinges[h].name +
+                                  "'; a tree gives each body one");
+    }
+    inboard[child] = static_cast<int>(h);
+  }
+  for (std::size_t b = 0; b < n; ++b) {
+    if (inboard[b] < 0) throw std::invalid_argument("body '" + bodies[b].name + "' is the child of no hinge");
+  }
+  // Parents before children, otherwise in the order the hinges are given: as soon as the parent is placed.
+  std::vector<int> place(n, -1);
+  std::vector<std::size_t> order;
+  for (bool progress = true; progress && order.size() < n;) {
+    progress = false;
+    for (std::size_t h = 0; h < n; ++h) {
+      const auto child = static_cast<std::size_t>(hinges[h].child);
+      const int parent = hinges[h].parent;
+      if (place[child] >= 0 || (parent >= 0 && place[static_cast<std::size_t>(parent)] < 0)) continue;
+      place[child] = static_cast<int>(order.size());
+      order.push_back(h);
+      progress = true;
+    }
+  }
+  if (order.size() < n) {
+    std::string names;
+    for (const HingeNode& h : hinges) {
+      if (place[static_cast<std::size_t>(h.child)] < 0) names += (names.empty() ? "'" : ", '") + h.name + "'";
+    }
+    throw std::invalid_argument("the hinges " + names + " make a cycle that does not hang on the world");
+  }
+  for (const std::size_t h : order) {
+    HingeNode hinge = std::move(hinges[h]);
+    bodies_.push_back(std::move(bodies[static_cast<std::size_t>(hinge.child)]));
+    hinge.child = static_cast<int>(bodies_.size()) - 1;
+    if (hinge.parent >= 0) hinge.parent = place[static_cast<std::size_t>(hinge.parent)];
+    hinges_.push_back(std::move(hinge));
+  }
+  lay_out();
+}
+
+void Model::lay_out() {
+  std::size_t x = 0;
+  std::size_t u = 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const HingeNode& h = hinges_[b];
+    layout_.hinges.push_back({h.name, x, h.hinge->coordinates(), u, h.hinge->speeds()});
+    x += h.hinge->coordinates();
+    u += h.hinge->speeds();
+    for (std::size_t i = 0; i < h.hinge->speeds(); ++i) layout_.speed_names.push_back(h.name + "." + std::to_string(i));
+    const ModalShape& shape = bodies_[b].body->shape();
+    const std::size_t modes = shape.mode_names.size();
+    if (modes == 0) continue;
+    layout_.bodies.push_back({bodies_[b].name, x, modes, u, modes});
+    x += modes;
+    u += modes;
+    for (const std::string& mode : shape.mode_names) layout_.speed_names.push_back(bodies_[b].name + "." + mode);
+  }
+  layout_.positions = x;
+  layout_.speeds = u;
+}
+
+int Model::body(std::string_view name) const { return find_index(bodies_, name); }
+int Model::hinge(std::string_view name) const { return find_index(hinges_, name); }
+
+State Model::reference_state() const {
+  State s;
+  s.y.assign(layout_.positions + layout_.speeds + 1, 0.0);
+  for (std::size_t h = 0; h < hinges_.size(); ++h) {
+    const Slot& slot = layout_.hinges[h];
+    hinges_[h].hinge->reference(std::span(s.y).subspan(slot.position, slot.positions));
+  }
+  return s;
+}
+
+Model Model::rigidified() const {
+  std::vector<BodyNode> bodies = bodies_;
+  for (BodyNode& b : bodies) {
+    b.body = std::make_shared<RigidifiedBody>(b.body);
+    for (Frame& f : b.frames) f.section = PointExpansion::rigid(f.section.X, 0);
+  }
+  return Model(std::move(bodies), hinges_, gravity_);
+}
+
+void Model::add_load(std::string name, const Load& load) { loads_.push_back({std::move(name), load.bind(*this)}); }
+
+}  // namespace withy

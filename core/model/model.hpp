@@ -1,0 +1,88 @@
+/// \file
+/// The immutable tree of bodies, hinges and loads. Threads share it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "withy/core/model/state.hpp"
+#include "withy/core/plugin/body.hpp"
+#include "withy/core/plugin/hinge.hpp"
+#include "withy/core/plugin/load.hpp"
+
+namespace withy {
+
+/// A frame of a body: fixed at `pose` to the section at a station. Every body has the frame "root" with pose identity.
+struct Frame {
+  std::string name;
+  PointExpansion section;
+  Pose pose;
+};
+
+/// A body in the tree.
+struct BodyNode {
+  std::string name;
+  std::shared_ptr<const Body> body;
+  std::vector<Frame> frames;
+  std::string formulation;  ///< name of the formulation of this body alone; empty: the scene's
+
+  /// Index of a frame; −1 where there is none.
+  [[nodiscard]] int frame(std::string_view frame_name) const;
+};
+
+/// A hinge in the tree, with its child. The hinge frame F is at `offset` in the parent's frame; M is the child's frame.
+struct HingeNode {
+  std::string name;
+  std::shared_ptr<const Hinge> hinge;
+  int parent = -1;       ///< index among the bodies; −1: world
+  int parent_frame = 0;  ///< index among the parent's frames; meaningless for the world
+  Pose offset;
+  int child = 0;
+  int child_frame = 0;
+};
+
+/// A load in the tree.
+struct LoadNode {
+  std::string name;
+  std::shared_ptr<const BoundLoad> load;
+};
+
+/// A tree of bodies. Hinge i carries body i: hinges()[i].child == i, and every parent has a smaller index.
+class Model {
+ public:
+  /// Builds a tree from bodies and hinges in any order.
+  /// \throws std::invalid_argument where a body has no hinge or two, or the hinges make a cycle; the text names them.
+  Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector3 gravity);
+
+  [[nodiscard]] const std::vector<BodyNode>& bodies() const { return bodies_; }
+  [[nodiscard]] const std::vector<HingeNode>& hinges() const { return hinges_; }
+  [[nodiscard]] const std::vector<LoadNode>& loads() const { return loads_; }
+  /// Acceleration of gravity [m/s²], world axes.
+  [[nodiscard]] const Vector3& gravity() const { return gravity_; }
+  [[nodiscard]] const Layout& layout() const { return layout_; }
+  /// Index of a body or hinge; −1 where there is none.
+  [[nodiscard]] int body(std::string_view name) const;
+  [[nodiscard]] int hinge(std::string_view name) const;
+
+  /// The state at time 0 with every coordinate at its reference, at rest.
+  [[nodiscard]] State reference_state() const;
+  /// The same tree with every body rigid in its undeformed shape and without loads.
+  [[nodiscard]] Model rigidified() const;
+
+  /// Adds a load, bound to this model. For builders of a model, before it is shared.
+  /// \throws std::invalid_argument as Load::bind.
+  void add_load(std::string name, const Load& load);
+
+ private:
+  void lay_out();
+
+  std::vector<BodyNode> bodies_;
+  std::vector<HingeNode> hinges_;
+  std::vector<LoadNode> loads_;
+  Vector3 gravity_;
+  Layout layout_;
+};
+
+}  // namespace withy

@@ -1,0 +1,40 @@
+/// \file
+/// The state of a model: the only truth. Copy it, compare it, restart from it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace withy {
+
+/// Where a hinge or a body stands in the arrays of a State.
+struct Slot {
+  std::string name;
+  std::size_t position = 0;   ///< first index among the positions
+  std::size_t positions = 0;  ///< count
+  std::size_t speed = 0;      ///< first index among the speeds
+  std::size_t speeds = 0;     ///< count
+};
+
+/// Order of the numbers in a State: for each body, parents before children, its inboard hinge then its modes.
+struct Layout {
+  std::vector<Slot> hinges;
+  std::vector<Slot> bodies;              ///< only flexible ones
+  std::vector<std::string> speed_names;  ///< as `shoulder.0`, `link1.bending_y[1]`
+  std::size_t positions = 0;
+  std::size_t speeds = 0;
+
+  [[nodiscard]] const Slot* hinge(std::string_view name) const;
+  [[nodiscard]] const Slot* body(std::string_view name) const;
+};
+
+/// Time [s], then in one array y: positions (hinge coordinates [rad, m], modal coordinates), speeds (their rates; for
+/// quaternions the angular velocity), and the work [J] done so far by loads and damping.
+struct State {
+  double time = 0;
+  std::vector<double> y;
+};
+
+}  // namespace withy

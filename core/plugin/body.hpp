@@ -1,0 +1,29 @@
+/// \file
+/// The interface of bodies.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "withy/core/shape/modal_shape.hpp"
+
+namespace withy {
+
+/// A body of the tree, rigid (no modes) or flexible. It is immutable once made and is asked only while a model is built
+/// and compiled, never during an evaluation.
+class Body {
+ public:
+  /// A place on the body where frames are fixed: a name such as "root" or "tip", or a coordinate along the body [m].
+  using StationName = std::variant<std::string, double>;
+
+  virtual ~Body() = default;
+  /// Mass, stiffness and damping in modal coordinates.
+  [[nodiscard]] virtual const ModalShape& shape() const = 0;
+  /// Motion of the section at a station; nothing where the body has no such station. Every body has "root".
+  [[nodiscard]] virtual std::optional<PointExpansion> station(const StationName& name) const = 0;
+  /// Names of the stations, for messages.
+  [[nodiscard]] virtual std::string stations() const = 0;
+};
+
+}  // namespace withy

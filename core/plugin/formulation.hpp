@@ -1,0 +1,20 @@
+/// \file
+/// The interface of formulations: a strain kinematics times a truncation.
+#pragma once
+
+#include <memory>
+
+#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// Turns a model into equations of motion.
+class Formulation {
+ public:
+  virtual ~Formulation() = default;
+  /// \throws std::invalid_argument where the formulation cannot treat the model; the text says which body and why.
+  [[nodiscard]] virtual std::unique_ptr<EquationsOfMotion> compile(std::shared_ptr<const Model> model) const = 0;
+};
+
+}  // namespace withy

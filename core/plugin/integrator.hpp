@@ -1,0 +1,61 @@
+/// \file
+/// The interface of integrators.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "withy/core/dynamics/equations.hpp"
+
+namespace withy {
+
+/// How a step ended.
+struct StepResult {
+  enum class Outcome {
+    ok,
+    nonfinite,      ///< the derivatives are not finite, however small the step
+    singular,       ///< the mass matrix cannot be solved, however small the step
+    step_underflow  ///< the accuracy asked for needs steps below the resolution of time
+  };
+  Outcome outcome = Outcome::ok;
+  int body = -1;  ///< the body an evaluation blamed, or −1
+};
+
+/// What an integration has cost so far.
+struct StepStatistics {
+  std::size_t accepted = 0;
+  std::size_t rejected = 0;
+  std::size_t evaluations = 0;
+  double smallest_step = 0;  ///< [s], of the accepted ones
+  double largest_step = 0;   ///< [s]
+};
+
+/// One integration under way. It owns its work arrays; stepping allocates nothing.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  /// Advances by one accepted step, not past t_limit [s] and landing on it exactly where it is reached. After a result
+  /// other than ok the state is the last accepted one.
+  virtual StepResult step(double t_limit) = 0;
+  [[nodiscard]] virtual const State& state() const = 0;
+  /// State inside the last accepted step, t between its ends, to the accuracy the integrator states.
+  virtual void interpolate(double t, std::span<double> y) const = 0;
+  /// Forgets what was learnt of the right-hand side's smoothness: call at a discontinuity, after its time is reached.
+  virtual void restart() = 0;
+  [[nodiscard]] virtual const StepStatistics& statistics() const = 0;
+};
+
+/// An integration method with its options.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  /// Begins at `state`; `equations` must outlive the stepper.
+  [[nodiscard]] virtual std::unique_ptr<Stepper> start(const EquationsOfMotion& equations,
+                                                       const State& state) const = 0;
+  /// Order of accuracy of a step.
+  [[nodiscard]] virtual int order() const = 0;
+};
+
+}  // namespace withy

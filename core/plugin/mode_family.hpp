@@ -1,0 +1,40 @@
+/// \file
+/// The interface of assumed-mode families.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+namespace withy {
+
+/// What a family may know of the beam whose strain it describes.
+struct BeamData {
+  enum class Strain { bending, torsion };
+  Strain strain = Strain::bending;
+  double length = 0;     ///< [m]
+  double inertia = 0;    ///< mass per length [kg/m] (bending) or polar inertia per length ρI_p [kg m] (torsion)
+  double stiffness = 0;  ///< EI (bending) or GJ (torsion) [N m²]
+};
+
+/// Shape functions φ_i(x), i = 0 … count−1, 0 ≤ x ≤ L, normalized ∫₀ᴸ φ_i² dx = L.
+class ShapeFunctions {
+ public:
+  virtual ~ShapeFunctions() = default;
+  [[nodiscard]] virtual std::size_t count() const = 0;
+  /// φ_i, φ_i′ [1/m] and φ_i″ [1/m²] of every function at x [m]; each span has count() elements.
+  virtual void evaluate(double x, std::span<double> phi, std::span<double> slope,
+                        std::span<double> curvature) const = 0;
+};
+
+/// A family of assumed modes, as "clamped-free".
+class ModeFamily {
+ public:
+  virtual ~ModeFamily() = default;
+  /// Greatest number of functions the family gives to stated accuracy.
+  [[nodiscard]] virtual std::size_t most() const = 0;
+  /// The first `count` ≤ most() functions of the beam; null where the family has none for this strain.
+  [[nodiscard]] virtual std::unique_ptr<ShapeFunctions> functions(const BeamData& beam, std::size_t count) const = 0;
+};
+
+}  // namespace withy

@@ -1,0 +1,68 @@
+/// \file
+/// What a plugin expects in a scene. The reader checks values against these specifications, converts their units and
+/// fills in defaults; `withy schema` and `withy plugins` print them.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "withy/core/plugin/value.hpp"
+
+namespace withy {
+
+/// Specification of one parameter. Make it with the functions below and refine it by chaining:
+/// `number("length", "m", "length of the undeformed beam").above(0)`. A parameter is required unless it has a default
+/// (`otherwise`) or may be left out (`optional`).
+struct ParameterSpec {
+  enum class Kind {
+    number,   ///< finite number in `unit`
+    integer,  ///< whole number
+    boolean,  ///< true or false
+    text,     ///< a name; with `choices` one of them; with `refers` the name of a hinge, body, frame or plugin
+    vector,   ///< `count` numbers in `unit`
+    table,    ///< rows of `count` numbers, the first column strictly increasing; column units are `columns`
+    map,      ///< the members given in `members`
+    named,    ///< any number of named maps, each with `members`; the names refer as `refers` says
+  };
+  /// What a name must be the name of; the reader reports dangling names.
+  enum class Refers { nothing, body, hinge, frame, mode_family };
+
+  Kind kind = Kind::number;
+  std::string key;
+  std::string unit;     ///< SI unit, as "N m^2"; "1" where there is none
+  std::string meaning;  ///< one sentence for the schema
+  bool required = true;
+  std::optional<Value> fallback;     ///< value where the scene gives none
+  std::optional<double> minimum;     ///< least value allowed
+  std::optional<double> maximum;     ///< greatest value allowed
+  bool exclusive_minimum = false;    ///< the minimum itself is not allowed
+  std::vector<std::string> choices;  ///< texts allowed
+  Refers refers = Refers::nothing;
+  std::size_t count = 0;
+  std::vector<std::string> columns;
+  std::vector<ParameterSpec> members;
+
+  ParameterSpec above(double x) &&;           ///< value > x
+  ParameterSpec least(double x) &&;           ///< value ≥ x
+  ParameterSpec most(double x) &&;            ///< value ≤ x
+  ParameterSpec otherwise(Value v) &&;        ///< default
+  ParameterSpec otherwise(double x) &&;       ///< default
+  ParameterSpec otherwise(const char* s) &&;  ///< default
+  ParameterSpec optional() &&;                ///< may be left out, without a default
+  ParameterSpec one_of(std::vector<std::string> names) &&;
+  ParameterSpec naming(Refers what) &&;
+};
+
+ParameterSpec number(std::string key, std::string unit, std::string meaning);
+ParameterSpec integer(std::string key, std::string meaning);
+ParameterSpec boolean(std::string key, std::string meaning);
+ParameterSpec text(std::string key, std::string meaning);
+ParameterSpec vector(std::string key, std::size_t count, std::string unit, std::string meaning);
+ParameterSpec table(std::string key, std::vector<std::string> column_units, std::string meaning);
+ParameterSpec map(std::string key, std::vector<ParameterSpec> members, std::string meaning);
+ParameterSpec named(std::string key, std::vector<ParameterSpec> members, std::string meaning);
+
+}  // namespace withy

@@ -1,0 +1,129 @@
+/// \file
+/// The registry: every plugin by kind and id. Tests and single binaries enroll plugins directly; the host in
+/// `plugins/host` loads them from shared libraries when they are asked for.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "withy/core/plugin/parameters.hpp"
+
+namespace withy {
+
+class Body;
+class Hinge;
+class ModeFamily;
+class Formulation;
+class Integrator;
+class Load;
+class Registry;
+
+/// What a plugin is told when it makes something: where other plugins are found, where to report, for which object.
+struct MakeContext {
+  Registry& registry;
+  Diagnostics& diagnostics;
+};
+
+/// A plugin: its id (`[a-z0-9-]{1,64}`), what it is for, the parameters it takes, and its factory. `make` returns null
+/// after it has reported to MakeContext::diagnostics.
+template <class Interface>
+struct Plugin {
+  std::string id;
+  std::string summary;  ///< one sentence
+  std::vector<ParameterSpec> parameters;
+  std::unique_ptr<Interface> (*make)(const Value& parameters, const MakeContext& context) = nullptr;
+  std::string origin = "built in";  ///< file it was loaded from
+};
+
+/// The kinds of plugins, with their names in manifests and messages.
+template <class Interface>
+constexpr std::string_view kind_name();
+template <>
+constexpr std::string_view kind_name<Body>() {
+  return "body";
+}
+template <>
+constexpr std::string_view kind_name<Hinge>() {
+  return "hinge";
+}
+template <>
+constexpr std::string_view kind_name<ModeFamily>() {
+  return "mode-family";
+}
+template <>
+constexpr std::string_view kind_name<Formulation>() {
+  return "formulation";
+}
+template <>
+constexpr std::string_view kind_name<Integrator>() {
+  return "integrator";
+}
+template <>
+constexpr std::string_view kind_name<Load>() {
+  return "load";
+}
+
+/// The plugins one library brings, before they are admitted.
+class Enrollment {
+ public:
+  template <class Interface>
+  void add(Plugin<Interface> plugin) {
+    std::get<std::vector<Plugin<Interface>>>(plugins_).push_back(std::move(plugin));
+  }
+  template <class Interface>
+  [[nodiscard]] std::vector<Plugin<Interface>>& all() {
+    return std::get<std::vector<Plugin<Interface>>>(plugins_);
+  }
+  /// "kind/id" of every plugin, sorted.
+  [[nodiscard]] std::vector<std::string> names() const;
+
+ private:
+  friend class Registry;
+  std::tuple<std::vector<Plugin<Body>>, std::vector<Plugin<Hinge>>, std::vector<Plugin<ModeFamily>>,
+             std::vector<Plugin<Formulation>>, std::vector<Plugin<Integrator>>, std::vector<Plugin<Load>>>
+      plugins_;
+};
+
+class Registry {
+ public:
+  /// Admits all plugins of a library, or none.
+  /// \throws std::invalid_argument where an id is malformed, taken (both origins are named) or a factory is null.
+  void admit(Enrollment enrollment, const std::string& origin);
+
+  /// The plugin of a kind with this id; null where there is none. It may load a library: see set_loader.
+  template <class Interface>
+  [[nodiscard]] const Plugin<Interface>* find(std::string_view id) {
+    auto& plugins = std::get<Map<Interface>>(maps_);
+    auto it = plugins.find(id);
+    if (it == plugins.end() && loader_ && loader_(kind_name<Interface>(), id)) it = plugins.find(id);
+    return it == plugins.end() ? nullptr : &it->second;
+  }
+  /// Ids of a kind that are admitted or that the lister knows, sorted.
+  template <class Interface>
+  [[nodiscard]] std::vector<std::string> ids() const {
+    std::vector<std::string> names = lister_ ? lister_(kind_name<Interface>()) : std::vector<std::string>{};
+    for (const auto& [id, plugin] : std::get<Map<Interface>>(maps_)) names.push_back(id);
+    return sorted_unique(std::move(names));
+  }
+
+  /// `load` is asked for a plugin that is not yet admitted; it admits the library that has it and returns true, or
+  /// returns false. `list` gives the ids of a kind that could be loaded.
+  void set_loader(std::function<bool(std::string_view kind, std::string_view id)> load,
+                  std::function<std::vector<std::string>(std::string_view kind)> list);
+
+ private:
+  template <class Interface>
+  using Map = std::map<std::string, Plugin<Interface>, std::less<>>;
+  static std::vector<std::string> sorted_unique(std::vector<std::string> names);
+
+  std::tuple<Map<Body>, Map<Hinge>, Map<ModeFamily>, Map<Formulation>, Map<Integrator>, Map<Load>> maps_;
+  std::function<bool(std::string_view, std::string_view)> loader_;
+  std::function<std::vector<std::string>(std::string_view)> lister_;
+};
+
+}  // namespace withy

@@ -1,0 +1,52 @@
+/// \file
+/// What any flexible body boils down to once its modes are chosen: values only, made once.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "withy/core/spatial/pose.hpp"
+
+namespace withy {
+
+/// Second-order expansion of the motion of one material point in the modal coordinates q (theory (1), (2)):
+///   r(q) = X + Φ q + ½ qᵀ Γ q   [m, body axes],   R(q) = exp(θ̂),  θ(q) = Ψ q + ½ qᵀ Θ q   [rad, body axes].
+/// The undeformed section has the axes of the body frame. Γ and Θ are symmetric, one n×n matrix a component.
+struct PointExpansion {
+  Vector3 X = Vector3::Zero();
+  Matrix3X phi;                          ///< Φ, 3×n
+  std::array<Eigen::MatrixXd, 3> gamma;  ///< Γ, n×n each
+  Matrix3X psi;                          ///< Ψ, 3×n
+  std::array<Eigen::MatrixXd, 3> theta;  ///< Θ, n×n each
+
+  /// A point that moves with the body frame: all fields zero.
+  static PointExpansion rigid(const Vector3& X, Eigen::Index modes);
+};
+
+/// Part of the body's mass that moves as a point.
+struct Particle {
+  double mass = 0;  ///< [kg], ≥ 0
+  PointExpansion at;
+};
+
+/// Rotary inertia carried by a section about its own axes, beside the particles' mass; it may be singular (a beam's
+/// twist has inertia about x alone).
+struct Section {
+  Matrix3 inertia = Matrix3::Zero();  ///< [kg m²], section axes
+  PointExpansion at;
+};
+
+/// A body as the dynamics sees it. Strain energy is ½ qᵀ K q, dissipation ½ q̇ᵀ D q̇.
+struct ModalShape {
+  std::vector<std::string> mode_names;  ///< as "bending_y[1]"; its size is the number of modes n
+  std::vector<Particle> particles;      ///< quadrature of the mass
+  std::vector<Section> sections;
+  Eigen::MatrixXd stiffness;  ///< K, n×n, symmetric
+  Eigen::MatrixXd damping;    ///< D, n×n, symmetric positive semidefinite
+  double length = 0;          ///< characteristic length [m] that deflections are measured against; 0: none
+
+  [[nodiscard]] Eigen::Index modes() const { return static_cast<Eigen::Index>(mode_names.size()); }
+};
+
+}  // namespace withy

@@ -1,0 +1,68 @@
+/// \file
+/// A scene: read, checked, and made into a model.
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+#include "withy/core/plugin/formulation.hpp"
+#include "withy/core/plugin/integrator.hpp"
+#include "withy/core/plugin/registry.hpp"
+
+namespace withy {
+
+/// Thrown for bad input. what() is the whole report, one problem a line, each as
+/// `arm.yaml:66:14: /bodies/boom/bending_y/stiffness: got nan; need finite > 0 [N m^2]`.
+class SceneError : public std::runtime_error {
+ public:
+  SceneError(std::string file, std::vector<Diagnostic> problems);
+  [[nodiscard]] const std::vector<Diagnostic>& problems() const { return problems_; }
+
+ private:
+  std::vector<Diagnostic> problems_;
+};
+
+/// What the command line asks for beyond the file; empty: what the file says.
+struct SceneOptions {
+  std::string formulation;             ///< plugin id
+  std::string integrator;              ///< plugin id
+  std::vector<std::string> overrides;  ///< `path.to.value=text`, applied before the scene is checked
+};
+
+/// A scene ready to run. Immutable but for what the caller does with its copies.
+struct Scene {
+  std::string name;
+  std::string file;
+  Value source;  ///< checked values, SI units, defaults filled in
+  std::shared_ptr<const Model> model;
+  std::string formulation_name;
+  std::shared_ptr<const Formulation> formulation;
+  std::string integrator_name;
+  std::shared_ptr<const Integrator> integrator;
+  double end = 0;                 ///< [s]; the end of the last load where the scene gives none
+  double output = 0.01;           ///< [s]
+  double deflection_limit = 1.0;  ///< lengths of a body
+  State initial;
+};
+
+/// Reads a scene file (YAML or JSON). Loads only the plugins it names.
+/// \throws SceneError with every problem found. \throws std::system_error where the file cannot be read.
+Scene read_scene(const std::string& file, Registry& registry, const SceneOptions& options = {});
+/// The same from text; `file` is the name used in messages.
+Scene parse_scene(std::string_view text, const std::string& file, Registry& registry, const SceneOptions& options = {});
+
+/// Reads a state (JSON or YAML, form as under `initial` of a scene) for a model: what is not named is as in `start`.
+/// \throws SceneError
+State read_state(const std::string& file, const Model& model, const State& start);
+State parse_state(std::string_view text, const std::string& file, const Model& model, const State& start);
+/// The state as JSON text, numbers with 17 significant digits: reading it back gives the same bits.
+std::string write_state(const Model& model, const State& state);
+
+/// The JSON Schema (draft 2020-12) of scenes, made from every plugin in the registry.
+std::string schema(Registry& registry);
+
+}  // namespace withy
