@@ -25,6 +25,19 @@ Work::Work(std::size_t bytes) : storage_(bytes + 64), size_(bytes) {
 
 void Work::poison() { std::memset(data_, 0xff, size_); }
 
+int determinant_sign(const DenseSystem& system) {
+  const auto M = mass_matrix(system);
+  if (!M.allFinite()) return 0;
+  // The sign alone: the determinant itself overflows for large systems.
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(M);
+  double sign = lu.permutationP().determinant();
+  for (Eigen::Index i = 0; i < M.rows(); ++i) {
+    const double u = lu.matrixLU()(i, i);
+    sign *= u > 0 ? 1.0 : (u < 0 ? -1.0 : 0.0);
+  }
+  return static_cast<int>(sign);
+}
+
 Conditioning conditioning(const DenseSystem& system) {
   Conditioning c;
   if (system.size == 0) return c;
@@ -39,14 +52,7 @@ Conditioning conditioning(const DenseSystem& system) {
   c.condition = s[last] > 0 ? s[0] / s[last] : std::numeric_limits<double>::infinity();
   const Eigen::VectorXd v = svd.matrixV().col(last);
   c.weakest.assign(v.data(), v.data() + v.size());
-  // The sign alone: the determinant itself overflows for large systems.
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(M);
-  double sign = lu.permutationP().determinant();
-  for (Eigen::Index i = 0; i < M.rows(); ++i) {
-    const double u = lu.matrixLU()(i, i);
-    sign *= u > 0 ? 1.0 : (u < 0 ? -1.0 : 0.0);
-  }
-  c.determinant_sign = static_cast<int>(sign);
+  c.determinant_sign = determinant_sign(system);
   const Eigen::MatrixXd symmetric = 0.5 * (M + M.transpose());
   c.smallest_eigenvalue =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[0];

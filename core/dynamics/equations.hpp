@@ -94,6 +94,8 @@ class EquationsOfMotion {
   [[nodiscard]] virtual std::vector<std::string> savings() const = 0;
 };
 
+/// Sign of det M: −1, 0, +1; 0 too where M is not finite.
+int determinant_sign(const DenseSystem& system);
 /// κ(M), the sign of det M and M's weakest direction.
 Conditioning conditioning(const DenseSystem& system);
 /// Solves M u̇ = f + applied by LU with complete pivoting.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "withy/core/model/validate.hpp"
+
 namespace withy {
 namespace {
 
@@ -39,6 +41,19 @@ class RigidifiedBody final : public Body {
   ModalShape shape_;
 };
 
+/// Bodies come from plugins: what they say is checked before anything is computed with it.
+void check_content(const BodyNode& node) {
+  const ModalShape& shape = node.body->shape();
+  if (const std::string fault = find_fault(shape); !fault.empty()) {
+    throw std::invalid_argument("the shape of body '" + node.name + "' cannot be used: " + fault);
+  }
+  for (const Frame& f : node.frames) {
+    if (const std::string fault = find_fault(f.section, shape.modes()); !fault.empty()) {
+      throw std::invalid_argument("frame '" + f.name + "' of body '" + node.name + "' cannot be used: " + fault);
+    }
+  }
+}
+
 }  // namespace
 
 const Slot* Layout::hinge(std::string_view name) const { return find_slot(hinges, name); }
@@ -48,6 +63,7 @@ int BodyNode::frame(std::string_view frame_name) const { return find_index(frame
 
 Model::Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector3 gravity) : gravity_(gravity) {
   const std::size_t n = bodies.size();
+  for (const BodyNode& b : bodies) check_content(b);
   std::vector<int> inboard(n, -1);
   for (std::size_t h = 0; h < hinges.size(); ++h) {
     const auto child = static_cast<std::size_t>(hinges[h].child);

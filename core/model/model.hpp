@@ -3,11 +3,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "withy/core/model/state.hpp"
+#include "withy/core/model/terms.hpp"
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/load.hpp"
@@ -26,7 +28,7 @@ struct BodyNode {
   std::string name;
   std::shared_ptr<const Body> body;
   std::vector<Frame> frames;
-  std::string formulation;  ///< name of the formulation of this body alone; empty: the scene's
+  std::optional<Terms> terms;  ///< of this body's own formulation; none: the scene's
 
   /// Index of a frame; −1 where there is none.
   [[nodiscard]] int frame(std::string_view frame_name) const;
@@ -53,7 +55,8 @@ struct LoadNode {
 class Model {
  public:
   /// Builds a tree from bodies and hinges in any order.
-  /// \throws std::invalid_argument where a body has no hinge or two, or the hinges make a cycle; the text names them.
+  /// \throws std::invalid_argument where a body has no hinge or two, the hinges make a cycle, or a body's shape or
+  /// frame has a fault (validate.hpp); the text names them.
   Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector3 gravity);
 
   [[nodiscard]] const std::vector<BodyNode>& bodies() const { return bodies_; }

@@ -13,6 +13,8 @@ namespace withy {
 class Formulation {
  public:
   virtual ~Formulation() = default;
+  /// What it keeps; a body that names this formulation as its own takes these terms into the scene's.
+  [[nodiscard]] virtual Terms terms() const = 0;
   /// \throws std::invalid_argument where the formulation cannot treat the model; the text says which body and why.
   [[nodiscard]] virtual std::unique_ptr<EquationsOfMotion> compile(std::shared_ptr<const Model> model) const = 0;
 };

@@ -17,11 +17,13 @@ struct BeamData {
   double stiffness = 0;  ///< EI (bending) or GJ (torsion) [N m²]
 };
 
-/// Shape functions φ_i(x), i = 0 … count−1, 0 ≤ x ≤ L, normalized ∫₀ᴸ φ_i² dx = L.
+/// Shape functions φ_i(x), i = 0 … count−1, 0 ≤ x ≤ L: deflections normalized ∫₀ᴸ φ_i² dx = L, twists of amplitude 1.
 class ShapeFunctions {
  public:
   virtual ~ShapeFunctions() = default;
   [[nodiscard]] virtual std::size_t count() const = 0;
+  /// Greatest wave number β [1/m] among the functions: bodies choose their quadrature by it.
+  [[nodiscard]] virtual double wave_number() const = 0;
   /// φ_i, φ_i′ [1/m] and φ_i″ [1/m²] of every function at x [m]; each span has count() elements.
   virtual void evaluate(double x, std::span<double> phi, std::span<double> slope,
                         std::span<double> curvature) const = 0;

@@ -6,19 +6,13 @@
 namespace withy {
 namespace {
 
-bool well_formed(const std::string& id) {
-  return !id.empty() && id.size() <= 64 && std::all_of(id.begin(), id.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
-  });
-}
-
 template <class Interface, class Map>
 void check(const std::vector<Plugin<Interface>>& incoming, const Map& present, const std::string& origin) {
   const std::string kind(kind_name<Interface>());
   for (std::size_t i = 0; i < incoming.size(); ++i) {
     const Plugin<Interface>& plugin = incoming[i];
     const std::string name = kind + " '" + plugin.id + "'";
-    if (!well_formed(plugin.id))
+    if (!is_plugin_id(plugin.id))
       throw std::invalid_argument(name + " from " + origin + ": ids are 1 to 64 of a-z, 0-9 and '-'");
     if (plugin.make == nullptr) throw std::invalid_argument(name + " from " + origin + " has no factory");
     if (const auto it = present.find(plugin.id); it != present.end()) {
@@ -32,18 +26,21 @@ void check(const std::vector<Plugin<Interface>>& incoming, const Map& present, c
 
 }  // namespace
 
-std::vector<std::string> Enrollment::names() const {
-  std::vector<std::string> names;
-  std::apply(
-      [&](const auto&... kind) {
-        const auto collect = [&]<class Interface>(const std::vector<Plugin<Interface>>& plugins) {
-          for (const auto& plugin : plugins) names.push_back(std::string(kind_name<Interface>()) + "/" + plugin.id);
-        };
-        (collect(kind), ...);
-      },
-      plugins_);
-  std::sort(names.begin(), names.end());
-  return names;
+bool is_plugin_id(std::string_view text) {
+  return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
+  });
+}
+
+std::map<std::string, std::string> Enrollment::summaries() const {
+  std::map<std::string, std::string> summaries;
+  const auto collect = [&]<class Interface>(const std::vector<Plugin<Interface>>& plugins) {
+    for (const auto& plugin : plugins) {
+      summaries.emplace(std::string(kind_name<Interface>()) + "/" + plugin.id, plugin.summary);
+    }
+  };
+  std::apply([&](const auto&... kind) { (collect(kind), ...); }, plugins_);
+  return summaries;
 }
 
 void Registry::admit(Enrollment enrollment, const std::string& origin) {
@@ -62,7 +59,7 @@ void Registry::admit(Enrollment enrollment, const std::string& origin) {
   });
 }
 
-void Registry::set_loader(std::function<bool(std::string_view, std::string_view)> load,
+void Registry::set_loader(std::function<bool(Registry&, std::string_view, std::string_view)> load,
                           std::function<std::vector<std::string>(std::string_view)> list) {
   loader_ = std::move(load);
   lister_ = std::move(list);

@@ -3,9 +3,11 @@
 /// `plugins/host` loads them from shared libraries when they are asked for.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -68,6 +70,19 @@ constexpr std::string_view kind_name<Load>() {
   return "load";
 }
 
+inline constexpr std::array<std::string_view, 6> plugin_kinds = {kind_name<Body>(),       kind_name<Hinge>(),
+                                                                 kind_name<ModeFamily>(), kind_name<Formulation>(),
+                                                                 kind_name<Integrator>(), kind_name<Load>()};
+
+/// Whether a text can be a plugin's id: 1 to 64 of a-z, 0-9 and '-'.
+bool is_plugin_id(std::string_view text);
+
+/// A plugin library cannot be used: what() says which one and why, in a sentence. No fault of the scene's.
+class PluginError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// The plugins one library brings, before they are admitted.
 class Enrollment {
  public:
@@ -79,8 +94,8 @@ class Enrollment {
   [[nodiscard]] std::vector<Plugin<Interface>>& all() {
     return std::get<std::vector<Plugin<Interface>>>(plugins_);
   }
-  /// "kind/id" of every plugin, sorted.
-  [[nodiscard]] std::vector<std::string> names() const;
+  /// Summaries of all plugins by "kind/id", sorted; of two with one name the first.
+  [[nodiscard]] std::map<std::string, std::string> summaries() const;
 
  private:
   friend class Registry;
@@ -96,11 +111,12 @@ class Registry {
   void admit(Enrollment enrollment, const std::string& origin);
 
   /// The plugin of a kind with this id; null where there is none. It may load a library: see set_loader.
+  /// \throws PluginError where there is one whose library is refused.
   template <class Interface>
   [[nodiscard]] const Plugin<Interface>* find(std::string_view id) {
     auto& plugins = std::get<Map<Interface>>(maps_);
     auto it = plugins.find(id);
-    if (it == plugins.end() && loader_ && loader_(kind_name<Interface>(), id)) it = plugins.find(id);
+    if (it == plugins.end() && loader_ && loader_(*this, kind_name<Interface>(), id)) it = plugins.find(id);
     return it == plugins.end() ? nullptr : &it->second;
   }
   /// Ids of a kind that are admitted or that the lister knows, sorted.
@@ -112,8 +128,8 @@ class Registry {
   }
 
   /// `load` is asked for a plugin that is not yet admitted; it admits the library that has it and returns true, or
-  /// returns false. `list` gives the ids of a kind that could be loaded.
-  void set_loader(std::function<bool(std::string_view kind, std::string_view id)> load,
+  /// returns false where it knows none, or throws PluginError. `list` gives the ids of a kind that could be loaded.
+  void set_loader(std::function<bool(Registry& registry, std::string_view kind, std::string_view id)> load,
                   std::function<std::vector<std::string>(std::string_view kind)> list);
 
  private:
@@ -122,7 +138,7 @@ class Registry {
   static std::vector<std::string> sorted_unique(std::vector<std::string> names);
 
   std::tuple<Map<Body>, Map<Hinge>, Map<ModeFamily>, Map<Formulation>, Map<Integrator>, Map<Load>> maps_;
-  std::function<bool(std::string_view, std::string_view)> loader_;
+  std::function<bool(Registry&, std::string_view, std::string_view)> loader_;
   std::function<std::vector<std::string>(std::string_view)> lister_;
 };
 

@@ -73,6 +73,7 @@ class Value {
   [[nodiscard]] std::vector<Value>& items() { return items_; }
   [[nodiscard]] std::vector<Member>& members() { return members_; }
   void set(std::string_view key, Value value);
+  void set_place(Place where) { place_ = std::move(where); }
 
  private:
   Kind kind_ = Kind::null;

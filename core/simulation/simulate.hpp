@@ -33,21 +33,27 @@ struct RunOptions {
 /// What a run leaves behind, whatever its end.
 struct RunSummary {
   RunStatus status = RunStatus::completed;
-  std::string message;  ///< the physical reason, in a sentence or two
+  std::string message;  ///< the physical reason, or what a completed run should not keep to itself; else empty
   State final;          ///< the last accepted state
-  /// Greatest |deflection| of each beam's tip over all accepted steps, body axes x, y, z [m].
+  /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and outputs,
+  /// body axes x, y, z [m].
   std::map<std::string, std::array<double, 3>> peak_deflection;
-  /// Greatest |effort| of the loads on each generalized speed over all accepted steps [N m, N].
+  /// Greatest |effort| of the loads on each generalized speed over all accepted steps and outputs [N m, N].
   std::vector<double> peak_effort;
-  /// Greatest |E(t) − E(0) − work| over the outputs, relative to the greatest of |E|, |work| and kinetic energy seen.
+  /// Greatest |E(t) − E(0) − work| over the accepted states that follow the outputs, relative to the greatest of |E|,
+  /// |work| and kinetic energy seen.
   double energy_drift = 0;
-  Conditioning conditioning;  ///< at the final state
+  /// Times [s] at which steps were rejected as they are where a load jumps without having declared it.
+  std::vector<double> suspected_jumps;
+  Conditioning conditioning;  ///< at the final state; empty where there are more than 200 generalized speeds
   StepStatistics steps;
   double cpu_seconds = 0;
 };
 
-/// Integrates from `initial`; `output` receives the state at 0, at every multiple of the output interval and at the
-/// end.
+/// Integrates from `initial`; `output` receives the state there, at every multiple of the output interval (interpolated
+/// within the steps, so outputs do not change the result) and at the end, whatever it is. Steps land on discontinuities
+/// of the loads and on the end, where time is RunOptions::end bit by bit.
+/// \throws std::invalid_argument where the end lies before the initial time or the output interval is not positive.
 RunSummary simulate(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator,
                     const State& initial, const RunOptions& options, const std::function<void(const State&)>& output);
 

@@ -1,0 +1,276 @@
+/// \file
+/// The beam: slender, inextensible, no shear, along x of the body frame from `root` (x = 0) to `tip` (x = length).
+///
+/// Its strains are linear in the modal coordinates (theory, section 1): κ = (t′, −w″, v″) with deflections v, w along
+/// y, z and twist t. With the first-order rotation vector θ₁ = (t, −w′, v′) = Σ ψ_i q_i, second-order kinematics follow
+/// from R′ = R κ̂, r′ = R e_x:
+///   θ₂ = ½ ∫₀ˣ θ₁ × θ₁′ dσ                    →  Θ_ij = ½ ∫₀ˣ (ψ_i × ψ_j′ + ψ_j × ψ_i′) dσ
+///   r₂ = ∫₀ˣ θ₂ × e_x + ½ θ₁ × (θ₁ × e_x) dσ  →  Γ_ij = ∫₀ˣ Θ_ij × e_x + ½ (ψ_i × (ψ_j × e_x) + ψ_j × (ψ_i × e_x)) dσ
+/// Along x this is the foreshortening −½∫(v′² + w′²) of Padilla & von Flotow, across it the coupling of bending and
+/// twist. Rotary inertia of the sections in bending is neglected; ρI_p of twist is kept.
+#include <cmath>
+
+#include "beam_quadrature.hpp"
+#include "withy/core/plugin/body.hpp"
+#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/mode_family.hpp"
+
+namespace withy {
+namespace {
+
+/// One kind of strain of the beam with its modes.
+struct Strain {
+  const char* name;  ///< "bending_y", …
+  Vector3 rotation;  ///< direction of θ₁ for a unit slope (bending) or unit twist
+  BeamData beam;
+  std::unique_ptr<ShapeFunctions> functions;
+};
+
+/// Values of every coordinate's fields at one x.
+struct LinearFields {
+  Matrix3X phi, psi, psi_slope, strain;  ///< Φ; ψ; ψ′; strain (curvature or twist rate) as a vector
+};
+
+class Beam final : public Body {
+ public:
+  Beam(double length, double mass_per_length, double damping_ratio, std::vector<Strain> strains)
+      : length_(length), strains_(std::move(strains)), quadrature_(length, wave_number(strains_)) {
+    shape_.length = length;
+    for (const Strain& s : strains_) {
+      for (std::size_t i = 1; i <= s.functions->count(); ++i) {
+        shape_.mode_names.push_back(std::string(s.name) + "[" + std::to_string(i) + "]");
+      }
+    }
+    integrate_fields();
+    const Eigen::Index n = shape_.modes();
+    shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd modal_mass = Eigen::VectorXd::Zero(n);
+    double twist_inertia = 0;
+    for (const Strain& s : strains_) {
+      if (s.beam.strain == BeamData::Strain::torsion) twist_inertia = s.beam.inertia;
+    }
+    const auto& x = quadrature_.nodes();
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const double w = quadrature_.weights()[k];
+      const LinearFields f = linear_fields(x[k]);
+      const PointExpansion e = expansion(x[k], f, gamma_at_nodes_.row(static_cast<Eigen::Index>(k)),
+                                         theta_at_nodes_.row(static_cast<Eigen::Index>(k)));
+      shape_.particles.push_back({w * mass_per_length, e});
+      if (twist_inertia > 0) {
+        Matrix3 inertia = Matrix3::Zero();
+        inertia(0, 0) = w * twist_inertia;
+        shape_.sections.push_back({inertia, e});
+      }
+      shape_.stiffness += w * stiffness_of(f);
+      modal_mass +=
+          w * (mass_per_length * f.phi.colwise().squaredNorm() + twist_inertia * f.psi.row(0).cwiseAbs2()).transpose();
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      shape_.damping(i, i) = 2 * damping_ratio * std::sqrt(shape_.stiffness(i, i) * modal_mass[i]);
+    }
+  }
+
+  const ModalShape& shape() const override { return shape_; }
+  std::optional<PointExpansion> station(const StationName& name) const override {
+    double x = 0;
+    if (const auto* text = std::get_if<std::string>(&name)) {
+      if (*text == "tip") {
+        x = length_;
+      } else if (*text != "root") {
+        return {};
+      }
+    } else {
+      x = std::get<double>(name);
+      if (!(x >= 0 && x <= length_)) return {};
+    }
+    return expansion(x, linear_fields(x), quadrature_.integral_to(x, gamma_slope_),
+                     quadrature_.integral_to(x, theta_slope_));
+  }
+  std::string stations() const override {
+    return "root, tip, or a coordinate x from 0 to " + std::to_string(length_) + " m";
+  }
+
+ private:
+  static double wave_number(const std::vector<Strain>& strains) {
+    double beta = 0;
+    for (const Strain& s : strains) beta = std::max(beta, s.functions->wave_number());
+    return beta;
+  }
+
+  LinearFields linear_fields(double x) const {
+    const Eigen::Index n = shape_.modes();
+    LinearFields f{Matrix3X::Zero(3, n), Matrix3X::Zero(3, n), Matrix3X::Zero(3, n), Matrix3X::Zero(3, n)};
+    Eigen::Index at = 0;
+    for (const Strain& s : strains_) {
+      const std::size_t count = s.functions->count();
+      std::vector<double> value(count), slope(count), curvature(count);
+      s.functions->evaluate(x, value, slope, curvature);
+      for (std::size_t i = 0; i < count; ++i, ++at) {
+        if (s.beam.strain == BeamData::Strain::torsion) {
+          f.psi.col(at) = s.rotation * value[i];
+          f.psi_slope.col(at) = s.rotation * slope[i];
+        } else {
+          f.phi.col(at) = s.rotation.cross(Vector3::UnitX()) * value[i];
+          f.psi.col(at) = s.rotation * slope[i];
+          f.psi_slope.col(at) = s.rotation * curvature[i];
+        }
+      }
+    }
+    return f;
+  }
+
+  /// Integrand of ½ qᵀKq: EI κ² or GJ t′², coordinates of different strains being independent.
+  Eigen::MatrixXd stiffness_of(const LinearFields& f) const {
+    Eigen::MatrixXd k = Eigen::MatrixXd::Zero(shape_.modes(), shape_.modes());
+    Eigen::Index at = 0;
+    for (const Strain& s : strains_) {
+      const auto count = static_cast<Eigen::Index>(s.functions->count());
+      const auto strain = f.psi_slope.middleCols(at, count);
+      k.block(at, at, count, count) = s.beam.stiffness * strain.transpose() * strain;
+      at += count;
+    }
+    return k;
+  }
+
+  /// Θ and Γ at the nodes by running integrals; a row holds the upper triangles of the three components.
+  void integrate_fields() {
+    const Eigen::Index n = shape_.modes();
+    const Eigen::Index pairs = n * (n + 1) / 2;
+    const auto nodes = static_cast<Eigen::Index>(quadrature_.nodes().size());
+    theta_slope_.resize(nodes, 3 * pairs);
+    gamma_slope_.resize(nodes, 3 * pairs);
+    std::vector<LinearFields> fields;
+    for (const double x : quadrature_.nodes()) fields.push_back(linear_fields(x));
+    const auto each_pair = [&](auto&& action) {
+      Eigen::Index column = 0;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        for (Eigen::Index j = i; j < n; ++j, column += 3) action(i, j, column);
+      }
+    };
+    for (Eigen::Index k = 0; k < nodes; ++k) {
+      const LinearFields& f = fields[static_cast<std::size_t>(k)];
+      each_pair([&](Eigen::Index i, Eigen::Index j, Eigen::Index column) {
+        const Vector3 a = f.psi.col(i), b = f.psi.col(j), da = f.psi_slope.col(i), db = f.psi_slope.col(j);
+        theta_slope_.block<1, 3>(k, column) = 0.5 * (a.cross(db) + b.cross(da)).transpose();
+      });
+    }
+    theta_at_nodes_ = quadrature_.running_integral(theta_slope_);
+    const Vector3 ex = Vector3::UnitX();
+    for (Eigen::Index k = 0; k < nodes; ++k) {
+      const LinearFields& f = fields[static_cast<std::size_t>(k)];
+      each_pair([&](Eigen::Index i, Eigen::Index j, Eigen::Index column) {
+        const Vector3 a = f.psi.col(i), b = f.psi.col(j);
+        const Vector3 theta = theta_at_nodes_.block<1, 3>(k, column).transpose();
+        gamma_slope_.block<1, 3>(k, column) =
+            (theta.cross(ex) + 0.5 * (a.cross(b.cross(ex)) + b.cross(a.cross(ex)))).transpose();
+      });
+    }
+    gamma_at_nodes_ = quadrature_.running_integral(gamma_slope_);
+  }
+
+  PointExpansion expansion(double x, const LinearFields& f, const Eigen::RowVectorXd& gamma,
+                           const Eigen::RowVectorXd& theta) const {
+    const Eigen::Index n = shape_.modes();
+    PointExpansion e = PointExpansion::rigid(Vector3(x, 0, 0), n);
+    e.phi = f.phi;
+    e.psi = f.psi;
+    Eigen::Index column = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = i; j < n; ++j) {
+        for (std::size_t c = 0; c < 3; ++c, ++column) {
+          e.gamma[c](i, j) = e.gamma[c](j, i) = gamma[column];
+          e.theta[c](i, j) = e.theta[c](j, i) = theta[column];
+        }
+      }
+    }
+    return e;
+  }
+
+  double length_;
+  std::vector<Strain> strains_;
+  BeamQuadrature quadrature_;
+  ModalShape shape_;
+  Eigen::MatrixXd theta_slope_, gamma_slope_, theta_at_nodes_, gamma_at_nodes_;
+};
+
+/// The strain a scene asks for under `key`; nothing after a reported error.
+std::optional<Strain> make_strain(const Value& p, const char* key, const Vector3& rotation, BeamData beam,
+                                  const MakeContext& context) {
+  const Value& given = p.at(key);
+  beam.length = p.number_at("length");
+  beam.stiffness = given.number_at("stiffness");
+  const std::size_t count = given.count_at("modes");
+  const Value& family_name = given.at("family");
+  const Plugin<ModeFamily>* plugin = context.registry.find<ModeFamily>(family_name.text());
+  if (plugin == nullptr) {
+    context.diagnostics.error(family_name.place(), "no mode family '" + family_name.text() + "'");
+    return {};
+  }
+  const auto family = plugin->make(Value::map({}), context);
+  if (family == nullptr) return {};
+  if (count > family->most()) {
+    context.diagnostics.error(given.at("modes").place(), "got " + std::to_string(count) + " modes; family '" +
+                                                             family_name.text() + "' gives at most " +
+                                                             std::to_string(family->most()));
+    return {};
+  }
+  auto functions = family->functions(beam, count);
+  if (functions == nullptr) {
+    context.diagnostics.error(family_name.place(),
+                              "mode family '" + family_name.text() + "' has no functions for " + key);
+    return {};
+  }
+  return Strain{key, rotation, beam, std::move(functions)};
+}
+
+std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+  std::vector<Strain> strains;
+  bool good = true;
+  const auto add = [&](const char* key, const Vector3& rotation, BeamData beam) {
+    if (!p.has(key) || p.at(key).count_at("modes") == 0) return;
+    auto strain = make_strain(p, key, rotation, beam, context);
+    if (strain) {
+      strains.push_back(std::move(*strain));
+    } else {
+      good = false;
+    }
+  };
+  const double mass_per_length = p.number_at("mass_per_length");
+  using enum BeamData::Strain;
+  add("bending_y", Vector3::UnitZ(), {bending, 0, mass_per_length, 0});
+  add("bending_z", -Vector3::UnitY(), {bending, 0, mass_per_length, 0});
+  if (p.has("torsion")) add("torsion", Vector3::UnitX(), {torsion, 0, p.at("torsion").number_at("inertia"), 0});
+  if (!good) return nullptr;
+  return std::make_unique<Beam>(p.number_at("length"), mass_per_length, p.number_at("damping_ratio"),
+                                std::move(strains));
+}
+
+std::vector<ParameterSpec> strain_parameters(const char* stiffness) {
+  return {number("stiffness", "N m^2", stiffness).above(0),
+          integer("modes", "number of assumed modes").least(0).most(1000).otherwise(2),
+          text("family", "assumed-mode family").naming(ParameterSpec::Refers::mode_family).otherwise("clamped-free")};
+}
+
+void enroll(Enrollment& enrollment) {
+  std::vector<ParameterSpec> torsion = strain_parameters("torsional stiffness GJ");
+  torsion.push_back(number("inertia", "kg m", "polar inertia per length, rho I_p").above(0));
+  enrollment.add<Body>(
+      {.id = "beam",
+       .summary = "Slender beam along x, inextensible and without shear, bending in two planes and twisting",
+       .parameters = {number("length", "m", "length, undeformed").above(0),
+                      number("mass_per_length", "kg/m", "mass per length").above(0),
+                      map("bending_y", strain_parameters("EI_z, for deflection along y"),
+                          "bending with deflection along y")
+                          .optional(),
+                      map("bending_z", strain_parameters("EI_y, for deflection along z"),
+                          "bending with deflection along z")
+                          .optional(),
+                      map("torsion", torsion, "twist about x").optional(),
+                      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0)},
+       .make = &make});
+}
+
+}  // namespace
+}  // namespace withy
+
+WITHY_PLUGIN(beam, withy::enroll);

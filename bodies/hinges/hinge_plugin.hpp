@@ -1,0 +1,59 @@
+/// \file
+/// What the hinge plugins of this folder share.
+#pragma once
+
+#include <optional>
+
+#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/hinge.hpp"
+
+namespace withy {
+
+/// The parameter `axis` of a hinge with one axis.
+inline std::vector<ParameterSpec> axis_parameter() {
+  return {
+      vector("axis", 3, "1", "axis, the same components in the hinge frames of parent and child; any length but zero")};
+}
+
+/// The unit vector along the scene's `axis`; nothing after a reported error.
+inline std::optional<Vector3> unit_axis(const Value& parameters, const MakeContext& context) {
+  const std::vector<double> a = parameters.at("axis").numbers();
+  const Vector3 axis(a[0], a[1], a[2]);
+  if (!(axis.stableNorm() > 0)) {
+    context.diagnostics.error(parameters.at("axis").place(), "got a zero vector; need a direction");
+    return {};
+  }
+  return axis.stableNormalized();
+}
+
+/// A hinge whose coordinates are the integrals of its rates: the part every such hinge shares.
+class HolonomicHinge : public Hinge {
+ public:
+  std::size_t coordinates() const override { return speeds(); }
+  void reference(std::span<double> x) const noexcept override {
+    for (double& xi : x) xi = 0;
+  }
+  void derivatives(std::span<const double> /*x*/, std::span<const double> rates,
+                   std::span<double> x_dot) const noexcept override {
+    for (std::size_t i = 0; i < rates.size(); ++i) x_dot[i] = rates[i];
+  }
+  void normalize(std::span<double> /*x*/) const noexcept override {}
+};
+
+/// ẇ of a unit quaternion (w x y z) of M in F from ω_FM in F: ½ (0, ω) ⊗ quaternion.
+inline void quaternion_rates(std::span<const double> x, std::span<const double> omega, std::span<double> x_dot) {
+  const double w = x[0], a = x[1], b = x[2], c = x[3];
+  x_dot[0] = -0.5 * (omega[0] * a + omega[1] * b + omega[2] * c);
+  x_dot[1] = 0.5 * (omega[0] * w + omega[1] * c - omega[2] * b);
+  x_dot[2] = 0.5 * (omega[1] * w + omega[2] * a - omega[0] * c);
+  x_dot[3] = 0.5 * (omega[2] * w + omega[0] * b - omega[1] * a);
+}
+
+/// Scales the quaternion in x[0..3] to unit length; a zero quaternion, which no rotation has, is left as it is.
+inline void normalize_quaternion(std::span<double> x) {
+  const double norm = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3]);
+  if (!(norm > 0)) return;
+  for (std::size_t i = 0; i < 4; ++i) x[i] /= norm;
+}
+
+}  // namespace withy

@@ -1,0 +1,46 @@
+/// \file
+/// The spherical hinge: x is the quaternion w x y z of M in F, ẋ the angular velocity ω_FM in F.
+/// In M axes H = (R_FMᵀ, 0); Ḣẋ = −ω × ω = 0.
+#include "hinge_plugin.hpp"
+
+namespace withy {
+namespace {
+
+class Spherical final : public Hinge {
+ public:
+  std::size_t coordinates() const override { return 4; }
+  std::size_t speeds() const override { return 3; }
+  void reference(std::span<double> x) const noexcept override {
+    x[0] = 1;
+    x[1] = x[2] = x[3] = 0;
+  }
+  void motion(std::span<const double> x, std::span<const double> /*rates*/, HingeMotion& out) const noexcept override {
+    out.pose.R = rotation_from_quaternion(x[0], x[1], x[2], x[3]);
+    out.pose.p.setZero();
+    out.H.setZero(6, 3);
+    out.H.topRows<3>() = out.pose.R.transpose();
+    out.bias.setZero();
+  }
+  void derivatives(std::span<const double> x, std::span<const double> rates,
+                   std::span<double> x_dot) const noexcept override {
+    quaternion_rates(x, rates, x_dot);
+  }
+  void normalize(std::span<double> x) const noexcept override { normalize_quaternion(x); }
+  std::optional<HingeKernel> kernel() const override {
+    return HingeKernel{HingeKernel::Kind::spherical, Vector3::UnitZ()};
+  }
+};
+
+std::unique_ptr<Hinge> make(const Value& /*p*/, const MakeContext& /*context*/) {
+  return std::make_unique<Spherical>();
+}
+
+void enroll(Enrollment& enrollment) {
+  enrollment.add<Hinge>(
+      {.id = "spherical", .summary = "Any rotation; coordinates are a quaternion", .parameters = {}, .make = &make});
+}
+
+}  // namespace
+}  // namespace withy
+
+WITHY_PLUGIN(spherical, withy::enroll);

@@ -1,0 +1,28 @@
+# What `cmake --install` puts where, and the package that find_package(withy) finds. Everything is relative: an
+# installed tree can be moved.
+include(CMakePackageConfigHelpers)
+
+# Programs are in bin; libraries beside each other.
+set(CMAKE_BUILD_RPATH_USE_ORIGIN ON)
+file(RELATIVE_PATH to_libraries /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+set(CMAKE_INSTALL_RPATH "$ORIGIN/${to_libraries}")
+
+# withy_install_library(TARGET EXPORT_NAME name): installs a shared library, found as withy::name.
+function(withy_install_library target)
+  cmake_parse_arguments(ARG "" "EXPORT_NAME" "" ${ARGN})
+  set_target_properties(${target} PROPERTIES
+    EXPORT_NAME ${ARG_EXPORT_NAME} INSTALL_RPATH "$ORIGIN"
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  install(TARGETS ${target} EXPORT withy LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/withy)
+install(EXPORT withy NAMESPACE withy:: DESTINATION ${package} COMPONENT development)
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/withy-config.cmake.in
+  ${PROJECT_BINARY_DIR}/withy-config.cmake INSTALL_DESTINATION ${package})
+# Before 1.0 every minor version may change the interfaces.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/withy-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/withy-config.cmake ${PROJECT_BINARY_DIR}/withy-config-version.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/WithyPlugin.cmake
+        DESTINATION ${package} COMPONENT development)

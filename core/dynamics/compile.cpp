@@ -1,0 +1,163 @@
+#include "withy/core/dynamics/compile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
+
+#include "withy/core/dynamics/reference.hpp"
+#include "withy/core/dynamics/strict_sweep.hpp"
+#include "withy/core/dynamics/symmetric_sweep.hpp"
+
+namespace withy {
+namespace {
+
+/// A sweep, its loads, and the reference for everything that is not hot.
+template <class Sweep>
+class SweepEquations final : public EquationsOfMotion {
+ public:
+  SweepEquations(std::shared_ptr<const Model> model, Terms terms, Tree tree, const std::vector<Terms>& node_terms)
+      : model_(std::move(model)),
+        reference_(model_, terms),
+        sweep_(tree, node_terms, model_->gravity()),
+        savings_(std::move(tree.savings)) {
+    for (const BodyNode& b : model_->bodies()) {
+      const ModalShape& shape = b.body->shape();
+      if (shape.damping.isZero(0)) continue;
+      const Slot& slot = *layout().body(b.name);
+      damped_.push_back({slot.speed, shape.damping});
+    }
+    // Efforts, then the loads' scratch, then the sweep's own memory.
+    std::size_t scratch = 0;
+    for (const LoadNode& l : model_->loads()) scratch = std::max(scratch, l.load->scratch());
+    sweep::WorkLayout memory;
+    efforts_offset_ = memory.take<double>(layout().speeds);
+    scratch_offset_ = memory.take<double>(scratch);
+    sweep_offset_ = memory.size();
+  }
+
+  const Layout& layout() const override { return model_->layout(); }
+  Work make_work() const override { return Work(sweep_offset_ + sweep_.work_size()); }
+
+  Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
+                         Work& work) const noexcept override {
+    const Layout& order = layout();
+    const auto positions = y.first(order.positions);
+    const auto speeds = y.subspan(order.positions, order.speeds);
+    std::byte* memory = work.data();
+    const std::span<double> efforts(reinterpret_cast<double*>(memory + efforts_offset_), order.speeds);
+    for (double& e : efforts) e = 0;
+    for (const LoadNode& l : model_->loads()) {
+      l.load->add(t, positions, speeds, efforts,
+                  {reinterpret_cast<double*>(memory + scratch_offset_), l.load->scratch()});
+    }
+    double* accelerations = y_dot.data() + order.positions;
+    const Evaluation evaluation =
+        sweep_.accelerations(positions.data(), speeds.data(), efforts.data(), accelerations, memory + sweep_offset_);
+    if (!evaluation.ok()) return evaluation;
+    for (std::size_t h = 0; h < order.hinges.size(); ++h) {
+      const Slot& slot = order.hinges[h];
+      if (slot.positions == slot.speeds && slot.speeds == 1) {
+        y_dot[slot.position] = speeds[slot.speed];
+      } else if (slot.positions > 0) {
+        model_->hinges()[h].hinge->derivatives(positions.subspan(slot.position, slot.positions),
+                                               speeds.subspan(slot.speed, slot.speeds),
+                                               y_dot.subspan(slot.position, slot.positions));
+      }
+    }
+    for (const Slot& slot : order.bodies) {
+      for (std::size_t i = 0; i < slot.speeds; ++i) y_dot[slot.position + i] = speeds[slot.speed + i];
+    }
+    double power = 0;
+    for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
+    for (const auto& [first, D] : damped_) {
+      for (Eigen::Index i = 0; i < D.rows(); ++i) {
+        for (Eigen::Index j = 0; j < D.cols(); ++j) {
+          power -= speeds[first + static_cast<std::size_t>(i)] * D(i, j) * speeds[first + static_cast<std::size_t>(j)];
+        }
+      }
+    }
+    y_dot[order.positions + order.speeds] = power;
+    double total = power;
+    for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
+    if (!std::isfinite(total)) return {Evaluation::Outcome::nonfinite, first_nonfinite(accelerations)};
+    return {};
+  }
+
+  void normalize(std::span<double> y) const noexcept override {
+    for (std::size_t h = 0; h < layout().hinges.size(); ++h) {
+      const Slot& slot = layout().hinges[h];
+      if (slot.positions != slot.speeds) model_->hinges()[h].hinge->normalize(y.subspan(slot.position, slot.positions));
+    }
+  }
+
+  DenseSystem system(double t, std::span<const double> y) const override { return reference_.system(t, y); }
+  Energies energies(std::span<const double> y) const override { return reference_.energies(y); }
+  WorldPose frame_pose(std::span<const double> y, int body, int frame) const override {
+    return reference_.frame_pose(y, body, frame);
+  }
+  std::array<double, 3> deflection(std::span<const double> y, int body, int frame) const override {
+    return reference_.deflection(y, body, frame);
+  }
+  std::vector<std::string> savings() const override { return savings_; }
+
+ private:
+  /// The body whose hinge or modes have the first acceleration that is not finite.
+  int first_nonfinite(const double* accelerations) const noexcept {
+    const auto bad = [&](const Slot& slot) {
+      for (std::size_t i = 0; i < slot.speeds; ++i) {
+        if (!std::isfinite(accelerations[slot.speed + i])) return true;
+      }
+      return false;
+    };
+    std::size_t flexible = 0;
+    for (std::size_t b = 0; b < layout().hinges.size(); ++b) {
+      if (bad(layout().hinges[b])) return static_cast<int>(b);
+      if (model_->bodies()[b].body->shape().modes() > 0 && bad(layout().bodies[flexible++])) return static_cast<int>(b);
+    }
+    return -1;
+  }
+
+  struct Damped {
+    std::size_t first;
+    Eigen::MatrixXd D;
+  };
+  std::shared_ptr<const Model> model_;
+  ReferenceDynamics reference_;
+  Sweep sweep_;
+  std::vector<std::string> savings_;
+  std::vector<Damped> damped_;
+  std::size_t efforts_offset_ = 0, scratch_offset_ = 0, sweep_offset_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<EquationsOfMotion> compile_equations(std::shared_ptr<const Model> model, Terms terms) {
+  Tree tree = compile_tree(*model);
+  std::vector<Terms> node_terms;
+  const std::string* strict = nullptr;
+  const std::string* full = nullptr;
+  for (const NodeSpec& node : tree.nodes) {
+    const BodyNode& body = model->bodies()[static_cast<std::size_t>(node.body)];
+    node_terms.push_back(body.terms.value_or(terms));
+    if (node.modes == 0) continue;
+    if (node_terms.back().truncation == Truncation::strict) strict = &body.name;
+    if (node_terms.back().truncation == Truncation::none) full = &body.name;
+  }
+  if (strict != nullptr && full != nullptr) {
+    throw std::invalid_argument("body '" + *strict + "' is truncated to strict first order and body '" + *full +
+                                "' is not truncated; equations of one order cannot hold both");
+  }
+  const bool planar = tree.planar;
+  const auto build = [&]<class Sweep>(std::type_identity<Sweep>) -> std::unique_ptr<EquationsOfMotion> {
+    return std::make_unique<SweepEquations<Sweep>>(std::move(model), terms, std::move(tree), node_terms);
+  };
+  if (strict != nullptr) {
+    return planar ? build(std::type_identity<sweep::StrictSweep<Planar>>{})
+                  : build(std::type_identity<sweep::StrictSweep<Spatial>>{});
+  }
+  return planar ? build(std::type_identity<sweep::SymmetricSweep<Planar>>{})
+                : build(std::type_identity<sweep::SymmetricSweep<Spatial>>{});
+}
+
+}  // namespace withy

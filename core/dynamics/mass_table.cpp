@@ -1,0 +1,76 @@
+#include "withy/core/dynamics/mass_table.hpp"
+
+#include <Eigen/QR>
+#include <cmath>
+
+namespace withy::sweep {
+namespace {
+
+/// Coefficients of the columns of `fields` in an orthonormal basis of their span whose first function is column 0: a
+/// matrix R with Rᵀ R = fieldsᵀ fields. What is dropped has at most 1e-9 of a column's norm, so that dot products lose
+/// at most 1e-18 of it.
+Eigen::MatrixXd orthonormal_coefficients(const Eigen::MatrixXd& fields) {
+  const Eigen::VectorXd one = fields.col(0).normalized();
+  Eigen::RowVectorXd first = one.transpose() * fields;
+  Eigen::MatrixXd rest = fields.rightCols(fields.cols() - 1);
+  rest -= one * first.tail(rest.cols());
+  const Eigen::RowVectorXd again = one.transpose() * rest;  // second pass: what rounding left along the constant
+  rest -= one * again;
+  first.tail(rest.cols()) += again;
+  // Columns have different units; scaled, a column's own norm decides what is negligible.
+  Eigen::RowVectorXd scale = fields.rightCols(rest.cols()).colwise().norm();
+  for (double& s : scale) s = s > 0 ? s : 1.0;
+  const Eigen::MatrixXd scaled = rest * scale.cwiseInverse().asDiagonal();
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  Eigen::Index rank = 0;
+  while (rank < qr.matrixR().diagonal().size() && std::abs(qr.matrixR()(rank, rank)) > 1e-9) ++rank;
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(1 + rank, fields.cols());
+  R.row(0) = first;
+  const Eigen::MatrixXd upper = qr.matrixR().topRows(rank).template triangularView<Eigen::Upper>();
+  R.bottomRightCorner(rank, rest.cols()) = upper * qr.colsPermutation().transpose() * scale.asDiagonal();
+  return R;
+}
+
+}  // namespace
+
+template <class Space>
+MassTable<Space>::MassTable(const NodeSpec& node) {
+  constexpr Eigen::Index L = Space::linear;
+  const auto n = static_cast<Eigen::Index>(node.modes);
+  if (node.particles.empty()) return;
+  const auto rows = static_cast<Eigen::Index>(node.particles.size());
+  const Eigen::Index columns = 1 + L * (1 + n + n * (n + 1) / 2);
+  Eigen::MatrixXd fields(rows, columns);
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const Particle& p = node.particles[static_cast<std::size_t>(k)];
+    const double root = std::sqrt(p.mass);
+    const Fields<Space> f(p.at);
+    second_order = second_order || f.second_order;
+    Eigen::Index column = 0;
+    fields(k, column++) = root;
+    const auto put = [&](const typename Space::Position& a) {
+      for (Eigen::Index c = 0; c < L; ++c) fields(k, column++) = root * a[c];
+    };
+    put(f.X);
+    for (const auto& a : f.phi) put(a);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = i; j < n; ++j) put(f.gamma[static_cast<std::size_t>(i * n + j)]);
+    }
+  }
+  const Eigen::MatrixXd R = orthonormal_coefficients(fields);
+  root_mass = R(0, 0);
+  packs = (static_cast<std::size_t>(R.rows()) + lanes - 1) / lanes;
+  stride = static_cast<std::size_t>(columns - 1);
+  data.assign(packs * stride, spread(0.0));
+  for (Eigen::Index k = 0; k < R.rows(); ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    for (std::size_t c = 0; c < stride; ++c) {
+      data[(row / lanes) * stride + c][row % lanes] = R(k, static_cast<Eigen::Index>(c) + 1);
+    }
+  }
+}
+
+template struct MassTable<Spatial>;
+template struct MassTable<Planar>;
+
+}  // namespace withy::sweep

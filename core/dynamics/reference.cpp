@@ -1,0 +1,320 @@
+#include "withy/core/dynamics/reference.hpp"
+
+#include <Eigen/Dense>
+#include <unsupported/Eigen/AutoDiff>
+
+namespace withy {
+namespace {
+
+template <class S>
+using V3 = Eigen::Matrix<S, 3, 1>;
+template <class S>
+using M3 = Eigen::Matrix<S, 3, 3>;
+template <class S>
+using M3X = Eigen::Matrix<S, 3, Eigen::Dynamic>;
+template <class S>
+using VX = Eigen::Matrix<S, Eigen::Dynamic, 1>;
+template <class S>
+using MX = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// a + εb with ε² = 0.
+using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
+
+/// Motion of a frame in the world, world axes: pose, velocities, their Jacobians over all generalized speeds, and the
+/// accelerations that remain with u̇ = 0.
+template <class S>
+struct WorldMotion {
+  M3<S> R = M3<S>::Identity();
+  V3<S> p = V3<S>::Zero(), w = V3<S>::Zero(), v = V3<S>::Zero(), w_bias = V3<S>::Zero(), v_bias = V3<S>::Zero();
+  M3X<S> JW, JV;
+};
+
+/// Motion of the point or frame that moves as `m` relative to the body frame B.
+template <class S>
+WorldMotion<S> outward(const WorldMotion<S>& B, const PointMotionOf<S>& m, Eigen::Index first_mode) {
+  WorldMotion<S> A;
+  const V3<S> arm = B.R * m.r;
+  const V3<S> rate = B.R * m.r_rate;
+  const V3<S> spin = B.R * m.w_rate;
+  A.R = B.R * m.R;
+  A.p = B.p + arm;
+  A.w = B.w + spin;
+  A.v = B.v + B.w.cross(arm) + rate;
+  A.w_bias = B.w_bias + B.w.cross(spin) + B.R * m.w_bias;
+  A.v_bias = B.v_bias + B.w_bias.cross(arm) + B.w.cross(B.w.cross(arm)) + S(2) * B.w.cross(rate) + B.R * m.r_bias;
+  A.JW = B.JW;
+  A.JV = B.JV - skew<S>(arm) * B.JW;
+  A.JW.middleCols(first_mode, m.P.cols()) += B.R * m.W;
+  A.JV.middleCols(first_mode, m.P.cols()) += B.R * m.P;
+  return A;
+}
+
+/// The body frame B whose frame M, moving as `m` in B, has the world motion `M`: the inverse of `outward`.
+template <class S>
+WorldMotion<S> inward(const WorldMotion<S>& M, const PointMotionOf<S>& m, Eigen::Index first_mode) {
+  WorldMotion<S> B;
+  B.R = M.R * m.R.transpose();
+  const V3<S> arm = B.R * m.r;
+  const V3<S> rate = B.R * m.r_rate;
+  const V3<S> spin = B.R * m.w_rate;
+  B.p = M.p - arm;
+  B.w = M.w - spin;
+  B.v = M.v - B.w.cross(arm) - rate;
+  B.w_bias = M.w_bias - B.w.cross(spin) - B.R * m.w_bias;
+  B.v_bias = M.v_bias - B.w_bias.cross(arm) - B.w.cross(B.w.cross(arm)) - S(2) * B.w.cross(rate) - B.R * m.r_bias;
+  B.JW = M.JW;
+  B.JW.middleCols(first_mode, m.P.cols()) -= B.R * m.W;
+  B.JV = M.JV;
+  B.JV.middleCols(first_mode, m.P.cols()) -= B.R * m.P;
+  B.JV += skew<S>(arm) * B.JW;
+  return B;
+}
+
+/// Hinge frame M from F. With V_FM = Hẋ in M axes at M's origin and A's bias Ḣẋ component-wise in M.
+template <class S>
+WorldMotion<S> across(const WorldMotion<S>& F, const HingeMotion& h, std::span<const double> rates,
+                      Eigen::Index first) {
+  WorldMotion<S> M;
+  const V3<S> arm = F.R * h.pose.p.cast<S>();
+  M.R = F.R * h.pose.R.cast<S>();
+  M.p = F.p + arm;
+  const Eigen::Map<const Eigen::VectorXd> u(rates.data(), static_cast<Eigen::Index>(rates.size()));
+  const Vector6 local = h.H * u;  // ω_FM and the velocity of M's origin in F, in M axes
+  const V3<S> w = M.R * local.head<3>().cast<S>();
+  const V3<S> v = M.R * local.tail<3>().cast<S>();
+  M.w = F.w + w;
+  M.v = F.v + F.w.cross(arm) + v;
+  // d/dt of (R_M local) seen from F is R_M (Ḣẋ + ω_FM × local).
+  const V3<S> wb = M.R * V3<S>(h.bias.head<3>().cast<S>());
+  const V3<S> vb = M.R * V3<S>(h.bias.tail<3>().cast<S>()) + w.cross(v);
+  M.w_bias = F.w_bias + F.w.cross(w) + wb;
+  M.v_bias = F.v_bias + F.w_bias.cross(arm) + F.w.cross(F.w.cross(arm)) + S(2) * F.w.cross(v) + vb;
+  M.JW = F.JW;
+  M.JV = F.JV - skew<S>(arm) * F.JW;
+  const Eigen::Index n = h.H.cols();
+  M.JW.middleCols(first, n) += M.R * h.H.topRows<3>().cast<S>();
+  M.JV.middleCols(first, n) += M.R * h.H.bottomRows<3>().cast<S>();
+  return M;
+}
+
+/// How one body's elastic coordinates enter: its strain order, and the factor of q and q̇ (a dual ε, 0 or 1).
+template <class S>
+struct BodyTerms {
+  StrainOrder order;
+  S scale;
+};
+
+/// Everything about the tree at one state.
+template <class S>
+class Tree {
+ public:
+  Tree(const Model& model, std::vector<BodyTerms<S>> terms, std::span<const double> y)
+      : model_(model), terms_(std::move(terms)) {
+    const Layout& layout = model.layout();
+    const auto speeds = static_cast<Eigen::Index>(layout.speeds);
+    std::size_t flexible = 0;
+    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+      const HingeNode& h = model.hinges()[b];
+      const Slot& hinge = layout.hinges[b];
+      const Eigen::Index n = model.bodies()[b].body->shape().modes();
+      VX<S> q(n), q_dot(n);
+      first_mode_.push_back(0);
+      if (n > 0) {
+        const Slot& slot = layout.bodies[flexible++];
+        first_mode_.back() = static_cast<Eigen::Index>(slot.speed);
+        for (Eigen::Index i = 0; i < n; ++i) {
+          q[i] = terms_[b].scale * S(y[slot.position + static_cast<std::size_t>(i)]);
+          q_dot[i] = terms_[b].scale * S(y[layout.positions + slot.speed + static_cast<std::size_t>(i)]);
+        }
+      }
+      q_.push_back(std::move(q));
+      q_dot_.push_back(std::move(q_dot));
+
+      WorldMotion<S> F;
+      if (h.parent < 0) {
+        F.JW = F.JV = M3X<S>::Zero(3, speeds);
+        F.R = h.offset.R.template cast<S>();
+        F.p = h.offset.p.template cast<S>();
+      } else {
+        F = frame(h.parent, h.parent_frame, h.offset);
+      }
+      HingeMotion motion;
+      motion.H.resize(6, static_cast<Eigen::Index>(hinge.speeds));
+      const auto x = y.subspan(hinge.position, hinge.positions);
+      const auto rates = y.subspan(layout.positions + hinge.speed, hinge.speeds);
+      h.hinge->motion(x, rates, motion);
+      const WorldMotion<S> M = across<S>(F, motion, rates, static_cast<Eigen::Index>(hinge.speed));
+      const auto child = static_cast<int>(b);
+      bodies_.push_back(inward<S>(M, relative(child, h.child_frame, Pose{}), first_mode_[b]));
+    }
+  }
+
+  [[nodiscard]] PointMotionOf<S> relative(int body, int frame_index, const Pose& offset) const {
+    const auto b = static_cast<std::size_t>(body);
+    const Frame& f = model_.bodies()[b].frames[static_cast<std::size_t>(frame_index)];
+    return offset_motion<S>(point_motion<S>(f.section, terms_[b].order, q_[b], q_dot_[b]), f.pose * offset);
+  }
+  [[nodiscard]] WorldMotion<S> frame(int body, int frame_index, const Pose& offset) const {
+    const auto b = static_cast<std::size_t>(body);
+    return outward<S>(bodies_[b], relative(body, frame_index, offset), first_mode_[b]);
+  }
+  [[nodiscard]] WorldMotion<S> point(std::size_t b, const PointExpansion& e) const {
+    return outward<S>(bodies_[b], point_motion<S>(e, terms_[b].order, q_[b], q_dot_[b]), first_mode_[b]);
+  }
+
+  /// M = Σ m JᵀJ + Σ J_ωᵀ I J_ω and f = −Σ m Jᵀ(a_bias − g) − Σ J_ωᵀ(I α_bias + ω × Iω).
+  void assemble(MX<S>& M, VX<S>& f) const {
+    const auto n = static_cast<Eigen::Index>(model_.layout().speeds);
+    M = MX<S>::Zero(n, n);
+    f = VX<S>::Zero(n);
+    const V3<S> g = model_.gravity().template cast<S>();
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const ModalShape& shape = model_.bodies()[b].body->shape();
+      for (const Particle& particle : shape.particles) {
+        const WorldMotion<S> A = point(b, particle.at);
+        M += S(particle.mass) * (A.JV.transpose() * A.JV);
+        f -= S(particle.mass) * (A.JV.transpose() * (A.v_bias - g));
+      }
+      for (const Section& section : shape.sections) {
+        const WorldMotion<S> A = point(b, section.at);
+        const M3<S> I = A.R * section.inertia.template cast<S>() * A.R.transpose();
+        M += A.JW.transpose() * I * A.JW;
+        f -= A.JW.transpose() * (I * A.w_bias + A.w.cross(I * A.w));
+      }
+    }
+  }
+
+  [[nodiscard]] Energies energies() const {
+    Energies e;
+    V3<S> linear = V3<S>::Zero(), angular = V3<S>::Zero();
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const ModalShape& shape = model_.bodies()[b].body->shape();
+      for (const Particle& particle : shape.particles) {
+        const WorldMotion<S> A = point(b, particle.at);
+        e.kinetic += 0.5 * particle.mass * A.v.squaredNorm();
+        e.potential -= particle.mass * model_.gravity().dot(A.p);
+        linear += particle.mass * A.v;
+        angular += particle.mass * A.p.cross(A.v);
+      }
+      for (const Section& section : shape.sections) {
+        const WorldMotion<S> A = point(b, section.at);
+        const V3<S> h = A.R * section.inertia * A.R.transpose() * A.w;
+        e.kinetic += 0.5 * A.w.dot(h);
+        angular += h;
+      }
+      if (q_[b].size() > 0) e.potential += 0.5 * q_[b].dot(shape.stiffness * q_[b]);
+    }
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      e.linear_momentum[static_cast<std::size_t>(i)] = linear[i];
+      e.angular_momentum[static_cast<std::size_t>(i)] = angular[i];
+    }
+    return e;
+  }
+
+ private:
+  const Model& model_;
+  std::vector<BodyTerms<S>> terms_;
+  std::vector<WorldMotion<S>> bodies_;
+  std::vector<Eigen::Index> first_mode_;
+  std::vector<VX<S>> q_, q_dot_;
+};
+
+}  // namespace
+
+ReferenceDynamics::ReferenceDynamics(std::shared_ptr<const Model> model, Terms terms)
+    : model_(std::move(model)), terms_(terms) {}
+
+Terms ReferenceDynamics::terms_of(std::size_t body) const { return model_->bodies()[body].terms.value_or(terms_); }
+
+DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const {
+  const Layout& layout = model_->layout();
+  const auto n = static_cast<Eigen::Index>(layout.speeds);
+  Eigen::MatrixXd M;
+  Eigen::VectorXd f;
+  if (terms_.truncation == Truncation::strict) {
+    // Theory (3): the directional derivative along the elastic coordinates is the dual part.
+    Dual epsilon(0.0);
+    epsilon.derivatives()[0] = 1.0;
+    MX<Dual> dual_mass;
+    VX<Dual> dual_force;
+    std::vector<BodyTerms<Dual>> terms;
+    for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
+      terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? Dual(0.0) : epsilon});
+    }
+    Tree<Dual>(*model_, std::move(terms), y).assemble(dual_mass, dual_force);
+    const auto first = [](const Dual& d) { return d.derivatives()[0]; };
+    M = dual_mass.unaryExpr([](const Dual& d) { return d.value(); });
+    const Eigen::MatrixXd M1 = dual_mass.unaryExpr(first);
+    f = dual_force.unaryExpr([](const Dual& d) { return d.value(); }) + dual_force.unaryExpr(first);
+    for (const Slot& hinge : layout.hinges) {
+      const auto at = static_cast<Eigen::Index>(hinge.speed);
+      const auto count = static_cast<Eigen::Index>(hinge.speeds);
+      M.middleCols(at, count) += M1.middleCols(at, count);
+    }
+  } else {
+    std::vector<BodyTerms<double>> terms;
+    for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
+      terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? 0.0 : 1.0});
+    }
+    Tree<double>(*model_, std::move(terms), y).assemble(M, f);
+  }
+  std::size_t flexible = 0;
+  for (const BodyNode& node : model_->bodies()) {
+    const ModalShape& shape = node.body->shape();
+    if (shape.modes() == 0) continue;
+    const Slot& slot = layout.bodies[flexible++];
+    const Eigen::Map<const Eigen::VectorXd> q(y.data() + slot.position, shape.modes());
+    const Eigen::Map<const Eigen::VectorXd> q_dot(y.data() + layout.positions + slot.speed, shape.modes());
+    f.segment(static_cast<Eigen::Index>(slot.speed), shape.modes()) -= shape.stiffness * q + shape.damping * q_dot;
+  }
+
+  DenseSystem s;
+  s.size = layout.speeds;
+  s.mass.resize(s.size * s.size);
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(s.mass.data(), n, n) = M;
+  s.force.assign(f.data(), f.data() + n);
+  s.applied.assign(s.size, 0.0);
+  for (const LoadNode& node : model_->loads()) {
+    std::vector<double> scratch(node.load->scratch());
+    node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), s.applied, scratch);
+  }
+  return s;
+}
+
+namespace {
+
+/// Every body in its own strain kinematics, without truncation.
+std::vector<BodyTerms<double>> untruncated(const Model& model, Terms otherwise) {
+  std::vector<BodyTerms<double>> terms;
+  for (const BodyNode& b : model.bodies()) terms.push_back({b.terms.value_or(otherwise).strain, 1.0});
+  return terms;
+}
+
+}  // namespace
+
+Energies ReferenceDynamics::energies(std::span<const double> y) const {
+  return Tree<double>(*model_, untruncated(*model_, terms_), y).energies();
+}
+
+WorldPose ReferenceDynamics::frame_pose(std::span<const double> y, int body, int frame) const {
+  const WorldMotion<double> A = Tree<double>(*model_, untruncated(*model_, terms_), y).frame(body, frame, Pose{});
+  WorldPose pose;
+  Eigen::Map<Vector3>(pose.position.data()) = A.p;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.rotation.data()) = A.R;
+  return pose;
+}
+
+std::array<double, 3> ReferenceDynamics::deflection(std::span<const double> y, int body, int frame) const {
+  const auto b = static_cast<std::size_t>(body);
+  const BodyNode& node = model_->bodies()[b];
+  std::array<double, 3> d{};
+  if (node.body->shape().modes() == 0) return d;
+  const Slot& slot = *model_->layout().body(node.name);
+  const Eigen::Index n = node.body->shape().modes();
+  const Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(y.data() + slot.position, n);
+  const PointExpansion& e = node.frames[static_cast<std::size_t>(frame)].section;
+  Eigen::Map<Vector3>(d.data()) = point_motion<double>(e, terms_of(b).strain, q, Eigen::VectorXd::Zero(n)).r - e.X;
+  return d;
+}
+
+}  // namespace withy

@@ -1,0 +1,35 @@
+/// \file
+/// The plain way to the equations of motion: explicit Jacobians of every particle, M = Σ m JᵀJ, f = −Σ m Jᵀ(a_bias −
+/// g). It costs O(bodies · speeds²), allocates, and is what the sweeps are checked against; `withy eval` prints it.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/model/model.hpp"
+#include "withy/core/shape/point_motion.hpp"
+
+namespace withy {
+
+/// Dense reference dynamics of a model. Const functions allocate; they may throw std::bad_alloc.
+class ReferenceDynamics {
+ public:
+  /// `terms` hold for every body that has none of its own.
+  ReferenceDynamics(std::shared_ptr<const Model> model, Terms terms);
+
+  /// M and f of M u̇ = f (theory (3) for the strict truncation), and the loads' efforts at t.
+  [[nodiscard]] DenseSystem system(double t, std::span<const double> y) const;
+  /// Energies of the strain kinematics without truncation.
+  [[nodiscard]] Energies energies(std::span<const double> y) const;
+  [[nodiscard]] WorldPose frame_pose(std::span<const double> y, int body, int frame) const;
+  [[nodiscard]] std::array<double, 3> deflection(std::span<const double> y, int body, int frame) const;
+
+ private:
+  [[nodiscard]] Terms terms_of(std::size_t body) const;
+
+  std::shared_ptr<const Model> model_;
+  Terms terms_;
+};
+
+}  // namespace withy

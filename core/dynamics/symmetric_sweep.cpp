@@ -1,0 +1,124 @@
+#include "withy/core/dynamics/symmetric_sweep.hpp"
+
+#include "withy/core/dynamics/symmetric_kernel.hpp"
+#include "withy/core/dynamics/with_modes.hpp"
+
+namespace withy::sweep {
+namespace {
+
+std::vector<double> row_major(const Eigen::MatrixXd& m) {
+  std::vector<double> a;
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    for (Eigen::Index j = 0; j < m.cols(); ++j) a.push_back(m(i, j));
+  }
+  return a;
+}
+
+}  // namespace
+
+template <class Space>
+SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
+    : body(given.body),
+      parent(given.parent),
+      parent_station(given.parent_station),
+      modes(static_cast<int>(given.modes)),
+      joint(given),
+      frozen(terms.truncation == Truncation::ruthless && given.modes > 0),
+      mode_position(given.mode_position),
+      mode_speed(given.mode_speed),
+      stiffness(row_major(given.stiffness)),
+      damping(row_major(given.damping)) {
+  NodeSpec spec = in_strain_order(given, terms.strain);
+  if (frozen) spec = rooted(std::move(spec));
+  root_station = spec.root_station;
+  M = Space::make(spec.M);
+  base = Project<Space>::inertia(spec.base);
+  const int n = modes;
+  const std::vector<double> zero(static_cast<std::size_t>(n), 0.0);
+  for (const StationSpec& s : spec.stations) {
+    SymmetricStation<Space> station;
+    station.fields = Fields<Space>(s.at);
+    station.carried = frozen ? Space::Matrix::Zero().eval() : Project<Space>::inertia(s.carried);
+    station.loaded = !frozen && !s.carried.empty();
+    station.frozen_J.resize(static_cast<std::size_t>(n));
+    station_motion<Space, -1>(station.fields, n, zero.data(), zero.data(), station.frozen, station.frozen_J.data());
+    stations.push_back(std::move(station));
+  }
+  if (frozen) {
+    const Invariants invariants(given, terms.strain);
+    base = Project<Space>::inertia(invariants.I0);
+    G0 = row_major(invariants.G0);
+    for (int i = 0; i < n; ++i) {
+      C0.push_back(Project<Space>::twist(invariants.C0.col(i)));
+      I1.push_back(Variation<Space>::of(invariants.I1[static_cast<std::size_t>(i)]));
+    }
+  } else {
+    mass = MassTable<Space>(spec);
+    for (const Section& s : spec.sections) {
+      RotarySection<Space> section{Fields<Space>(s.at), {}};
+      section.inertia = s.inertia.template bottomRightCorner<Space::angular, Space::angular>();
+      if (!section.inertia.isZero(0)) sections.push_back(std::move(section));
+    }
+  }
+}
+
+template <class Space>
+SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>& terms, const Vector3& gravity) {
+  WorkLayout memory;
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) nodes_.emplace_back(tree.nodes[i], terms[i]);
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    SymmetricNode<Space>& node = nodes_[i];
+    const NodeSpec& spec = tree.nodes[i];
+    if (spec.parent < 0) continue;
+    SymmetricNode<Space>& parent = nodes_[static_cast<std::size_t>(spec.parent)];
+    const NodeSpec& parent_spec = tree.nodes[static_cast<std::size_t>(spec.parent)];
+    parent.leaf = false;
+    if (spec.parent_station >= 0) {
+      SymmetricStation<Space>& station = parent.stations[static_cast<std::size_t>(spec.parent_station)];
+      station.loaded = station.has_children = true;
+      // Rooting turned the section's axes with the frame.
+      if (parent.frozen && parent_spec.root_station >= 0) {
+        node.joint.F = Space::make(Pose{parent_spec.M.R.transpose(), Vector3::Zero()} * spec.F);
+      }
+    }
+  }
+  for (SymmetricNode<Space>& node : nodes_) {
+    using Twist = typename Space::Twist;
+    const auto n = static_cast<std::size_t>(node.modes);
+    node.work = memory.template take<NodeWork<Space>>(1);
+    node.work_stations = memory.template take<StationWork<Space>>(node.stations.size());
+    node.work_J = memory.template take<Twist>(n * (node.stations.size() + 1));
+    node.work_C = memory.template take<Twist>(2 * n);
+    node.work_G = memory.template take<double>(n * n);
+    node.work_y = memory.template take<double>(4 * n);
+    node.work_P = memory.template take<Pack>(n * Space::linear);
+    if (node.frozen && node.leaf) precompute(node);
+  }
+  work_size_ = memory.size();
+  const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
+  world_acceleration_.setZero();
+  world_acceleration_.template tail<Space::linear>() = -Project<Space>::position(g);
+}
+
+template <class Space>
+Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const double* speeds, const double* efforts,
+                                                double* result, std::byte* work) const noexcept {
+  const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_};
+  for (const SymmetricNode<Space>& node : nodes_) {
+    with_modes(node.modes, [&](auto n) { outward_motion<Space, decltype(n)::value>(node, state); });
+  }
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    bool good = true;
+    with_modes(nodes_[i].modes, [&](auto n) { good = inward_inertia<Space, decltype(n)::value>(nodes_[i], state); });
+    if (!good) return {Evaluation::Outcome::singular, nodes_[i].body};
+  }
+  for (const SymmetricNode<Space>& node : nodes_) {
+    with_modes(node.modes, [&](auto n) { outward_acceleration<Space, decltype(n)::value>(node, state); });
+  }
+  return {};
+}
+
+template class SymmetricSweep<Spatial>;
+template class SymmetricSweep<Planar>;
+
+}  // namespace withy::sweep

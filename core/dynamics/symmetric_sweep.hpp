@@ -1,0 +1,88 @@
+/// \file
+/// Articulated-body recursion for trees of rigid and flexible bodies: forward dynamics in time proportional to the
+/// number of bodies, for every formulation whose mass matrix is symmetric. Each body's hinge and modal rates are
+/// eliminated once, together (Featherstone 2008, chapter 7; flexible bodies: Jain & Rodriguez 1992).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/dynamics/joint_step.hpp"
+#include "withy/core/dynamics/mass_table.hpp"
+#include "withy/core/dynamics/station_motion.hpp"
+#include "withy/core/model/terms.hpp"
+
+namespace withy::sweep {
+
+/// A station in a symmetric sweep.
+template <class Space>
+struct SymmetricStation {
+  Fields<Space> fields;
+  typename Space::Matrix carried;  ///< inertia of the rigid bodies it carries; zero in a frozen node
+  bool loaded = false;             ///< it carries mass or children
+  bool has_children = false;
+  StationMotion<Space> frozen;  ///< motion at q = 0, q̇ = 0
+  std::vector<typename Space::Twist> frozen_J;
+};
+
+/// Rotary inertia of a section.
+template <class Space>
+struct RotarySection {
+  Fields<Space> fields;
+  Eigen::Matrix<double, Space::angular, Space::angular> inertia;
+};
+
+/// Constants of a node.
+template <class Space>
+struct SymmetricNode {
+  using Twist = typename Space::Twist;
+  using Matrix = typename Space::Matrix;
+
+  int body = 0, parent = -1, parent_station = -1, root_station = -1, modes = 0;
+  JointData<Space> joint;
+  typename Space::Frame M;  ///< hinge frame in the root station's section
+  bool frozen = false;      ///< ruthless: integrals at q = 0, velocity terms at q̇ = 0
+  bool leaf = true;         ///< nothing hangs on it
+  std::size_t mode_position = 0, mode_speed = 0;
+  std::vector<double> stiffness, damping;  ///< n×n
+  Matrix base;                             ///< inertia of the rigid part; of everything in a frozen node
+  MassTable<Space> mass;
+  std::vector<RotarySection<Space>> sections;
+  std::vector<SymmetricStation<Space>> stations;
+  // Frozen nodes: theory (3) at order zero.
+  std::vector<Twist> C0;
+  std::vector<double> G0;
+  std::vector<Variation<Space>> I1;  ///< h_k = −½ Vᵀ I1_k V
+  // Frozen leaves: the eliminated modal block, once for ever.
+  std::vector<double> factor;  ///< L of G0 = L Lᵀ, n×n lower; diagonal inverted
+  std::vector<Twist> Y0;       ///< L⁻¹ C0ᵀ, n twists
+  Matrix reduced;              ///< base − Y0ᵀ Y0
+  // Work memory.
+  std::size_t work = 0, work_J = 0, work_C = 0, work_G = 0, work_y = 0, work_P = 0, work_stations = 0;
+
+  SymmetricNode(const NodeSpec& spec, Terms terms);
+};
+
+/// The sweep over all nodes.
+template <class Space>
+class SymmetricSweep {
+ public:
+  /// `terms` of each node.
+  SymmetricSweep(const Tree& tree, const std::vector<Terms>& terms, const Vector3& gravity);
+  /// Bytes of work memory.
+  [[nodiscard]] std::size_t work_size() const { return work_size_; }
+  /// Accelerations of all speeds from positions, speeds and applied efforts.
+  Evaluation accelerations(const double* positions, const double* speeds, const double* efforts, double* result,
+                           std::byte* work) const noexcept;
+
+ private:
+  std::vector<SymmetricNode<Space>> nodes_;
+  typename Space::Twist world_acceleration_;  ///< −g: weight as an acceleration of the world
+  std::size_t work_size_ = 0;
+};
+
+extern template class SymmetricSweep<Spatial>;
+extern template class SymmetricSweep<Planar>;
+
+}  // namespace withy::sweep

@@ -1,0 +1,25 @@
+/// \file
+/// What a formulation keeps: a strain kinematics times a truncation (theory, section 2).
+#pragma once
+
+namespace withy {
+
+/// Which terms of the expansion r = X + Φq + ½qᵀΓq, θ = Ψq + ½qᵀΘq a strain kinematics keeps.
+enum class StrainOrder {
+  linear,    ///< Φ, Ψ alone
+  quadratic  ///< Φ, Ψ, Γ, Θ
+};
+
+/// How elastic coordinates enter the equations.
+enum class Truncation {
+  ruthless,  ///< order 0: inertia, velocity terms and loads at q = 0, q̇ = 0
+  strict,    ///< order 1: linear in (q, q̇, q̈)
+  none       ///< all terms
+};
+
+struct Terms {
+  StrainOrder strain = StrainOrder::quadratic;
+  Truncation truncation = Truncation::none;
+};
+
+}  // namespace withy

@@ -1,0 +1,122 @@
+#include "withy/core/model/validate.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+namespace withy {
+namespace {
+
+constexpr double tolerance = 1e-10;
+
+using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
+
+std::string size_fault(const std::string& name, const ConstMatrix& m, Eigen::Index rows, Eigen::Index columns) {
+  if (m.rows() == rows && m.cols() == columns) return {};
+  std::ostringstream text;
+  text << name << " is " << m.rows() << " by " << m.cols() << ", not " << rows << " by " << columns;
+  return text.str();
+}
+
+std::string finite_fault(const std::string& name, const ConstMatrix& m) {
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    for (Eigen::Index j = 0; j < m.cols(); ++j) {
+      if (std::isfinite(m(i, j))) continue;
+      std::ostringstream text;
+      text << name << " has " << m(i, j) << " in row " << i + 1 << ", column " << j + 1;
+      return text.str();
+    }
+  }
+  return {};
+}
+
+std::string symmetry_fault(const std::string& name, const ConstMatrix& m) {
+  if (m.size() == 0) return {};
+  if ((m - m.transpose()).cwiseAbs().maxCoeff() <= tolerance * m.cwiseAbs().maxCoeff()) return {};
+  return name + " is not symmetric";
+}
+
+std::string square_fault(const std::string& name, const ConstMatrix& m, Eigen::Index size) {
+  if (std::string fault = size_fault(name, m, size, size); !fault.empty()) return fault;
+  if (std::string fault = finite_fault(name, m); !fault.empty()) return fault;
+  return symmetry_fault(name, m);
+}
+
+/// Of a symmetric matrix: it is semidefinite where the smallest shift makes it definite.
+std::string sign_fault(const std::string& name, const ConstMatrix& m) {
+  const double greatest = m.size() == 0 ? 0 : m.cwiseAbs().maxCoeff();
+  if (greatest == 0) return {};
+  const auto shift = tolerance * greatest * Eigen::MatrixXd::Identity(m.rows(), m.cols());
+  if (Eigen::LLT<Eigen::MatrixXd>(m + shift).info() == Eigen::Success) return {};
+  return name + " is not positive semidefinite";
+}
+
+std::string field_fault(const std::string& name, const ConstMatrix& m, Eigen::Index modes) {
+  if (std::string fault = size_fault(name, m, 3, modes); !fault.empty()) return fault;
+  return finite_fault(name, m);
+}
+
+std::string names_fault(const std::vector<std::string>& names) {
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (name.empty()) return "a mode has no name";
+    if (!seen.insert(name).second) return "two modes are named '" + name + "'";
+  }
+  return {};
+}
+
+std::string particle_fault(const Particle& particle, Eigen::Index modes) {
+  if (!std::isfinite(particle.mass) || particle.mass < 0) {
+    std::ostringstream text;
+    text << "its mass is " << particle.mass;
+    return text.str();
+  }
+  return find_fault(particle.at, modes);
+}
+
+std::string section_fault(const Section& section, Eigen::Index modes) {
+  if (std::string fault = square_fault("its inertia", section.inertia, 3); !fault.empty()) return fault;
+  if (std::string fault = sign_fault("its inertia", section.inertia); !fault.empty()) return fault;
+  return find_fault(section.at, modes);
+}
+
+}  // namespace
+
+std::string find_fault(const PointExpansion& point, Eigen::Index modes) {
+  if (std::string fault = finite_fault("X", point.X); !fault.empty()) return fault;
+  if (std::string fault = field_fault("Phi", point.phi, modes); !fault.empty()) return fault;
+  if (std::string fault = field_fault("Psi", point.psi, modes); !fault.empty()) return fault;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::string axis(1, "xyz"[c]);
+    if (std::string fault = square_fault("Gamma_" + axis, point.gamma[c], modes); !fault.empty()) return fault;
+    if (std::string fault = square_fault("Theta_" + axis, point.theta[c], modes); !fault.empty()) return fault;
+  }
+  return {};
+}
+
+std::string find_fault(const ModalShape& shape) {
+  const Eigen::Index n = shape.modes();
+  if (std::string fault = names_fault(shape.mode_names); !fault.empty()) return fault;
+  if (!std::isfinite(shape.length) || shape.length < 0) {
+    std::ostringstream text;
+    text << "its length is " << shape.length;
+    return text.str();
+  }
+  if (std::string fault = square_fault("the stiffness matrix", shape.stiffness, n); !fault.empty()) return fault;
+  if (std::string fault = square_fault("the damping matrix", shape.damping, n); !fault.empty()) return fault;
+  if (std::string fault = sign_fault("the damping matrix", shape.damping); !fault.empty()) return fault;
+  for (std::size_t i = 0; i < shape.particles.size(); ++i) {
+    if (const std::string fault = particle_fault(shape.particles[i], n); !fault.empty()) {
+      return "particle " + std::to_string(i + 1) + ": " + fault;
+    }
+  }
+  for (std::size_t i = 0; i < shape.sections.size(); ++i) {
+    if (const std::string fault = section_fault(shape.sections[i], n); !fault.empty()) {
+      return "section " + std::to_string(i + 1) + ": " + fault;
+    }
+  }
+  return {};
+}
+
+}  // namespace withy

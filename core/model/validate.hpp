@@ -1,0 +1,19 @@
+/// \file
+/// Checks of what a body claims to be, whoever wrote it: done once, when a model is built.
+#pragma once
+
+#include <string>
+
+#include "withy/core/shape/modal_shape.hpp"
+
+namespace withy {
+
+/// What is wrong with a shape, in a few words, or empty: numbers that are not finite, fields whose sizes do not agree
+/// with the number of modes, Γ, Θ, K, D or an inertia not symmetric, a negative mass, D or an inertia not positive
+/// semidefinite, unnamed or equally named modes. Symmetry and sign are judged to 1e-10 of the greatest element: far
+/// above the rounding of any quadrature, far below an error of formulation.
+std::string find_fault(const ModalShape& shape);
+/// The same of the motion of one point of a body with `modes` modes.
+std::string find_fault(const PointExpansion& point, Eigen::Index modes);
+
+}  // namespace withy

@@ -1,0 +1,104 @@
+#include "withy/core/simulation/monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace withy {
+
+Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
+                 RunSummary& summary)
+    : model_(model),
+      equations_(equations),
+      summary_(summary),
+      deflection_limit_(deflection_limit),
+      efforts_(model.layout().speeds),
+      initial_work_(initial.y.back()),
+      examined_(model.layout().speeds <= largest_examined),
+      checked_(initial.time) {
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const BodyNode& node = model.bodies()[b];
+    const Slot* slot = model.layout().body(node.name);
+    const double length = node.body->shape().length;
+    const auto section = node.body->station("tip");
+    if (slot == nullptr || !section || !(length > 0)) continue;
+    tips_.push_back(
+        {slot, static_cast<int>(b), node.frame("tip"), *section, length, &summary.peak_deflection[node.name]});
+  }
+  std::size_t scratch = 0;
+  for (const LoadNode& node : model.loads()) scratch = std::max(scratch, node.load->scratch());
+  scratch_.resize(scratch);
+  summary.peak_effort.assign(model.layout().speeds, 0.0);
+  const Energies e = equations.energies(initial.y);
+  initial_energy_ = e.kinetic + e.potential;
+  if (examined_) initial_sign_ = determinant_sign(equations.system(initial.time, initial.y));
+}
+
+std::array<double, 3> Monitor::deflection(const Tip& tip, const State& state) const {
+  if (tip.frame >= 0) return equations_.deflection(state.y, tip.body, tip.frame);
+  const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + tip.slot->position,
+                                            static_cast<Eigen::Index>(tip.slot->positions));
+  std::array<double, 3> d{};
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    d[i] = tip.section.phi.row(k).dot(q) + 0.5 * q.dot(tip.section.gamma[i] * q);
+  }
+  return d;
+}
+
+void Monitor::observe(const State& state) {
+  for (const Tip& tip : tips_) {
+    const std::array<double, 3> d = deflection(tip, state);
+    for (std::size_t k = 0; k < 3; ++k) (*tip.peak)[k] = std::max((*tip.peak)[k], std::abs(d[k]));
+    const double size = std::hypot(d[0], d[1], d[2]);
+    if (!excess_.empty() || size <= deflection_limit_ * tip.length) continue;
+    excess_ = "the tip of '" + tip.slot->name + "' is deflected by " + brief(size) + " m, " + brief(size / tip.length) +
+              " times its length (limit " + brief(deflection_limit_) + ")";
+  }
+  const Layout& layout = model_.layout();
+  const std::span<const double> y(state.y);
+  std::fill(efforts_.begin(), efforts_.end(), 0.0);
+  for (const LoadNode& node : model_.loads()) {
+    node.load->add(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), efforts_,
+                   scratch_);
+  }
+  for (std::size_t i = 0; i < efforts_.size(); ++i)
+    summary_.peak_effort[i] = std::max(summary_.peak_effort[i], std::abs(efforts_[i]));
+}
+
+void Monitor::audit_energy(const State& state) {
+  const Energies e = equations_.energies(state.y);
+  const double energy = e.kinetic + e.potential;
+  const double work = state.y.back() - initial_work_;
+  energy_error_ = std::max(energy_error_, std::abs(energy - initial_energy_ - work));
+  energy_scale_ = std::max({energy_scale_, std::abs(energy), std::abs(initial_energy_), std::abs(work), e.kinetic});
+  summary_.energy_drift = energy_scale_ > 0 ? energy_error_ / energy_scale_ : 0;
+}
+
+void Monitor::audit_mass_matrix(const State& state) {
+  if (sign_change_ || !examined_) return;
+  const int sign = determinant_sign(equations_.system(state.time, state.y));
+  if (sign == initial_sign_) {
+    checked_ = state.time;
+  } else {
+    sign_change_ = {checked_, state.time};
+  }
+}
+
+// Where the right-hand side is smooth, error control rejects a step now and then. At a jump inside a step it rejects
+// again and again, until the steps are so short that the jump does not matter.
+void Monitor::audit_steps(const State& state, const StepStatistics& steps) {
+  constexpr std::size_t many = 8;
+  constexpr std::size_t most_reports = 16;
+  const std::size_t rejected = steps.rejected - rejected_;
+  rejected_ = steps.rejected;
+  if (rejected == 0) {
+    burst_ = burst_ < many ? burst_ - (burst_ > 0 ? 1 : 0) : 0;
+    return;
+  }
+  const std::size_t before = burst_;
+  burst_ += rejected;
+  if (before < many && burst_ >= many && summary_.suspected_jumps.size() < most_reports)
+    summary_.suspected_jumps.push_back(state.time);
+}
+
+}  // namespace withy

@@ -1,0 +1,235 @@
+#include "withy/core/simulation/simulate.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "withy/core/simulation/monitor.hpp"
+
+namespace withy {
+namespace {
+
+/// CPU time of this thread [s].
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Times strictly between start and end at which steps must end, then the end.
+std::vector<double> landings(const Model& model, double start, double end) {
+  std::vector<double> times{end};
+  for (const LoadNode& node : model.loads()) {
+    for (const double t : node.load->discontinuities()) {
+      if (t > start && t < end) times.push_back(t);
+    }
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+/// The multiples of the interval after `start` and before `end`. Multiples that differ from either by rounding alone
+/// are left out: both are outputs anyway.
+class OutputTimes {
+ public:
+  OutputTimes(double start, double interval, double end) : interval_(interval), last_(end - 1e-9 * interval) {
+    index_ = std::floor(start / interval + 1e-9) + 1;
+  }
+  [[nodiscard]] bool due(double t) const { return next() <= t && next() < last_; }
+  [[nodiscard]] double next() const { return index_ * interval_; }
+  void pass() { index_ += 1; }
+
+ private:
+  double interval_;
+  double last_;
+  double index_;  ///< whole; a product does not accumulate rounding as a sum would
+};
+
+/// Why stepping ended before the end.
+struct Stop {
+  RunStatus status = RunStatus::completed;
+  std::string reason;    ///< a clause without its full stop
+  bool physical = true;  ///< the equations are the reason, not the caller
+};
+
+Stop stop_of(const StepResult& result, const Model& model, const EquationsOfMotion& equations, const State& state,
+             const StepStatistics& steps) {
+  const std::string body =
+      result.body >= 0 ? " at body '" + model.bodies()[static_cast<std::size_t>(result.body)].name + "'" : "";
+  switch (result.outcome) {
+    case StepResult::Outcome::nonfinite: {
+      const std::string culprit = describe_nonfinite(model, equations, state, steps.largest_step);
+      return {RunStatus::diverged, "the derivatives are not finite, however small the step" + body +
+                                       (culprit.empty() ? culprit : ": " + culprit)};
+    }
+    case StepResult::Outcome::singular:
+      return {RunStatus::singular, "the mass matrix cannot be solved, however small the step" + body};
+    case StepResult::Outcome::step_underflow:
+      return {RunStatus::step_underflow, "the accuracy asked for needs steps below the resolution of time"};
+    case StepResult::Outcome::ok:
+      break;
+  }
+  return {};
+}
+
+/// The loop itself: what happens between two accepted steps.
+class Run {
+ public:
+  Run(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator, const State& initial,
+      const RunOptions& options, const std::function<void(const State&)>& output, RunSummary& summary)
+      : model_(model),
+        equations_(equations),
+        options_(options),
+        output_(output),
+        stepper_(integrator.start(equations, initial)),
+        monitor_(model, equations, stepper_->state(), options.deflection_limit, summary),
+        times_(initial.time, options.output, options.end),
+        sample_(stepper_->state()),
+        audit_interval_((options.end - initial.time) / 100),
+        next_audit_(initial.time + audit_interval_) {
+    emit(stepper_->state());
+    monitor_.observe(stepper_->state());
+  }
+
+  Stop to_end(double start) {
+    const auto began = std::chrono::steady_clock::now();
+    for (const double limit : landings(model_, start, options_.end)) {
+      while (stepper_->state().time < limit) {
+        if (options_.interrupted && options_.interrupted()) return {RunStatus::interrupted, "interrupted", false};
+        if (stepper_->statistics().accepted >= options_.most_steps)
+          return {RunStatus::interrupted,
+                  std::string("stopped after the ") + std::to_string(options_.most_steps) + " steps allowed", false};
+        if (options_.most_seconds > 0 &&
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > options_.most_seconds)
+          return {RunStatus::interrupted,
+                  std::string("stopped after the ") + brief(options_.most_seconds) + " s allowed", false};
+        const StepResult result = stepper_->step(limit);
+        if (result.outcome != StepResult::Outcome::ok)
+          return stop_of(result, model_, equations_, stepper_->state(), stepper_->statistics());
+        if (Stop stop = after_step(); stop.status != RunStatus::completed) return stop;
+      }
+      stepper_->restart();
+    }
+    return {};
+  }
+
+  /// The last state is an output, however the run ended.
+  void finish() {
+    const State& state = stepper_->state();
+    if (state.time > emitted_) emit(state);
+    monitor_.audit_energy(state);
+    monitor_.audit_mass_matrix(state);
+  }
+
+  [[nodiscard]] const Stepper& stepper() const { return *stepper_; }
+  [[nodiscard]] const Monitor& monitor() const { return monitor_; }
+
+ private:
+  Stop after_step() {
+    const State& state = stepper_->state();
+    monitor_.audit_steps(state, stepper_->statistics());
+    if (times_.due(state.time)) {
+      for (; times_.due(state.time); times_.pass()) {
+        sample_.time = times_.next();
+        stepper_->interpolate(sample_.time, sample_.y);
+        monitor_.observe(sample_);
+        emit(sample_);
+      }
+      monitor_.audit_energy(state);
+    }
+    monitor_.observe(state);
+    // A hundred looks at the mass matrix tell when it turned; more would cost as much as the run.
+    if (state.time >= next_audit_) {
+      monitor_.audit_mass_matrix(state);
+      next_audit_ = state.time + audit_interval_;
+    }
+    if (!monitor_.excess().empty()) return {RunStatus::diverged, monitor_.excess()};
+    return {};
+  }
+
+  void emit(const State& state) {
+    emitted_ = state.time;
+    if (output_) output_(state);
+  }
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  const RunOptions& options_;
+  const std::function<void(const State&)>& output_;
+  std::unique_ptr<Stepper> stepper_;
+  Monitor monitor_;
+  OutputTimes times_;
+  State sample_;
+  double emitted_ = 0;     ///< time of the last output
+  double audit_interval_;  ///< [s]
+  double next_audit_;      ///< [s]
+};
+
+std::string note_on_jumps(const std::vector<double>& times) {
+  std::string text = "Steps were rejected again and again near t =";
+  for (const double t : times) text.append(" ").append(brief(t));
+  return text + " s: does a load jump there without declaring it?";
+}
+
+}  // namespace
+
+std::string_view name(RunStatus status) {
+  switch (status) {
+    case RunStatus::completed:
+      return "completed";
+    case RunStatus::diverged:
+      return "diverged";
+    case RunStatus::singular:
+      return "singular";
+    case RunStatus::step_underflow:
+      return "step-underflow";
+    case RunStatus::interrupted:
+      return "interrupted";
+  }
+  return "unknown";
+}
+
+RunSummary simulate(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator,
+                    const State& initial, const RunOptions& options, const std::function<void(const State&)>& output) {
+  if (!(options.end >= initial.time)) throw std::invalid_argument("the end lies before the initial time");
+  if (!(options.output > 0)) throw std::invalid_argument("the output interval is not positive");
+  const double began = cpu_seconds();
+  RunSummary summary;
+  Run run(model, equations, integrator, initial, options, output, summary);
+  Stop stop = run.to_end(initial.time);
+  run.finish();
+  summary.final = run.stepper().state();
+  summary.steps = run.stepper().statistics();
+  const auto examine = [&](const State& state) {
+    if (equations.layout().speeds > largest_examined) return Conditioning{};
+    return conditioning(equations.system(state.time, state.y));
+  };
+  summary.conditioning = examine(summary.final);
+  const std::optional<SignChange>& change = run.monitor().sign_change();
+  if (stop.status == RunStatus::completed) {
+    if (change) {
+      summary.message = "The run reached its end, but do not trust it. " +
+                        describe_mass_matrix(equations.layout(), examine(initial), summary.conditioning, change);
+    }
+    if (!summary.suspected_jumps.empty())
+      summary.message += (summary.message.empty() ? "" : " ") + note_on_jumps(summary.suspected_jumps);
+  } else {
+    summary.suspected_jumps.clear();  // the rejections before a bad end are that end
+    const Conditioning start = examine(initial);
+    // Steps that collapse where M loses rank collapse because of it.
+    if (stop.status == RunStatus::step_underflow && lost_definiteness(start, summary.conditioning, change))
+      stop.status = RunStatus::singular;
+    summary.message = std::string("t = ") + brief(summary.final.time) + " s: " + stop.reason + ".";
+    if (stop.physical)
+      summary.message += " " + describe_mass_matrix(equations.layout(), start, summary.conditioning, change);
+  }
+  summary.status = stop.status;
+  summary.cpu_seconds = cpu_seconds() - began;
+  return summary;
+}
+
+}  // namespace withy

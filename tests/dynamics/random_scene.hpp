@@ -1,0 +1,121 @@
+/// \file
+/// Seeded random trees of rigid bodies and beams, as scene text, and random states of them.
+#pragma once
+
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+
+namespace withy::test {
+
+struct SceneWish {
+  int bodies = 5;
+  bool planar = false;    ///< everything in the x-y plane
+  bool any_root = false;  ///< beams may be held at their tip
+  bool floating = true;   ///< a free hinge to the world is possible
+};
+
+/// Text of a random scene; the same seed gives the same text.
+class RandomScene {
+ public:
+  RandomScene(unsigned seed, SceneWish wish) : random_(seed), wish_(wish) {
+    text_ << "format: withy/1\ntime: {end: 1.0}\ngravity: [" << number(-9, 9) << ", " << number(-9, 9) << ", "
+          << (wish.planar ? 0.0 : number(-9, 9)) << "]\n";
+    std::ostringstream hinges;
+    text_ << "bodies:\n";
+    for (int b = 0; b < wish.bodies; ++b) add(b, hinges);
+    text_ << "hinges:\n" << hinges.str();
+  }
+  [[nodiscard]] std::string text() const { return text_.str(); }
+
+  /// Moderate deflections and rates about the initial state; quaternions of unit length.
+  State state(const Model& model, State s) {
+    const Layout& layout = model.layout();
+    for (std::size_t i = 0; i < layout.speeds; ++i) s.y[layout.positions + i] = number(-1, 1);
+    for (const Slot& h : layout.hinges) {
+      for (std::size_t i = 0; i < h.positions; ++i) s.y[h.position + i] = number(-1, 1);
+    }
+    for (const Slot& b : layout.bodies) {
+      for (std::size_t i = 0; i < b.positions; ++i) s.y[b.position + i] = number(-0.02, 0.02);
+    }
+    for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+      const Slot& slot = layout.hinges[h];
+      model.hinges()[h].hinge->normalize(std::span(s.y).subspan(slot.position, slot.positions));
+    }
+    return s;
+  }
+
+ private:
+  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
+  bool chance(double p) { return number(0, 1) < p; }
+
+  std::string direction() {
+    if (wish_.planar) return "[0, 0, 1]";
+    std::ostringstream s;
+    s << "[" << number(0.1, 1) << ", " << number(-1, 1) << ", " << number(-1, 1) << "]";
+    return s.str();
+  }
+  std::string pose() {
+    std::ostringstream s;
+    s.precision(17);
+    double w = number(0.3, 1), x = number(-1, 1), y = number(-1, 1), z = number(-1, 1);
+    if (wish_.planar) x = y = 0;
+    const double norm = std::sqrt(w * w + x * x + y * y + z * z);
+    s << "position: [" << number(-0.3, 0.3) << ", " << number(-0.3, 0.3) << ", " << number(-0.3, 0.3)
+      << "], orientation: [" << w / norm << ", " << x / norm << ", " << y / norm << ", " << z / norm << "]";
+    return s.str();
+  }
+
+  void add(int b, std::ostringstream& hinges) {
+    const bool beam = b > 0 && chance(0.6);
+    const std::string name = "b" + std::to_string(b);
+    text_ << "  " << name << ":\n";
+    if (beam) {
+      text_ << "    type: beam\n    length: " << number(0.5, 2) << "\n    mass_per_length: " << number(0.5, 2) << "\n"
+            << "    damping_ratio: 0.01\n    bending_y: {stiffness: " << number(20, 90) << ", modes: " << whole(1, 3)
+            << "}\n";
+      if (!wish_.planar && chance(0.7)) {
+        text_ << "    bending_z: {stiffness: " << number(20, 90) << ", modes: " << whole(1, 2) << "}\n";
+      }
+      if (!wish_.planar && chance(0.5)) {
+        text_ << "    torsion: {stiffness: " << number(20, 90) << ", inertia: 0.003, modes: " << whole(1, 2) << "}\n";
+      }
+      text_ << "    frames: {a: {at: tip, " << pose() << "}, m: {at: 0.31, " << pose() << "}, r: {at: root, " << pose()
+            << "}}\n";
+    } else {
+      const double i = number(0.1, 0.3);
+      text_ << "    type: rigid\n    mass: " << number(0.5, 3) << "\n    center_of_mass: [" << number(-0.2, 0.2) << ", "
+            << number(-0.2, 0.2) << ", " << number(-0.2, 0.2) << "]\n    inertia: [" << i << ", " << 1.2 * i << ", "
+            << 1.3 * i << ", 0.01, -0.02, 0.015]\n    frames: {a: {" << pose() << "}, m: {" << pose() << "}}\n";
+    }
+    hinges << "  h" << b << ": {";
+    int parent = -1;
+    if (b > 0) parent = whole(0, b - 1);
+    const char* places[] = {"a", "m"};
+    if (parent < 0) {
+      hinges << "parent: world, ";
+    } else {
+      hinges << "parent: b" << parent << "." << places[whole(0, 1)] << ", ";
+    }
+    hinges << "child: " << name;
+    if (beam && chance(0.4)) hinges << (wish_.any_root && chance(0.7) ? ".a" : ".r");
+    hinges << ", offset: {" << pose() << "}, ";
+    const int kind = parent < 0 && wish_.floating && !wish_.planar ? 5 : whole(0, wish_.planar ? 2 : 3);
+    if (kind == 5) hinges << "type: free}\n";
+    if (kind == 0) hinges << "type: weld}\n";
+    if (kind == 1) hinges << "type: revolute, axis: " << direction() << "}\n";
+    if (kind == 2 && wish_.planar) hinges << "type: prismatic, axis: [0.6, 0.8, 0]}\n";
+    if (kind == 2 && !wish_.planar) hinges << "type: prismatic, axis: " << direction() << "}\n";
+    if (kind == 3) hinges << "type: spherical}\n";
+  }
+
+  std::mt19937 random_;
+  SceneWish wish_;
+  std::ostringstream text_;
+};
+
+}  // namespace withy::test
