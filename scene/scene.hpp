@@ -19,7 +19,9 @@ namespace withy {
 /// `arm.yaml:66:14: /bodies/boom/bending_y/stiffness: got nan; need finite > 0 [N m^2]`.
 class SceneError : public std::runtime_error {
  public:
-  SceneError(std::string file, std::vector<Diagnostic> problems);
+  /// `origins` describe places that are not in the file: those with line −1−k stand in origins[k].
+  SceneError(std::string file, std::vector<Diagnostic> problems, const std::vector<std::string>& origins = {});
+  /// In the order of the file.
   [[nodiscard]] const std::vector<Diagnostic>& problems() const { return problems_; }
 
  private:
@@ -28,8 +30,8 @@ class SceneError : public std::runtime_error {
 
 /// What the command line asks for beyond the file; empty: what the file says.
 struct SceneOptions {
-  std::string formulation;             ///< plugin id
-  std::string integrator;              ///< plugin id
+  std::string formulation;             ///< plugin id; the file's options stay if they are that plugin's
+  std::string integrator;              ///< the same
   std::vector<std::string> overrides;  ///< `path.to.value=text`, applied before the scene is checked
 };
 
@@ -51,6 +53,7 @@ struct Scene {
 
 /// Reads a scene file (YAML or JSON). Loads only the plugins it names.
 /// \throws SceneError with every problem found. \throws std::system_error where the file cannot be read.
+/// \throws PluginError where a library it names is refused.
 Scene read_scene(const std::string& file, Registry& registry, const SceneOptions& options = {});
 /// The same from text; `file` is the name used in messages.
 Scene parse_scene(std::string_view text, const std::string& file, Registry& registry, const SceneOptions& options = {});
@@ -59,7 +62,7 @@ Scene parse_scene(std::string_view text, const std::string& file, Registry& regi
 /// \throws SceneError
 State read_state(const std::string& file, const Model& model, const State& start);
 State parse_state(std::string_view text, const std::string& file, const Model& model, const State& start);
-/// The state as JSON text, numbers with 17 significant digits: reading it back gives the same bits.
+/// The state as JSON text, complete with time and work: reading it back gives the same bits.
 std::string write_state(const Model& model, const State& state);
 
 /// The JSON Schema (draft 2020-12) of scenes, made from every plugin in the registry.

@@ -1,0 +1,95 @@
+#include <algorithm>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "withy/apps/withy/allocations.hpp"
+#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/engine.hpp"
+#include "withy/apps/withy/json_text.hpp"
+#include "withy/apps/withy/output.hpp"
+
+namespace withy::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Evaluates one state again and again.
+class Evaluations {
+ public:
+  Evaluations(const EquationsOfMotion& equations, State state)
+      : equations_(equations), state_(std::move(state)), rates_(equations.size()), work_(equations.make_work()) {}
+
+  /// CPU time [s] of `count` evaluations.
+  double time(std::size_t count) {
+    const double begin = cpu_seconds();
+    for (std::size_t i = 0; i < count; ++i) outcome_ = equations_.derivatives(state_.time, state_.y, rates_, work_);
+    total_ += count;
+    return cpu_seconds() - begin;
+  }
+  [[nodiscard]] bool ok() const { return outcome_.ok(); }
+  [[nodiscard]] std::size_t total() const { return total_; }
+
+ private:
+  const EquationsOfMotion& equations_;
+  State state_;
+  std::vector<double> rates_;
+  Work work_;
+  Evaluation outcome_;
+  std::size_t total_ = 0;
+};
+
+Json measure(const Engine& engine, const std::string& state_file) {
+  Evaluations evaluations(engine.equations(), engine.state(state_file));
+  // Batches of ten milliseconds, long against the clock's resolution; the first ones warm caches and clock rate.
+  std::size_t batch = 1;
+  while (evaluations.time(batch) < 0.01) batch *= 2;
+  if (!evaluations.ok()) throw InputError("the equations of motion cannot be evaluated at this state; see withy eval");
+  constexpr std::size_t batches = 25;
+  std::vector<double> times(batches);
+  const std::size_t evaluations_before = evaluations.total();
+  const std::size_t allocations_before = allocations();
+  for (double& t : times) t = evaluations.time(batch);
+  const std::size_t allocated = allocations() - allocations_before;
+  const std::size_t counted = evaluations.total() - evaluations_before;
+  std::sort(times.begin(), times.end());
+  const double to_ns = 1e9 / static_cast<double>(batch);
+  Json j;
+  j["formulation"] = engine.scene().formulation_name;
+  j["ns_per_evaluation"] = times[batches / 2] * to_ns;
+  j["ns_fastest_batch"] = times.front() * to_ns;
+  j["ns_slowest_batch"] = times.back() * to_ns;
+  j["evaluations"] = counted;
+  j["allocations_per_evaluation"] = static_cast<double>(allocated) / static_cast<double>(counted);
+  j["bodies"] = engine.model().bodies().size();
+  j["coordinates"] = engine.model().layout().speeds;
+  return j;
+}
+
+}  // namespace
+
+ExitStatus bench(const BenchArguments& arguments) {
+  std::vector<std::string> formulations = arguments.formulations;
+  if (formulations.empty()) formulations = {""};
+  if (formulations == std::vector<std::string>{"all"}) formulations = Plugins(arguments).registry().ids<Formulation>();
+  std::vector<Json> results;
+  SceneArguments one = arguments;
+  for (const std::string& formulation : formulations) {
+    one.options.formulation = formulation;
+    const Engine engine(one);
+    Json result{{"scene", engine.scene().file}};
+    result.update(measure(engine, arguments.state));
+    results.push_back(std::move(result));
+  }
+  print(json_text(results.size() == 1 ? results.front() : Json(results)));
+  return ExitStatus::done;
+}
+
+}  // namespace withy::app

@@ -1,0 +1,130 @@
+#include "withy/apps/withy/columns.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <iterator>
+
+namespace withy::app {
+namespace {
+
+using Kind = HingeKernel::Kind;
+
+void add(std::vector<Column>& columns, const std::string& name, std::initializer_list<const char*> suffixes,
+         const std::string& unit) {
+  for (const char* suffix : suffixes) columns.push_back({name + suffix, unit});
+}
+
+std::vector<Column> numbered(const std::string& name, std::size_t count) {
+  std::vector<Column> columns;
+  for (std::size_t i = 0; i < count; ++i) columns.push_back({fmt::format("{}.{}", name, i), ""});
+  return columns;
+}
+
+}  // namespace
+
+std::vector<Column> coordinate_columns(const HingeNode& hinge) {
+  const auto kernel = hinge.hinge->kernel();
+  if (!kernel) return numbered(hinge.name, hinge.hinge->coordinates());
+  std::vector<Column> c;
+  if (kernel->kind == Kind::revolute) add(c, hinge.name, {""}, "rad");
+  if (kernel->kind == Kind::prismatic) add(c, hinge.name, {""}, "m");
+  if (kernel->kind == Kind::spherical || kernel->kind == Kind::free)
+    add(c, hinge.name, {".qw", ".qx", ".qy", ".qz"}, "1");
+  if (kernel->kind == Kind::free) add(c, hinge.name, {".x", ".y", ".z"}, "m");
+  return c;
+}
+
+std::vector<Column> rate_columns(const HingeNode& hinge) {
+  const auto kernel = hinge.hinge->kernel();
+  if (!kernel) return numbered(hinge.name + ".rate", hinge.hinge->speeds());
+  std::vector<Column> c;
+  if (kernel->kind == Kind::revolute) add(c, hinge.name, {".rate"}, "rad/s");
+  if (kernel->kind == Kind::prismatic) add(c, hinge.name, {".rate"}, "m/s");
+  if (kernel->kind == Kind::spherical || kernel->kind == Kind::free) add(c, hinge.name, {".wx", ".wy", ".wz"}, "rad/s");
+  if (kernel->kind == Kind::free) add(c, hinge.name, {".vx", ".vy", ".vz"}, "m/s");
+  return c;
+}
+
+std::vector<FramePlace> tips(const Model& model) {
+  std::vector<FramePlace> places;
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const BodyNode& body = model.bodies()[b];
+    const int frame = body.frame("tip");
+    if (frame >= 0) places.push_back({body.name + ".tip", static_cast<int>(b), frame, body.body->shape().modes() > 0});
+  }
+  return places;
+}
+
+ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equations)
+    : model_(model), equations_(equations), tips_(tips(model)) {
+  const Layout& layout = model.layout();
+  columns_.push_back({"t", "s"});
+  const auto append = [&](const std::vector<Column>& more) {
+    columns_.insert(columns_.end(), more.begin(), more.end());
+  };
+  for (const HingeNode& h : model.hinges()) append(coordinate_columns(h));
+  const auto add_modes = [&](const char* suffix) {
+    for (const Slot& body : layout.bodies)
+      for (std::size_t i = 0; i < body.speeds; ++i)
+        columns_.push_back({layout.speed_names[body.speed + i] + suffix, ""});
+  };
+  add_modes("");
+  for (const HingeNode& h : model.hinges()) append(rate_columns(h));
+  add_modes(".rate");
+  for (const FramePlace& tip : tips_)
+    if (tip.flexible) add(columns_, tip.name, {".deflection_x", ".deflection_y", ".deflection_z"}, "m");
+  for (const FramePlace& tip : tips_) add(columns_, tip.name, {".x", ".y", ".z"}, "m");
+  add(columns_, "", {"kinetic_energy", "potential_energy", "work"}, "J");
+  add(columns_, "linear_momentum", {".x", ".y", ".z"}, "kg m/s");
+  add(columns_, "angular_momentum", {".x", ".y", ".z"}, "kg m^2/s");
+}
+
+std::vector<double> ResultColumns::row(const State& state) const {
+  const Layout& layout = model_.layout();
+  std::vector<double> row{state.time};
+  row.reserve(columns_.size());
+  const auto append = [&](std::size_t first, std::size_t count) {
+    const auto begin = state.y.begin() + static_cast<std::ptrdiff_t>(first);
+    row.insert(row.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  for (const Slot& s : layout.hinges) append(s.position, s.positions);
+  for (const Slot& s : layout.bodies) append(s.position, s.positions);
+  for (const Slot& s : layout.hinges) append(layout.positions + s.speed, s.speeds);
+  for (const Slot& s : layout.bodies) append(layout.positions + s.speed, s.speeds);
+  for (const FramePlace& tip : tips_) {
+    if (!tip.flexible) continue;
+    const auto d = equations_.deflection(state.y, tip.body, tip.frame);
+    row.insert(row.end(), d.begin(), d.end());
+  }
+  for (const FramePlace& tip : tips_) {
+    const auto p = equations_.frame_pose(state.y, tip.body, tip.frame).position;
+    row.insert(row.end(), p.begin(), p.end());
+  }
+  const Energies e = equations_.energies(state.y);
+  row.insert(row.end(), {e.kinetic, e.potential, state.y.back()});
+  row.insert(row.end(), e.linear_momentum.begin(), e.linear_momentum.end());
+  row.insert(row.end(), e.angular_momentum.begin(), e.angular_momentum.end());
+  return row;
+}
+
+std::string csv_line(const std::vector<double>& numbers) {
+  std::string line;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0) line += ',';
+    if (std::isfinite(numbers[i])) fmt::format_to(std::back_inserter(line), "{}", numbers[i]);
+  }
+  return line + '\n';
+}
+
+std::string csv_head(const std::vector<Column>& columns) {
+  std::string line;
+  for (const Column& c : columns) {
+    if (!line.empty()) line += ',';
+    line += c.unit.empty() ? c.name : c.name + '[' + c.unit + ']';
+  }
+  return line + '\n';
+}
+
+}  // namespace withy::app

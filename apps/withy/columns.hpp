@@ -1,0 +1,56 @@
+/// \file
+/// Names and units of what a state holds, and the numbers a result table shows of it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/model/model.hpp"
+
+namespace withy::app {
+
+struct Column {
+  std::string name;
+  std::string unit;  ///< SI; empty for modal coordinates
+};
+
+/// Coordinates of a hinge: `shoulder` [rad] where there is one, `base.qw` [1] … `base.z` [m] for quaternions and
+/// positions, `joint.0` without a unit where the hinge is of an unknown kind.
+std::vector<Column> coordinate_columns(const HingeNode& hinge);
+/// Their rates: `shoulder.rate` [rad/s], `base.wx` [rad/s] … `base.vz` [m/s], `joint.rate.0`.
+std::vector<Column> rate_columns(const HingeNode& hinge);
+
+/// A frame of a body.
+struct FramePlace {
+  std::string name;  ///< as `link1.tip`
+  int body = 0;
+  int frame = 0;
+  bool flexible = false;
+};
+/// Every frame named "tip".
+std::vector<FramePlace> tips(const Model& model);
+
+/// What `results.csv` holds: time, hinge and modal coordinates and their rates, deflections and world positions of the
+/// tips, energies, work and momenta.
+class ResultColumns {
+ public:
+  /// Both must outlive the object.
+  ResultColumns(const Model& model, const EquationsOfMotion& equations);
+  [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+  /// As many numbers as there are columns.
+  [[nodiscard]] std::vector<double> row(const State& state) const;
+
+ private:
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  std::vector<FramePlace> tips_;
+  std::vector<Column> columns_;
+};
+
+/// One line of a CSV file, its end included: shortest numbers that read back the same; nothing where one is not finite.
+std::string csv_line(const std::vector<double>& numbers);
+/// The head of a CSV file: `name[unit],…`.
+std::string csv_head(const std::vector<Column>& columns);
+
+}  // namespace withy::app

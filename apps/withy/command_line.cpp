@@ -1,0 +1,176 @@
+#include "withy/apps/withy/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "withy/apps/withy/output.hpp"
+
+namespace withy::app {
+namespace {
+
+constexpr char scene_to_run[] = "SCENE";
+
+void add_common(CLI::App& command, CommonArguments& a) {
+  command.add_option("--plugins", a.plugin_directories, "Folder with plugins, searched before the program's own")
+      ->type_name("DIR")
+      ->take_last();
+  command.get_option("--plugins")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->expected(1)
+      ->allow_extra_args(false);
+  command.add_flag("--json", a.json, "Give the result as JSON on standard output");
+}
+
+void add_scene(CLI::App& command, SceneArguments& a) {
+  command.add_option(scene_to_run, a.scene, "Scene file (YAML or JSON)")->required();
+  command.add_option("--integrator", a.options.integrator, "Integrator, in place of the scene's")->type_name("ID");
+  command.add_option("--set", a.options.overrides, "Change a value of the scene before it is checked; repeatable")
+      ->type_name("PATH=VALUE")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->expected(1)
+      ->allow_extra_args(false);
+  add_common(command, a);
+}
+
+void add_formulation(CLI::App& command, SceneArguments& a) {
+  command.add_option("--formulation", a.options.formulation, "Formulation, in place of the scene's")->type_name("ID");
+}
+
+void add_formulations(CLI::App& command, std::vector<std::string>& formulations, const std::string& names,
+                      const std::string& meaning) {
+  command.add_option(names, formulations, meaning)->type_name("ID,ID,...")->delimiter(',');
+}
+
+void add_state(CLI::App& command, StateArguments& a) {
+  command.add_option("--state", a.state, "State file (JSON or YAML); default: the scene's initial state")
+      ->type_name("FILE");
+}
+
+/// Commands and what they will be called with: made by the parser, called after it.
+class Commands {
+ public:
+  explicit Commands(CLI::App& program) : program_(program) {}
+
+  /// Adds a command whose arguments live as long as this object.
+  template <class Arguments>
+  Arguments& add(const std::string& name, const std::string& meaning, const std::string& examples,
+                 ExitStatus (*function)(const Arguments&), CLI::App*& command) {
+    command = program_.add_subcommand(name, meaning);
+    command->footer("Examples:\n" + examples);
+    auto arguments = std::make_shared<Arguments>();
+    entries_.push_back({command, [arguments, function] { return function(*arguments); }});
+    return *arguments;
+  }
+
+  [[nodiscard]] std::function<ExitStatus()> chosen() const {
+    for (const Entry& e : entries_)
+      if (e.command->parsed()) return e.call;
+    return {};
+  }
+
+ private:
+  struct Entry {
+    CLI::App* command;
+    std::function<ExitStatus()> call;
+  };
+  CLI::App& program_;
+  std::vector<Entry> entries_;
+};
+
+void add_commands(Commands& commands) {
+  CLI::App* c = nullptr;
+
+  auto& run_arguments = commands.add<RunArguments>("run", "Simulate a scene",
+                                                   "  withy run scenes/two-link-slew.yaml\n"
+                                                   "  withy run scenes/two-link-slew.yaml --formulation ruthless "
+                                                   "--set loads.slew.time_scale=1.2 --out results/fast",
+                                                   run, c);
+  add_scene(*c, run_arguments);
+  add_formulation(*c, run_arguments);
+  c->add_option("--out", run_arguments.out, "Folder of the results; default: results/<scene>-<formulation>")
+      ->type_name("DIR");
+
+  auto& compare_arguments =
+      commands.add<CompareArguments>("compare", "Simulate a scene in several formulations, side by side",
+                                     "  withy compare scenes/two-link-slew.yaml\n"
+                                     "  withy compare scenes/two-link-slew.yaml --formulations ruthless,quadratic "
+                                     "--over loads.slew.time_scale=1.0,1.2 --out results/comparison",
+                                     compare, c);
+  add_scene(*c, compare_arguments);
+  add_formulations(*c, compare_arguments.formulations, "--formulations,--formulation",
+                   "Formulations; default: ruthless,inconsistent,consistent,quadratic");
+  c->add_option("--reference", compare_arguments.reference, "Formulation the errors are measured against")
+      ->type_name("ID")
+      ->capture_default_str();
+  c->add_option("--over", compare_arguments.over, "Compare at each of these values of the scene")
+      ->type_name("PATH=VALUE,VALUE,...");
+  c->add_option("--out", compare_arguments.out, "Folder for results and pictures; default: nothing is kept")
+      ->type_name("DIR");
+
+  auto& eval_arguments = commands.add<StateArguments>(
+      "eval", "Evaluate the equations of motion at a state, as JSON",
+      "  withy eval scenes/two-link-slew.yaml\n"
+      "  withy eval scenes/two-link-slew.yaml --state scenes/states/two-link-bent.json --formulation consistent",
+      eval, c);
+  add_scene(*c, eval_arguments);
+  add_formulation(*c, eval_arguments);
+  add_state(*c, eval_arguments);
+
+  auto& inspect_arguments =
+      commands.add<StateArguments>("inspect", "Show what a scene is made of and what its compilation saved",
+                                   "  withy inspect scenes/two-link-slew.yaml", inspect, c);
+  add_scene(*c, inspect_arguments);
+  add_formulation(*c, inspect_arguments);
+  add_state(*c, inspect_arguments);
+
+  auto& bench_arguments =
+      commands.add<BenchArguments>("bench", "Time one evaluation of the equations of motion, as JSON",
+                                   "  withy bench scenes/two-link-slew.yaml\n"
+                                   "  withy bench scenes/two-link-slew.yaml --formulation ruthless,quadratic",
+                                   bench, c);
+  add_scene(*c, bench_arguments);
+  add_formulations(*c, bench_arguments.formulations, "--formulation,--formulations",
+                   "One formulation, several, or all; default: the scene's");
+  add_state(*c, bench_arguments);
+
+  auto& plugins_arguments =
+      commands.add<PluginsArguments>("plugins", "List the plugins found, or describe one with its options",
+                                     "  withy plugins\n"
+                                     "  withy plugins quadratic",
+                                     plugins, c);
+  c->add_option("NAME", plugins_arguments.name, "Id of a plugin, or kind/id");
+  add_common(*c, plugins_arguments);
+
+  auto& schema_arguments = commands.add<CommonArguments>("schema", "Print the JSON Schema of scenes, for editors",
+                                                         "  withy schema", schema, c);
+  add_common(*c, schema_arguments);
+}
+
+}  // namespace
+
+std::variant<std::function<ExitStatus()>, ExitStatus> read_command_line(int argc, const char* const* argv) {
+  CLI::App program("Dynamics of trees of rigid and flexible bodies", "withy");
+  program.set_version_flag("--version", "withy " WITHY_VERSION);
+  program.require_subcommand(1);
+  program.footer(
+      "Examples:\n"
+      "  withy run scenes/pendulum.yaml\n"
+      "  withy run --help");
+  Commands commands(program);
+  add_commands(commands);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    std::ostringstream out;
+    std::ostringstream err;
+    const int code = program.exit(e, out, err);
+    print(out.str());
+    complain(err.str());
+    return code == 0 ? ExitStatus::done : ExitStatus::bad_input;
+  }
+  return commands.chosen();
+}
+
+}  // namespace withy::app

@@ -1,0 +1,63 @@
+/// \file
+/// The commands of `withy`: what each is told and how it ends. What they print is described in docs/command-line.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/scene/scene.hpp"
+
+namespace withy::app {
+
+/// Exit status of the program, the same for every command.
+enum class ExitStatus : int {
+  done = 0,
+  stopped = 1,      ///< the simulation stopped before its end, with results up to there
+  bad_input = 2,    ///< the command line, a scene or a state
+  environment = 3,  ///< a plugin, a file that cannot be written, memory
+  interrupted = 130
+};
+
+struct CommonArguments {
+  std::vector<std::string> plugin_directories;  ///< searched before the program's own
+  bool json = false;
+};
+
+struct SceneArguments : CommonArguments {
+  std::string scene;
+  SceneOptions options;
+};
+
+struct RunArguments : SceneArguments {
+  std::string out;  ///< folder of the results; empty: results/<scene>-<formulation>
+};
+
+struct CompareArguments : SceneArguments {
+  std::vector<std::string> formulations = {"ruthless", "inconsistent", "consistent", "quadratic"};
+  std::string reference = "quadratic";  ///< formulation that the others' errors are measured against
+  std::string over;                     ///< `path=value,value,…`: the comparison is made at each value; may be empty
+  std::string out;                      ///< folder of the results; empty: none are kept
+};
+
+/// Commands that look at one state of a scene.
+struct StateArguments : SceneArguments {
+  std::string state;  ///< file; empty: the scene's initial state
+};
+
+struct BenchArguments : StateArguments {
+  std::vector<std::string> formulations;  ///< `all` is every one found; empty: the scene's
+};
+
+struct PluginsArguments : CommonArguments {
+  std::string name;  ///< id or kind/id; empty: all
+};
+
+ExitStatus run(const RunArguments& arguments);
+ExitStatus compare(const CompareArguments& arguments);
+ExitStatus eval(const StateArguments& arguments);
+ExitStatus inspect(const StateArguments& arguments);
+ExitStatus bench(const BenchArguments& arguments);
+ExitStatus plugins(const PluginsArguments& arguments);
+ExitStatus schema(const CommonArguments& arguments);
+
+}  // namespace withy::app

@@ -1,0 +1,38 @@
+/// \file
+/// Several runs of one scene, seen together: how far they are apart, and a picture of them.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "withy/apps/withy/engine.hpp"
+
+namespace withy::app {
+
+/// One run of a comparison, with every output it gave.
+struct ComparedRun {
+  std::unique_ptr<Engine> engine;
+  RunSummary summary;
+  std::vector<State> outputs;
+  [[nodiscard]] const std::string& formulation() const { return engine->scene().formulation_name; }
+};
+
+/// Greatest distances between two runs over the outputs both have.
+struct Distances {
+  /// Of each hinge that moves: difference of coordinates [rad, m]; of orientations the angle [rad] between them, of a
+  /// free hinge the greater of that and the distance [m].
+  std::map<std::string, double> hinges;
+  std::map<std::string, double> tips;  ///< of each frame named "tip": distance in the world [m]
+  double until = 0;                    ///< time [s] of the last output both have
+  [[nodiscard]] double greatest_hinge() const;
+  [[nodiscard]] double greatest_tip() const;
+};
+Distances distances(const ComparedRun& run, const ComparedRun& reference);
+
+/// Tip deflections and the coordinates of one-coordinate hinges over time, as SVG. The axes fit the runs that were
+/// completed; one that diverged leaves the frame.
+std::string picture(const std::string& title, const std::vector<const ComparedRun*>& runs);
+
+}  // namespace withy::app

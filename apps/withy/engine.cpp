@@ -1,0 +1,71 @@
+#include "withy/apps/withy/engine.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include "withy/apps/withy/progress.hpp"
+
+namespace withy::app {
+namespace {
+
+/// A file that cannot be read is bad input, as is a formulation that cannot treat the model.
+template <class Function>
+auto as_input(const std::string& what, Function&& function) {
+  try {
+    return function();
+  } catch (const std::system_error& e) {
+    throw InputError(e.what());
+  } catch (const std::invalid_argument& e) {
+    throw InputError(what + ": " + e.what());
+  }
+}
+
+std::vector<std::filesystem::path> plugin_folders(const CommonArguments& arguments) {
+  std::vector<std::filesystem::path> folders;
+  for (const std::string& folder : arguments.plugin_directories) {
+    if (!std::filesystem::is_directory(folder)) throw InputError("--plugins: " + folder + " is no folder");
+    folders.emplace_back(folder);
+  }
+  folders.push_back(PluginHost::default_directory());
+  return folders;
+}
+
+}  // namespace
+
+Plugins::Plugins(const CommonArguments& arguments)
+    : host_(plugin_folders(arguments)), registry_(std::make_unique<Registry>()) {
+  host_.attach(*registry_);
+}
+
+Engine::Engine(const SceneArguments& arguments)
+    : plugins_(arguments),
+      scene_(as_input(arguments.scene, [&] { return read_scene(arguments.scene, registry(), arguments.options); })),
+      equations_(as_input(arguments.scene + ": formulation " + scene_.formulation_name,
+                          [&] { return scene_.formulation->compile(scene_.model); })) {}
+
+std::string Engine::formulation_summary() const {
+  const auto* plugin = registry().find<Formulation>(scene_.formulation_name);
+  return plugin != nullptr ? plugin->summary : std::string();
+}
+
+State Engine::state(const std::string& file) const {
+  if (file.empty()) return scene_.initial;
+  return as_input(file, [&] { return read_state(file, *scene_.model, scene_.initial); });
+}
+
+RunSummary Engine::simulate(const std::function<void(const State&)>& output) const {
+  watch_for_interrupt();
+  Progress progress(scene_.formulation_name, scene_.end);
+  RunOptions options;
+  options.end = scene_.end;
+  options.output = scene_.output;
+  options.deflection_limit = scene_.deflection_limit;
+  options.interrupted = interrupted;
+  return withy::simulate(*scene_.model, *equations_, *scene_.integrator, scene_.initial, options,
+                         [&](const State& state) {
+                           progress.at(state.time);
+                           output(state);
+                         });
+}
+
+}  // namespace withy::app

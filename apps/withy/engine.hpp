@@ -1,0 +1,63 @@
+/// \file
+/// A scene with the plugins it is made of and its equations of motion: what every command starts from.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "withy/apps/withy/commands.hpp"
+#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/simulation/simulate.hpp"
+#include "withy/plugins/host/plugin_host.hpp"
+#include "withy/scene/scene.hpp"
+
+namespace withy::app {
+
+/// Bad input found by a command: reported as it is, exit status 2.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The plugins of the folders the command line names and of the program's own.
+class Plugins {
+ public:
+  /// \throws InputError where a folder is none.
+  explicit Plugins(const CommonArguments& arguments);
+  [[nodiscard]] Registry& registry() const { return *registry_; }
+  [[nodiscard]] const PluginHost& host() const { return host_; }
+
+ private:
+  PluginHost host_;
+  std::unique_ptr<Registry> registry_;
+};
+
+class Engine {
+ public:
+  /// Reads the scene, loads what it names and compiles it.
+  /// \throws SceneError, InputError; PluginError where a plugin is refused.
+  explicit Engine(const SceneArguments& arguments);
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const Model& model() const { return *scene_.model; }
+  [[nodiscard]] const EquationsOfMotion& equations() const { return *equations_; }
+  [[nodiscard]] const Plugins& plugins() const { return plugins_; }
+  [[nodiscard]] Registry& registry() const { return plugins_.registry(); }
+  /// The formulation in a sentence.
+  [[nodiscard]] std::string formulation_summary() const;
+  /// The state of a file, or the scene's initial state where the name is empty.
+  [[nodiscard]] State state(const std::string& file) const;
+
+  /// Simulates from the scene's initial state to its end. Shows progress on standard error where that is a terminal;
+  /// ends as interrupted at SIGINT.
+  [[nodiscard]] RunSummary simulate(const std::function<void(const State&)>& output) const;
+
+ private:
+  Plugins plugins_;
+  Scene scene_;
+  std::unique_ptr<EquationsOfMotion> equations_;
+};
+
+}  // namespace withy::app

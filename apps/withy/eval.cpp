@@ -1,0 +1,54 @@
+#include <nlohmann/json.hpp>
+
+#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/engine.hpp"
+#include "withy/apps/withy/output.hpp"
+
+namespace withy::app {
+
+ExitStatus eval(const StateArguments& arguments) {
+  using Json = nlohmann::ordered_json;
+  const Engine engine(arguments);
+  const EquationsOfMotion& equations = engine.equations();
+  const Layout& layout = equations.layout();
+  const State state = engine.state(arguments.state);
+
+  const DenseSystem system = equations.system(state.time, state.y);
+  const Energies energies = equations.energies(state.y);
+  std::vector<double> rates(equations.size());
+  Work work = equations.make_work();
+  const Evaluation evaluation = equations.derivatives(state.time, state.y, rates, work);
+
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < system.size; ++i) {
+    const auto row = system.mass.begin() + static_cast<std::ptrdiff_t>(i * system.size);
+    rows.push_back(std::vector<double>(row, row + static_cast<std::ptrdiff_t>(system.size)));
+  }
+  const auto first = rates.begin() + static_cast<std::ptrdiff_t>(layout.positions);
+  Json j;
+  j["formulation"] = engine.scene().formulation_name;
+  j["coordinates"] = layout.speed_names;
+  j["mass_matrix"] = std::move(rows);
+  j["force"] = system.force;
+  j["applied"] = system.applied;
+  if (evaluation.ok())
+    j["accelerations"] = std::vector<double>(first, first + static_cast<std::ptrdiff_t>(layout.speeds));
+  else
+    j["accelerations"] = nullptr;
+  j["kinetic_energy"] = energies.kinetic;
+  j["potential_energy"] = energies.potential;
+  j["linear_momentum"] = energies.linear_momentum;
+  j["angular_momentum"] = energies.angular_momentum;
+  j["condition"] = conditioning(system).condition;
+  print(j.dump() + '\n');
+  if (evaluation.ok()) return ExitStatus::done;
+  complain(std::string("there are no accelerations at this state: ") +
+           (evaluation.outcome == Evaluation::Outcome::singular ? "the mass matrix cannot be solved"
+                                                                : "they are not finite") +
+           (evaluation.body >= 0
+                ? " at body '" + engine.model().bodies()[static_cast<std::size_t>(evaluation.body)].name + "'"
+                : ""));
+  return ExitStatus::stopped;
+}
+
+}  // namespace withy::app

@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/engine.hpp"
+#include "withy/apps/withy/json_text.hpp"
+#include "withy/apps/withy/output.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+
+namespace withy::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What the scene says of one of its bodies, hinges or loads under `key`; empty where it says nothing.
+std::string said(const Scene& scene, const char* group, const std::string& name, const char* key) {
+  const Value* const all = scene.source.find(group);
+  const Value* const one = all != nullptr ? all->find(name) : nullptr;
+  const Value* const text = one != nullptr ? one->find(key) : nullptr;
+  return text != nullptr ? text->text() : std::string();
+}
+
+/// Plugin id of a body, hinge or load: "beam".
+std::string type_of(const Scene& scene, const char* group, const std::string& name) {
+  return said(scene, group, name, "type");
+}
+
+double mass_of(const Body& body) {
+  double mass = 0;
+  for (const Particle& p : body.shape().particles) mass += p.mass;
+  return mass;
+}
+
+/// Where a hinge is fixed on its parent: "world", "link1.tip".
+std::string parent_of(const Model& model, const HingeNode& hinge) {
+  if (hinge.parent < 0) return "world";
+  const BodyNode& parent = model.bodies()[static_cast<std::size_t>(hinge.parent)];
+  return parent.name + '.' + parent.frames[static_cast<std::size_t>(hinge.parent_frame)].name;
+}
+
+Json bodies_json(const Scene& scene) {
+  const Model& model = *scene.model;
+  Json bodies = Json::array();
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const BodyNode& body = model.bodies()[b];
+    const HingeNode& hinge = model.hinges()[b];
+    const std::string own = said(scene, "bodies", body.name, "formulation");
+    bodies.push_back({{"name", body.name},
+                      {"type", type_of(scene, "bodies", body.name)},
+                      {"mass", mass_of(*body.body)},
+                      {"modes", body.body->shape().mode_names},
+                      {"formulation", own.empty() ? scene.formulation_name : own},
+                      {"hinge",
+                       {{"name", hinge.name},
+                        {"type", type_of(scene, "hinges", hinge.name)},
+                        {"parent", parent_of(model, hinge)},
+                        {"child_frame", body.frames[static_cast<std::size_t>(hinge.child_frame)].name},
+                        {"speeds", hinge.hinge->speeds()}}}});
+  }
+  return bodies;
+}
+
+/// Null where there is no matrix, or a larger one than runs look at.
+Json mass_matrix_json(const Engine& engine, const State& state) {
+  const std::size_t size = engine.model().layout().speeds;
+  if (size == 0 || size > largest_examined) return {};
+  const Conditioning c = conditioning(engine.equations().system(state.time, state.y));
+  return {{"condition", c.condition},
+          {"condition_times_epsilon", c.condition * std::numeric_limits<double>::epsilon()},
+          {"determinant_sign", c.determinant_sign},
+          {"smallest_eigenvalue", c.smallest_eigenvalue}};
+}
+
+Json inspect_json(const Engine& engine, const State& state) {
+  const Scene& scene = engine.scene();
+  Json j;
+  j["scene"] = scene.file;
+  j["name"] = scene.name;
+  j["formulation"] = {{"name", scene.formulation_name}, {"meaning", engine.formulation_summary()}};
+  j["integrator"] = integrator_json(scene);
+  j["bodies"] = bodies_json(scene);
+  j["loads"] = Json::array();
+  for (const LoadNode& load : engine.model().loads())
+    j["loads"].push_back({{"name", load.name}, {"type", type_of(scene, "loads", load.name)}});
+  j["coordinates"] = engine.model().layout().speed_names;
+  j["compiled"] = engine.equations().savings();
+  j["mass_matrix"] = mass_matrix_json(engine, state);
+  j["plugins"] = Json::array();
+  for (const PluginRecord& r : engine.plugins().host().plugins())
+    if (r.state == PluginRecord::State::loaded)
+      j["plugins"].push_back({{"name", r.kind + '/' + r.id}, {"file", r.file.string()}});
+  return j;
+}
+
+/// The tree without recursion: chains may be long.
+std::string tree_text(const Engine& engine) {
+  const Scene& scene = engine.scene();
+  const Model& model = engine.model();
+  std::map<int, std::vector<int>> children;
+  for (std::size_t b = 0; b < model.bodies().size(); ++b)
+    children[model.hinges()[b].parent].push_back(static_cast<int>(b));
+  struct Entry {
+    int body;
+    std::string indent;
+    bool last;
+  };
+  std::vector<Entry> open;
+  const auto push_children = [&](int parent, const std::string& indent) {
+    const auto& all = children[parent];
+    for (std::size_t i = all.size(); i-- > 0;) open.push_back({all[i], indent, i + 1 == all.size()});
+  };
+  std::string out = "world\n";
+  push_children(-1, "");
+  while (!open.empty()) {
+    const Entry e = open.back();
+    open.pop_back();
+    const BodyNode& body = model.bodies()[static_cast<std::size_t>(e.body)];
+    const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(e.body)];
+    const std::string own = said(scene, "bodies", body.name, "formulation");
+    const std::size_t modes = body.body->shape().mode_names.size();
+    out += fmt::format("{}{} {}: {}, {:.6g} kg{}   [{}: {} at {}{}]\n", e.indent, e.last ? "└─" : "├─", body.name,
+                       type_of(scene, "bodies", body.name), mass_of(*body.body),
+                       modes > 0 ? fmt::format(", {} mode{}", modes, modes > 1 ? "s" : "") : "", hinge.name,
+                       type_of(scene, "hinges", hinge.name), parent_of(model, hinge),
+                       own.empty() ? "" : ", formulation " + own);
+    push_children(e.body, e.indent + (e.last ? "   " : "│  "));
+  }
+  return out;
+}
+
+/// "dopri5, rtol 1e-06, atol 1e-09".
+std::string integrator_text(const Json& integrator) {
+  std::string out;
+  for (const auto& [key, value] : integrator.items()) {
+    const std::string text = plain_text(value);
+    out += key == "name" ? text : ", " + key + ' ' + text;
+  }
+  return out;
+}
+
+std::string inspect_text(const Engine& engine, const Json& j) {
+  std::string out = fmt::format("{} ({})\nformulation {}: {}\nintegrator {}\n\n", j["name"].get<std::string>(),
+                                j["scene"].get<std::string>(), engine.scene().formulation_name,
+                                engine.formulation_summary(), integrator_text(j["integrator"]));
+  out += tree_text(engine);
+  const auto list = [&](const std::string& head, const char* key) {
+    out += '\n' + head + '\n';
+    for (const Json& item : j[key]) out += "  " + item.get<std::string>() + '\n';
+  };
+  list(fmt::format("{} coordinates", j["coordinates"].size()), "coordinates");
+  list("compiled", "compiled");
+  for (const Json& load : j["loads"])
+    out += fmt::format("\nload {}: {}\n", load["name"].get<std::string>(), load["type"].get<std::string>());
+  const Json& m = j["mass_matrix"];
+  if (!m.is_null()) {
+    const int sign = m["determinant_sign"].get<int>();
+    out += fmt::format(
+        "\nmass matrix M at this state\n  condition {:.4g}; digits lost: accelerations are good to {:.1g}\n"
+        "  det M is {}; smallest eigenvalue of its symmetric part {:.4g}\n",
+        m["condition"].get<double>(), m["condition_times_epsilon"].get<double>(),
+        sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"), m["smallest_eigenvalue"].get<double>());
+  }
+  out += "\nplugins loaded\n";
+  for (const Json& p : j["plugins"])
+    out += fmt::format("  {}  {}\n", p["name"].get<std::string>(), p["file"].get<std::string>());
+  return out;
+}
+
+}  // namespace
+
+ExitStatus inspect(const StateArguments& arguments) {
+  const Engine engine(arguments);
+  const Json j = inspect_json(engine, engine.state(arguments.state));
+  print(arguments.json ? json_text(j) : inspect_text(engine, j));
+  return ExitStatus::done;
+}
+
+}  // namespace withy::app

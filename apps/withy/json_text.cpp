@@ -1,0 +1,94 @@
+#include "withy/apps/withy/json_text.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace withy::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* kind_text(ParameterSpec::Kind kind) {
+  switch (kind) {
+    case ParameterSpec::Kind::number:
+      return "number";
+    case ParameterSpec::Kind::integer:
+      return "integer";
+    case ParameterSpec::Kind::boolean:
+      return "boolean";
+    case ParameterSpec::Kind::text:
+      return "text";
+    case ParameterSpec::Kind::vector:
+      return "vector";
+    case ParameterSpec::Kind::table:
+      return "table";
+    case ParameterSpec::Kind::map:
+      return "map";
+    case ParameterSpec::Kind::named:
+      return "named maps";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string json_text(const Json& json) {
+  // File names need not be UTF-8; JSON has to be.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string plain_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
+}
+
+Json value_json(const Value& value) {
+  switch (value.kind()) {
+    case Value::Kind::null:
+      return nullptr;
+    case Value::Kind::boolean:
+      return value.boolean();
+    case Value::Kind::number:
+      return value.number();
+    case Value::Kind::text:
+      return value.text();
+    case Value::Kind::list: {
+      Json list = Json::array();
+      for (const Value& item : value.items()) list.push_back(value_json(item));
+      return list;
+    }
+    case Value::Kind::map: {
+      Json map = Json::object();
+      for (const auto& [key, member] : value.members()) map[key] = value_json(member);
+      return map;
+    }
+  }
+  return nullptr;
+}
+
+Json parameter_json(const ParameterSpec& p) {
+  Json j{{"key", p.key}, {"kind", kind_text(p.kind)}};
+  if (!p.unit.empty()) j["unit"] = p.unit;
+  j["meaning"] = p.meaning;
+  j["required"] = p.required;
+  if (p.fallback) j["default"] = value_json(*p.fallback);
+  if (p.minimum) j[p.exclusive_minimum ? "above" : "least"] = *p.minimum;
+  if (p.maximum) j["most"] = *p.maximum;
+  if (!p.choices.empty()) j["choices"] = p.choices;
+  if (p.count > 0) j["count"] = p.count;
+  if (!p.columns.empty()) j["columns"] = p.columns;
+  for (const ParameterSpec& member : p.members) j["members"].push_back(parameter_json(member));
+  return j;
+}
+
+Json integrator_json(const Scene& scene) {
+  Json j{{"name", scene.integrator_name}};
+  const Value* options = scene.source.find("integrator");
+  if (options == nullptr || options->kind() != Value::Kind::map) return j;
+  for (const auto& [key, member] : options->members())
+    if (key != "name") j[key] = value_json(member);
+  return j;
+}
+
+}  // namespace withy::app

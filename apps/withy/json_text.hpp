@@ -1,0 +1,23 @@
+/// \file
+/// JSON: as text, and of scene values and plugin specifications.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "withy/core/plugin/parameters.hpp"
+#include "withy/scene/scene.hpp"
+
+namespace withy::app {
+
+/// The text of a result, indented, ending its line. Numbers that are not finite become null.
+std::string json_text(const nlohmann::ordered_json& json);
+/// A value for people: a text without its quotes, a whole number without its fraction.
+std::string plain_text(const nlohmann::ordered_json& value);
+nlohmann::ordered_json value_json(const Value& value);
+/// A plugin's option: key, kind, unit, meaning, whether required, default, limits, choices, members.
+nlohmann::ordered_json parameter_json(const ParameterSpec& parameter);
+/// The integrator of a scene with its options, as {"name": "dopri5", "rtol": 1e-6, …}.
+nlohmann::ordered_json integrator_json(const Scene& scene);
+
+}  // namespace withy::app

@@ -1,0 +1,47 @@
+#include "withy/apps/withy/output.hpp"
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace withy::app {
+
+void print(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+    throw std::system_error(errno, std::generic_category(), "standard output");
+}
+
+void finish_printing() {
+  if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category(), "standard output");
+}
+
+void complain(std::string_view text) noexcept {
+  // Where standard error cannot be written there is nobody left to tell: the exit status says it.
+  static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+  if (!text.empty() && text.back() != '\n') static_cast<void>(std::fputc('\n', stderr));
+}
+
+OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), file_(std::fopen(path_.c_str(), "we")) {
+  if (!file_) fail();
+}
+
+void OutputFile::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() || std::fflush(file_.get()) != 0) fail();
+}
+
+void OutputFile::close() {
+  if (std::fclose(file_.release()) != 0) fail();
+}
+
+void OutputFile::fail() const { throw std::system_error(errno, std::generic_category(), path_.string()); }
+
+void write_file(const std::filesystem::path& path, std::string_view text) {
+  std::filesystem::path part = path;
+  part += ".part";
+  OutputFile file(part);
+  file.write(text);
+  file.close();
+  std::filesystem::rename(part, path);
+}
+
+}  // namespace withy::app

@@ -1,0 +1,42 @@
+/// \file
+/// Output of which every byte is known to have been written: a full disk is an error, never a shorter file.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+namespace withy::app {
+
+/// Writes to standard output. \throws std::system_error
+void print(std::string_view text);
+/// Makes sure that what was printed has left the program. \throws std::system_error
+void finish_printing();
+/// Writes to standard error, ending the text's last line if it does not end itself.
+void complain(std::string_view text) noexcept;
+
+/// A text file written from its beginning; each write reaches the system before the next, so that a run that is killed
+/// leaves whole lines.
+class OutputFile {
+ public:
+  /// \throws std::system_error naming the file, as do the other functions.
+  explicit OutputFile(std::filesystem::path path);
+  void write(std::string_view text);
+  /// To be called once, last: closing may report what writing could not.
+  void close();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+  };
+  [[noreturn]] void fail() const;
+
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, Closer> file_;
+};
+
+/// Writes a file whole or not at all: under another name first, then renamed. \throws std::system_error
+void write_file(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace withy::app

@@ -1,0 +1,26 @@
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/json_text.hpp"
+#include "withy/apps/withy/output.hpp"
+#include "withy/apps/withy/results.hpp"
+#include "withy/apps/withy/run_report.hpp"
+
+namespace withy::app {
+
+ExitStatus run(const RunArguments& arguments) {
+  const Engine engine(arguments);
+  std::filesystem::path folder = arguments.out;
+  if (folder.empty()) {
+    folder = std::filesystem::path("results") /
+             (std::filesystem::path(arguments.scene).stem().string() + '-' + engine.scene().formulation_name);
+  }
+  const RunSummary summary = simulate_into(folder, engine);
+  print(arguments.json ? json_text(run_json(engine, summary))
+                       : run_table(engine, summary) + "\nresults in " + folder.string() + '\n');
+  if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
+  return exit_status(summary.status);
+}
+
+}  // namespace withy::app

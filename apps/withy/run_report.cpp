@@ -1,0 +1,133 @@
+#include "withy/apps/withy/run_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "withy/apps/withy/columns.hpp"
+#include "withy/apps/withy/json_text.hpp"
+
+namespace withy::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json tip_peaks(const RunSummary& summary) {
+  Json peaks = Json::object();
+  for (const auto& [body, d] : summary.peak_deflection) peaks[body] = {{"y", d[1]}, {"z", d[2]}};
+  return peaks;
+}
+
+Json effort_peaks(const Model& model, const RunSummary& summary) {
+  Json peaks = Json::object();
+  for (const Slot& hinge : model.layout().hinges) {
+    if (hinge.speeds == 0) continue;
+    Json efforts = Json::array();
+    for (std::size_t i = 0; i < hinge.speeds; ++i) efforts.push_back(summary.peak_effort.at(hinge.speed + i));
+    peaks[hinge.name] = std::move(efforts);
+  }
+  return peaks;
+}
+
+/// The condition of M times `factor`; null where it was not looked at.
+Json condition_json(const Conditioning& c, double factor = 1) {
+  return c.condition > 0 ? Json(c.condition * factor) : Json();
+}
+
+/// What was modelled and how far the figures can be trusted.
+Json certificate(const Engine& engine, const RunSummary& summary) {
+  const Scene& scene = engine.scene();
+  Json c;
+  c["program"] = "withy " WITHY_VERSION;
+  c["formulation"] = {{"name", scene.formulation_name}, {"meaning", engine.formulation_summary()}};
+  c["integrator"] = integrator_json(scene);
+  c["output_interval"] = scene.output;
+  c["compiled"] = engine.equations().savings();
+  c["energy_drift"] = summary.energy_drift;
+  // Digits lost in solving for accelerations: no result is better than this, whatever the integrator's tolerance.
+  c["condition_times_epsilon"] = condition_json(summary.conditioning, std::numeric_limits<double>::epsilon());
+  return c;
+}
+
+std::string name_of_sign(int sign) { return sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"); }
+
+}  // namespace
+
+Json state_json(const Model& model, const State& state) { return Json::parse(write_state(model, state)); }
+
+Json run_json(const Engine& engine, const RunSummary& summary) {
+  const Scene& scene = engine.scene();
+  Json j;
+  j["scene"] = scene.file;
+  j["name"] = scene.name;
+  j["formulation"] = scene.formulation_name;
+  j["integrator"] = scene.integrator_name;
+  j["status"] = name(summary.status);
+  j["message"] = summary.message;
+  j["t_end"] = summary.final.time;
+  j["final"] = state_json(*scene.model, summary.final);
+  j["peaks"] = {{"tip_deflection", tip_peaks(summary)}, {"effort", effort_peaks(*scene.model, summary)}};
+  j["energy_drift"] = summary.energy_drift;
+  j["steps"] = summary.steps.accepted;
+  j["rejected_steps"] = summary.steps.rejected;
+  j["evaluations"] = summary.steps.evaluations;
+  j["cpu_seconds"] = summary.cpu_seconds;
+  j["suspected_jumps"] = summary.suspected_jumps;
+  j["condition"] = condition_json(summary.conditioning);
+  j["determinant_sign"] = summary.conditioning.determinant_sign;
+  j["certificate"] = certificate(engine, summary);
+  return j;
+}
+
+std::string outcome_text(const RunSummary& summary) {
+  if (summary.status == RunStatus::completed) return "completed";
+  return fmt::format("{} at {:.4g} s", name(summary.status), summary.final.time);
+}
+
+std::string readable(double value, const std::string& unit) {
+  if (unit == "rad") return fmt::format("{:.4f} deg", value * 180 / std::numbers::pi);
+  return fmt::format("{:.6g}{}{}", value, unit.empty() || unit == "1" ? "" : " ", unit == "1" ? "" : unit);
+}
+
+std::string run_table(const Engine& engine, const RunSummary& summary) {
+  const Scene& scene = engine.scene();
+  const Model& model = *scene.model;
+  std::string out;
+  const auto line = [&](const std::string& what, const std::string& text) {
+    out += fmt::format("{:<24}{}\n", what, text);
+  };
+  out += fmt::format("{} ({}, {})\n\n", scene.name.empty() ? scene.file : scene.name, scene.formulation_name,
+                     scene.integrator_name);
+  line("outcome", outcome_text(summary));
+  for (const HingeNode& hinge : model.hinges()) {
+    const auto columns = coordinate_columns(hinge);
+    const Slot& slot = *model.layout().hinge(hinge.name);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      line("final " + columns[i].name, readable(summary.final.y[slot.position + i], columns[i].unit));
+  }
+  for (const auto& [body, d] : summary.peak_deflection) {
+    line("peak deflection " + body, fmt::format("y {:.5g} m, z {:.5g} m", d[1], d[2]));
+  }
+  for (const Slot& slot : model.layout().hinges) {
+    for (std::size_t i = 0; i < slot.speeds; ++i) {
+      const double effort = summary.peak_effort.at(slot.speed + i);
+      if (effort > 0) line("peak effort " + model.layout().speed_names[slot.speed + i], fmt::format("{:.5g}", effort));
+    }
+  }
+  line("energy drift", fmt::format("{:.2g}", summary.energy_drift));
+  line("steps", fmt::format("{} ({} rejected), {} evaluations", summary.steps.accepted, summary.steps.rejected,
+                            summary.steps.evaluations));
+  line("CPU time", fmt::format("{:.4g} s", summary.cpu_seconds));
+  if (summary.conditioning.condition > 0) {
+    line("mass matrix at the end", fmt::format("condition {:.3g}, determinant {}", summary.conditioning.condition,
+                                               name_of_sign(summary.conditioning.determinant_sign)));
+  }
+  if (summary.status == RunStatus::completed && !summary.message.empty()) out += "\nnote: " + summary.message + '\n';
+  return out;
+}
+
+}  // namespace withy::app

@@ -1,0 +1,167 @@
+#include "withy/apps/withy/svg_plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+namespace withy::app {
+namespace {
+
+constexpr double width = 860;
+constexpr double panel_height = 200;
+constexpr double left = 88;
+constexpr double right = 24;
+constexpr double foot = 52;  ///< below each panel: marks and label of its axis
+
+struct Pen {
+  const char* colour;
+  const char* dashes;
+  double thickness;
+};
+// Told apart by dashes too, for those who do not see colours (palette of Okabe and Ito). Thick below thin: curves that
+// coincide stay visible.
+constexpr std::array<Pen, 6> pens{{{"#e69f00", "none", 4.5},
+                                   {"#d55e00", "7 3", 2.4},
+                                   {"#56b4e9", "none", 3.2},
+                                   {"#000000", "2 2", 1.4},
+                                   {"#009e73", "10 3 2 3", 1.8},
+                                   {"#cc79a7", "4 4", 1.6}}};
+
+const Pen& pen(std::size_t i) { return pens[i % pens.size()]; }
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string stroke(const Pen& p) {
+  return fmt::format(R"(fill="none" stroke="{}" stroke-width="{}" stroke-dasharray="{}")", p.colour, p.thickness,
+                     p.dashes);
+}
+
+/// From data to the picture, for one panel whose upper edge is at `top`.
+struct Scale {
+  double x0, x1, y0, y1, top;
+  [[nodiscard]] double x(double v) const { return left + (v - x0) / (x1 - x0) * (width - left - right); }
+  [[nodiscard]] double y(double v) const { return top + (y1 - v) / (y1 - y0) * panel_height; }
+};
+
+Scale scale_of(const Panel& panel, double top) {
+  Scale s{0, 0, panel.y_range.first, panel.y_range.second, top};
+  for (const Curve& c : panel.curves) {
+    for (const double x : c.x) {
+      s.x0 = std::min(s.x0, x);
+      s.x1 = std::max(s.x1, x);
+    }
+  }
+  if (s.x1 <= s.x0) s.x1 = s.x0 + 1;
+  const double margin = s.y1 > s.y0 ? 0.06 * (s.y1 - s.y0) : std::max(1e-9, 0.06 * std::abs(s.y0));
+  s.y0 -= margin;
+  s.y1 += margin;
+  return s;
+}
+
+void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
+  const double bottom = s.top + panel_height;
+  for (const double v : axis_marks(s.y0, s.y1)) {
+    fmt::format_to(std::back_inserter(out),
+                   "<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#ddd\"/>\n"
+                   "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:.6g}</text>\n",
+                   left, width - right, s.y(v), s.y(v), left - 7, s.y(v) + 4.5, v);
+  }
+  for (const double v : axis_marks(s.x0, s.x1)) {
+    fmt::format_to(std::back_inserter(out),
+                   "<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{}\" y2=\"{}\" stroke=\"#ddd\"/>\n"
+                   "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.6g}</text>\n",
+                   s.x(v), s.x(v), s.top, bottom, s.x(v), bottom + 18, v);
+  }
+  fmt::format_to(std::back_inserter(out),
+                 "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>\n"
+                 "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n"
+                 "<text transform=\"translate(20 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                 left, s.top, width - left - right, panel_height, (left + width - right) / 2, bottom + 38,
+                 escaped(panel.x_label), s.top + panel_height / 2, escaped(panel.y_label));
+}
+
+void draw_curve(std::string& out, const Curve& curve, const Scale& s, const Pen& p) {
+  if (curve.x.empty()) return;
+  // Far outside the frame is as good as further outside, and keeps renderers away from huge coordinates.
+  const auto y = [&](double v) { return std::clamp(s.y(v), s.top - 5000, s.top + 5000); };
+  out += "<polyline " + stroke(p) + " points=\"";
+  for (std::size_t i = 0; i < curve.x.size(); ++i)
+    fmt::format_to(std::back_inserter(out), "{:.2f},{:.2f} ", s.x(curve.x[i]), y(curve.y[i]));
+  out += "\"/>\n";
+  if (!curve.ends_early) return;
+  const double cx = s.x(curve.x.back());
+  const double cy = std::clamp(s.y(curve.y.back()), s.top + 7, s.top + panel_height - 7);
+  fmt::format_to(std::back_inserter(out),
+                 "<path d=\"M{0:.2f} {1:.2f} l10 10 m0 -10 l-10 10\" stroke=\"{2}\" stroke-width=\"2.6\"/>\n", cx - 5,
+                 cy - 5, p.colour);
+}
+
+}  // namespace
+
+std::vector<double> axis_marks(double low, double high) {
+  const double wanted = (high - low) / 5;
+  const double decade = std::pow(10.0, std::floor(std::log10(wanted)));
+  double step = 10 * decade;
+  for (const double s : {5.0, 2.0, 1.0})
+    if (s * decade >= wanted * 0.99) step = s * decade;
+  std::vector<double> marks;
+  for (double k = std::ceil(low / step); k * step <= high; ++k) marks.push_back(k == 0 ? 0 : k * step);
+  return marks;
+}
+
+std::string svg_plot(const std::string& title, const std::vector<std::string>& legend,
+                     const std::vector<Panel>& panels) {
+  std::string entries;
+  double x = left;
+  double y = 47;
+  for (std::size_t i = 0; i < legend.size(); ++i) {
+    // An average character is 7 wide at this size.
+    const double room = 41 + 7 * static_cast<double>(legend[i].size());
+    if (x + room > width && x > left) {
+      x = left;
+      y += 20;
+    }
+    fmt::format_to(std::back_inserter(entries), "<path d=\"M{} {} h34\" {}/>\n<text x=\"{}\" y=\"{}\">{}</text>\n", x,
+                   y, stroke(pen(i)), x + 41, y + 4.5, escaped(legend[i]));
+    x += room + 20;
+  }
+  double top = y + 25;
+  const double height = top + static_cast<double>(panels.size()) * (panel_height + foot) + 8;
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
+      "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"13\">\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+      "<text x=\"{2}\" y=\"26\" font-size=\"17\">{3}</text>\n",
+      width, height, left, escaped(title));
+  out += entries;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const Scale s = scale_of(panels[i], top);
+    draw_axes(out, panels[i], s);
+    fmt::format_to(std::back_inserter(out),
+                   "<clipPath id=\"frame{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n"
+                   "<g clip-path=\"url(#frame{})\">\n",
+                   i, left, top, width - left - right, panel_height, i);
+    for (std::size_t c = 0; c < panels[i].curves.size(); ++c) draw_curve(out, panels[i].curves[c], s, pen(c));
+    out += "</g>\n";
+    top += panel_height + foot;
+  }
+  return out + "</svg>\n";
+}
+
+}  // namespace withy::app

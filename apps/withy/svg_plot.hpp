@@ -1,0 +1,33 @@
+/// \file
+/// Line charts as SVG text, readable in any browser.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace withy::app {
+
+/// One curve. Its place in Panel::curves chooses its colour and dashes, the same in every panel.
+struct Curve {
+  std::vector<double> x;
+  std::vector<double> y;
+  bool ends_early = false;  ///< its last point is marked with a cross
+};
+
+/// One pair of axes.
+struct Panel {
+  std::string x_label;
+  std::string y_label;
+  std::pair<double, double> y_range;  ///< least and greatest value shown; curves are cut there
+  std::vector<Curve> curves;
+};
+
+/// A title, a legend with one entry a curve, and the panels below each other.
+std::string svg_plot(const std::string& title, const std::vector<std::string>& legend,
+                     const std::vector<Panel>& panels);
+
+/// Round numbers inside [low, high], five or so, for the marks of an axis.
+std::vector<double> axis_marks(double low, double high);
+
+}  // namespace withy::app

@@ -1,0 +1,141 @@
+/// \file
+/// Step size control for one-step methods with an error estimate O(h⁵): automatic first step and PI control after
+/// Hairer, Nørsett & Wanner, "Solving Ordinary Differential Equations I", II.4 and IV.2 (II).
+#pragma once
+
+#include "one_step.hpp"
+#include "step_control.hpp"
+
+namespace withy {
+
+class AdaptiveStepper : public OneStep {
+ public:
+  AdaptiveStepper(const EquationsOfMotion& equations, const State& start, const StepControl& control)
+      : OneStep(equations, start), error_(Eigen::ArrayXd::Zero(size())), control_(control) {}
+
+  StepResult step(double t_limit) final {
+    const double t = state_.time;
+    if (!(t_limit > t)) return {};
+    if (const StepResult r = begin(t_limit); r.outcome != StepResult::Outcome::ok) return r;
+    const double remaining = t_limit - t;
+    if (!(proposal_ > 0)) proposal_ = first_step(remaining);
+    double wanted = std::min(proposal_, control_.max_step);
+    const double least = std::max({control_.min_step, 16 * std::numeric_limits<double>::epsilon() * std::abs(t),
+                                   std::numeric_limits<double>::min()});
+    bool rejected = false;
+    for (int failures = 0;;) {
+      if (wanted < least && wanted < remaining) return {StepResult::Outcome::step_underflow, -1};
+      const double fitted = fit(wanted, remaining);
+      const double t_new = fitted < remaining ? std::min(t + fitted, t_limit) : t_limit;
+      const double h = t_new - t;
+      const Trial trial = attempt(h);
+      if (!trial.evaluation.ok() || !std::isfinite(trial.error) || !finite(next_) || !finite(next_slope_)) {
+        // Where halving stops is a matter of the equations, not of the accuracy asked for.
+        ++statistics_.rejected;
+        wanted = h / 2;
+        rejected = true;
+        accuracy_to_blame_ = std::max(accuracy_to_blame_ - 1, -10);
+        // At a pole of the right-hand side a stage may hit the pole itself: the accuracy had ended the run anyway.
+        if (wanted < least && accuracy_to_blame_ > 0) return {StepResult::Outcome::step_underflow, -1};
+        if (++failures == most_failures || wanted < least) return failure(trial.evaluation);
+        continue;
+      }
+      failures = 0;
+      const double growth = std::pow(trial.error, error_power);
+      if (trial.error > 1) {
+        ++statistics_.rejected;
+        wanted = h / std::min(greatest_reduction, growth / safety);
+        rejected = true;
+        accuracy_to_blame_ = std::min(accuracy_to_blame_ + 1, 10);
+        continue;
+      }
+      const double factor = growth / std::pow(error_before_, stabilization) / safety;
+      double next_step = h / std::clamp(factor, 1 / greatest_growth, greatest_reduction);
+      if (rejected) next_step = std::min(next_step, h);
+      // A step cut short to land says nothing against the step that was wanted.
+      proposal_ = h < wanted ? std::max(wanted, next_step) : next_step;
+      error_before_ = std::max(trial.error, 1e-4);
+      accept(t_new);
+      accepted(h);
+      return {};
+    }
+  }
+
+  void restart() final {
+    OneStep::restart();
+    proposal_ = 0;
+    error_before_ = 1e-4;
+  }
+
+ protected:
+  struct Trial {
+    Evaluation evaluation;
+    double error = 0;  ///< greatest error over tolerance; above 1 the step is rejected
+  };
+
+  /// Tries a step h from state_ with slope_: fills error_, next_ (normalized) and, unless the error is above 1,
+  /// next_slope_.
+  virtual Trial attempt(double h) = 0;
+  /// Called after state_, slope_ and their predecessors are those of an accepted step h: keeps what `inside` needs.
+  virtual void accepted(double h) = 0;
+
+  /// Greatest of |error_| / (atol + rtol max(|y|, |next_|)) over positions and speeds. The greatest, not the mean: a
+  /// coordinate's error does not hide behind the number of the others.
+  [[nodiscard]] double error_ratio() const {
+    const Eigen::Index n = size() - 1;
+    const auto ratio =
+        error_.head(n).abs() / (control_.atol + control_.rtol * y().head(n).abs().max(next_.head(n).abs()));
+    if (n == 0) return 0;
+    // A maximum may pass over NaN; a sum does not.
+    return std::isfinite(ratio.sum()) ? ratio.maxCoeff() : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  Eigen::ArrayXd error_;  ///< estimated error of next_
+
+ private:
+  static constexpr int most_failures = 20;
+  static constexpr double safety = 0.9;
+  static constexpr double stabilization = 0.04;
+  static constexpr double error_power = 1.0 / 5 - 0.75 * stabilization;
+  static constexpr double greatest_reduction = 5;
+  static constexpr double greatest_growth = 10;
+
+  /// The step to take where `wanted` is wanted: stretched by at most 1 % to land, or half of what remains where the
+  /// step after it would be a short one.
+  static double fit(double wanted, double remaining) {
+    if (remaining <= 1.01 * wanted) return remaining;
+    return remaining < 2 * wanted ? remaining / 2 : wanted;
+  }
+
+  /// The first step after HNW I, II.4, with its bounds made free of the unit of time: h0, for which an explicit Euler
+  /// step changes y by 1 %, tells how fast the slope changes; from that time τ follows the step whose fifth-order error
+  /// is about a hundredth of the tolerance.
+  double first_step(double remaining) {
+    if (control_.initial_step > 0) return control_.initial_step;
+    const Eigen::Index n = size() - 1;
+    if (n == 0) return remaining;
+    const auto norm = [&](const auto& v) {
+      return (v.head(n).abs() / (control_.atol + control_.rtol * y().head(n).abs())).maxCoeff();
+    };
+    const double fallback = 1e-6 * remaining;
+    const double d0 = norm(y());
+    const double d1 = norm(slope_);
+    const double h0 = std::min(d0 < 1e-5 || d1 * remaining < 1e-5 ? fallback : 0.01 * d0 / d1, remaining);
+    if (!(h0 > 0)) return fallback;
+    next_ = y() + h0 * slope_;
+    normalize(next_);
+    if (!evaluate(state_.time + h0, next_, next_slope_).ok() || !finite(next_slope_)) return std::min(h0, fallback);
+    const double d2 = norm(next_slope_ - slope_) / h0;
+    const double longest = std::min(100 * h0, remaining);
+    if (!(d2 > 0)) return longest;
+    const double tau = std::max(d1 / d2, h0);
+    return std::min(tau * std::pow(0.01 / (d2 * tau * tau), 1.0 / 5), longest);
+  }
+
+  StepControl control_;
+  double proposal_ = 0;  ///< [s], the next step; 0: to be found
+  double error_before_ = 1e-4;
+  int accuracy_to_blame_ = 0;  ///< the last rejections: more for the error (above 0) or for failures (below)
+};
+
+}  // namespace withy

@@ -1,0 +1,120 @@
+/// \file
+/// What one-step methods share: the state and its slope at both ends of the last accepted step, evaluations, landing.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "withy/core/plugin/integrator.hpp"
+
+namespace withy {
+
+/// A stepper that knows y and ẏ at both ends of its last step. Everything is allocated by the constructor.
+///
+/// A jump of the right-hand side at t_limit belongs to the steps after it: no stage of a step is evaluated later than
+/// at the last double below t_limit, so a step that lands there sees only the values before the jump. `restart` makes
+/// the next step evaluate at t_limit itself.
+class OneStep : public Stepper {
+ public:
+  OneStep(const EquationsOfMotion& equations, const State& start)
+      : state_(start),
+        previous_time_(start.time),
+        equations_(equations),
+        work_(equations.make_work()),
+        size_(static_cast<Eigen::Index>(equations.size())) {
+    if (start.y.size() != equations.size())
+      throw std::invalid_argument("the state has " + std::to_string(start.y.size()) + " numbers, the equations need " +
+                                  std::to_string(equations.size()));
+    equations_.normalize(state_.y);
+    previous_ = y();
+    for (Eigen::ArrayXd* a : {&slope_, &previous_slope_, &next_, &next_slope_}) a->setZero(size_);
+  }
+
+  [[nodiscard]] const State& state() const final { return state_; }
+  [[nodiscard]] const StepStatistics& statistics() const final { return statistics_; }
+  void restart() override { slope_known_ = false; }
+
+  /// At and outside the ends of the last step: the state at that end, bit by bit. Inside: the method's interpolant with
+  /// its quaternions normalized.
+  void interpolate(double t, std::span<double> out) const final {
+    Eigen::Map<Eigen::ArrayXd> values(out.data(), size_);
+    if (t >= state_.time) {
+      values = y();
+    } else if (t <= previous_time_) {
+      values = previous_;
+    } else {
+      inside((t - previous_time_) / (state_.time - previous_time_), values);
+      equations_.normalize(out);
+    }
+  }
+
+ protected:
+  using Values = Eigen::Map<Eigen::ArrayXd>;
+
+  /// The interpolant at fraction theta in (0, 1) of the last accepted step.
+  virtual void inside(double theta, Values values) const = 0;
+
+  /// To be called first in a step: sets the limit of stage times and finds the slope at the start where it is unknown.
+  StepResult begin(double t_limit) {
+    latest_ = std::nextafter(t_limit, state_.time);
+    if (slope_known_) return {};
+    const Evaluation e = evaluate(state_.time, next_ = y(), slope_);
+    if (!e.ok() || !finite(slope_)) return failure(e);
+    slope_known_ = true;
+    return {};
+  }
+
+  Evaluation evaluate(double t, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) {
+    ++statistics_.evaluations;
+    const auto n = static_cast<std::size_t>(size_);
+    return equations_.derivatives(std::min(t, latest_), {values.data(), n}, {slope.data(), n}, work_);
+  }
+
+  void normalize(Eigen::ArrayXd& values) { equations_.normalize({values.data(), static_cast<std::size_t>(size_)}); }
+
+  /// Makes next_ and next_slope_ the state at t_new.
+  void accept(double t_new) {
+    const double h = t_new - state_.time;
+    previous_time_ = state_.time;
+    previous_ = y();
+    state_.time = t_new;
+    Values(state_.y.data(), size_) = next_;
+    previous_slope_.swap(slope_);
+    slope_.swap(next_slope_);
+    statistics_.smallest_step = statistics_.accepted == 0 ? h : std::min(statistics_.smallest_step, h);
+    statistics_.largest_step = std::max(statistics_.largest_step, h);
+    ++statistics_.accepted;
+  }
+
+  /// Whether all are finite; vectorizes, unlike a search for the first that is not.
+  static bool finite(const Eigen::ArrayXd& values) { return (values * 0.0).sum() == 0.0; }
+
+  static StepResult failure(const Evaluation& e) {
+    const bool singular = e.outcome == Evaluation::Outcome::singular;
+    return {singular ? StepResult::Outcome::singular : StepResult::Outcome::nonfinite, e.body};
+  }
+
+  [[nodiscard]] Eigen::Map<const Eigen::ArrayXd> y() const { return {state_.y.data(), size_}; }
+  [[nodiscard]] Eigen::Index size() const { return size_; }
+
+  State state_;                    ///< last accepted
+  Eigen::ArrayXd slope_;           ///< ẏ there
+  double previous_time_;           ///< start of the last accepted step
+  Eigen::ArrayXd previous_;        ///< y there
+  Eigen::ArrayXd previous_slope_;  ///< ẏ there
+  Eigen::ArrayXd next_;            ///< y at the end of the step being tried
+  Eigen::ArrayXd next_slope_;      ///< ẏ there
+  StepStatistics statistics_;
+
+ private:
+  const EquationsOfMotion& equations_;
+  Work work_;
+  Eigen::Index size_;
+  double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which the step may evaluate
+  bool slope_known_ = false;
+};
+
+}  // namespace withy

@@ -1,0 +1,95 @@
+#include "withy/plugins/host/library.hpp"
+
+#include <algorithm>
+#include <boost/dll/shared_library.hpp>
+#include <map>
+#include <vector>
+
+#include "withy/core/plugin/entry.hpp"
+#include "withy/plugins/host/floating_point.hpp"
+#include "withy/plugins/host/trust.hpp"
+
+namespace withy {
+namespace {
+
+/// What the loader of the system says, without what Boost wraps around it.
+std::string loader_message(const std::exception& e) {
+  const std::string text = e.what();
+  const std::string before = "(dlerror system message: ";
+  const std::size_t start = text.find(before);
+  const std::size_t end = text.rfind(')');
+  if (start == std::string::npos || end == std::string::npos || end < start) return text;
+  return text.substr(start + before.size(), end - start - before.size());
+}
+
+const boost::dll::shared_library& open(const std::filesystem::path& file) {
+  // Never destroyed, so that no library is unloaded, not even at exit: objects made by plugins may outlive any order.
+  static auto& libraries = *new std::vector<boost::dll::shared_library>;
+  using boost::dll::load_mode::type;
+  boost::dll::shared_library library;
+  library.load(file, static_cast<type>(boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local));
+  return libraries.emplace_back(std::move(library));
+}
+
+std::string list(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
+  return text;
+}
+
+void check_promise(const Enrollment& enrollment, const Manifest& manifest, const std::string& file) {
+  std::vector<std::string> enrolled;
+  for (const auto& [name, summary] : enrollment.summaries()) {
+    if (!is_plugin_id(name.substr(name.find('/') + 1))) {
+      throw PluginError(file + " enrolls '" + name + "', whose id is not 1 to 64 of a-z, 0-9 and '-'");
+    }
+    enrolled.push_back(name);
+  }
+  std::vector<std::string> missing;
+  std::vector<std::string> excess;
+  std::set_difference(manifest.provides.begin(), manifest.provides.end(), enrolled.begin(), enrolled.end(),
+                      std::back_inserter(missing));
+  std::set_difference(enrolled.begin(), enrolled.end(), manifest.provides.begin(), manifest.provides.end(),
+                      std::back_inserter(excess));
+  if (!missing.empty()) throw PluginError(file + " does not enroll " + list(missing) + ", which its manifest promises");
+  if (!excess.empty()) throw PluginError(file + " enrolls " + list(excess) + ", which its manifest does not promise");
+}
+
+}  // namespace
+
+Enrollment load_library(const std::filesystem::path& directory, const Manifest& manifest) {
+  const std::string named = (directory / manifest.library).string();
+  std::filesystem::path file;
+  std::string exposed;
+  try {
+    file = std::filesystem::canonical(named);
+    exposed = exposure(file);
+  } catch (const std::filesystem::filesystem_error& e) {
+    throw PluginError("the plugin library " + named + " cannot be read: " + e.code().message());
+  }
+  if (!exposed.empty()) throw PluginError("the plugin library " + named + " is refused: " + exposed);
+
+  FloatingPointGuard guard;
+  const auto check_floating_point = [&] {
+    // A library does its harm when it is first loaded; that it did is remembered, since it stays loaded.
+    static std::map<std::filesystem::path, std::string> harmful;
+    if (const std::string changed = guard.restore(); !changed.empty()) harmful.emplace(file, changed);
+    if (const auto it = harmful.find(file); it != harmful.end()) {
+      throw PluginError("the plugin library " + named + " is refused: it changes " + it->second +
+                        " for the whole program (as linking with -ffast-math does)");
+    }
+  };
+  try {
+    const boost::dll::shared_library& library = open(file);
+    check_floating_point();
+    const auto& descriptor = library.get<const PluginDescriptor>(manifest.entry);
+    Enrollment enrollment = enroll_from(descriptor, named);
+    check_floating_point();
+    check_promise(enrollment, manifest, named);
+    return enrollment;
+  } catch (const std::system_error& e) {
+    throw PluginError("the plugin library " + named + " cannot be loaded: " + loader_message(e));
+  }
+}
+
+}  // namespace withy

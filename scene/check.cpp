@@ -1,0 +1,243 @@
+#include "withy/scene/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "withy/scene/names.hpp"
+#include "withy/scene/units.hpp"
+
+namespace withy {
+namespace {
+
+constexpr double most_exact_integer = 9007199254740992.0;  // 2^53
+
+bool in_range(double x, const ParameterSpec& spec) {
+  if (!std::isfinite(x)) return false;
+  if (spec.minimum && (spec.exclusive_minimum ? x <= *spec.minimum : x < *spec.minimum)) return false;
+  return !spec.maximum || x <= *spec.maximum;
+}
+
+}  // namespace
+
+void Checker::key_error(const std::string& path, std::string message) const {
+  diagnostics_.error(document_.key_place(path), std::move(message));
+}
+
+void Checker::got(const Value& value, const ParameterSpec& spec, const std::string& why) const {
+  diagnostics_.error(value.place(),
+                     fmt::format("got {}{}; need {}", shown(value), why.empty() ? "" : ": " + why, expectation(spec)));
+}
+
+void Checker::unknown_plugin(const Value& id, const std::string& kind, const std::vector<std::string>& ids) const {
+  const std::string guess = id.kind() == Value::Kind::text ? nearest(id.text(), ids) : "";
+  diagnostics_.error(id.place(), fmt::format("no {} plugin {}{}; available: {}", kind, shown(id),
+                                             guess.empty() ? "" : fmt::format("; did you mean '{}'?", guess),
+                                             ids.empty() ? "none" : listed(ids)));
+}
+
+bool Checker::is_map(const Value& value, const std::string& expected) const {
+  if (value.kind() == Value::Kind::map || value.kind() == Value::Kind::null) return true;
+  diagnostics_.error(value.place(), fmt::format("got {}; need {}", shown(value), expected));
+  return false;
+}
+
+std::optional<Value> Checker::number(const Value& value, const ParameterSpec& spec, const std::string& unit) const {
+  double x = 0;
+  if (value.kind() == Value::Kind::number) {
+    x = value.number();
+  } else if (value.kind() == Value::Kind::text && spec.kind != ParameterSpec::Kind::integer) {
+    const std::string& t = value.text();
+    if (t == "nan" || t == "NaN" || t == "inf" || t == "-inf" || t == "Infinity" || t == "-Infinity") {
+      diagnostics_.error(value.place(), fmt::format("got {}; need {}", t, expectation(spec)));
+      return {};
+    }
+    const QuantityReading reading = read_quantity(t, unit);
+    if (!reading.value) {
+      got(value, spec, reading.problem);
+      return {};
+    }
+    x = *reading.value;
+  } else {
+    got(value, spec);
+    return {};
+  }
+  const bool whole =
+      spec.kind != ParameterSpec::Kind::integer || (std::floor(x) == x && std::abs(x) <= most_exact_integer);
+  if (!in_range(x, spec) || !whole) {
+    got(value, spec);
+    return {};
+  }
+  return Value(x, value.place());
+}
+
+bool Checker::refers(const Place& place, const std::string& name, ParameterSpec::Refers what) const {
+  using enum ParameterSpec::Refers;
+  if (what == nothing) return true;
+  if (what == mode_family) return plugin<ModeFamily>(Value(name, place)) != nullptr;
+  if (names_ == nullptr) return true;
+  std::vector<std::string> known = what == body ? names_->bodies : names_->hinges;
+  if (what == frame) {
+    if (!names_->frames_complete) return true;
+    known.assign(names_->frames.begin(), names_->frames.end());
+  }
+  if (std::find(known.begin(), known.end(), name) != known.end()) return true;
+  diagnostics_.error(place, fmt::format("no {} {}{}", referent(what), in_quotes(name), suggestion(name, known)));
+  return false;
+}
+
+std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec) const {
+  if (!spec.unit.empty() &&
+      (value.kind() == Value::Kind::number || (value.kind() == Value::Kind::text && looks_like_number(value.text())))) {
+    return number(value, spec, spec.unit);
+  }
+  if (value.kind() != Value::Kind::text) {
+    got(value, spec, value.kind() == Value::Kind::number ? "put text that looks like a number in quotes" : "");
+    return {};
+  }
+  if (!spec.choices.empty() &&
+      std::find(spec.choices.begin(), spec.choices.end(), value.text()) == spec.choices.end()) {
+    const std::string guess = nearest(value.text(), spec.choices);
+    got(value, spec, guess.empty() ? "" : fmt::format("did you mean '{}'?", guess));
+    return {};
+  }
+  if (!refers(value.place(), value.text(), spec.refers)) return {};
+  return value;
+}
+
+std::optional<Value> Checker::row(const Value& value, const ParameterSpec& spec) const {
+  if (value.kind() != Value::Kind::list || (spec.count != 0 && value.items().size() != spec.count)) {
+    got(value, spec);
+    return {};
+  }
+  Value result = Value::list({}, value.place());
+  bool good = true;
+  for (std::size_t i = 0; i < value.items().size(); ++i) {
+    ParameterSpec item = spec;
+    item.kind = ParameterSpec::Kind::number;
+    if (spec.kind == ParameterSpec::Kind::table) item.unit = spec.columns[i];
+    if (auto x = number(value.items()[i], item, item.unit)) {
+      result.items().push_back(std::move(*x));
+    } else {
+      good = false;
+    }
+  }
+  if (!good) return {};
+  return result;
+}
+
+std::optional<Value> Checker::table(const Value& value, const ParameterSpec& spec) const {
+  if (value.kind() != Value::Kind::list || value.items().empty()) {
+    got(value, spec);
+    return {};
+  }
+  Value result = Value::list({}, value.place());
+  bool good = true;
+  for (const Value& item : value.items()) {
+    auto r = row(item, spec);
+    if (!r) {
+      good = false;
+      continue;
+    }
+    if (good && !result.items().empty()) {
+      const double before = result.items().back().items()[0].number();
+      const double now = r->items()[0].number();
+      if (now <= before) {
+        diagnostics_.error(item.items()[0].place(),
+                           fmt::format("got {} after {}; the first column must increase", now, before));
+        good = false;
+      }
+    }
+    result.items().push_back(std::move(*r));
+  }
+  if (!good) return {};
+  return result;
+}
+
+std::optional<Value> Checker::named(const Value& value, const ParameterSpec& spec) const {
+  if (!is_map(value, expectation(spec))) return {};
+  Value result = Value::map({}, value.place());
+  bool good = true;
+  for (const auto& [name, member] : value.members()) {
+    const std::string path = member.place().path;
+    if (spec.refers == ParameterSpec::Refers::nothing) {
+      if (const std::string problem = name_problem(name); !problem.empty()) {
+        key_error(path, fmt::format("got name {}; {}", in_quotes(name), problem));
+        good = false;
+      }
+    } else if (!refers(document_.key_place(path), name, spec.refers)) {
+      good = false;
+    }
+    if (auto checked = check_members(member, spec.members)) {
+      result.members().emplace_back(name, std::move(*checked));
+    } else {
+      good = false;
+    }
+  }
+  if (!good) return {};
+  return result;
+}
+
+std::optional<Value> Checker::check_members(const Value& value, const std::vector<ParameterSpec>& members,
+                                            Value* partial) const {
+  const std::vector<std::string> known = keys_of(members);
+  Value result = Value::map({}, value.place());
+  if (!is_map(value, "a map with " + listed(known))) return {};
+  bool good = true;
+  for (const auto& [key, member] : value.members()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    key_error(member.place().path, fmt::format("unknown key {}{}", in_quotes(key), suggestion(key, known)));
+    good = false;
+  }
+  for (const ParameterSpec& spec : members) {
+    const Value* member = value.find(spec.key);
+    const std::string path = value.place().path + "/" + spec.key;
+    Value fallback;
+    if (member == nullptr && spec.fallback) {
+      fallback = placed(*spec.fallback, {value.place().line, value.place().column, path});
+      member = &fallback;
+    }
+    if (member == nullptr) {
+      if (!spec.required) continue;
+      key_error(path, "missing; need " + expectation(spec));
+      good = false;
+      continue;
+    }
+    if (auto checked = check(*member, spec)) {
+      result.members().emplace_back(spec.key, std::move(*checked));
+    } else {
+      good = false;
+    }
+  }
+  if (partial != nullptr) *partial = result;
+  if (!good) return {};
+  return result;
+}
+
+std::optional<Value> Checker::check(const Value& value, const ParameterSpec& spec) const {
+  switch (spec.kind) {
+    case ParameterSpec::Kind::number:
+    case ParameterSpec::Kind::integer:
+      return number(value, spec, spec.unit);
+    case ParameterSpec::Kind::text:
+      return text(value, spec);
+    case ParameterSpec::Kind::vector:
+      return row(value, spec);
+    case ParameterSpec::Kind::table:
+      return table(value, spec);
+    case ParameterSpec::Kind::map:
+      return check_members(value, spec.members);
+    case ParameterSpec::Kind::named:
+      return named(value, spec);
+    case ParameterSpec::Kind::boolean:
+      break;
+  }
+  if (value.kind() != Value::Kind::boolean) {
+    got(value, spec);
+    return {};
+  }
+  return value;
+}
+
+}  // namespace withy

@@ -1,0 +1,74 @@
+/// \file
+/// Checks values against the specifications of parameters: the one place where a scene's numbers get their units,
+/// ranges and defaults.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "withy/core/plugin/registry.hpp"
+#include "withy/scene/describe.hpp"
+#include "withy/scene/document.hpp"
+
+namespace withy {
+
+/// The names of a scene that other values may refer to.
+struct SceneNames {
+  std::vector<std::string> bodies;
+  std::vector<std::string> hinges;
+  std::set<std::string> frames;  ///< "body" and "body.frame"
+  bool frames_complete = true;   ///< false where a body could not be made: any frame name is taken then
+};
+
+/// Checks values of one document; every problem goes to the diagnostics.
+class Checker {
+ public:
+  Checker(const Document& document, Registry& registry, Diagnostics& diagnostics)
+      : document_(document), registry_(registry), diagnostics_(diagnostics) {}
+
+  /// From now on references are compared with these names; before, any name is taken.
+  void know(const SceneNames* names) { names_ = names; }
+
+  /// The value in SI units with defaults filled in; nothing where it, or anything in it, is wrong.
+  /// A text specification that has a unit takes a name or a number in that unit.
+  std::optional<Value> check(const Value& value, const ParameterSpec& spec) const;
+  /// The same for a map with these members. Members that are right are in `partial`, if given, whatever the others are.
+  std::optional<Value> check_members(const Value& value, const std::vector<ParameterSpec>& members,
+                                     Value* partial = nullptr) const;
+  /// True for a map or, as an empty map, null; otherwise reports what was expected.
+  bool is_map(const Value& value, const std::string& expected) const;
+
+  Registry& registry() const { return registry_; }
+  Diagnostics& diagnostics() const { return diagnostics_; }
+  /// Reports a problem with a key rather than with its value.
+  void key_error(const std::string& path, std::string message) const;
+
+  /// The plugin of this id; null after reporting the nearest id and all ids there are.
+  template <class Interface>
+  const Plugin<Interface>* plugin(const Value& id) const {
+    if (id.kind() == Value::Kind::text && is_plugin_id(id.text())) {
+      if (const Plugin<Interface>* found = registry_.find<Interface>(id.text())) return found;
+    }
+    unknown_plugin(id, std::string(kind_name<Interface>()), registry_.ids<Interface>());
+    return nullptr;
+  }
+
+ private:
+  std::optional<Value> number(const Value& value, const ParameterSpec& spec, const std::string& unit) const;
+  std::optional<Value> text(const Value& value, const ParameterSpec& spec) const;
+  std::optional<Value> row(const Value& value, const ParameterSpec& spec) const;
+  std::optional<Value> table(const Value& value, const ParameterSpec& spec) const;
+  std::optional<Value> named(const Value& value, const ParameterSpec& spec) const;
+  bool refers(const Place& place, const std::string& name, ParameterSpec::Refers what) const;
+  void unknown_plugin(const Value& id, const std::string& kind, const std::vector<std::string>& ids) const;
+  void got(const Value& value, const ParameterSpec& spec, const std::string& why = {}) const;
+
+  const Document& document_;
+  Registry& registry_;
+  Diagnostics& diagnostics_;
+  const SceneNames* names_ = nullptr;
+};
+
+}  // namespace withy

@@ -1,0 +1,124 @@
+#include "withy/scene/describe.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "withy/scene/names.hpp"
+
+namespace withy {
+namespace {
+
+std::string bracketed(const std::string& unit) { return unit.empty() || unit == "1" ? "" : " [" + unit + "]"; }
+
+std::string range(const ParameterSpec& spec) {
+  std::string text;
+  if (spec.minimum) text += fmt::format(" {} {}", spec.exclusive_minimum ? ">" : ">=", *spec.minimum);
+  if (spec.maximum) text += fmt::format("{} <= {}", spec.minimum ? " and" : "", *spec.maximum);
+  return text;
+}
+
+std::string list_of_units(const std::vector<std::string>& units) {
+  std::string text;
+  for (const std::string& u : units) text += (text.empty() ? "" : ", ") + u;
+  return text;
+}
+
+}  // namespace
+
+const char* referent(ParameterSpec::Refers what) {
+  using enum ParameterSpec::Refers;
+  switch (what) {
+    case body:
+      return "body";
+    case hinge:
+      return "hinge";
+    case frame:
+      return "frame";
+    case mode_family:
+      return "mode family";
+    case nothing:
+      break;
+  }
+  return "";
+}
+
+std::string expectation(const ParameterSpec& spec) {
+  using enum ParameterSpec::Kind;
+  switch (spec.kind) {
+    case number:
+      return "finite" + range(spec) + bracketed(spec.unit);
+    case integer:
+      return "whole number" + range(spec);
+    case boolean:
+      return "true or false";
+    case text:
+      if (!spec.choices.empty()) return "one of: " + listed(spec.choices);
+      if (!spec.unit.empty()) return "a name, or a number" + range(spec) + bracketed(spec.unit);
+      if (spec.refers != ParameterSpec::Refers::nothing) return fmt::format("the name of a {}", referent(spec.refers));
+      return "text";
+    case vector: {
+      const std::string item = range(spec).empty() ? "" : ", each" + range(spec);
+      if (spec.count == 0) return "a list of finite numbers" + item + bracketed(spec.unit);
+      return fmt::format("a list of {} finite numbers{}{}", spec.count, item, bracketed(spec.unit));
+    }
+    case table:
+      return fmt::format("a list of rows of {} finite numbers [{}], the first column increasing", spec.count,
+                         list_of_units(spec.columns));
+    case map:
+      return "a map with " + listed(keys_of(spec.members));
+    case named:
+      return "a map of names, each with " + listed(keys_of(spec.members));
+  }
+  return {};
+}
+
+std::string shown(const Value& value) {
+  switch (value.kind()) {
+    case Value::Kind::null:
+      return "nothing";
+    case Value::Kind::boolean:
+      return value.boolean() ? "true" : "false";
+    case Value::Kind::number:
+      return std::isnan(value.number()) ? "nan" : fmt::format("{}", value.number());
+    case Value::Kind::text:
+      return in_quotes(value.text());
+    case Value::Kind::list:
+      return fmt::format("a list of {}", value.items().size());
+    case Value::Kind::map:
+      return "a map";
+  }
+  return {};
+}
+
+std::vector<std::string> keys_of(const Value& map) {
+  std::vector<std::string> keys;
+  for (const Value::Member& m : map.members()) keys.push_back(m.first);
+  return keys;
+}
+
+std::vector<std::string> keys_of(const std::vector<ParameterSpec>& members) {
+  std::vector<std::string> keys;
+  for (const ParameterSpec& m : members) keys.push_back(m.key);
+  return keys;
+}
+
+std::string suggestion(std::string_view name, const std::vector<std::string>& candidates) {
+  const std::string guess = nearest(name, candidates);
+  if (!guess.empty()) return fmt::format("; did you mean '{}'?", guess);
+  return candidates.empty() ? "; there is none" : "; known: " + listed(candidates);
+}
+
+Value placed(Value value, const Place& place) {
+  value.set_place(place);
+  for (std::size_t i = 0; i < value.items().size(); ++i) {
+    Value& item = value.items()[i];
+    item = placed(std::move(item), {place.line, place.column, fmt::format("{}/{}", place.path, i)});
+  }
+  for (auto& [key, member] : value.members()) {
+    member = placed(std::move(member), {place.line, place.column, place.path + "/" + key});
+  }
+  return value;
+}
+
+}  // namespace withy

@@ -1,0 +1,315 @@
+#include "withy/scene/document.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <cerrno>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <system_error>
+#include <unordered_set>
+#include <vector>
+
+#include "withy/scene/names.hpp"
+#include "withy/scene/units.hpp"
+
+namespace withy {
+namespace {
+
+/// Ends reading; its cause has been reported.
+struct Stop {};
+
+Value plain_scalar(const std::string& text) {
+  if (text == "true" || text == "True" || text == "TRUE") return Value(true);
+  if (text == "false" || text == "False" || text == "FALSE") return Value(false);
+  if (const std::optional<double> x = plain_number(text)) return Value(*x);
+  const bool negative = text.starts_with('-');
+  const std::string magnitude = negative || text.starts_with('+') ? text.substr(1) : text;
+  if (magnitude == ".inf" || magnitude == ".Inf" || magnitude == ".INF") {
+    const double infinity = std::numeric_limits<double>::infinity();
+    return Value(negative ? -infinity : infinity);
+  }
+  if (text == ".nan" || text == ".NaN" || text == ".NAN") return Value(std::numeric_limits<double>::quiet_NaN());
+  return Value(text);
+}
+
+/// Builds the value tree from the events of the YAML parser.
+class Builder final : public YAML::EventHandler {
+ public:
+  Builder(std::string_view text, const Origin& origin, Document& document, Diagnostics& diagnostics)
+      : text_(text), origin_(origin), document_(document), diagnostics_(diagnostics) {}
+
+  /// False once something was left out that checks would miss.
+  [[nodiscard]] bool whole() const { return whole_; }
+  [[nodiscard]] std::size_t documents() const { return documents_; }
+
+  Place place(const YAML::Mark& mark, std::string path) const {
+    if (origin_.line != 0) return {origin_.line, 0, std::move(path)};
+    return {mark.line + 1, mark.column + 1, std::move(path)};
+  }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ == 1) return;
+    stop(place(mark, ""), "a second document begins here; need one document");
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    refuse_anchor(mark, anchor);
+    if (wants_key()) stop(place(mark, path()), "the key is empty; need a name");
+    add(mark, Value());
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    diagnostics_.error(place(mark, path()), "aliases (*name) are not allowed; write the value itself");
+    whole_ = false;
+    if (wants_key()) throw Stop{};
+    add(mark, Value());
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    refuse_anchor(mark, anchor);
+    refuse_tag(mark, tag);
+    if (wants_key()) return key(mark, value);
+    // The mark of a scalar with a tag or anchor is that of the tag: refused already.
+    if (is_left_open(mark)) stop(place(mark, path()), "the quote that begins here is never closed");
+    add(mark, tag == "!" ? Value(value) : plain_scalar(value));
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(Value::Kind::list, mark, tag, anchor);
+  }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(Value::Kind::map, mark, tag, anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapEnd() override { close(); }
+
+ private:
+  /// A list or map that is being filled.
+  struct Level {
+    Value value;
+    std::string path;
+    std::unordered_set<std::string> seen;
+    std::optional<std::string> key;  ///< of the value that comes next, in a map
+    bool repeated = false;           ///< that key was there before: its value is dropped
+  };
+
+  [[noreturn]] void stop(const Place& where, std::string message) {
+    diagnostics_.error(where, std::move(message));
+    throw Stop{};
+  }
+
+  /// True where a quoted scalar ends with the text: yaml-cpp 0.7 takes that for its end.
+  bool is_left_open(const YAML::Mark& mark) const {
+    const std::size_t start = mark.pos < 0 ? text_.size() : static_cast<std::size_t>(mark.pos);
+    if (start >= text_.size() || (text_[start] != '"' && text_[start] != '\'')) return false;
+    for (std::size_t i = start + 1; i < text_.size(); ++i) {
+      if (text_[start] == '"' && text_[i] == '\\')
+        ++i;
+      else if (text_[i] != text_[start])
+        continue;
+      else if (text_[i] == '"' || text_.substr(i + 1, 1) != "'")
+        return false;
+      else
+        ++i;  // '' is a quote inside single quotes
+    }
+    return true;
+  }
+
+  bool wants_key() const {
+    return !levels_.empty() && levels_.back().value.kind() == Value::Kind::map && !levels_.back().key;
+  }
+
+  /// Path of the value that comes next.
+  std::string path() const {
+    if (levels_.empty()) return origin_.path;
+    const Level& level = levels_.back();
+    if (level.value.kind() == Value::Kind::list) return fmt::format("{}/{}", level.path, level.value.items().size());
+    return level.key ? level.path + "/" + *level.key : level.path;
+  }
+
+  void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) {
+    if (anchor != 0) diagnostics_.error(place(mark, path()), "anchors (&name) are not allowed");
+  }
+
+  void refuse_tag(const YAML::Mark& mark, const std::string& tag) {
+    if (tag.empty() || tag == "?" || tag == "!") return;
+    diagnostics_.error(place(mark, path()), fmt::format("tags are not allowed; got {}", in_quotes(tag)));
+  }
+
+  void key(const YAML::Mark& mark, const std::string& text) {
+    Level& level = levels_.back();
+    const Place where = place(mark, level.path + "/" + text.substr(0, DocumentLimits::key_bytes));
+    if (text.size() > DocumentLimits::key_bytes) {
+      stop(place(mark, level.path),
+           fmt::format("key of {} bytes; need at most {}", text.size(), DocumentLimits::key_bytes));
+    }
+    for (const char c : text) {
+      if (static_cast<unsigned char>(c) < 0x20) stop(place(mark, level.path), "the key holds a control character");
+    }
+    level.repeated = !level.seen.insert(text).second;
+    if (level.repeated) {
+      const Place& first = document_.keys[where.path];
+      const std::string other =
+          first.line > 0 ? fmt::format("; it stands at {}:{} already", first.line, first.column) : "";
+      diagnostics_.error(where, fmt::format("duplicate key '{}'{}", text, other));
+    } else {
+      document_.keys.emplace(where.path, where);
+    }
+    level.key = text;
+  }
+
+  void count(const Place& where) {
+    path_bytes_ += where.path.size();
+    if (++values_ > DocumentLimits::values) stop(where, fmt::format("more than {} values", DocumentLimits::values));
+    if (path_bytes_ > DocumentLimits::path_bytes) stop(where, "keys too long and nested for so many values");
+  }
+
+  void add(const YAML::Mark& mark, Value value) {
+    // The mark of a value that is not there is that of what follows: its key says more.
+    const auto key = value.kind() == Value::Kind::null ? document_.keys.find(path()) : document_.keys.end();
+    value.set_place(key != document_.keys.end() ? key->second : place(mark, path()));
+    count(value.place());
+    put(std::move(value));
+  }
+
+  void put(Value value) {
+    if (levels_.empty()) {
+      document_.root = std::move(value);
+      return;
+    }
+    Level& level = levels_.back();
+    if (level.value.kind() == Value::Kind::list) {
+      level.value.items().push_back(std::move(value));
+      return;
+    }
+    if (!level.repeated) level.value.members().emplace_back(*level.key, std::move(value));
+    level.key.reset();
+  }
+
+  void open(Value::Kind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
+    refuse_anchor(mark, anchor);
+    refuse_tag(mark, tag);
+    if (wants_key()) stop(place(mark, path()), "a key must be a name, not a list or map");
+    const Place where = place(mark, path());
+    count(where);
+    if (levels_.size() >= static_cast<std::size_t>(DocumentLimits::depth)) {
+      stop(where, fmt::format("nested deeper than {} levels", DocumentLimits::depth));
+    }
+    Level level;
+    level.path = where.path;
+    level.value = kind == Value::Kind::list ? Value::list({}, where) : Value::map({}, where);
+    levels_.push_back(std::move(level));
+  }
+
+  void close() {
+    Value value = std::move(levels_.back().value);
+    levels_.pop_back();
+    put(std::move(value));
+  }
+
+  std::string_view text_;
+  const Origin& origin_;
+  Document& document_;
+  Diagnostics& diagnostics_;
+  std::vector<Level> levels_;
+  std::size_t documents_ = 0;
+  std::size_t values_ = 0;
+  std::size_t path_bytes_ = 0;
+  bool whole_ = true;
+};
+
+/// Length of the well-formed UTF-8 character at the beginning of s (RFC 3629, table 3-7 of Unicode), 0 where there is
+/// none or it is a control character other than tab and line ends.
+std::size_t character(std::string_view s) {
+  const auto byte = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0u; };
+  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
+  const unsigned a = byte(0);
+  const unsigned b = byte(1);
+  if (a < 0x80) return (a >= 0x20 && a != 0x7f) || a == '\t' || a == '\n' || a == '\r' ? 1 : 0;
+  if (a >= 0xC2 && a <= 0xDF) return follows(1) ? 2 : 0;
+  if (a >= 0xE0 && a <= 0xEF) {
+    if ((a == 0xE0 && b < 0xA0) || (a == 0xED && b > 0x9F)) return 0;
+    return follows(1) && follows(2) ? 3 : 0;
+  }
+  if (a >= 0xF0 && a <= 0xF4) {
+    if ((a == 0xF0 && b < 0x90) || (a == 0xF4 && b > 0x8F)) return 0;
+    return follows(1) && follows(2) && follows(3) ? 4 : 0;
+  }
+  return 0;
+}
+
+bool is_text(std::string_view text, const Origin& origin, Diagnostics& diagnostics) {
+  Place at{1, 1, origin.path};
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = character(text.substr(i));
+    if (length == 0) {
+      if (origin.line != 0) at = {origin.line, 0, origin.path};
+      diagnostics.error(at, fmt::format("byte 0x{:02x} is not UTF-8 text; a scene is YAML or JSON",
+                                        static_cast<unsigned char>(text[i])));
+      return false;
+    }
+    at = text[i] == '\n' ? Place{at.line + 1, 1, at.path}
+                         : Place{at.line, at.column + static_cast<int>(length), at.path};
+    i += length;
+  }
+  return true;
+}
+
+}  // namespace
+
+Place Document::key_place(const std::string& path) const {
+  for (std::string p = path; !p.empty(); p.erase(p.find_last_of('/'))) {
+    if (const auto it = keys.find(p); it != keys.end()) return {it->second.line, it->second.column, path};
+  }
+  return {root.place().line, root.place().column, path};
+}
+
+bool read_document(std::string_view text, const Origin& origin, Document& document, Diagnostics& diagnostics) {
+  if (text.size() > DocumentLimits::bytes) {
+    diagnostics.error({1, 1, ""},
+                      fmt::format("more than {} MiB; a scene is at most that large", DocumentLimits::bytes >> 20));
+    return false;
+  }
+  if (!is_text(text, origin, diagnostics)) return false;
+  Builder builder(text, origin, document, diagnostics);
+  try {
+    std::istringstream stream{std::string(text)};
+    YAML::Parser parser(stream);
+    while (parser.HandleNextDocument(builder)) {
+    }
+  } catch (const Stop&) {
+    return false;
+  } catch (const YAML::Exception& e) {
+    const bool tab = text.find("\n\t") != std::string_view::npos;
+    diagnostics.error(builder.place(e.mark, ""), "syntax: " + e.msg + (tab ? "; indent with spaces, not tabs" : ""));
+    return false;
+  }
+  if (builder.documents() == 0) {
+    diagnostics.error({origin.line == 0 ? 1 : origin.line, 1, origin.path}, "empty; nothing to read");
+    return false;
+  }
+  return builder.whole();
+}
+
+std::string read_bytes(const std::string& file) {
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text;
+  std::string block(std::size_t{1} << 16, '\0');
+  while (stream && text.size() <= DocumentLimits::bytes) {
+    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+    text.append(block, 0, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.is_open() || stream.bad()) {
+    throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(), "cannot read " + file);
+  }
+  return text;
+}
+
+}  // namespace withy

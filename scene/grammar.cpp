@@ -1,0 +1,67 @@
+#include "withy/scene/grammar.hpp"
+
+namespace withy::grammar {
+namespace {
+
+Value numbers(std::initializer_list<double> xs) {
+  std::vector<Value> items;
+  for (const double x : xs) items.emplace_back(x);
+  return Value::list(std::move(items));
+}
+
+std::vector<ParameterSpec> pose_members() {
+  return {vector("position", 3, "m", "position of the frame's origin").otherwise(numbers({0, 0, 0})),
+          vector("orientation", 4, "1", "unit quaternion w, x, y, z of the frame").otherwise(numbers({1, 0, 0, 0}))};
+}
+
+}  // namespace
+
+std::vector<ParameterSpec> scene_members() {
+  return {
+      text("format", "version of the scene format").one_of({"withy/1"}),
+      text("name", "title of the scene").otherwise(""),
+      vector("gravity", 3, "m/s^2", "acceleration of gravity, world axes").otherwise(numbers({0, 0, 0})),
+      map("time",
+          {number("end", "s", "end of the simulation; without it, the latest end of a load").least(0).optional(),
+           number("output", "s", "interval of the outputs").above(0).otherwise(0.01)},
+          "span of the simulation")
+          .otherwise(Value::map({})),
+      map("limits",
+          {number("deflection", "1", "deflection of a body, in its lengths, that counts as divergence")
+               .above(0)
+               .otherwise(1.0)},
+          "what ends a simulation early")
+          .otherwise(Value::map({})),
+  };
+}
+
+std::vector<std::string> special_keys() {
+  return {"formulation", "integrator", "bodies", "hinges", "loads", "motions", "initial", "outputs"};
+}
+
+std::vector<ParameterSpec> body_members() {
+  std::vector<ParameterSpec> frame = pose_members();
+  // A text specification with a unit takes a name or a number: see Checker::check.
+  ParameterSpec at = text("at", "station that carries the frame: its name, or its coordinate along the body");
+  at.unit = std::string("m");
+  frame.push_back(std::move(at).otherwise("root"));
+  return {text("type", "body plugin"),
+          named("frames", frame, "frames for hinges and loads, each fixed to the section at a station")
+              .otherwise(Value::map({})),
+          text("formulation", "formulation plugin for this body alone").optional()};
+}
+
+std::vector<ParameterSpec> hinge_members() {
+  return {
+      text("type", "hinge plugin"), text("parent", "what the hinge hangs on: world, a body, or body.frame"),
+      text("child", "what it carries: a body, or body.frame"),
+      map("offset", pose_members(), "fixed pose of the hinge frame F in the parent's frame").otherwise(Value::map({}))};
+}
+
+std::vector<ParameterSpec> load_members() { return {text("type", "load plugin")}; }
+
+ParameterSpec choice_name(std::string_view kind, std::string_view otherwise) {
+  return text("name", std::string(kind) + " plugin").otherwise(std::string(otherwise).c_str());
+}
+
+}  // namespace withy::grammar

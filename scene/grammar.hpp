@@ -1,0 +1,29 @@
+/// \file
+/// The parts of a scene that belong to no plugin, specified as plugins specify theirs: the reader checks against these
+/// and the schema prints them.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "withy/core/plugin/parameters.hpp"
+
+namespace withy::grammar {
+
+inline constexpr std::string_view default_formulation = "quadratic";
+inline constexpr std::string_view default_integrator = "dopri5";
+
+/// Members of a scene that hold plain values: format, name, gravity, time, limits.
+std::vector<ParameterSpec> scene_members();
+/// Keys of a scene that hold plugins, states or nothing yet.
+std::vector<std::string> special_keys();
+
+/// Members that every body, hinge and load has beside its plugin's own.
+std::vector<ParameterSpec> body_members();
+std::vector<ParameterSpec> hinge_members();
+std::vector<ParameterSpec> load_members();
+/// The name of a chosen formulation or integrator beside the plugin's own options.
+ParameterSpec choice_name(std::string_view kind, std::string_view otherwise);
+
+}  // namespace withy::grammar

@@ -1,0 +1,24 @@
+/// \file
+/// Names in scenes: what they may be, and the nearest known one for messages.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace withy {
+
+/// The candidate with the least edit distance (insertion, deletion, substitution, transposition), capitals counting
+/// little; empty where none is near enough to be meant.
+std::string nearest(std::string_view name, const std::vector<std::string>& candidates);
+
+/// Empty where `name` may name a body, hinge, frame or load; otherwise the rule it breaks.
+std::string name_problem(std::string_view name);
+
+/// "a, b, c": for messages; long lists are cut.
+std::string listed(const std::vector<std::string>& names);
+
+/// Text for a message: quoted, control characters replaced, cut at 60 bytes.
+std::string in_quotes(std::string_view text);
+
+}  // namespace withy

@@ -1,0 +1,225 @@
+#include "withy/scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "withy/scene/document.hpp"
+#include "withy/scene/grammar.hpp"
+#include "withy/scene/make.hpp"
+#include "withy/scene/names.hpp"
+#include "withy/scene/overrides.hpp"
+#include "withy/scene/state.hpp"
+#include "withy/scene/tree.hpp"
+
+namespace withy {
+namespace {
+
+constexpr double most_outputs = 1e8;
+
+std::string report(const std::string& file, const std::vector<Diagnostic>& problems,
+                   const std::vector<std::string>& origins) {
+  std::string text;
+  for (const Diagnostic& d : problems) {
+    if (!text.empty()) text += '\n';
+    const int line = d.place.line;
+    if (line < 0 && static_cast<std::size_t>(-line) <= origins.size()) {
+      text += origins[static_cast<std::size_t>(-line) - 1];
+    } else if (line > 0) {
+      text += fmt::format("{}:{}:{}", file, line, d.place.column);
+    } else {
+      text += file;
+    }
+    text += ": ";
+    if (!d.place.path.empty()) text += d.place.path + ": ";
+    text += d.message;
+  }
+  return text;
+}
+
+/// In the order of the file, what the command line brought first; each problem once.
+std::vector<Diagnostic> sorted(std::vector<Diagnostic> problems) {
+  const auto key = [](const Diagnostic& d) { return std::pair(d.place.line, d.place.column); };
+  std::stable_sort(problems.begin(), problems.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  const auto same = [&](const Diagnostic& a, const Diagnostic& b) {
+    return key(a) == key(b) && a.place.path == b.place.path && a.message == b.message;
+  };
+  problems.erase(std::unique(problems.begin(), problems.end(), same), problems.end());
+  return problems;
+}
+
+/// Checks one document and makes the scene of it.
+class SceneBuilder {
+ public:
+  SceneBuilder(const Document& document, Registry& registry, Diagnostics& diagnostics)
+      : document_(document), diagnostics_(diagnostics), checker_(document, registry, diagnostics) {}
+
+  /// Complete only if no problem was reported.
+  Scene build() {
+    const Value& root = document_.root;
+    const std::vector<ParameterSpec> members = grammar::scene_members();
+    if (!checker_.is_map(root, "a map with " + listed(keys_of(members)))) return std::move(scene_);
+    const Value plain = split(root, members);
+    scene_.source = Value::map({}, root.place());
+    checker_.check_members(plain, members, &scene_.source);
+    read_plain_values();
+    scene_.formulation = choose<Formulation>("formulation", grammar::default_formulation, scene_.formulation_name);
+    scene_.integrator = choose<Integrator>("integrator", grammar::default_integrator, scene_.integrator_name);
+    refuse("motions", "prescribed motions are not part of this version; leave them out");
+    refuse("outputs", "outputs cannot be chosen in this version; leave them out");
+
+    Tree tree = build_tree(part("bodies"), part("hinges"), gravity_, checker_);
+    scene_.source.set("bodies", std::move(tree.bodies));
+    scene_.source.set("hinges", std::move(tree.hinges));
+    checker_.know(&tree.names);
+    add_loads(tree.model.get());
+    if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model);
+    if (tree.model != nullptr && diagnostics_.ok()) set_span(*tree.model);
+    scene_.model = std::move(tree.model);
+    return std::move(scene_);
+  }
+
+ private:
+  /// The members that hold plain values; unknown keys are reported.
+  Value split(const Value& root, const std::vector<ParameterSpec>& members) {
+    const std::vector<std::string> special = grammar::special_keys();
+    std::vector<std::string> known = keys_of(members);
+    known.insert(known.end(), special.begin(), special.end());
+    Value plain = Value::map({}, root.place());
+    for (const auto& [key, value] : root.members()) {
+      if (std::find(special.begin(), special.end(), key) != special.end()) continue;
+      if (std::find(known.begin(), known.end(), key) == known.end()) {
+        checker_.key_error(value.place().path, fmt::format("unknown key {}{}", in_quotes(key), suggestion(key, known)));
+      } else {
+        plain.members().emplace_back(key, value);
+      }
+    }
+    return plain;
+  }
+
+  void read_plain_values() {
+    const Value& source = scene_.source;
+    if (const Value* name = source.find("name")) scene_.name = name->text();
+    if (const Value* gravity = source.find("gravity")) {
+      const std::vector<double> g = gravity->numbers();
+      gravity_ = {g[0], g[1], g[2]};
+    }
+    if (const Value* time = source.find("time")) scene_.output = time->number_at("output");
+    if (const Value* limits = source.find("limits")) scene_.deflection_limit = limits->number_at("deflection");
+  }
+
+  /// A map under a key of the scene; an empty one, after reporting, where there is none.
+  Value part(const std::string& key) {
+    const Value* given = document_.root.find(key);
+    const Place place = given == nullptr ? document_.key_place("/" + key) : given->place();
+    if (given == nullptr && (key == "bodies" || key == "hinges")) {
+      diagnostics_.error(place, fmt::format("missing; need a map of {}", key));
+    }
+    if (given == nullptr || !checker_.is_map(*given, "a map of names")) return Value::map({}, place);
+    if (key == "bodies" && given->members().empty()) diagnostics_.error(place, "got none; need at least one body");
+    return given->kind() == Value::Kind::map ? *given : Value::map({}, place);
+  }
+
+  void refuse(const std::string& key, const std::string& message) {
+    const Value* given = document_.root.find(key);
+    if (given == nullptr || given->kind() == Value::Kind::null) return;
+    if (given->kind() == Value::Kind::map && given->members().empty()) return;
+    checker_.key_error("/" + key, message);
+  }
+
+  template <class Interface>
+  std::shared_ptr<const Interface> choose(const std::string& key, std::string_view otherwise, std::string& name) {
+    const Value* given = document_.root.find(key);
+    const Value empty = Value::map({}, document_.key_place("/" + key));
+    Made<Interface> made;
+    const auto value = check_plugin_map<Interface>(given == nullptr ? empty : *given, "name",
+                                                   {grammar::choice_name(key, otherwise)}, checker_, made);
+    if (!value) return nullptr;
+    name = made.plugin->id;
+    scene_.source.set(key, *value);
+    return make_object(*made.plugin, *value, checker_);
+  }
+
+  /// Checks all loads; adds them to the model if there is one.
+  void add_loads(Model* model) {
+    const Value loads = part("loads");
+    Value checked = Value::map({}, loads.place());
+    for (const auto& [name, given] : loads.members()) {
+      const std::string path = "/loads/" + name;
+      if (const std::string problem = name_problem(name); !problem.empty()) {
+        checker_.key_error(path, fmt::format("got name {}; {}", in_quotes(name), problem));
+      }
+      Made<Load> made;
+      const auto value = check_plugin_map(given, "type", grammar::load_members(), checker_, made);
+      if (!value) continue;
+      const auto load = make_object(*made.plugin, *value, checker_);
+      checked.members().emplace_back(name, *value);
+      if (load == nullptr || model == nullptr) continue;
+      try {
+        model->add_load(name, *load);
+      } catch (const std::invalid_argument& e) {
+        checker_.key_error(path, e.what());
+      }
+    }
+    scene_.source.set("loads", std::move(checked));
+  }
+
+  /// Where the loads begin, then what the scene says.
+  void set_start(const Model& model) {
+    scene_.initial = model.reference_state();
+    for (const LoadNode& l : model.loads()) l.load->begin(scene_.initial);
+    const Value* given = document_.root.find("initial");
+    if (given == nullptr) return;
+    set_state(*given, model, checker_, scene_.initial);
+    scene_.source.set("initial", *given);
+  }
+
+  void set_span(const Model& model) {
+    const Value& time = scene_.source.at("time");
+    for (const LoadNode& l : model.loads()) scene_.end = std::max(scene_.end, l.load->end());
+    if (const Value* end = time.find("end")) {
+      scene_.end = end->number();
+    } else if (scene_.end == 0) {
+      checker_.key_error("/time/end", "missing, and no load has an end of its own; need finite >= 0 [s]");
+      return;
+    }
+    if (scene_.end < scene_.initial.time) {
+      checker_.key_error("/time/end",
+                         fmt::format("got {}; need at least the initial time, {} s", scene_.end, scene_.initial.time));
+    }
+    const double outputs = (scene_.end - scene_.initial.time) / scene_.output;
+    if (outputs > most_outputs) {
+      checker_.key_error("/time/output", fmt::format("got {} s, which makes {:.3g} outputs; need at most {:g}",
+                                                     scene_.output, outputs, most_outputs));
+    }
+  }
+
+  const Document& document_;
+  Diagnostics& diagnostics_;
+  Checker checker_;
+  Scene scene_;
+  Vector3 gravity_ = Vector3::Zero();
+};
+
+}  // namespace
+
+SceneError::SceneError(std::string file, std::vector<Diagnostic> problems, const std::vector<std::string>& origins)
+    : std::runtime_error(report(file, sorted(problems), origins)), problems_(sorted(std::move(problems))) {}
+
+Scene parse_scene(std::string_view text, const std::string& file, Registry& registry, const SceneOptions& options) {
+  Diagnostics diagnostics;
+  Document document;
+  if (!read_document(text, {}, document, diagnostics)) throw SceneError(file, diagnostics.errors());
+  const std::vector<std::string> origins = apply_options(document, options, diagnostics);
+  Scene scene = SceneBuilder(document, registry, diagnostics).build();
+  if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors(), origins);
+  scene.file = file;
+  return scene;
+}
+
+Scene read_scene(const std::string& file, Registry& registry, const SceneOptions& options) {
+  return parse_scene(read_bytes(file), file, registry, options);
+}
+
+}  // namespace withy

@@ -1,0 +1,211 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "withy/scene/grammar.hpp"
+#include "withy/scene/scene.hpp"
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Specs = std::vector<ParameterSpec>;
+
+// As Checker: a decimal number and a unit.
+constexpr const char* quantity_pattern =
+    "^[-+]?((0|[1-9][0-9]*)([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]+)? *[^-+.0-9eE "
+    "].*$|^[-+]?(0|[1-9][0-9]*)([.][0-9]*)? *1/.*$";
+constexpr const char* name_pattern = "^(?!world$)[A-Za-z_][A-Za-z0-9_-]{0,63}$";
+
+Json reference(const char* definition) { return {{"$ref", std::string("#/$defs/") + definition}}; }
+
+Json from_value(const Value& value) {
+  switch (value.kind()) {
+    case Value::Kind::boolean:
+      return value.boolean();
+    case Value::Kind::number:
+      return value.number();
+    case Value::Kind::text:
+      return value.text();
+    case Value::Kind::null:
+      break;
+    case Value::Kind::list: {
+      Json list = Json::array();
+      for (const Value& item : value.items()) list.push_back(from_value(item));
+      return list;
+    }
+    case Value::Kind::map: {
+      Json map = Json::object();
+      for (const auto& [key, member] : value.members()) map[key] = from_value(member);
+      return map;
+    }
+  }
+  return nullptr;
+}
+
+/// Makes the schema of everything one registry can read.
+class SchemaWriter {
+ public:
+  explicit SchemaWriter(Registry& registry) : registry_(registry) {}
+
+  Json scene() {
+    Json properties = members(grammar::scene_members())["properties"];
+    properties["formulation"] = choice<Formulation>("formulation", grammar::default_formulation);
+    properties["integrator"] = choice<Integrator>("integrator", grammar::default_integrator);
+    properties["bodies"] = plugins<Body>(grammar::body_members(), "bodies of the tree");
+    properties["bodies"]["minProperties"] = 1;
+    properties["hinges"] = plugins<Hinge>(grammar::hinge_members(), "hinges; each body is the child of exactly one");
+    properties["loads"] = plugins<Load>(grammar::load_members(), "loads on the tree");
+    properties["initial"] = state();
+    for (const char* key : {"motions", "outputs"}) {
+      properties[key] = {{"type", "object"}, {"maxProperties", 0}, {"description", "not part of this version"}};
+    }
+    return {
+        {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+        {"title", "Withy scene"},
+        {"type", "object"},
+        {"required", {"format", "bodies", "hinges"}},
+        {"additionalProperties", false},
+        {"properties", properties},
+        {"$defs",
+         {{"quantity", {{"type", "string"}, {"pattern", quantity_pattern}, {"description", "a number with its unit"}}},
+          {"numbers", {{"type", "array"}, {"items", number_or_quantity({{"type", "number"}})}}},
+          {"name", {{"type", "string"}, {"pattern", name_pattern}}}}}};
+  }
+
+ private:
+  static Json number_or_quantity(Json number) {
+    return {{"anyOf", Json::array({std::move(number), reference("quantity")})}};
+  }
+
+  static Json bounded(const ParameterSpec& spec, const char* type) {
+    Json json = {{"type", type}};
+    if (spec.minimum) json[spec.exclusive_minimum ? "exclusiveMinimum" : "minimum"] = *spec.minimum;
+    if (spec.maximum) json["maximum"] = *spec.maximum;
+    return json;
+  }
+
+  Json word(const ParameterSpec& spec) {
+    if (!spec.unit.empty()) return {{"type", {"string", "number"}}};
+    Json json = {{"type", "string"}};
+    if (!spec.choices.empty()) json["enum"] = spec.choices;
+    if (spec.refers == ParameterSpec::Refers::mode_family) json["enum"] = registry_.ids<ModeFamily>();
+    return json;
+  }
+
+  static Json row(const Json& item, std::size_t count) {
+    Json json = {{"type", "array"}, {"items", item}};
+    if (count != 0) json["minItems"] = json["maxItems"] = count;
+    return json;
+  }
+
+  Json kind(const ParameterSpec& spec) {
+    using enum ParameterSpec::Kind;
+    const auto quantity = [&] { return number_or_quantity(bounded(spec, "number")); };
+    switch (spec.kind) {
+      case number:
+        return quantity();
+      case integer:
+        return bounded(spec, "integer");
+      case boolean:
+        return {{"type", "boolean"}};
+      case text:
+        return word(spec);
+      case vector:
+        return row(quantity(), spec.count);
+      case table:
+        return {{"type", "array"}, {"items", row(quantity(), spec.count)}, {"minItems", 1}};
+      case map:
+        return members(spec.members);
+      case named:
+        return {
+            {"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", members(spec.members)}};
+    }
+    return {};
+  }
+
+  Json described(const ParameterSpec& spec) {
+    Json json = kind(spec);
+    const bool has_unit = !spec.unit.empty() && spec.unit != "1";
+    json["description"] = spec.meaning + (has_unit ? fmt::format(" [{}]", spec.unit) : "");
+    if (spec.fallback) json["default"] = from_value(*spec.fallback);
+    return json;
+  }
+
+  Json members(const Specs& specs) {
+    Json properties = Json::object();
+    Json required = Json::array();
+    for (const ParameterSpec& s : specs) {
+      properties[s.key] = described(s);
+      if (s.required) required.push_back(s.key);
+    }
+    Json json = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+    if (!required.empty()) json["required"] = required;
+    return json;
+  }
+
+  /// One alternative for each plugin of a kind, told apart by the id under `key`.
+  template <class Interface>
+  Json alternatives(const std::string& key, const Specs& common) {
+    Json list = Json::array();
+    for (const std::string& id : registry_.ids<Interface>()) {
+      const Plugin<Interface>* plugin = registry_.find<Interface>(id);
+      if (plugin == nullptr) continue;
+      Specs specs = common;
+      specs.insert(specs.end(), plugin->parameters.begin(), plugin->parameters.end());
+      Json json = members(specs);
+      json["description"] = plugin->summary;
+      json["properties"][key] = {{"const", id}, {"description", plugin->summary}};
+      list.push_back(std::move(json));
+    }
+    return list;
+  }
+
+  template <class Interface>
+  Json plugins(const Specs& common, const char* description) {
+    return {{"type", "object"},
+            {"description", description},
+            {"propertyNames", reference("name")},
+            {"additionalProperties", {{"anyOf", alternatives<Interface>("type", common)}}}};
+  }
+
+  template <class Interface>
+  Json choice(const std::string& key, std::string_view otherwise) {
+    Json list = alternatives<Interface>("name", {grammar::choice_name(key, otherwise)});
+    // Without a name the options are those of the default plugin.
+    for (Json& json : list) {
+      if (json["properties"]["name"]["const"] != otherwise) json["required"].push_back("name");
+    }
+    list.push_back({{"type", "string"}, {"enum", registry_.ids<Interface>()}});
+    return {{"description", fmt::format("{} plugin, by name or with options", key)},
+            {"default", otherwise},
+            {"anyOf", list}};
+  }
+
+  static Json state() {
+    const auto part = [](const char* first, const char* second) {
+      return Json{{"type", "object"},
+                  {"additionalProperties",
+                   {{"type", "object"},
+                    {"additionalProperties", false},
+                    {"properties", {{first, reference("numbers")}, {second, reference("numbers")}}}}}};
+    };
+    const Json number = number_or_quantity({{"type", "number"}});
+    return {{"type", "object"},
+            {"description", "state at the start; what is not named is as the loads begin, or at its reference"},
+            {"additionalProperties", false},
+            {"properties",
+             {{"hinges", part("position", "rate")},
+              {"bodies", part("modes", "rates")},
+              {"time", number},
+              {"work", number}}}};
+  }
+
+  Registry& registry_;
+};
+
+}  // namespace
+
+std::string schema(Registry& registry) { return SchemaWriter(registry).scene().dump(2); }
+
+}  // namespace withy

@@ -1,0 +1,215 @@
+#include "withy/scene/state.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "withy/scene/names.hpp"
+#include "withy/scene/scene.hpp"
+
+namespace withy {
+namespace {
+
+constexpr double unit_tolerance = 1e-6;
+// Quaternions of a running simulation are unit to a few roundings; those stay, so that a restart has the same bits.
+constexpr double rounding = 1e-14;
+
+/// Units of a hinge's coordinates or rates; "1" for a hinge whose motion is not known.
+std::vector<std::string> hinge_units(const Hinge& hinge, bool rates) {
+  using Kind = HingeKernel::Kind;
+  const std::vector<std::string> angular(3, "rad/s");
+  const auto kernel = hinge.kernel();
+  if (kernel) {
+    switch (kernel->kind) {
+      case Kind::weld:
+        return {};
+      case Kind::revolute:
+        return {rates ? "rad/s" : "rad"};
+      case Kind::prismatic:
+        return {rates ? "m/s" : "m"};
+      case Kind::spherical:
+        return rates ? angular : std::vector<std::string>(4, "1");
+      case Kind::free:
+        if (rates) return {"rad/s", "rad/s", "rad/s", "m/s", "m/s", "m/s"};
+        return {"1", "1", "1", "1", "m", "m", "m"};
+    }
+  }
+  return std::vector<std::string>(rates ? hinge.speeds() : hinge.coordinates(), "1");
+}
+
+bool has_quaternion(const Hinge& hinge) {
+  const auto kernel = hinge.kernel();
+  return kernel && (kernel->kind == HingeKernel::Kind::spherical || kernel->kind == HingeKernel::Kind::free);
+}
+
+class StateReader {
+ public:
+  StateReader(const Model& model, const Checker& checker, State& state)
+      : model_(model), checker_(checker), state_(state) {}
+
+  bool read(const Value& value) {
+    if (!map_with(value, {"hinges", "bodies", "time", "work"})) return false;
+    if (const Value* hinges = value.find("hinges")) read_hinges(*hinges);
+    if (const Value* bodies = value.find("bodies")) read_bodies(*bodies);
+    scalar(value, number("time", "s", ""), state_.time);
+    scalar(value, number("work", "J", ""), state_.y.back());
+    return good_;
+  }
+
+ private:
+  bool map_with(const Value& value, const std::vector<std::string>& keys) {
+    if (!checker_.is_map(value, "a map with " + listed(keys))) return good_ = false;
+    for (const auto& [key, member] : value.members()) {
+      if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+      key_error(member, fmt::format("unknown key {}{}", in_quotes(key), suggestion(key, keys)));
+    }
+    return true;
+  }
+
+  void key_error(const Value& member, std::string message) {
+    checker_.key_error(member.place().path, std::move(message));
+    good_ = false;
+  }
+
+  void scalar(const Value& map, const ParameterSpec& spec, double& target) {
+    const Value* given = map.find(spec.key);
+    if (given == nullptr) return;
+    const auto checked = checker_.check(*given, spec);
+    if (!checked) {
+      good_ = false;
+      return;
+    }
+    target = checked->number();
+  }
+
+  /// Reads the list under `key` into `count` numbers of y from `first` on.
+  const Value* list(const Value& map, const char* key, std::size_t first, const std::vector<std::string>& units) {
+    const Value* given = map.find(key);
+    if (given == nullptr) return nullptr;
+    if (given->kind() != Value::Kind::list || given->items().size() != units.size()) {
+      checker_.diagnostics().error(
+          given->place(), fmt::format("got {}; need a list of {} finite numbers", shown(*given), units.size()));
+      good_ = false;
+      return nullptr;
+    }
+    bool all = true;
+    for (std::size_t i = 0; i < units.size(); ++i) {
+      const auto x = checker_.check(given->items()[i], number("", units[i], ""));
+      if (x) state_.y[first + i] = x->number();
+      all = all && x.has_value();
+    }
+    good_ = good_ && all;
+    return all ? given : nullptr;
+  }
+
+  void read_hinges(const Value& value) {
+    if (!checker_.is_map(value, "a map of hinge names")) {
+      good_ = false;
+      return;
+    }
+    std::vector<std::string> names;
+    for (const HingeNode& h : model_.hinges()) names.push_back(h.name);
+    for (const auto& [name, member] : value.members()) {
+      const int index = model_.hinge(name);
+      if (index < 0) {
+        key_error(member, fmt::format("no hinge {}{}", in_quotes(name), suggestion(name, names)));
+        continue;
+      }
+      if (!map_with(member, {"position", "rate"})) continue;
+      const Hinge& hinge = *model_.hinges()[static_cast<std::size_t>(index)].hinge;
+      const Slot& slot = model_.layout().hinges[static_cast<std::size_t>(index)];
+      const Value* position = list(member, "position", slot.position, hinge_units(hinge, false));
+      if (position != nullptr && has_quaternion(hinge)) {
+        const std::span<double> q(state_.y.data() + slot.position, 4);
+        if (!accept_quaternion(q, position->place(), checker_.diagnostics())) good_ = false;
+      }
+      list(member, "rate", model_.layout().positions + slot.speed, hinge_units(hinge, true));
+    }
+  }
+
+  void read_bodies(const Value& value) {
+    if (!checker_.is_map(value, "a map of names of flexible bodies")) {
+      good_ = false;
+      return;
+    }
+    std::vector<std::string> names;
+    for (const Slot& s : model_.layout().bodies) names.push_back(s.name);
+    for (const auto& [name, member] : value.members()) {
+      const Slot* slot = model_.layout().body(name);
+      if (slot == nullptr) {
+        key_error(member, model_.body(name) >= 0
+                              ? fmt::format("body '{}' is rigid: it has no modes", name)
+                              : fmt::format("no flexible body {}{}", in_quotes(name), suggestion(name, names)));
+        continue;
+      }
+      if (!map_with(member, {"modes", "rates"})) continue;
+      const std::vector<std::string> units(slot->positions, "1");
+      list(member, "modes", slot->position, units);
+      list(member, "rates", model_.layout().positions + slot->speed, units);
+    }
+  }
+
+  const Model& model_;
+  const Checker& checker_;
+  State& state_;
+  bool good_ = true;
+};
+
+}  // namespace
+
+bool accept_quaternion(std::span<double> q, const Place& place, Diagnostics& diagnostics) {
+  const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+  if (!(std::abs(norm - 1) <= unit_tolerance)) {
+    diagnostics.error(place, fmt::format("got a quaternion of norm {}; need norm 1 within {}", norm, unit_tolerance));
+    return false;
+  }
+  if (std::abs(norm - 1) > rounding) {
+    for (std::size_t i = 0; i < 4; ++i) q[i] /= norm;
+  }
+  return true;
+}
+
+bool set_state(const Value& value, const Model& model, const Checker& checker, State& state) {
+  return StateReader(model, checker, state).read(value);
+}
+
+State parse_state(std::string_view text, const std::string& file, const Model& model, const State& start) {
+  Diagnostics diagnostics;
+  Document document;
+  State state = start;
+  if (read_document(text, {}, document, diagnostics)) {
+    Registry none;
+    set_state(document.root, model, Checker(document, none, diagnostics), state);
+  }
+  if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors());
+  return state;
+}
+
+State read_state(const std::string& file, const Model& model, const State& start) {
+  return parse_state(read_bytes(file), file, model, start);
+}
+
+std::string write_state(const Model& model, const State& state) {
+  const Layout& layout = model.layout();
+  const auto part = [&](std::size_t first, std::size_t count) {
+    const auto begin = state.y.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  nlohmann::ordered_json json = {{"time", state.time},
+                                 {"hinges", nlohmann::ordered_json::object()},
+                                 {"bodies", nlohmann::ordered_json::object()},
+                                 {"work", state.y.back()}};
+  for (const Slot& s : layout.hinges) {
+    if (s.positions == 0) continue;
+    json["hinges"][s.name] = {{"position", part(s.position, s.positions)},
+                              {"rate", part(layout.positions + s.speed, s.speeds)}};
+  }
+  for (const Slot& s : layout.bodies) {
+    json["bodies"][s.name] = {{"modes", part(s.position, s.positions)},
+                              {"rates", part(layout.positions + s.speed, s.speeds)}};
+  }
+  return json.dump();
+}
+
+}  // namespace withy

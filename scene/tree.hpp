@@ -1,0 +1,27 @@
+/// \file
+/// From the bodies and hinges of a scene to a model.
+#pragma once
+
+#include <memory>
+
+#include "withy/core/model/model.hpp"
+#include "withy/scene/check.hpp"
+
+namespace withy {
+
+/// The tree of a scene.
+struct Tree {
+  std::unique_ptr<Model> model;  ///< null after reported problems
+  SceneNames names;              ///< of all bodies and hinges in the scene, right or wrong
+  Value bodies;                  ///< checked
+  Value hinges;                  ///< checked
+};
+
+/// Checks bodies and hinges, makes them, and puts them together. Null values stand for missing ones.
+Tree build_tree(const Value& bodies, const Value& hinges, const Vector3& gravity, const Checker& checker);
+
+/// Bytes of memory that the modes asked for in a body's checked value need, at most about: by far the greatest part of
+/// a model.
+double predicted_bytes(const Value& body);
+
+}  // namespace withy

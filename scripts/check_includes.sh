@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# check_includes.sh [ROOT]: every #include goes in an allowed direction. Prints each one that does not; exit 1 if any.
+set -euo pipefail
+cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
+
+find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o -name '*.cpp' -o -name '*.h' \) -print |
+  LC_ALL=C sort | sed 's|^\./||' | tr '\n' '\0' | xargs -0 -r awk '
+  BEGIN {
+    # Regular expressions over what stands between the quotes or brackets. Standard headers have neither / nor a dot,
+    # but for the one of C that POSIX clocks come from.
+    standard = "[a-z_0-9]+|time[.]h"
+    inner = standard "|(unsupported/)?Eigen/.*|withy/core/.*"
+
+    may["core"] = inner
+    may["scene"] = inner "|withy/scene/.*|yaml-cpp/.*|nlohmann/.*|fmt/.*|spdlog/.*"
+    may["plugins/formulations"] = inner "|withy/plugins/formulations/.*|fmt/.*"
+    may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"
+    may["plugins/host"] = inner "|withy/plugins/host/.*|fmt/.*|boost/.*|(sys/)?[a-z]+[.]h"
+    may["bodies"] = inner "|withy/bodies/.*|fmt/.*|boost/math/.*"
+    may["integrators"] = inner "|withy/integrators/.*|fmt/.*"
+    may["loads"] = inner "|withy/loads/.*|fmt/.*"
+    may["apps"] = ".*"
+    may["tests"] = ".*"
+
+    # Libraries that stay in one room, tests included.
+    only["yaml-cpp/"] = "scene"
+    only["CLI/"] = "apps"
+    only["boost/dll"] = "plugins/host"
+  }
+  function room_of(file,   parts) {
+    split(file, parts, "/")
+    return parts[1] == "plugins" ? parts[1] "/" parts[2] : parts[1]
+  }
+  function complain(what) {
+    printf "%s:%d: %s\n", FILENAME, FNR, what
+    bad = 1
+  }
+  FNR == 1 {
+    room = room_of(FILENAME)
+    if (!(room in may)) complain("the room " room " has no rule in scripts/check_includes.sh")
+  }
+  /^[ \t]*#[ \t]*include[ \t]*["<]/ && room in may {
+    quoted = $0 ~ /^[^"<]*"/
+    target = $0
+    sub(/^[^"<]*["<]/, "", target)
+    sub(/[">].*$/, "", target)
+    if (target !~ ("^(" may[room] ")$")) complain(room " may not include " target)
+    if (quoted && target !~ /^withy\// && room != "tests") complain("\"" target "\" is not written \"withy/...\"")
+    for (prefix in only)
+      if (index(target, prefix) == 1 && room != only[prefix]) complain(target " stays in " only[prefix])
+  }
+  END { exit bad }
+' || exit 1

@@ -1,0 +1,93 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/property_tree/xml_parser.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+Finished compare(const Folder& folder, std::vector<std::string> more) {
+  std::vector<std::string> arguments = {"compare", "scenes/two-link-slew.yaml", "--set", "time.end=0.2"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return withy(folder, arguments);
+}
+
+TEST(Compare, GivesEveryFormulationAtEveryValue) {
+  const Folder folder;
+  const Finished f = compare(folder, {"--formulations", "ruthless,inconsistent,quadratic", "--over",
+                                      "loads.slew.time_scale=0.1685,1.0", "--json"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json runs = json::parse(f.out).at("runs");
+  ASSERT_EQ(runs.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(runs[i].at("formulation"), (std::vector<std::string>{"ruthless", "inconsistent", "quadratic"})[i % 3]);
+    EXPECT_EQ(runs[i].at("value"), i < 3 ? "0.1685" : "1.0");
+  }
+  EXPECT_EQ(runs[2].at("distance").at("hinges").at("elbow"), 0.0) << "quadratic is the reference";
+  EXPECT_GT(runs[3].at("distance").at("tips").at("link2.tip"), 0.0);
+  EXPECT_EQ(runs[3].at("distance").at("until"), 0.2);
+  EXPECT_NE(runs[4].at("status"), "completed") << "inconsistent diverges at about 0.05 s";
+  EXPECT_LT(runs[4].at("distance").at("until"), 0.2);
+}
+
+TEST(Compare, TableSaysWhyARunStopped) {
+  const Folder folder;
+  const Finished f = compare(folder, {"--formulations", "inconsistent,quadratic", "--json"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const std::string why = json::parse(f.out).at("runs").at(0).at("message");
+  EXPECT_THAT(compare(folder, {"--formulations", "inconsistent,quadratic"}).out, HasSubstr(why));
+}
+
+TEST(Compare, ReferenceIsRunWhereItIsNotListed) {
+  const Folder folder;
+  const Finished f = compare(folder, {"--formulations", "ruthless", "--reference", "consistent", "--json"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json j = json::parse(f.out);
+  EXPECT_EQ(j.at("reference"), "consistent");
+  ASSERT_EQ(j.at("runs").size(), 2U);
+  EXPECT_EQ(j.at("runs").at(1).at("formulation"), "consistent");
+}
+
+TEST(Compare, KeepsResultsAndAWellFormedPicture) {
+  const Folder folder;
+  const Finished f = compare(folder, {"--formulations", "inconsistent,quadratic", "--out", "out"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  for (const char* formulation : {"inconsistent", "quadratic"}) {
+    const std::string at = std::string("out/") + formulation;
+    EXPECT_EQ(json::parse(folder.read(at + "/run.json")).at("formulation"), formulation);
+    EXPECT_GT(lines(folder.read(at + "/results.csv")).size(), 2U);
+  }
+  EXPECT_EQ(json::parse(folder.read("out/compare.json")).at("runs").size(), 2U);
+
+  std::istringstream svg(folder.read("out/compare.svg"));
+  boost::property_tree::ptree tree;
+  ASSERT_NO_THROW(boost::property_tree::read_xml(svg, tree));
+  std::size_t panels = 0;
+  std::size_t curves = 0;
+  for (const auto& [name, child] : tree.get_child("svg")) {
+    if (name != "g") continue;
+    ++panels;
+    curves += child.count("polyline");
+  }
+  EXPECT_EQ(panels, 4U) << "deflections along y of two links, two angles";
+  EXPECT_EQ(curves, 2 * panels) << "a curve a formulation";
+}
+
+TEST(Compare, AMalformedVariationIsBadInput) {
+  const Folder folder;
+  for (const char* over : {"loads.slew.time_scale", "=1", "loads.slew.time_scale="}) {
+    const Finished f = compare(folder, {"--over", over});
+    EXPECT_EQ(f.status, 2) << over;
+    EXPECT_THAT(f.err, HasSubstr("PATH=VALUE"));
+  }
+}
+
+}  // namespace
+}  // namespace withy::test

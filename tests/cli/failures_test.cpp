@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+TEST(Failures, ASceneThatIsNotThereIsBadInput) {
+  const Folder folder;
+  const Finished f = withy(folder, {"run", "nowhere.yaml"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_EQ(f.out, "");
+  EXPECT_THAT(f.err, HasSubstr("nowhere.yaml"));
+}
+
+TEST(Failures, ABadSceneIsReportedWithEveryPlaceAndLeavesNoResults) {
+  const Folder folder;
+  folder.write("bad.yaml", "format: withy/1\nbodies:\n  a: {type: rigid, mass: -1}\n  b: {type: rigid, maas: 1}\n");
+  const Finished f = withy(folder, {"run", "bad.yaml", "--out", "out"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_EQ(f.out, "");
+  EXPECT_THAT(f.err, HasSubstr("bad.yaml:3:"));
+  EXPECT_THAT(f.err, HasSubstr("bad.yaml:4:"));
+  EXPECT_FALSE(fs::exists(folder.path() / "out"));
+}
+
+TEST(Failures, AFullDiskIsAnErrorWhereverItIsMet) {
+  const Folder folder;
+  fs::create_directory(folder.path() / "out");
+  fs::create_symlink("/dev/full", folder.path() / "out/results.csv");
+  const Finished csv = withy(folder, {"run", "scenes/pendulum.yaml", "--out", "out"});
+  EXPECT_EQ(csv.status, 3);
+  EXPECT_THAT(csv.err, HasSubstr("results.csv: No space left on device"));
+  EXPECT_FALSE(fs::exists(folder.path() / "out/run.json"));
+
+  fs::create_directory(folder.path() / "out2");
+  fs::create_symlink("/dev/full", folder.path() / "out2/run.json.part");
+  const Finished summary = withy(folder, {"run", "scenes/pendulum.yaml", "--out", "out2"});
+  EXPECT_EQ(summary.status, 3);
+  EXPECT_THAT(summary.err, HasSubstr("run.json.part: No space left on device"));
+
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"schema"}, {"inspect", "scenes/pendulum.yaml"}, {"--help"}}) {
+    std::vector<std::string> arguments = {WITHY_PROGRAM};
+    arguments.insert(arguments.end(), command.begin(), command.end());
+    const Finished f = Process(folder, arguments, "/dev/full").wait();
+    EXPECT_EQ(f.status, 3) << command[0];
+    EXPECT_THAT(f.err, HasSubstr("standard output: No space left on device"));
+  }
+}
+
+TEST(Failures, AFolderThatCannotBeMadeIsTheEnvironments) {
+  const Folder folder;
+  folder.write("file", "");
+  const Finished f = withy(folder, {"run", "scenes/pendulum.yaml", "--out", "file/out"});
+  EXPECT_EQ(f.status, 3);
+  EXPECT_THAT(f.err, HasSubstr("file/out"));
+}
+
+TEST(Failures, APluginThatIsRefusedIsTheEnvironmentsAndIsListed) {
+  const Folder folder;
+  folder.write("plugins/broken.plugin",
+               "[withy-plugin]\nlibrary = broken.so\nentry = withy_plugin_broken\nprovides = formulation/broken\n"
+               "version = 1\n");
+  folder.write("plugins/broken.so", "this is no library");
+  const Finished run =
+      withy(folder, {"run", "scenes/pendulum.yaml", "--plugins", "plugins", "--formulation", "broken"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(run.err, HasSubstr("broken.so"));
+  const Finished list = withy(folder, {"plugins", "--plugins", "plugins"});
+  EXPECT_EQ(list.status, 0);
+  EXPECT_THAT(list.out, HasSubstr("refused:\nformulation/broken: "));
+}
+
+TEST(Failures, AnUnknownPluginIsBadInputAndTheNearestIsNamed) {
+  const Folder folder;
+  const Finished f = withy(folder, {"run", "scenes/pendulum.yaml", "--formulation", "quadratc"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("quadratic"));
+  EXPECT_EQ(withy(folder, {"plugins", "quadratc"}).status, 2);
+}
+
+TEST(Failures, APluginFolderThatIsNotThereIsBadInput) {
+  const Folder folder;
+  const Finished f = withy(folder, {"plugins", "--plugins", "nowhere"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("nowhere"));
+}
+
+}  // namespace
+}  // namespace withy::test

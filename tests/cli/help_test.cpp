@@ -1,0 +1,80 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::vector<std::string> commands = {"run", "compare", "eval", "inspect", "bench", "plugins", "schema"};
+
+/// The command lines under "Examples:" in a help text, without the program's name.
+std::vector<std::vector<std::string>> examples(const std::string& help) {
+  std::vector<std::vector<std::string>> found;
+  bool under_head = false;
+  for (const std::string& line : lines(help)) {
+    if (line == "Examples:") under_head = true;
+    std::vector<std::string> w = words(line);
+    if (under_head && w.size() > 1 && w[0] == "withy") found.push_back({w.begin() + 1, w.end()});
+  }
+  return found;
+}
+
+TEST(Help, VersionIsTheProjects) {
+  const Folder folder;
+  const Finished f = withy(folder, {"--version"});
+  EXPECT_EQ(f.status, 0);
+  EXPECT_EQ(f.out, "withy " WITHY_VERSION "\n");
+  EXPECT_EQ(f.err, "");
+}
+
+TEST(Help, NamesEveryCommand) {
+  const Folder folder;
+  const Finished f = withy(folder, {"--help"});
+  EXPECT_EQ(f.status, 0);
+  for (const std::string& c : commands) EXPECT_THAT(f.out, HasSubstr("\n  " + c + " "));
+}
+
+class HelpOf : public testing::TestWithParam<std::string> {};
+
+TEST_P(HelpOf, HasExamplesThatRun) {
+  const Folder folder;
+  const Finished help = withy(folder, {GetParam(), "--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_EQ(help.err, "");
+  const auto found = examples(help.out);
+  ASSERT_FALSE(found.empty()) << help.out;
+  for (const auto& arguments : found) {
+    const Finished f = withy(folder, arguments);
+    EXPECT_EQ(f.status, 0) << testing::PrintToString(arguments) << '\n' << f.err;
+    EXPECT_NE(f.out, "");
+    EXPECT_EQ(f.err, "") << "standard error is for errors, and for progress on a terminal";
+  }
+}
+
+TEST_P(HelpOf, AnUnknownOptionIsBadInputAndLeavesStandardOutputAlone) {
+  const Folder folder;
+  const Finished f = withy(folder, {GetParam(), "--no-such-option"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_EQ(f.out, "");
+  EXPECT_NE(f.err, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Commands, HelpOf, testing::ValuesIn(commands),
+                         [](const auto& parameter) { return parameter.param; });
+
+TEST(Help, NothingToDoOrAnUnknownCommandIsBadInput) {
+  const Folder folder;
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"fly"}}) {
+    const Finished f = withy(folder, arguments);
+    EXPECT_EQ(f.status, 2);
+    EXPECT_EQ(f.out, "");
+    EXPECT_THAT(f.err, HasSubstr("--help"));
+  }
+}
+
+}  // namespace
+}  // namespace withy::test

@@ -1,0 +1,130 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+json result(const Folder& folder, const std::vector<std::string>& arguments) {
+  const Finished f = withy(folder, arguments);
+  EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_EQ(f.err, "");
+  return json::parse(f.out);
+}
+
+TEST(Eval, GivesOneObjectWithConsistentShapes) {
+  const Folder folder;
+  folder.write("state.json", R"({"hinges": {"shoulder": {"position": [0.1], "rate": [0.3]}},
+                                 "bodies": {"link1": {"modes": [0.01, 0.001], "rates": [0, 0]}}})");
+  const json j = result(folder, {"eval", "scenes/two-link-slew.yaml", "--state", "state.json"});
+  EXPECT_EQ(j.at("coordinates"), json({"shoulder.0", "link1.bending_y[1]", "link1.bending_y[2]", "elbow.0",
+                                       "link2.bending_y[1]", "link2.bending_y[2]"}));
+  ASSERT_EQ(j.at("mass_matrix").size(), 6U);
+  for (const json& row : j.at("mass_matrix")) EXPECT_EQ(row.size(), 6U);
+  for (const char* key : {"force", "applied", "accelerations"}) EXPECT_EQ(j.at(key).size(), 6U) << key;
+  for (const char* key : {"linear_momentum", "angular_momentum"}) EXPECT_EQ(j.at(key).size(), 3U) << key;
+  EXPECT_GT(j.at("kinetic_energy"), 0.0) << "the shoulder turns";
+  EXPECT_GT(j.at("potential_energy"), 0.0) << "link1 is bent";
+  EXPECT_GT(j.at("condition"), 1.0);
+  // Rows of M a = f + applied: what eval prints belongs together. The residual is measured against the terms summed;
+  // 1e-9 leaves room for a condition of M of about 1e6.
+  for (std::size_t i = 0; i < 6; ++i) {
+    double sum = -j["force"][i].get<double>() - j["applied"][i].get<double>();
+    double size = std::abs(sum);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double term = j["mass_matrix"][i][k].get<double>() * j["accelerations"][k].get<double>();
+      sum += term;
+      size += std::abs(term);
+    }
+    EXPECT_LE(std::abs(sum), 1e-9 * size) << i;
+  }
+}
+
+TEST(Eval, ABadStateIsLocatedBadInput) {
+  const Folder folder;
+  folder.write("state.json", R"({"hinges": {"sholder": {"position": [0.1]}}})");
+  const Finished f = withy(folder, {"eval", "scenes/two-link-slew.yaml", "--state", "state.json"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_EQ(f.out, "");
+  EXPECT_THAT(f.err, HasSubstr("state.json:1:"));
+  EXPECT_THAT(f.err, HasSubstr("shoulder")) << "the nearest known name";
+}
+
+TEST(Bench, CountsNoAllocationsInAnyFormulation) {
+  const Folder folder;
+  const json all = result(folder, {"bench", "scenes/two-link-slew.yaml", "--formulation", "all"});
+  std::vector<std::string> names;
+  for (const json& j : all) {
+    names.push_back(j.at("formulation"));
+    EXPECT_EQ(j.at("allocations_per_evaluation"), 0.0) << names.back();
+    EXPECT_GT(j.at("ns_per_evaluation"), 0.0);
+    EXPECT_GT(j.at("evaluations"), 0);
+    EXPECT_EQ(j.at("bodies"), 5);
+    EXPECT_EQ(j.at("coordinates"), 6);
+  }
+  for (const char* name : {"ruthless", "inconsistent", "consistent", "quadratic"})
+    EXPECT_THAT(names, testing::Contains(name));
+}
+
+TEST(Bench, OneFormulationIsOneObject) {
+  const Folder folder;
+  EXPECT_EQ(result(folder, {"bench", "scenes/pendulum.yaml"}).at("formulation"), "quadratic");
+}
+
+TEST(Inspect, TextShowsTheTreeAndJsonTheSame) {
+  const Folder folder;
+  const json j = result(folder, {"inspect", "scenes/two-link-slew.yaml", "--json"});
+  EXPECT_EQ(j.at("bodies").size(), 5U);
+  EXPECT_EQ(j.at("coordinates").size(), 6U);
+  EXPECT_EQ(j.at("mass_matrix").at("determinant_sign"), 1);
+  const Finished text = withy(folder, {"inspect", "scenes/two-link-slew.yaml"});
+  for (const json& body : j.at("bodies")) EXPECT_THAT(text.out, HasSubstr("─ " + body.at("name").get<std::string>()));
+  for (const json& plugin : j.at("plugins")) EXPECT_THAT(text.out, HasSubstr(plugin.at("name").get<std::string>()));
+}
+
+TEST(Inspect, OnlyPluginsTheSceneNamesAreLoaded) {
+  const Folder folder;
+  std::vector<std::string> loaded;
+  const json j = result(folder, {"inspect", "scenes/pendulum.yaml", "--json"});
+  for (const json& plugin : j.at("plugins")) loaded.push_back(plugin.at("name"));
+  EXPECT_THAT(loaded, testing::Contains("body/rigid"));
+  EXPECT_THAT(loaded, testing::Not(testing::Contains("mode-family/clamped-free")));
+}
+
+TEST(Plugins, EachIsDescribedWithFileVersionAndOptions) {
+  const Folder folder;
+  const json all = result(folder, {"plugins", "--json"});
+  std::vector<std::string> names;
+  for (const json& p : all) {
+    names.push_back(p.at("kind").get<std::string>() + '/' + p.at("id").get<std::string>());
+    EXPECT_EQ(p.at("state"), "loaded") << p;
+    EXPECT_TRUE(std::filesystem::exists(p.at("file").get<std::string>()));
+    EXPECT_NE(p.at("version"), "");
+    EXPECT_NE(p.at("summary"), "");
+    EXPECT_TRUE(p.at("options").is_array());
+  }
+  for (const char* name : {"body/beam", "body/rigid", "hinge/revolute", "mode-family/clamped-free",
+                           "formulation/quadratic", "integrator/dopri5", "load/rigid-inverse-dynamics"}) {
+    EXPECT_THAT(names, testing::Contains(name));
+  }
+  const Finished one = withy(folder, {"plugins", "beam"});
+  EXPECT_EQ(one.status, 0);
+  EXPECT_THAT(one.out, HasSubstr("length"));
+}
+
+TEST(Schema, IsJsonThatKnowsThePlugins) {
+  const Folder folder;
+  const json j = result(folder, {"schema"});
+  EXPECT_EQ(j.at("$schema"), "https://json-schema.org/draft/2020-12/schema");
+  EXPECT_THAT(j.dump(), HasSubstr("\"beam\""));
+}
+
+}  // namespace
+}  // namespace withy::test

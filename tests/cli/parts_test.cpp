@@ -1,0 +1,72 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "withy/apps/withy/allocations.hpp"
+#include "withy/apps/withy/svg_plot.hpp"
+#include "withy/apps/withy/text_table.hpp"
+
+namespace withy::app {
+namespace {
+
+TEST(Allocations, OfOperatorNewMallocAndEigenAreCounted) {
+  const std::size_t before = allocations();
+  const auto one = std::make_unique<double>(1.0);
+  EXPECT_EQ(allocations(), before + 1);
+  Eigen::VectorXd two;
+  two.resize(7);
+  EXPECT_EQ(allocations(), before + 2);
+  struct alignas(64) Wide {
+    double x[8];
+  };
+  const auto three = std::make_unique<Wide>();
+  EXPECT_EQ(allocations(), before + 3);
+  two.setConstant(*one);
+  EXPECT_EQ(allocations(), before + 3) << "arithmetic allocates nothing";
+}
+
+TEST(SvgPlot, AxisMarksAreRoundAndInside) {
+  EXPECT_THAT(axis_marks(0, 4), testing::ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(axis_marks(-0.021, 0.021), testing::ElementsAre(-0.02, -0.01, 0, 0.01, 0.02));
+  for (const double scale : {1e-9, 0.37, 1.0, 6.02e23}) {
+    const auto marks = axis_marks(-scale, 1.7 * scale);
+    EXPECT_GE(marks.size(), 3U);
+    EXPECT_LE(marks.size(), 8U);
+    for (const double m : marks) {
+      EXPECT_GE(m, -scale);
+      EXPECT_LE(m, 1.7 * scale);
+    }
+  }
+}
+
+TEST(SvgPlot, TextIsEscaped) {
+  const std::string svg = svg_plot("a < b & c", {"x>y"}, {});
+  EXPECT_THAT(svg, testing::HasSubstr("a &lt; b &amp; c"));
+  EXPECT_THAT(svg, testing::HasSubstr("x&gt;y"));
+}
+
+TEST(TextTable, ColumnsAreAsWideAsTheirWidestCellInCharacters) {
+  TextTable table({"<name", "x"});
+  table.add({"é", "1"});
+  table.add({"long name", "-22"});
+  EXPECT_EQ(table.str(),
+            "name         x\n"
+            "--------------\n"
+            "é            1\n"
+            "long name  -22\n");
+}
+
+TEST(TextTable, AHeadOfTwoLinesStandsOnTwoLines) {
+  TextTable table({"<name", "length\n[m]"});
+  table.add({"a", "1"});
+  EXPECT_EQ(table.str(),
+            "      length\n"
+            "name     [m]\n"
+            "------------\n"
+            "a          1\n");
+}
+
+}  // namespace
+}  // namespace withy::app

@@ -1,0 +1,163 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+// Diverges at about 0.05 s (theory: the inconsistent formulation at time scale 1).
+const std::vector<std::string> diverging = {
+    "run", "scenes/two-link-slew.yaml", "--formulation", "inconsistent", "--out", "out"};
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> all(1);
+  for (const char c : line) {
+    if (c == ',')
+      all.emplace_back();
+    else
+      all.back() += c;
+  }
+  return all;
+}
+
+TEST(Run, RunJsonHoldsWhatTheContractNames) {
+  const Folder folder;
+  const Finished f = withy(folder, {"run", "scenes/two-link-slew.yaml", "--set", "time.end=0.1", "--out", "out"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json run = json::parse(folder.read("out/run.json"));
+  EXPECT_EQ(run.at("scene"), "scenes/two-link-slew.yaml");
+  EXPECT_EQ(run.at("formulation"), "quadratic");
+  EXPECT_TRUE(run.at("integrator").is_string());
+  EXPECT_EQ(run.at("status"), "completed");
+  EXPECT_TRUE(run.at("message").is_string());
+  EXPECT_EQ(run.at("t_end"), 0.1);
+  for (const char* hinge : {"shoulder", "elbow"}) {
+    EXPECT_EQ(run.at("final").at("hinges").at(hinge).at("position").size(), 1U);
+    EXPECT_EQ(run.at("peaks").at("effort").at(hinge).size(), 1U);
+  }
+  for (const char* beam : {"link1", "link2"}) {
+    EXPECT_EQ(run.at("final").at("bodies").at(beam).at("modes").size(), 2U);
+    EXPECT_GT(run.at("peaks").at("tip_deflection").at(beam).at("y"), 0.0);
+    EXPECT_EQ(run.at("peaks").at("tip_deflection").at(beam).at("z"), 0.0) << "the arm moves in its plane";
+  }
+  for (const char* number : {"energy_drift", "cpu_seconds", "condition"}) EXPECT_TRUE(run.at(number).is_number());
+  for (const char* count : {"steps", "rejected_steps", "evaluations"}) EXPECT_TRUE(run.at(count).is_number_unsigned());
+  EXPECT_GT(run.at("evaluations"), run.at("steps"));
+  EXPECT_EQ(run.at("determinant_sign"), 1) << "a Gram matrix";
+  const json& certificate = run.at("certificate");
+  EXPECT_EQ(certificate.at("formulation").at("name"), "quadratic");
+  EXPECT_EQ(certificate.at("integrator").at("name"), run.at("integrator"));
+  EXPECT_EQ(certificate.at("condition_times_epsilon"), run.at("condition").get<double>() * std::ldexp(1.0, -52));
+}
+
+TEST(Run, JsonOnStandardOutputIsRunJson) {
+  const Folder folder;
+  const Finished f = withy(folder, {"run", "scenes/pendulum.yaml", "--json", "--out", "out"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  EXPECT_EQ(f.out, folder.read("out/run.json"));
+}
+
+TEST(Run, ResultsHaveOneRowAnOutputAndEveryColumnANumber) {
+  const Folder folder;
+  const Finished f = withy(
+      folder, {"run", "scenes/spacecraft.yaml", "--set", "time.end=0.25", "--set", "time.output=0.1", "--out", "out"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const auto rows = lines(folder.read("out/results.csv"));
+  ASSERT_EQ(rows.size(), 1U + 4U) << "head; 0, 0.1, 0.2 and the end";
+  const auto head = cells(rows[0]);
+  EXPECT_EQ(head[0], "t[s]");
+  for (const std::string column : {"kinetic_energy[J]", "potential_energy[J]", "work[J]", "linear_momentum.x[kg m/s]",
+                                   "angular_momentum.z[kg m^2/s]"}) {
+    EXPECT_THAT(head, testing::Contains(column));
+  }
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto row = cells(rows[i]);
+    ASSERT_EQ(row.size(), head.size());
+    for (const std::string& cell : row) {
+      std::size_t read = 0;
+      EXPECT_TRUE(std::isfinite(std::stod(cell, &read)));
+      EXPECT_EQ(read, cell.size());
+    }
+  }
+  EXPECT_EQ(cells(rows[4])[0], "0.25");
+}
+
+TEST(Run, ResultsNameArmColumnsWithUnits) {
+  const Folder folder;
+  ASSERT_EQ(withy(folder, {"run", "scenes/two-link-slew.yaml", "--set", "time.end=0.02", "--out", "out"}).status, 0);
+  const auto head = cells(lines(folder.read("out/results.csv")).at(0));
+  EXPECT_THAT(std::vector<std::string>(head.begin(), head.begin() + 7),
+              testing::ElementsAre("t[s]", "shoulder[rad]", "elbow[rad]", "link1.bending_y[1]", "link1.bending_y[2]",
+                                   "link2.bending_y[1]", "link2.bending_y[2]"));
+  for (const std::string column :
+       {"shoulder.rate[rad/s]", "link2.bending_y[2].rate", "link1.tip.deflection_y[m]", "link2.tip.x[m]"}) {
+    EXPECT_THAT(head, testing::Contains(column));
+  }
+}
+
+TEST(Run, WithoutOutTheFolderIsNamedAfterSceneAndFormulation) {
+  const Folder folder;
+  const Finished f = withy(folder, {"run", "scenes/pendulum.yaml", "--formulation", "ruthless"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("results/pendulum-ruthless"));
+  EXPECT_EQ(json::parse(folder.read("results/pendulum-ruthless/run.json")).at("status"), "completed");
+}
+
+TEST(Run, SetChangesTheScene) {
+  const Folder folder;
+  const auto end = [&](const std::string& value) {
+    const Finished f = withy(folder, {"run", "scenes/pendulum.yaml", "--json", "--set", "time.end=" + value});
+    return json::parse(f.out).at("t_end").get<double>();
+  };
+  EXPECT_EQ(end("0.5"), 0.5);
+  EXPECT_EQ(end("\"25 ms\""), 0.025);
+}
+
+TEST(Run, OneThatStopsExplainsItselfAndKeepsItsResults) {
+  const Folder folder;
+  const Finished f = withy(folder, diverging);
+  EXPECT_EQ(f.status, 1);
+  const json run = json::parse(folder.read("out/run.json"));
+  EXPECT_THAT(run.at("status"), testing::AnyOf("diverged", "singular"));
+  EXPECT_GT(run.at("t_end"), 0.0);
+  EXPECT_LT(run.at("t_end"), 0.5);
+  const std::string message = run.at("message");
+  EXPECT_NE(message, "");
+  EXPECT_THAT(f.err, HasSubstr(message));
+  EXPECT_THAT(f.out, HasSubstr(run.at("status").get<std::string>()));
+  EXPECT_GE(lines(folder.read("out/results.csv")).size(), 3U);
+  for (const char* file : {"out/run.json", "out/results.csv"}) {
+    const std::string text = folder.read(file);
+    EXPECT_THAT(text, Not(HasSubstr("nan"))) << file;
+    EXPECT_THAT(text, Not(HasSubstr("inf,"))) << file;
+  }
+}
+
+TEST(Run, AnInterruptKeepsTheResultsAndExits130) {
+  const Folder folder;
+  Process process(folder, {WITHY_PROGRAM, "run", "scenes/pendulum.yaml", "--set", "time.end=1e7", "--out", "out"});
+  // The simulation is under way once outputs follow the head.
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (lines(folder.read("out/results.csv")).size() < 3 && std::chrono::steady_clock::now() < patience)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ::kill(process.id(), SIGINT);
+  const Finished f = process.wait();
+  EXPECT_EQ(f.status, 130) << f.err;
+  const json run = json::parse(folder.read("out/run.json"));
+  EXPECT_EQ(run.at("status"), "interrupted");
+  EXPECT_GT(run.at("t_end"), 0.0);
+}
+
+}  // namespace
+}  // namespace withy::test

@@ -1,0 +1,13 @@
+/// \file
+/// The bodies of this library, each in a file of its own.
+#pragma once
+
+#include <withy/core/plugin/body.hpp>
+#include <withy/core/plugin/registry.hpp>
+
+namespace example {
+
+withy::Plugin<withy::Body> rod();
+withy::Plugin<withy::Body> tapered_beam();
+
+}  // namespace example

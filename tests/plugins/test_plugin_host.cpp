@@ -1,0 +1,163 @@
+// Finding and loading: only what is named, from where it is safe, each plugin from one place.
+#include <gmock/gmock.h>
+
+#include "withy/core/plugin/load.hpp"
+#include "zoo_keeper.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+using withy::PluginHost;
+using withy::PluginRecord;
+using withy::Registry;
+using zoo_keeper::ask;
+using zoo_keeper::place;
+using zoo_keeper::Scratch;
+namespace fs = std::filesystem;
+
+PluginRecord record_of(const PluginHost& host, const std::string& id) {
+  for (const PluginRecord& record : host.plugins()) {
+    if (record.id == id) return record;
+  }
+  ADD_FAILURE() << id << " is not on record";
+  return {};
+}
+
+TEST(PluginHost, loads_only_the_libraries_whose_plugins_are_asked_for) {
+  const Scratch scratch;  // copies, so that no other test has loaded them
+  const fs::path house = scratch.house("pair", "pair");
+  Registry registry;
+  const PluginHost host({house});
+  host.attach(registry);
+  EXPECT_EQ(registry.ids<withy::Body>(), (std::vector<std::string>{"zoo-left", "zoo-right"}));
+  EXPECT_FALSE(zoo_keeper::is_mapped(house / "zoo-left.so")) << "known from its manifest alone";
+
+  EXPECT_EQ(ask(registry, "zoo-left"), "loaded");
+  EXPECT_TRUE(zoo_keeper::is_mapped(house / "zoo-left.so"));
+  EXPECT_FALSE(zoo_keeper::is_mapped(house / "zoo-right.so"));
+  EXPECT_EQ(record_of(host, "zoo-left").state, PluginRecord::State::loaded);
+  EXPECT_EQ(record_of(host, "zoo-left").summary, "a point mass of 1 kg");
+  EXPECT_EQ(record_of(host, "zoo-right").state, PluginRecord::State::available);
+  EXPECT_EQ(record_of(host, "zoo-right").summary, "");
+}
+
+TEST(PluginHost, a_loaded_plugin_works_and_knows_its_file) {
+  Registry registry;
+  PluginHost({place("good")}).attach(registry);  // what the registry needs of the host outlives it
+  const auto* plugin = registry.find<withy::Body>("zoo-good");
+  ASSERT_NE(plugin, nullptr);
+  EXPECT_EQ(plugin->origin, (fs::canonical(place("good")) / "zoo-good.so").string());
+  withy::Diagnostics diagnostics;
+  const auto body = plugin->make(withy::Value::map({}), {registry, diagnostics});
+  ASSERT_NE(body, nullptr);
+  EXPECT_EQ(body->shape().particles.front().mass, 1.0);
+  EXPECT_NE(dynamic_cast<const withy::Body*>(body.get()), nullptr);
+}
+
+TEST(PluginHost, is_never_unloaded_so_objects_outlive_host_and_registry) {
+  std::unique_ptr<withy::Body> body;
+  {
+    Registry registry;
+    const PluginHost host({place("good")});
+    host.attach(registry);
+    withy::Diagnostics diagnostics;
+    body = registry.find<withy::Body>("zoo-good")->make(withy::Value::map({}), {registry, diagnostics});
+  }
+  EXPECT_TRUE(zoo_keeper::is_mapped(fs::canonical(place("good")) / "zoo-good.so"));
+  EXPECT_EQ(body->stations(), "root");
+}
+
+TEST(PluginHost, does_not_know_what_no_manifest_provides_nor_another_kind_of_the_same_name) {
+  EXPECT_EQ(ask({place("good")}, "zoo-bad"), "unknown");
+  EXPECT_EQ(ask({place("good")}, "../good/zoo-good"), "unknown") << "ids, never paths";
+  Registry registry;
+  const PluginHost host({place("good")});
+  host.attach(registry);
+  EXPECT_EQ(registry.find<withy::Load>("zoo-good"), nullptr);
+}
+
+TEST(PluginHost, an_id_in_two_manifests_is_an_error_that_names_both_files) {
+  const Scratch scratch;
+  const fs::path a = scratch.house("good", "a");
+  const fs::path b = scratch.house("good", "b");
+  const std::string expected = "the plugin 'body/zoo-good' is in two places: " + (a / "zoo-good.so").string() +
+                               " and " + (b / "zoo-good.so").string();
+  EXPECT_EQ(ask({a, b}, "zoo-good"), expected);
+  EXPECT_FALSE(zoo_keeper::is_mapped(a / "zoo-good.so"));
+  EXPECT_EQ(ask({a, b, place("pair")}, "zoo-left"), "loaded") << "others are not concerned";
+  EXPECT_EQ(ask({a, a, scratch.path() / "." / "a"}, "zoo-good"), "loaded") << "one directory given thrice is one";
+}
+
+TEST(PluginHost, a_library_with_an_id_the_program_has_already_is_an_error_that_names_both_and_brings_nothing) {
+  Registry registry;
+  withy::Enrollment own;
+  own.add(withy::Plugin<withy::Body>{
+      .id = "zoo-two-more", .summary = "", .parameters = {}, .make = [](const auto&, const auto&) {
+        return std::unique_ptr<withy::Body>();
+      }});
+  registry.admit(own, "built in");
+  const PluginHost host({place("two")});  // provides zoo-two and zoo-two-more
+  host.attach(registry);
+  EXPECT_EQ(ask(registry, "zoo-two"), "body 'zoo-two-more' is in two places: built in and " +
+                                          (fs::canonical(place("two")) / "zoo-two.so").string());
+  EXPECT_EQ(registry.ids<withy::Body>(), std::vector<std::string>{"zoo-two-more"});
+  EXPECT_EQ(registry.find<withy::Body>("zoo-two-more")->origin, "built in");
+}
+
+TEST(PluginHost, a_directory_anybody_can_write_to_is_refused) {
+  const Scratch scratch;
+  const fs::path house = scratch.house("good", "open");
+  fs::permissions(house, fs::perms::others_write, fs::perm_options::add);
+  EXPECT_EQ(ask({house}, "zoo-good"), "the plugin " + (house / "zoo-good.plugin").string() + " is refused: " +
+                                          house.string() + " is writable by everybody, so its code cannot be trusted");
+  EXPECT_FALSE(zoo_keeper::is_mapped(house / "zoo-good.so"));
+  fs::permissions(house, fs::perms::others_write | fs::perms::sticky_bit, fs::perm_options::add);
+  EXPECT_THAT(ask({house}, "zoo-good"), HasSubstr("writable by everybody")) << "anybody could still add to it";
+  EXPECT_EQ(ask({house, place("good")}, "zoo-good"), "loaded") << "what lies there does not hide a good one";
+}
+
+TEST(PluginHost, a_directory_below_one_anybody_can_rename_in_is_refused) {
+  const Scratch scratch;
+  fs::create_directory(scratch.path() / "outer");
+  const fs::path house = scratch.house("good", "outer/inner");
+  fs::permissions(scratch.path() / "outer", fs::perms::others_write, fs::perm_options::add);
+  EXPECT_THAT(ask({house}, "zoo-good"), HasSubstr((scratch.path() / "outer").string() + " is writable by everybody"));
+  fs::permissions(scratch.path() / "outer", fs::perms::sticky_bit, fs::perm_options::add);
+  EXPECT_EQ(ask({house}, "zoo-good"), "loaded") << "a sticky directory, as the temporary one, protects its entries";
+}
+
+TEST(PluginHost, a_manifest_or_library_anybody_can_write_to_is_refused_also_behind_a_link) {
+  const Scratch scratch;
+  const fs::path house = scratch.house("good", "house");
+  const fs::path library = house / "zoo-good.so";
+  fs::permissions(house / "zoo-good.plugin", fs::perms::others_write, fs::perm_options::add);
+  EXPECT_THAT(ask({house}, "zoo-good"), HasSubstr("zoo-good.plugin is writable by everybody"));
+  fs::permissions(house / "zoo-good.plugin", fs::perms::others_write, fs::perm_options::remove);
+  fs::permissions(library, fs::perms::others_write, fs::perm_options::add);
+  EXPECT_THAT(ask({house}, "zoo-good"), HasSubstr(library.string() + " is writable by everybody"));
+  fs::create_directory(scratch.path() / "elsewhere");
+  const fs::path target = scratch.path() / "elsewhere" / "real.so";
+  fs::rename(library, target);
+  fs::create_symlink(target, library);
+  EXPECT_THAT(ask({house}, "zoo-good"), HasSubstr(target.string() + " is writable by everybody"));
+  EXPECT_FALSE(zoo_keeper::is_mapped(target));
+  fs::permissions(target, fs::perms::others_write, fs::perm_options::remove);
+  EXPECT_EQ(ask({house}, "zoo-good"), "loaded");
+}
+
+TEST(PluginHost, records_directories_that_are_not_there) {
+  const Scratch scratch;
+  const auto file = scratch.write("file", "");
+  const auto records = PluginHost({scratch.path() / "nowhere", file, scratch.path()}).plugins();
+  ASSERT_EQ(records.size(), 2U) << "an empty directory is no error";
+  EXPECT_EQ(records[0].reason, "the plugin directory " + (scratch.path() / "nowhere").string() +
+                                   " cannot be read: No such file or directory");
+  EXPECT_EQ(records[1].reason, "the plugin directory " + file.string() + " cannot be read: it is not a directory");
+}
+
+TEST(PluginHost, finds_the_programs_own_plugins_from_where_the_program_is) {
+  const fs::path program = fs::canonical("/proc/self/exe");
+  EXPECT_EQ(PluginHost::default_directory(), program.parent_path().parent_path() / "lib/withy/plugins");
+}
+
+}  // namespace

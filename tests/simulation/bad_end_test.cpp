@@ -1,0 +1,147 @@
+#include <gmock/gmock.h>
+
+#include "withy/tests/simulation/oscillator.hpp"
+
+namespace withy {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double spring(double, double q, double) { return -q; }
+
+/// Outputs increase in time, all of it is finite, and the last is the final state.
+void expect_results_kept(const Runner& run, const RunSummary& summary) {
+  ASSERT_FALSE(run.outputs.empty());
+  for (std::size_t i = 1; i < run.outputs.size(); ++i) EXPECT_GT(run.outputs[i].time, run.outputs[i - 1].time);
+  for (const double y : summary.final.y) EXPECT_TRUE(std::isfinite(y));
+  EXPECT_EQ(run.outputs.back().time, summary.final.time);
+  EXPECT_EQ(run.outputs.back().y, summary.final.y);
+}
+
+// q = 0.1 cosh t passes the length, 2 m, at t = arcosh 20 = 3.688.
+TEST(BadEnd, a_deflection_past_the_bodys_length_is_divergence) {
+  const Model model = boom();
+  const FunctionEquations equations = boom_equations(model, [](double, double q, double) { return q; });
+  Runner run{.options = {.end = 10, .output = 0.1}};
+  const RunSummary summary = run(model, equations, boom_state(0, 0.1));
+  EXPECT_EQ(summary.status, RunStatus::diverged);
+  EXPECT_NEAR(summary.final.time, std::acosh(20), 0.2);
+  EXPECT_GE(summary.peak_deflection.at("boom")[1], 2);
+  EXPECT_THAT(summary.message, AllOf(HasSubstr("the tip of 'boom' is deflected by"), HasSubstr("times its length"),
+                                     HasSubstr("still positive definite"), HasSubstr("Condition of M 1 ")));
+  expect_results_kept(run, summary);
+}
+
+TEST(BadEnd, the_deflection_limit_can_be_set) {
+  const Model model = boom();
+  const FunctionEquations equations = boom_equations(model, [](double, double q, double) { return q; });
+  Runner run{.options = {.end = 3, .output = 0.1, .deflection_limit = 0.1}};
+  const RunSummary summary = run(model, equations, boom_state(0, 0.1));
+  EXPECT_EQ(summary.status, RunStatus::diverged);
+  EXPECT_NEAR(summary.final.time, std::acosh(2), 0.2);
+  run.options.deflection_limit = 1;
+  EXPECT_EQ(run(model, equations, boom_state(0, 0.1)).status, RunStatus::completed);
+}
+
+TEST(BadEnd, a_load_that_is_not_finite_is_named_and_the_last_state_kept) {
+  for (const double from : {0.5, 0.0}) {
+    Model model = boom();
+    model.add_load("sound", TestLoad([](double) { return 1.0; }));
+    model.add_load("broken", TestLoad([from](double t) { return t < from ? 0.0 : nan; }));
+    const FunctionEquations equations = boom_equations(model, spring);
+    for (const char* id : {"dopri5", "rk4-adaptive"}) {
+      Runner run{.options = {.end = 1, .output = 0.1}, .integrator = make_integrator(id, {})};
+      const RunSummary summary = run(model, equations, boom_state(0, 0.1));
+      EXPECT_EQ(summary.status, RunStatus::diverged);
+      EXPECT_NEAR(summary.final.time, from, 1e-6);
+      EXPECT_THAT(summary.message, AllOf(HasSubstr("not finite"), HasSubstr("load 'broken' gives nan on axle.0"),
+                                         Not(HasSubstr("sound"))));
+      expect_results_kept(run, summary);
+    }
+  }
+}
+
+TEST(BadEnd, accelerations_that_are_not_finite_are_named) {
+  const Model model = boom();
+  const FunctionEquations equations = boom_equations(model, [](double, double, double) { return nan; });
+  Runner run{.options = {.end = 1}};
+  const RunSummary summary = run(model, equations, boom_state(0, 0.1));
+  EXPECT_EQ(summary.status, RunStatus::diverged);
+  EXPECT_EQ(summary.final.time, 0);
+  EXPECT_THAT(summary.message, HasSubstr("the accelerations of boom.bending_y[1] are not finite"));
+}
+
+// q = t; an evaluation that cannot solve for the body's block from q = 0.5 on.
+TEST(BadEnd, a_mass_matrix_that_cannot_be_solved_is_singular_and_names_the_body) {
+  const Model model = boom();
+  const FunctionEquations equations(model.layout(), [](double, std::span<const double> y, std::span<double> f) {
+    f[0] = y[2];
+    f[1] = 1;
+    f[2] = f[3] = f[4] = 0;
+    return y[1] < 0.5 ? Evaluation{} : Evaluation{Evaluation::Outcome::singular, 0};
+  });
+  for (const char* id : {"dopri5", "rk4-adaptive"}) {
+    Runner run{.options = {.end = 1, .output = 0.1}, .integrator = make_integrator(id, {})};
+    const RunSummary summary = run(model, equations, boom_state(0, 0));
+    EXPECT_EQ(summary.status, RunStatus::singular);
+    EXPECT_NEAR(summary.final.time, 0.5, 1e-6);
+    EXPECT_THAT(summary.message, AllOf(HasSubstr("t = 0.5 s"), HasSubstr("cannot be solved"),
+                                       HasSubstr("at body 'boom'"), HasSubstr("det M is positive")));
+    expect_results_kept(run, summary);
+  }
+}
+
+TEST(BadEnd, steps_below_the_resolution_of_time_are_step_underflow) {
+  const Model model = boom();
+  const FunctionEquations equations = boom_equations(model, [](double t, double, double) { return 1 / (t - 1); });
+  Runner run{.options = {.end = 2, .output = 0.1, .deflection_limit = 1e9}};
+  const RunSummary summary = run(model, equations, boom_state(0, 0));
+  EXPECT_EQ(summary.status, RunStatus::step_underflow);
+  EXPECT_NEAR(summary.final.time, 1, 1e-9);
+  EXPECT_THAT(summary.message, HasSubstr("below the resolution of time"));
+  EXPECT_TRUE(summary.suspected_jumps.empty());
+  expect_results_kept(run, summary);
+}
+
+TEST(BadEnd, an_interruption_stops_between_two_steps) {
+  const Model model = boom();
+  int asked = 0;
+  Runner run{.options = {.end = 100, .output = 1, .interrupted = [&] { return ++asked > 20; }}};
+  const RunSummary summary = run(model, boom_equations(model, spring), boom_state(0, 0.1));
+  EXPECT_EQ(summary.status, RunStatus::interrupted);
+  EXPECT_EQ(summary.steps.accepted, 20u);
+  EXPECT_THAT(summary.message, HasSubstr("interrupted"));
+  expect_results_kept(run, summary);
+}
+
+TEST(BadEnd, steps_and_wall_time_are_capped) {
+  const Model model = boom();
+  const FunctionEquations equations = boom_equations(model, spring);
+  Runner by_steps{.options = {.end = 1e9, .output = 1e9, .most_steps = 30}};
+  RunSummary summary = by_steps(model, equations, boom_state(0, 0.1));
+  EXPECT_EQ(summary.status, RunStatus::interrupted);
+  EXPECT_EQ(summary.steps.accepted, 30u);
+  EXPECT_THAT(summary.message, HasSubstr("30 steps allowed"));
+  Runner by_time{.options = {.end = 1e9, .output = 1e9, .most_seconds = 0.02}};
+  summary = by_time(model, equations, boom_state(0, 0.1));
+  EXPECT_EQ(summary.status, RunStatus::interrupted);
+  EXPECT_THAT(summary.message, HasSubstr("0.02 s allowed"));
+  expect_results_kept(by_time, summary);
+}
+
+// An unstable fixed step lets q grow until it overflows; deflections are not limited here.
+TEST(BadEnd, an_unstable_fixed_step_is_divergence) {
+  const Model model = boom();
+  Runner run{.options = {.end = 1e5, .output = 1e3, .deflection_limit = std::numeric_limits<double>::infinity()},
+             .integrator = make_integrator("rk4", {{"step", Value(3.0)}})};
+  const RunSummary summary = run(model, boom_equations(model, spring), boom_state(0, 0.1));
+  EXPECT_EQ(summary.status, RunStatus::diverged);
+  expect_results_kept(run, summary);
+}
+
+}  // namespace
+}  // namespace withy

@@ -1,0 +1,94 @@
+#include <gmock/gmock.h>
+
+#include "withy/core/simulation/diagnosis.hpp"
+#include "withy/tests/simulation/oscillator.hpp"
+
+namespace withy {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// M = diag(4, m(q)): the mode's mass depends on its deflection as in a strict truncation.
+FunctionEquations with_modal_mass(const Model& model, std::function<double(double q)> mass, double force) {
+  FunctionEquations e = boom_equations(model, [mass, force](double, double q, double) { return force / mass(q); });
+  e.system_ = [mass](double, std::span<const double> y) {
+    return DenseSystem{2, {4, 0, 0, mass(y[1])}, {0, 0}, {0, 0}};
+  };
+  return e;
+}
+
+// (1 − 4q) q̈ = 1: det M falls to zero at q = 1/4, where q̈ becomes infinite. From rest q̇² = −½ ln(1 − 4q).
+TEST(MassMatrix, a_run_that_ends_where_det_m_vanishes_is_singular_and_says_so) {
+  const Model model = boom();
+  const FunctionEquations equations = with_modal_mass(
+      model, [](double q) { return 1 - 4 * q; }, 1);
+  for (const char* id : {"dopri5", "rk4-adaptive"}) {
+    Runner run{.options = {.end = 5, .output = 0.01}, .integrator = make_integrator(id, {})};
+    const RunSummary summary = run(model, equations, boom_state(0, 0));
+    ASSERT_NE(summary.status, RunStatus::completed);
+    EXPECT_NEAR(summary.final.y[1], 0.25, 1e-3);
+    EXPECT_THAT(summary.message,
+                AllOf(HasSubstr("100 % modes of 'boom', most of all boom.bending_y[1]"), HasSubstr("det M")));
+    EXPECT_GT(summary.conditioning.condition, 1e3);
+    EXPECT_GT(std::abs(summary.conditioning.weakest[1]), 0.999);
+  }
+}
+
+// The force vanishes with the mass, so that the motion, q = t, goes through: the run completes, but not silently.
+TEST(MassMatrix, a_change_of_sign_is_reported_where_the_run_goes_through) {
+  const Model model = boom();
+  FunctionEquations equations = with_modal_mass(
+      model, [](double q) { return 1 - 4 * q; }, 0);
+  Runner run{.options = {.end = 1, .output = 0.01},
+             .integrator = make_integrator("dopri5", {{"max_step", Value(0.01)}})};
+  const RunSummary summary = run(model, equations, boom_state(0, 0, 0, 1));
+  EXPECT_EQ(summary.status, RunStatus::completed);
+  EXPECT_EQ(summary.conditioning.determinant_sign, -1);
+  EXPECT_THAT(summary.message,
+              AllOf(HasSubstr("do not trust it"), HasSubstr("became singular on the way and then "
+                                                            "indefinite: det M changed sign between")));
+  EXPECT_THAT(summary.message, HasSubstr("smallest eigenvalue of its symmetric part -3 (1)"));
+}
+
+// Beyond the crossing the motion grows until it passes the length: divergence, with the crossing as its reason. The
+// two times are at most a hundredth of the run apart, as the mass matrix is looked at a hundred times.
+TEST(MassMatrix, divergence_after_a_change_of_sign_gives_it_as_the_reason) {
+  const Model model = boom();
+  const auto mass = [](double q) { return 1 - 4 * q; };
+  FunctionEquations equations = boom_equations(model, [](double t, double, double) { return t < 1 ? 0.0 : 20.0; });
+  equations.system_ = [mass](double, std::span<const double> y) {
+    return DenseSystem{2, {4, 0, 0, mass(y[1])}, {0, 0}, {0, 0}};
+  };
+  Runner run{.options = {.end = 10, .output = 0.1},
+             .integrator = make_integrator("dopri5", {{"max_step", Value(0.05)}})};
+  const RunSummary summary = run(model, equations, boom_state(0, 0, 0, 0.4));  // q = 1/4 at t = 0.625
+  EXPECT_EQ(summary.status, RunStatus::diverged);
+  EXPECT_THAT(summary.message, AllOf(HasSubstr("the tip of 'boom'"), HasSubstr("det M changed sign between t = 0.6")));
+}
+
+TEST(MassMatrix, underflow_with_a_definite_mass_matrix_stays_step_underflow) {
+  Conditioning start{.condition = 1, .determinant_sign = 1, .smallest_eigenvalue = 1, .weakest = {1}};
+  Conditioning end = start;
+  EXPECT_FALSE(lost_definiteness(start, end, {}));
+  end.determinant_sign = -1;
+  EXPECT_TRUE(lost_definiteness(start, end, {}));
+  end = start;
+  end.smallest_eigenvalue = -1e-3;  // two eigenvalues may have changed sign together, and det M not
+  EXPECT_TRUE(lost_definiteness(start, end, {}));
+  EXPECT_TRUE(lost_definiteness(start, start, SignChange{0.1, 0.2}));
+}
+
+TEST(MassMatrix, sign_of_the_determinant_survives_overflow_and_permutation) {
+  const std::size_t n = 400;
+  DenseSystem system{n, std::vector<double>(n * n), {}, {}};
+  for (std::size_t i = 0; i < n; ++i) system.mass[i * n + i] = 1e5;  // det = 1e2000
+  EXPECT_EQ(determinant_sign(system), 1);
+  system.mass[0] = -1e5;
+  EXPECT_EQ(determinant_sign(system), -1);
+  EXPECT_EQ(determinant_sign({2, {0, 1, 1, 0}, {}, {}}), -1);
+  EXPECT_EQ(determinant_sign({2, {1, 1, 1, 1}, {}, {}}), 0);
+}
+
+}  // namespace
+}  // namespace withy
