@@ -33,7 +33,7 @@ struct LinearFields {
 
 class Beam final : public Body {
  public:
-  Beam(double length, double mass_per_length, double damping_ratio, std::vector<Strain> strains)
+  Beam(double length, double mass_per_length, double twist_inertia, double damping_ratio, std::vector<Strain> strains)
       : length_(length), strains_(std::move(strains)), quadrature_(length, wave_number(strains_)) {
     shape_.length = length;
     for (const Strain& s : strains_) {
@@ -45,10 +45,6 @@ class Beam final : public Body {
     const Eigen::Index n = shape_.modes();
     shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd modal_mass = Eigen::VectorXd::Zero(n);
-    double twist_inertia = 0;
-    for (const Strain& s : strains_) {
-      if (s.beam.strain == BeamData::Strain::torsion) twist_inertia = s.beam.inertia;
-    }
     const auto& x = quadrature_.nodes();
     for (std::size_t k = 0; k < x.size(); ++k) {
       const double w = quadrature_.weights()[k];
@@ -239,9 +235,11 @@ std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
   using enum BeamData::Strain;
   add("bending_y", Vector3::UnitZ(), {bending, 0, mass_per_length, 0});
   add("bending_z", -Vector3::UnitY(), {bending, 0, mass_per_length, 0});
-  if (p.has("torsion")) add("torsion", Vector3::UnitX(), {torsion, 0, p.at("torsion").number_at("inertia"), 0});
+  // The sections' inertia about x stays where the beam has no twisting modes.
+  const double twist_inertia = p.has("torsion") ? p.at("torsion").number_at("inertia") : 0.0;
+  add("torsion", Vector3::UnitX(), {torsion, 0, twist_inertia, 0});
   if (!good) return nullptr;
-  return std::make_unique<Beam>(p.number_at("length"), mass_per_length, p.number_at("damping_ratio"),
+  return std::make_unique<Beam>(p.number_at("length"), mass_per_length, twist_inertia, p.number_at("damping_ratio"),
                                 std::move(strains));
 }
 

@@ -200,7 +200,7 @@ std::optional<Value> Checker::check_members(const Value& value, const std::vecto
     }
     if (member == nullptr) {
       if (!spec.required) continue;
-      key_error(path, "missing; need " + expectation(spec));
+      key_error(path, fmt::format("missing: {}; need {}", spec.meaning, expectation(spec)));
       good = false;
       continue;
     }

@@ -72,8 +72,8 @@ TEST_P(AdaptiveIntegratorSuite, reports_step_underflow_at_a_singularity) {
     EXPECT_EQ(drive(*stepper, 2, 100'000).outcome, StepResult::Outcome::step_underflow);
     EXPECT_NEAR(stepper->state().time, 1, 1e-9);
     EXPECT_LT(stepper->state().time, 1);
-    EXPECT_NEAR(stepper->state().y[0], std::log1p(-stepper->state().time), 20 * tolerance * 37)
-        << "the last state is a good one";  // ln ε = −36; 20 for the number of steps
+    EXPECT_NEAR(stepper->state().y[0], std::log1p(-stepper->state().time), 20 * tolerance * 37 + 1e-3)
+        << "the last state is a good one";  // 37 = -ln ε, 20 steps; 1e-3: rounding of 1 - t in the last of them
   }
 }
 

@@ -81,8 +81,9 @@ class RandomScene {
       if (!wish_.planar && chance(0.7)) {
         text_ << "    bending_z: {stiffness: " << number(20, 90) << ", modes: " << whole(1, 2) << "}\n";
       }
-      if (!wish_.planar && chance(0.5)) {
-        text_ << "    torsion: {stiffness: " << number(20, 90) << ", inertia: 0.003, modes: " << whole(1, 2) << "}\n";
+      // Always, so that no hinge can spin a beam about an axis without inertia.
+      if (!wish_.planar) {
+        text_ << "    torsion: {stiffness: " << number(20, 90) << ", inertia: 0.003, modes: " << whole(0, 2) << "}\n";
       }
       text_ << "    frames: {a: {at: tip, " << pose() << "}, m: {at: 0.31, " << pose() << "}, r: {at: root, " << pose()
             << "}}\n";

@@ -1,5 +1,5 @@
 /// \file
-/// The golden data of tests/reference/data: states and the equations of motion there, by an independent brute-force
+/// The golden data of tests/reference: states and the equations of motion there, by an independent brute-force
 /// program (explicit Jacobians, strict truncation by complex-step derivatives), good to about 1e-12.
 #pragma once
 
@@ -21,7 +21,7 @@ inline nlohmann::json golden(const std::string& name) {
   return nlohmann::json::parse(file);
 }
 
-/// A scene of the data folder, compiled, with the plugins linked in.
+/// A scene of this folder, compiled, with the plugins linked in.
 struct CompiledScene {
   Registry registry;
   Scene scene;

@@ -26,7 +26,7 @@ void expect_results_kept(const Runner& run, const RunSummary& summary) {
 TEST(BadEnd, a_deflection_past_the_bodys_length_is_divergence) {
   const Model model = boom();
   const FunctionEquations equations = boom_equations(model, [](double, double q, double) { return q; });
-  Runner run{.options = {.end = 10, .output = 0.1}};
+  Runner run(until(10, 0.1));
   const RunSummary summary = run(model, equations, boom_state(0, 0.1));
   EXPECT_EQ(summary.status, RunStatus::diverged);
   EXPECT_NEAR(summary.final.time, std::acosh(20), 0.2);
@@ -39,7 +39,8 @@ TEST(BadEnd, a_deflection_past_the_bodys_length_is_divergence) {
 TEST(BadEnd, the_deflection_limit_can_be_set) {
   const Model model = boom();
   const FunctionEquations equations = boom_equations(model, [](double, double q, double) { return q; });
-  Runner run{.options = {.end = 3, .output = 0.1, .deflection_limit = 0.1}};
+  Runner run(until(3, 0.1));
+  run.options.deflection_limit = 0.1;
   const RunSummary summary = run(model, equations, boom_state(0, 0.1));
   EXPECT_EQ(summary.status, RunStatus::diverged);
   EXPECT_NEAR(summary.final.time, std::acosh(2), 0.2);
@@ -54,7 +55,7 @@ TEST(BadEnd, a_load_that_is_not_finite_is_named_and_the_last_state_kept) {
     model.add_load("broken", TestLoad([from](double t) { return t < from ? 0.0 : nan; }));
     const FunctionEquations equations = boom_equations(model, spring);
     for (const char* id : {"dopri5", "rk4-adaptive"}) {
-      Runner run{.options = {.end = 1, .output = 0.1}, .integrator = make_integrator(id, {})};
+      Runner run(until(1, 0.1), make_integrator(id, {}));
       const RunSummary summary = run(model, equations, boom_state(0, 0.1));
       EXPECT_EQ(summary.status, RunStatus::diverged);
       EXPECT_NEAR(summary.final.time, from, 1e-6);
@@ -68,7 +69,7 @@ TEST(BadEnd, a_load_that_is_not_finite_is_named_and_the_last_state_kept) {
 TEST(BadEnd, accelerations_that_are_not_finite_are_named) {
   const Model model = boom();
   const FunctionEquations equations = boom_equations(model, [](double, double, double) { return nan; });
-  Runner run{.options = {.end = 1}};
+  Runner run(until(1));
   const RunSummary summary = run(model, equations, boom_state(0, 0.1));
   EXPECT_EQ(summary.status, RunStatus::diverged);
   EXPECT_EQ(summary.final.time, 0);
@@ -85,7 +86,7 @@ TEST(BadEnd, a_mass_matrix_that_cannot_be_solved_is_singular_and_names_the_body)
     return y[1] < 0.5 ? Evaluation{} : Evaluation{Evaluation::Outcome::singular, 0};
   });
   for (const char* id : {"dopri5", "rk4-adaptive"}) {
-    Runner run{.options = {.end = 1, .output = 0.1}, .integrator = make_integrator(id, {})};
+    Runner run(until(1, 0.1), make_integrator(id, {}));
     const RunSummary summary = run(model, equations, boom_state(0, 0));
     EXPECT_EQ(summary.status, RunStatus::singular);
     EXPECT_NEAR(summary.final.time, 0.5, 1e-6);
@@ -98,7 +99,8 @@ TEST(BadEnd, a_mass_matrix_that_cannot_be_solved_is_singular_and_names_the_body)
 TEST(BadEnd, steps_below_the_resolution_of_time_are_step_underflow) {
   const Model model = boom();
   const FunctionEquations equations = boom_equations(model, [](double t, double, double) { return 1 / (t - 1); });
-  Runner run{.options = {.end = 2, .output = 0.1, .deflection_limit = 1e9}};
+  Runner run(until(2, 0.1));
+  run.options.deflection_limit = 1e9;
   const RunSummary summary = run(model, equations, boom_state(0, 0));
   EXPECT_EQ(summary.status, RunStatus::step_underflow);
   EXPECT_NEAR(summary.final.time, 1, 1e-9);
@@ -110,7 +112,8 @@ TEST(BadEnd, steps_below_the_resolution_of_time_are_step_underflow) {
 TEST(BadEnd, an_interruption_stops_between_two_steps) {
   const Model model = boom();
   int asked = 0;
-  Runner run{.options = {.end = 100, .output = 1, .interrupted = [&] { return ++asked > 20; }}};
+  Runner run(until(100, 1));
+  run.options.interrupted = [&] { return ++asked > 20; };
   const RunSummary summary = run(model, boom_equations(model, spring), boom_state(0, 0.1));
   EXPECT_EQ(summary.status, RunStatus::interrupted);
   EXPECT_EQ(summary.steps.accepted, 20u);
@@ -121,12 +124,14 @@ TEST(BadEnd, an_interruption_stops_between_two_steps) {
 TEST(BadEnd, steps_and_wall_time_are_capped) {
   const Model model = boom();
   const FunctionEquations equations = boom_equations(model, spring);
-  Runner by_steps{.options = {.end = 1e9, .output = 1e9, .most_steps = 30}};
+  Runner by_steps(until(1e9, 1e9));
+  by_steps.options.most_steps = 30;
   RunSummary summary = by_steps(model, equations, boom_state(0, 0.1));
   EXPECT_EQ(summary.status, RunStatus::interrupted);
   EXPECT_EQ(summary.steps.accepted, 30u);
   EXPECT_THAT(summary.message, HasSubstr("30 steps allowed"));
-  Runner by_time{.options = {.end = 1e9, .output = 1e9, .most_seconds = 0.02}};
+  Runner by_time(until(1e9, 1e9));
+  by_time.options.most_seconds = 0.02;
   summary = by_time(model, equations, boom_state(0, 0.1));
   EXPECT_EQ(summary.status, RunStatus::interrupted);
   EXPECT_THAT(summary.message, HasSubstr("0.02 s allowed"));
@@ -136,8 +141,8 @@ TEST(BadEnd, steps_and_wall_time_are_capped) {
 // An unstable fixed step lets q grow until it overflows; deflections are not limited here.
 TEST(BadEnd, an_unstable_fixed_step_is_divergence) {
   const Model model = boom();
-  Runner run{.options = {.end = 1e5, .output = 1e3, .deflection_limit = std::numeric_limits<double>::infinity()},
-             .integrator = make_integrator("rk4", {{"step", Value(3.0)}})};
+  Runner run(until(1e5, 1e3), make_integrator("rk4", {{"step", Value(3.0)}}));
+  run.options.deflection_limit = std::numeric_limits<double>::infinity();
   const RunSummary summary = run(model, boom_equations(model, spring), boom_state(0, 0.1));
   EXPECT_EQ(summary.status, RunStatus::diverged);
   expect_results_kept(run, summary);

@@ -24,7 +24,7 @@ TEST(MassMatrix, a_run_that_ends_where_det_m_vanishes_is_singular_and_says_so) {
   const FunctionEquations equations = with_modal_mass(
       model, [](double q) { return 1 - 4 * q; }, 1);
   for (const char* id : {"dopri5", "rk4-adaptive"}) {
-    Runner run{.options = {.end = 5, .output = 0.01}, .integrator = make_integrator(id, {})};
+    Runner run(until(5, 0.01), make_integrator(id, {}));
     const RunSummary summary = run(model, equations, boom_state(0, 0));
     ASSERT_NE(summary.status, RunStatus::completed);
     EXPECT_NEAR(summary.final.y[1], 0.25, 1e-3);
@@ -40,8 +40,7 @@ TEST(MassMatrix, a_change_of_sign_is_reported_where_the_run_goes_through) {
   const Model model = boom();
   FunctionEquations equations = with_modal_mass(
       model, [](double q) { return 1 - 4 * q; }, 0);
-  Runner run{.options = {.end = 1, .output = 0.01},
-             .integrator = make_integrator("dopri5", {{"max_step", Value(0.01)}})};
+  Runner run(until(1, 0.01), make_integrator("dopri5", {{"max_step", Value(0.01)}}));
   const RunSummary summary = run(model, equations, boom_state(0, 0, 0, 1));
   EXPECT_EQ(summary.status, RunStatus::completed);
   EXPECT_EQ(summary.conditioning.determinant_sign, -1);
@@ -60,8 +59,7 @@ TEST(MassMatrix, divergence_after_a_change_of_sign_gives_it_as_the_reason) {
   equations.system_ = [mass](double, std::span<const double> y) {
     return DenseSystem{2, {4, 0, 0, mass(y[1])}, {0, 0}, {0, 0}};
   };
-  Runner run{.options = {.end = 10, .output = 0.1},
-             .integrator = make_integrator("dopri5", {{"max_step", Value(0.05)}})};
+  Runner run(until(10, 0.1), make_integrator("dopri5", {{"max_step", Value(0.05)}}));
   const RunSummary summary = run(model, equations, boom_state(0, 0, 0, 0.4));  // q = 1/4 at t = 0.625
   EXPECT_EQ(summary.status, RunStatus::diverged);
   EXPECT_THAT(summary.message, AllOf(HasSubstr("the tip of 'boom'"), HasSubstr("det M changed sign between t = 0.6")));

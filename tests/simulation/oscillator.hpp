@@ -22,20 +22,25 @@ class TestLoad final : public Load {
  public:
   explicit TestLoad(std::function<double(double)> effort, std::vector<double> jumps = {})
       : effort_(std::move(effort)), jumps_(std::move(jumps)) {}
-  std::unique_ptr<BoundLoad> bind(const Model&) const override { return std::make_unique<Bound>(*this); }
+  std::unique_ptr<BoundLoad> bind(const Model&) const override { return std::make_unique<Bound>(effort_, jumps_); }
 
  private:
-  struct Bound final : BoundLoad {
-    explicit Bound(const TestLoad& load) : load_(load) {}
+  class Bound final : public BoundLoad {
+   public:
+    Bound(std::function<double(double)> effort, std::vector<double> jumps)
+        : effort_(std::move(effort)), jumps_(std::move(jumps)) {}
     std::size_t scratch() const override { return 0; }
     void add(double t, std::span<const double>, std::span<const double>, std::span<double> efforts,
              std::span<double>) const noexcept override {
-      efforts[0] += load_.effort_(t);
+      efforts[0] += effort_(t);
     }
-    std::vector<double> discontinuities() const override { return load_.jumps_; }
+    std::vector<double> discontinuities() const override { return jumps_; }
     double end() const override { return 0; }
     void begin(State&) const override {}
-    TestLoad load_;
+
+   private:
+    std::function<double(double)> effort_;
+    std::vector<double> jumps_;
   };
   std::function<double(double)> effort_;
   std::vector<double> jumps_;
@@ -71,18 +76,28 @@ inline State boom_state(double x, double q, double x_rate = 0, double q_rate = 0
   return {0, {x, q, x_rate, q_rate, 0}};
 }
 
-/// Runs with dopri5 at rtol = atol = tolerance unless another integrator is given.
-struct Runner {
-  double tolerance = 1e-9;
+/// Options of a run to `end` with this interval of outputs [s].
+inline RunOptions until(double end, double output = 0.01) {
   RunOptions options;
-  std::vector<State> outputs;
-  std::unique_ptr<Integrator> integrator;
+  options.end = end;
+  options.output = output;
+  return options;
+}
 
+/// Runs with dopri5 at rtol = atol = 1e-9 unless another integrator is given.
+struct Runner {
+  explicit Runner(RunOptions o, std::unique_ptr<Integrator> i = nullptr)
+      : options(std::move(o)), integrator(std::move(i)) {
+    if (!integrator) integrator = make_integrator("dopri5", {{"rtol", Value(1e-9)}, {"atol", Value(1e-9)}});
+  }
   RunSummary operator()(const Model& model, const EquationsOfMotion& equations, const State& start) {
-    if (!integrator) integrator = make_integrator("dopri5", {{"rtol", Value(tolerance)}, {"atol", Value(tolerance)}});
     outputs.clear();
     return simulate(model, equations, *integrator, start, options, [this](const State& s) { outputs.push_back(s); });
   }
+
+  RunOptions options;
+  std::unique_ptr<Integrator> integrator;
+  std::vector<State> outputs;
 };
 
 }  // namespace withy

@@ -15,7 +15,7 @@ TEST(Simulate, outputs_are_multiples_of_the_interval_and_the_end_to_the_bit) {
   // (0.3, 0.1): 3 · 0.1 is greater than 0.3 by rounding, and no output of its own. (1, 0.3): the end is no multiple.
   for (const auto& [end, interval, count] :
        {std::tuple(0.3, 0.1, 4u), std::tuple(1.0, 0.3, 5u), std::tuple(2.0, 0.01, 201u), std::tuple(0.5, 7.0, 2u)}) {
-    Runner run{.options = {.end = end, .output = interval}};
+    Runner run(until(end, interval));
     const RunSummary summary = run(model, equations, boom_state(0, 0.1));
     EXPECT_EQ(summary.status, RunStatus::completed);
     EXPECT_EQ(summary.message, "");
@@ -33,7 +33,7 @@ TEST(Simulate, outputs_of_a_resumed_run_are_the_multiples_after_its_start) {
   const FunctionEquations equations = boom_equations(model, spring);
   State start = boom_state(0, 0.1);
   start.time = 0.25;
-  Runner run{.options = {.end = 0.5, .output = 0.1}};
+  Runner run(until(0.5, 0.1));
   EXPECT_EQ(run(model, equations, start).status, RunStatus::completed);
   std::vector<double> times;
   for (const State& s : run.outputs) times.push_back(s.time);
@@ -44,8 +44,8 @@ TEST(Simulate, outputs_do_not_change_the_result) {
   const Model model = boom();
   const FunctionEquations equations = boom_equations(model, spring);
   for (const char* id : {"dopri5", "rk4-adaptive"}) {
-    Runner coarse{.options = {.end = 3, .output = 3}, .integrator = make_integrator(id, {})};
-    Runner fine{.options = {.end = 3, .output = 0.001}, .integrator = make_integrator(id, {})};
+    Runner coarse(until(3, 3), make_integrator(id, {}));
+    Runner fine(until(3, 0.001), make_integrator(id, {}));
     const RunSummary a = coarse(model, equations, boom_state(0, 0.1)), b = fine(model, equations, boom_state(0, 0.1));
     EXPECT_EQ(a.final.y, b.final.y);
     EXPECT_EQ(a.steps.accepted, b.steps.accepted);
@@ -58,7 +58,7 @@ TEST(Simulate, peaks_are_those_of_the_motion) {
   Model model = boom();
   model.add_load("motor", TestLoad([](double t) { return -4 * std::sin(3 * t); }));
   const FunctionEquations equations = boom_equations(model, spring);
-  Runner run{.options = {.end = 4, .output = 0.001}};
+  Runner run(until(4, 0.001));
   const RunSummary summary = run(model, equations, boom_state(0, -0.1));
   ASSERT_EQ(summary.peak_deflection.count("boom"), 1u);
   const auto& peak = summary.peak_deflection.at("boom");
@@ -84,7 +84,7 @@ TEST(Simulate, energy_drift_compares_the_energy_with_the_work_of_the_loads) {
   equations.energies_ = [&](std::span<const double> y) {
     return Energies{.kinetic = factor * 0.5 * (y[2] * y[2] + y[3] * y[3]), .potential = 0.5 * y[1] * y[1]};
   };
-  Runner run{.tolerance = 1e-10, .options = {.end = 10, .output = 0.1}};
+  Runner run(until(10, 0.1));
   EXPECT_LT(run(model, equations, boom_state(0, 1)).energy_drift, 1e-8);
   factor = 1.01;
   const double drift = run(model, equations, boom_state(0, 1)).energy_drift;
@@ -100,7 +100,7 @@ TEST(Simulate, declared_jumps_are_landed_on_and_undeclared_ones_reported) {
   Model declared = boom(), undeclared = boom();
   declared.add_load("motor", TestLoad(force, {0, 0.7, 1.9, 7}));
   undeclared.add_load("motor", TestLoad(force));
-  Runner run{.tolerance = 1e-8, .options = {.end = 3, .output = 0.5}};
+  Runner run(until(3, 0.5));
   const RunSummary good = run(declared, boom_equations(declared, spring), boom_state(0, 0.1));
   EXPECT_NEAR(good.final.y[0], x3, 1e-13) << "parabolas are exact where no step spans a jump";
   EXPECT_TRUE(good.suspected_jumps.empty());
@@ -118,7 +118,7 @@ TEST(Simulate, stiff_but_smooth_equations_raise_no_suspicion_of_jumps) {
   const FunctionEquations equations =
       boom_equations(model, [](double t, double q, double rate) { return -1e6 * (q - std::sin(t)) - 2e3 * rate; });
   for (const char* id : {"dopri5", "rk4-adaptive"}) {
-    Runner run{.options = {.end = 2, .output = 0.1}, .integrator = make_integrator(id, {{"rtol", Value(1e-6)}})};
+    Runner run(until(2, 0.1), make_integrator(id, {{"rtol", Value(1e-6)}}));
     const RunSummary summary = run(model, equations, boom_state(0, 0));
     EXPECT_EQ(summary.status, RunStatus::completed);
     EXPECT_TRUE(summary.suspected_jumps.empty()) << id << ": " << summary.message;
@@ -127,7 +127,7 @@ TEST(Simulate, stiff_but_smooth_equations_raise_no_suspicion_of_jumps) {
 
 TEST(Simulate, a_run_of_no_length_has_one_output) {
   const Model model = boom();
-  Runner run{.options = {.end = 0}};
+  Runner run(until(0));
   EXPECT_EQ(run(model, boom_equations(model, spring), boom_state(0, 0.1)).status, RunStatus::completed);
   EXPECT_EQ(run.outputs.size(), 1u);
 }
@@ -135,9 +135,9 @@ TEST(Simulate, a_run_of_no_length_has_one_output) {
 TEST(Simulate, refuses_an_end_before_the_start_and_an_interval_that_is_not_positive) {
   const Model model = boom();
   const FunctionEquations equations = boom_equations(model, spring);
-  Runner backward{.options = {.end = -1}};
+  Runner backward(until(-1));
   EXPECT_THROW(backward(model, equations, boom_state(0, 0)), std::invalid_argument);
-  Runner still{.options = {.end = 1, .output = 0}};
+  Runner still(until(1, 0));
   EXPECT_THROW(still(model, equations, boom_state(0, 0)), std::invalid_argument);
 }
 
