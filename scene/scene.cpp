@@ -176,22 +176,19 @@ class SceneBuilder {
   }
 
   void set_span(const Model& model) {
-    const Value& time = scene_.source.at("time");
-    for (const LoadNode& l : model.loads()) scene_.end = std::max(scene_.end, l.load->end());
-    if (const Value* end = time.find("end")) {
-      scene_.end = end->number();
-    } else if (scene_.end == 0) {
-      checker_.key_error("/time/end", "missing, and no load has an end of its own; need finite >= 0 [s]");
-      return;
+    for (const LoadNode& l : model.loads()) {
+      if (const double end = l.load->end(); end > scene_.end.value_or(0)) scene_.end = end;
     }
-    if (scene_.end < scene_.initial.time) {
+    if (const Value* end = scene_.source.at("time").find("end")) scene_.end = end->number();
+    if (!scene_.end) return;
+    const double span = *scene_.end - scene_.initial.time;
+    if (span < 0) {
       checker_.key_error("/time/end",
-                         fmt::format("got {}; need at least the initial time, {} s", scene_.end, scene_.initial.time));
+                         fmt::format("got {}; need at least the initial time, {} s", *scene_.end, scene_.initial.time));
     }
-    const double outputs = (scene_.end - scene_.initial.time) / scene_.output;
-    if (outputs > most_outputs) {
+    if (span / scene_.output > most_outputs) {
       checker_.key_error("/time/output", fmt::format("got {} s, which makes {:.3g} outputs; need at most {:g}",
-                                                     scene_.output, outputs, most_outputs));
+                                                     scene_.output, span / scene_.output, most_outputs));
     }
   }
 
@@ -216,6 +213,13 @@ Scene parse_scene(std::string_view text, const std::string& file, Registry& regi
   if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors(), origins);
   scene.file = file;
   return scene;
+}
+
+double end_of_run(const Scene& scene) {
+  if (scene.end) return *scene.end;
+  const Place& time = scene.source.at("time").place();
+  throw SceneError(scene.file, {{{time.line, time.column, "/time/end"},
+                                 "missing, and no load has an end of its own; need finite >= 0 [s]"}});
 }
 
 Scene read_scene(const std::string& file, Registry& registry, const SceneOptions& options) {

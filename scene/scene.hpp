@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -45,7 +46,7 @@ struct Scene {
   std::shared_ptr<const Formulation> formulation;
   std::string integrator_name;
   std::shared_ptr<const Integrator> integrator;
-  double end = 0;                 ///< [s]; the end of the last load where the scene gives none
+  std::optional<double> end;      ///< [s]; where the scene gives none, the latest end of a load, if one has an end
   double output = 0.01;           ///< [s]
   double deflection_limit = 1.0;  ///< lengths of a body
   State initial;
@@ -57,6 +58,10 @@ struct Scene {
 Scene read_scene(const std::string& file, Registry& registry, const SceneOptions& options = {});
 /// The same from text; `file` is the name used in messages.
 Scene parse_scene(std::string_view text, const std::string& file, Registry& registry, const SceneOptions& options = {});
+
+/// The time [s] at which a run of the scene ends. \throws SceneError where neither the scene nor a load says so; such
+/// a scene can be evaluated, but not run.
+double end_of_run(const Scene& scene);
 
 /// Reads a state (JSON or YAML, form as under `initial` of a scene) for a model: what is not named is as in `start`.
 /// \throws SceneError

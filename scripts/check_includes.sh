@@ -31,6 +31,15 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     split(file, parts, "/")
     return parts[1] == "plugins" ? parts[1] "/" parts[2] : parts[1]
   }
+  # A file of the same folder, and so of the same room.
+  function is_neighbour(target,   path, line, found) {
+    if (target ~ /\//) return 0
+    path = FILENAME
+    sub(/[^\/]*$/, target, path)
+    found = (getline line < path) >= 0
+    close(path)
+    return found
+  }
   function complain(what) {
     printf "%s:%d: %s\n", FILENAME, FNR, what
     bad = 1
@@ -44,8 +53,9 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     target = $0
     sub(/^[^"<]*["<]/, "", target)
     sub(/[">].*$/, "", target)
+    if (quoted && is_neighbour(target)) next
     if (target !~ ("^(" may[room] ")$")) complain(room " may not include " target)
-    if (quoted && target !~ /^withy\// && room != "tests") complain("\"" target "\" is not written \"withy/...\"")
+    if (quoted && target !~ /^withy\// && room != "tests") complain("\"" target "\" is neither a neighbour nor written \"withy/...\"")
     for (prefix in only)
       if (index(target, prefix) == 1 && room != only[prefix]) complain(target " stays in " only[prefix])
   }

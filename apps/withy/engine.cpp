@@ -54,10 +54,10 @@ State Engine::state(const std::string& file) const {
 }
 
 RunSummary Engine::simulate(const std::function<void(const State&)>& output) const {
-  watch_for_interrupt();
-  Progress progress(scene_.formulation_name, scene_.end);
   RunOptions options;
-  options.end = scene_.end;
+  options.end = end_of_run(scene_);
+  watch_for_interrupt();
+  Progress progress(scene_.formulation_name, options.end);
   options.output = scene_.output;
   options.deflection_limit = scene_.deflection_limit;
   options.interrupted = interrupted;

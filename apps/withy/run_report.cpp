@@ -98,7 +98,7 @@ std::string run_table(const Engine& engine, const RunSummary& summary) {
   const Model& model = *scene.model;
   std::string out;
   const auto line = [&](const std::string& what, const std::string& text) {
-    out += fmt::format("{:<24}{}\n", what, text);
+    out += fmt::format("{:<23} {}\n", what, text);
   };
   out += fmt::format("{} ({}, {})\n\n", scene.name.empty() ? scene.file : scene.name, scene.formulation_name,
                      scene.integrator_name);

@@ -10,29 +10,43 @@
 
 namespace withy {
 
+/// Models with more generalized speeds are run without looking at M as a whole, which costs the cube of their number.
+inline constexpr std::size_t largest_examined = 200;
+
 /// Two times [s] between which det M changed its sign.
 struct SignChange {
   double before = 0;
   double after = 0;
 };
 
-/// Models with more generalized speeds are run without looking at M as a whole, which costs the cube of their number.
-inline constexpr std::size_t largest_examined = 200;
+/// M at the start and at the end of a run.
+struct MassMatrixHistory {
+  DenseSystem first, last;
+  Conditioning start, end;
+  std::optional<SignChange> change;
 
-/// Short decimal text of a number, "%.4g" in the C locale's form.
-std::string brief(double x);
+  /// M is now singular to working accuracy, and was not at the start.
+  [[nodiscard]] bool became_singular() const;
+  /// M, positive definite at the start, is or was something else since.
+  [[nodiscard]] bool lost_definiteness() const;
+};
 
-/// Whether M, positive definite at the start, has lost that on the way.
-bool lost_definiteness(const Conditioning& start, const Conditioning& end, const std::optional<SignChange>& change);
+/// Looks at M at both ends. For at most `largest_examined` generalized speeds.
+MassMatrixHistory examine(const EquationsOfMotion& equations, const State& first, const State& last,
+                          const std::optional<SignChange>& change);
 
 /// One or two sentences about M at the end of a run: sign of det M and where it changed, condition, smallest eigenvalue
-/// of the symmetric part, and whose coordinates make up the weakest direction.
-std::string describe_mass_matrix(const Layout& layout, const Conditioning& start, const Conditioning& end,
-                                 const std::optional<SignChange>& change);
+/// of the symmetric part, and whose coordinates make up the direction of least (or of negative) mass. That direction is
+/// found with each coordinate in the unit in which its own inertia at the start is one, so that it does not depend on
+/// whether angles and modal coordinates are measured in radians, metres or inches.
+std::string describe(const MassMatrixHistory& history, const Layout& layout);
 
-/// Names what is not finite at the state or, for loads, up to `ahead` seconds later: coordinates, loads, accelerations.
+/// Names what is not finite at the state or, for loads, up to `ahead` seconds later: loads, speeds, accelerations.
 /// Empty where all of it is finite.
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,
                                double ahead);
+
+/// Short decimal text of a number, as "%.4g" without a locale.
+std::string brief(double x);
 
 }  // namespace withy

@@ -204,28 +204,28 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   run.finish();
   summary.final = run.stepper().state();
   summary.steps = run.stepper().statistics();
-  const auto examine = [&](const State& state) {
-    if (equations.layout().speeds > largest_examined) return Conditioning{};
-    return conditioning(equations.system(state.time, state.y));
-  };
-  summary.conditioning = examine(summary.final);
+  const bool examined = equations.layout().speeds <= largest_examined;
   const std::optional<SignChange>& change = run.monitor().sign_change();
+  MassMatrixHistory history;
+  if (examined && (change || stop.status != RunStatus::completed)) {
+    history = examine(equations, initial, summary.final, change);
+    summary.conditioning = history.end;
+  } else if (examined) {
+    summary.conditioning = conditioning(equations.system(summary.final.time, summary.final.y));
+  }
   if (stop.status == RunStatus::completed) {
-    if (change) {
-      summary.message = "The run reached its end, but do not trust it. " +
-                        describe_mass_matrix(equations.layout(), examine(initial), summary.conditioning, change);
-    }
+    if (change) summary.message = "The run reached its end, but do not trust it. " + describe(history, model.layout());
     if (!summary.suspected_jumps.empty())
       summary.message += (summary.message.empty() ? "" : " ") + note_on_jumps(summary.suspected_jumps);
   } else {
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end
-    const Conditioning start = examine(initial);
     // Steps that collapse where M loses rank collapse because of it.
-    if (stop.status == RunStatus::step_underflow && lost_definiteness(start, summary.conditioning, change))
+    if (stop.status == RunStatus::step_underflow && examined && history.lost_definiteness())
       stop.status = RunStatus::singular;
     summary.message = std::string("t = ") + brief(summary.final.time) + " s: " + stop.reason + ".";
     if (stop.physical)
-      summary.message += " " + describe_mass_matrix(equations.layout(), start, summary.conditioning, change);
+      summary.message +=
+          examined ? " " + describe(history, model.layout()) : " The mass matrix, with so many rows, was not examined.";
   }
   summary.status = stop.status;
   summary.cpu_seconds = cpu_seconds() - began;

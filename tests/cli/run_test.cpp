@@ -14,7 +14,6 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-using testing::Not;
 
 // Diverges at about 0.05 s (theory: the inconsistent formulation at time scale 1).
 const std::vector<std::string> diverging = {
@@ -27,6 +26,17 @@ std::vector<std::string> cells(const std::string& line) {
       all.emplace_back();
     else
       all.back() += c;
+  }
+  return all;
+}
+
+/// The cells below the head of a table.
+std::vector<std::string> all_cells(const std::string& table) {
+  std::vector<std::string> all;
+  const auto rows = lines(table);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto row = cells(rows[i]);
+    all.insert(all.end(), row.begin(), row.end());
   }
   return all;
 }
@@ -137,16 +147,14 @@ TEST(Run, OneThatStopsExplainsItselfAndKeepsItsResults) {
   EXPECT_THAT(f.err, HasSubstr(message));
   EXPECT_THAT(f.out, HasSubstr(run.at("status").get<std::string>()));
   EXPECT_GE(lines(folder.read("out/results.csv")).size(), 3U);
-  for (const char* file : {"out/run.json", "out/results.csv"}) {
-    const std::string text = folder.read(file);
-    EXPECT_THAT(text, Not(HasSubstr("nan"))) << file;
-    EXPECT_THAT(text, Not(HasSubstr("inf,"))) << file;
+  for (const std::string& cell : all_cells(folder.read("out/results.csv"))) {
+    EXPECT_TRUE(std::isfinite(std::stod(cell))) << cell;
   }
 }
 
 TEST(Run, AnInterruptKeepsTheResultsAndExits130) {
   const Folder folder;
-  Process process(folder, {WITHY_PROGRAM, "run", "scenes/pendulum.yaml", "--set", "time.end=1e7", "--out", "out"});
+  Process process(folder, {WITHY_PROGRAM, "run", "scenes/pendulum.yaml", "--set", "time.end=1e6", "--out", "out"});
   // The simulation is under way once outputs follow the head.
   const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (lines(folder.read("out/results.csv")).size() < 3 && std::chrono::steady_clock::now() < patience)

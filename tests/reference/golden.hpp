@@ -29,8 +29,7 @@ struct CompiledScene {
 
   CompiledScene(const std::string& name, const std::string& formulation) {
     enroll_static_plugins(registry);
-    // The golden scenes have no end of their own: they are never run.
-    scene = read_scene(std::string(REFERENCE_DATA) + "/" + name + ".yaml", registry, {formulation, "", {"time.end=0"}});
+    scene = read_scene(std::string(REFERENCE_DATA) + "/" + name + ".yaml", registry, {formulation, "", {}});
     equations = scene.formulation->compile(scene.model);
   }
   [[nodiscard]] State state(const nlohmann::json& form) const {

@@ -27,7 +27,7 @@ struct SceneRun {
     scene = read_scene(std::string(SCENES) + "/" + name + ".yaml", registry, {formulation, "", std::move(overrides)});
     equations = scene.formulation->compile(scene.model);
     RunOptions options;
-    options.end = scene.end;
+    options.end = end_of_run(scene);
     options.output = scene.output;
     options.deflection_limit = scene.deflection_limit;
     summary = simulate(*scene.model, *equations, *scene.integrator, scene.initial, options,

@@ -160,7 +160,6 @@ const BadScene bad_scenes[] = {
     {"zero_axis", "axis: [0, 0, 1]", "axis: [0, 0, 0]", "18:36: /hinges/shoulder/axis: "},
     {"negative_end", "end: 1.0", "end: -1", "3:13: /time/end: got -1; need finite >= 0 [s]"},
     {"zero_output", "output: 0.1", "output: 0", "3:26: /time/output: got 0; need finite > 0 [s]"},
-    {"no_end", "end: 1.0, ", "", "3:1: /time/end: missing, and no load has an end of its own; need finite >= 0 [s]"},
     {"too_many_outputs", "output: 0.1", "output: 1e-12",
      "3:18: /time/output: got 1e-12 s, which makes 1e+12 outputs; need at most 1e+08"},
     {"negative_deflection_limit", "format: withy/1", "format: withy/1\nlimits: {deflection: -1}",
@@ -232,6 +231,17 @@ TEST_F(BadDocuments, TheErrorCarriesPlaceAndMessageForPrograms) {
     EXPECT_EQ(e.problems()[0].place.column, 11);
     EXPECT_EQ(e.problems()[0].place.path, "/bodies/hub/mass");
     EXPECT_EQ(e.problems()[0].message, "got -20; need finite >= 0 [kg]");
+  }
+}
+
+TEST_F(BadDocuments, WithoutAnEndCanBeReadButNotRun) {
+  const Scene scene = parse_scene(replaced(good_scene, "end: 1.0, ", ""), "s.yaml", registry);
+  EXPECT_FALSE(scene.end.has_value());
+  try {
+    (void)end_of_run(scene);
+    FAIL() << "no error";
+  } catch (const SceneError& e) {
+    EXPECT_STREQ(e.what(), "s.yaml:3:7: /time/end: missing, and no load has an end of its own; need finite >= 0 [s]");
   }
 }
 

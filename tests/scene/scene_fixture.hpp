@@ -13,7 +13,8 @@
 
 namespace withy::test {
 
-/// A good scene of a rigid body, a beam and a load. Tests change one thing in it; line numbers are in their expectations.
+/// A good scene of a rigid body, a beam and a load. Tests change one thing in it; line numbers are in their
+/// expectations.
 inline constexpr const char* good_scene = R"(format: withy/1
 gravity: [0, -9.81, 0]
 time: {end: 1.0, output: 0.1}

@@ -31,8 +31,9 @@ TEST(BadEnd, a_deflection_past_the_bodys_length_is_divergence) {
   EXPECT_EQ(summary.status, RunStatus::diverged);
   EXPECT_NEAR(summary.final.time, std::acosh(20), 0.2);
   EXPECT_GE(summary.peak_deflection.at("boom")[1], 2);
-  EXPECT_THAT(summary.message, AllOf(HasSubstr("the tip of 'boom' is deflected by"), HasSubstr("times its length"),
-                                     HasSubstr("still positive definite"), HasSubstr("Condition of M 1 ")));
+  EXPECT_THAT(summary.message,
+              AllOf(HasSubstr("the tip of 'boom' is deflected by"), HasSubstr("times its length"),
+                    HasSubstr("positive definite as it was at the start"), HasSubstr("Condition of M 1 ")));
   expect_results_kept(run, summary);
 }
 

@@ -28,8 +28,7 @@ TEST(MassMatrix, a_run_that_ends_where_det_m_vanishes_is_singular_and_says_so) {
     const RunSummary summary = run(model, equations, boom_state(0, 0));
     ASSERT_NE(summary.status, RunStatus::completed);
     EXPECT_NEAR(summary.final.y[1], 0.25, 1e-3);
-    EXPECT_THAT(summary.message,
-                AllOf(HasSubstr("100 % modes of 'boom', most of all boom.bending_y[1]"), HasSubstr("det M")));
+    EXPECT_THAT(summary.message, AllOf(HasSubstr("100 % modes of 'boom'"), HasSubstr("det M")));
     EXPECT_GT(summary.conditioning.condition, 1e3);
     EXPECT_GT(std::abs(summary.conditioning.weakest[1]), 0.999);
   }
@@ -51,7 +50,7 @@ TEST(MassMatrix, a_change_of_sign_is_reported_where_the_run_goes_through) {
 }
 
 // Beyond the crossing the motion grows until it passes the length: divergence, with the crossing as its reason. The
-// two times are at most a hundredth of the run apart, as the mass matrix is looked at a hundred times.
+// two times are a hundredth of the run and at most two steps apart: so often the mass matrix is looked at.
 TEST(MassMatrix, divergence_after_a_change_of_sign_gives_it_as_the_reason) {
   const Model model = boom();
   const auto mass = [](double q) { return 1 - 4 * q; };
@@ -62,19 +61,50 @@ TEST(MassMatrix, divergence_after_a_change_of_sign_gives_it_as_the_reason) {
   Runner run(until(10, 0.1), make_integrator("dopri5", {{"max_step", Value(0.05)}}));
   const RunSummary summary = run(model, equations, boom_state(0, 0, 0, 0.4));  // q = 1/4 at t = 0.625
   EXPECT_EQ(summary.status, RunStatus::diverged);
-  EXPECT_THAT(summary.message, AllOf(HasSubstr("the tip of 'boom'"), HasSubstr("det M changed sign between t = 0.6")));
+  EXPECT_THAT(summary.message, AllOf(HasSubstr("the tip of 'boom'"),
+                                     HasSubstr("the direction of negative mass is 100 % modes of 'boom'")));
+  const std::size_t at = summary.message.find("det M changed sign between t = ");
+  ASSERT_NE(at, std::string::npos);
+  double before = 0, after = 0;
+  ASSERT_EQ(std::sscanf(summary.message.c_str() + at, "det M changed sign between t = %lf and %lf s", &before, &after),
+            2);
+  EXPECT_LT(before, 0.625);
+  EXPECT_GT(after, 0.625);
+  EXPECT_LE(after - before, 0.1 + 2 * 0.05 + 1e-9);
 }
 
-TEST(MassMatrix, underflow_with_a_definite_mass_matrix_stays_step_underflow) {
-  Conditioning start{.condition = 1, .determinant_sign = 1, .smallest_eigenvalue = 1, .weakest = {1}};
-  Conditioning end = start;
-  EXPECT_FALSE(lost_definiteness(start, end, {}));
-  end.determinant_sign = -1;
-  EXPECT_TRUE(lost_definiteness(start, end, {}));
-  end = start;
-  end.smallest_eigenvalue = -1e-3;  // two eigenvalues may have changed sign together, and det M not
-  EXPECT_TRUE(lost_definiteness(start, end, {}));
-  EXPECT_TRUE(lost_definiteness(start, start, SignChange{0.1, 0.2}));
+TEST(MassMatrix, definiteness_is_lost_by_sign_eigenvalue_or_condition) {
+  MassMatrixHistory history;
+  history.start = {.condition = 1e3, .determinant_sign = 1, .smallest_eigenvalue = 1, .weakest = {1}};
+  history.end = history.start;
+  EXPECT_FALSE(history.lost_definiteness());
+  history.end.determinant_sign = -1;
+  EXPECT_TRUE(history.lost_definiteness());
+  history.end = history.start;
+  history.end.smallest_eigenvalue = -1e-3;  // two eigenvalues may have changed sign together, and det M not
+  EXPECT_TRUE(history.lost_definiteness());
+  history.end = history.start;
+  history.end.condition = 1e15;
+  EXPECT_TRUE(history.became_singular());
+  EXPECT_TRUE(history.lost_definiteness());
+  history.start.condition = 9e14;  // bodies of very different mass: nothing happened on the way
+  EXPECT_FALSE(history.lost_definiteness());
+  history.change = {0.1, 0.2};
+  EXPECT_TRUE(history.lost_definiteness());
+}
+
+// The mode's inertia falls to 1e-14 of what it was, the hinge's is 4 throughout. In inches instead of metres the mode's
+// entry is 39.37^-2 as large at all times; the direction stays the mode's.
+TEST(MassMatrix, the_direction_of_least_mass_does_not_depend_on_units) {
+  const Layout layout = boom().layout();
+  for (const double unit : {1.0, 1 / 39.37, 1e6}) {
+    MassMatrixHistory h;
+    h.first = {2, {4, 0.1 * unit, 0.1 * unit, 2 * unit * unit}, {}, {}};
+    h.last = {2, {4, 0, 0, 2e-14 * unit * unit}, {}, {}};
+    h.start = conditioning(h.first);
+    h.end = conditioning(h.last);
+    EXPECT_THAT(describe(h, layout), HasSubstr("the direction of least mass is 100 % modes of 'boom'.")) << unit;
+  }
 }
 
 TEST(MassMatrix, sign_of_the_determinant_survives_overflow_and_permutation) {

@@ -1,0 +1,122 @@
+#include "withy/plugins/host/static_plugins.hpp"
+#include "withy/scene/scene.hpp"
+#include "withy/tests/conformance/formulation_suite.hpp"
+#include "withy/tests/conformance/load_suite.hpp"
+#include "withy/tests/conformance/plugins.hpp"
+
+namespace withy::test {
+namespace {
+
+/// A flexible pendulum in space on a revolute hinge, in its own weight, with a tip body.
+std::string pendulum(double stiffness, double modes) {
+  const std::string m = std::to_string(static_cast<int>(modes));
+  return "format: withy/1\ntime: {end: 1}\ngravity: [0, 0, -9.81]\nbodies:\n  rod: {type: beam, length: 1.2, "
+         "mass_per_length: 0.8, "
+         "bending_y: {stiffness: " +
+         std::to_string(30 * stiffness) + ", modes: " + m +
+         "}, bending_z: {stiffness: " + std::to_string(20 * stiffness) + ", modes: " + m +
+         "}}\n  bob: {type: rigid, mass: 0.5, inertia: [0.01, 0.01, 0.01, 0, "
+         "0, 0], center_of_mass: [0.1, 0.02, 0]}\nhinges:\n  pivot: {type: revolute, axis: [0, 1, 0.2], parent: world, "
+         "child: "
+         "rod}\n  tip: {type: weld, parent: rod.tip, child: bob}\nloads:\n  motor: {type: hinge-effort, hinge: pivot, "
+         "law: sine, "
+         "amplitude: 2, period: 0.7, phase: 1}\n";
+}
+
+class Formulations : public testing::TestWithParam<std::string> {
+ protected:
+  Formulations() { enroll_static_plugins(registry_); }
+  Scene scene(double stiffness = 1, double modes = 2, const std::string& formulation = GetParam()) {
+    return parse_scene(pendulum(stiffness, modes), "pendulum", registry_, {formulation, "", {}});
+  }
+  static State moving(const Model& model) {
+    State s = model.reference_state();
+    for (std::size_t i = 0; i < s.y.size(); ++i) s.y[i] = 0.02 * std::sin(1.0 + 2.3 * static_cast<double>(i));
+    s.y[model.layout().hinge("pivot")->position] = 0.7;
+    s.y[model.layout().positions + model.layout().hinge("pivot")->speed] = 1.1;
+    return s;
+  }
+  Registry registry_;
+};
+
+TEST_P(Formulations, conform) {
+  const Scene s = scene();
+  expect_formulation_conforms(*s.formulation, s.model, moving(*s.model));
+}
+
+TEST_P(Formulations, approach_the_rigid_body_as_one_over_stiffness) {
+  const Scene s = scene();
+  expect_rigid_limit(
+      *s.formulation, [&](double factor) { return scene(factor).model; }, &Formulations::moving, "pivot");
+}
+
+TEST_P(Formulations, without_modes_are_bitwise_the_same_rigid_body) {
+  const Scene own = scene(1, 0);
+  const Scene quadratic = scene(1, 0, "quadratic");
+  const State s = moving(*own.model);
+  EXPECT_EQ(accelerations(*own.formulation->compile(own.model), s),
+            accelerations(*quadratic.formulation->compile(quadratic.model), s));
+}
+
+INSTANTIATE_TEST_SUITE_P(BuiltIn, Formulations,
+                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear"));
+
+struct Neglect {
+  const char* formulation;
+  double order;
+};
+
+/// The forces of a formulation differ from those without truncation by terms of the order it drops: ruthless drops the
+/// first, inconsistent drops first-order terms too (those of second-order kinematics), consistent only the second.
+TEST(Truncation, neglected_terms_have_the_order_the_name_says) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const Scene s = parse_scene(pendulum(1, 2), "pendulum", registry, {});
+  State state = s.model->reference_state();
+  for (std::size_t i = 0; i < state.y.size(); ++i) state.y[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
+  const auto quadratic = make_plugin<Formulation>(registry, "quadratic");
+  for (const Neglect& n :
+       {Neglect{"ruthless", 1}, Neglect{"inconsistent", 1}, Neglect{"linear", 1}, Neglect{"consistent", 2}}) {
+    const auto formulation = make_plugin<Formulation>(registry, n.formulation);
+    EXPECT_NEAR(order_of_difference(*formulation, *quadratic, s.model, state), n.order, 0.1) << n.formulation;
+  }
+}
+
+/// A body's own formulation: ruthless terms for one body in an untruncated tree; strict and untruncated do not mix.
+TEST(OwnTerms, of_a_body_are_taken_and_impossible_mixtures_refused) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const auto with = [&](const char* own) {
+    return parse_scene(pendulum(1, 2), "pendulum", registry,
+                       {"quadratic", "", {std::string("bodies.rod.formulation=") + own}});
+  };
+  const Scene mixed = with("ruthless");
+  const Scene ruthless = parse_scene(pendulum(1, 2), "pendulum", registry, {"ruthless", "", {}});
+  State state = mixed.model->reference_state();
+  for (std::size_t i = 0; i < state.y.size(); ++i) state.y[i] = 0.01 * std::sin(1.0 + 2.3 * static_cast<double>(i));
+  EXPECT_EQ(accelerations(*mixed.formulation->compile(mixed.model), state),
+            accelerations(*ruthless.formulation->compile(ruthless.model), state));
+}
+
+TEST(Loads, conform) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const Scene s = parse_scene(pendulum(1, 2), "pendulum", registry, {});
+  const auto motor = make_plugin<Load>(registry, "hinge-effort",
+                                       {{"hinge", Value(std::string("pivot"))},
+                                        {"law", Value(std::string("sine"))},
+                                        {"amplitude", Value(2.0)},
+                                        {"period", Value(0.5)}});
+  ASSERT_NE(motor, nullptr);
+  expect_load_conforms(*motor, *s.model);
+  const auto slew =
+      make_plugin<Load>(registry, "rigid-inverse-dynamics",
+                        {{"law", Value(std::string("quintic"))},
+                         {"duration", Value(2.0)},
+                         {"hinges", Value::map({{"pivot", Value::map({{"from", Value(0.2)}, {"to", Value(1.0)}})}})}});
+  ASSERT_NE(slew, nullptr);
+  expect_load_conforms(*slew, *s.model);
+}
+
+}  // namespace
+}  // namespace withy::test

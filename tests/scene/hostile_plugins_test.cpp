@@ -1,0 +1,94 @@
+// Plugins that fail while a scene is built are reported at the place that names them.
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "scene_fixture.hpp"
+#include "withy/core/plugin/body.hpp"
+
+namespace withy::test {
+namespace {
+
+/// A body whose mass is given and whose only other property is that it may lack its root.
+class Lump final : public Body {
+ public:
+  Lump(double mass, bool has_root) : has_root_(has_root) {
+    shape_.particles.push_back({mass, PointExpansion::rigid(Vector3::Zero(), 0)});
+    shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(0, 0);
+  }
+  const ModalShape& shape() const override { return shape_; }
+  std::optional<PointExpansion> station(const StationName&) const override {
+    if (!has_root_) return {};
+    return PointExpansion::rigid(Vector3::Zero(), 0);
+  }
+  std::string stations() const override { return "root"; }
+
+ private:
+  ModalShape shape_;
+  bool has_root_;
+};
+
+class HostilePlugins : public SceneTest {
+ protected:
+  HostilePlugins() {
+    using Made = std::unique_ptr<Body>;
+    Enrollment e;
+    e.add<Body>({.id = "throws",
+                 .make = [](const Value&, const MakeContext&) -> Made { throw std::runtime_error("no luck"); }});
+    e.add<Body>({.id = "null", .make = [](const Value&, const MakeContext&) -> Made { return nullptr; }});
+    e.add<Body>({.id = "refused",
+                 .make = [](const Value&, const MakeContext&) -> Made { throw PluginError("a refused library"); }});
+    e.add<Body>({.id = "nan", .make = [](const Value&, const MakeContext&) -> Made {
+                   return std::make_unique<Lump>(std::numeric_limits<double>::quiet_NaN(), true);
+                 }});
+    e.add<Body>({.id = "rootless",
+                 .make = [](const Value&, const MakeContext&) -> Made { return std::make_unique<Lump>(1, false); }});
+    e.add<Body>({.id = "lump",
+                 .parameters = {number("strange", "furlong", "a unit nobody knows").optional(),
+                                boolean("hollow", "whether it is").otherwise(Value(false))},
+                 .make = [](const Value&, const MakeContext&) -> Made { return std::make_unique<Lump>(1, true); }});
+    registry.admit(std::move(e), "test");
+  }
+  std::string with(const std::string& body) {
+    return "format: withy/1\ntime: {end: 1}\nbodies:\n  b: {" + body +
+           "}\nhinges:\n  h: {type: free, parent: world, child: b}\n";
+  }
+  std::string problem(const std::string& body) { return problems(with(body), registry); }
+};
+
+TEST_F(HostilePlugins, ThatThrowAreReported) {
+  EXPECT_EQ(problem("type: throws"), "s.yaml:4:3: /bodies/b: body 'throws' cannot be made: no luck");
+}
+
+TEST_F(HostilePlugins, ThatMakeNothingAreReported) {
+  EXPECT_EQ(problem("type: null"),
+            "s.yaml:4:3: /bodies/b/type: missing; need one of: beam, lump, nan, null, refused, "
+            "rigid, rootless, throws");
+  EXPECT_EQ(problem("type: 'null'"), "s.yaml:4:3: /bodies/b: body 'null' cannot be made and does not say why");
+}
+
+TEST_F(HostilePlugins, ThatMakeImpossibleBodiesAreReported) {
+  EXPECT_THAT(problem("type: nan"), testing::StartsWith("s.yaml:4:3: /bodies/b: body plugin 'nan' made a shape that "
+                                                        "cannot be: "));
+  EXPECT_EQ(problem("type: rootless"), "s.yaml:4:3: /bodies/b/frames: body 'b' has no station 'root'");
+}
+
+TEST_F(HostilePlugins, WhoseLibrariesAreRefusedAreNoFaultOfTheScene) {
+  EXPECT_THROW(parse_scene(with("type: refused"), "s.yaml", registry), PluginError);
+}
+
+TEST_F(HostilePlugins, WithUnknownUnitsTakePlainNumbers) {
+  EXPECT_EQ(problem("type: lump, strange: 3"), "");
+  EXPECT_EQ(problem("type: lump, strange: 3 m"),
+            "s.yaml:4:27: /bodies/b/strange: got \"3 m\": units are not known here: write a number in furlong; need "
+            "finite [furlong]");
+}
+
+TEST_F(HostilePlugins, TakeBooleansOnlyAsTrueAndFalse) {
+  EXPECT_EQ(problem("type: lump, hollow: true"), "");
+  EXPECT_EQ(problem("type: lump, hollow: yes"), "s.yaml:4:26: /bodies/b/hollow: got \"yes\"; need true or false");
+  EXPECT_EQ(problem("type: lump, hollow: 1"), "s.yaml:4:26: /bodies/b/hollow: got 1; need true or false");
+}
+
+}  // namespace
+}  // namespace withy::test

@@ -1,0 +1,113 @@
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "scene_fixture.hpp"
+
+namespace withy::test {
+namespace {
+
+class States : public SceneTest {
+ protected:
+  States() : scene(parse_scene(file_text("scenes/spacecraft.yaml"), "spacecraft.yaml", registry)) {}
+  std::string problem(const std::string& text) {
+    try {
+      parse_state(text, "state.json", *scene.model, scene.initial);
+    } catch (const SceneError& e) {
+      return e.what();
+    }
+    return {};
+  }
+  Scene scene;
+};
+
+TEST_F(States, ComeBackFromJsonWithTheSameBits) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> digits(-1, 1);
+  std::uniform_int_distribution<int> exponent(-300, 300);
+  const Model& model = *scene.model;
+  for (int round = 0; round < 200; ++round) {
+    State state = model.reference_state();
+    state.time = std::abs(digits(random));
+    for (double& y : state.y) y = std::ldexp(digits(random), exponent(random));
+    state.y[0] = -0.0;
+    state.y.back() = std::numeric_limits<double>::denorm_min();
+    for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+      // Quaternions are unit to rounding, as those of a simulation are.
+      const Slot& slot = model.layout().hinges[h];
+      if (slot.positions < 4) continue;
+      double q[4];
+      double norm = 0;
+      for (double& x : q) norm += (x = digits(random), x * x);
+      for (std::size_t i = 0; i < 4; ++i) state.y[slot.position + i] = q[i] / std::sqrt(norm);
+    }
+    const State back = parse_state(write_state(model, state), "s", model, model.reference_state());
+    EXPECT_EQ(back.time, state.time);
+    ASSERT_EQ(back.y.size(), state.y.size());
+    for (std::size_t i = 0; i < state.y.size(); ++i) {
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(back.y[i]), std::bit_cast<std::uint64_t>(state.y[i])) << i;
+    }
+  }
+}
+
+TEST_F(States, LeaveWhatTheyDoNotNameAsItWas) {
+  const State state = parse_state(R"({"hinges": {"right_slide": {"rate": [0.7]}}})", "s", *scene.model, scene.initial);
+  const Slot* slide = scene.model->layout().hinge("right_slide");
+  State expected = scene.initial;
+  expected.y[scene.model->layout().positions + slide->speed] = 0.7;
+  EXPECT_EQ(state.y, expected.y);
+}
+
+TEST_F(States, MayCarryUnitsWhereTheHingeIsKnown) {
+  const State s =
+      parse_state("hinges: {left_drive: {position: [90 deg], rate: [60 rpm]}, right_slide: {position: [5 mm]}}", "s",
+                  *scene.model, scene.initial);
+  const Layout& layout = scene.model->layout();
+  EXPECT_DOUBLE_EQ(s.y[layout.hinge("left_drive")->position], 1.5707963267948966);
+  EXPECT_DOUBLE_EQ(s.y[layout.positions + layout.hinge("left_drive")->speed], 6.283185307179586);
+  EXPECT_EQ(s.y[layout.hinge("right_slide")->position], 0.005);
+}
+
+TEST_F(States, ScaleQuaternionsThatAreNearlyUnit) {
+  const State s =
+      parse_state("hinges: {gimbal: {position: [0.60000003, 0.8, 0, 0]}}", "s", *scene.model, scene.initial);
+  const std::size_t at = scene.model->layout().hinge("gimbal")->position;
+  EXPECT_NEAR(std::hypot(s.y[at], s.y[at + 1]), 1, 2e-16);
+}
+
+TEST_F(States, AreCheckedAgainstTheModel) {
+  using testing::StartsWith;
+  EXPECT_THAT(problem(R"({"hinges": {"gimbel": {}}})"),
+              StartsWith("state.json:1:13: /hinges/gimbel: no hinge \"gimbel\"; did you mean 'gimbal'?"));
+  EXPECT_THAT(problem(R"({"bodies": {"left_bom": {}}})"), testing::HasSubstr("did you mean 'left_boom'?"));
+  EXPECT_THAT(problem(R"({"bodies": {"bus": {}}})"), testing::HasSubstr("body 'bus' is rigid: it has no modes"));
+  EXPECT_THAT(problem(R"({"hinges": {"gimbal": {"position": [1, 0, 0]}}})"),
+              StartsWith("state.json:1:36: /hinges/gimbal/position: got a list of 3; need a list of 4"));
+  EXPECT_THAT(problem(R"({"hinges": {"gimbal": {"rate": [1, 0, 0, 0]}}})"), testing::HasSubstr("need a list of 3"));
+  EXPECT_THAT(problem(R"({"hinges": {"gimbal": {"position": [1, 1, 0, 0]}}})"),
+              testing::HasSubstr("got a quaternion of norm 1.4142135623730951; need norm 1"));
+  EXPECT_THAT(problem(R"({"bodies": {"left_boom": {"modes": [1, 2]}}})"), testing::HasSubstr("need a list of 5"));
+  EXPECT_THAT(problem(R"({"bodies": {"left_boom": {"rates": [1, 2, 3, 4, null]}}})"),
+              testing::HasSubstr("/bodies/left_boom/rates/4: got nothing; need finite"));
+  EXPECT_THAT(problem(R"({"hinge": {}})"), testing::HasSubstr("unknown key \"hinge\"; did you mean 'hinges'?"));
+  EXPECT_THAT(problem(R"({"time": "soon"})"), testing::HasSubstr("/time: got \"soon\"; need finite [s]"));
+  EXPECT_THAT(problem("{"), testing::HasSubstr("syntax"));
+}
+
+TEST_F(States, OfASlewBeginWhereItBegins) {
+  const Scene slew = parse_scene(file_text("scenes/two-link-slew.yaml"), "s", registry);
+  const Layout& layout = slew.model->layout();
+  EXPECT_DOUBLE_EQ(slew.initial.y[layout.hinge("elbow")->position], 2.356194490192345);  // 135°
+  EXPECT_EQ(slew.initial.y[layout.hinge("shoulder")->position], 0);
+  EXPECT_DOUBLE_EQ(slew.end.value(), 3.8);
+  const SceneOptions options{"", "", {"loads.slew.time_scale=2", "initial.hinges.elbow.position=[1]"}};
+  const Scene faster = parse_scene(file_text("scenes/two-link-slew.yaml"), "s", registry, options);
+  EXPECT_DOUBLE_EQ(faster.end.value(), 1.9);
+  EXPECT_EQ(faster.initial.y[layout.hinge("elbow")->position], 1);
+}
+
+}  // namespace
+}  // namespace withy::test
