@@ -195,7 +195,8 @@ class Builder final : public YAML::EventHandler {
   void open(Value::Kind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     refuse_anchor(mark, anchor);
     refuse_tag(mark, tag);
-    if (wants_key()) stop(place(mark, path()), "a key must be a name, not a list or map");
+    if (wants_key())
+      stop(place(mark, path()), "a list or map that is never closed, or stands as a key; need a name as key");
     const Place where = place(mark, path());
     count(where);
     if (levels_.size() >= static_cast<std::size_t>(DocumentLimits::depth)) {

@@ -121,6 +121,7 @@ class TreeBuilder {
     if (const std::string fault = find_fault(node.body->shape()); !fault.empty()) {
       key_error(value->place().path,
                 fmt::format("body plugin '{}' made a shape that cannot be: {}", made.plugin->id, fault));
+      node.body = nullptr;
       return;
     }
     add_frames(node, value->at("frames"));
@@ -145,6 +146,7 @@ class TreeBuilder {
     }
     if (node.frames.empty() || node.frames[0].name != "root") {
       key_error(frames.place().path, fmt::format("body '{}' has no station 'root'", node.name));
+      node.body = nullptr;
       return;
     }
     for (const auto& [name, frame] : frames.members()) {

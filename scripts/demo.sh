@@ -8,5 +8,5 @@ build release withy
 echo
 build/release/bin/withy compare scenes/two-link-slew.yaml \
   --formulations ruthless,inconsistent,consistent,quadratic \
-  --over loads.slew.time_scale=0.1685,1.0,1.2 \
+  --over loads.slew.time_scale=0.1685,1.0,1.2 --set time.output=0.01 \
   --out results/demo

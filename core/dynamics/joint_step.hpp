@@ -51,12 +51,13 @@ inline void joint_motion(const JointData<Space>& joint, const double* x, const d
       out.SM = joint.F;
       return;
     case Joint::rotate:
+      out.rate[JointData<Space>::row(Joint::rotate)] = joint.direction * u[0];
+      out.SM = joint.F;
+      if (!joint.pose_matters) return;
       out.SM.R = Space::compose({joint.F.R, Space::Position::Zero()},
                                 {Space::about_z(std::cos(joint.direction * x[0]), std::sin(joint.direction * x[0])),
                                  Space::Position::Zero()})
                      .R;
-      out.SM.p = joint.F.p;
-      out.rate[JointData<Space>::row(Joint::rotate)] = joint.direction * u[0];
       return;
     case Joint::slide: {
       typename Space::Position along = Space::Position::Zero();

@@ -42,9 +42,11 @@ struct StrictNodeWork {
   typename Space::Twist sigma, sigma0;  ///< σ̄ and σ0 of the hinge
   Response<Space> response;
   typename Space::Twist A, A0;
-  // ẍ = d − gain Ā' − gain0 A0'.
+  // ẍ = d − gain Ā' − gain0 A0'; local rates, along single rows as in `row`.
   JointRows<Space> gain, gain0;
   JointVector<Space> d;
+  typename Space::Twist row, row0;  ///< one rate: the same for it alone
+  double u;
 };
 
 template <class Space>
@@ -80,7 +82,7 @@ struct ModalBlock {
 };
 
 template <class Space, int N>
-inline void strict_outward(const StrictNode<Space>& node, const StrictState<Space>& s) {
+[[gnu::flatten]] inline void strict_outward(const StrictNode<Space>& node, const StrictState<Space>& s) {
   using Twist = typename Space::Twist;
   const int n = count<N>(node.modes);
   auto& w = *at<StrictNodeWork<Space>>(s.work, node.work);
@@ -253,7 +255,7 @@ inline void strict_station(const StrictNode<Space>& node, const StrictStation<Sp
 }
 
 template <class Space, int N>
-inline bool strict_inward(const StrictNode<Space>& node, const StrictState<Space>& s) {
+[[gnu::flatten]] inline bool strict_inward(const StrictNode<Space>& node, const StrictState<Space>& s) {
   const int n = count<N>(node.modes);
   auto& w = *at<StrictNodeWork<Space>>(s.work, node.work);
   Response<Space>& r = w.response;
@@ -285,34 +287,34 @@ inline bool strict_inward(const StrictNode<Space>& node, const StrictState<Space
   }
 
   const JointData<Space>& joint = node.joint;
-  if (joint.kind != Joint::fixed) {
-    JointColumns<Space> H;
-    if (single(joint.kind)) {
-      H.setZero(Space::dim, 1);
-      H(JointData<Space>::row(joint.kind), 0) = joint.direction;
-    } else {
-      H = motion_subspace<Space>(joint, s.positions + joint.position, s.speeds + joint.speed);
-    }
-    const JointMatrix<Space> D = H.transpose() * (r.P + r.Q) * H;
-    JointRows<Space> rows = H.transpose() * r.P;
-    JointRows<Space> rows0 = H.transpose() * r.Q;
-    JointVector<Space> effort =
+  if (single(joint.kind)) {
+    const int row = JointData<Space>::row(joint.kind);
+    const typename Space::Twist column = r.P.col(row) + r.Q.col(row);
+    if (!(std::abs(column[row]) > 0)) return false;
+    const double inverse = 1 / column[row];
+    w.row = r.P.row(row).transpose() * inverse;
+    w.row0 = r.Q.row(row).transpose() * inverse;
+    w.u = (joint.direction * s.efforts[joint.speed] - r.p[row]) * inverse;
+    if (node.parent < 0) return true;
+    const typename Space::Twist column0 = r.R.col(row) + r.T.col(row);
+    r.P -= column * w.row.transpose();
+    r.Q -= column * w.row0.transpose();
+    r.R -= column0 * w.row.transpose();
+    r.T -= column0 * w.row0.transpose();
+    r.p += column * w.u;
+    r.p0 += column0 * w.u;
+  } else if (joint.kind != Joint::fixed) {
+    const JointColumns<Space> H = motion_subspace<Space>(joint, s.positions + joint.position, s.speeds + joint.speed);
+    const JointColumns<Space> columns = (r.P + r.Q) * H;
+    const Eigen::PartialPivLU<JointMatrix<Space>> lu(H.transpose() * columns);
+    if (!(std::abs(lu.determinant()) > 0)) return false;
+    const JointVector<Space> effort =
         Eigen::Map<const Eigen::VectorXd>(s.efforts + joint.speed, static_cast<Eigen::Index>(joint.speeds)) -
         H.transpose() * r.p;
-    if (single(joint.kind)) {
-      if (!(std::abs(D(0, 0)) > 0)) return false;
-      w.gain = rows / D(0, 0);
-      w.gain0 = rows0 / D(0, 0);
-      w.d = effort / D(0, 0);
-    } else {
-      const Eigen::PartialPivLU<JointMatrix<Space>> lu(D);
-      if (!(std::abs(lu.determinant()) > 0)) return false;
-      w.gain = lu.solve(rows);
-      w.gain0 = lu.solve(rows0);
-      w.d = lu.solve(effort);
-    }
+    w.gain = lu.solve(JointRows<Space>(H.transpose() * r.P));
+    w.gain0 = lu.solve(JointRows<Space>(H.transpose() * r.Q));
+    w.d = lu.solve(effort);
     if (node.parent < 0) return true;
-    const JointColumns<Space> columns = (r.P + r.Q) * H;
     const JointColumns<Space> columns0 = (r.R + r.T) * H;
     r.P -= columns * w.gain;
     r.Q -= columns * w.gain0;
@@ -340,7 +342,7 @@ inline bool strict_inward(const StrictNode<Space>& node, const StrictState<Space
 }
 
 template <class Space, int N>
-inline void strict_acceleration(const StrictNode<Space>& node, const StrictState<Space>& s) {
+[[gnu::flatten]] inline void strict_acceleration(const StrictNode<Space>& node, const StrictState<Space>& s) {
   using Twist = typename Space::Twist;
   const int n = count<N>(node.modes);
   auto& w = *at<StrictNodeWork<Space>>(s.work, node.work);
@@ -356,17 +358,17 @@ inline void strict_acceleration(const StrictNode<Space>& node, const StrictState
   w.A = Space::to_child(w.joint.SM, *A) + w.sigma;
   w.A0 = Space::to_child(w.joint.SM, *A0) + w.sigma0;
   const JointData<Space>& joint = node.joint;
-  if (joint.kind != Joint::fixed) {
+  if (single(joint.kind)) {
+    const int row = JointData<Space>::row(joint.kind);
+    const double x = w.u - w.row.dot(w.A) - w.row0.dot(w.A0);
+    w.A[row] += x;
+    w.A0[row] += x;
+    s.result[joint.speed] = joint.direction * x;
+  } else if (joint.kind != Joint::fixed) {
     const JointVector<Space> x = w.d - w.gain * w.A - w.gain0 * w.A0;
-    if (single(joint.kind)) {
-      const int row = JointData<Space>::row(joint.kind);
-      w.A[row] += joint.direction * x[0];
-      w.A0[row] += joint.direction * x[0];
-    } else {
-      const Twist rate = motion_subspace<Space>(joint, s.positions + joint.position, s.speeds + joint.speed) * x;
-      w.A += rate;
-      w.A0 += rate;
-    }
+    const Twist rate = motion_subspace<Space>(joint, s.positions + joint.position, s.speeds + joint.speed) * x;
+    w.A += rate;
+    w.A0 += rate;
     for (Eigen::Index i = 0; i < x.size(); ++i) s.result[joint.speed + static_cast<std::size_t>(i)] = x[i];
   }
   if constexpr (N != 0) {

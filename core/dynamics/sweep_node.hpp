@@ -143,6 +143,7 @@ struct JointData {
   double direction = 1;
   typename Space::Frame F;  ///< in the parent station's section, the parent node's frame, or the world
   const Hinge* hinge = nullptr;
+  bool pose_matters = true;  ///< false on a world without weight, whose accelerations are zero in any axes
   std::size_t position = 0, positions = 0, speed = 0, speeds = 0;
 
   explicit JointData(const NodeSpec& node)

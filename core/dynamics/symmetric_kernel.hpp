@@ -61,15 +61,17 @@ template <int N>
 inline bool factorize(double* G, int modes) {
   const int n = count<N>(modes);
   for (int j = 0; j < n; ++j) {
+    // Row j still holds L Δ to the left of the diagonal; it becomes L here.
     double d = G[j * n + j];
-    for (int k = 0; k < j; ++k) d -= G[j * n + k] * G[j * n + k];
+    for (int k = 0; k < j; ++k) {
+      const double scaled = G[j * n + k];
+      G[j * n + k] = scaled * G[k * n + k];
+      d -= scaled * G[j * n + k];
+    }
     if (!(d > 0)) return false;
-    const double inverse = 1 / std::sqrt(d);
-    G[j * n + j] = inverse;
+    G[j * n + j] = 1 / d;
     for (int i = j + 1; i < n; ++i) {
-      double s = G[i * n + j];
-      for (int k = 0; k < j; ++k) s -= G[i * n + k] * G[j * n + k];
-      G[i * n + j] = s * inverse;
+      for (int k = 0; k < j; ++k) G[i * n + j] -= G[i * n + k] * G[j * n + k];
     }
   }
   return true;
@@ -81,7 +83,6 @@ inline void solve_lower(const double* L, int modes, T* b) {
   const int n = count<N>(modes);
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k < i; ++k) b[i] -= L[i * n + k] * b[k];
-    b[i] *= L[i * n + i];
   }
 }
 
@@ -96,11 +97,14 @@ void precompute(SymmetricNode<Space>& node) {
     return;
   }
   solve_lower<-1>(node.factor.data(), node.modes, node.Y0.data());
-  for (const auto& y : node.Y0) node.reduced -= y * y.transpose();
+  for (int i = 0; i < node.modes; ++i) {
+    const auto& y = node.Y0[static_cast<std::size_t>(i)];
+    node.reduced -= y * (node.factor[static_cast<std::size_t>(i * node.modes + i)] * y).transpose();
+  }
 }
 
 template <class Space, int N>
-inline void outward_motion(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+[[gnu::flatten]] inline void outward_motion(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
   const int n = count<N>(node.modes);
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
@@ -232,7 +236,7 @@ inline void move_to_root(const SymmetricNode<Space>& node, NodeWork<Space>& w, c
 }
 
 template <class Space, int N>
-inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+[[gnu::flatten]] inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
   using Matrix = typename Space::Matrix;
   const int n = count<N>(node.modes);
@@ -276,7 +280,7 @@ inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricStat
       collect_sections<Space, N>(node, s, w, C + n, C, G, y);
       if (node.root_station >= 0) move_to_root<Space, N>(node, w, JM, C, G, y);
     }
-    // q̈ = G⁻¹ (−K q − D q̇ − h − Cᵀ A), with G = L Lᵀ, Y = L⁻¹ Cᵀ, y = L⁻¹ (…).
+    // q̈ = G⁻¹ (−K q − D q̇ − h − Cᵀ A), with G = L Δ Lᵀ, Y = L⁻¹ Cᵀ, y = L⁻¹ (…).
     for (int i = 0; i < n; ++i) {
       double e = s.efforts[node.mode_speed + static_cast<std::size_t>(i)] - y[i];
       for (int j = 0; j < n; ++j) {
@@ -293,9 +297,9 @@ inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricStat
     if (constant) {
       w.I = node.reduced;
     } else {
-      for (int i = 0; i < n; ++i) w.I -= Y[i] * Y[i].transpose();
+      for (int i = 0; i < n; ++i) w.I -= Y[i] * (L[i * n + i] * Y[i]).transpose();
     }
-    for (int i = 0; i < n; ++i) w.p += Y[i] * y[i];
+    for (int i = 0; i < n; ++i) w.p += Y[i] * (L[i * n + i] * y[i]);
   }
 
   // Elimination of ẍ, and what the hinge passes to the parent's station: inertia Ia, wrench pa at zero A'.
@@ -348,7 +352,7 @@ inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricStat
 }
 
 template <class Space, int N>
-inline void outward_acceleration(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+[[gnu::flatten]] inline void outward_acceleration(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
   const int n = count<N>(node.modes);
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
@@ -376,10 +380,9 @@ inline void outward_acceleration(const SymmetricNode<Space>& node, const Symmetr
     const Twist* Y = constant ? node.Y0.data() : at<Twist>(s.work, node.work_C);
     const double* y = at<double>(s.work, node.work_y);
     double* a = s.result + node.mode_speed;
-    for (int i = 0; i < n; ++i) a[i] = y[i] - Y[i].dot(A);
+    for (int i = 0; i < n; ++i) a[i] = L[i * n + i] * (y[i] - Y[i].dot(A));
     for (int i = n; i-- > 0;) {
       for (int k = i + 1; k < n; ++k) a[i] -= L[k * n + i] * a[k];
-      a[i] *= L[i * n + i];
     }
     const Twist* J = at<Twist>(s.work, node.work_J);
     if (node.root_station >= 0) {

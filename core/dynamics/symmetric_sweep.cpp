@@ -98,6 +98,8 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
   const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
   world_acceleration_.setZero();
   world_acceleration_.template tail<Space::linear>() = -Project<Space>::position(g);
+  for (SymmetricNode<Space>& node : nodes_)
+    node.joint.pose_matters = node.parent >= 0 || !world_acceleration_.isZero(0);
 }
 
 template <class Space>

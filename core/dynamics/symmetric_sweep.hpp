@@ -55,7 +55,7 @@ struct SymmetricNode {
   std::vector<double> G0;
   std::vector<Variation<Space>> I1;  ///< h_k = −½ Vᵀ I1_k V
   // Frozen leaves: the eliminated modal block, once for ever.
-  std::vector<double> factor;  ///< L of G0 = L Lᵀ, n×n lower; diagonal inverted
+  std::vector<double> factor;  ///< of G0, see factorize
   std::vector<Twist> Y0;       ///< L⁻¹ C0ᵀ, n twists
   Matrix reduced;              ///< base − Y0ᵀ Y0
   // Work memory.

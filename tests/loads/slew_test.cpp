@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "withy/tests/conformance/allocations.hpp"
+#include "withy/tests/conformance/load_suite.hpp"
 #include "withy/tests/loads/load_plugins.hpp"
 
 namespace withy {
@@ -113,6 +114,11 @@ TEST(RigidInverseDynamics, adds_to_the_efforts_there_are_and_allocates_nothing) 
   load->add(0.4, std::span(y).first(6), std::span(y).subspan(6, 6), tau, scratch);
   EXPECT_EQ(allocations(), before);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(tau[i], 10 + alone[i], 1e-14);
+}
+
+TEST(RigidInverseDynamics, conforms) {
+  test::expect_load_conforms(*slew(1), two_link_arm(2));
+  test::expect_load_conforms(*slew(0.2), two_link_arm(0));
 }
 
 TEST(RigidInverseDynamics, hinges_it_cannot_move_are_named) {

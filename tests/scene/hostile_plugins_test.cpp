@@ -33,20 +33,23 @@ class HostilePlugins : public SceneTest {
   HostilePlugins() {
     using Made = std::unique_ptr<Body>;
     Enrollment e;
-    e.add<Body>({.id = "throws",
-                 .make = [](const Value&, const MakeContext&) -> Made { throw std::runtime_error("no luck"); }});
-    e.add<Body>({.id = "null", .make = [](const Value&, const MakeContext&) -> Made { return nullptr; }});
-    e.add<Body>({.id = "refused",
-                 .make = [](const Value&, const MakeContext&) -> Made { throw PluginError("a refused library"); }});
-    e.add<Body>({.id = "nan", .make = [](const Value&, const MakeContext&) -> Made {
-                   return std::make_unique<Lump>(std::numeric_limits<double>::quiet_NaN(), true);
-                 }});
-    e.add<Body>({.id = "rootless",
-                 .make = [](const Value&, const MakeContext&) -> Made { return std::make_unique<Lump>(1, false); }});
-    e.add<Body>({.id = "lump",
-                 .parameters = {number("strange", "furlong", "a unit nobody knows").optional(),
-                                boolean("hollow", "whether it is").otherwise(Value(false))},
-                 .make = [](const Value&, const MakeContext&) -> Made { return std::make_unique<Lump>(1, true); }});
+    const auto add = [&](const char* id, auto make, std::vector<ParameterSpec> parameters = {}) {
+      Plugin<Body> plugin;
+      plugin.id = id;
+      plugin.parameters = std::move(parameters);
+      plugin.make = make;
+      e.add(std::move(plugin));
+    };
+    add("throws", [](const Value&, const MakeContext&) -> Made { throw std::runtime_error("no luck"); });
+    add("null", [](const Value&, const MakeContext&) -> Made { return nullptr; });
+    add("refused", [](const Value&, const MakeContext&) -> Made { throw PluginError("a refused library"); });
+    add("nan", [](const Value&, const MakeContext&) -> Made {
+      return std::make_unique<Lump>(std::numeric_limits<double>::quiet_NaN(), true);
+    });
+    add("rootless", [](const Value&, const MakeContext&) -> Made { return std::make_unique<Lump>(1, false); });
+    add("lump", [](const Value&, const MakeContext&) -> Made { return std::make_unique<Lump>(1, true); },
+        {number("strange", "furlong", "a unit nobody knows").optional(),
+         boolean("hollow", "whether it is").otherwise(Value(false))});
     registry.admit(std::move(e), "test");
   }
   std::string with(const std::string& body) {
@@ -62,7 +65,7 @@ TEST_F(HostilePlugins, ThatThrowAreReported) {
 
 TEST_F(HostilePlugins, ThatMakeNothingAreReported) {
   EXPECT_EQ(problem("type: null"),
-            "s.yaml:4:3: /bodies/b/type: missing; need one of: beam, lump, nan, null, refused, "
+            "s.yaml:4:7: /bodies/b/type: missing; need one of: beam, lump, nan, null, refused, "
             "rigid, rootless, throws");
   EXPECT_EQ(problem("type: 'null'"), "s.yaml:4:3: /bodies/b: body 'null' cannot be made and does not say why");
 }
@@ -80,14 +83,14 @@ TEST_F(HostilePlugins, WhoseLibrariesAreRefusedAreNoFaultOfTheScene) {
 TEST_F(HostilePlugins, WithUnknownUnitsTakePlainNumbers) {
   EXPECT_EQ(problem("type: lump, strange: 3"), "");
   EXPECT_EQ(problem("type: lump, strange: 3 m"),
-            "s.yaml:4:27: /bodies/b/strange: got \"3 m\": units are not known here: write a number in furlong; need "
+            "s.yaml:4:28: /bodies/b/strange: got \"3 m\": units are not known here: write a number in furlong; need "
             "finite [furlong]");
 }
 
 TEST_F(HostilePlugins, TakeBooleansOnlyAsTrueAndFalse) {
   EXPECT_EQ(problem("type: lump, hollow: true"), "");
-  EXPECT_EQ(problem("type: lump, hollow: yes"), "s.yaml:4:26: /bodies/b/hollow: got \"yes\"; need true or false");
-  EXPECT_EQ(problem("type: lump, hollow: 1"), "s.yaml:4:26: /bodies/b/hollow: got 1; need true or false");
+  EXPECT_EQ(problem("type: lump, hollow: yes"), "s.yaml:4:27: /bodies/b/hollow: got \"yes\"; need true or false");
+  EXPECT_EQ(problem("type: lump, hollow: 1"), "s.yaml:4:27: /bodies/b/hollow: got 1; need true or false");
 }
 
 }  // namespace
