@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "withy/scene/names.hpp"
+#include "withy/scene/text_scan.hpp"
 #include "withy/scene/units.hpp"
 
 namespace withy {
@@ -225,43 +226,6 @@ class Builder final : public YAML::EventHandler {
   bool whole_ = true;
 };
 
-/// Length of the well-formed UTF-8 character at the beginning of s (RFC 3629, table 3-7 of Unicode), 0 where there is
-/// none or it is a control character other than tab and line ends.
-std::size_t character(std::string_view s) {
-  const auto byte = [&](std::size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0u; };
-  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
-  const unsigned a = byte(0);
-  const unsigned b = byte(1);
-  if (a < 0x80) return (a >= 0x20 && a != 0x7f) || a == '\t' || a == '\n' || a == '\r' ? 1 : 0;
-  if (a >= 0xC2 && a <= 0xDF) return follows(1) ? 2 : 0;
-  if (a >= 0xE0 && a <= 0xEF) {
-    if ((a == 0xE0 && b < 0xA0) || (a == 0xED && b > 0x9F)) return 0;
-    return follows(1) && follows(2) ? 3 : 0;
-  }
-  if (a >= 0xF0 && a <= 0xF4) {
-    if ((a == 0xF0 && b < 0x90) || (a == 0xF4 && b > 0x8F)) return 0;
-    return follows(1) && follows(2) && follows(3) ? 4 : 0;
-  }
-  return 0;
-}
-
-bool is_text(std::string_view text, const Origin& origin, Diagnostics& diagnostics) {
-  Place at{1, 1, origin.path};
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = character(text.substr(i));
-    if (length == 0) {
-      if (origin.line != 0) at = {origin.line, 0, origin.path};
-      diagnostics.error(at, fmt::format("byte 0x{:02x} is not UTF-8 text; a scene is YAML or JSON",
-                                        static_cast<unsigned char>(text[i])));
-      return false;
-    }
-    at = text[i] == '\n' ? Place{at.line + 1, 1, at.path}
-                         : Place{at.line, at.column + static_cast<int>(length), at.path};
-    i += length;
-  }
-  return true;
-}
-
 }  // namespace
 
 Place Document::key_place(const std::string& path) const {
@@ -277,7 +241,11 @@ bool read_document(std::string_view text, const Origin& origin, Document& docume
                       fmt::format("more than {} MiB; a scene is at most that large", DocumentLimits::bytes >> 20));
     return false;
   }
-  if (!is_text(text, origin, diagnostics)) return false;
+  if (const auto fault = scan_text(text)) {
+    const Place file{fault->line, fault->column, origin.path};
+    diagnostics.error(origin.line == 0 ? file : Place{origin.line, 0, origin.path}, fault->message);
+    return false;
+  }
   Builder builder(text, origin, document, diagnostics);
   try {
     std::istringstream stream{std::string(text)};

@@ -15,7 +15,7 @@ namespace withy {
 struct DocumentLimits {
   static constexpr std::size_t bytes = std::size_t{64} << 20;
   static constexpr int depth = 32;
-  static constexpr std::size_t values = 2'000'000;
+  static constexpr std::size_t values = 1'000'000;
   static constexpr std::size_t key_bytes = 256;
   static constexpr std::size_t path_bytes = std::size_t{256} << 20;  ///< of all values together
 };

@@ -15,12 +15,11 @@ constexpr char scene_to_run[] = "SCENE";
 void add_common(CLI::App& command, CommonArguments& a) {
   command.add_option("--plugins", a.plugin_directories, "Folder with plugins, searched before the program's own")
       ->type_name("DIR")
-      ->take_last();
-  command.get_option("--plugins")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1)
       ->allow_extra_args(false);
   command.add_flag("--json", a.json, "Give the result as JSON on standard output");
+  command.add_flag("-v,--verbose", a.verbose, "Log on standard error what is read, loaded and compiled");
 }
 
 void add_scene(CLI::App& command, SceneArguments& a) {

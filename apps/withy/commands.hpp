@@ -21,6 +21,7 @@ enum class ExitStatus : int {
 struct CommonArguments {
   std::vector<std::string> plugin_directories;  ///< searched before the program's own
   bool json = false;
+  bool verbose = false;  ///< log on standard error what is read, loaded and compiled
 };
 
 struct SceneArguments : CommonArguments {

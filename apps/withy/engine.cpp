@@ -1,5 +1,8 @@
 #include "withy/apps/withy/engine.hpp"
 
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
 #include <filesystem>
 #include <system_error>
 
@@ -20,6 +23,14 @@ auto as_input(const std::string& what, Function&& function) {
   }
 }
 
+/// Standard output carries results alone, so the log goes to standard error.
+void start_log(bool verbose) {
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>("withy", std::make_shared<spdlog::sinks::stderr_color_sink_mt>()));
+  spdlog::set_pattern("%T.%e %v");
+  spdlog::set_level(verbose ? spdlog::level::debug : spdlog::level::off);
+}
+
 std::vector<std::filesystem::path> plugin_folders(const CommonArguments& arguments) {
   std::vector<std::filesystem::path> folders;
   for (const std::string& folder : arguments.plugin_directories) {
@@ -34,6 +45,7 @@ std::vector<std::filesystem::path> plugin_folders(const CommonArguments& argumen
 
 Plugins::Plugins(const CommonArguments& arguments)
     : host_(plugin_folders(arguments)), registry_(std::make_unique<Registry>()) {
+  start_log(arguments.verbose);
   host_.attach(*registry_);
 }
 
@@ -41,7 +53,14 @@ Engine::Engine(const SceneArguments& arguments)
     : plugins_(arguments),
       scene_(as_input(arguments.scene, [&] { return read_scene(arguments.scene, registry(), arguments.options); })),
       equations_(as_input(arguments.scene + ": formulation " + scene_.formulation_name,
-                          [&] { return scene_.formulation->compile(scene_.model); })) {}
+                          [&] { return scene_.formulation->compile(scene_.model); })) {
+  spdlog::debug("{}: {} bodies, {} generalized speeds", scene_.file, model().bodies().size(), model().layout().speeds);
+  for (const PluginRecord& p : plugins_.host().plugins()) {
+    if (p.state == PluginRecord::State::loaded) spdlog::debug("plugin {}/{} from {}", p.kind, p.id, p.file.string());
+    if (p.state == PluginRecord::State::refused) spdlog::debug("refused {}: {}", p.file.string(), p.reason);
+  }
+  for (const std::string& saving : equations_->savings()) spdlog::debug("compiled: {}", saving);
+}
 
 std::string Engine::formulation_summary() const {
   const auto* plugin = registry().find<Formulation>(scene_.formulation_name);

@@ -63,6 +63,7 @@ TEST(PluginHost, is_never_unloaded_so_objects_outlive_host_and_registry) {
     withy::Diagnostics diagnostics;
     body = registry.find<withy::Body>("zoo-good")->make(withy::Value::map({}), {registry, diagnostics});
   }
+  EXPECT_EQ(ask({place("pair")}, "zoo-left"), "loaded") << "another host, another library";
   EXPECT_TRUE(zoo_keeper::is_mapped(fs::canonical(place("good")) / "zoo-good.so"));
   EXPECT_EQ(body->stations(), "root");
 }

@@ -106,7 +106,7 @@ class Paper : public testing::TestWithParam<Outcome> {};
 TEST_P(Paper, outcome_of_the_slew) {
   const Outcome& expected = GetParam();
   const SceneRun run("two-link-slew", expected.formulation,
-                {"loads.slew.time_scale=" + std::to_string(expected.time_scale)});
+                     {"loads.slew.time_scale=" + std::to_string(expected.time_scale)});
   if (expected.completes) {
     ASSERT_EQ(run.summary.status, RunStatus::completed) << run.summary.message;
     const double tolerance = std::string(expected.formulation) == "quadratic" ? 0.002 : 0.01;
@@ -145,7 +145,7 @@ TEST(Paper, peak_tip_deflections_of_the_quadratic_arm) {
 /// some thousand steps, 1e-7 of the motion's own energy and momentum is generous; the table shows the figures.
 TEST(Conservation, energy_and_angular_momentum_of_a_free_undamped_scene) {
   const SceneRun run("beam-on-base", "quadratic",
-                {"integrator.rtol=1e-10", "integrator.atol=1e-12", "time.end=5", "time.output=1"});
+                     {"integrator.rtol=1e-10", "integrator.atol=1e-12", "time.end=5", "time.output=1"});
   ASSERT_EQ(run.summary.status, RunStatus::completed) << run.summary.message;
   const Energies first = run.equations->energies(run.outputs.front().y);
   const double energy = first.kinetic + first.potential;
