@@ -20,7 +20,8 @@ file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/withy SYMBOLIC)
 
 add_library(withy-options INTERFACE)
-target_compile_options(withy-options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Werror)
+target_compile_options(withy-options INTERFACE -Wall -Wextra -Wpedantic -Wshadow
+  $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor> -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # False reports of g++ 12: overlaps in string concatenation (GCC bug 105651), bounds of one-element Eigen matrices.
   target_compile_options(withy-options INTERFACE -Wno-restrict -Wno-array-bounds)
