@@ -1,113 +1,130 @@
 #include "withy/core/dynamics/rigid_inverse_dynamics.hpp"
 
-namespace withy {
-namespace {
+#include <cstdint>
 
-/// What the outward pass leaves for the inward pass, in the caller's scratch space.
-struct LinkScratch {
-  LinkScratch(double* at, std::size_t speeds)
-      : R(at), p(at + 9), V(at + 12), A(at + 18), F(at + 24), H(at + 30, 6, static_cast<Eigen::Index>(speeds)) {}
-  static std::size_t size(std::size_t speeds) { return 30 + 6 * speeds; }
-  Eigen::Map<Matrix3> R;         ///< R_PM
-  Eigen::Map<Vector3> p;         ///< origin of M in P
-  Eigen::Map<Spatial::Twist> V;  ///< velocity
-  Eigen::Map<Spatial::Twist> A;  ///< acceleration less gravity
-  Eigen::Map<Spatial::Twist> F;  ///< wrench that the hinge transmits
-  Eigen::Map<Eigen::Matrix<double, 6, Eigen::Dynamic>> H;
+#include "withy/core/dynamics/invariants.hpp"
+#include "withy/core/dynamics/joint_step.hpp"
+
+namespace withy {
+
+class RigidInverseDynamics::Algorithm {
+ public:
+  virtual ~Algorithm() = default;
+  [[nodiscard]] virtual std::size_t scratch() const = 0;
+  virtual void efforts(const double* x, const double* u, const double* u_dot, double* efforts,
+                       double* scratch) const noexcept = 0;
 };
 
-using Rates = Eigen::Map<const Eigen::VectorXd>;
+namespace {
 
-/// Pose of a frame in its body, undeformed: the section there has the body's axes.
-Pose in_body(const Frame& frame) { return {frame.pose.R, frame.section.X + frame.pose.p}; }
+using namespace sweep;
 
-/// Inertia of a point mass at r.
-Spatial::Matrix point_inertia(double mass, const Vector3& r) {
-  const Matrix3 c = skew<double>(r);
-  Spatial::Matrix m;
-  m << -mass * c * c, mass * c, -mass * c, mass * Matrix3::Identity();
-  return m;
-}
+template <class Space>
+class NewtonEuler final : public RigidInverseDynamics::Algorithm {
+  using Twist = typename Space::Twist;
+
+ public:
+  NewtonEuler(const Tree& tree, const Vector3& gravity) {
+    for (const NodeSpec& spec : tree.nodes) {
+      const NodeSpec at_hinge = rooted(in_strain_order(spec, StrainOrder::linear));
+      Link link{JointData<Space>(spec), RigidPart<Space>(Invariants(spec, StrainOrder::linear).I0), spec.parent};
+      if (spec.parent >= 0) {
+        // The undeformed section is parallel to its node's frame, so the hinge is fixed to that frame.
+        const NodeSpec& parent = tree.nodes[static_cast<std::size_t>(spec.parent)];
+        Pose F = spec.F;
+        if (spec.parent_station >= 0) {
+          if (parent.root_station >= 0) F = Pose{parent.M.R.transpose(), Vector3::Zero()} * F;
+          F.p += stations_[static_cast<std::size_t>(spec.parent)][static_cast<std::size_t>(spec.parent_station)];
+        }
+        link.joint.F = Space::make(F);
+      }
+      link.joint.pose_matters = spec.parent >= 0 || !gravity.isZero(0);
+      links_.push_back(std::move(link));
+      stations_.emplace_back();
+      for (const StationSpec& s : at_hinge.stations) stations_.back().push_back(s.at.X);
+    }
+    const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
+    world_ = Space::Twist::of(Space::angle(Vector3::Zero()), Space::position(-g));
+  }
+
+  std::size_t scratch() const override { return (links_.size() * sizeof(Motion) + alignof(Motion)) / sizeof(double); }
+
+  // Outward, for each link, parents first:  V = X V_P + H ẋ,   A = X A_P + H ẍ + Ḣ ẋ + V × (H ẋ),   A_world = −g,
+  //   F = I A + V ×* (I V).
+  // Inward, children first:  τ = Hᵀ F,   F_P += Xᵀ F.
+  void efforts(const double* x, const double* u, const double* u_dot, double* efforts,
+               double* scratch) const noexcept override {
+    auto* motions = reinterpret_cast<Motion*>((reinterpret_cast<std::uintptr_t>(scratch) + alignof(Motion) - 1) /
+                                              alignof(Motion) * alignof(Motion));
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const Link& link = links_[i];
+      Motion& m = motions[i];
+      JointMotion<Space> joint;
+      joint_motion<Space>(link.joint, x + link.joint.position, u + link.joint.speed, joint);
+      m.SM = joint.SM;
+      m.V = joint.rate;
+      if (link.parent >= 0) m.V += Space::to_child(m.SM, motions[link.parent].V);
+      m.A = Space::to_child(m.SM, link.parent < 0 ? world_ : motions[link.parent].A) + Space::cross(m.V, joint.rate) +
+            joint.bias;
+      if (single(link.joint.kind)) {
+        m.A += along<Space>(link.joint.kind, link.joint.direction * u_dot[link.joint.speed]);
+      } else if constexpr (Space::angular == 3) {
+        if (link.joint.kind != Joint::fixed) {
+          const HingeMotion h = general_motion(link.joint, x + link.joint.position, u + link.joint.speed);
+          for (Eigen::Index k = 0; k < h.H.cols(); ++k)
+            m.A += Space::Twist::of(h.H.col(k)) * u_dot[link.joint.speed + static_cast<std::size_t>(k)];
+        }
+      }
+      m.F = link.inertia.inertia * m.A + link.inertia.velocity_wrench(m.V);
+    }
+    for (std::size_t i = links_.size(); i-- > 0;) {
+      const Link& link = links_[i];
+      const Twist& F = motions[i].F;
+      if (single(link.joint.kind)) {
+        efforts[link.joint.speed] = link.joint.direction * component<Space>(link.joint.kind, F);
+      } else if constexpr (Space::angular == 3) {
+        if (link.joint.kind != Joint::fixed) {
+          const HingeMotion h = general_motion(link.joint, x + link.joint.position, u + link.joint.speed);
+          for (Eigen::Index k = 0; k < h.H.cols(); ++k)
+            efforts[link.joint.speed + static_cast<std::size_t>(k)] = Space::dot(Space::Twist::of(h.H.col(k)), F);
+        }
+      }
+      if (link.parent >= 0) motions[link.parent].F += Space::to_parent(motions[i].SM, F);
+    }
+  }
+
+ private:
+  struct Link {
+    JointData<Space> joint;
+    RigidPart<Space> inertia;
+    int parent;  ///< −1: world
+  };
+  struct Motion {
+    typename Space::Frame SM;
+    Twist V, A;  ///< acceleration less gravity
+    Twist F;     ///< wrench that the hinge transmits
+  };
+  std::vector<Link> links_;
+  std::vector<std::vector<Vector3>> stations_;  ///< of each node, in its hinge frame
+  Twist world_;
+};
 
 }  // namespace
 
-RigidInverseDynamics::RigidInverseDynamics(const Model& model) : gravity_(model.gravity()) {
-  struct Carried {
-    int link;   ///< that carries the body; −1: world
-    Pose X_LB;  ///< the body in that link's M
-  };
-  std::vector<Carried> carried;
-  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    const BodyNode& body = model.bodies()[b];
-    const HingeNode& node = model.hinges()[b];
-    int link = -1;
-    Pose X_LF = node.offset;
-    if (node.parent >= 0) {
-      const auto parent = static_cast<std::size_t>(node.parent);
-      link = carried[parent].link;
-      const Frame& frame = model.bodies()[parent].frames[static_cast<std::size_t>(node.parent_frame)];
-      X_LF = carried[parent].X_LB * in_body(frame) * node.offset;
-    }
-    const Pose X_MB = in_body(body.frames[static_cast<std::size_t>(node.child_frame)]).inverse();
-    Pose X_LB = X_MB;
-    if (node.hinge->speeds() == 0) {
-      std::vector<double> x(node.hinge->coordinates());
-      node.hinge->reference(x);
-      HingeMotion motion;
-      node.hinge->motion(x, {}, motion);
-      X_LB = X_LF * motion.pose * X_MB;
-    } else {
-      links_.push_back({.hinge = node.hinge, .slot = model.layout().hinges[b], .parent = link, .X_PF = X_LF});
-      links_.back().scratch = scratch_;
-      link = static_cast<int>(links_.size()) - 1;
-      scratch_ += LinkScratch::size(node.hinge->speeds());
-    }
-    carried.push_back({link, X_LB});
-    if (link < 0) continue;
-    Link& l = links_[static_cast<std::size_t>(link)];
-    for (const Particle& particle : body.body->shape().particles)
-      l.inertia += point_inertia(particle.mass, X_LB.R * particle.at.X + X_LB.p);
-    for (const Section& section : body.body->shape().sections)
-      l.inertia.topLeftCorner<3, 3>() += X_LB.R * section.inertia * X_LB.R.transpose();
+RigidInverseDynamics::RigidInverseDynamics(const Model& model) {
+  const Tree tree = compile_tree(model);
+  if (tree.planar) {
+    algorithm_ = std::make_shared<NewtonEuler<Planar>>(tree, model.gravity());
+  } else {
+    algorithm_ = std::make_shared<NewtonEuler<Spatial>>(tree, model.gravity());
   }
 }
 
-// Outward, for each link, parents first:  X_PM = X_PF X_FM(x),   V = X_MP V_P + H ẋ,
-//   A = X_MP A_P + H ẍ + Ḣ ẋ + V × (H ẋ),   A_world = −g,   F = I A + V ×* (I V).
-// Inward, children first:  τ = Hᵀ F,   F_P += X_PM* F.
+std::size_t RigidInverseDynamics::scratch() const { return algorithm_->scratch(); }
+
 void RigidInverseDynamics::efforts(std::span<const double> x, std::span<const double> u, std::span<const double> u_dot,
                                    std::span<double> efforts, std::span<double> scratch) const noexcept {
-  HingeMotion motion;
-  for (const Link& link : links_) {
-    const auto speeds = static_cast<Eigen::Index>(link.slot.speeds);
-    const std::span<const double> rates = u.subspan(link.slot.speed, link.slot.speeds);
-    link.hinge->motion(x.subspan(link.slot.position, link.slot.positions), rates, motion);
-    const Pose X_PM = link.X_PF * motion.pose;
-    LinkScratch s(scratch.data() + link.scratch, link.slot.speeds);
-    s.R = X_PM.R;
-    s.p = X_PM.p;
-    s.H = motion.H;
-    const Spatial::Twist J = motion.H.lazyProduct(Rates(rates.data(), speeds));
-    s.V = J;
-    s.A << Vector3::Zero(), -X_PM.R.transpose() * gravity_;
-    if (link.parent >= 0) {
-      const Link& p = links_[static_cast<std::size_t>(link.parent)];
-      const LinkScratch parent(scratch.data() + p.scratch, p.slot.speeds);
-      const Spatial::Frame X = Spatial::make(X_PM);
-      s.V += Spatial::to_child(X, parent.V);
-      s.A = Spatial::to_child(X, parent.A);
-    }
-    s.A += motion.bias + motion.H.lazyProduct(Rates(u_dot.data() + link.slot.speed, speeds)) + Spatial::cross(s.V, J);
-    s.F = link.inertia * s.A + Spatial::cross_force(s.V, link.inertia * s.V);
-  }
-  for (auto link = links_.rbegin(); link != links_.rend(); ++link) {
-    const LinkScratch s(scratch.data() + link->scratch, link->slot.speeds);
-    Eigen::Map<Eigen::VectorXd>(efforts.data() + link->slot.speed, s.H.cols()) = s.H.transpose().lazyProduct(s.F);
-    if (link->parent < 0) continue;
-    const Link& p = links_[static_cast<std::size_t>(link->parent)];
-    const Spatial::Twist F = s.F;
-    LinkScratch(scratch.data() + p.scratch, p.slot.speeds).F += Spatial::to_parent(Spatial::Frame{s.R, s.p}, F);
-  }
+  algorithm_->efforts(x.data(), u.data(), u_dot.data(), efforts.data(), scratch.data());
 }
 
 }  // namespace withy

@@ -2,6 +2,8 @@
 /// Motion of a section relative to its body's frame, in the section's own axes: what hinges and carried bodies see.
 #pragma once
 
+#include <cmath>
+
 #include "withy/core/dynamics/mass_table.hpp"
 #include "withy/core/dynamics/sweep_node.hpp"
 #include "withy/core/shape/point_motion.hpp"
@@ -21,66 +23,54 @@ struct StationMotion {
 template <class Space, int N>
 inline void station_motion(const Fields<Space>& f, int modes, const double* q, const double* q_dot,
                            StationMotion<Space>& out, typename Space::Twist* J) {
-  using Position = typename Space::Position;
-  using Angular = typename Space::Angular;
+  using Twist = typename Space::Twist;
   const int n = count<N>(modes);
-  Position r = f.X;
-  Position r_rate = Position::Zero();
-  Position r_bias = Position::Zero();
-  Angular t = Angular::Zero();
-  Angular t_rate = Angular::Zero();
-  Angular t_bias = Angular::Zero();
-  constexpr int A = Space::angular;
-  constexpr int L = Space::linear;
-  for (int i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    Position P = f.phi[k];
-    Angular T = f.psi[k];
-    if (f.second_order) {
-      for (int j = 0; j < n; ++j) {
-        const auto kj = static_cast<std::size_t>(i * n + j);
-        P += f.gamma[kj] * q[j];
-        T += f.theta[kj] * q[j];
-        r_bias += f.gamma[kj] * (q_dot[i] * q_dot[j]);
-        t_bias += f.theta[kj] * (q_dot[i] * q_dot[j]);
+  Twist displacement = Twist::zero(), rate = Twist::zero(), bias = Twist::zero();
+  for (int i = 0; i < n; ++i) J[i] = f.first[static_cast<std::size_t>(i)];
+  if (!f.second.empty()) {
+    const Twist* second = f.second.data();
+    for (int i = 0; i < n; ++i) {
+      for (int j = i; j < n; ++j, ++second) {
+        J[i] += *second * q[j];
+        if (i != j) J[j] += *second * q[i];
+        bias += *second * ((i == j ? 1.0 : 2.0) * q_dot[i] * q_dot[j]);
       }
     }
-    r += (0.5 * q[i]) * (f.phi[k] + P);
-    t += (0.5 * q[i]) * (f.psi[k] + T);
-    r_rate += P * q_dot[i];
-    t_rate += T * q_dot[i];
-    J[i].template head<A>() = T;
-    J[i].template tail<L>() = P;
   }
-  out.frame.p = r;
-  if constexpr (A == 1) {
-    out.frame.R = Space::about_z(std::cos(t[0]), std::sin(t[0]));
-    for (int i = 0; i < n; ++i) J[i].template tail<L>() = Space::unrotate(out.frame.R, J[i].template tail<L>());
-    const Position v = Space::unrotate(out.frame.R, r_rate);
-    const Position b = Space::unrotate(out.frame.R, r_bias);
-    out.rate << t_rate, v;
-    out.bias << t_bias, b[0] + t_rate[0] * v[1], b[1] - t_rate[0] * v[0];
+  for (int i = 0; i < n; ++i) {
+    displacement += (f.first[static_cast<std::size_t>(i)] + J[i]) * (0.5 * q[i]);
+    rate += J[i] * q_dot[i];
+  }
+  if constexpr (Space::angular == 1) {
+    out.frame.R = {std::cos(displacement.w), std::sin(displacement.w)};
+    out.frame.p = {f.X.x + displacement.x, f.X.y + displacement.y};
+    const auto turn = [&](const Twist& V) { return Twist::of(V.w, Space::unrotate(out.frame.R, {V.x, V.y})); };
+    for (int i = 0; i < n; ++i) J[i] = turn(J[i]);
+    out.rate = turn(rate);
+    const Twist b = turn(bias);
+    out.bias = {b.w, b.x + out.rate.w * out.rate.y, b.y - out.rate.w * out.rate.x};
   } else {
-    const detail::ExponentialCoefficients<double> k(t.squaredNorm());
-    const Eigen::Matrix3d hat = skew<double>(t);
-    const Eigen::Matrix3d hat2 = hat * hat;
-    const Eigen::Matrix3d hat_rate = skew<double>(t_rate);
-    out.frame.R = Eigen::Matrix3d::Identity() + k.a * hat + k.b * hat2;
-    const Eigen::Matrix3d right = Eigen::Matrix3d::Identity() - k.b * hat + k.c * hat2;
-    const double half_s_rate = t.dot(t_rate);
-    const Eigen::Matrix3d right_rate =
-        2 * half_s_rate * (k.dc * hat2 - k.db * hat) - k.b * hat_rate + k.c * (hat_rate * hat + hat * hat_rate);
-    for (int i = 0; i < n; ++i) {
-      const Angular T = J[i].template head<3>();
-      const Position P = J[i].template tail<3>();
-      J[i].template head<3>() = right * T;
-      J[i].template tail<3>() = out.frame.R.transpose() * P;
-    }
-    const Position v = out.frame.R.transpose() * r_rate;
-    const Angular w = right * t_rate;
-    out.rate << w, v;
-    out.bias.template head<3>() = right_rate * t_rate + right * t_bias;
-    out.bias.template tail<3>() = out.frame.R.transpose() * r_bias - w.cross(v);
+    const Triple t = displacement.w;
+    const double s = dot(t, t);
+    const detail::ExponentialCoefficients<double> k(s);
+    // 1 + a θ̂ + b θ̂², with θ̂² = θθᵀ − s 1.
+    const auto polynomial = [&](double a, double b) {
+      const double d = 1 - b * s;
+      Block m = {{Triple(d, a * t[2], -a * t[1]), Triple(-a * t[2], d, a * t[0]), Triple(a * t[1], -a * t[0], d)}};
+      m.subtract_outer(t * -b, t);
+      return m;
+    };
+    out.frame.R = polynomial(k.a, k.b);
+    out.frame.p = f.X + displacement.v;
+    const Block right = polynomial(-k.b, k.c);
+    const Block back = transpose(out.frame.R);
+    for (int i = 0; i < n; ++i) J[i] = {right * J[i].w, back * J[i].v};
+    out.rate = {right * rate.w, back * rate.v};
+    // Ṫ θ̇ with θ̇ × θ̇ = 0.
+    const double s_rate = 2 * dot(t, rate.w);
+    const Triple x = cross(t, rate.w);
+    const Triple turning = cross(t, x) * (k.dc * s_rate) - x * (k.db * s_rate) + cross(rate.w, x) * k.c;
+    out.bias = {turning + right * bias.w, back * bias.v - cross(out.rate.w, out.rate.v)};
   }
 }
 

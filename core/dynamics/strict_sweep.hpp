@@ -41,7 +41,7 @@ struct StrictNode {
   bool frozen = false;  ///< ruthless: order zero alone
   std::size_t mode_position = 0, mode_speed = 0;
   std::vector<double> stiffness, damping;
-  typename Space::Matrix I0;
+  RigidPart<Space> I0;
   std::vector<Variation<Space>> I1, I2;
   std::vector<Twist> C0;
   std::vector<Twist> C1;  ///< ∂C_i/∂q_k, element k n + i

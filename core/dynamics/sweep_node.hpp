@@ -18,121 +18,116 @@ namespace withy::sweep {
 /// along the first; ball and free have local rates (axes of M) equal to the rotated rates of the State.
 enum class Joint { fixed, rotate, slide, ball, free, custom };
 
-/// Projections from three dimensions into the space of a sweep; in the plane the third axis is the normal.
+/// The inertia of a rigid part in the space of the sweep.
 template <class Space>
-struct Project;
+typename Space::Inertia inertia_of(const RigidInertia& I);
 
 template <>
-struct Project<Spatial> {
-  static Spatial::Twist twist(const Vector6& v) { return v; }
-  static Spatial::Position position(const Vector3& a) { return a; }
-  static Spatial::Angular angular(const Vector3& a) { return a; }
-  static Spatial::Matrix inertia(const RigidInertia& I) {
-    Spatial::Matrix m;
-    const Matrix3 s = skew<double>(I.moment);
-    m << I.inertia, s, s.transpose(), I.mass * Matrix3::Identity();
-    return m;
-  }
-};
+inline Spatial::Inertia inertia_of<Spatial>(const RigidInertia& I) {
+  return {Spatial::block(I.inertia),
+          Block::skew(-Spatial::position(I.moment)),
+          {{Triple(I.mass, 0, 0), Triple(0, I.mass, 0), Triple(0, 0, I.mass)}}};
+}
 
 template <>
-struct Project<Planar> {
-  static Planar::Twist twist(const Vector6& v) { return {v[2], v[3], v[4]}; }
-  static Planar::Position position(const Vector3& a) { return a.head<2>(); }
-  static Planar::Angular angular(const Vector3& a) { return Planar::Angular(a.z()); }
-  static Planar::Matrix inertia(const RigidInertia& I) {
-    Planar::Matrix m;
-    m << I.inertia(2, 2), -I.moment.y(), I.moment.x(), -I.moment.y(), I.mass, 0, I.moment.x(), 0, I.mass;
-    return m;
-  }
-};
+inline Planar::Inertia inertia_of<Planar>(const RigidInertia& I) {
+  return {I.inertia(2, 2), -I.moment.y(), I.moment.x(), I.mass, 0, I.mass};
+}
 
 /// Change of a rigid inertia whose mass stays: first moment and inertia about the origin, as few numbers as there are.
-/// As a quadratic form Vᵀ I V it is a dot product with `square` of V.
+/// As a quadratic form Uᵀ I V it is the dot product with `bilinear` of U and V.
 template <class Space>
 struct Variation;
 
 template <>
 struct Variation<Planar> {
-  static constexpr int size = 3;
-  Eigen::Vector3d a = Eigen::Vector3d::Zero();  ///< moment x, moment y, inertia
-  static Variation of(const RigidInertia& I) { return {{I.moment.x(), I.moment.y(), I.inertia(2, 2)}}; }
+  double x, y, J;  ///< moment, inertia
+  static Variation zero() { return {0, 0, 0}; }
+  static Variation of(const RigidInertia& I) { return {I.moment.x(), I.moment.y(), I.inertia(2, 2)}; }
+  static Variation bilinear(const Planar::Twist& U, const Planar::Twist& V) {
+    return {U.w * V.y + U.y * V.w, -(U.w * V.x + U.x * V.w), U.w * V.w};
+  }
+  friend double dot(const Variation& a, const Variation& b) { return a.x * b.x + a.y * b.y + a.J * b.J; }
+  void add(const Variation& b, double s) { x += b.x * s, y += b.y * s, J += b.J * s; }
   /// I V.
   [[nodiscard]] Planar::Twist times(const Planar::Twist& V) const {
-    return {a[2] * V[0] + a[0] * V[2] - a[1] * V[1], -a[1] * V[0], a[0] * V[0]};
+    return {J * V.w + x * V.y - y * V.x, -y * V.w, x * V.w};
   }
-  /// b with b·a = Uᵀ I V.
-  static Eigen::Vector3d bilinear(const Planar::Twist& U, const Planar::Twist& V) {
-    return {U[0] * V[2] + U[2] * V[0], -(U[0] * V[1] + U[1] * V[0]), U[0] * V[0]};
-  }
-  [[nodiscard]] Planar::Matrix matrix() const {
-    Planar::Matrix m;
-    m << a[2], -a[1], a[0], -a[1], 0, 0, a[0], 0, 0;
-    return m;
-  }
+  [[nodiscard]] Planar::Inertia inertia() const { return {J, -y, x, 0, 0, 0}; }
 };
 
 template <>
 struct Variation<Spatial> {
-  static constexpr int size = 9;
-  Eigen::Matrix<double, 9, 1> a = Eigen::Matrix<double, 9, 1>::Zero();  ///< moment; inertia xx yy zz xy xz yz
+  Triple s, d, o;  ///< moment; inertia xx yy zz; xy xz yz
+  static Variation zero() { return {Triple::zero(), Triple::zero(), Triple::zero()}; }
   static Variation of(const RigidInertia& I) {
-    Variation v;
-    v.a << I.moment, I.inertia(0, 0), I.inertia(1, 1), I.inertia(2, 2), I.inertia(0, 1), I.inertia(0, 2),
-        I.inertia(1, 2);
-    return v;
+    return {Spatial::position(I.moment), Triple(I.inertia(0, 0), I.inertia(1, 1), I.inertia(2, 2)),
+            Triple(I.inertia(0, 1), I.inertia(0, 2), I.inertia(1, 2))};
   }
+  static Variation bilinear(const Spatial::Twist& U, const Spatial::Twist& V) {
+    const Triple &u = U.w, &w = V.w;
+    return {cross(V.v, u) + cross(U.v, w), u.p * w.p,
+            Triple(u[0] * w[1] + u[1] * w[0], u[0] * w[2] + u[2] * w[0], u[1] * w[2] + u[2] * w[1])};
+  }
+  friend double dot(const Variation& a, const Variation& b) {
+    return sum(a.s.p * b.s.p + a.d.p * b.d.p + a.o.p * b.o.p);
+  }
+  void add(const Variation& b, double k) { s += b.s * k, d += b.d * k, o += b.o * k; }
   [[nodiscard]] Spatial::Twist times(const Spatial::Twist& V) const {
-    const Eigen::Vector3d s = a.head<3>(), w = V.head<3>(), v = V.tail<3>();
-    Spatial::Twist r;
-    r.head<3>() = Eigen::Vector3d(a[3] * w[0] + a[6] * w[1] + a[7] * w[2], a[6] * w[0] + a[4] * w[1] + a[8] * w[2],
-                                  a[7] * w[0] + a[8] * w[1] + a[5] * w[2]) +
-                  s.cross(v);
-    r.tail<3>() = w.cross(s);
-    return r;
+    return {tensor() * V.w + cross(s, V.v), cross(V.w, s)};
   }
-  static Eigen::Matrix<double, 9, 1> bilinear(const Spatial::Twist& U, const Spatial::Twist& V) {
-    const Eigen::Vector3d u = U.head<3>(), p = U.tail<3>(), w = V.head<3>(), v = V.tail<3>();
-    Eigen::Matrix<double, 9, 1> b;
-    b.head<3>() = v.cross(u) + p.cross(w);
-    b.tail<6>() << u[0] * w[0], u[1] * w[1], u[2] * w[2], u[0] * w[1] + u[1] * w[0], u[0] * w[2] + u[2] * w[0],
-        u[1] * w[2] + u[2] * w[1];
-    return b;
-  }
-  [[nodiscard]] Spatial::Matrix matrix() const {
-    Spatial::Matrix m = Spatial::Matrix::Zero();
-    m.topLeftCorner<3, 3>() << a[3], a[6], a[7], a[6], a[4], a[8], a[7], a[8], a[5];
-    const Matrix3 s = skew<double>(Eigen::Vector3d(a.head<3>()));
-    m.topRightCorner<3, 3>() = s;
-    m.bottomLeftCorner<3, 3>() = s.transpose();
-    return m;
+  [[nodiscard]] Spatial::Inertia inertia() const { return {tensor(), Block::skew(-s), Block::zero()}; }
+
+ private:
+  [[nodiscard]] Block tensor() const {
+    return {{Triple(d[0], o[0], o[1]), Triple(o[0], d[1], o[2]), Triple(o[1], o[2], d[2])}};
   }
 };
 
-/// Expansion of a station's section, coefficients in the order the sweeps read them.
+/// A rigid part in the space of the sweep: as a map of accelerations, and what its velocity terms need.
+template <class Space>
+struct RigidPart {
+  typename Space::Inertia inertia;
+  double mass = 0;
+  typename Space::Position moment;
+
+  RigidPart() : RigidPart(RigidInertia{}) {}
+  explicit RigidPart(const RigidInertia& I)
+      : inertia(inertia_of<Space>(I)), mass(I.mass), moment(Space::position(I.moment)) {}
+  /// V ×* (I V), the wrench that holds the part against its velocity.
+  [[nodiscard]] typename Space::Twist velocity_wrench(const typename Space::Twist& V) const {
+    if constexpr (Space::angular == 1) {
+      const double cx = -V.w * V.y, cy = V.w * V.x, ww = V.w * V.w;
+      return {moment.x * cy - moment.y * cx, mass * cx - ww * moment.x, mass * cy - ww * moment.y};
+    } else {
+      const Triple c = cross(V.w, V.v);
+      return {cross(V.w, inertia.A * V.w) + cross(moment, c), mass * c + cross(V.w, cross(V.w, moment))};
+    }
+  }
+};
+
+/// Expansion of a station's section: rotation and displacement of second order, as pairs (angular; linear) parallel to
+/// the node's frame.
 template <class Space>
 struct Fields {
-  typename Space::Position X;
-  bool second_order = false;                    ///< Γ or Θ are there
-  std::vector<typename Space::Position> phi;    ///< n
-  std::vector<typename Space::Position> gamma;  ///< n×n
-  std::vector<typename Space::Angular> psi;     ///< n
-  std::vector<typename Space::Angular> theta;   ///< n×n
+  using Twist = typename Space::Twist;
+  typename Space::Position X = Space::Position::zero();
+  std::vector<Twist> first;   ///< (Ψ_i; Φ_i)
+  std::vector<Twist> second;  ///< (Θ_ij; Γ_ij) for i ≤ j; empty where all are zero
 
   Fields() = default;
-  explicit Fields(const PointExpansion& e) : X(Project<Space>::position(e.X)) {
-    const Eigen::Index n = e.phi.cols();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      phi.push_back(Project<Space>::position(e.phi.col(i)));
-      psi.push_back(Project<Space>::angular(e.psi.col(i)));
-      for (Eigen::Index j = 0; j < n; ++j) {
+  explicit Fields(const PointExpansion& e) : X(Space::position(e.X)) {
+    bool curved = false;
+    for (Eigen::Index i = 0; i < e.phi.cols(); ++i) {
+      first.push_back(Twist::of(Space::angle(e.psi.col(i)), Space::position(e.phi.col(i))));
+      for (Eigen::Index j = i; j < e.phi.cols(); ++j) {
         const Vector3 g(e.gamma[0](i, j), e.gamma[1](i, j), e.gamma[2](i, j));
         const Vector3 t(e.theta[0](i, j), e.theta[1](i, j), e.theta[2](i, j));
-        gamma.push_back(Project<Space>::position(g));
-        theta.push_back(Project<Space>::angular(t));
-        second_order = second_order || !g.isZero(0) || !t.isZero(0);
+        second.push_back(Twist::of(Space::angle(t), Space::position(g)));
+        curved = curved || !g.isZero(0) || !t.isZero(0);
       }
     }
+    if (!curved) second.clear();
   }
 };
 
@@ -174,12 +169,6 @@ struct JointData {
         kind = Joint::free;
         break;
     }
-  }
-  /// First row of the twist that the local rates fill, for the inlined kinds.
-  [[nodiscard]] static constexpr int row(Joint kind) {
-    if (kind == Joint::rotate) return Space::angular - 1;
-    if (kind == Joint::slide) return Space::angular;
-    return 0;
   }
 };
 

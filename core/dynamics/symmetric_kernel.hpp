@@ -12,197 +12,243 @@
 
 namespace withy::sweep {
 
+/// What of a node the compiler knows: rigid; ruthless; or its modes without truncation.
+enum class Flavor { rigid, frozen, full };
+
 /// Constant elimination of a frozen leaf's modes.
 template <class Space>
 void precompute(SymmetricNode<Space>& node) {
   node.factor = node.G0;
   node.Y0 = node.C0;
-  node.reduced = node.base;
+  node.reduced = node.base.inertia;
   if (!factorize<-1>(node.factor.data(), node.modes)) {
     node.factor.clear();  // the sweep meets the same pivot and reports it
     return;
   }
   solve_lower<-1>(node.factor.data(), node.modes, node.Y0.data());
-  for (int i = 0; i < node.modes; ++i) {
-    const auto& y = node.Y0[static_cast<std::size_t>(i)];
-    node.reduced -= y * (node.factor[static_cast<std::size_t>(i * node.modes + i)] * y).transpose();
-  }
+  for (std::size_t i = 0, n = node.Y0.size(); i < n; ++i)
+    node.reduced.subtract_square(node.Y0[i], node.factor[i * n + i]);
 }
 
-template <class Space, int N>
+template <class Space>
+inline const typename Space::Twist& outer_twist(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+  const SymmetricNode<Space>& parent = s.nodes[node.parent];
+  return node.parent_station < 0 ? at<NodeWork<Space>>(s.work, parent.work)->V
+                                 : at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].V;
+}
+
+template <class Space, int N, Flavor flavor>
 [[gnu::flatten]] inline void outward_motion(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
   const int n = count<N>(node.modes);
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
-  joint_motion<Space>(node.joint, s.positions + node.joint.position, s.speeds + node.joint.speed, w.joint);
-  if (node.parent < 0) {
-    w.V_M = w.joint.rate;
-  } else {
-    const SymmetricNode<Space>& parent = s.nodes[node.parent];
-    const Twist& V = node.parent_station < 0
-                         ? at<NodeWork<Space>>(s.work, parent.work)->V
-                         : at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].V;
-    w.V_M = Space::to_child(w.joint.SM, V) + w.joint.rate;
-  }
-  w.sigma = Space::cross(w.V_M, w.joint.rate) + w.joint.bias;
-  w.V = w.V_M;
+  JointMotion<Space> joint;
+  joint_motion<Space>(node.joint, s.positions + node.joint.position, s.speeds + node.joint.speed, joint);
+  Twist V = joint.rate;
+  w.SM = joint.SM;
+  if (node.parent >= 0) V += Space::to_child(joint.SM, outer_twist(node, s));
+  w.sigma = node.parent >= 0 ? Space::cross(V, joint.rate) : Twist::zero();
+  if (has_bias(node.joint.kind)) w.sigma += joint.bias;
 
-  const double* q = s.positions + node.mode_position;
-  const double* q_dot = s.speeds + node.mode_speed;
-  auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
-  Twist* J = at<Twist>(s.work, node.work_J);
-  if constexpr (N != 0) {
+  if constexpr (flavor == Flavor::frozen) {
+    auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+    for (std::size_t k = 0; k < node.stations.size(); ++k) {
+      const auto& station = node.stations[k];
+      if (!station.has_children) continue;
+      stations[k].V = Space::shift_to_child(station.fields.X, V);
+      stations[k].I = Space::Inertia::zero();
+      stations[k].p = Twist::zero();
+    }
+  }
+  if constexpr (flavor == Flavor::full) {
+    const double* q = s.positions + node.mode_position;
+    const double* q_dot = s.speeds + node.mode_speed;
+    auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+    Twist* J = at<Twist>(s.work, node.work_J);
     if (node.root_station >= 0) {
       // The root section moves with q: V_M = X V_B + J q̇, solved for V_B.
       const auto& root = node.stations[static_cast<std::size_t>(node.root_station)];
       StationMotion<Space> m;
       Twist* JM = J + n * static_cast<int>(node.stations.size());
       station_motion<Space, N>(root.fields, n, q, q_dot, m, JM);
-      const typename Space::Frame section{node.M};
-      const Twist rate = Space::to_child(section, m.rate);
-      w.root = Space::compose(m.frame, section);
-      w.root_sigma = Space::cross(w.V_M, rate) + Space::to_child(section, m.bias);
-      for (int i = 0; i < n; ++i) JM[i] = Space::to_child(section, JM[i]);
-      w.V = Space::from_child(w.root, w.V_M - rate);
+      const Twist rate = Space::to_child(node.M, m.rate);
+      w.root = Space::compose(m.frame, node.M);
+      w.root_sigma = Space::cross(V, rate) + Space::to_child(node.M, m.bias);
+      for (int i = 0; i < n; ++i) JM[i] = Space::to_child(node.M, JM[i]);
+      V = Space::from_child(w.root, V - rate);
+    }
+    for (std::size_t k = 0; k < node.stations.size(); ++k) {
+      const auto& station = node.stations[k];
+      if (!station.loaded) continue;
+      StationWork<Space>& sw = stations[k];
+      StationMotion<Space> m;
+      station_motion<Space, N>(station.fields, n, q, q_dot, m, J + static_cast<int>(k) * n);
+      const Twist VS = Space::to_child(m.frame, V) + m.rate;
+      sw.frame = m.frame;
+      sw.V = VS;
+      sw.sigma = Space::cross(VS, m.rate) + m.bias;
+      sw.I = station.carried.inertia;
+      sw.p = station.carried.velocity_wrench(VS);
     }
   }
-  for (std::size_t k = 0; k < node.stations.size(); ++k) {
-    const auto& station = node.stations[k];
-    if (!station.loaded) continue;
-    StationWork<Space>& sw = stations[k];
-    if (node.frozen) {
-      sw.V = Space::to_child(station.frozen.frame, w.V);
-      sw.I.setZero();
-      sw.p.setZero();
-    } else {
-      station_motion<Space, N>(station.fields, n, q, q_dot, sw.motion, J + static_cast<int>(k) * n);
-      sw.V = Space::to_child(sw.motion.frame, w.V) + sw.motion.rate;
-      sw.sigma = Space::cross(sw.V, sw.motion.rate) + sw.motion.bias;
-      sw.I = station.carried;
-      sw.p = Space::cross_force(sw.V, station.carried * sw.V);
-    }
-  }
-  w.I = node.base;
-  w.p = Space::cross_force(w.V, node.base * w.V);
+  w.V = V;
+  if (flavor == Flavor::frozen && !node.factor.empty()) return;  // nothing is added to what it has precomputed
+  w.I = node.base.inertia;
+  w.p = node.base.velocity_wrench(V);
 }
 
-template <class Space, int N>
-[[gnu::flatten]] inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+/// Elimination of q̈: leaves Y, y, L in the work memory and adds to I, p; false where G is not positive definite.
+template <class Space, int N, Flavor flavor>
+inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricState<Space>& s,
+                            const typename Space::Twist& V, typename Space::Inertia& I, typename Space::Twist& p) {
   using Twist = typename Space::Twist;
-  using Matrix = typename Space::Matrix;
   const int n = count<N>(node.modes);
-  auto& w = *at<NodeWork<Space>>(s.work, node.work);
-  if constexpr (N != 0) {
-    const double* q = s.positions + node.mode_position;
-    const double* q_dot = s.speeds + node.mode_speed;
-    const auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
-    Twist* J = at<Twist>(s.work, node.work_J);
-    Twist* C = at<Twist>(s.work, node.work_C);
-    double* G = at<double>(s.work, node.work_G);
-    double* y = at<double>(s.work, node.work_y);
-    const bool constant = !node.factor.empty();
-    const double* L = constant ? node.factor.data() : G;
-    const Twist* Y = constant ? node.Y0.data() : C;
-    if (node.frozen) {
-      const auto square = Variation<Space>::bilinear(w.V, w.V);
-      for (int i = 0; i < n; ++i) y[i] = -0.5 * node.I1[static_cast<std::size_t>(i)].a.dot(square);
-      if (!constant) {
-        for (int i = 0; i < n; ++i) C[i] = node.C0[static_cast<std::size_t>(i)];
-        for (int i = 0; i < n * n; ++i) G[i] = node.G0[static_cast<std::size_t>(i)];
-        for (std::size_t k = 0; k < node.stations.size(); ++k) {
-          if (!node.stations[k].loaded) continue;
-          collect_station<Space, N>(stations[k], node.stations[k].frozen.frame, node.stations[k].frozen_J.data(), false,
-                                    n, w, C, G, y);
-        }
-      }
-    } else {
-      for (int i = 0; i < n; ++i) {
-        C[i].setZero();
-        y[i] = 0;
-      }
-      for (int i = 0; i < n * n; ++i) G[i] = 0;
-      integrate<Space, N>(node.mass, n, q, q_dot, w.V, at<Pack>(s.work, node.work_P), w.I, C, G, w.p, y);
-      for (std::size_t k = 0; k < node.stations.size(); ++k) {
-        if (!node.stations[k].loaded) continue;
-        collect_station<Space, N>(stations[k], stations[k].motion.frame, J + static_cast<int>(k) * n, true, n, w, C, G,
-                                  y);
-      }
-      Twist* JM = J + n * static_cast<int>(node.stations.size());
-      collect_sections<Space, N>(node, s, w, C + n, C, G, y);
-      if (node.root_station >= 0) move_to_root<Space, N>(node, w, JM, C, G, y);
-    }
-    // q̈ = G⁻¹ (−K q − D q̇ − h − Cᵀ A), with G = L Δ Lᵀ, Y = L⁻¹ Cᵀ, y = L⁻¹ (…).
-    for (int i = 0; i < n; ++i) {
-      double e = s.efforts[node.mode_speed + static_cast<std::size_t>(i)] - y[i];
-      for (int j = 0; j < n; ++j) {
-        e -= node.stiffness[static_cast<std::size_t>(i * n + j)] * q[j] +
-             node.damping[static_cast<std::size_t>(i * n + j)] * q_dot[j];
-      }
-      y[i] = e;
-    }
+  const double* q = s.positions + node.mode_position;
+  const double* q_dot = s.speeds + node.mode_speed;
+  const auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+  // On the stack where the compiler knows their size: it then keeps them in registers.
+  constexpr int size = N > 0 ? N : 1;
+  Twist C_here[size];
+  double G_here[size * size], y_here[size];
+  Twist* C = N > 0 ? C_here : at<Twist>(s.work, node.work_C);
+  double* G = N > 0 ? G_here : at<double>(s.work, node.work_G);
+  double* y = N > 0 ? y_here : at<double>(s.work, node.work_y);
+  bool constant = false;
+  if constexpr (flavor == Flavor::frozen) {
+    const auto square = Variation<Space>::bilinear(V, V);
+    for (int i = 0; i < n; ++i) y[i] = -0.5 * dot(node.I1[static_cast<std::size_t>(i)], square);
+    constant = !node.factor.empty();
     if (!constant) {
-      if (!factorize<N>(G, n)) return false;
-      solve_lower<N>(G, n, C);
+      for (int i = 0; i < n; ++i) C[i] = node.C0[static_cast<std::size_t>(i)];
+      for (int i = 0; i < n * n; ++i) G[i] = node.G0[static_cast<std::size_t>(i)];
+      for (std::size_t k = 0; k < node.stations.size(); ++k) {
+        if (node.stations[k].has_children)
+          collect_frozen_station<Space, N>(stations[k], node.stations[k], n, I, p, C, G, y);
+      }
     }
-    solve_lower<N>(L, n, y);
-    if (constant) {
-      w.I = node.reduced;
-    } else {
-      for (int i = 0; i < n; ++i) w.I -= Y[i] * (L[i * n + i] * Y[i]).transpose();
-    }
-    for (int i = 0; i < n; ++i) w.p += Y[i] * (L[i * n + i] * y[i]);
-  }
-
-  // Elimination of ẍ, and what the hinge passes to the parent's station: inertia Ia, wrench pa at zero A'.
-  Matrix Ia = w.I;
-  Twist pa = w.p;
-  const JointData<Space>& joint = node.joint;
-  if (single(joint.kind)) {
-    const int row = JointData<Space>::row(joint.kind);
-    w.U = w.I.col(row);
-    if (!(w.U[row] > 0)) return false;
-    w.inverse = 1 / w.U[row];
-    w.u = joint.direction * s.efforts[joint.speed] - w.p[row];
-    if (node.parent < 0) return true;
-    const Twist scaled = w.U * w.inverse;
-    Ia -= scaled * w.U.transpose();
-    pa += Ia * w.sigma + scaled * w.u;
-  } else if (joint.kind == Joint::fixed) {
-    if (node.parent < 0) return true;
-    pa += Ia * w.sigma;
-  } else if constexpr (Space::angular == 3) {  // a planar tree has no other hinges
-    const JointColumns<Space> H = motion_subspace<Space>(joint, s.positions + joint.position, s.speeds + joint.speed);
-    const JointColumns<Space> U = w.I * H;
-    const JointMatrix<Space> D = H.transpose() * U;
-    const Eigen::LLT<JointMatrix<Space>> llt(D);
-    if (llt.info() != Eigen::Success) return false;
-    const JointVector<Space> effort =
-        Eigen::Map<const Eigen::VectorXd>(s.efforts + joint.speed, static_cast<Eigen::Index>(joint.speeds)) -
-        H.transpose() * w.p;
-    w.gain = llt.solve(JointRows<Space>(U.transpose()));
-    w.d = llt.solve(effort);
-    if (node.parent < 0) return true;
-    Ia -= U * w.gain;
-    pa += Ia * w.sigma + U * w.d;
-  }
-  const SymmetricNode<Space>& parent = s.nodes[node.parent];
-  Matrix* I = nullptr;
-  Twist* p = nullptr;
-  if (node.parent_station < 0) {
-    auto& pw = *at<NodeWork<Space>>(s.work, parent.work);
-    I = &pw.I;
-    p = &pw.p;
   } else {
-    auto& pw = at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station];
-    I = &pw.I;
-    p = &pw.p;
+    for (int i = 0; i < n; ++i) {
+      C[i] = Twist::zero();
+      y[i] = 0;
+    }
+    for (int i = 0; i < n * n; ++i) G[i] = 0;
+    integrate<N>(node.mass, n, q, q_dot, V, at<Pack>(s.work, node.work_P), I, C, G, p, y);
+    Twist* J = at<Twist>(s.work, node.work_J);
+    for (std::size_t k = 0; k < node.stations.size(); ++k) {
+      if (node.stations[k].loaded)
+        collect_station<Space, N>(stations[k], J + static_cast<int>(k) * n, n, I, p, C, G, y);
+    }
+    if (!node.sections.empty())
+      collect_sections<Space, N>(node, q, q_dot, V, I, p, at<Twist>(s.work, node.work_C) + n, C, G, y);
+    if (node.root_station >= 0) {
+      const auto& w = *at<NodeWork<Space>>(s.work, node.work);
+      move_to_root<Space, N>(w.root, w.root_sigma, n, J + n * static_cast<int>(node.stations.size()), I, p, C, G, y);
+    }
   }
-  *I += Space::matrix_to_parent(w.joint.SM, Ia);
-  *p += Space::to_parent(w.joint.SM, pa);
+  // q̈ = G⁻¹ (−K q − D q̇ − h − Cᵀ A), with G = L Δ Lᵀ, Y = L⁻¹ Cᵀ, y = L⁻¹ (…).
+  for (int i = 0; i < n; ++i) {
+    double e = s.efforts[node.mode_speed + static_cast<std::size_t>(i)] - y[i];
+    for (int j = 0; j < n; ++j) {
+      e -= node.stiffness[static_cast<std::size_t>(i * n + j)] * q[j] +
+           node.damping[static_cast<std::size_t>(i * n + j)] * q_dot[j];
+    }
+    y[i] = e;
+  }
+  double* y_kept = at<double>(s.work, node.work_y);
+  if (constant) {
+    const double* L = node.factor.data();
+    solve_lower<N>(L, n, y);
+    for (int i = 0; i < n; ++i) p += node.Y0[static_cast<std::size_t>(i)] * (L[i * n + i] * y[i]);
+    for (int i = 0; i < n; ++i) y_kept[i] = y[i];
+    return true;
+  }
+  if (!factorize<N>(G, n)) return false;
+  solve_lower<N>(G, n, C);
+  solve_lower<N>(G, n, y);
+  for (int i = 0; i < n; ++i) {
+    I.subtract_square(C[i], G[i * n + i]);
+    p += C[i] * (G[i * n + i] * y[i]);
+  }
+  if constexpr (N > 0) {
+    Twist* C_kept = at<Twist>(s.work, node.work_C);
+    double* G_kept = at<double>(s.work, node.work_G);
+    for (int i = 0; i < n; ++i) {
+      C_kept[i] = C[i];
+      y_kept[i] = y[i];
+      for (int j = 0; j <= i; ++j) G_kept[i * n + j] = G[i * n + j];
+    }
+  }
   return true;
 }
 
-template <class Space, int N>
+/// Elimination of ẍ of a hinge with several rates; Y, y, L stay in the work memory.
+inline bool eliminate_joint(const JointData<Spatial>& joint, const SymmetricState<Spatial>& s,
+                            JointElimination<Spatial>& e, Spatial::Inertia& I, Spatial::Twist& p) {
+  const auto k = static_cast<int>(joint.speeds);
+  const HingeMotion motion = general_motion(joint, s.positions + joint.position, s.speeds + joint.speed);
+  for (int i = 0; i < k; ++i) {
+    e.H[i] = Spatial::Twist::of(motion.H.col(i));
+    e.Y[i] = I * e.H[i];
+    e.y[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Spatial::dot(e.H[i], p);
+    for (int j = 0; j <= i; ++j) e.L[i * k + j] = Spatial::dot(e.Y[i], e.H[j]);
+  }
+  if (!factorize<-1>(e.L, k)) return false;
+  solve_lower<-1>(e.L, k, e.Y);
+  solve_lower<-1>(e.L, k, e.y);
+  for (int i = 0; i < k; ++i) {
+    I.subtract_square(e.Y[i], e.L[i * k + i]);
+    p += e.Y[i] * (e.L[i * k + i] * e.y[i]);
+  }
+  return true;
+}
+
+template <class Space, int N, Flavor flavor>
+[[gnu::flatten]] inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+  using Twist = typename Space::Twist;
+  auto& w = *at<NodeWork<Space>>(s.work, node.work);
+  const bool constant = flavor == Flavor::frozen && !node.factor.empty();
+  typename Space::Inertia I = constant ? node.reduced : w.I;
+  Twist p = constant ? node.base.velocity_wrench(w.V) : w.p;
+  if constexpr (flavor != Flavor::rigid) {
+    if (!eliminate_modes<Space, N, flavor>(node, s, w.V, I, p)) return false;
+  }
+  // Elimination of ẍ, and what the hinge passes to the parent's station: inertia I, wrench p at zero A'.
+  const JointData<Space>& joint = node.joint;
+  if (single(joint.kind)) {
+    const bool turns = joint.kind == Joint::rotate;
+    const Twist U = turns ? I.turn_column() : I.slide_column();
+    const double inertia = turns ? U.turn() : U.slide();
+    if (!(inertia > 0)) return false;
+    const double inverse = 1 / inertia;
+    const double u = joint.direction * s.efforts[joint.speed] - (turns ? p.turn() : p.slide());
+    w.U = U;
+    w.inverse = inverse;
+    w.u = u;
+    if (node.parent < 0) return true;
+    I.subtract_square(U, inverse);
+    p += I * w.sigma + U * (inverse * u);
+  } else if (joint.kind == Joint::fixed) {
+    if (node.parent < 0) return true;
+    p += I * w.sigma;
+  } else if constexpr (Space::angular == 3) {  // a planar tree has no other hinges
+    if (!eliminate_joint(joint, s, w.elimination, I, p)) return false;
+    if (node.parent < 0) return true;
+    p += I * w.sigma;
+  }
+  const SymmetricNode<Space>& parent = s.nodes[node.parent];
+  if (node.parent_station < 0) {
+    auto& pw = *at<NodeWork<Space>>(s.work, parent.work);
+    pw.I += Space::to_parent(w.SM, I);
+    pw.p += Space::to_parent(w.SM, p);
+  } else {
+    auto& pw = at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station];
+    pw.I += Space::to_parent(w.SM, I);
+    pw.p += Space::to_parent(w.SM, p);
+  }
+  return true;
+}
+
+template <class Space, int N, Flavor flavor>
 [[gnu::flatten]] inline void outward_acceleration(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
   const int n = count<N>(node.modes);
@@ -214,46 +260,52 @@ template <class Space, int N>
     outer = node.parent_station < 0 ? &at<NodeWork<Space>>(s.work, parent.work)->A
                                     : &at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].A;
   }
-  Twist A = Space::to_child(w.joint.SM, *outer) + w.sigma;
+  Twist A = Space::to_child(w.SM, *outer) + w.sigma;
   if (single(joint.kind)) {
-    const double x = (w.u - w.U.dot(A)) * w.inverse;
-    A[JointData<Space>::row(joint.kind)] += x;
+    const double x = (w.u - Space::dot(w.U, A)) * w.inverse;
+    A += along<Space>(joint.kind, x);
     s.result[joint.speed] = joint.direction * x;
   } else if constexpr (Space::angular == 3) {
     if (joint.kind != Joint::fixed) {
-      const JointVector<Space> x = w.d - w.gain * A;
-      A += motion_subspace<Space>(joint, s.positions + joint.position, s.speeds + joint.speed) * x;
-      for (Eigen::Index i = 0; i < x.size(); ++i) s.result[joint.speed + static_cast<std::size_t>(i)] = x[i];
+      const JointElimination<Space>& e = w.elimination;
+      double* x = s.result + joint.speed;
+      back_substitute<-1, Space>(e.L, e.Y, e.y, static_cast<int>(joint.speeds), A, x);
+      for (std::size_t i = 0; i < joint.speeds; ++i) A += e.H[i] * x[i];
     }
   }
-  w.A = A;
-  if constexpr (N != 0) {
-    const bool constant = !node.factor.empty();
+  if constexpr (flavor == Flavor::rigid) {
+    w.A = A;
+    return;
+  } else {
+    const bool constant = flavor == Flavor::frozen && !node.factor.empty();
     const double* L = constant ? node.factor.data() : at<double>(s.work, node.work_G);
     const Twist* Y = constant ? node.Y0.data() : at<Twist>(s.work, node.work_C);
-    const double* y = at<double>(s.work, node.work_y);
     double* a = s.result + node.mode_speed;
-    for (int i = 0; i < n; ++i) a[i] = L[i * n + i] * (y[i] - Y[i].dot(A));
-    for (int i = n; i-- > 0;) {
-      for (int k = i + 1; k < n; ++k) a[i] -= L[k * n + i] * a[k];
-    }
-    const Twist* J = at<Twist>(s.work, node.work_J);
-    if (node.root_station >= 0) {
-      const Twist* JM = J + n * static_cast<int>(node.stations.size());
-      Twist relative = A - w.root_sigma;
-      for (int i = 0; i < n; ++i) relative -= JM[i] * a[i];
-      w.A = Space::from_child(w.root, relative);
-    }
+    back_substitute<N, Space>(L, Y, at<double>(s.work, node.work_y), n, A, a);
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
-    for (std::size_t k = 0; k < node.stations.size(); ++k) {
-      if (!node.stations[k].has_children) continue;
-      StationWork<Space>& sw = stations[k];
-      if (node.frozen) {
-        sw.A = Space::to_child(node.stations[k].frozen.frame, w.A);
-        for (int i = 0; i < n; ++i) sw.A += node.stations[k].frozen_J[static_cast<std::size_t>(i)] * a[i];
-      } else {
-        sw.A = Space::to_child(sw.motion.frame, w.A) + sw.sigma;
-        for (int i = 0; i < n; ++i) sw.A += J[static_cast<int>(k) * n + i] * a[i];
+    if constexpr (flavor == Flavor::frozen) {
+      w.A = A;
+      for (std::size_t k = 0; k < node.stations.size(); ++k) {
+        const auto& station = node.stations[k];
+        if (!station.has_children) continue;
+        Twist AS = Space::shift_to_child(station.fields.X, A);
+        for (int i = 0; i < n; ++i) AS += station.J[static_cast<std::size_t>(i)] * a[i];
+        stations[k].A = AS;
+      }
+    } else {
+      const Twist* J = at<Twist>(s.work, node.work_J);
+      if (node.root_station >= 0) {
+        const Twist* JM = J + n * static_cast<int>(node.stations.size());
+        A -= w.root_sigma;
+        for (int i = 0; i < n; ++i) A -= JM[i] * a[i];
+        A = Space::from_child(w.root, A);
+      }
+      w.A = A;
+      for (std::size_t k = 0; k < node.stations.size(); ++k) {
+        if (!node.stations[k].has_children) continue;
+        Twist AS = Space::to_child(stations[k].frame, A) + stations[k].sigma;
+        for (int i = 0; i < n; ++i) AS += J[static_cast<int>(k) * n + i] * a[i];
+        stations[k].A = AS;
       }
     }
   }

@@ -10,32 +10,37 @@ namespace withy::sweep {
 /// Work of a station: written outward, completed inward.
 template <class Space>
 struct StationWork {
-  StationMotion<Space> motion;
+  typename Space::Frame frame;  ///< of S in the node's frame
   typename Space::Twist V;      ///< twist of S
   typename Space::Twist sigma;  ///< σ_S of (2)
-  typename Space::Matrix I;     ///< articulated inertia of what it carries
+  typename Space::Inertia I;    ///< articulated inertia of what it carries
   typename Space::Twist p;      ///< its velocity wrench
   typename Space::Twist A;      ///< acceleration of S
+};
+
+/// Elimination of the rates of a hinge with several: Δ, L of Hᵀ I H, and Y = L⁻¹ Hᵀ I, y = L⁻¹ (τ − Hᵀ p).
+template <class Space>
+struct JointElimination {
+  static constexpr int most = Space::dim;
+  typename Space::Twist H[most], Y[most];
+  double L[most * most], y[most];
 };
 
 /// Work of a node.
 template <class Space>
 struct NodeWork {
-  JointMotion<Space> joint;
-  typename Space::Twist V;  ///< twist of the hinge frame M, then of the node's frame
-  typename Space::Twist V_M;
-  typename Space::Twist sigma;       ///< σ of (1)
-  typename Space::Twist root_sigma;  ///< σ of the root station, where the modes move it
-  typename Space::Frame root;        ///< M in the node's frame, likewise
-  typename Space::Matrix I;          ///< articulated inertia, rigid part
+  typename Space::Frame SM;     ///< of JointMotion
+  typename Space::Twist V;      ///< twist of the node's frame
+  typename Space::Twist sigma;  ///< σ of (1)
+  typename Space::Inertia I;    ///< articulated inertia, rigid part
   typename Space::Twist p;
   typename Space::Twist A;
-  // Elimination of ẍ: ẍ = d − gain A', A' the acceleration of M without ẍ.
-  JointRows<Space> gain;
-  JointVector<Space> d;
-  typename Space::Twist U;  ///< one rate: column of I
-  double inverse;           ///< one rate: 1 / its articulated inertia
-  double u;                 ///< one rate: effort left
+  typename Space::Twist U;              ///< one rate: column of I
+  double inverse;                       ///< one rate: 1 / its articulated inertia
+  double u;                             ///< one rate: effort left
+  typename Space::Frame root;           ///< M in the node's frame, where the modes move the root station
+  typename Space::Twist root_sigma;     ///< σ of the root station, likewise
+  JointElimination<Space> elimination;  ///< several rates
 };
 
 /// The arrays of one evaluation.
@@ -77,83 +82,109 @@ template <int N, class T>
 inline void solve_lower(const double* L, int modes, T* b) {
   const int n = count<N>(modes);
   for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < i; ++k) b[i] -= L[i * n + k] * b[k];
+    for (int k = 0; k < i; ++k) b[i] -= b[k] * L[i * n + k];
+  }
+}
+
+/// x = L⁻ᵀ Δ⁻¹ (y − Y A): the eliminated unknowns once A is known.
+template <int N, class Space>
+inline void back_substitute(const double* L, const typename Space::Twist* Y, const double* y, int modes,
+                            const typename Space::Twist& A, double* x) {
+  const int n = count<N>(modes);
+  for (int i = 0; i < n; ++i) x[i] = L[i * n + i] * (y[i] - Space::dot(Y[i], A));
+  for (int i = n; i-- > 0;) {
+    for (int k = i + 1; k < n; ++k) x[i] -= L[k * n + i] * x[k];
   }
 }
 
 /// Adds what a station carries to its body: equations (2) into (3).
 template <class Space, int N>
-inline void collect_station(const StationWork<Space>& sw, const typename Space::Frame& frame,
-                            const typename Space::Twist* J, bool moving, int modes, NodeWork<Space>& w,
-                            typename Space::Twist* C, double* G, double* h) {
+inline void collect_station(const StationWork<Space>& sw, const typename Space::Twist* J, int modes,
+                            typename Space::Inertia& I, typename Space::Twist& p, typename Space::Twist* C, double* G,
+                            double* h) {
   const int n = count<N>(modes);
-  typename Space::Twist p = sw.p;
-  if (moving) p += sw.I * sw.sigma;
-  w.I += Space::matrix_to_parent(frame, sw.I);
-  w.p += Space::to_parent(frame, p);
+  const typename Space::Twist force = sw.p + sw.I * sw.sigma;
+  I += Space::to_parent(sw.frame, sw.I);
+  p += Space::to_parent(sw.frame, force);
   for (int i = 0; i < n; ++i) {
     const typename Space::Twist IJ = sw.I * J[i];
-    C[i] += Space::to_parent(frame, IJ);
-    h[i] += J[i].dot(p);
-    for (int j = 0; j <= i; ++j) G[i * n + j] += IJ.dot(J[j]);
+    C[i] += Space::to_parent(sw.frame, IJ);
+    h[i] += Space::dot(J[i], force);
+    for (int j = 0; j <= i; ++j) G[i * n + j] += Space::dot(IJ, J[j]);
+  }
+}
+
+/// The same for a frozen node, whose sections are parallel to its frame and whose velocity terms vanish.
+template <class Space, int N>
+inline void collect_frozen_station(const StationWork<Space>& sw, const SymmetricStation<Space>& station, int modes,
+                                   typename Space::Inertia& I, typename Space::Twist& p, typename Space::Twist* C,
+                                   double* G, double* h) {
+  const int n = count<N>(modes);
+  const typename Space::Twist* J = station.J.data();
+  I += Space::shift_to_parent(station.fields.X, sw.I);
+  p += Space::shift_to_parent(station.fields.X, sw.p);
+  for (int i = 0; i < n; ++i) {
+    const typename Space::Twist IJ = sw.I * J[i];
+    C[i] += Space::shift_to_parent(station.fields.X, IJ);
+    h[i] += Space::dot(J[i], sw.p);
+    for (int j = 0; j <= i; ++j) G[i * n + j] += Space::dot(IJ, J[j]);
   }
 }
 
 /// Rotary inertia of sections.
 template <class Space, int N>
-inline void collect_sections(const SymmetricNode<Space>& node, const SymmetricState<Space>& s, NodeWork<Space>& w,
+inline void collect_sections(const SymmetricNode<Space>& node, const double* q, const double* q_dot,
+                             const typename Space::Twist& V, typename Space::Inertia& I, typename Space::Twist& p,
                              typename Space::Twist* J, typename Space::Twist* C, double* G, double* h) {
-  constexpr int A = Space::angular;
   const int n = count<N>(node.modes);
-  const double* q = s.positions + node.mode_position;
-  const double* q_dot = s.speeds + node.mode_speed;
   for (const RotarySection<Space>& section : node.sections) {
     StationMotion<Space> m;
     station_motion<Space, N>(section.fields, n, q, q_dot, m, J);
-    const typename Space::Twist V = Space::to_child(m.frame, w.V) + m.rate;
-    const typename Space::Twist sigma = Space::cross(V, m.rate) + m.bias;
-    const typename Space::Angular H = section.inertia * V.template head<A>();
-    typename Space::Angular moment = section.inertia * sigma.template head<A>();
-    if constexpr (A == 3) moment += V.template head<3>().cross(H);
-    if constexpr (A == 3) {
-      w.I.template topLeftCorner<3, 3>() += m.frame.R * section.inertia * m.frame.R.transpose();
-      w.p.template head<3>() += m.frame.R * moment;
-    } else {
-      w.I(0, 0) += section.inertia(0, 0);
-      w.p[0] += moment[0];
-    }
-    for (int i = 0; i < n; ++i) {
-      const typename Space::Angular IJ = section.inertia * J[i].template head<A>();
-      if constexpr (A == 3) {
-        C[i].template head<3>() += m.frame.R * IJ;
-      } else {
-        C[i][0] += IJ[0];
+    const typename Space::Twist VS = Space::to_child(m.frame, V) + m.rate;
+    const typename Space::Twist sigma = Space::cross(VS, m.rate) + m.bias;
+    if constexpr (Space::angular == 1) {
+      const double inertia = section.inertia_z, moment = inertia * sigma.w;
+      I.ww += inertia;
+      p.w += moment;
+      for (int i = 0; i < n; ++i) {
+        C[i].w += inertia * J[i].w;
+        h[i] += J[i].w * moment;
+        for (int j = 0; j <= i; ++j) G[i * n + j] += inertia * J[i].w * J[j].w;
       }
-      h[i] += J[i].template head<A>().dot(moment);
-      for (int j = 0; j <= i; ++j) G[i * n + j] += IJ.dot(J[j].template head<A>());
+    } else {
+      const Block inertia = Spatial::block(section.inertia);
+      const Triple moment = inertia * sigma.w + cross(VS.w, inertia * VS.w);
+      I.A += turned(m.frame.R, inertia);
+      p.w += m.frame.R * moment;
+      for (int i = 0; i < n; ++i) {
+        const Triple IJ = inertia * J[i].w;
+        C[i].w += m.frame.R * IJ;
+        h[i] += dot(J[i].w, moment);
+        for (int j = 0; j <= i; ++j) G[i * n + j] += dot(IJ, J[j].w);
+      }
     }
   }
 }
 
 /// (3) seen from the hinge frame M where the modes move it: A_B = X (A_M − J q̈ − σ).
 template <class Space, int N>
-inline void move_to_root(const SymmetricNode<Space>& node, NodeWork<Space>& w, const typename Space::Twist* JM,
+inline void move_to_root(const typename Space::Frame& root, const typename Space::Twist& sigma, int modes,
+                         const typename Space::Twist* JM, typename Space::Inertia& I, typename Space::Twist& p,
                          typename Space::Twist* C, double* G, double* h) {
   using Twist = typename Space::Twist;
-  const int n = count<N>(node.modes);
+  const int n = count<N>(modes);
   // Congruence with the pose of B in M.
-  const typename Space::Frame B = Space::inverse(w.root);
-  const typename Space::Matrix I = Space::matrix_to_parent(B, w.I);
-  const Twist p = Space::to_parent(B, w.p) - I * w.root_sigma;
+  const typename Space::Frame B = Space::inverse(root);
+  I = Space::to_parent(B, I);
+  p = Space::to_parent(B, p) - I * sigma;
   for (int i = 0; i < n; ++i) C[i] = Space::to_parent(B, C[i]);
   for (int i = 0; i < n; ++i) {
-    h[i] -= C[i].dot(w.root_sigma) + JM[i].dot(p);
+    h[i] -= Space::dot(C[i], sigma) + Space::dot(JM[i], p);
     const Twist IJ = I * JM[i];
-    for (int j = 0; j <= i; ++j) G[i * n + j] += IJ.dot(JM[j]) - C[i].dot(JM[j]) - C[j].dot(JM[i]);
+    for (int j = 0; j <= i; ++j)
+      G[i * n + j] += Space::dot(IJ, JM[j]) - Space::dot(C[i], JM[j]) - Space::dot(C[j], JM[i]);
   }
   for (int i = 0; i < n; ++i) C[i] -= I * JM[i];
-  w.I = I;
-  w.p = p;
 }
 
 }  // namespace withy::sweep
