@@ -1,4 +1,4 @@
-#include "withy/core/dynamics/mass_table.hpp"
+#include "withy/core/sweep/mass_table.hpp"
 
 #include <Eigen/QR>
 #include <cmath>

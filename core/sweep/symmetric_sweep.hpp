@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "withy/core/dynamics/equations.hpp"
-#include "withy/core/dynamics/joint_step.hpp"
-#include "withy/core/dynamics/mass_table.hpp"
-#include "withy/core/dynamics/station_motion.hpp"
 #include "withy/core/model/terms.hpp"
+#include "withy/core/sweep/joint_step.hpp"
+#include "withy/core/sweep/mass_table.hpp"
+#include "withy/core/sweep/station_motion.hpp"
 
 namespace withy::sweep {
 

@@ -1,7 +1,7 @@
-#include "withy/core/dynamics/strict_sweep.hpp"
+#include "withy/core/sweep/strict_sweep.hpp"
 
-#include "withy/core/dynamics/strict_kernel.hpp"
-#include "withy/core/dynamics/with_modes.hpp"
+#include "withy/core/sweep/strict_kernel.hpp"
+#include "withy/core/sweep/with_modes.hpp"
 
 namespace withy::sweep {
 namespace {
@@ -12,7 +12,7 @@ template <class Space>
 StrictStation<Space> strict_station_of(const StationSpec& spec) {
   const PointExpansion& e = spec.at;
   StrictStation<Space> s;
-  s.frame = Space::make(Pose{Matrix3::Identity(), e.X});
+  s.X = Space::position(e.X);
   const Eigen::Index n = e.phi.cols();
   for (Eigen::Index i = 0; i < n; ++i) {
     Vector6 J;
@@ -72,7 +72,9 @@ StrictSweep<Space>::StrictSweep(const Tree& tree, const std::vector<Terms>& term
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) nodes_.emplace_back(tree.nodes[i], terms[i]);
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const NodeSpec& spec = tree.nodes[i];
-    if (spec.parent < 0 || spec.parent_station < 0) continue;
+    if (spec.parent < 0) continue;
+    nodes_[static_cast<std::size_t>(spec.parent)].leaf = false;
+    if (spec.parent_station < 0) continue;
     const NodeSpec& parent = tree.nodes[static_cast<std::size_t>(spec.parent)];
     nodes_[static_cast<std::size_t>(spec.parent)].stations[static_cast<std::size_t>(spec.parent_station)].has_children =
         true;

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "withy/core/dynamics/sweep_node.hpp"
+#include "withy/core/sweep/node.hpp"
 
 namespace withy::sweep {
 

@@ -1,9 +1,9 @@
-#include "withy/core/dynamics/rigid_inverse_dynamics.hpp"
+#include "withy/core/sweep/rigid_inverse_dynamics.hpp"
 
 #include <cstdint>
 
 #include "withy/core/dynamics/invariants.hpp"
-#include "withy/core/dynamics/joint_step.hpp"
+#include "withy/core/sweep/joint_step.hpp"
 
 namespace withy {
 

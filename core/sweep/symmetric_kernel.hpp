@@ -8,7 +8,7 @@
 /// Children and carried bodies enter (3) through their stations; then q̈, then ẍ are eliminated.
 #pragma once
 
-#include "withy/core/dynamics/symmetric_terms.hpp"
+#include "withy/core/sweep/symmetric_terms.hpp"
 
 namespace withy::sweep {
 

@@ -2,8 +2,8 @@
 /// The algebra of the sweeps for motion in three dimensions. Meaning of each function: space.hpp.
 #pragma once
 
-#include "withy/core/spatial/pack.hpp"
 #include "withy/core/spatial/pose.hpp"
+#include "withy/core/sweep/pack.hpp"
 
 namespace withy {
 
@@ -150,13 +150,16 @@ struct Spatial {
     return {skew_times(w, a.AA) + skew_times(v, a.LA), skew_times(w, a.AL) + skew_times(v, a.LL), skew_times(w, a.LA),
             skew_times(w, a.LL)};
   }
-  static Matrix to_parent(const Frame& AB, const Matrix& M) {
-    Matrix N{turned(AB.R, M.AA), turned(AB.R, M.AL), turned(AB.R, M.LA), turned(AB.R, M.LL)};
-    N.LA -= times_skew(N.LL, AB.p);
-    N.AA -= times_skew(N.AL, AB.p);
-    N.AA += skew_times(AB.p, N.LA);
-    N.AL += skew_times(AB.p, N.LL);
+  static Matrix shift_to_parent(const Position& p, Matrix N) {
+    N.LA -= times_skew(N.LL, p);
+    N.AA -= times_skew(N.AL, p);
+    N.AA += skew_times(p, N.LA);
+    N.AL += skew_times(p, N.LL);
     return N;
+  }
+  static Matrix to_parent(const Frame& AB, const Matrix& M) {
+    return shift_to_parent(AB.p,
+                           Matrix{turned(AB.R, M.AA), turned(AB.R, M.AL), turned(AB.R, M.LA), turned(AB.R, M.LL)});
   }
 };
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "withy/core/dynamics/mass_table.hpp"
-#include "withy/core/dynamics/sweep_node.hpp"
 #include "withy/core/shape/point_motion.hpp"
+#include "withy/core/sweep/mass_table.hpp"
+#include "withy/core/sweep/node.hpp"
 
 namespace withy::sweep {
 

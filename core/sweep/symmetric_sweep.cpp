@@ -1,7 +1,7 @@
-#include "withy/core/dynamics/symmetric_sweep.hpp"
+#include "withy/core/sweep/symmetric_sweep.hpp"
 
-#include "withy/core/dynamics/symmetric_kernel.hpp"
-#include "withy/core/dynamics/with_modes.hpp"
+#include "withy/core/sweep/symmetric_kernel.hpp"
+#include "withy/core/sweep/with_modes.hpp"
 
 namespace withy::sweep {
 namespace {

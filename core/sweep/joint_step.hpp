@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "withy/core/dynamics/sweep_node.hpp"
+#include "withy/core/sweep/node.hpp"
 
 namespace withy::sweep {
 

@@ -11,7 +11,7 @@ namespace withy {
 
 /// The recursive Newton–Euler algorithm (Luh, Walker & Paul 1980) on the tree that the sweeps use: bodies that hinges
 /// without rates join are one link, planar trees cost planar algebra. Immutable; threads share it.
-class RigidInverseDynamics {
+class [[gnu::visibility("default")]] RigidInverseDynamics {
  public:
   explicit RigidInverseDynamics(const Model& model);
 
@@ -24,7 +24,7 @@ class RigidInverseDynamics {
                std::span<double> efforts, std::span<double> scratch) const noexcept;
 
   /// The recursion in one space.
-  class Algorithm;
+  class [[gnu::visibility("hidden")]] Algorithm;
 
  private:
   std::shared_ptr<const Algorithm> algorithm_;

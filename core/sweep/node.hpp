@@ -10,7 +10,7 @@
 #include "withy/core/dynamics/invariants.hpp"
 #include "withy/core/dynamics/tree.hpp"
 #include "withy/core/plugin/hinge.hpp"
-#include "withy/core/spatial/space.hpp"
+#include "withy/core/sweep/space.hpp"
 
 namespace withy::sweep {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "withy/core/dynamics/mass_table.hpp"
-#include "withy/core/dynamics/strict_sweep.hpp"
+#include "withy/core/sweep/mass_table.hpp"
+#include "withy/core/sweep/strict_sweep.hpp"
 
 namespace withy::sweep {
 
@@ -181,21 +181,21 @@ inline void strict_station(const StrictNode<Space>& node, const StrictStation<Sp
   const Twist p = s.p + s.P * sw.sigma;
   const Twist p0 = s.p0 + s.R * sw.sigma;
   Response<Space>& r = w.response;
-  r.P += Space::to_parent(station.frame, s.P - Space::cross_transposed_times(sw.xi, s.R));
-  r.Q += Space::to_parent(station.frame, Q - Space::cross_transposed_times(sw.xi, T));
-  r.R += Space::to_parent(station.frame, s.R);
-  r.T += Space::to_parent(station.frame, T);
-  r.p += Space::to_parent(station.frame, p + Space::cross_force(sw.xi, p0));
-  r.p0 += Space::to_parent(station.frame, p0);
+  r.P += Space::shift_to_parent(station.X, s.P - Space::cross_transposed_times(sw.xi, s.R));
+  r.Q += Space::shift_to_parent(station.X, Q - Space::cross_transposed_times(sw.xi, T));
+  r.R += Space::shift_to_parent(station.X, s.R);
+  r.T += Space::shift_to_parent(station.X, T);
+  r.p += Space::shift_to_parent(station.X, p + Space::cross_force(sw.xi, p0));
+  r.p0 += Space::shift_to_parent(station.X, p0);
   for (int i = 0; i < n; ++i) {
     const Twist& J = station.J[static_cast<std::size_t>(i)];
     const Twist PJ = s.P * J;
     const Twist RJ = s.R * J;
-    m.column[i] += Space::to_parent(station.frame, PJ + Space::cross_force(sw.xi, RJ));
-    m.column0[i] += Space::to_parent(station.frame, RJ);
+    m.column[i] += Space::shift_to_parent(station.X, PJ + Space::cross_force(sw.xi, RJ));
+    m.column0[i] += Space::shift_to_parent(station.X, RJ);
     m.row[i] +=
-        Space::to_parent(station.frame, Space::transposed_times(s.P, J) + Space::transposed_times(s.R, m.J1[i]));
-    m.row0[i] += Space::to_parent(station.frame, Space::transposed_times(Q, J) + Space::transposed_times(T, m.J1[i]));
+        Space::shift_to_parent(station.X, Space::transposed_times(s.P, J) + Space::transposed_times(s.R, m.J1[i]));
+    m.row0[i] += Space::shift_to_parent(station.X, Space::transposed_times(Q, J) + Space::transposed_times(T, m.J1[i]));
     m.rhs[i] -= Space::dot(J, p) + Space::dot(m.J1[i], p0);
     for (int j = 0; j < n; ++j) {
       m.G[j * n + i] += Space::dot(station.J[static_cast<std::size_t>(j)], PJ) + Space::dot(m.J1[j], RJ);

@@ -166,6 +166,12 @@ struct Planar {
     }
     return r;
   }
+  static Matrix shift_to_parent(const Position& p, const Matrix& M) {
+    Matrix N = M;
+    for (int j = 0; j < 3; ++j) N.m[j] += p.x * M.m[6 + j] - p.y * M.m[3 + j];
+    for (int i = 0; i < 3; ++i) N.m[3 * i] += p.x * N.m[3 * i + 2] - p.y * N.m[3 * i + 1];
+    return N;
+  }
   static Matrix to_parent(const Frame& AB, const Matrix& M) {
     const double c = AB.R.c, s = AB.R.s;
     const double ax = s * AB.p.x - c * AB.p.y;

@@ -1,4 +1,4 @@
-#include "withy/core/dynamics/compile.hpp"
+#include "withy/core/sweep/compile_equations.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <type_traits>
 
 #include "withy/core/dynamics/reference.hpp"
-#include "withy/core/dynamics/strict_sweep.hpp"
-#include "withy/core/dynamics/symmetric_sweep.hpp"
+#include "withy/core/sweep/strict_sweep.hpp"
+#include "withy/core/sweep/symmetric_sweep.hpp"
 
 namespace withy {
 namespace {

@@ -3,7 +3,7 @@
 /// roots, and the factors of a modal block.
 #pragma once
 
-#include "withy/core/dynamics/symmetric_sweep.hpp"
+#include "withy/core/sweep/symmetric_sweep.hpp"
 
 namespace withy::sweep {
 

@@ -2,7 +2,7 @@
 /// The three passes of the strict sweep over one node; the relations are in strict_sweep.hpp.
 #pragma once
 
-#include "withy/core/dynamics/strict_terms.hpp"
+#include "withy/core/sweep/strict_terms.hpp"
 
 namespace withy::sweep {
 
@@ -36,8 +36,8 @@ template <class Space, int N>
       const StrictStation<Space>& station = node.stations[k];
       if (!station.has_children) continue;
       StrictStationWork<Space>& sw = stations[k];
-      sw.V0 = Space::to_child(station.frame, w.V0);
-      sw.V1 = Space::to_child(station.frame, w.V1);
+      sw.V0 = Space::shift_to_child(station.X, w.V0);
+      sw.V1 = Space::shift_to_child(station.X, w.V1);
       sw.xi = sw.sigma = Twist::zero();
       if (!node.frozen) {
         Twist rate = Twist::zero();
@@ -117,12 +117,13 @@ template <class Space, int N>
     }
     if (!solve_general<N>(m.G, n, m.row, m.row0, m.rhs)) return false;
     for (int i = 0; i < n; ++i) {
-      r.P.subtract_outer(m.column[i], m.row[i]);
-      r.Q.subtract_outer(m.column[i], m.row0[i]);
-      r.R.subtract_outer(m.column0[i], m.row[i]);
-      r.T.subtract_outer(m.column0[i], m.row0[i]);
-      r.p += m.column[i] * m.rhs[i];
-      r.p0 += m.column0[i] * m.rhs[i];
+      if (node.leaf) {  // q̈ does not enter F0
+        r.P.subtract_outer(m.column[i], m.row[i]);
+        r.Q.subtract_outer(m.column[i], m.row0[i]);
+        r.p += m.column[i] * m.rhs[i];
+      } else {
+        eliminate_rate(r, m.column[i], m.column0[i], m.row[i], m.row0[i], m.rhs[i]);
+      }
     }
   }
 
@@ -206,8 +207,8 @@ template <class Space, int N>
       const StrictStation<Space>& station = node.stations[k];
       if (!station.has_children) continue;
       StrictStationWork<Space>& sw = stations[k];
-      sw.A0 = Space::to_child(station.frame, w.A0);
-      sw.A = Space::to_child(station.frame, w.A) - Space::cross(sw.xi, sw.A0) + sw.sigma;
+      sw.A0 = Space::shift_to_child(station.X, w.A0);
+      sw.A = Space::shift_to_child(station.X, w.A) - Space::cross(sw.xi, sw.A0) + sw.sigma;
       for (int i = 0; i < n; ++i) sw.A += station.J[static_cast<std::size_t>(i)] * a[i];
     }
   }

@@ -17,5 +17,5 @@
 ///     times_cross         M (V ×);   cross_transposed_times   (V ×)ᵀ M
 #pragma once
 
-#include "withy/core/spatial/planar.hpp"
-#include "withy/core/spatial/spatial.hpp"
+#include "withy/core/sweep/planar.hpp"
+#include "withy/core/sweep/spatial.hpp"
