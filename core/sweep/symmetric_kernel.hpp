@@ -56,8 +56,6 @@ template <class Space, int N, Flavor flavor>
       const auto& station = node.stations[k];
       if (!station.has_children) continue;
       stations[k].V = Space::shift_to_child(station.fields.X, V);
-      stations[k].I = Space::Inertia::zero();
-      stations[k].p = Twist::zero();
     }
   }
   if constexpr (flavor == Flavor::full) {
@@ -242,8 +240,13 @@ template <class Space, int N, Flavor flavor>
     pw.p += Space::to_parent(w.SM, p);
   } else {
     auto& pw = at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station];
-    pw.I += Space::to_parent(w.SM, I);
-    pw.p += Space::to_parent(w.SM, p);
+    if (node.begins) {
+      pw.I = Space::to_parent(w.SM, I);
+      pw.p = Space::to_parent(w.SM, p);
+    } else {
+      pw.I += Space::to_parent(w.SM, I);
+      pw.p += Space::to_parent(w.SM, p);
+    }
   }
   return true;
 }
@@ -260,7 +263,8 @@ template <class Space, int N, Flavor flavor>
     outer = node.parent_station < 0 ? &at<NodeWork<Space>>(s.work, parent.work)->A
                                     : &at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].A;
   }
-  Twist A = Space::to_child(w.SM, *outer) + w.sigma;
+  Twist A = w.sigma;
+  if (joint.pose_matters) A += Space::to_child(w.SM, *outer);
   if (single(joint.kind)) {
     const double x = (w.u - Space::dot(w.U, A)) * w.inverse;
     A += along<Space>(joint.kind, x);

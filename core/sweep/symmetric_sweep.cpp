@@ -95,6 +95,15 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
       }
     }
   }
+  std::vector<std::vector<bool>> begun(nodes_.size());
+  for (std::size_t i = nodes_.size(); i-- > 0;) {  // the order in which the inward pass meets them
+    SymmetricNode<Space>& node = nodes_[i];
+    if (node.parent_station < 0 || !nodes_[static_cast<std::size_t>(node.parent)].frozen) continue;
+    std::vector<bool>& stations = begun[static_cast<std::size_t>(node.parent)];
+    stations.resize(nodes_[static_cast<std::size_t>(node.parent)].stations.size());
+    node.begins = !stations[static_cast<std::size_t>(node.parent_station)];
+    stations[static_cast<std::size_t>(node.parent_station)] = true;
+  }
   for (SymmetricNode<Space>& node : nodes_) {
     using Twist = typename Space::Twist;
     const auto n = static_cast<std::size_t>(node.modes);

@@ -42,6 +42,7 @@ struct SymmetricNode {
   typename Space::Frame M;  ///< hinge frame in the root station's section
   bool frozen = false;      ///< ruthless: integrals at q = 0, velocity terms at q̇ = 0; sections parallel to its frame
   bool leaf = true;         ///< nothing hangs on it
+  bool begins = false;      ///< it is the first to write the sums of the parent's station, which carries nothing else
   std::size_t mode_position = 0, mode_speed = 0;
   std::vector<double> stiffness, damping;  ///< n×n
   RigidPart<Space> base;                   ///< the rigid part; everything in a frozen node
