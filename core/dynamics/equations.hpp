@@ -17,7 +17,8 @@ namespace withy {
 struct Evaluation {
   enum class Outcome { ok, singular, nonfinite };
   Outcome outcome = Outcome::ok;
-  int body = -1;  ///< index in Model::bodies() of the body whose block could not be solved, or −1
+  int body = -1;             ///< index in Model::bodies() of the body whose block could not be solved, or −1
+  int determinant_sign = 1;  ///< of M, the product of its pivots' signs; meaningless unless ok
   [[nodiscard]] bool ok() const { return outcome == Outcome::ok; }
 };
 

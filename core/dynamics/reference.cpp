@@ -189,12 +189,16 @@ class Tree {
     V3<S> linear = V3<S>::Zero(), angular = V3<S>::Zero();
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       const ModalShape& shape = model_.bodies()[b].body->shape();
+      const WorldMotion<S>& B = bodies_[b];
       for (const Particle& particle : shape.particles) {
-        const WorldMotion<S> A = point(b, particle.at);
-        e.kinetic += 0.5 * particle.mass * A.v.squaredNorm();
-        e.potential -= particle.mass * model_.gravity().dot(A.p);
-        linear += particle.mass * A.v;
-        angular += particle.mass * A.p.cross(A.v);
+        const auto [r, r_rate] = point_velocity(particle.at, terms_[b].order, q_[b], q_dot_[b]);
+        const V3<S> arm = B.R * r;
+        const V3<S> v = B.v + B.w.cross(arm) + B.R * r_rate;
+        const V3<S> p = B.p + arm;
+        e.kinetic += 0.5 * particle.mass * v.squaredNorm();
+        e.potential -= particle.mass * model_.gravity().dot(p);
+        linear += particle.mass * v;
+        angular += particle.mass * p.cross(v);
       }
       for (const Section& section : shape.sections) {
         const WorldMotion<S> A = point(b, section.at);
@@ -311,9 +315,9 @@ std::array<double, 3> ReferenceDynamics::deflection(std::span<const double> y, i
   if (node.body->shape().modes() == 0) return d;
   const Slot& slot = *model_->layout().body(node.name);
   const Eigen::Index n = node.body->shape().modes();
-  const Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(y.data() + slot.position, n);
+  const Eigen::Map<const Eigen::VectorXd> q(y.data() + slot.position, n);
   const PointExpansion& e = node.frames[static_cast<std::size_t>(frame)].section;
-  Eigen::Map<Vector3>(d.data()) = point_motion<double>(e, terms_of(b).strain, q, Eigen::VectorXd::Zero(n)).r - e.X;
+  Eigen::Map<Vector3>(d.data()) = point_velocity(e, terms_of(b).strain, q, q).first - e.X;
   return d;
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "withy/core/model/terms.hpp"
 #include "withy/core/plugin/strain_kinematics.hpp"
@@ -115,6 +116,24 @@ PointMotionOf<S> point_motion(const PointExpansion& e, StrainOrder order, const 
       S(2) * half_s_rate * (k.db * t + k.dc * (t * t)) + k.b * t_rate + k.c * (t_rate * t + t * t_rate);
   m.w_bias = left_rate * theta_rate + left * theta_bias;
   return m;
+}
+
+/// r and ṙ of point_motion alone, without allocating: for energies and deflections, asked for at every step of a run.
+template <class Vector>
+std::pair<Vector3, Vector3> point_velocity(const PointExpansion& e, StrainOrder order, const Vector& q,
+                                           const Vector& q_dot) {
+  Vector3 r = e.X, r_rate = Vector3::Zero();
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const Vector3 phi = e.phi.col(i);
+    Vector3 P = phi;
+    if (order == StrainOrder::quadratic) {
+      for (Eigen::Index j = 0; j < q.size(); ++j)
+        P += Vector3(e.gamma[0](i, j), e.gamma[1](i, j), e.gamma[2](i, j)) * q[j];
+    }
+    r += (phi + P) * (0.5 * q[i]);
+    r_rate += P * q_dot[i];
+  }
+  return {r, r_rate};
 }
 
 /// Motion of a frame fixed at `offset` to the section whose motion is `section`.

@@ -12,6 +12,8 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       summary_(summary),
       deflection_limit_(deflection_limit),
       efforts_(model.layout().speeds),
+      rates_(equations.size()),
+      work_(equations.make_work()),
       initial_work_(initial.y.back()),
       examined_(model.layout().speeds <= largest_examined),
       checked_(initial.time) {
@@ -30,7 +32,7 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
   summary.peak_effort.assign(model.layout().speeds, 0.0);
   const Energies e = equations.energies(initial.y);
   initial_energy_ = e.kinetic + e.potential;
-  if (examined_) initial_sign_ = determinant_sign(equations.system(initial.time, initial.y));
+  if (examined_) initial_sign_ = mass_matrix_sign(initial);
 }
 
 std::array<double, 3> Monitor::deflection(const Tip& tip, const State& state) const {
@@ -74,9 +76,14 @@ void Monitor::audit_energy(const State& state) {
   summary_.energy_drift = energy_scale_ > 0 ? energy_error_ / energy_scale_ : 0;
 }
 
+int Monitor::mass_matrix_sign(const State& state) {
+  const Evaluation evaluation = equations_.derivatives(state.time, state.y, rates_, work_);
+  return evaluation.ok() ? evaluation.determinant_sign : 0;
+}
+
 void Monitor::audit_mass_matrix(const State& state) {
   if (sign_change_ || !examined_) return;
-  const int sign = determinant_sign(equations_.system(state.time, state.y));
+  const int sign = mass_matrix_sign(state);
   if (sign == initial_sign_) {
     checked_ = state.time;
   } else {

@@ -40,6 +40,8 @@ class Monitor {
     std::array<double, 3>* peak;
   };
   [[nodiscard]] std::array<double, 3> deflection(const Tip& tip, const State& state) const;
+  /// Sign of det M by one evaluation; 0 where it cannot be solved.
+  [[nodiscard]] int mass_matrix_sign(const State& state);
 
   const Model& model_;
   const EquationsOfMotion& equations_;
@@ -47,7 +49,8 @@ class Monitor {
   std::vector<Tip> tips_;
   double deflection_limit_;
   std::string excess_;
-  std::vector<double> efforts_, scratch_;
+  std::vector<double> efforts_, scratch_, rates_;
+  Work work_;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;
   bool examined_;         ///< whether M is looked at

@@ -94,7 +94,7 @@ class SweepEquations final : public EquationsOfMotion {
     double total = power;
     for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
     if (!std::isfinite(total)) return {Evaluation::Outcome::nonfinite, first_nonfinite(accelerations)};
-    return {};
+    return evaluation;
   }
 
   void normalize(std::span<double> y) const noexcept override {

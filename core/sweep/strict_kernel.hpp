@@ -73,9 +73,9 @@ inline void eliminate_rate(Response<Space>& r, const typename Space::Twist& colu
   r.p0 += column0 * u;
 }
 
-/// Elimination of ẍ of a hinge with several rates.
-inline bool eliminate_rates(const JointData<Spatial>& joint, const StrictState<Spatial>& s,
-                            StrictElimination<Spatial>& e, Response<Spatial>& r) {
+/// Elimination of ẍ of a hinge with several rates; the sign of the determinant of their block, 0 where it is singular.
+inline int eliminate_rates(const JointData<Spatial>& joint, const StrictState<Spatial>& s,
+                           StrictElimination<Spatial>& e, Response<Spatial>& r) {
   const auto k = static_cast<int>(joint.speeds);
   const HingeMotion motion = general_motion(joint, s.positions + joint.position, s.speeds + joint.speed);
   Spatial::Twist column[Spatial::dim], column0[Spatial::dim];
@@ -89,16 +89,18 @@ inline bool eliminate_rates(const JointData<Spatial>& joint, const StrictState<S
     e.d[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Spatial::dot(e.H[i], r.p);
     for (int j = 0; j < k; ++j) D[j * k + i] = Spatial::dot(e.H[j], column[i]);
   }
-  if (!solve_general<-1>(D, k, e.row, e.row0, e.d)) return false;
+  const int sign = solve_general<-1>(D, k, e.row, e.row0, e.d);
+  if (sign == 0) return 0;
   for (int i = 0; i < k; ++i) eliminate_rate(r, column[i], column0[i], e.row[i], e.row0[i], e.d[i]);
-  return true;
+  return sign;
 }
 
 template <class Space, int N>
-[[gnu::flatten]] inline bool strict_inward(const StrictNode<Space>& node, const StrictState<Space>& s) {
+[[gnu::flatten]] inline int strict_inward(const StrictNode<Space>& node, const StrictState<Space>& s) {
   const int n = count<N>(node.modes);
   auto& w = *at<StrictNodeWork<Space>>(s.work, node.work);
   Response<Space>& r = w.response;
+  int sign = 1;  // of the determinant of the node's block
   if constexpr (N != 0) {
     const double* q = s.positions + node.mode_position;
     const double* q_dot = s.speeds + node.mode_speed;
@@ -115,7 +117,8 @@ template <class Space, int N>
                     node.damping[static_cast<std::size_t>(i * n + j)] * q_dot[j];
       }
     }
-    if (!solve_general<N>(m.G, n, m.row, m.row0, m.rhs)) return false;
+    sign = solve_general<N>(m.G, n, m.row, m.row0, m.rhs);
+    if (sign == 0) return 0;
     for (int i = 0; i < n; ++i) {
       if (node.leaf) {  // q̈ does not enter F0
         r.P.subtract_outer(m.column[i], m.row[i]);
@@ -133,19 +136,21 @@ template <class Space, int N>
     const typename Space::Twist column =
         turns ? r.P.turn_column() + r.Q.turn_column() : r.P.slide_column() + r.Q.slide_column();
     const double pivot = component<Space>(joint.kind, column);
-    if (!(std::abs(pivot) > 0)) return false;
+    if (!(std::abs(pivot) > 0)) return 0;
+    if (pivot < 0) sign = -sign;
     const double inverse = 1 / pivot;
     w.row = (turns ? r.P.turn_row() : r.P.slide_row()) * inverse;
     w.row0 = (turns ? r.Q.turn_row() : r.Q.slide_row()) * inverse;
     w.u = (joint.direction * s.efforts[joint.speed] - component<Space>(joint.kind, r.p)) * inverse;
-    if (node.parent < 0) return true;
+    if (node.parent < 0) return sign;
     const typename Space::Twist column0 =
         turns ? r.R.turn_column() + r.T.turn_column() : r.R.slide_column() + r.T.slide_column();
     eliminate_rate(r, column, column0, w.row, w.row0, w.u);
   } else if constexpr (Space::angular == 3) {  // a planar tree has no other hinges
-    if (joint.kind != Joint::fixed && !eliminate_rates(joint, s, w.elimination, r)) return false;
+    if (joint.kind != Joint::fixed) sign *= eliminate_rates(joint, s, w.elimination, r);
+    if (sign == 0) return 0;
   }
-  if (node.parent < 0) return true;
+  if (node.parent < 0) return sign;
   r.p += r.P * w.sigma + r.Q * w.sigma0;
   r.p0 += r.R * w.sigma + r.T * w.sigma0;
   const StrictNode<Space>& parent = s.nodes[node.parent];
@@ -160,7 +165,7 @@ template <class Space, int N>
   outer.T += Space::to_parent(X, r.T);
   outer.p += Space::to_parent(X, r.p);
   outer.p0 += Space::to_parent(X, r.p0);
-  return true;
+  return sign;
 }
 
 template <class Space, int N>

@@ -103,15 +103,17 @@ Evaluation StrictSweep<Space>::accelerations(const double* positions, const doub
   for (const StrictNode<Space>& node : nodes_) {
     with_modes(node.modes, [&](auto n) { strict_outward<Space, decltype(n)::value>(node, state); });
   }
+  int sign = 1;
   for (std::size_t i = nodes_.size(); i-- > 0;) {
-    bool good = true;
-    with_modes(nodes_[i].modes, [&](auto n) { good = strict_inward<Space, decltype(n)::value>(nodes_[i], state); });
-    if (!good) return {Evaluation::Outcome::singular, nodes_[i].body};
+    int of_node = 0;
+    with_modes(nodes_[i].modes, [&](auto n) { of_node = strict_inward<Space, decltype(n)::value>(nodes_[i], state); });
+    if (of_node == 0) return {Evaluation::Outcome::singular, nodes_[i].body};
+    sign *= of_node;
   }
   for (const StrictNode<Space>& node : nodes_) {
     with_modes(node.modes, [&](auto n) { strict_acceleration<Space, decltype(n)::value>(node, state); });
   }
-  return {};
+  return {Evaluation::Outcome::ok, -1, sign};
 }
 
 template class StrictSweep<Spatial>;

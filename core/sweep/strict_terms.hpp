@@ -83,17 +83,19 @@ struct ModalBlock {
   }
 };
 
-/// LU factorization with partial pivoting of the n×n row-major G, applied to twist rows a, b and scalars c in place;
-/// false where a pivot vanishes.
+/// LU factorization with partial pivoting of the n×n row-major G, applied to twist rows a, b and scalars c in place.
+/// Gives the sign of det G, 0 where a pivot vanishes.
 template <int N, class Twist>
-inline bool solve_general(double* G, int modes, Twist* a, Twist* b, double* c) {
+inline int solve_general(double* G, int modes, Twist* a, Twist* b, double* c) {
   const int n = count<N>(modes);
+  int sign = 1;
   for (int k = 0; k < n; ++k) {
     int pivot = k;
     for (int i = k + 1; i < n; ++i) {
       if (std::abs(G[i * n + k]) > std::abs(G[pivot * n + k])) pivot = i;
     }
-    if (!(std::abs(G[pivot * n + k]) > 0)) return false;
+    if (!(std::abs(G[pivot * n + k]) > 0)) return 0;
+    if ((pivot != k) != (G[pivot * n + k] < 0)) sign = -sign;
     if (pivot != k) {
       for (int j = k; j < n; ++j) std::swap(G[k * n + j], G[pivot * n + j]);
       std::swap(a[k], a[pivot]);
@@ -120,7 +122,7 @@ inline bool solve_general(double* G, int modes, Twist* a, Twist* b, double* c) {
     b[i] = b[i] * inverse;
     c[i] *= inverse;
   }
-  return true;
+  return sign;
 }
 
 /// Body terms of the modal equations: order zero and one of ½ Vᵀ I V + Vᵀ C q̇ + ½ q̇ᵀ G q̇ in Lagrange's equations.

@@ -27,7 +27,9 @@ class FunctionEquations : public EquationsOfMotion {
   const Layout& layout() const override { return layout_; }
   Work make_work() const override { return Work(64); }
   Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot, Work&) const noexcept override {
-    return derivatives_(t, y, y_dot);
+    Evaluation evaluation = derivatives_(t, y, y_dot);
+    if (system_) evaluation.determinant_sign = determinant_sign(system_(t, y));
+    return evaluation;
   }
   void normalize(std::span<double> y) const noexcept override {
     if (normalize_) normalize_(y);
