@@ -187,7 +187,7 @@ const BadScene bad_scenes[] = {
      "21:76: /loads/motor/table/1: got a list of 1; need a list of rows of 2 finite numbers [s, N m], the first column "
      "increasing"},
     {"choice_of_another_law", "law: sine", "law: sinus",
-     R"(21:53: /loads/motor/law: got "sinus": did you mean 'sine'?; need one of: constant, sine, table)"},
+     R"(21:53: /loads/motor/law: got "sinus": did you mean 'sine'?; need one of: constant, sine, table, steps)"},
     {"load_component_out_of_range", "hinge: shoulder,", "hinge: shoulder, component: 1,", "21:3: /loads/motor: "},
     {"bodies_as_a_list", "bodies:\n  hub:\n    type: rigid", "bodies: [hub]\nlimits:\n  hub:\n    type: rigid",
      "4:9: /bodies: got a list of 1; need a map of names"},
