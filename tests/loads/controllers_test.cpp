@@ -139,6 +139,25 @@ TEST(ComputedTorque, on_the_trajectory_its_efforts_are_those_of_the_open_loop) {
   }
 }
 
+// At rest friction hides an error of at most effort / stiffness = 0.1 / 30 rad = 0.2 degrees at the elbow, whose
+// reaction at the shoulder is 0.1 / 150 rad. That the controller does the work shows where the gains are divided by a
+// hundred: the same arm then is degrees away.
+TEST(PdController, brings_a_flexible_arm_to_its_target_and_holds_it) {
+  const auto errors = [](const std::vector<std::string>& overrides) {
+    test::LoadedScene s(test::shipped("pd-arm.yaml"), overrides);
+    const State end = s.run().back();
+    return std::pair(std::abs(s.position(end, "shoulder") - pi / 3), std::abs(s.position(end, "elbow")));
+  };
+  const auto [shoulder, elbow] = errors({});
+  EXPECT_LT(shoulder, 0.1 / 150);
+  EXPECT_LT(elbow, 0.1 / 30);
+  const std::string at = "loads.control.hinges.";
+  const auto [slack_shoulder, slack_elbow] = errors({at + "shoulder.stiffness=1.5", at + "shoulder.damping=1.5",
+                                                     at + "elbow.stiffness=0.3", at + "elbow.damping=0.25"});
+  EXPECT_GT(slack_shoulder, 0.02);
+  EXPECT_GT(slack_elbow, 0.02);
+}
+
 // Rigid trees follow the efforts of their inverse dynamics: each law ends where it should, to the integrator's accuracy
 // times the growth of errors of an open loop under gravity.
 TEST(RigidInverseDynamics, every_law_carries_a_rigid_tree_to_its_end) {

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -44,6 +47,16 @@ struct LoadedScene {
   }
   RunSummary summary;
 };
+
+/// Text of a scene that comes along.
+inline std::string shipped(const std::string& name) {
+  const std::string path = WITHY_SOURCE_DIRECTORY "/scenes/" + name;
+  std::ifstream stream(path, std::ios::binary);
+  std::stringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw std::runtime_error("cannot read " + path);
+  return text.str();
+}
 
 /// What a bad scene is answered with; empty where it is good.
 inline std::string problem_of(const std::string& text) {
