@@ -118,10 +118,7 @@ struct FollowedAxis {
 /// The axis of a hinge with one coordinate.
 /// \throws std::invalid_argument where the model has no such hinge.
 inline FollowedAxis single_axis(const Model& model, const std::string& hinge, const Trajectory& trajectory) {
-  const Slot& slot = hinge_slot(model, hinge);
-  if (slot.positions != 1 || slot.speeds != 1)
-    throw std::invalid_argument("hinge '" + hinge + "' has " + std::to_string(slot.speeds) +
-                                " rates; a trajectory moves hinges with one coordinate");
+  const Slot& slot = single_coordinate(model, hinge);
   return {slot.position, slot.speed, trajectory};
 }
 

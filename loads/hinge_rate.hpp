@@ -38,6 +38,16 @@ inline const Slot& hinge_slot(const Model& model, const std::string& hinge) {
   return *slot;
 }
 
+/// The hinge of that name, which must have one coordinate.
+/// \throws std::invalid_argument where the model has no such hinge.
+inline const Slot& single_coordinate(const Model& model, const std::string& hinge) {
+  const Slot& slot = hinge_slot(model, hinge);
+  if (slot.positions != 1 || slot.speeds != 1)
+    throw std::invalid_argument("hinge '" + hinge + "' has " + std::to_string(slot.speeds) +
+                                " rates; a trajectory moves hinges with one coordinate");
+  return slot;
+}
+
 /// Index of the rate among the speeds.
 /// \throws std::invalid_argument where the model has no such rate.
 inline std::size_t speed_index(const Model& model, const RateName& rate) {
