@@ -62,7 +62,7 @@ class BangBangSlew final : public Load {
     if (!plan)
       throw std::invalid_argument(
           "found no bang-bang efforts of least time; the limits must exceed the efforts that carry the weight, and one "
-          "switch must do for one hinge, three for two");
+          "switch must do for one hinge, three or four for two");
     return std::make_unique<BoundBangBangSlew>(tree, *plan);
   }
 

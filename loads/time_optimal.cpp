@@ -1,62 +1,21 @@
 #include "withy/loads/time_optimal.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 namespace withy {
 
-LimitedTree::LimitedTree(const Model& model, std::vector<LimitedAxis> axes)
-    : dynamics_(model),
-      axes_(std::move(axes)),
-      x_(model.reference_state().y),
-      u_(model.layout().speeds),
-      u_dot_(u_),
-      tau_(u_),
-      scratch_(dynamics_.scratch()) {
-  x_.resize(model.layout().positions);
-}
-
-void LimitedTree::inverse(const Vector& state, int moving, double* efforts) const {
-  const auto n = static_cast<Eigen::Index>(axes_.size());
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const LimitedAxis& axis = axes_[static_cast<std::size_t>(i)];
-    x_[axis.position] = state[i];
-    u_[axis.speed] = state[n + i];
-    u_dot_[axis.speed] = i == moving ? 1 : 0;
-  }
-  dynamics_.efforts(x_, u_, u_dot_, tau_, scratch_);
-  for (std::size_t i = 0; i < axes_.size(); ++i) efforts[i] = tau_[axes_[i].speed];
-}
-
-LimitedTree::Vector LimitedTree::derivative(const Vector& state, const double* efforts) const {
-  const auto n = static_cast<Eigen::Index>(axes_.size());
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2> M(n, n);
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1> bias(n), applied(n);
-  inverse(state, -1, bias.data());
-  for (Eigen::Index i = 0; i < n; ++i) {
-    inverse(state, static_cast<int>(i), M.col(i).data());
-    M.col(i) -= bias;
-    applied[i] = efforts[i] - bias[i];
-  }
-  Vector rate(2 * n);
-  rate << state.tail(n), M.partialPivLu().solve(applied);
-  return rate;
-}
-
-std::vector<double> LimitedTree::holding() const {
-  Vector rest = Vector::Zero(2 * static_cast<Eigen::Index>(axes_.size()));
-  for (std::size_t i = 0; i < axes_.size(); ++i) rest[static_cast<Eigen::Index>(i)] = axes_[i].to;
-  std::vector<double> efforts(axes_.size());
-  inverse(rest, -1, efforts.data());
-  return efforts;
-}
-
 namespace {
 
 using Vector = LimitedTree::Vector;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;
+/// Switches, axis by axis, then the end: as many as the state has elements, or one more.
+using Times = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 5, 1>;
+/// Derivatives of the final state with respect to the times.
+using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 5>;
 
 /// How often each axis switches, and the signs it starts with.
 struct Structure {
@@ -70,7 +29,7 @@ struct Segment {
   double efforts[2];
 };
 
-/// Bang-bang motions of one structure; `times` are the switches, axis by axis, then the end.
+/// Bang-bang motions of one structure.
 class Family {
  public:
   Family(const LimitedTree& tree, Structure structure) : tree_(tree), structure_(std::move(structure)) {
@@ -82,15 +41,16 @@ class Family {
     }
   }
 
-  /// Times that Newton's method makes of `times`: the motion then ends at rest at the target.
-  std::optional<Vector> solve(Vector times, int steps) const {
+  /// Times at which the motion ends at rest at the target, by Newton's method with the least change.
+  std::optional<Times> reach(Times times, int steps) const {
+    constexpr double least = 1.0 / 50;  // of Newton's step: guesses that crawl are given up
     Vector miss = end(times, steps) - target_;
-    for (int iteration = 0; iteration < 40; ++iteration) {
+    for (int iteration = 0; iteration < 30; ++iteration) {
       if (miss.norm() < 1e-10) return times;
-      const Vector change = -slopes(times, steps).partialPivLu().solve(miss);
+      const Times change = -rough_slopes(times, miss + target_, steps).completeOrthogonalDecomposition().solve(miss);
       double part = 1;
-      for (; part > 1e-3; part *= 0.5) {
-        const Vector next = times + part * change;
+      for (; part > least; part *= 0.5) {
+        const Times next = times + part * change;
         if (!ordered(next)) continue;
         const Vector left = end(next, steps) - target_;
         if (left.norm() > (1 - 0.1 * part) * miss.norm()) continue;
@@ -98,7 +58,35 @@ class Family {
         miss = left;
         break;
       }
-      if (part <= 1e-3) return {};
+      if (part <= least) return {};
+    }
+    return {};
+  }
+
+  /// The same, and of the least time. With one switch more than reaching takes there is a curve of such times: it is
+  /// followed downhill, by steps along its tangent and back onto it, to where the end is stationary.
+  std::optional<Times> solve(const Times& guess, int steps) const {
+    std::optional<Times> times = reach(guess, steps);
+    if (!times || times->size() == target_.size()) return times;
+    const Eigen::Index last = times->size() - 1;
+    Times tangent = downhill(*times, steps);
+    double length = 0.02 * (*times)[last];
+    for (int step = 0; step < 60; ++step) {
+      if (std::abs(tangent[last]) < 1e-7) return times;
+      const Times next = *times + length * tangent;
+      const auto landed = ordered(next) ? reach(next, steps) : std::nullopt;
+      if (!landed) {
+        length *= 0.3;
+        if (length < 1e-6 * (*times)[last]) return {};  // two switches meet: the curve ends here, still falling
+        continue;
+      }
+      const Times onward = downhill(*landed, steps);
+      const bool passed = onward.dot(tangent) < 0;
+      const double slope = std::abs(tangent[last]), left = (passed ? -1 : 1) * std::abs(onward[last]);
+      // The secant of the slopes points at the minimum.
+      length = std::min(2 * length, length * std::abs(left / (slope - left)));
+      times = landed;
+      tangent = onward;
     }
     return {};
   }
@@ -106,11 +94,11 @@ class Family {
   /// Pontryagin's principle for least time. The costate λ at the end is orthogonal to what any switch does to the final
   /// state and has λ·(ẋ, ẍ) = 1; back in time it obeys λ̇ = −(∂f/∂x)ᵀ λ. Wherever λ·∂f/∂τ_i > 0 the effort τ_i must be
   /// at its upper limit, and at its lower where it is negative.
-  bool extremal(const Vector& times, int steps) const {
-    const Eigen::Index n = times.size();
-    Vector goal = Vector::Zero(n);
-    goal[n - 1] = 1;
-    Vector costate = slopes(times, steps).transpose().partialPivLu().solve(goal);
+  bool extremal(const Times& times, int steps) const {
+    const Eigen::Index n = target_.size();
+    Times goal = Times::Zero(times.size());
+    goal[times.size() - 1] = 1;
+    Vector costate = slopes(times, steps).transpose().colPivHouseholderQr().solve(goal);
     struct Sample {
       Vector state;
       const Segment* segment;
@@ -155,7 +143,7 @@ class Family {
     return true;
   }
 
-  SwitchingPlan plan(const Vector& times) const {
+  SwitchingPlan plan(const Times& times) const {
     SwitchingPlan result;
     Eigen::Index next = 0;
     for (std::size_t i = 0; i < tree_.axes().size(); ++i) {
@@ -168,7 +156,7 @@ class Family {
   }
 
   /// Switches in the order of each axis, between 0 and the end.
-  bool ordered(const Vector& times) const {
+  bool ordered(const Times& times) const {
     Eigen::Index next = 0;
     for (const int count : structure_.switches) {
       double before = 0;
@@ -182,7 +170,7 @@ class Family {
   }
 
  private:
-  std::vector<Segment> segments(const Vector& times) const {
+  std::vector<Segment> segments(const Times& times) const {
     std::vector<std::pair<double, std::size_t>> events;
     Eigen::Index next = 0;
     Segment now{};
@@ -216,22 +204,38 @@ class Family {
     }
     return y;
   }
-  Vector end(const Vector& times, int steps) const {
+  Vector end(const Times& times, int steps) const {
     Vector y = start_;
     for (const Segment& s : segments(times)) y = moved(y, s, 1, steps);
     return y;
   }
-  /// Derivatives of the final state with respect to the times.
-  Matrix slopes(const Vector& times, int steps) const {
-    Matrix J(start_.size(), times.size());
-    const double h = 1e-6 * times[times.size() - 1];
-    const Vector here = end(times, steps);
+  Slopes slopes(const Times& times, int steps) const {
+    Slopes J(target_.size(), times.size());
+    const double h = 1e-5 * times[times.size() - 1];
     for (Eigen::Index k = 0; k < times.size(); ++k) {
-      Vector ahead = times;
+      Times ahead = times, behind = times;
       ahead[k] += h;
-      J.col(k) = (end(ahead, steps) - here) / h;
+      behind[k] -= h;
+      J.col(k) = (end(ahead, steps) - end(behind, steps)) / (2 * h);
     }
     return J;
+  }
+  /// The same to half the digits and at half the cost, from the final state itself: enough to converge.
+  Slopes rough_slopes(const Times& times, const Vector& final, int steps) const {
+    Slopes J(target_.size(), times.size());
+    const double h = 1e-7 * times[times.size() - 1];
+    for (Eigen::Index k = 0; k < times.size(); ++k) {
+      Times ahead = times;
+      ahead[k] += h;
+      J.col(k) = (end(ahead, steps) - final) / h;
+    }
+    return J;
+  }
+  /// Unit tangent of the curve of times that reach the target, in the sense of less time.
+  Times downhill(const Times& times, int steps) const {
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(slopes(times, steps)), Eigen::ComputeFullV);
+    const Times tangent = svd.matrixV().col(times.size() - 1);
+    return tangent[times.size() - 1] > 0 ? Times(-tangent) : tangent;
   }
 
   const LimitedTree& tree_;
@@ -239,13 +243,13 @@ class Family {
   Vector start_, target_;
 };
 
-/// Every way to share 2n − 1 switches among n axes, with every choice of signs.
-std::vector<Structure> structures(std::size_t axes) {
-  if (axes == 1) return {{{1}, {1}}, {{1}, {-1}}};
+/// Every way to share switches among the axes, with every choice of signs.
+std::vector<Structure> structures(std::size_t axes, int switches) {
+  if (axes == 1) return {{{switches}, {1}}, {{switches}, {-1}}};
   std::vector<Structure> all;
-  for (const auto& [first, second] : {std::pair(1, 2), std::pair(2, 1), std::pair(0, 3), std::pair(3, 0)}) {
+  for (int first = 0; first <= switches; ++first) {
     for (const int a : {1, -1}) {
-      for (const int b : {1, -1}) all.push_back({{first, second}, {a, b}});
+      for (const int b : {1, -1}) all.push_back({{first, switches - first}, {a, b}});
     }
   }
   return all;
@@ -268,21 +272,20 @@ double time_scale(const LimitedTree& tree) {
   return longest;
 }
 
-}  // namespace
-
-std::optional<SwitchingPlan> least_time(const LimitedTree& tree) {
+/// The fastest of the extremals found that have this number of switches; nothing where none is.
+std::optional<SwitchingPlan> least_time_with(const LimitedTree& tree, int switches, int guesses) {
   // Guesses are spread by a generator of fixed seed, so that the same scene has the same plan. Few steps suffice to
   // find the switches; many then make them exact.
-  constexpr int guesses = 12, coarse = 4, fine = 24;
+  constexpr int coarse = 4, fine = 24;
   const double scale = time_scale(tree);
   std::mt19937 random(1);
   const auto number = [&] { return static_cast<double>(random()) / 4294967296.0; };
   std::optional<SwitchingPlan> best;
-  for (const Structure& structure : structures(tree.axes().size())) {
+  for (const Structure& structure : structures(tree.axes().size(), switches)) {
     const Family family(tree, structure);
-    std::vector<Vector> known;
+    std::vector<Times> known;
     for (int guess = 0; guess < guesses; ++guess) {
-      Vector times(2 * static_cast<Eigen::Index>(tree.axes().size()));
+      Times times(switches + 1);
       const double end = scale * (0.5 + 1.5 * number());
       Eigen::Index first = 0;
       for (const int count : structure.switches) {
@@ -293,7 +296,7 @@ std::optional<SwitchingPlan> least_time(const LimitedTree& tree) {
       times[first] = end;
       const auto rough = family.ordered(times) ? family.solve(times, coarse) : std::nullopt;
       if (!rough) continue;
-      const auto same = [&](const Vector& other) { return (other - *rough).norm() < 1e-4 * scale; };
+      const auto same = [&](const Times& other) { return (other - *rough).norm() < 1e-4 * scale; };
       if (std::any_of(known.begin(), known.end(), same)) continue;
       known.push_back(*rough);
       const auto exact = family.solve(*rough, fine);
@@ -302,6 +305,15 @@ std::optional<SwitchingPlan> least_time(const LimitedTree& tree) {
     }
   }
   return best;
+}
+
+}  // namespace
+
+std::optional<SwitchingPlan> least_time(const LimitedTree& tree) {
+  const int state = 2 * static_cast<int>(tree.axes().size());
+  // As many times as conditions first. One switch more is rarer, and dearer to find.
+  if (auto plan = least_time_with(tree, state - 1, 12)) return plan;
+  return state > 2 ? least_time_with(tree, state, 6) : std::nullopt;
 }
 
 }  // namespace withy

@@ -112,6 +112,35 @@ loads: {slew: {type: bang-bang-slew, hinges: {turn: {to: 1.2, limit: 6}, reach: 
   EXPECT_LE(s.summary.peak_effort[1], 15);
 }
 
+/// The shipped slew with links that are rigid.
+std::vector<std::string> rigid(std::vector<std::string> more) {
+  for (const char* o : {"bodies.link1.bending_y.modes=0", "bodies.link2.bending_y.modes=0", "integrator.rtol=1e-10",
+                        "integrator.atol=1e-12"})
+    more.emplace_back(o);
+  return more;
+}
+
+TEST(BangBangSlew, carries_the_rigid_arm_to_its_target_with_three_switches_or_four) {
+  const std::string at = "loads.slew.hinges.";
+  const std::vector<std::string> across = {at + "shoulder.from=70 deg", at + "shoulder.to=51 deg",
+                                           at + "elbow.from=118 deg",   at + "elbow.to=-48 deg",
+                                           at + "shoulder.limit=36",    at + "elbow.limit=9"};
+  struct Slew {
+    std::vector<std::string> overrides;
+    std::size_t switches;
+    double shoulder, elbow;  // degrees
+  };
+  for (const Slew& slew : {Slew{{}, 3, 60, 0}, Slew{across, 4, 51, -48}}) {
+    test::LoadedScene s(test::shipped("least-time-slew.yaml"), rigid(slew.overrides));
+    EXPECT_EQ(s.scene.model->loads()[0].load->discontinuities().size(), slew.switches + 2);
+    const State end = s.run().back();
+    EXPECT_NEAR(s.position(end, "shoulder"), slew.shoulder * pi / 180, 1e-6);
+    EXPECT_NEAR(s.position(end, "elbow"), slew.elbow * pi / 180, 1e-6);
+    EXPECT_NEAR(s.rate(end, "shoulder"), 0, 1e-6);
+    EXPECT_NEAR(s.rate(end, "elbow"), 0, 1e-6);
+  }
+}
+
 // Two slides that do not feel each other: the slower, 2 √(0.9 · 3 / 2) s, decides, and the other spends what it has
 // left.
 TEST(BangBangSlew, of_independent_axes_takes_the_time_of_the_slower) {
