@@ -16,7 +16,7 @@ function(withy_plugin name)
 
   # Compiled once; the objects also go into a static build.
   add_library(withy-plugin-objects-${name} OBJECT ${ARG_UNPARSED_ARGUMENTS})
-  target_link_libraries(withy-plugin-objects-${name} PRIVATE withy::core ${ARG_LIBRARIES})
+  target_link_libraries(withy-plugin-objects-${name} PRIVATE withy::core withy::sweeps ${ARG_LIBRARIES})
   if(TARGET withy-options)
     target_link_libraries(withy-plugin-objects-${name} PRIVATE withy-options)
   endif()
@@ -27,8 +27,8 @@ function(withy_plugin name)
   set(exports ${CMAKE_CURRENT_BINARY_DIR}/${name}.exports)
   file(CONFIGURE OUTPUT ${exports} CONTENT "{ global: withy_plugin_${symbol}; local: *; };\n" @ONLY)
   add_library(withy-plugin-${name} MODULE $<TARGET_OBJECTS:withy-plugin-objects-${name}>)
-  target_link_libraries(withy-plugin-${name} PRIVATE withy::core ${ARG_LIBRARIES})
-  target_link_options(withy-plugin-${name} PRIVATE LINKER:--version-script=${exports})
+  target_link_libraries(withy-plugin-${name} PRIVATE withy::core withy::sweeps ${ARG_LIBRARIES})
+  target_link_options(withy-plugin-${name} PRIVATE LINKER:--version-script=${exports} LINKER:--as-needed)
   file(RELATIVE_PATH to_libraries /lib/withy/plugins /${CMAKE_INSTALL_LIBDIR})
   set_target_properties(withy-plugin-${name} PROPERTIES
     LINKER_LANGUAGE CXX PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${directory} LINK_DEPENDS ${exports}

@@ -5,8 +5,8 @@
 /// 0.
 #include <algorithm>
 
-#include "withy/core/dynamics/rigid_inverse_dynamics.hpp"
 #include "withy/core/plugin/entry.hpp"
+#include "withy/core/sweep/rigid_inverse_dynamics.hpp"
 #include "withy/loads/followed_hinges.hpp"
 
 namespace withy {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "withy/core/dynamics/rigid_inverse_dynamics.hpp"
+#include "withy/core/sweep/rigid_inverse_dynamics.hpp"
 
 namespace withy {
 

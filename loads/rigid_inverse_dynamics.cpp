@@ -1,6 +1,6 @@
 /// \file
 /// Open-loop efforts from the inverse dynamics of the rigid tree along a trajectory.
-#include "withy/core/dynamics/rigid_inverse_dynamics.hpp"
+#include "withy/core/sweep/rigid_inverse_dynamics.hpp"
 
 #include <algorithm>
 

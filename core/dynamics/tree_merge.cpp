@@ -1,12 +1,25 @@
+#include <algorithm>
+
 #include "withy/core/dynamics/tree_steps.hpp"
 
 namespace withy::compilation {
 namespace {
 
-bool moves(const PointExpansion& e) {
-  const auto nonzero = [](const auto& m) { return !m.isZero(0); };
-  bool any = nonzero(e.phi) || nonzero(e.psi);
-  for (std::size_t c = 0; c < 3; ++c) any = any || nonzero(e.gamma[c]) || nonzero(e.theta[c]);
+double largest(const Eigen::MatrixXd& m) { return m.size() > 0 ? m.cwiseAbs().maxCoeff() : 0; }
+
+/// Whether the modes of a body move a section of it, beyond what rounding leaves of shape functions that vanish there:
+/// 1e-12 of how they move its mass, rotations times the body's extent.
+bool moves(const PointExpansion& e, const ModalShape& shape) {
+  double extent = 0, first = 0, second = 0;
+  for (const Particle& p : shape.particles) {
+    extent = std::max(extent, p.at.X.norm());
+    first = std::max(first, largest(p.at.phi));
+    for (const Eigen::MatrixXd& gamma : p.at.gamma) second = std::max(second, largest(gamma));
+  }
+  constexpr double rounding = 1e-12;
+  const auto beyond = [](const Eigen::MatrixXd& m, double size) { return largest(m) > rounding * size; };
+  bool any = beyond(e.phi, first) || beyond(extent * e.psi, first);
+  for (std::size_t c = 0; c < 3; ++c) any = any || beyond(e.gamma[c], second) || beyond(extent * e.theta[c], second);
   return any;
 }
 
@@ -50,7 +63,7 @@ class Merger {
     const BodyNode& body = model_.bodies()[b];
     const Frame& root = body.frames[static_cast<std::size_t>(h.child_frame)];
     const bool flexible = body.body->shape().modes() > 0;
-    const bool clamped = !moves(root.section);
+    const bool clamped = !moves(root.section, body.body->shape());
     const auto kernel = h.hinge->kernel();
     const bool weld = kernel && kernel->kind == HingeKernel::Kind::weld;
     Place F{-1, -1, h.offset};
@@ -80,7 +93,8 @@ class Merger {
     const Pose in_section = f.pose * offset;
     // Where the hinge holds a section that the modes move, the body's own frame moves too: no place on it is rigid.
     const bool floats = body.node >= 0 && body.station < 0 && node(body.node).root_station >= 0;
-    if (!moves(f.section) && !floats) return {body.node, body.station, body.pose * at(f.section.X) * in_section};
+    if (!moves(f.section, model_.bodies()[b].body->shape()) && !floats)
+      return {body.node, body.station, body.pose * at(f.section.X) * in_section};
     // A flexible body's frame is always placed on its node's frame.
     return {body.node, station(body.node, moved(f.section, body.pose)), turned(body.pose.R) * in_section};
   }

@@ -3,6 +3,7 @@
 /// derivative part carries the first order in the elastic coordinates).
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "withy/core/model/terms.hpp"
@@ -36,14 +37,14 @@ struct ExponentialCoefficients {
     if (s < 0.25) {
       // Σ (−s)^k/(2k+1)!, (2k+2)!, (2k+3)!; terms to k = 8 leave less than 1e-19 at s = ¼.
       a = b = c = db = dc = S(0);
-      for (int k = 8; k >= 0; --k) {
-        a = S(coefficient(k, 1)) + s * a;
-        b = S(coefficient(k, 2)) + s * b;
-        c = S(coefficient(k, 3)) + s * c;
+      for (int k = terms - 1; k >= 0; --k) {
+        a = S(series[0][k]) + s * a;
+        b = S(series[1][k]) + s * b;
+        c = S(series[2][k]) + s * c;
       }
-      for (int k = 8; k >= 1; --k) {
-        db = S(k * coefficient(k, 2)) + s * db;
-        dc = S(k * coefficient(k, 3)) + s * dc;
+      for (int k = terms - 1; k >= 1; --k) {
+        db = S(k * series[1][k]) + s * db;
+        dc = S(k * series[2][k]) + s * dc;
       }
     } else {
       const S angle = sqrt(s);
@@ -56,12 +57,19 @@ struct ExponentialCoefficients {
   }
 
  private:
-  /// (−1)^k / (2k+shift)!
-  static double coefficient(int k, int shift) {
-    double f = k % 2 == 0 ? 1.0 : -1.0;
-    for (int i = 2; i <= 2 * k + shift; ++i) f /= i;
-    return f;
-  }
+  static constexpr int terms = 9;
+  /// (−1)^k / (2k+1)!, (2k+2)!, (2k+3)!
+  static constexpr std::array<std::array<double, terms>, 3> series = [] {
+    std::array<std::array<double, terms>, 3> a{};
+    for (int shift = 1; shift <= 3; ++shift) {
+      for (int k = 0; k < terms; ++k) {
+        double f = k % 2 == 0 ? 1.0 : -1.0;
+        for (int i = 2; i <= 2 * k + shift; ++i) f /= i;
+        a[static_cast<std::size_t>(shift - 1)][static_cast<std::size_t>(k)] = f;
+      }
+    }
+    return a;
+  }();
 };
 
 }  // namespace detail

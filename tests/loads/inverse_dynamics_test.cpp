@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "withy/core/dynamics/rigid_inverse_dynamics.hpp"
+#include "withy/core/sweep/rigid_inverse_dynamics.hpp"
 #include "withy/tests/loads/load_plugins.hpp"
 
 namespace withy {

@@ -1,4 +1,4 @@
-#include "withy/core/dynamics/mass_table.hpp"
+#include "withy/core/sweep/mass_table.hpp"
 
 #include <Eigen/QR>
 #include <cmath>
@@ -44,17 +44,19 @@ MassTable<Space>::MassTable(const NodeSpec& node) {
   for (Eigen::Index k = 0; k < rows; ++k) {
     const Particle& p = node.particles[static_cast<std::size_t>(k)];
     const double root = std::sqrt(p.mass);
-    const Fields<Space> f(p.at);
-    second_order = second_order || f.second_order;
     Eigen::Index column = 0;
     fields(k, column++) = root;
-    const auto put = [&](const typename Space::Position& a) {
+    const auto put = [&](const Vector3& a) {
       for (Eigen::Index c = 0; c < L; ++c) fields(k, column++) = root * a[c];
     };
-    put(f.X);
-    for (const auto& a : f.phi) put(a);
+    put(p.at.X);
+    for (Eigen::Index i = 0; i < n; ++i) put(p.at.phi.col(i));
     for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = i; j < n; ++j) put(f.gamma[static_cast<std::size_t>(i * n + j)]);
+      for (Eigen::Index j = i; j < n; ++j) {
+        const Vector3 g(p.at.gamma[0](i, j), p.at.gamma[1](i, j), p.at.gamma[2](i, j));
+        second_order = second_order || !g.isZero(0);
+        put(g);
+      }
     }
   }
   const Eigen::MatrixXd R = orthonormal_coefficients(fields);

@@ -1,7 +1,7 @@
-#include "withy/core/dynamics/strict_sweep.hpp"
+#include "withy/core/sweep/strict_sweep.hpp"
 
-#include "withy/core/dynamics/strict_kernel.hpp"
-#include "withy/core/dynamics/with_modes.hpp"
+#include "withy/core/sweep/strict_kernel.hpp"
+#include "withy/core/sweep/with_modes.hpp"
 
 namespace withy::sweep {
 namespace {
@@ -12,12 +12,12 @@ template <class Space>
 StrictStation<Space> strict_station_of(const StationSpec& spec) {
   const PointExpansion& e = spec.at;
   StrictStation<Space> s;
-  s.frame = Space::make(Pose{Matrix3::Identity(), e.X});
+  s.X = Space::position(e.X);
   const Eigen::Index n = e.phi.cols();
   for (Eigen::Index i = 0; i < n; ++i) {
     Vector6 J;
     J << e.psi.col(i), e.phi.col(i);
-    s.J.push_back(Project<Space>::twist(J));
+    s.J.push_back(Space::Twist::of(J));
   }
   for (Eigen::Index k = 0; k < n; ++k) {
     const Vector3 turn = e.psi.col(k);
@@ -30,7 +30,7 @@ StrictStation<Space> strict_station_of(const StationSpec& spec) {
       }
       J.head<3>() -= 0.5 * turn.cross(psi);
       J.tail<3>() -= turn.cross(phi);
-      s.J1.push_back(Project<Space>::twist(J));
+      s.J1.push_back(Space::Twist::of(J));
     }
   }
   return s;
@@ -49,13 +49,13 @@ StrictNode<Space>::StrictNode(const NodeSpec& given, Terms terms)
       mode_position(given.mode_position),
       mode_speed(given.mode_speed) {
   const Invariants invariants(given, terms.strain);
-  I0 = Project<Space>::inertia(invariants.I0);
+  I0 = RigidPart<Space>(invariants.I0);
   for (const RigidInertia& I : invariants.I1) I1.push_back(Variation<Space>::of(I));
   for (const RigidInertia& I : invariants.I2) I2.push_back(Variation<Space>::of(I));
   for (int i = 0; i < modes; ++i) {
-    C0.push_back(Project<Space>::twist(invariants.C0.col(i)));
+    C0.push_back(Space::Twist::of(invariants.C0.col(i)));
     for (int j = 0; j < modes; ++j) {
-      C1.push_back(Project<Space>::twist(invariants.C1[static_cast<std::size_t>(i)].col(j)));
+      C1.push_back(Space::Twist::of(invariants.C1[static_cast<std::size_t>(i)].col(j)));
       G0.push_back(invariants.G0(i, j));
       stiffness.push_back(given.stiffness(i, j));
       damping.push_back(given.damping(i, j));
@@ -72,7 +72,9 @@ StrictSweep<Space>::StrictSweep(const Tree& tree, const std::vector<Terms>& term
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) nodes_.emplace_back(tree.nodes[i], terms[i]);
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const NodeSpec& spec = tree.nodes[i];
-    if (spec.parent < 0 || spec.parent_station < 0) continue;
+    if (spec.parent < 0) continue;
+    nodes_[static_cast<std::size_t>(spec.parent)].leaf = false;
+    if (spec.parent_station < 0) continue;
     const NodeSpec& parent = tree.nodes[static_cast<std::size_t>(spec.parent)];
     nodes_[static_cast<std::size_t>(spec.parent)].stations[static_cast<std::size_t>(spec.parent_station)].has_children =
         true;
@@ -90,9 +92,8 @@ StrictSweep<Space>::StrictSweep(const Tree& tree, const std::vector<Terms>& term
   }
   work_size_ = memory.size();
   const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
-  world_acceleration_.setZero();
-  world_acceleration_.template tail<Space::linear>() = -Project<Space>::position(g);
-  for (StrictNode<Space>& node : nodes_) node.joint.pose_matters = node.parent >= 0 || !world_acceleration_.isZero(0);
+  world_acceleration_ = Space::Twist::of(Space::angle(Vector3::Zero()), Space::position(-g));
+  for (StrictNode<Space>& node : nodes_) node.joint.pose_matters = node.parent >= 0 || !g.isZero(0);
 }
 
 template <class Space>

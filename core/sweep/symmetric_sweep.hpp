@@ -1,17 +1,16 @@
 /// \file
-/// Articulated-body recursion for trees of rigid and flexible bodies: forward dynamics in time proportional to the
-/// number of bodies, for every formulation whose mass matrix is symmetric. Each body's hinge and modal rates are
-/// eliminated once, together (Featherstone 2008, chapter 7; flexible bodies: Jain & Rodriguez 1992).
+/// Forward dynamics where the mass matrix is symmetric – ruthless nodes and nodes without truncation – in time
+/// proportional to the number of bodies: the articulated-body recursion (Featherstone 1983) with a body's modal
+/// coordinates eliminated together with its hinge (Jain & Rodriguez 1992).
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "withy/core/dynamics/equations.hpp"
-#include "withy/core/dynamics/joint_step.hpp"
-#include "withy/core/dynamics/mass_table.hpp"
-#include "withy/core/dynamics/station_motion.hpp"
 #include "withy/core/model/terms.hpp"
+#include "withy/core/sweep/joint_step.hpp"
+#include "withy/core/sweep/mass_table.hpp"
+#include "withy/core/sweep/station_motion.hpp"
 
 namespace withy::sweep {
 
@@ -19,34 +18,34 @@ namespace withy::sweep {
 template <class Space>
 struct SymmetricStation {
   Fields<Space> fields;
-  typename Space::Matrix carried;  ///< inertia of the rigid bodies it carries; zero in a frozen node
-  bool loaded = false;             ///< it carries mass or children
+  RigidPart<Space> carried;  ///< rigid bodies it carries; nothing in a frozen node
+  bool loaded = false;       ///< it carries mass or children
   bool has_children = false;
-  StationMotion<Space> frozen;  ///< motion at q = 0, q̇ = 0
-  std::vector<typename Space::Twist> frozen_J;
+  std::vector<typename Space::Twist> J;  ///< at q = 0
 };
 
 /// Rotary inertia of a section.
 template <class Space>
 struct RotarySection {
   Fields<Space> fields;
-  Eigen::Matrix<double, Space::angular, Space::angular> inertia;
+  double inertia_z = 0;  ///< about the third axis, the plane's normal
+  Matrix3 inertia;
 };
 
 /// Constants of a node.
 template <class Space>
 struct SymmetricNode {
   using Twist = typename Space::Twist;
-  using Matrix = typename Space::Matrix;
 
   int body = 0, parent = -1, parent_station = -1, root_station = -1, modes = 0;
   JointData<Space> joint;
   typename Space::Frame M;  ///< hinge frame in the root station's section
-  bool frozen = false;      ///< ruthless: integrals at q = 0, velocity terms at q̇ = 0
+  bool frozen = false;      ///< ruthless: integrals at q = 0, velocity terms at q̇ = 0; sections parallel to its frame
   bool leaf = true;         ///< nothing hangs on it
+  bool begins = false;      ///< it is the first to write the sums of the parent's station, which carries nothing else
   std::size_t mode_position = 0, mode_speed = 0;
   std::vector<double> stiffness, damping;  ///< n×n
-  Matrix base;                             ///< inertia of the rigid part; of everything in a frozen node
+  RigidPart<Space> base;                   ///< the rigid part; everything in a frozen node
   MassTable<Space> mass;
   std::vector<RotarySection<Space>> sections;
   std::vector<SymmetricStation<Space>> stations;
@@ -55,9 +54,9 @@ struct SymmetricNode {
   std::vector<double> G0;
   std::vector<Variation<Space>> I1;  ///< h_k = −½ Vᵀ I1_k V
   // Frozen leaves: the eliminated modal block, once for ever.
-  std::vector<double> factor;  ///< of G0, see factorize
-  std::vector<Twist> Y0;       ///< L⁻¹ C0ᵀ, n twists
-  Matrix reduced;              ///< base − Y0ᵀ Y0
+  std::vector<double> factor;       ///< of G0, see factorize
+  std::vector<Twist> Y0;            ///< L⁻¹ C0ᵀ, n twists
+  typename Space::Inertia reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
   // Work memory.
   std::size_t work = 0, work_J = 0, work_C = 0, work_G = 0, work_y = 0, work_P = 0, work_stations = 0;
 

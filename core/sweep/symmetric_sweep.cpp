@@ -1,7 +1,7 @@
-#include "withy/core/dynamics/symmetric_sweep.hpp"
+#include "withy/core/sweep/symmetric_sweep.hpp"
 
-#include "withy/core/dynamics/symmetric_kernel.hpp"
-#include "withy/core/dynamics/with_modes.hpp"
+#include "withy/core/sweep/symmetric_kernel.hpp"
+#include "withy/core/sweep/with_modes.hpp"
 
 namespace withy::sweep {
 namespace {
@@ -12,6 +12,20 @@ std::vector<double> row_major(const Eigen::MatrixXd& m) {
     for (Eigen::Index j = 0; j < m.cols(); ++j) a.push_back(m(i, j));
   }
   return a;
+}
+
+/// Calls action(n, flavor), both std::integral_constant; see with_modes.
+template <class Space, class Action>
+inline void with_flavor(const SymmetricNode<Space>& node, Action&& action) {
+  with_modes(node.modes, [&](auto n) {
+    if constexpr (n.value == 0) {
+      action(n, std::integral_constant<Flavor, Flavor::rigid>{});
+    } else if (node.frozen) {
+      action(n, std::integral_constant<Flavor, Flavor::frozen>{});
+    } else {
+      action(n, std::integral_constant<Flavor, Flavor::full>{});
+    }
+  });
 }
 
 }  // namespace
@@ -32,32 +46,31 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
   if (frozen) spec = rooted(std::move(spec));
   root_station = spec.root_station;
   M = Space::make(spec.M);
-  base = Project<Space>::inertia(spec.base);
-  const int n = modes;
-  const std::vector<double> zero(static_cast<std::size_t>(n), 0.0);
+  base = RigidPart<Space>(spec.base);
   for (const StationSpec& s : spec.stations) {
     SymmetricStation<Space> station;
     station.fields = Fields<Space>(s.at);
-    station.carried = frozen ? Space::Matrix::Zero().eval() : Project<Space>::inertia(s.carried);
-    station.loaded = !frozen && !s.carried.empty();
-    station.frozen_J.resize(static_cast<std::size_t>(n));
-    station_motion<Space, -1>(station.fields, n, zero.data(), zero.data(), station.frozen, station.frozen_J.data());
+    station.J = station.fields.first;
+    if (!frozen) {
+      station.carried = RigidPart<Space>(s.carried);
+      station.loaded = !s.carried.empty();
+    }
     stations.push_back(std::move(station));
   }
   if (frozen) {
     const Invariants invariants(given, terms.strain);
-    base = Project<Space>::inertia(invariants.I0);
+    base = RigidPart<Space>(invariants.I0);
     G0 = row_major(invariants.G0);
-    for (int i = 0; i < n; ++i) {
-      C0.push_back(Project<Space>::twist(invariants.C0.col(i)));
+    for (int i = 0; i < modes; ++i) {
+      C0.push_back(Space::Twist::of(invariants.C0.col(i)));
       I1.push_back(Variation<Space>::of(invariants.I1[static_cast<std::size_t>(i)]));
     }
   } else {
     mass = MassTable<Space>(spec);
     for (const Section& s : spec.sections) {
-      RotarySection<Space> section{Fields<Space>(s.at), {}};
-      section.inertia = s.inertia.template bottomRightCorner<Space::angular, Space::angular>();
-      if (!section.inertia.isZero(0)) sections.push_back(std::move(section));
+      RotarySection<Space> section{Fields<Space>(s.at), s.inertia(2, 2), s.inertia};
+      const bool matters = Space::angular == 1 ? section.inertia_z != 0 : !s.inertia.isZero(0);
+      if (matters) sections.push_back(std::move(section));
     }
   }
 }
@@ -82,24 +95,31 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
       }
     }
   }
+  std::vector<std::vector<bool>> begun(nodes_.size());
+  for (std::size_t i = nodes_.size(); i-- > 0;) {  // the order in which the inward pass meets them
+    SymmetricNode<Space>& node = nodes_[i];
+    if (node.parent_station < 0 || !nodes_[static_cast<std::size_t>(node.parent)].frozen) continue;
+    std::vector<bool>& stations = begun[static_cast<std::size_t>(node.parent)];
+    stations.resize(nodes_[static_cast<std::size_t>(node.parent)].stations.size());
+    node.begins = !stations[static_cast<std::size_t>(node.parent_station)];
+    stations[static_cast<std::size_t>(node.parent_station)] = true;
+  }
   for (SymmetricNode<Space>& node : nodes_) {
     using Twist = typename Space::Twist;
     const auto n = static_cast<std::size_t>(node.modes);
     node.work = memory.template take<NodeWork<Space>>(1);
     node.work_stations = memory.template take<StationWork<Space>>(node.stations.size());
     node.work_J = memory.template take<Twist>(n * (node.stations.size() + 1));
-    node.work_C = memory.template take<Twist>(2 * n);
+    node.work_C = memory.template take<Twist>(2 * n);  // and room for the partial velocities of sections
     node.work_G = memory.template take<double>(n * n);
-    node.work_y = memory.template take<double>(4 * n);
+    node.work_y = memory.template take<double>(n);
     node.work_P = memory.template take<Pack>(n * Space::linear);
     if (node.frozen && node.leaf) precompute(node);
   }
   work_size_ = memory.size();
   const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
-  world_acceleration_.setZero();
-  world_acceleration_.template tail<Space::linear>() = -Project<Space>::position(g);
-  for (SymmetricNode<Space>& node : nodes_)
-    node.joint.pose_matters = node.parent >= 0 || !world_acceleration_.isZero(0);
+  world_acceleration_ = Space::Twist::of(Space::angle(Vector3::Zero()), Space::position(-g));
+  for (SymmetricNode<Space>& node : nodes_) node.joint.pose_matters = node.parent >= 0 || !g.isZero(0);
 }
 
 template <class Space>
@@ -107,15 +127,16 @@ Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const d
                                                 double* result, std::byte* work) const noexcept {
   const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_};
   for (const SymmetricNode<Space>& node : nodes_) {
-    with_modes(node.modes, [&](auto n) { outward_motion<Space, decltype(n)::value>(node, state); });
+    with_flavor(node, [&](auto n, auto flavor) { outward_motion<Space, n.value, flavor.value>(node, state); });
   }
   for (std::size_t i = nodes_.size(); i-- > 0;) {
+    const SymmetricNode<Space>& node = nodes_[i];
     bool good = true;
-    with_modes(nodes_[i].modes, [&](auto n) { good = inward_inertia<Space, decltype(n)::value>(nodes_[i], state); });
-    if (!good) return {Evaluation::Outcome::singular, nodes_[i].body};
+    with_flavor(node, [&](auto n, auto flavor) { good = inward_inertia<Space, n.value, flavor.value>(node, state); });
+    if (!good) return {Evaluation::Outcome::singular, node.body};
   }
   for (const SymmetricNode<Space>& node : nodes_) {
-    with_modes(node.modes, [&](auto n) { outward_acceleration<Space, decltype(n)::value>(node, state); });
+    with_flavor(node, [&](auto n, auto flavor) { outward_acceleration<Space, n.value, flavor.value>(node, state); });
   }
   return {};
 }

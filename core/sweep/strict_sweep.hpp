@@ -17,16 +17,16 @@
 #include <vector>
 
 #include "withy/core/dynamics/equations.hpp"
-#include "withy/core/dynamics/joint_step.hpp"
-#include "withy/core/dynamics/sweep_node.hpp"
 #include "withy/core/model/terms.hpp"
+#include "withy/core/sweep/joint_step.hpp"
+#include "withy/core/sweep/node.hpp"
 
 namespace withy::sweep {
 
 /// A station in a strict sweep: everything at q = 0 and its first derivative. Twists in the section's axes.
 template <class Space>
 struct StrictStation {
-  typename Space::Frame frame;            ///< X_BS at q = 0
+  typename Space::Position X;             ///< undeformed, its axes parallel to the node's frame
   std::vector<typename Space::Twist> J;   ///< at q = 0
   std::vector<typename Space::Twist> J1;  ///< ∂J_i/∂q_k, element k n + i
   bool has_children = false;
@@ -39,9 +39,10 @@ struct StrictNode {
   int body = 0, parent = -1, parent_station = -1, modes = 0;
   JointData<Space> joint;
   bool frozen = false;  ///< ruthless: order zero alone
+  bool leaf = true;     ///< nothing hangs on it
   std::size_t mode_position = 0, mode_speed = 0;
   std::vector<double> stiffness, damping;
-  typename Space::Matrix I0;
+  RigidPart<Space> I0;
   std::vector<Variation<Space>> I1, I2;
   std::vector<Twist> C0;
   std::vector<Twist> C1;  ///< ∂C_i/∂q_k, element k n + i

@@ -1,4 +1,4 @@
-#include "withy/core/dynamics/compile.hpp"
+#include "withy/core/sweep/compile_equations.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <type_traits>
 
 #include "withy/core/dynamics/reference.hpp"
-#include "withy/core/dynamics/strict_sweep.hpp"
-#include "withy/core/dynamics/symmetric_sweep.hpp"
+#include "withy/core/sweep/strict_sweep.hpp"
+#include "withy/core/sweep/symmetric_sweep.hpp"
 
 namespace withy {
 namespace {
@@ -22,10 +22,31 @@ class SweepEquations final : public EquationsOfMotion {
         sweep_(tree, node_terms, model_->gravity()),
         savings_(std::move(tree.savings)) {
     for (const BodyNode& b : model_->bodies()) {
-      const ModalShape& shape = b.body->shape();
-      if (shape.damping.isZero(0)) continue;
-      const Slot& slot = *layout().body(b.name);
-      damped_.push_back({slot.speed, shape.damping});
+      const Eigen::MatrixXd& D = b.body->shape().damping;
+      const std::size_t first = D.size() > 0 ? layout().body(b.name)->speed : 0;
+      for (Eigen::Index i = 0; i < D.rows(); ++i) {
+        for (Eigen::Index j = 0; j < D.cols(); ++j) {
+          if (D(i, j) != 0)
+            damped_.push_back({first + static_cast<std::size_t>(i), first + static_cast<std::size_t>(j), D(i, j)});
+        }
+      }
+    }
+    for (std::size_t h = 0; h < layout().hinges.size(); ++h) {
+      const Slot& slot = layout().hinges[h];
+      if (slot.positions == 1 && slot.speeds == 1) {
+        copy(slot.position, slot.speed, 1);
+      } else if (slot.positions > 0) {
+        general_.push_back(h);
+      }
+    }
+    for (const Slot& slot : layout().bodies) copy(slot.position, slot.speed, slot.speeds);
+    std::sort(copies_.begin(), copies_.end(), [](const Run& a, const Run& b) { return a.position < b.position; });
+    for (std::size_t i = copies_.size(); i-- > 1;) {
+      Run& before = copies_[i - 1];
+      if (before.position + before.count != copies_[i].position || before.speed + before.count != copies_[i].speed)
+        continue;
+      before.count += copies_[i].count;
+      copies_.erase(copies_.begin() + static_cast<std::ptrdiff_t>(i));
     }
     // Efforts, then the loads' scratch, then the sweep's own memory.
     std::size_t scratch = 0;
@@ -55,28 +76,20 @@ class SweepEquations final : public EquationsOfMotion {
     const Evaluation evaluation =
         sweep_.accelerations(positions.data(), speeds.data(), efforts.data(), accelerations, memory + sweep_offset_);
     if (!evaluation.ok()) return evaluation;
-    for (std::size_t h = 0; h < order.hinges.size(); ++h) {
-      const Slot& slot = order.hinges[h];
-      if (slot.positions == slot.speeds && slot.speeds == 1) {
-        y_dot[slot.position] = speeds[slot.speed];
-      } else if (slot.positions > 0) {
-        model_->hinges()[h].hinge->derivatives(positions.subspan(slot.position, slot.positions),
-                                               speeds.subspan(slot.speed, slot.speeds),
-                                               y_dot.subspan(slot.position, slot.positions));
-      }
+    for (const Run& run : copies_) {
+      for (std::size_t i = 0; i < run.count; ++i) y_dot[run.position + i] = speeds[run.speed + i];
     }
-    for (const Slot& slot : order.bodies) {
-      for (std::size_t i = 0; i < slot.speeds; ++i) y_dot[slot.position + i] = speeds[slot.speed + i];
+    for (const std::size_t h : general_) {
+      const Slot& slot = order.hinges[h];
+      model_->hinges()[h].hinge->derivatives(positions.subspan(slot.position, slot.positions),
+                                             speeds.subspan(slot.speed, slot.speeds),
+                                             y_dot.subspan(slot.position, slot.positions));
     }
     double power = 0;
-    for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
-    for (const auto& [first, D] : damped_) {
-      for (Eigen::Index i = 0; i < D.rows(); ++i) {
-        for (Eigen::Index j = 0; j < D.cols(); ++j) {
-          power -= speeds[first + static_cast<std::size_t>(i)] * D(i, j) * speeds[first + static_cast<std::size_t>(j)];
-        }
-      }
+    if (!model_->loads().empty()) {
+      for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
     }
+    for (const Damper& d : damped_) power -= speeds[d.i] * d.value * speeds[d.j];
     y_dot[order.positions + order.speeds] = power;
     double total = power;
     for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
@@ -118,15 +131,26 @@ class SweepEquations final : public EquationsOfMotion {
     return -1;
   }
 
-  struct Damped {
-    std::size_t first;
-    Eigen::MatrixXd D;
+  void copy(std::size_t position, std::size_t speed, std::size_t count) {
+    if (count > 0) copies_.push_back({position, speed, count});
+  }
+
+  /// An element of a body's damping matrix, by speeds.
+  struct Damper {
+    std::size_t i, j;
+    double value;
+  };
+  /// Coordinates whose derivatives are their speeds, in State's order.
+  struct Run {
+    std::size_t position, speed, count;
   };
   std::shared_ptr<const Model> model_;
   ReferenceDynamics reference_;
   Sweep sweep_;
   std::vector<std::string> savings_;
-  std::vector<Damped> damped_;
+  std::vector<Damper> damped_;
+  std::vector<Run> copies_;
+  std::vector<std::size_t> general_;  ///< hinges with derivatives of their own
   std::size_t efforts_offset_ = 0, scratch_offset_ = 0, sweep_offset_ = 0;
 };
 

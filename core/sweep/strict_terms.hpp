@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "withy/core/dynamics/mass_table.hpp"
-#include "withy/core/dynamics/strict_sweep.hpp"
+#include "withy/core/sweep/mass_table.hpp"
+#include "withy/core/sweep/strict_sweep.hpp"
 
 namespace withy::sweep {
 
@@ -17,12 +17,8 @@ struct Response {
   typename Space::Twist p, p0;
 
   void clear() {
-    P.setZero();
-    Q.setZero();
-    R.setZero();
-    T.setZero();
-    p.setZero();
-    p0.setZero();
+    P = Q = R = T = Space::Matrix::zero();
+    p = p0 = Space::Twist::zero();
   }
 };
 
@@ -35,18 +31,24 @@ struct StrictStationWork {
   typename Space::Twist A, A0;
 };
 
+/// Elimination of the rates of a hinge with several: H, and ẍ = d − row·Ā' − row0·A0', one element a rate.
+template <class Space>
+struct StrictElimination {
+  typename Space::Twist H[Space::dim], row[Space::dim], row0[Space::dim];
+  double d[Space::dim];
+};
+
 template <class Space>
 struct StrictNodeWork {
-  JointMotion<Space> joint;
+  typename Space::Frame SM;  ///< of JointMotion
   typename Space::Twist V0, V1;
   typename Space::Twist sigma, sigma0;  ///< σ̄ and σ0 of the hinge
   Response<Space> response;
   typename Space::Twist A, A0;
-  // ẍ = d − gain Ā' − gain0 A0'; local rates, along single rows as in `row`.
-  JointRows<Space> gain, gain0;
-  JointVector<Space> d;
-  typename Space::Twist row, row0;  ///< one rate: the same for it alone
+  // One rate: ẍ = u − row·Ā' − row0·A0'.
+  typename Space::Twist row, row0;
   double u;
+  StrictElimination<Space> elimination;  ///< several rates
 };
 
 template <class Space>
@@ -94,28 +96,28 @@ inline bool solve_general(double* G, int modes, Twist* a, Twist* b, double* c) {
     if (!(std::abs(G[pivot * n + k]) > 0)) return false;
     if (pivot != k) {
       for (int j = k; j < n; ++j) std::swap(G[k * n + j], G[pivot * n + j]);
-      a[k].swap(a[pivot]);
-      b[k].swap(b[pivot]);
+      std::swap(a[k], a[pivot]);
+      std::swap(b[k], b[pivot]);
       std::swap(c[k], c[pivot]);
     }
     const double inverse = 1 / G[k * n + k];
     for (int i = k + 1; i < n; ++i) {
       const double m = G[i * n + k] * inverse;
       for (int j = k + 1; j < n; ++j) G[i * n + j] -= m * G[k * n + j];
-      a[i] -= m * a[k];
-      b[i] -= m * b[k];
+      a[i] -= a[k] * m;
+      b[i] -= b[k] * m;
       c[i] -= m * c[k];
     }
   }
   for (int i = n; i-- > 0;) {
     for (int j = i + 1; j < n; ++j) {
-      a[i] -= G[i * n + j] * a[j];
-      b[i] -= G[i * n + j] * b[j];
+      a[i] -= a[j] * G[i * n + j];
+      b[i] -= b[j] * G[i * n + j];
       c[i] -= G[i * n + j] * c[j];
     }
     const double inverse = 1 / G[i * n + i];
-    a[i] *= inverse;
-    b[i] *= inverse;
+    a[i] = a[i] * inverse;
+    b[i] = b[i] * inverse;
     c[i] *= inverse;
   }
   return true;
@@ -132,31 +134,30 @@ inline void strict_body(const StrictNode<Space>& node, const double* q, const do
   for (int i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     m.row[i] = m.column[i] = node.C0[k];
-    m.row0[i].setZero();
-    m.column0[i].setZero();
-    m.rhs[i] = 0.5 * node.I1[k].a.dot(square);
+    m.row0[i] = m.column0[i] = Twist::zero();
+    m.rhs[i] = 0.5 * dot(node.I1[k], square);
   }
   if (node.frozen) return;
   const auto mixed = Variation<Space>::bilinear(w.V0, w.V1);
-  Variation<Space> I1, I1_rate;
-  Twist coupling = Twist::Zero();
+  auto I1 = Variation<Space>::zero(), I1_rate = Variation<Space>::zero();
+  Twist coupling = Twist::zero();
   for (int k = 0; k < n; ++k) {
     const auto kk = static_cast<std::size_t>(k);
-    I1.a += node.I1[kk].a * q[k];
-    I1_rate.a += node.I1[kk].a * q_dot[k];
+    I1.add(node.I1[kk], q[k]);
+    I1_rate.add(node.I1[kk], q_dot[k]);
     coupling += node.C0[kk] * q_dot[k];
-    double h = -node.I1[kk].a.dot(mixed);
+    double h = -dot(node.I1[kk], mixed);
     for (int i = 0; i < n; ++i) {
       const auto ki = static_cast<std::size_t>(k * n + i);
       m.row0[i] += node.C1[ki] * q[k];
       // Ċᵀ V − ∂(Vᵀ C q̇)/∂q_k
-      h += w.V0.dot(node.C1[static_cast<std::size_t>(i * n + k)] - node.C1[ki]) * q_dot[i];
-      h -= 0.5 * node.I2[ki].a.dot(square) * q[i];
+      h += Space::dot(w.V0, node.C1[static_cast<std::size_t>(i * n + k)] - node.C1[ki]) * q_dot[i];
+      h -= 0.5 * dot(node.I2[ki], square) * q[i];
     }
     m.rhs[k] -= h;
   }
   Response<Space>& r = w.response;
-  r.Q += I1.matrix();
+  r.Q += Space::Matrix::of(I1.inertia());
   r.p += I1_rate.times(w.V0) + Space::cross_force(w.V0, I1.times(w.V0) + coupling);
 }
 
@@ -170,33 +171,35 @@ inline void strict_station(const StrictNode<Space>& node, const StrictStation<Sp
   const int n = count<N>(node.modes);
   const Response<Space>& s = sw.response;
   for (int i = 0; i < n; ++i) {
-    m.J1[i].setZero();
+    m.J1[i] = Twist::zero();
     if (node.frozen) continue;
     for (int k = 0; k < n; ++k) m.J1[i] += station.J1[static_cast<std::size_t>(k * n + i)] * q[k];
   }
   // In terms of (X Ā, X A0): Q' = Q − P Ξ, T' = T − R Ξ with Ξ = ξ ×; forces through 1 + ξ ×* = 1 − Ξᵀ.
-  const Matrix cross = Space::cross_matrix(sw.xi);
-  const Matrix Q = s.Q - s.P * cross;
-  const Matrix T = s.T - s.R * cross;
+  const Matrix Q = s.Q - Space::times_cross(s.P, sw.xi);
+  const Matrix T = s.T - Space::times_cross(s.R, sw.xi);
   const Twist p = s.p + s.P * sw.sigma;
   const Twist p0 = s.p0 + s.R * sw.sigma;
   Response<Space>& r = w.response;
-  r.P += Space::matrix_to_parent(station.frame, Matrix(s.P - cross.transpose() * s.R));
-  r.Q += Space::matrix_to_parent(station.frame, Matrix(Q - cross.transpose() * T));
-  r.R += Space::matrix_to_parent(station.frame, s.R);
-  r.T += Space::matrix_to_parent(station.frame, T);
-  r.p += Space::to_parent(station.frame, Twist(p - cross.transpose() * p0));
-  r.p0 += Space::to_parent(station.frame, p0);
+  r.P += Space::shift_to_parent(station.X, s.P - Space::cross_transposed_times(sw.xi, s.R));
+  r.Q += Space::shift_to_parent(station.X, Q - Space::cross_transposed_times(sw.xi, T));
+  r.R += Space::shift_to_parent(station.X, s.R);
+  r.T += Space::shift_to_parent(station.X, T);
+  r.p += Space::shift_to_parent(station.X, p + Space::cross_force(sw.xi, p0));
+  r.p0 += Space::shift_to_parent(station.X, p0);
   for (int i = 0; i < n; ++i) {
     const Twist& J = station.J[static_cast<std::size_t>(i)];
     const Twist PJ = s.P * J;
     const Twist RJ = s.R * J;
-    m.column[i] += Space::to_parent(station.frame, Twist(PJ - cross.transpose() * RJ));
-    m.column0[i] += Space::to_parent(station.frame, RJ);
-    m.row[i] += Space::to_parent(station.frame, Twist(s.P.transpose() * J + s.R.transpose() * m.J1[i]));
-    m.row0[i] += Space::to_parent(station.frame, Twist(Q.transpose() * J + T.transpose() * m.J1[i]));
-    m.rhs[i] -= J.dot(p) + m.J1[i].dot(p0);
-    for (int j = 0; j < n; ++j) m.G[j * n + i] += station.J[static_cast<std::size_t>(j)].dot(PJ) + m.J1[j].dot(RJ);
+    m.column[i] += Space::shift_to_parent(station.X, PJ + Space::cross_force(sw.xi, RJ));
+    m.column0[i] += Space::shift_to_parent(station.X, RJ);
+    m.row[i] +=
+        Space::shift_to_parent(station.X, Space::transposed_times(s.P, J) + Space::transposed_times(s.R, m.J1[i]));
+    m.row0[i] += Space::shift_to_parent(station.X, Space::transposed_times(Q, J) + Space::transposed_times(T, m.J1[i]));
+    m.rhs[i] -= Space::dot(J, p) + Space::dot(m.J1[i], p0);
+    for (int j = 0; j < n; ++j) {
+      m.G[j * n + i] += Space::dot(station.J[static_cast<std::size_t>(j)], PJ) + Space::dot(m.J1[j], RJ);
+    }
   }
 }
 

@@ -13,6 +13,7 @@ namespace withy {
 /// Equations of motion of a model whose bodies have `terms`, but for those with terms of their own. Chooses the space,
 /// merges rigid neighbours, keeps the constants that the terms need and lays out the work memory.
 /// \throws std::invalid_argument where bodies mix strict and untruncated terms, which no order of the equations unites.
-std::unique_ptr<EquationsOfMotion> compile_equations(std::shared_ptr<const Model> model, Terms terms);
+[[gnu::visibility("default")]] std::unique_ptr<EquationsOfMotion> compile_equations(std::shared_ptr<const Model> model,
+                                                                                    Terms terms);
 
 }  // namespace withy

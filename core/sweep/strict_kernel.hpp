@@ -2,7 +2,7 @@
 /// The three passes of the strict sweep over one node; the relations are in strict_sweep.hpp.
 #pragma once
 
-#include "withy/core/dynamics/strict_terms.hpp"
+#include "withy/core/sweep/strict_terms.hpp"
 
 namespace withy::sweep {
 
@@ -11,19 +11,22 @@ template <class Space, int N>
   using Twist = typename Space::Twist;
   const int n = count<N>(node.modes);
   auto& w = *at<StrictNodeWork<Space>>(s.work, node.work);
-  joint_motion<Space>(node.joint, s.positions + node.joint.position, s.speeds + node.joint.speed, w.joint);
-  w.V0 = w.joint.rate;
-  w.V1.setZero();
+  JointMotion<Space> joint;
+  joint_motion<Space>(node.joint, s.positions + node.joint.position, s.speeds + node.joint.speed, joint);
+  w.SM = joint.SM;
+  w.V0 = joint.rate;
+  w.V1 = Twist::zero();
   if (node.parent >= 0) {
     const StrictNode<Space>& parent = s.nodes[node.parent];
     const auto& pw = *at<StrictNodeWork<Space>>(s.work, parent.work);
     const auto* ps = at<StrictStationWork<Space>>(s.work, parent.work_stations);
     const bool on_frame = node.parent_station < 0;
-    w.V0 += Space::to_child(w.joint.SM, on_frame ? pw.V0 : ps[node.parent_station].V0);
-    w.V1 = Space::to_child(w.joint.SM, on_frame ? pw.V1 : ps[node.parent_station].V1);
+    w.V0 += Space::to_child(w.SM, on_frame ? pw.V0 : ps[node.parent_station].V0);
+    w.V1 = Space::to_child(w.SM, on_frame ? pw.V1 : ps[node.parent_station].V1);
   }
-  w.sigma0 = Space::cross(w.V0, w.joint.rate) + w.joint.bias;
-  w.sigma = w.sigma0 + Space::cross(w.V1, w.joint.rate);
+  w.sigma0 = Space::cross(w.V0, joint.rate);
+  if (has_bias(node.joint.kind)) w.sigma0 += joint.bias;
+  w.sigma = w.sigma0 + Space::cross(w.V1, joint.rate);
 
   if constexpr (N != 0) {
     const double* q = s.positions + node.mode_position;
@@ -33,12 +36,11 @@ template <class Space, int N>
       const StrictStation<Space>& station = node.stations[k];
       if (!station.has_children) continue;
       StrictStationWork<Space>& sw = stations[k];
-      sw.V0 = Space::to_child(station.frame, w.V0);
-      sw.V1 = Space::to_child(station.frame, w.V1);
-      sw.xi.setZero();
-      sw.sigma.setZero();
+      sw.V0 = Space::shift_to_child(station.X, w.V0);
+      sw.V1 = Space::shift_to_child(station.X, w.V1);
+      sw.xi = sw.sigma = Twist::zero();
       if (!node.frozen) {
-        Twist rate = Twist::Zero();
+        Twist rate = Twist::zero();
         for (int i = 0; i < n; ++i) {
           sw.xi += station.J[static_cast<std::size_t>(i)] * q[i];
           rate += station.J[static_cast<std::size_t>(i)] * q_dot[i];
@@ -51,13 +53,45 @@ template <class Space, int N>
   }
   // Body terms of order zero; the modal pass adds the first.
   Response<Space>& r = w.response;
-  const Twist momentum = node.I0 * w.V0;
-  r.P = node.I0;
-  r.T = node.I0;
-  r.Q.setZero();
-  r.R.setZero();
+  const Twist momentum = node.I0.inertia * w.V0;
+  r.P = r.T = Space::Matrix::of(node.I0.inertia);
+  r.Q = r.R = Space::Matrix::zero();
   r.p0 = Space::cross_force(w.V0, momentum);
-  r.p = r.p0 + Space::cross_force(w.V1, momentum) + Space::cross_force(w.V0, node.I0 * w.V1);
+  r.p = r.p0 + Space::cross_force(w.V1, momentum) + Space::cross_force(w.V0, node.I0.inertia * w.V1);
+}
+
+/// Puts ẍ = u − row·Ā' − row0·A0' of one rate into the response; columns: what its unit acceleration asks of F̄, F0.
+template <class Space>
+inline void eliminate_rate(Response<Space>& r, const typename Space::Twist& column,
+                           const typename Space::Twist& column0, const typename Space::Twist& row,
+                           const typename Space::Twist& row0, double u) {
+  r.P.subtract_outer(column, row);
+  r.Q.subtract_outer(column, row0);
+  r.R.subtract_outer(column0, row);
+  r.T.subtract_outer(column0, row0);
+  r.p += column * u;
+  r.p0 += column0 * u;
+}
+
+/// Elimination of ẍ of a hinge with several rates.
+inline bool eliminate_rates(const JointData<Spatial>& joint, const StrictState<Spatial>& s,
+                            StrictElimination<Spatial>& e, Response<Spatial>& r) {
+  const auto k = static_cast<int>(joint.speeds);
+  const HingeMotion motion = general_motion(joint, s.positions + joint.position, s.speeds + joint.speed);
+  Spatial::Twist column[Spatial::dim], column0[Spatial::dim];
+  double D[Spatial::dim * Spatial::dim];
+  for (int i = 0; i < k; ++i) e.H[i] = Spatial::Twist::of(motion.H.col(i));
+  for (int i = 0; i < k; ++i) {
+    column[i] = r.P * e.H[i] + r.Q * e.H[i];
+    column0[i] = r.R * e.H[i] + r.T * e.H[i];
+    e.row[i] = Spatial::transposed_times(r.P, e.H[i]);
+    e.row0[i] = Spatial::transposed_times(r.Q, e.H[i]);
+    e.d[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Spatial::dot(e.H[i], r.p);
+    for (int j = 0; j < k; ++j) D[j * k + i] = Spatial::dot(e.H[j], column[i]);
+  }
+  if (!solve_general<-1>(D, k, e.row, e.row0, e.d)) return false;
+  for (int i = 0; i < k; ++i) eliminate_rate(r, column[i], column0[i], e.row[i], e.row0[i], e.d[i]);
+  return true;
 }
 
 template <class Space, int N>
@@ -83,53 +117,33 @@ template <class Space, int N>
     }
     if (!solve_general<N>(m.G, n, m.row, m.row0, m.rhs)) return false;
     for (int i = 0; i < n; ++i) {
-      r.P -= m.column[i] * m.row[i].transpose();
-      r.Q -= m.column[i] * m.row0[i].transpose();
-      r.R -= m.column0[i] * m.row[i].transpose();
-      r.T -= m.column0[i] * m.row0[i].transpose();
-      r.p += m.column[i] * m.rhs[i];
-      r.p0 += m.column0[i] * m.rhs[i];
+      if (node.leaf) {  // q̈ does not enter F0
+        r.P.subtract_outer(m.column[i], m.row[i]);
+        r.Q.subtract_outer(m.column[i], m.row0[i]);
+        r.p += m.column[i] * m.rhs[i];
+      } else {
+        eliminate_rate(r, m.column[i], m.column0[i], m.row[i], m.row0[i], m.rhs[i]);
+      }
     }
   }
 
   const JointData<Space>& joint = node.joint;
   if (single(joint.kind)) {
-    const int row = JointData<Space>::row(joint.kind);
-    const typename Space::Twist column = r.P.col(row) + r.Q.col(row);
-    if (!(std::abs(column[row]) > 0)) return false;
-    const double inverse = 1 / column[row];
-    w.row = r.P.row(row).transpose() * inverse;
-    w.row0 = r.Q.row(row).transpose() * inverse;
-    w.u = (joint.direction * s.efforts[joint.speed] - r.p[row]) * inverse;
+    const bool turns = joint.kind == Joint::rotate;
+    const typename Space::Twist column =
+        turns ? r.P.turn_column() + r.Q.turn_column() : r.P.slide_column() + r.Q.slide_column();
+    const double pivot = component<Space>(joint.kind, column);
+    if (!(std::abs(pivot) > 0)) return false;
+    const double inverse = 1 / pivot;
+    w.row = (turns ? r.P.turn_row() : r.P.slide_row()) * inverse;
+    w.row0 = (turns ? r.Q.turn_row() : r.Q.slide_row()) * inverse;
+    w.u = (joint.direction * s.efforts[joint.speed] - component<Space>(joint.kind, r.p)) * inverse;
     if (node.parent < 0) return true;
-    const typename Space::Twist column0 = r.R.col(row) + r.T.col(row);
-    r.P -= column * w.row.transpose();
-    r.Q -= column * w.row0.transpose();
-    r.R -= column0 * w.row.transpose();
-    r.T -= column0 * w.row0.transpose();
-    r.p += column * w.u;
-    r.p0 += column0 * w.u;
+    const typename Space::Twist column0 =
+        turns ? r.R.turn_column() + r.T.turn_column() : r.R.slide_column() + r.T.slide_column();
+    eliminate_rate(r, column, column0, w.row, w.row0, w.u);
   } else if constexpr (Space::angular == 3) {  // a planar tree has no other hinges
-    if (joint.kind != Joint::fixed) {
-      const JointColumns<Space> H = motion_subspace<Space>(joint, s.positions + joint.position, s.speeds + joint.speed);
-      const JointColumns<Space> columns = (r.P + r.Q) * H;
-      const Eigen::PartialPivLU<JointMatrix<Space>> lu(H.transpose() * columns);
-      if (!(std::abs(lu.determinant()) > 0)) return false;
-      const JointVector<Space> effort =
-          Eigen::Map<const Eigen::VectorXd>(s.efforts + joint.speed, static_cast<Eigen::Index>(joint.speeds)) -
-          H.transpose() * r.p;
-      w.gain = lu.solve(JointRows<Space>(H.transpose() * r.P));
-      w.gain0 = lu.solve(JointRows<Space>(H.transpose() * r.Q));
-      w.d = lu.solve(effort);
-      if (node.parent < 0) return true;
-      const JointColumns<Space> columns0 = (r.R + r.T) * H;
-      r.P -= columns * w.gain;
-      r.Q -= columns * w.gain0;
-      r.R -= columns0 * w.gain;
-      r.T -= columns0 * w.gain0;
-      r.p += columns * w.d;
-      r.p0 += columns0 * w.d;
-    }
+    if (joint.kind != Joint::fixed && !eliminate_rates(joint, s, w.elimination, r)) return false;
   }
   if (node.parent < 0) return true;
   r.p += r.P * w.sigma + r.Q * w.sigma0;
@@ -139,11 +153,11 @@ template <class Space, int N>
       node.parent_station < 0
           ? at<StrictNodeWork<Space>>(s.work, parent.work)->response
           : at<StrictStationWork<Space>>(s.work, parent.work_stations)[node.parent_station].response;
-  const typename Space::Frame& X = w.joint.SM;
-  outer.P += Space::matrix_to_parent(X, r.P);
-  outer.Q += Space::matrix_to_parent(X, r.Q);
-  outer.R += Space::matrix_to_parent(X, r.R);
-  outer.T += Space::matrix_to_parent(X, r.T);
+  const typename Space::Frame& X = w.SM;
+  outer.P += Space::to_parent(X, r.P);
+  outer.Q += Space::to_parent(X, r.Q);
+  outer.R += Space::to_parent(X, r.R);
+  outer.T += Space::to_parent(X, r.T);
   outer.p += Space::to_parent(X, r.p);
   outer.p0 += Space::to_parent(X, r.p0);
   return true;
@@ -163,35 +177,38 @@ template <class Space, int N>
     A = node.parent_station < 0 ? &pw.A : &ps[node.parent_station].A;
     A0 = node.parent_station < 0 ? &pw.A0 : &ps[node.parent_station].A0;
   }
-  w.A = Space::to_child(w.joint.SM, *A) + w.sigma;
-  w.A0 = Space::to_child(w.joint.SM, *A0) + w.sigma0;
+  w.A = Space::to_child(w.SM, *A) + w.sigma;
+  w.A0 = Space::to_child(w.SM, *A0) + w.sigma0;
   const JointData<Space>& joint = node.joint;
   if (single(joint.kind)) {
-    const int row = JointData<Space>::row(joint.kind);
-    const double x = w.u - w.row.dot(w.A) - w.row0.dot(w.A0);
-    w.A[row] += x;
-    w.A0[row] += x;
+    const double x = w.u - Space::dot(w.row, w.A) - Space::dot(w.row0, w.A0);
+    w.A += along<Space>(joint.kind, x);
+    w.A0 += along<Space>(joint.kind, x);
     s.result[joint.speed] = joint.direction * x;
   } else if constexpr (Space::angular == 3) {
     if (joint.kind != Joint::fixed) {
-      const JointVector<Space> x = w.d - w.gain * w.A - w.gain0 * w.A0;
-      const Twist rate = motion_subspace<Space>(joint, s.positions + joint.position, s.speeds + joint.speed) * x;
+      const StrictElimination<Space>& e = w.elimination;
+      Twist rate = Twist::zero();
+      for (std::size_t i = 0; i < joint.speeds; ++i) {
+        const double x = e.d[i] - Space::dot(e.row[i], w.A) - Space::dot(e.row0[i], w.A0);
+        rate += e.H[i] * x;
+        s.result[joint.speed + i] = x;
+      }
       w.A += rate;
       w.A0 += rate;
-      for (Eigen::Index i = 0; i < x.size(); ++i) s.result[joint.speed + static_cast<std::size_t>(i)] = x[i];
     }
   }
   if constexpr (N != 0) {
     const ModalBlock<Space> m(node, s.work, n);
     double* a = s.result + node.mode_speed;
-    for (int i = 0; i < n; ++i) a[i] = m.rhs[i] - m.row[i].dot(w.A) - m.row0[i].dot(w.A0);
+    for (int i = 0; i < n; ++i) a[i] = m.rhs[i] - Space::dot(m.row[i], w.A) - Space::dot(m.row0[i], w.A0);
     auto* stations = at<StrictStationWork<Space>>(s.work, node.work_stations);
     for (std::size_t k = 0; k < node.stations.size(); ++k) {
       const StrictStation<Space>& station = node.stations[k];
       if (!station.has_children) continue;
       StrictStationWork<Space>& sw = stations[k];
-      sw.A0 = Space::to_child(station.frame, w.A0);
-      sw.A = Space::to_child(station.frame, w.A) - Space::cross(sw.xi, sw.A0) + sw.sigma;
+      sw.A0 = Space::shift_to_child(station.X, w.A0);
+      sw.A = Space::shift_to_child(station.X, w.A) - Space::cross(sw.xi, sw.A0) + sw.sigma;
       for (int i = 0; i < n; ++i) sw.A += station.J[static_cast<std::size_t>(i)] * a[i];
     }
   }

@@ -1,0 +1,94 @@
+/// \file
+/// What the sweeps do at a hinge: its motion on the way out, and the rates between State and the aligned axes.
+#pragma once
+
+#include <cmath>
+
+#include "withy/core/sweep/node.hpp"
+
+namespace withy::sweep {
+
+/// A hinge at one state.
+template <class Space>
+struct JointMotion {
+  typename Space::Frame SM;    ///< pose of M in the frame that holds the hinge on the parent
+  typename Space::Twist rate;  ///< H ẋ in M
+  typename Space::Twist bias;  ///< Ḣ ẋ, component-wise in M; zero unless `has_bias`
+};
+
+/// Whether the hinge has one rate along one row of the twist.
+constexpr bool single(Joint kind) { return kind == Joint::rotate || kind == Joint::slide; }
+
+/// Whether Ḣ ẋ may differ from zero.
+constexpr bool has_bias(Joint kind) { return !single(kind) && kind != Joint::fixed; }
+
+/// H ẍ of a hinge with one rate, for its local rate.
+template <class Space>
+inline typename Space::Twist along(Joint kind, double rate) {
+  return kind == Joint::rotate ? Space::Twist::turning(rate) : Space::Twist::sliding(rate);
+}
+
+/// Hᵀ F of a hinge with one rate.
+template <class Space>
+inline double component(Joint kind, const typename Space::Twist& F) {
+  return kind == Joint::rotate ? F.turn() : F.slide();
+}
+
+/// Columns of a hinge's motion subspace H in M, for hinges with several rates; Eigen, as the hinge gives them.
+inline HingeMotion general_motion(const JointData<Spatial>& joint, const double* x, const double* u) {
+  HingeMotion m;
+  m.H.resize(6, static_cast<Eigen::Index>(joint.speeds));
+  joint.hinge->motion({x, joint.positions}, {u, joint.speeds}, m);
+  return m;
+}
+
+/// Pose, rate and bias of a hinge at coordinates x and rates u (its own, not the whole State's).
+template <class Space>
+inline void joint_motion(const JointData<Space>& joint, const double* x, const double* u, JointMotion<Space>& out) {
+  using Twist = typename Space::Twist;
+  out.rate = out.bias = Twist::zero();
+  switch (joint.kind) {
+    case Joint::fixed:
+      out.SM = joint.F;
+      return;
+    case Joint::rotate: {
+      out.rate = Twist::turning(joint.direction * u[0]);
+      out.SM.p = joint.F.p;
+      out.SM.R = joint.F.R;
+      if (!joint.pose_matters) return;
+      const double angle = joint.direction * x[0];
+      const double sine = std::sin(angle), cosine = std::cos(angle);
+      if constexpr (Space::angular == 1) {
+        out.SM.R = Space::compose(joint.F.R, {cosine, sine});
+      } else {
+        const Block& F = joint.F.R;
+        out.SM.R.c[0] = F.c[0] * cosine + F.c[1] * sine;
+        out.SM.R.c[1] = F.c[1] * cosine - F.c[0] * sine;
+      }
+      return;
+    }
+    case Joint::slide: {
+      const Twist along = Twist::sliding(joint.direction * x[0]);
+      out.SM.R = joint.F.R;
+      if constexpr (Space::angular == 1) {
+        out.SM.p = joint.F.p + Space::rotate(joint.F.R, {along.x, along.y});
+      } else {
+        out.SM.p = joint.F.p + Space::rotate(joint.F.R, along.v);
+      }
+      out.rate = Twist::sliding(joint.direction * u[0]);
+      return;
+    }
+    default:
+      break;
+  }
+  if constexpr (Space::angular == 3) {  // a planar tree has no other hinges
+    const HingeMotion m = general_motion(joint, x, u);
+    out.SM = Space::compose(joint.F, Space::make(m.pose));
+    Vector6 rate = Vector6::Zero();
+    for (Eigen::Index i = 0; i < m.H.cols(); ++i) rate += m.H.col(i) * u[i];
+    out.rate = Twist::of(rate);
+    out.bias = Twist::of(m.bias);
+  }
+}
+
+}  // namespace withy::sweep

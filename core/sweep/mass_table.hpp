@@ -1,0 +1,158 @@
+/// \file
+/// The mass of a flexible body as few generalized particles, and its integrals at a deformed state.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "withy/core/sweep/node.hpp"
+
+namespace withy::sweep {
+
+/// Every integral of the equations of motion is bilinear in the fields 1, X, Φ_i, Γ_ij over the mass. An orthonormal
+/// basis of the functions that these fields span therefore replaces the particles exactly: fields become the vectors of
+/// their coefficients, integrals dot products, and tens of quadrature points become a handful of generalized particles.
+/// The first basis function is the constant, so that ∫ f dm = √mass · (first coefficient of f).
+template <class Space>
+struct MassTable {
+  std::size_t packs = 0;      ///< generalized particles / 4, rounded up
+  bool second_order = false;  ///< some Γ is there
+  double root_mass = 0;       ///< √mass; 0: no particles
+  /// For each pack: X (linear), then Φ_i (n·linear), then Γ_ij for i ≤ j (pairs·linear), components innermost.
+  std::vector<Pack> data;
+  std::size_t stride = 0;  ///< packs of `data` for each pack of particles
+
+  MassTable() = default;
+  explicit MassTable(const NodeSpec& node);
+};
+
+/// n where it is known at compile time, otherwise a run-time number.
+template <int N>
+constexpr int count(int n) {
+  return N >= 0 ? N : n;
+}
+
+/// The generalized particles of one pack at q, q̇: positions r, velocities ṙ, acceleration terms q̇ᵀΓq̇ and partial
+/// velocities P = Φ + Γq; n·linear packs of scratch in `P`.
+template <class Space, int N>
+struct ParticleMotion {
+  static constexpr int L = Space::linear;
+  Pack r[L], v[L], a[L];
+
+  ParticleMotion(const Pack* field, bool second_order, int n, const double* q, const double* q_dot, Pack* P) {
+    const Pack* phi = field + L;
+    for (int i = 0; i < n * L; ++i) P[i] = phi[i];
+    for (int c = 0; c < L; ++c) {
+      r[c] = field[c];
+      v[c] = a[c] = spread(0.0);
+    }
+    if (second_order) {
+      const Pack* g = phi + n * L;
+      for (int i = 0; i < n; ++i) {
+        for (int j = i; j < n; ++j, g += L) {
+          const Pack qj = spread(q[j]);
+          const Pack qi = spread(q[i]);
+          const Pack rates = spread((i == j ? 1.0 : 2.0) * q_dot[i] * q_dot[j]);
+          for (int c = 0; c < L; ++c) {
+            P[i * L + c] += g[c] * qj;
+            if (i != j) P[j * L + c] += g[c] * qi;
+            a[c] += g[c] * rates;
+          }
+        }
+      }
+    }
+    for (int i = 0; i < n; ++i) {
+      const Pack half = spread(0.5 * q[i]);
+      const Pack rate = spread(q_dot[i]);
+      for (int c = 0; c < L; ++c) {
+        r[c] += (phi[i * L + c] + P[i * L + c]) * half;
+        v[c] += P[i * L + c] * rate;
+      }
+    }
+  }
+};
+
+/// Adds the particles' integrals at q, q̇ and twist V of the node's frame:
+///   I: ∫ of the rigid part; C, G: coupling and modal mass (lower triangle); p, h: velocity terms, so that the
+///   particles exert F = I A + C q̈ + p and Q = Cᵀ A + G q̈ + h.
+/// With r = X + Φq + ½qᵀΓq, P = Φ + Γq, a = ω×v + ω×(ω×r) + 2 ω×ṙ + q̇ᵀΓq̇:
+///   C_i = ∫ (r×P_i; P_i), G_ij = ∫ P_i·P_j, p = ∫ (r×a; a), h_i = ∫ P_i·a.
+/// The constant function is the first lane of the first pack; sums over lanes are taken last.
+template <int N>
+inline void integrate(const MassTable<Planar>& table, int modes, const double* q, const double* q_dot,
+                      const Planar::Twist& V, Pack* P, Planar::Inertia& I, Planar::Twist* C, double* G,
+                      Planar::Twist& p, double* h) {
+  const int n = count<N>(modes);
+  const double m = table.root_mass;
+  for (std::size_t k = 0; k < table.packs; ++k) {
+    ParticleMotion<Planar, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
+    Pack *r = x.r, *v = x.v, *a = x.a;
+    const Pack w2 = spread(V.w * V.w);
+    const Pack w = spread(2 * V.w);
+    a[0] -= w2 * r[0] + w * v[1];
+    a[1] -= w2 * r[1] - w * v[0];
+    if (k == 0) {
+      a[0][0] -= m * V.w * V.y;  // ω×v acts through the constant function
+      a[1][0] += m * V.w * V.x;
+      I += Planar::Inertia{0, -m * r[1][0], m * r[0][0], m * m, 0, m * m};
+      p += Planar::Twist{0, m * a[0][0], m * a[1][0]};
+    }
+    I.ww += sum(r[0] * r[0] + r[1] * r[1]);
+    p.w += sum(r[0] * a[1] - r[1] * a[0]);
+    for (int i = 0; i < n; ++i) {
+      const Pack* Pi = P + i * 2;
+      C[i].w += sum(r[0] * Pi[1] - r[1] * Pi[0]);
+      if (k == 0) {
+        C[i].x += m * Pi[0][0];
+        C[i].y += m * Pi[1][0];
+      }
+      h[i] += sum(Pi[0] * a[0] + Pi[1] * a[1]);
+      for (int j = 0; j <= i; ++j) G[i * n + j] += sum(Pi[0] * P[j * 2] + Pi[1] * P[j * 2 + 1]);
+    }
+  }
+}
+
+template <int N>
+inline void integrate(const MassTable<Spatial>& table, int modes, const double* q, const double* q_dot,
+                      const Spatial::Twist& V, Pack* P, Spatial::Inertia& I, Spatial::Twist* C, double* G,
+                      Spatial::Twist& p, double* h) {
+  const int n = count<N>(modes);
+  const double w0 = V.w[0], w1 = V.w[1], w2 = V.w[2];
+  // ω×(ω×r) = ω (ω·r) − |ω|² r, as a symmetric matrix.
+  const double xx = -(w1 * w1 + w2 * w2), yy = -(w0 * w0 + w2 * w2), zz = -(w0 * w0 + w1 * w1);
+  const double xy = w0 * w1, xz = w0 * w2, yz = w1 * w2;
+  for (std::size_t k = 0; k < table.packs; ++k) {
+    ParticleMotion<Spatial, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
+    Pack *r = x.r, *v = x.v, *a = x.a;
+    a[0] += xx * r[0] + xy * r[1] + xz * r[2] + 2 * (w1 * v[2] - w2 * v[1]);
+    a[1] += xy * r[0] + yy * r[1] + yz * r[2] + 2 * (w2 * v[0] - w0 * v[2]);
+    a[2] += xz * r[0] + yz * r[1] + zz * r[2] + 2 * (w0 * v[1] - w1 * v[0]);
+    if (k == 0) {
+      const double m = table.root_mass;
+      const Triple acceleration = cross(V.w, V.v) * m;
+      for (int c = 0; c < 3; ++c) a[c][0] += acceleration[c];
+      I.L -= Block::skew(Triple(r[0][0], r[1][0], r[2][0]) * m);
+      I.M += Block{{Triple(m * m, 0, 0), Triple(0, m * m, 0), Triple(0, 0, m * m)}};
+      p.v += Triple(a[0][0], a[1][0], a[2][0]) * m;
+      for (int i = 0; i < n; ++i) C[i].v += Triple(P[i * 3][0], P[i * 3 + 1][0], P[i * 3 + 2][0]) * m;
+    }
+    const double rxx = sum(r[0] * r[0]), ryy = sum(r[1] * r[1]), rzz = sum(r[2] * r[2]);
+    const double rxy = sum(r[0] * r[1]), rxz = sum(r[0] * r[2]), ryz = sum(r[1] * r[2]);
+    I.A += Block{{Triple(ryy + rzz, -rxy, -rxz), Triple(-rxy, rxx + rzz, -ryz), Triple(-rxz, -ryz, rxx + ryy)}};
+    const auto moment = [&](const Pack* f) {
+      return Triple(sum(r[1] * f[2] - r[2] * f[1]), sum(r[2] * f[0] - r[0] * f[2]), sum(r[0] * f[1] - r[1] * f[0]));
+    };
+    p.w += moment(a);
+    for (int i = 0; i < n; ++i) {
+      const Pack* Pi = P + i * 3;
+      C[i].w += moment(Pi);
+      h[i] += sum(Pi[0] * a[0] + Pi[1] * a[1] + Pi[2] * a[2]);
+      for (int j = 0; j <= i; ++j) {
+        const Pack* Pj = P + j * 3;
+        G[i * n + j] += sum(Pi[0] * Pj[0] + Pi[1] * Pj[1] + Pi[2] * Pj[2]);
+      }
+    }
+  }
+}
+
+}  // namespace withy::sweep

@@ -1,0 +1,195 @@
+/// \file
+/// What the sweeps keep of each node: constants in the space of the sweep, and the layout of its work memory.
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <span>
+#include <vector>
+
+#include "withy/core/dynamics/invariants.hpp"
+#include "withy/core/dynamics/tree.hpp"
+#include "withy/core/plugin/hinge.hpp"
+#include "withy/core/sweep/space.hpp"
+
+namespace withy::sweep {
+
+/// Motions of a hinge that the sweeps inline. In the aligned hinge frame a rotation is about the third axis and a slide
+/// along the first; ball and free have local rates (axes of M) equal to the rotated rates of the State.
+enum class Joint { fixed, rotate, slide, ball, free, custom };
+
+/// The inertia of a rigid part in the space of the sweep.
+template <class Space>
+typename Space::Inertia inertia_of(const RigidInertia& I);
+
+template <>
+inline Spatial::Inertia inertia_of<Spatial>(const RigidInertia& I) {
+  return {Spatial::block(I.inertia),
+          Block::skew(-Spatial::position(I.moment)),
+          {{Triple(I.mass, 0, 0), Triple(0, I.mass, 0), Triple(0, 0, I.mass)}}};
+}
+
+template <>
+inline Planar::Inertia inertia_of<Planar>(const RigidInertia& I) {
+  return {I.inertia(2, 2), -I.moment.y(), I.moment.x(), I.mass, 0, I.mass};
+}
+
+/// Change of a rigid inertia whose mass stays: first moment and inertia about the origin, as few numbers as there are.
+/// As a quadratic form Uᵀ I V it is the dot product with `bilinear` of U and V.
+template <class Space>
+struct Variation;
+
+template <>
+struct Variation<Planar> {
+  double x, y, J;  ///< moment, inertia
+  static Variation zero() { return {0, 0, 0}; }
+  static Variation of(const RigidInertia& I) { return {I.moment.x(), I.moment.y(), I.inertia(2, 2)}; }
+  static Variation bilinear(const Planar::Twist& U, const Planar::Twist& V) {
+    return {U.w * V.y + U.y * V.w, -(U.w * V.x + U.x * V.w), U.w * V.w};
+  }
+  friend double dot(const Variation& a, const Variation& b) { return a.x * b.x + a.y * b.y + a.J * b.J; }
+  void add(const Variation& b, double s) { x += b.x * s, y += b.y * s, J += b.J * s; }
+  /// I V.
+  [[nodiscard]] Planar::Twist times(const Planar::Twist& V) const {
+    return {J * V.w + x * V.y - y * V.x, -y * V.w, x * V.w};
+  }
+  [[nodiscard]] Planar::Inertia inertia() const { return {J, -y, x, 0, 0, 0}; }
+};
+
+template <>
+struct Variation<Spatial> {
+  Triple s, d, o;  ///< moment; inertia xx yy zz; xy xz yz
+  static Variation zero() { return {Triple::zero(), Triple::zero(), Triple::zero()}; }
+  static Variation of(const RigidInertia& I) {
+    return {Spatial::position(I.moment), Triple(I.inertia(0, 0), I.inertia(1, 1), I.inertia(2, 2)),
+            Triple(I.inertia(0, 1), I.inertia(0, 2), I.inertia(1, 2))};
+  }
+  static Variation bilinear(const Spatial::Twist& U, const Spatial::Twist& V) {
+    const Triple &u = U.w, &w = V.w;
+    return {cross(V.v, u) + cross(U.v, w), u.p * w.p,
+            Triple(u[0] * w[1] + u[1] * w[0], u[0] * w[2] + u[2] * w[0], u[1] * w[2] + u[2] * w[1])};
+  }
+  friend double dot(const Variation& a, const Variation& b) {
+    return sum(a.s.p * b.s.p + a.d.p * b.d.p + a.o.p * b.o.p);
+  }
+  void add(const Variation& b, double k) { s += b.s * k, d += b.d * k, o += b.o * k; }
+  [[nodiscard]] Spatial::Twist times(const Spatial::Twist& V) const {
+    return {tensor() * V.w + cross(s, V.v), cross(V.w, s)};
+  }
+  [[nodiscard]] Spatial::Inertia inertia() const { return {tensor(), Block::skew(-s), Block::zero()}; }
+
+ private:
+  [[nodiscard]] Block tensor() const {
+    return {{Triple(d[0], o[0], o[1]), Triple(o[0], d[1], o[2]), Triple(o[1], o[2], d[2])}};
+  }
+};
+
+/// A rigid part in the space of the sweep: as a map of accelerations, and what its velocity terms need.
+template <class Space>
+struct RigidPart {
+  typename Space::Inertia inertia;
+  double mass = 0;
+  typename Space::Position moment;
+
+  RigidPart() : RigidPart(RigidInertia{}) {}
+  explicit RigidPart(const RigidInertia& I)
+      : inertia(inertia_of<Space>(I)), mass(I.mass), moment(Space::position(I.moment)) {}
+  /// V ×* (I V), the wrench that holds the part against its velocity.
+  [[nodiscard]] typename Space::Twist velocity_wrench(const typename Space::Twist& V) const {
+    if constexpr (Space::angular == 1) {
+      const double cx = -V.w * V.y, cy = V.w * V.x, ww = V.w * V.w;
+      return {moment.x * cy - moment.y * cx, mass * cx - ww * moment.x, mass * cy - ww * moment.y};
+    } else {
+      const Triple c = cross(V.w, V.v);
+      return {cross(V.w, inertia.A * V.w) + cross(moment, c), mass * c + cross(V.w, cross(V.w, moment))};
+    }
+  }
+};
+
+/// Expansion of a station's section: rotation and displacement of second order, as pairs (angular; linear) parallel to
+/// the node's frame.
+template <class Space>
+struct Fields {
+  using Twist = typename Space::Twist;
+  typename Space::Position X = Space::Position::zero();
+  std::vector<Twist> first;   ///< (Ψ_i; Φ_i)
+  std::vector<Twist> second;  ///< (Θ_ij; Γ_ij) for i ≤ j; empty where all are zero
+
+  Fields() = default;
+  explicit Fields(const PointExpansion& e) : X(Space::position(e.X)) {
+    bool curved = false;
+    for (Eigen::Index i = 0; i < e.phi.cols(); ++i) {
+      first.push_back(Twist::of(Space::angle(e.psi.col(i)), Space::position(e.phi.col(i))));
+      for (Eigen::Index j = i; j < e.phi.cols(); ++j) {
+        const Vector3 g(e.gamma[0](i, j), e.gamma[1](i, j), e.gamma[2](i, j));
+        const Vector3 t(e.theta[0](i, j), e.theta[1](i, j), e.theta[2](i, j));
+        second.push_back(Twist::of(Space::angle(t), Space::position(g)));
+        curved = curved || !g.isZero(0) || !t.isZero(0);
+      }
+    }
+    if (!curved) second.clear();
+  }
+};
+
+/// Hinge of a node.
+template <class Space>
+struct JointData {
+  Joint kind = Joint::fixed;
+  double direction = 1;
+  typename Space::Frame F;  ///< in the parent station's section, the parent node's frame, or the world
+  const Hinge* hinge = nullptr;
+  bool pose_matters = true;  ///< false on a world without weight, whose accelerations are zero in any axes
+  std::size_t position = 0, positions = 0, speed = 0, speeds = 0;
+
+  explicit JointData(const NodeSpec& node)
+      : direction(node.direction),
+        F(Space::make(node.F)),
+        hinge(node.hinge.get()),
+        position(node.slot.position),
+        positions(node.slot.positions),
+        speed(node.slot.speed),
+        speeds(node.slot.speeds) {
+    using enum HingeKernel::Kind;
+    kind = Joint::custom;
+    if (!node.kernel) return;
+    switch (node.kernel->kind) {
+      case weld:
+        kind = Joint::fixed;
+        break;
+      case revolute:
+        kind = Joint::rotate;
+        break;
+      case prismatic:
+        kind = Joint::slide;
+        break;
+      case spherical:
+        kind = Joint::ball;
+        break;
+      case HingeKernel::Kind::free:
+        kind = Joint::free;
+        break;
+    }
+  }
+};
+
+/// Offsets into the work memory, in bytes, of arrays of a type; grows as blocks are asked for.
+class WorkLayout {
+ public:
+  template <class T>
+  std::size_t take(std::size_t count) {
+    const std::size_t at = size_;
+    size_ += (count * sizeof(T) + 63) / 64 * 64;
+    return at;
+  }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+ private:
+  std::size_t size_ = 0;
+};
+
+template <class T>
+T* at(std::byte* work, std::size_t offset) {
+  return std::launder(reinterpret_cast<T*>(work + offset));
+}
+
+}  // namespace withy::sweep

@@ -1,0 +1,318 @@
+/// \file
+/// The three passes of the symmetric sweep over one node; see symmetric_sweep.hpp.
+///
+/// At a node, with V, A its frame's twist and acceleration, F the wrench the hinge passes to it, u̇ = (ẍ, q̈):
+///   (1) V_M = X V_S + H ẋ,              A_M = X A_S + H ẍ + σ,   σ = V_M × H ẋ + Ḣ ẋ
+///   (2) V_S = X V_B + J q̇,              A_S = X A_B + J q̈ + σ_S, σ_S = V_S × J q̇ + J̇ q̇      (station S of body B)
+///   (3) F = I A + C q̈ + p,              −K q − D q̇ = Cᵀ A + G q̈ + h
+/// Children and carried bodies enter (3) through their stations; then q̈, then ẍ are eliminated.
+#pragma once
+
+#include "withy/core/sweep/symmetric_terms.hpp"
+
+namespace withy::sweep {
+
+/// What of a node the compiler knows: rigid; ruthless; or its modes without truncation.
+enum class Flavor { rigid, frozen, full };
+
+/// Constant elimination of a frozen leaf's modes.
+template <class Space>
+void precompute(SymmetricNode<Space>& node) {
+  node.factor = node.G0;
+  node.Y0 = node.C0;
+  node.reduced = node.base.inertia;
+  if (!factorize<-1>(node.factor.data(), node.modes)) {
+    node.factor.clear();  // the sweep meets the same pivot and reports it
+    return;
+  }
+  solve_lower<-1>(node.factor.data(), node.modes, node.Y0.data());
+  for (std::size_t i = 0, n = node.Y0.size(); i < n; ++i)
+    node.reduced.subtract_square(node.Y0[i], node.factor[i * n + i]);
+}
+
+template <class Space>
+inline const typename Space::Twist& outer_twist(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+  const SymmetricNode<Space>& parent = s.nodes[node.parent];
+  return node.parent_station < 0 ? at<NodeWork<Space>>(s.work, parent.work)->V
+                                 : at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].V;
+}
+
+template <class Space, int N, Flavor flavor>
+[[gnu::flatten]] inline void outward_motion(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+  using Twist = typename Space::Twist;
+  const int n = count<N>(node.modes);
+  auto& w = *at<NodeWork<Space>>(s.work, node.work);
+  JointMotion<Space> joint;
+  joint_motion<Space>(node.joint, s.positions + node.joint.position, s.speeds + node.joint.speed, joint);
+  Twist V = joint.rate;
+  w.SM = joint.SM;
+  if (node.parent >= 0) V += Space::to_child(joint.SM, outer_twist(node, s));
+  w.sigma = node.parent >= 0 ? Space::cross(V, joint.rate) : Twist::zero();
+  if (has_bias(node.joint.kind)) w.sigma += joint.bias;
+
+  if constexpr (flavor == Flavor::frozen) {
+    auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+    for (std::size_t k = 0; k < node.stations.size(); ++k) {
+      const auto& station = node.stations[k];
+      if (!station.has_children) continue;
+      stations[k].V = Space::shift_to_child(station.fields.X, V);
+    }
+  }
+  if constexpr (flavor == Flavor::full) {
+    const double* q = s.positions + node.mode_position;
+    const double* q_dot = s.speeds + node.mode_speed;
+    auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+    Twist* J = at<Twist>(s.work, node.work_J);
+    if (node.root_station >= 0) {
+      // The root section moves with q: V_M = X V_B + J q̇, solved for V_B.
+      const auto& root = node.stations[static_cast<std::size_t>(node.root_station)];
+      StationMotion<Space> m;
+      Twist* JM = J + n * static_cast<int>(node.stations.size());
+      station_motion<Space, N>(root.fields, n, q, q_dot, m, JM);
+      const Twist rate = Space::to_child(node.M, m.rate);
+      w.root = Space::compose(m.frame, node.M);
+      w.root_sigma = Space::cross(V, rate) + Space::to_child(node.M, m.bias);
+      for (int i = 0; i < n; ++i) JM[i] = Space::to_child(node.M, JM[i]);
+      V = Space::from_child(w.root, V - rate);
+    }
+    for (std::size_t k = 0; k < node.stations.size(); ++k) {
+      const auto& station = node.stations[k];
+      if (!station.loaded) continue;
+      StationWork<Space>& sw = stations[k];
+      StationMotion<Space> m;
+      station_motion<Space, N>(station.fields, n, q, q_dot, m, J + static_cast<int>(k) * n);
+      const Twist VS = Space::to_child(m.frame, V) + m.rate;
+      sw.frame = m.frame;
+      sw.V = VS;
+      sw.sigma = Space::cross(VS, m.rate) + m.bias;
+      sw.I = station.carried.inertia;
+      sw.p = station.carried.velocity_wrench(VS);
+    }
+  }
+  w.V = V;
+  if (flavor == Flavor::frozen && !node.factor.empty()) return;  // nothing is added to what it has precomputed
+  w.I = node.base.inertia;
+  w.p = node.base.velocity_wrench(V);
+}
+
+/// Elimination of q̈: leaves Y, y, L in the work memory and adds to I, p; false where G is not positive definite.
+template <class Space, int N, Flavor flavor>
+inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricState<Space>& s,
+                            const typename Space::Twist& V, typename Space::Inertia& I, typename Space::Twist& p) {
+  using Twist = typename Space::Twist;
+  const int n = count<N>(node.modes);
+  const double* q = s.positions + node.mode_position;
+  const double* q_dot = s.speeds + node.mode_speed;
+  const auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+  // On the stack where the compiler knows their size: it then keeps them in registers.
+  constexpr int size = N > 0 ? N : 1;
+  Twist C_here[size];
+  double G_here[size * size], y_here[size];
+  Twist* C = N > 0 ? C_here : at<Twist>(s.work, node.work_C);
+  double* G = N > 0 ? G_here : at<double>(s.work, node.work_G);
+  double* y = N > 0 ? y_here : at<double>(s.work, node.work_y);
+  bool constant = false;
+  if constexpr (flavor == Flavor::frozen) {
+    const auto square = Variation<Space>::bilinear(V, V);
+    for (int i = 0; i < n; ++i) y[i] = -0.5 * dot(node.I1[static_cast<std::size_t>(i)], square);
+    constant = !node.factor.empty();
+    if (!constant) {
+      for (int i = 0; i < n; ++i) C[i] = node.C0[static_cast<std::size_t>(i)];
+      for (int i = 0; i < n * n; ++i) G[i] = node.G0[static_cast<std::size_t>(i)];
+      for (std::size_t k = 0; k < node.stations.size(); ++k) {
+        if (node.stations[k].has_children)
+          collect_frozen_station<Space, N>(stations[k], node.stations[k], n, I, p, C, G, y);
+      }
+    }
+  } else {
+    for (int i = 0; i < n; ++i) {
+      C[i] = Twist::zero();
+      y[i] = 0;
+    }
+    for (int i = 0; i < n * n; ++i) G[i] = 0;
+    integrate<N>(node.mass, n, q, q_dot, V, at<Pack>(s.work, node.work_P), I, C, G, p, y);
+    Twist* J = at<Twist>(s.work, node.work_J);
+    for (std::size_t k = 0; k < node.stations.size(); ++k) {
+      if (node.stations[k].loaded)
+        collect_station<Space, N>(stations[k], J + static_cast<int>(k) * n, n, I, p, C, G, y);
+    }
+    if (!node.sections.empty())
+      collect_sections<Space, N>(node, q, q_dot, V, I, p, at<Twist>(s.work, node.work_C) + n, C, G, y);
+    if (node.root_station >= 0) {
+      const auto& w = *at<NodeWork<Space>>(s.work, node.work);
+      move_to_root<Space, N>(w.root, w.root_sigma, n, J + n * static_cast<int>(node.stations.size()), I, p, C, G, y);
+    }
+  }
+  // q̈ = G⁻¹ (−K q − D q̇ − h − Cᵀ A), with G = L Δ Lᵀ, Y = L⁻¹ Cᵀ, y = L⁻¹ (…).
+  for (int i = 0; i < n; ++i) {
+    double e = s.efforts[node.mode_speed + static_cast<std::size_t>(i)] - y[i];
+    for (int j = 0; j < n; ++j) {
+      e -= node.stiffness[static_cast<std::size_t>(i * n + j)] * q[j] +
+           node.damping[static_cast<std::size_t>(i * n + j)] * q_dot[j];
+    }
+    y[i] = e;
+  }
+  double* y_kept = at<double>(s.work, node.work_y);
+  if (constant) {
+    const double* L = node.factor.data();
+    solve_lower<N>(L, n, y);
+    for (int i = 0; i < n; ++i) p += node.Y0[static_cast<std::size_t>(i)] * (L[i * n + i] * y[i]);
+    for (int i = 0; i < n; ++i) y_kept[i] = y[i];
+    return true;
+  }
+  if (!factorize<N>(G, n)) return false;
+  solve_lower<N>(G, n, C);
+  solve_lower<N>(G, n, y);
+  for (int i = 0; i < n; ++i) {
+    I.subtract_square(C[i], G[i * n + i]);
+    p += C[i] * (G[i * n + i] * y[i]);
+  }
+  if constexpr (N > 0) {
+    Twist* C_kept = at<Twist>(s.work, node.work_C);
+    double* G_kept = at<double>(s.work, node.work_G);
+    for (int i = 0; i < n; ++i) {
+      C_kept[i] = C[i];
+      y_kept[i] = y[i];
+      for (int j = 0; j <= i; ++j) G_kept[i * n + j] = G[i * n + j];
+    }
+  }
+  return true;
+}
+
+/// Elimination of ẍ of a hinge with several rates; Y, y, L stay in the work memory.
+inline bool eliminate_joint(const JointData<Spatial>& joint, const SymmetricState<Spatial>& s,
+                            JointElimination<Spatial>& e, Spatial::Inertia& I, Spatial::Twist& p) {
+  const auto k = static_cast<int>(joint.speeds);
+  const HingeMotion motion = general_motion(joint, s.positions + joint.position, s.speeds + joint.speed);
+  for (int i = 0; i < k; ++i) {
+    e.H[i] = Spatial::Twist::of(motion.H.col(i));
+    e.Y[i] = I * e.H[i];
+    e.y[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Spatial::dot(e.H[i], p);
+    for (int j = 0; j <= i; ++j) e.L[i * k + j] = Spatial::dot(e.Y[i], e.H[j]);
+  }
+  if (!factorize<-1>(e.L, k)) return false;
+  solve_lower<-1>(e.L, k, e.Y);
+  solve_lower<-1>(e.L, k, e.y);
+  for (int i = 0; i < k; ++i) {
+    I.subtract_square(e.Y[i], e.L[i * k + i]);
+    p += e.Y[i] * (e.L[i * k + i] * e.y[i]);
+  }
+  return true;
+}
+
+template <class Space, int N, Flavor flavor>
+[[gnu::flatten]] inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+  using Twist = typename Space::Twist;
+  auto& w = *at<NodeWork<Space>>(s.work, node.work);
+  const bool constant = flavor == Flavor::frozen && !node.factor.empty();
+  typename Space::Inertia I = constant ? node.reduced : w.I;
+  Twist p = constant ? node.base.velocity_wrench(w.V) : w.p;
+  if constexpr (flavor != Flavor::rigid) {
+    if (!eliminate_modes<Space, N, flavor>(node, s, w.V, I, p)) return false;
+  }
+  // Elimination of ẍ, and what the hinge passes to the parent's station: inertia I, wrench p at zero A'.
+  const JointData<Space>& joint = node.joint;
+  if (single(joint.kind)) {
+    const bool turns = joint.kind == Joint::rotate;
+    const Twist U = turns ? I.turn_column() : I.slide_column();
+    const double inertia = turns ? U.turn() : U.slide();
+    if (!(inertia > 0)) return false;
+    const double inverse = 1 / inertia;
+    const double u = joint.direction * s.efforts[joint.speed] - (turns ? p.turn() : p.slide());
+    w.U = U;
+    w.inverse = inverse;
+    w.u = u;
+    if (node.parent < 0) return true;
+    I.subtract_square(U, inverse);
+    p += I * w.sigma + U * (inverse * u);
+  } else if (joint.kind == Joint::fixed) {
+    if (node.parent < 0) return true;
+    p += I * w.sigma;
+  } else if constexpr (Space::angular == 3) {  // a planar tree has no other hinges
+    if (!eliminate_joint(joint, s, w.elimination, I, p)) return false;
+    if (node.parent < 0) return true;
+    p += I * w.sigma;
+  }
+  const SymmetricNode<Space>& parent = s.nodes[node.parent];
+  if (node.parent_station < 0) {
+    auto& pw = *at<NodeWork<Space>>(s.work, parent.work);
+    pw.I += Space::to_parent(w.SM, I);
+    pw.p += Space::to_parent(w.SM, p);
+  } else {
+    auto& pw = at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station];
+    if (node.begins) {
+      pw.I = Space::to_parent(w.SM, I);
+      pw.p = Space::to_parent(w.SM, p);
+    } else {
+      pw.I += Space::to_parent(w.SM, I);
+      pw.p += Space::to_parent(w.SM, p);
+    }
+  }
+  return true;
+}
+
+template <class Space, int N, Flavor flavor>
+[[gnu::flatten]] inline void outward_acceleration(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+  using Twist = typename Space::Twist;
+  const int n = count<N>(node.modes);
+  auto& w = *at<NodeWork<Space>>(s.work, node.work);
+  const JointData<Space>& joint = node.joint;
+  const Twist* outer = s.world;
+  if (node.parent >= 0) {
+    const SymmetricNode<Space>& parent = s.nodes[node.parent];
+    outer = node.parent_station < 0 ? &at<NodeWork<Space>>(s.work, parent.work)->A
+                                    : &at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].A;
+  }
+  Twist A = w.sigma;
+  if (joint.pose_matters) A += Space::to_child(w.SM, *outer);
+  if (single(joint.kind)) {
+    const double x = (w.u - Space::dot(w.U, A)) * w.inverse;
+    A += along<Space>(joint.kind, x);
+    s.result[joint.speed] = joint.direction * x;
+  } else if constexpr (Space::angular == 3) {
+    if (joint.kind != Joint::fixed) {
+      const JointElimination<Space>& e = w.elimination;
+      double* x = s.result + joint.speed;
+      back_substitute<-1, Space>(e.L, e.Y, e.y, static_cast<int>(joint.speeds), A, x);
+      for (std::size_t i = 0; i < joint.speeds; ++i) A += e.H[i] * x[i];
+    }
+  }
+  if constexpr (flavor == Flavor::rigid) {
+    w.A = A;
+    return;
+  } else {
+    const bool constant = flavor == Flavor::frozen && !node.factor.empty();
+    const double* L = constant ? node.factor.data() : at<double>(s.work, node.work_G);
+    const Twist* Y = constant ? node.Y0.data() : at<Twist>(s.work, node.work_C);
+    double* a = s.result + node.mode_speed;
+    back_substitute<N, Space>(L, Y, at<double>(s.work, node.work_y), n, A, a);
+    auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+    if constexpr (flavor == Flavor::frozen) {
+      w.A = A;
+      for (std::size_t k = 0; k < node.stations.size(); ++k) {
+        const auto& station = node.stations[k];
+        if (!station.has_children) continue;
+        Twist AS = Space::shift_to_child(station.fields.X, A);
+        for (int i = 0; i < n; ++i) AS += station.J[static_cast<std::size_t>(i)] * a[i];
+        stations[k].A = AS;
+      }
+    } else {
+      const Twist* J = at<Twist>(s.work, node.work_J);
+      if (node.root_station >= 0) {
+        const Twist* JM = J + n * static_cast<int>(node.stations.size());
+        A -= w.root_sigma;
+        for (int i = 0; i < n; ++i) A -= JM[i] * a[i];
+        A = Space::from_child(w.root, A);
+      }
+      w.A = A;
+      for (std::size_t k = 0; k < node.stations.size(); ++k) {
+        if (!node.stations[k].has_children) continue;
+        Twist AS = Space::to_child(stations[k].frame, A) + stations[k].sigma;
+        for (int i = 0; i < n; ++i) AS += J[static_cast<int>(k) * n + i] * a[i];
+        stations[k].A = AS;
+      }
+    }
+  }
+}
+
+}  // namespace withy::sweep
