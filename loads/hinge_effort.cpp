@@ -1,14 +1,13 @@
 /// \file
-/// An effort on one rate of a hinge as a function of time: constant, sine or table.
+/// An effort on one rate of a hinge as a function of time: constant, sine, table or steps.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 #include <variant>
 
-#include "withy/core/model/model.hpp"
 #include "withy/core/plugin/entry.hpp"
+#include "withy/loads/hinge_rate.hpp"
 
 namespace withy {
 namespace {
@@ -29,10 +28,13 @@ struct Sine {
   }
 };
 
-/// Linear between rows, zero outside them.
-struct Table {
+struct Rows {
   std::vector<double> times;
   std::vector<double> values;
+};
+
+/// Linear between rows, zero outside them.
+struct Table : Rows {
   double operator()(double t) const noexcept {
     if (!(t >= times.front() && t < times.back())) return std::isnan(t) ? t : 0;
     const auto i = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), t) - times.begin());
@@ -41,9 +43,18 @@ struct Table {
   }
 };
 
+/// The value of each row until the next, of the last for ever; zero before the first.
+struct Steps : Rows {
+  double operator()(double t) const noexcept {
+    const auto next = std::upper_bound(times.begin(), times.end(), t);
+    if (next == times.begin() || std::isnan(t)) return std::isnan(t) ? t : 0;
+    return values[static_cast<std::size_t>(next - times.begin()) - 1];
+  }
+};
+
 /// A law that acts for start ≤ t < stop [s].
 struct Effort {
-  std::variant<Constant, Sine, Table> law;
+  std::variant<Constant, Sine, Table, Steps> law;
   double start = -infinity;
   double stop = infinity;
 
@@ -54,14 +65,17 @@ struct Effort {
   std::vector<double> discontinuities() const {
     std::vector<double> jumps;
     if (const auto* table = std::get_if<Table>(&law)) jumps = table->times;
+    if (const auto* steps = std::get_if<Steps>(&law)) jumps = steps->times;
     std::erase_if(jumps, [this](double t) { return t <= start || t >= stop; });
     if (start > -infinity) jumps.insert(jumps.begin(), start);
-    if (stop < infinity) jumps.push_back(stop);
+    if (stop < infinity && !(end() > 0 && end() < stop)) jumps.push_back(stop);
     return jumps;
   }
   double end() const {
-    const auto* table = std::get_if<Table>(&law);
-    const double last = std::min(stop, table == nullptr ? infinity : table->times.back());
+    double last = stop;
+    if (const auto* table = std::get_if<Table>(&law)) last = std::min(stop, table->times.back());
+    if (const auto* steps = std::get_if<Steps>(&law); steps != nullptr && steps->values.back() == 0)
+      last = std::min(stop, steps->times.back());
     return last < infinity ? last : 0;
   }
 };
@@ -85,21 +99,13 @@ class BoundHingeEffort final : public BoundLoad {
 
 class HingeEffort final : public Load {
  public:
-  HingeEffort(std::string hinge, std::size_t component, Effort effort)
-      : hinge_(std::move(hinge)), component_(component), effort_(std::move(effort)) {}
+  HingeEffort(RateName rate, Effort effort) : rate_(std::move(rate)), effort_(std::move(effort)) {}
   std::unique_ptr<BoundLoad> bind(const Model& model) const override {
-    const Slot* slot = model.layout().hinge(hinge_);
-    if (slot == nullptr) throw std::invalid_argument("there is no hinge '" + hinge_ + "'");
-    if (component_ >= slot->speeds)
-      throw std::invalid_argument("hinge '" + hinge_ + "' has " + std::to_string(slot->speeds) +
-                                  " rates; there is no component " + std::to_string(component_) +
-                                  " (they count from 0)");
-    return std::make_unique<BoundHingeEffort>(effort_, slot->speed + component_);
+    return std::make_unique<BoundHingeEffort>(effort_, speed_index(model, rate_));
   }
 
  private:
-  std::string hinge_;
-  std::size_t component_;
+  RateName rate_;
   Effort effort_;
 };
 
@@ -136,13 +142,16 @@ std::optional<Effort> read_law(const Value& p, const MakeContext& context) {
     return Effort{Sine{p.number_at("amplitude"), frequency, p.has("phase") ? p.number_at("phase") : 0}};
   }
   if (!only(p, context, {"table"})) return {};
-  if (!p.has("table") || p.at("table").items().size() < 2) return lacking(p, context, "a 'table' of two rows or more");
-  Table table;
+  const std::size_t least = law == "table" ? 2 : 1;
+  if (!p.has("table") || p.at("table").items().size() < least)
+    return lacking(p, context, least == 2 ? "a 'table' of two rows or more" : "a 'table'");
+  Rows rows;
   for (const Value& row : p.at("table").items()) {
-    table.times.push_back(row.items()[0].number());
-    table.values.push_back(row.items()[1].number());
+    rows.times.push_back(row.items()[0].number());
+    rows.values.push_back(row.items()[1].number());
   }
-  return Effort{std::move(table)};
+  if (law == "table") return Effort{Table{std::move(rows)}};
+  return Effort{Steps{std::move(rows)}};
 }
 
 std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
@@ -154,24 +163,25 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
     context.diagnostics.error(p.at("stop").place(), "'stop' is not after 'start'");
     return nullptr;
   }
-  return std::make_unique<HingeEffort>(p.text_at("hinge"), p.count_at("component"), std::move(*effort));
+  return std::make_unique<HingeEffort>(rate_name(p), std::move(*effort));
 }
 
 void enroll(Enrollment& enrollment) {
   enrollment.add<Load>(
       {.id = "hinge-effort",
        .summary = "Effort on one rate of a hinge as a function of time; a force in N where the rate is a velocity",
-       .parameters = {text("hinge", "hinge that is driven").naming(ParameterSpec::Refers::hinge),
-                      integer("component", "which of the hinge's rates, counted from 0").least(0).otherwise(0.0),
-                      text("law", "effort as a function of time").one_of({"constant", "sine", "table"}),
-                      number("value", "N m", "effort (constant)").optional(),
-                      number("amplitude", "N m", "greatest effort (sine)").optional(),
-                      number("period", "s", "period (sine)").above(0).optional(),
-                      number("frequency", "Hz", "frequency, in place of the period (sine)").above(0).optional(),
-                      number("phase", "rad", "phase at time 0 (sine)").optional(),
-                      table("table", {"s", "N m"}, "time and effort, linear in between, zero outside").optional(),
-                      number("start", "s", "the effort is zero before").optional(),
-                      number("stop", "s", "the effort is zero from here on").optional()},
+       .parameters = rate_parameters(
+           {text("law", "effort as a function of time").one_of({"constant", "sine", "table", "steps"}),
+            number("value", "N m", "effort (constant)").optional(),
+            number("amplitude", "N m", "greatest effort (sine)").optional(),
+            number("period", "s", "period (sine)").above(0).optional(),
+            number("frequency", "Hz", "frequency, in place of the period (sine)").above(0).optional(),
+            number("phase", "rad", "phase at time 0 (sine)").optional(),
+            table("table", {"s", "N m"},
+                  "time and effort: linear in between and zero outside (table), or each from its time on (steps)")
+                .optional(),
+            number("start", "s", "the effort is zero before").optional(),
+            number("stop", "s", "the effort is zero from here on").optional()}),
        .make = &make});
 }
 

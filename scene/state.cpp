@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/scene.hpp"
 
@@ -15,27 +16,15 @@ constexpr double unit_tolerance = 1e-6;
 // Quaternions of a running simulation are unit to a few roundings; those stay, so that a restart has the same bits.
 constexpr double rounding = 1e-14;
 
-/// Units of a hinge's coordinates or rates; "1" for a hinge whose motion is not known.
+/// Units of a hinge's coordinates or rates; "1" for a coordinate that is no integral of a rate.
 std::vector<std::string> hinge_units(const Hinge& hinge, bool rates) {
-  using Kind = HingeKernel::Kind;
-  const std::vector<std::string> angular(3, "rad/s");
-  const auto kernel = hinge.kernel();
-  if (kernel) {
-    switch (kernel->kind) {
-      case Kind::weld:
-        return {};
-      case Kind::revolute:
-        return {rates ? "rad/s" : "rad"};
-      case Kind::prismatic:
-        return {rates ? "m/s" : "m"};
-      case Kind::spherical:
-        return rates ? angular : std::vector<std::string>(4, "1");
-      case Kind::free:
-        if (rates) return {"rad/s", "rad/s", "rad/s", "m/s", "m/s", "m/s"};
-        return {"1", "1", "1", "1", "m", "m", "m"};
-    }
+  std::vector<std::string> units(rates ? hinge.speeds() : hinge.coordinates(), "1");
+  std::size_t index = 0;
+  for (const HingeRate& rate : hinge_rates(hinge)) {
+    if (rates) units[index++] = rate.angular ? "rad/s" : "m/s";
+    if (!rates && rate.coordinate) units[*rate.coordinate] = rate.angular ? "rad" : "m";
   }
-  return std::vector<std::string>(rates ? hinge.speeds() : hinge.coordinates(), "1");
+  return units;
 }
 
 bool has_quaternion(const Hinge& hinge) {

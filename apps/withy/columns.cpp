@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <iterator>
 
+#include "withy/core/model/hinge_rates.hpp"
+
 namespace withy::app {
 namespace {
 
@@ -16,18 +18,24 @@ void add(std::vector<Column>& columns, const std::string& name, std::initializer
   for (const char* suffix : suffixes) columns.push_back({name + suffix, unit});
 }
 
-std::vector<Column> numbered(const std::string& name, std::size_t count) {
-  std::vector<Column> columns;
-  for (std::size_t i = 0; i < count; ++i) columns.push_back({fmt::format("{}.{}", name, i), ""});
-  return columns;
+/// "name", or "name.0", "name.1", … where there are several.
+std::string numbered(const std::string& name, std::size_t index, std::size_t count) {
+  return count == 1 ? name : fmt::format("{}.{}", name, index);
 }
 
 }  // namespace
 
 std::vector<Column> coordinate_columns(const HingeNode& hinge) {
   const auto kernel = hinge.hinge->kernel();
-  if (!kernel) return numbered(hinge.name, hinge.hinge->coordinates());
   std::vector<Column> c;
+  if (!kernel) {
+    const std::size_t count = hinge.hinge->coordinates();
+    for (std::size_t i = 0; i < count; ++i) c.push_back({numbered(hinge.name, i, count), ""});
+    for (const HingeRate& rate : hinge_rates(*hinge.hinge)) {
+      if (rate.coordinate) c[*rate.coordinate].unit = rate.angular ? "rad" : "m";
+    }
+    return c;
+  }
   if (kernel->kind == Kind::revolute) add(c, hinge.name, {""}, "rad");
   if (kernel->kind == Kind::prismatic) add(c, hinge.name, {""}, "m");
   if (kernel->kind == Kind::spherical || kernel->kind == Kind::free)
@@ -38,8 +46,12 @@ std::vector<Column> coordinate_columns(const HingeNode& hinge) {
 
 std::vector<Column> rate_columns(const HingeNode& hinge) {
   const auto kernel = hinge.hinge->kernel();
-  if (!kernel) return numbered(hinge.name + ".rate", hinge.hinge->speeds());
   std::vector<Column> c;
+  if (!kernel) {
+    for (const HingeRate& rate : hinge_rates(*hinge.hinge))
+      c.push_back({numbered(hinge.name + ".rate", c.size(), hinge.hinge->speeds()), rate.angular ? "rad/s" : "m/s"});
+    return c;
+  }
   if (kernel->kind == Kind::revolute) add(c, hinge.name, {".rate"}, "rad/s");
   if (kernel->kind == Kind::prismatic) add(c, hinge.name, {".rate"}, "m/s");
   if (kernel->kind == Kind::spherical || kernel->kind == Kind::free) add(c, hinge.name, {".wx", ".wy", ".wz"}, "rad/s");

@@ -16,9 +16,9 @@ struct Column {
 };
 
 /// Coordinates of a hinge: `shoulder` [rad] where there is one, `base.qw` [1] … `base.z` [m] for quaternions and
-/// positions, `joint.0` without a unit where the hinge is of an unknown kind.
+/// positions, `joint.0` [rad], `joint.1` [m] … for other hinges of several coordinates.
 std::vector<Column> coordinate_columns(const HingeNode& hinge);
-/// Their rates: `shoulder.rate` [rad/s], `base.wx` [rad/s] … `base.vz` [m/s], `joint.rate.0`.
+/// Their rates: `shoulder.rate` [rad/s], `base.wx` [rad/s] … `base.vz` [m/s], `joint.rate.0` [rad/s] ….
 std::vector<Column> rate_columns(const HingeNode& hinge);
 
 /// A frame of a body.

@@ -15,16 +15,22 @@ inline std::vector<ParameterSpec> axis_parameter() {
       vector("axis", 3, "1", "axis, the same components in the hinge frames of parent and child; any length but zero")};
 }
 
-/// The unit vector along the scene's `axis`; nothing after a reported error.
-inline std::optional<Vector3> unit_axis(const Value& parameters, const MakeContext& context) {
-  const std::vector<double> a = parameters.at("axis").numbers();
+/// The unit vector along a vector of the scene; nothing after a reported error.
+inline std::optional<Vector3> unit_vector(const Value& parameters, std::string_view key, const MakeContext& context) {
+  const std::vector<double> a = parameters.at(key).numbers();
   const Vector3 axis(a[0], a[1], a[2]);
   if (!(axis.stableNorm() > 0)) {
-    context.diagnostics.error(parameters.at("axis").place(), "got a zero vector; need a direction");
+    context.diagnostics.error(parameters.at(key).place(), "got a zero vector; need a direction");
     return {};
   }
   return axis.stableNormalized();
 }
+
+/// A direction as the default of a parameter.
+inline Value direction(double x, double y, double z) { return Value::list({Value(x), Value(y), Value(z)}); }
+
+/// Whether two unit vectors are within a microradian of one line: no plane then lies through both to any accuracy.
+inline bool nearly_parallel(const Vector3& a, const Vector3& b) { return a.cross(b).norm() < 1e-6; }
 
 /// A hinge whose coordinates are the integrals of its rates: the part every such hinge shares.
 class HolonomicHinge : public Hinge {

@@ -23,7 +23,7 @@ class Revolute final : public HolonomicHinge {
 };
 
 std::unique_ptr<Hinge> make(const Value& p, const MakeContext& context) {
-  const auto axis = unit_axis(p, context);
+  const auto axis = unit_vector(p, "axis", context);
   if (!axis) return nullptr;
   return std::make_unique<Revolute>(*axis);
 }

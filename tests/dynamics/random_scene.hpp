@@ -105,13 +105,17 @@ class RandomScene {
     hinges << "child: " << name;
     if (beam && chance(0.4)) hinges << (wish_.any_root && chance(0.7) ? ".a" : ".r");
     hinges << ", offset: {" << pose() << "}, ";
-    const int kind = parent < 0 && wish_.floating && !wish_.planar ? 5 : whole(0, wish_.planar ? 2 : 3);
-    if (kind == 5) hinges << "type: free}\n";
+    const int kind = parent < 0 && wish_.floating && !wish_.planar ? 8 : whole(0, wish_.planar ? 2 : 7);
+    if (kind == 8) hinges << "type: free}\n";
     if (kind == 0) hinges << "type: weld}\n";
     if (kind == 1) hinges << "type: revolute, axis: " << direction() << "}\n";
     if (kind == 2 && wish_.planar) hinges << "type: prismatic, axis: [0.6, 0.8, 0]}\n";
     if (kind == 2 && !wish_.planar) hinges << "type: prismatic, axis: " << direction() << "}\n";
     if (kind == 3) hinges << "type: spherical}\n";
+    if (kind == 4) hinges << "type: universal, first_axis: " << direction() << ", second_axis: [0, 1, 0]}\n";
+    if (kind == 5) hinges << "type: cylindrical, axis: " << direction() << "}\n";
+    if (kind == 6) hinges << "type: planar, normal: " << direction() << ", along: [0, 1, 0]}\n";
+    if (kind == 7) hinges << "type: screw, axis: " << direction() << ", pitch: " << number(-0.5, 0.5) << "}\n";
   }
 
   std::mt19937 random_;

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "random_scene.hpp"
+#include "withy/core/dynamics/tree.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/scene/scene.hpp"
 #include "withy/tests/conformance/allocations.hpp"
@@ -18,6 +20,12 @@ struct Case {
   std::unique_ptr<EquationsOfMotion> equations;
   State state;
 
+  Case(const std::string& text, const std::string& formulation) {
+    enroll_static_plugins(registry);
+    scene = parse_scene(text, "text", registry, {formulation, "", {}});
+    equations = scene.formulation->compile(scene.model);
+    state = scene.initial;
+  }
   Case(unsigned seed, const SceneWish& wish, const std::string& formulation) {
     enroll_static_plugins(registry);
     RandomScene random(seed, wish);
@@ -91,6 +99,57 @@ TEST_P(RandomTrees, evaluation_neither_allocates_nor_depends_on_its_work_memory)
 }
 
 INSTANTIATE_TEST_SUITE_P(Formulations, RandomTrees, testing::ValuesIn(formulations));
+
+/// A planar hinge is no motion the sweeps inline, so a tree that has one is swept in space, though all it does is in a
+/// plane; with its three rates as two slides and a revolute it is recognised.
+TEST_P(RandomTrees, a_planar_hinge_keeps_a_tree_in_space_and_right) {
+  for (const bool merged : {true, false}) {
+    std::string text = R"(format: withy/1
+time: {end: 1}
+gravity: [0, -9.81, 0]
+bodies:
+  cart: {type: rigid, mass: 3, inertia: [0.1, 0.2, 0.3, 0, 0, 0], frames: {a: {position: [0.2, 0.1, 0]}}}
+  boom: {type: beam, length: 1.1, mass_per_length: 0.8, bending_y: {stiffness: 40, modes: 2}}
+)";
+    text += merged ? R"(hinges:
+  float: {type: planar, parent: world, child: cart}
+)"
+                   : R"(  x: {type: rigid, mass: 0}
+  y: {type: rigid, mass: 0}
+hinges:
+  x: {type: prismatic, axis: [1, 0, 0], parent: world, child: x}
+  y: {type: prismatic, axis: [0, 1, 0], parent: x, child: y}
+  float: {type: revolute, axis: [0, 0, 1], parent: y, child: cart}
+)";
+    text += "  elbow: {type: revolute, axis: [0, 0, 1], parent: cart.a, child: boom}\n";
+    Case c(text, GetParam());
+    EXPECT_NE(compile_tree(*c.scene.model).planar, merged);
+    // Rates of the planar hinge are angle first; those of the chain of three hinges last.
+    const Layout& layout = c.equations->layout();
+    const std::vector<double> x = merged ? std::vector{0.4, 0.3, -0.2} : std::vector{0.3, -0.2, 0.4};
+    const std::vector<double> u = merged ? std::vector{0.7, 1.0, 0.5} : std::vector{1.0, 0.5, 0.7};
+    std::copy(x.begin(), x.end(), c.state.y.begin());
+    std::copy(u.begin(), u.end(), c.state.y.begin() + static_cast<std::ptrdiff_t>(layout.positions));
+    const Slot& elbow = *layout.hinge("elbow");
+    const Slot& boom = *layout.body("boom");
+    c.state.y[elbow.position] = -0.8, c.state.y[layout.positions + elbow.speed] = 2.0;
+    c.state.y[boom.position] = 0.02, c.state.y[layout.positions + boom.speed + 1] = 0.1;
+    expect_solves(c, merged ? "planar hinge" : "three hinges");
+  }
+}
+
+/// Energy: ½ (J + m h²) ω² = m g h θ, so ω̇ = −m g h / (J + m h²) with z up and h > 0.
+TEST(ScrewTree, a_heavy_nut_turns_as_its_pitch_says) {
+  const Case c(R"(format: withy/1
+time: {end: 1}
+gravity: [0, 0, -9.81]
+bodies: {nut: {type: rigid, mass: 5, inertia: [0.02, 0.02, 0.03, 0, 0, 0]}}
+hinges: {spindle: {type: screw, axis: [0, 0, 1], pitch: "200 mm/rev", parent: world, child: nut}}
+)",
+               "quadratic");
+  const double h = 0.1 / std::numbers::pi;
+  EXPECT_NEAR(c.derivatives(c.state)[1], -5 * 9.81 * h / (0.03 + 5 * h * h), 1e-12);
+}
 
 class Untruncated : public testing::TestWithParam<std::string> {};
 

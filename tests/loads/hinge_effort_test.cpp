@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "withy/tests/conformance/allocations.hpp"
+#include "withy/tests/conformance/load_suite.hpp"
 #include "withy/tests/loads/load_plugins.hpp"
 
 namespace withy {
@@ -89,6 +90,38 @@ TEST(HingeEffort, a_window_cuts_a_table_and_its_knots) {
   EXPECT_EQ(load->end(), 3);
 }
 
+TEST(HingeEffort, steps_hold_each_row_until_the_next_and_the_last_for_ever) {
+  const Model model = two_link_arm(2);
+  const auto thruster = bound(model, {{"law", law("steps")}, {"table", table_of({{1, 2}, {2, -6}, {4, 0}})}});
+  EXPECT_EQ(effort(*thruster, std::nextafter(1, 0)), 0);
+  EXPECT_EQ(effort(*thruster, 1), 2);
+  EXPECT_EQ(effort(*thruster, std::nextafter(2, 0)), 2);
+  EXPECT_EQ(effort(*thruster, 2), -6);
+  EXPECT_EQ(effort(*thruster, std::nextafter(4, 0)), -6);
+  EXPECT_EQ(effort(*thruster, 4), 0);
+  EXPECT_EQ(thruster->discontinuities(), (std::vector<double>{1, 2, 4}));
+  EXPECT_EQ(thruster->end(), 4);
+  const auto left_on = bound(model, {{"law", law("steps")}, {"table", table_of({{1, 2}})}});
+  EXPECT_EQ(effort(*left_on, 1e9), 2);
+  EXPECT_EQ(left_on->end(), 0);
+}
+
+TEST(HingeEffort, conforms_under_every_law) {
+  Registry registry = load_registry();
+  const Value rows = table_of({{1, 2}, {2, 6}, {4, 0}});
+  const std::vector<std::vector<Value::Member>> cases = {
+      {{"law", law("constant")}, {"value", Value(2.5)}, {"start", Value(0.5)}, {"stop", Value(1.5)}},
+      {{"law", law("sine")}, {"amplitude", Value(2.5)}, {"period", Value(3.0)}},
+      {{"law", law("table")}, {"table", rows}},
+      {{"law", law("table")}, {"table", rows}, {"stop", Value(9.0)}},
+      {{"law", law("steps")}, {"table", rows}},
+      {{"law", law("steps")}, {"table", rows}, {"start", Value(1.5)}, {"stop", Value(3.0)}}};
+  for (std::vector<Value::Member> given : cases) {
+    given.emplace_back("hinge", Value(std::string("elbow")));
+    test::expect_load_conforms(*make_plugin<Load>(registry, "hinge-effort", given), two_link_arm(2));
+  }
+}
+
 TEST(HingeEffort, evaluation_allocates_nothing) {
   const Model model = two_link_arm(2);
   const auto load = bound(model, {{"law", law("table")}, {"table", table_of({{0, 2}, {2, 6}, {4, -2}})}});
@@ -135,6 +168,7 @@ TEST(HingeEffort, keys_that_a_law_lacks_or_does_not_take_are_errors) {
       "the law 'sine' needs one of 'period' and 'frequency'");
   EXPECT_EQ(problems({{"law", law("table")}, {"table", table_of({{0, 1}})}}),
             "the law 'table' needs a 'table' of two rows or more");
+  EXPECT_EQ(problems({{"law", law("steps")}}), "the law 'steps' needs a 'table'");
   EXPECT_EQ(problems({{"law", law("constant")}, {"value", Value(1.0)}, {"start", Value(2.0)}, {"stop", Value(2.0)}}),
             "'stop' is not after 'start'");
 }

@@ -2,23 +2,16 @@
 /// The loads of the project, hinges to put them on, and the paper's arm.
 #pragma once
 
+#include "withy/plugins/host/static_plugins.hpp"
 #include "withy/tests/conformance/plugins.hpp"
 #include "withy/tests/conformance/test_bodies.hpp"
-
-extern "C" {
-extern const withy::PluginDescriptor withy_plugin_hinge_effort;
-extern const withy::PluginDescriptor withy_plugin_prismatic;
-extern const withy::PluginDescriptor withy_plugin_revolute;
-extern const withy::PluginDescriptor withy_plugin_rigid_inverse_dynamics;
-extern const withy::PluginDescriptor withy_plugin_spherical;
-extern const withy::PluginDescriptor withy_plugin_weld;
-}
 
 namespace withy {
 
 inline Registry load_registry() {
-  return registry_of({&withy_plugin_hinge_effort, &withy_plugin_prismatic, &withy_plugin_revolute,
-                      &withy_plugin_rigid_inverse_dynamics, &withy_plugin_spherical, &withy_plugin_weld});
+  Registry registry;
+  enroll_static_plugins(registry);
+  return registry;
 }
 
 inline Value list_of(std::initializer_list<double> numbers) {

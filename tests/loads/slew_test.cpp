@@ -138,7 +138,7 @@ TEST(RigidInverseDynamics, hinges_it_cannot_move_are_named) {
     return "no error";
   };
   EXPECT_EQ(text("wrist"), "there is no hinge 'wrist'");
-  EXPECT_EQ(text("tip1"), "hinge 'tip1' has 0 rates; a quintic moves hinges with one coordinate");
+  EXPECT_EQ(text("tip1"), "hinge 'tip1' has 0 rates; a trajectory moves hinges with one coordinate");
   Diagnostics diagnostics;
   EXPECT_EQ(make_plugin<Load>(registry, "rigid-inverse-dynamics",
                               {{"duration", Value(1.0)}, {"hinges", Value::map({})}}, diagnostics),

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "scene_fixture.hpp"
@@ -69,6 +70,31 @@ TEST_F(States, MayCarryUnitsWhereTheHingeIsKnown) {
   EXPECT_DOUBLE_EQ(s.y[layout.hinge("left_drive")->position], 1.5707963267948966);
   EXPECT_DOUBLE_EQ(s.y[layout.positions + layout.hinge("left_drive")->speed], 6.283185307179586);
   EXPECT_EQ(s.y[layout.hinge("right_slide")->position], 0.005);
+}
+
+// Units come from the motion: a hinge need not be one the sweeps know.
+TEST_F(States, MayCarryUnitsOnEveryHinge) {
+  const Scene screws = parse_scene(R"(format: withy/1
+bodies: {a: {type: rigid, mass: 1}, b: {type: rigid, mass: 1}}
+hinges:
+  screw: {type: screw, axis: [0, 0, 1], pitch: 0.1, parent: world, child: a}
+  sleeve: {type: cylindrical, axis: [0, 0, 1], parent: a, child: b}
+initial:
+  hinges:
+    screw: {position: [90 deg], rate: [60 rpm]}
+    sleeve: {position: [1 rev, 5 mm], rate: [1 deg/s, 3 cm/s]}
+)",
+                                   "s", registry);
+  const double pi = std::numbers::pi;
+  const std::vector<double> expected{pi / 2, 2 * pi, 0.005, 2 * pi, pi / 180, 0.03, 0};
+  ASSERT_EQ(screws.initial.y.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_DOUBLE_EQ(screws.initial.y[i], expected[i]);
+  try {
+    parse_state("hinges: {sleeve: {position: [1 m, 1 m]}}", "s", *screws.model, screws.initial);
+    FAIL();
+  } catch (const SceneError& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("rad"));
+  }
 }
 
 TEST_F(States, ScaleQuaternionsThatAreNearlyUnit) {

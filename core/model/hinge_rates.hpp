@@ -1,0 +1,21 @@
+/// \file
+/// What the rates of a hinge measure, found from its motion: for units and for loads on single coordinates.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "withy/core/plugin/hinge.hpp"
+
+namespace withy {
+
+struct HingeRate {
+  bool angular = false;                   ///< it turns the child [rad/s]; else it only moves it [m/s]
+  std::optional<std::size_t> coordinate;  ///< the coordinate whose derivative it is; none where x holds a quaternion
+};
+
+/// One for each rate of the hinge, in its order.
+std::vector<HingeRate> hinge_rates(const Hinge& hinge);
+
+}  // namespace withy

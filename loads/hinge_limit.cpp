@@ -1,0 +1,97 @@
+/// \file
+/// Soft stops at the ends of a coordinate's range. With d the depth beyond a stop and ḋ its rate,
+///   |τ| = f(d) max(0, 1 + α ḋ)   (Hunt & Crossley 1975),   f = k d²/(2w) for d < w, k (d − w/2) beyond:
+/// a stop pushes and never pulls, and the effort sets in with slope zero.
+#include <algorithm>
+#include <limits>
+
+#include "withy/core/plugin/entry.hpp"
+#include "withy/loads/hinge_rate.hpp"
+
+namespace withy {
+namespace {
+
+struct Limits {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  double stiffness = 0;    ///< k [N m/rad, N/m]
+  double dissipation = 0;  ///< α [s/rad, s/m]
+  double onset = 0;        ///< w [rad, m]
+
+  /// Push of a stop that is entered by `depth` at a rate.
+  double push(double depth, double rate) const noexcept {
+    if (depth <= 0) return 0;
+    const double elastic = depth < onset ? stiffness * depth * depth / (2 * onset) : stiffness * (depth - 0.5 * onset);
+    return elastic * std::max(0.0, 1 + dissipation * rate);
+  }
+  double operator()(double x, double rate) const noexcept { return push(lower - x, -rate) - push(x - upper, rate); }
+};
+
+class BoundLimit final : public BoundLoad {
+ public:
+  BoundLimit(const Limits& limits, std::size_t position, std::size_t speed)
+      : limits_(limits), position_(position), speed_(speed) {}
+  std::size_t scratch() const override { return 0; }
+  void add(double /*t*/, std::span<const double> positions, std::span<const double> speeds, std::span<double> efforts,
+           std::span<double> /*scratch*/) const noexcept override {
+    efforts[speed_] += limits_(positions[position_], speeds[speed_]);
+  }
+  std::vector<double> discontinuities() const override { return {}; }
+  double end() const override { return 0; }
+  void begin(State& /*state*/) const override {}
+
+ private:
+  Limits limits_;
+  std::size_t position_;
+  std::size_t speed_;
+};
+
+class HingeLimit final : public Load {
+ public:
+  HingeLimit(RateName rate, const Limits& limits) : rate_(std::move(rate)), limits_(limits) {}
+  std::unique_ptr<BoundLoad> bind(const Model& model) const override {
+    return std::make_unique<BoundLimit>(limits_, position_index(model, rate_), speed_index(model, rate_));
+  }
+
+ private:
+  RateName rate_;
+  Limits limits_;
+};
+
+std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+  Limits limits;
+  limits.stiffness = p.number_at("stiffness");
+  limits.dissipation = p.number_at("dissipation");
+  limits.onset = p.number_at("onset");
+  if (const Value* v = p.find("lower")) limits.lower = v->number();
+  if (const Value* v = p.find("upper")) limits.upper = v->number();
+  if (!p.has("lower") && !p.has("upper")) {
+    context.diagnostics.error(p.place(), "has no stop; need 'lower', 'upper' or both");
+    return nullptr;
+  }
+  if (!(limits.lower < limits.upper)) {
+    context.diagnostics.error(p.at("upper").place(), "'upper' is not above 'lower'");
+    return nullptr;
+  }
+  return std::make_unique<HingeLimit>(rate_name(p), limits);
+}
+
+void enroll(Enrollment& enrollment) {
+  enrollment.add<Load>(
+      {.id = "hinge-limit",
+       .summary = "Soft stops at the ends of a coordinate's range; per metre where the coordinate is a length",
+       .parameters = rate_parameters(
+           {number("lower", "rad", "coordinate of the lower stop").optional(),
+            number("upper", "rad", "coordinate of the upper stop").optional(),
+            number("stiffness", "N m/rad", "of a stop that is entered beyond its onset").above(0),
+            number("dissipation", "s/rad", "a slow impact at rate v comes back with (1 − 2/3 dissipation v) v")
+                .least(0)
+                .otherwise(0.0),
+            number("onset", "rad", "depth over which the stiffness grows from zero").above(0).otherwise(0.01)}),
+       .make = &make});
+}
+
+}  // namespace
+}  // namespace withy
+
+WITHY_PLUGIN(hinge_limit, withy::enroll);

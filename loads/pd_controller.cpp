@@ -1,0 +1,101 @@
+/// \file
+/// Proportional and derivative feedback on single coordinates, continuous in time:
+///   τ = k (x_r − x) + c (ẋ_r − ẋ),  or  τ_max tanh(τ / τ_max) of it where the effort is limited.
+#include <cmath>
+#include <limits>
+
+#include "withy/core/plugin/entry.hpp"
+#include "withy/loads/followed_hinges.hpp"
+
+namespace withy {
+namespace {
+
+struct Gains {
+  double stiffness = 0;                                    ///< k [N m/rad, N/m]
+  double damping = 0;                                      ///< c [N m s/rad, N s/m]
+  double limit = std::numeric_limits<double>::infinity();  ///< τ_max [N m, N]
+
+  double operator()(double error, double error_rate) const noexcept {
+    const double effort = stiffness * error + damping * error_rate;
+    return limit < std::numeric_limits<double>::infinity() ? limit * std::tanh(effort / limit) : effort;
+  }
+};
+
+/// A hinge's rate with its trajectory and gains.
+struct Loop {
+  RateName rate;
+  Trajectory trajectory;
+  Gains gains;
+};
+
+class BoundPdController final : public BoundLoad {
+ public:
+  BoundPdController(const Model& model, const std::vector<Loop>& loops, bool begins_on)
+      : positions_(model.layout().positions), begins_on_(begins_on) {
+    for (const Loop& loop : loops) {
+      axes_.push_back({position_index(model, loop.rate), speed_index(model, loop.rate), loop.trajectory});
+      gains_.push_back(loop.gains);
+    }
+  }
+  std::size_t scratch() const override { return 0; }
+  void add(double t, std::span<const double> positions, std::span<const double> speeds, std::span<double> efforts,
+           std::span<double> /*scratch*/) const noexcept override {
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      const FollowedAxis& axis = axes_[i];
+      const MotionPoint r = at(axis.trajectory, t);
+      efforts[axis.speed] += gains_[i](r.position - positions[axis.position], r.rate - speeds[axis.speed]);
+    }
+  }
+  std::vector<double> discontinuities() const override { return jumps_of(axes_); }
+  double end() const override { return end_of(axes_); }
+  void begin(State& state) const override {
+    if (begins_on_) begin_on(axes_, positions_, state);
+  }
+
+ private:
+  std::size_t positions_;
+  bool begins_on_;
+  std::vector<FollowedAxis> axes_;
+  std::vector<Gains> gains_;  ///< one for each axis
+};
+
+class PdController final : public Load {
+ public:
+  PdController(std::vector<Loop> loops, bool begins_on) : loops_(std::move(loops)), begins_on_(begins_on) {}
+  std::unique_ptr<BoundLoad> bind(const Model& model) const override {
+    return std::make_unique<BoundPdController>(model, loops_, begins_on_);
+  }
+
+ private:
+  std::vector<Loop> loops_;
+  bool begins_on_;
+};
+
+std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+  const auto hinges = TrajectoryReader(p, context).read();
+  if (!hinges) return nullptr;
+  std::vector<Loop> loops;
+  for (const FollowedHinge& h : *hinges) {
+    Gains gains{h.given->number_at("stiffness"), h.given->number_at("damping")};
+    if (const Value* limit = h.given->find("limit")) gains.limit = limit->number();
+    loops.push_back({{h.hinge, h.given->count_at("component")}, h.trajectory, gains});
+  }
+  return std::make_unique<PdController>(std::move(loops), p.text_at("law") != "constant");
+}
+
+void enroll(Enrollment& enrollment) {
+  enrollment.add<Load>({.id = "pd-controller",
+                        .summary = "Controller: proportional and derivative feedback on coordinates of hinges",
+                        .parameters = trajectory_parameters(
+                            {"quintic", "bang-bang", "table", "sine", "constant"},
+                            {component_parameter(), number("stiffness", "N m/rad", "proportional gain").least(0),
+                             number("damping", "N m s/rad", "derivative gain").least(0),
+                             number("limit", "N m", "the effort never exceeds this").above(0).optional()},
+                            "hinges to control"),
+                        .make = &make});
+}
+
+}  // namespace
+}  // namespace withy
+
+WITHY_PLUGIN(pd_controller, withy::enroll);

@@ -1,0 +1,205 @@
+// Springs, friction and stops of hinges.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "withy/tests/conformance/load_suite.hpp"
+#include "withy/tests/loads/load_plugins.hpp"
+#include "withy/tests/loads/scene_run.hpp"
+
+namespace withy {
+namespace {
+
+std::unique_ptr<Load> load(const char* id, std::vector<Value::Member> given) {
+  Registry registry = load_registry();
+  given.emplace_back("hinge", Value(std::string("elbow")));
+  return make_plugin<Load>(registry, id, std::move(given));
+}
+
+/// Effort on the elbow at a coordinate and rate of it, and nothing on any other speed.
+double effort(const Load& load, double x, double rate) {
+  const Model model = two_link_arm(2);
+  const auto bound = load.bind(model);
+  const Slot& slot = *model.layout().hinge("elbow");
+  std::vector<double> positions(model.layout().positions, 7.0), speeds(model.layout().speeds, -5.0);
+  std::vector<double> tau(speeds.size()), scratch(bound->scratch());
+  positions[slot.position] = x;
+  speeds[slot.speed] = rate;
+  bound->add(0.3, positions, speeds, tau, scratch);
+  const double elbow = std::exchange(tau[slot.speed], 0.0);
+  EXPECT_EQ(tau, std::vector<double>(tau.size()));
+  return elbow;
+}
+
+TEST(HingeSpring, is_linear_in_displacement_and_rate) {
+  const auto spring = load(
+      "hinge-spring",
+      {{"stiffness", Value(30.0)}, {"damping", Value(0.5)}, {"free_position", Value(0.2)}, {"preload", Value(-1.0)}});
+  EXPECT_DOUBLE_EQ(effort(*spring, 0.5, 2.0), -1.0 - 30 * 0.3 - 0.5 * 2);
+  EXPECT_DOUBLE_EQ(effort(*spring, 0.2, 0.0), -1.0);
+}
+
+TEST(HingeFriction, saturates_against_the_motion) {
+  const auto friction = load("hinge-friction", {{"effort", Value(3.0)}, {"rate_scale", Value(0.01)}});
+  EXPECT_EQ(effort(*friction, 1, 0), 0);
+  EXPECT_DOUBLE_EQ(effort(*friction, 1, 0.01), -3 * std::tanh(1));
+  EXPECT_DOUBLE_EQ(effort(*friction, 1, 0.5), -3);
+  EXPECT_DOUBLE_EQ(effort(*friction, 1, -0.5), 3);
+}
+
+const std::vector<Value::Member> stops = {{"lower", Value(-1.0)},
+                                          {"upper", Value(0.5)},
+                                          {"stiffness", Value(100.0)},
+                                          {"dissipation", Value(0.4)},
+                                          {"onset", Value(0.1)}};
+
+TEST(HingeLimit, pushes_back_from_beyond_either_stop_and_never_pulls) {
+  const auto limit = load("hinge-limit", stops);
+  for (const double x : {-1.0, -0.3, 0.5}) EXPECT_EQ(effort(*limit, x, 3.0), 0) << x;
+  EXPECT_NEAR(effort(*limit, 0.55, 0), -100 * 0.05 * 0.05 / 0.2, 1e-12);
+  EXPECT_NEAR(effort(*limit, 0.8, 0), -100 * (0.3 - 0.05), 1e-12);
+  EXPECT_NEAR(effort(*limit, 0.8, 2), -100 * (0.3 - 0.05) * 1.8, 1e-12);  // inward: more
+  EXPECT_NEAR(effort(*limit, 0.8, -2), -100 * (0.3 - 0.05) * 0.2, 1e-12);
+  EXPECT_EQ(effort(*limit, 0.8, -3), 0);
+  EXPECT_NEAR(effort(*limit, -1.3, -2), 100 * (0.3 - 0.05) * 1.8, 1e-12);
+  EXPECT_EQ(effort(*limit, -1.3, 3), 0);
+}
+
+// Slopes to the left and right of the points where the formula changes.
+TEST(HingeLimit, has_no_kink_in_the_coordinate) {
+  const auto limit = load("hinge-limit", stops);
+  const double h = 1e-7;
+  for (const double x : {0.5, 0.6, -1.0, -1.1}) {
+    const double left = (effort(*limit, x, 0.5) - effort(*limit, x - h, 0.5)) / h;
+    const double right = (effort(*limit, x + h, 0.5) - effort(*limit, x, 0.5)) / h;
+    EXPECT_NEAR(left, right, 1e-3) << x;  // the slope changes by k/w · h = 1e-4 over h
+  }
+}
+
+TEST(PassiveLoads, conform) {
+  const Model model = two_link_arm(2);
+  test::expect_load_conforms(*load("hinge-spring", {{"stiffness", Value(30.0)}, {"free_position", Value(0.2)}}), model);
+  test::expect_load_conforms(*load("hinge-friction", {{"effort", Value(3.0)}, {"rate_scale", Value(0.01)}}), model);
+  test::expect_load_conforms(*load("hinge-limit", {{"lower", Value(0.5)}, {"stiffness", Value(10.0)}}), model);
+}
+
+const std::string turntable = R"(format: withy/1
+time: {end: 2, output: 0.01}
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+)";
+
+// J ẍ + c ẋ + k (x − x₀) = p, J = 0.2: with k = 5, c = 0.4 the frequency is 5 rad/s, the damping ratio 0.2.
+TEST(HingeSpring, swings_as_the_damped_oscillator_it_is) {
+  test::LoadedScene s(turntable + R"(loads:
+  spring: {type: hinge-spring, hinge: axle, stiffness: 5, damping: 0.4, free_position: 0.3, preload: 1}
+)");
+  const double w = 5, zeta = 0.2, wd = w * std::sqrt(1 - zeta * zeta), rest = 0.3 + 1.0 / 5;
+  for (const State& state : s.run()) {
+    const double t = state.time;
+    const double x = rest - rest * std::exp(-zeta * w * t) * (std::cos(wd * t) + zeta * w / wd * std::sin(wd * t));
+    EXPECT_NEAR(s.position(state, "axle"), x, 1e-9) << t;  // tolerance of the integrator over 20 steps
+  }
+}
+
+// Sliding under Coulomb friction: the table stops after J v / c = 0.5 s, having turned v²J/(2c). While ẋ > s the tanh
+// is short of one by at most 2 exp(−2ẋ/s): the error is of the order of s times the time, 1e-4.
+TEST(HingeFriction, stops_a_table_as_dry_friction_does) {
+  test::LoadedScene s(turntable + R"(loads:
+  friction: {type: hinge-friction, hinge: axle, effort: 0.8, rate_scale: 1e-4}
+initial: {hinges: {axle: {rate: [2]}}}
+)");
+  const State end = s.run().back();
+  EXPECT_NEAR(s.position(end, "axle"), 0.2 * 4 / (2 * 0.8), 1e-4);
+  EXPECT_NEAR(s.rate(end, "axle"), 0, 1e-6);
+  EXPECT_LT(s.summary.energy_drift, 1e-8);
+}
+
+// Hunt & Crossley (1975): for slow impacts the coefficient of restitution is 1 − ⅔ α v, whatever the elastic law.
+TEST(HingeLimit, restores_what_its_dissipation_says) {
+  for (const double v : {0.02, 0.05}) {
+    std::string scene = turntable + R"(loads:
+  stop: {type: hinge-limit, hinge: axle, upper: 0.01, stiffness: 500, dissipation: 1.5, onset: 0.02}
+initial: {hinges: {axle: {rate: [)" +
+                        std::to_string(v) + "]}}}\n";
+    test::LoadedScene s(scene);
+    const State end = s.run().back();
+    EXPECT_LT(s.position(end, "axle"), 0.01);  // it has come back
+    const double alpha = 1.5;
+    EXPECT_NEAR(-s.rate(end, "axle") / v, 1 - 2.0 / 3 * alpha * v, (alpha * v) * (alpha * v));
+  }
+}
+
+// A heavy pendulum with a spring and no losses: the work of the spring is the potential energy it loses, so that energy
+// less work is conserved, and with ½ k (x − x₀)² the sum is.
+TEST(HingeSpring, its_work_closes_the_balance_of_energy) {
+  test::LoadedScene s(R"(format: withy/1
+gravity: [0, -9.81, 0]
+time: {end: 3, output: 0.05}
+integrator: {name: dopri5, rtol: 1e-11, atol: 1e-13}
+bodies:
+  arm: {type: beam, length: 1, mass_per_length: 0.5, bending_y: {stiffness: 20, modes: 2}}
+hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}}
+loads:
+  spring: {type: hinge-spring, hinge: pivot, stiffness: 3, free_position: 0.4}
+initial: {hinges: {pivot: {rate: [1]}}}
+)");
+  const auto total = [&](const State& state) {
+    const Energies e = s.equations->energies(state.y);
+    const double x = s.position(state, "pivot") - 0.4;
+    return e.kinetic + e.potential + 0.5 * 3 * x * x;
+  };
+  const std::vector<State> states = s.run();
+  double lost = 0;
+  for (const State& state : states) {
+    EXPECT_NEAR(total(state), total(states.front()), 1e-7);  // outputs are interpolated, to less than the tolerance
+    const double x = s.position(state, "pivot") - 0.4;
+    EXPECT_NEAR(state.y.back(), 0.5 * 3 * (0.4 * 0.4 - x * x), 1e-7);
+    lost = std::max(lost, std::abs(state.y.back()));
+  }
+  EXPECT_GT(lost, 0.2);  // J, so that 1e-7 means something
+  EXPECT_LT(s.summary.energy_drift, 1e-9);
+}
+
+TEST(PassiveLoads, act_on_the_lengths_of_hinges_with_quaternions) {
+  test::LoadedScene s(R"(format: withy/1
+time: {end: 1, output: 0.1}
+bodies: {cube: {type: rigid, mass: 2, inertia: [0.1, 0.1, 0.1, 0, 0, 0]}}
+hinges: {float: {type: free, parent: world, child: cube}}
+loads:
+  spring: {type: hinge-spring, hinge: float, component: 4, stiffness: 3, free_position: 0.5}
+  drag: {type: hinge-spring, hinge: float, component: 1, damping: 0.2}
+initial: {hinges: {float: {rate: [0, 1, 0, 0, 0, 0]}}}
+)");
+  std::vector<double> y_dot(s.equations->size());
+  Work work = s.equations->make_work();
+  ASSERT_TRUE(s.equations->derivatives(0, s.scene.initial.y, y_dot, work).ok());
+  EXPECT_NEAR(y_dot[7 + 4], 3 * 0.5 / 2, 1e-14);
+  EXPECT_NEAR(y_dot[7 + 1], -0.2 / 0.1, 1e-14);
+}
+
+TEST(PassiveLoads, what_they_cannot_do_is_said) {
+  using testing::HasSubstr;
+  const auto problem = [](const std::string& loads) {
+    return test::problem_of(turntable + "loads: {a: {" + loads + "}}\n");
+  };
+  EXPECT_THAT(problem("type: hinge-spring, hinge: axle"),
+              HasSubstr("6:12: /loads/a: does nothing; need 'stiffness', 'damping' or 'preload'"));
+  EXPECT_THAT(problem("type: hinge-limit, hinge: axle, stiffness: 2"),
+              HasSubstr("6:12: /loads/a: has no stop; need 'lower', 'upper' or both"));
+  EXPECT_THAT(problem("type: hinge-limit, hinge: axle, stiffness: 2, lower: 1, upper: 1"),
+              HasSubstr("/loads/a/upper: 'upper' is not above 'lower'"));
+  EXPECT_THAT(problem("type: hinge-friction, hinge: axle, component: 1, effort: 2, rate_scale: 1"),
+              HasSubstr("there is no component 1"));
+  const std::string ball = R"(format: withy/1
+bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {ball: {type: spherical, parent: world, child: b}}
+loads: {a: {type: hinge-spring, hinge: ball, component: 2, stiffness: 1}}
+)";
+  EXPECT_THAT(test::problem_of(ball), HasSubstr("rate 2 of hinge 'ball' is the derivative of no coordinate; need an "
+                                                "angle or a displacement"));
+}
+
+}  // namespace
+}  // namespace withy
