@@ -195,27 +195,8 @@ std::optional<Strain> make_strain(const Value& p, const char* key, const Vector3
   const Value& given = p.at(key);
   beam.length = p.number_at("length");
   beam.stiffness = given.number_at("stiffness");
-  const std::size_t count = given.count_at("modes");
-  const Value& family_name = given.at("family");
-  const Plugin<ModeFamily>* plugin = context.registry.find<ModeFamily>(family_name.text());
-  if (plugin == nullptr) {
-    context.diagnostics.error(family_name.place(), "no mode family '" + family_name.text() + "'");
-    return {};
-  }
-  const auto family = plugin->make(Value::map({}), context);
-  if (family == nullptr) return {};
-  if (count > family->most()) {
-    context.diagnostics.error(given.at("modes").place(), "got " + std::to_string(count) + " modes; family '" +
-                                                             family_name.text() + "' gives at most " +
-                                                             std::to_string(family->most()));
-    return {};
-  }
-  auto functions = family->functions(beam, count);
-  if (functions == nullptr) {
-    context.diagnostics.error(family_name.place(),
-                              "mode family '" + family_name.text() + "' has no functions for " + key);
-    return {};
-  }
+  auto functions = make_shape_functions(given.at("family"), given.at("modes"), beam, context);
+  if (functions == nullptr) return {};
   return Strain{key, rotation, beam, std::move(functions)};
 }
 

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/plugin/mode_family.hpp"
+#include "withy/scene/grammar.hpp"
+#include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/units.hpp"
 
@@ -75,7 +78,6 @@ std::optional<Value> Checker::number(const Value& value, const ParameterSpec& sp
 bool Checker::refers(const Place& place, const std::string& name, ParameterSpec::Refers what) const {
   using enum ParameterSpec::Refers;
   if (what == nothing) return true;
-  if (what == mode_family) return plugin<ModeFamily>(Value(name, place)) != nullptr;
   if (names_ == nullptr) return true;
   std::vector<std::string> known = what == body ? names_->bodies : names_->hinges;
   if (what == frame) {
@@ -87,7 +89,20 @@ bool Checker::refers(const Place& place, const std::string& name, ParameterSpec:
   return false;
 }
 
+std::optional<Value> Checker::mode_family(const Value& value) const {
+  const bool short_form = value.kind() == Value::Kind::text;
+  Made<ModeFamily> made;
+  auto checked = check_plugin_map(short_form ? Value::map({{"name", value}}, value.place()) : value, "name",
+                                  {grammar::family_name()}, *this, made);
+  if (checked && short_form) return value;
+  return checked;
+}
+
 std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec) const {
+  if (spec.refers == ParameterSpec::Refers::mode_family &&
+      (value.kind() == Value::Kind::text || value.kind() == Value::Kind::map)) {
+    return mode_family(value);
+  }
   if (!spec.unit.empty() &&
       (value.kind() == Value::Kind::number || (value.kind() == Value::Kind::text && looks_like_number(value.text())))) {
     return number(value, spec, spec.unit);
