@@ -149,8 +149,8 @@ TEST_F(Families, one_loaded_mode_is_worth_many_free_ones) {
 /// 1/n, from above, and its extrapolation is the cantilever's frequency.
 TEST_F(Families, whose_root_moves_find_the_cantilever_s_frequencies_in_the_limit) {
   for (const char* id : {"pinned-free", "free-free"}) {
-    const double a = cantilever(choice(id), 20)[0], b = cantilever(choice(id), 40)[0];
-    const double c = cantilever(choice(id), 80)[0];
+    const double a = cantilever(choice(id), 15)[0], b = cantilever(choice(id), 30)[0];
+    const double c = cantilever(choice(id), 60)[0];
     const double exact = fourth(1.87510407);
     EXPECT_GT(a, b);
     EXPECT_GT(b, c);
