@@ -131,7 +131,11 @@ std::optional<Value> Checker::row(const Value& value, const ParameterSpec& spec)
   for (std::size_t i = 0; i < value.items().size(); ++i) {
     ParameterSpec item = spec;
     item.kind = ParameterSpec::Kind::number;
-    if (spec.kind == ParameterSpec::Kind::table) item.unit = spec.columns[i];
+    if (spec.kind == ParameterSpec::Kind::table) {
+      item.unit = spec.columns[i];
+      item.columns.clear();
+      if (i == 0) item.minimum = item.maximum = {};
+    }
     if (auto x = number(value.items()[i], item, item.unit)) {
       result.items().push_back(std::move(*x));
     } else {
@@ -233,6 +237,12 @@ std::optional<Value> Checker::check_members(const Value& value, const std::vecto
 std::optional<Value> Checker::check(const Value& value, const ParameterSpec& spec) const {
   switch (spec.kind) {
     case ParameterSpec::Kind::number:
+      if (!spec.columns.empty() && value.kind() == Value::Kind::list) {
+        ParameterSpec rows = spec;
+        rows.kind = ParameterSpec::Kind::table;
+        return table(value, rows);
+      }
+      return number(value, spec, spec.unit);
     case ParameterSpec::Kind::integer:
       return number(value, spec, spec.unit);
     case ParameterSpec::Kind::text:

@@ -47,7 +47,8 @@ std::string expectation(const ParameterSpec& spec) {
   using enum ParameterSpec::Kind;
   switch (spec.kind) {
     case number:
-      return "finite" + range(spec) + bracketed(spec.unit);
+      return "finite" + range(spec) + bracketed(spec.unit) +
+             (spec.columns.empty() ? "" : fmt::format(", or a list of rows [{}]", list_of_units(spec.columns)));
     case integer:
       return "whole number" + range(spec);
     case boolean:

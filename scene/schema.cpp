@@ -100,12 +100,21 @@ class SchemaWriter {
     return json;
   }
 
+  /// A table; the schema does not tell its columns apart, so that a range of the others is left to the reader.
+  static Json rows(const ParameterSpec& spec) {
+    return {{"type", "array"}, {"items", row(number_or_quantity({{"type", "number"}}), spec.count)}, {"minItems", 1}};
+  }
+
   static Json kind(const ParameterSpec& spec) {
     using enum ParameterSpec::Kind;
     const auto quantity = [&] { return number_or_quantity(bounded(spec, "number")); };
     switch (spec.kind) {
-      case number:
-        return quantity();
+      case number: {
+        if (spec.columns.empty()) return quantity();
+        Json alternatives = quantity();
+        alternatives["anyOf"].push_back(rows(spec));
+        return alternatives;
+      }
       case integer:
         return bounded(spec, "integer");
       case boolean:
@@ -115,7 +124,7 @@ class SchemaWriter {
       case vector:
         return row(quantity(), spec.count);
       case table:
-        return {{"type", "array"}, {"items", row(quantity(), spec.count)}, {"minItems", 1}};
+        return rows(spec);
       case map:
         return members(spec.members);
       case named:

@@ -99,6 +99,11 @@ const BadScene bad_scenes[] = {
      "11:3: /bodies/boom: its modes bring the model to about 144.0 GiB of memory; need at most 4: use fewer modes"},
     {"unknown_mode_family", "clamped-free", "clamped-fre",
      R"(15:51: /bodies/boom/bending_y/family: no mode-family plugin "clamped-fre"; did you mean 'clamped-free'?; available: )"},
+    {"table_that_does_not_reach_the_tip", "mass_per_length: 1.3", "mass_per_length: [[0, 1.3], [0.8, 1.1]]",
+     "14:22: /bodies/boom/mass_per_length: got a table from x = 0 to 0.8 m; need one from the root, 0, to the tip, 0.9 "
+     "m"},
+    {"table_with_a_value_out_of_range", "mass_per_length: 1.3", "mass_per_length: [[0, 1.3], [0.9, 0]]",
+     "14:39: /bodies/boom/mass_per_length/1/1: got 0; need finite > 0 [kg/m]"},
     {"mode_family_with_unknown_option", "family: clamped-free", "family: {name: clamped-loaded, tip_mas: 2}",
      R"(15:74: /bodies/boom/bending_y/family/tip_mas: unknown key "tip_mas"; did you mean 'tip_mass'?)"},
     {"mode_family_with_bad_option", "family: clamped-free", "family: {name: clamped-loaded, tip_mass: -2 kg}",

@@ -166,6 +166,7 @@ TEST_F(Schema, AcceptsEverySceneOfTheProject) {
   EXPECT_EQ(fault(good_scene), "");
   EXPECT_EQ(fault(replaced(good_scene, "length: 0.9", "length: 900 mm")), "");
   EXPECT_EQ(fault(replaced(good_scene, "clamped-free", "{name: clamped-loaded, tip_mass: 2 kg}")), "");
+  EXPECT_EQ(fault(replaced(good_scene, "mass_per_length: 1.3", "mass_per_length: [[0, 1.3], [900 mm, 0.5]]")), "");
   EXPECT_EQ(fault("integrator: {rtol: 1e-9}\n" + std::string(good_scene)), "");
 }
 
@@ -189,6 +190,7 @@ TEST_F(Schema, RefusesWhatTheReaderRefuses) {
       {"clamped-free", "{name: clamped-loaded, tip_mas: 2}"},
       {"clamped-free", "{name: clamped-free, tip_mass: 2}"},
       {"clamped-free", "{tip_mass: 2}"},
+      {"mass_per_length: 1.3", "mass_per_length: [0, 1.3]"},
       {", child: boom", ""},
       {"mass: 20.0", "mass: 010"},
   };
