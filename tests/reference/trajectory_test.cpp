@@ -104,8 +104,8 @@ std::vector<std::string> in_family(const std::string& inner, const std::string& 
   return overrides;
 }
 
-/// The payload after 5 s of large rotations, in bases that have nothing in common but completeness; frames and hinges at
-/// roots that move included. Measured with four modes a link: 0.02 to 0.06 mm, 0.14 mm for free-free.
+/// The payload after 5 s of large rotations, in bases that have nothing in common but completeness; frames and hinges
+/// at roots that move included. Measured with four modes a link: 0.02 to 0.06 mm, 0.14 mm for free-free.
 TEST(Trajectory, driven_arm_does_not_depend_on_the_mode_family) {
   const auto payload_after = [](std::vector<std::string> overrides) {
     overrides.insert(overrides.end(), {"time.end=5", "integrator.rtol=1e-8"});
