@@ -7,9 +7,11 @@
 ///   θ₂ = ½ ∫₀ˣ θ₁ × θ₁′ dσ                    →  Θ_ij = ½ ∫₀ˣ (ψ_i × ψ_j′ + ψ_j × ψ_i′) dσ
 ///   r₂ = ∫₀ˣ θ₂ × e_x + ½ θ₁ × (θ₁ × e_x) dσ  →  Γ_ij = ∫₀ˣ Θ_ij × e_x + ½ (ψ_i × (ψ_j × e_x) + ψ_j × (ψ_i × e_x)) dσ
 /// Along x this is the foreshortening −½∫(v′² + w′²) of Padilla & von Flotow, across it the coupling of bending and
-/// twist. Rotary inertia of the sections in bending is neglected; ρI_p of twist is kept.
+/// twist. The sections' inertia is ρI_p about x, and in bending ρI where a scene gives it (Rayleigh's beam). Mass,
+/// stiffness and inertias may vary along the beam; the assumed modes are then Ritz functions, K and M their integrals.
 #include <cmath>
 
+#include "beam_profile.hpp"
 #include "beam_quadrature.hpp"
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/entry.hpp"
@@ -22,8 +24,17 @@ namespace {
 struct Strain {
   const char* name;  ///< "bending_y", …
   Vector3 rotation;  ///< direction of θ₁ for a unit slope (bending) or unit twist
-  BeamData beam;
+  BeamData::Strain kind;
+  Profile stiffness;  ///< EI or GJ [N m²]
   std::unique_ptr<ShapeFunctions> functions;
+};
+
+/// What the beam consists of.
+struct Material {
+  double length;                                      ///< [m]
+  Profile mass_per_length;                            ///< [kg/m]
+  std::vector<std::pair<Vector3, Profile>> inertias;  ///< of the sections per length, about an axis [kg m]
+  double damping_ratio;
 };
 
 /// Values of every coordinate's fields at one x.
@@ -33,9 +44,11 @@ struct LinearFields {
 
 class Beam final : public Body {
  public:
-  Beam(double length, double mass_per_length, double twist_inertia, double damping_ratio, std::vector<Strain> strains)
-      : length_(length), strains_(std::move(strains)), quadrature_(length, wave_number(strains_)) {
-    shape_.length = length;
+  Beam(const Material& material, std::vector<Strain> strains)
+      : length_(material.length),
+        strains_(std::move(strains)),
+        quadrature_(material.length, wave_number(strains_), kinks(material, strains_)) {
+    shape_.length = length_;
     for (const Strain& s : strains_) {
       for (std::size_t i = 1; i <= s.functions->count(); ++i) {
         shape_.mode_names.push_back(std::string(s.name) + "[" + std::to_string(i) + "]");
@@ -51,18 +64,19 @@ class Beam final : public Body {
       const LinearFields f = linear_fields(x[k]);
       const PointExpansion e = expansion(x[k], f, gamma_at_nodes_.row(static_cast<Eigen::Index>(k)),
                                          theta_at_nodes_.row(static_cast<Eigen::Index>(k)));
-      shape_.particles.push_back({w * mass_per_length, e});
-      if (twist_inertia > 0) {
-        Matrix3 inertia = Matrix3::Zero();
-        inertia(0, 0) = w * twist_inertia;
-        shape_.sections.push_back({inertia, e});
+      const double mass = w * material.mass_per_length(x[k]);
+      shape_.particles.push_back({mass, e});
+      modal_mass += mass * f.phi.colwise().squaredNorm().transpose();
+      Matrix3 inertia = Matrix3::Zero();
+      for (const auto& [axis, per_length] : material.inertias) {
+        inertia += w * per_length(x[k]) * axis * axis.transpose();
       }
-      shape_.stiffness += w * stiffness_of(f);
-      modal_mass +=
-          w * (mass_per_length * f.phi.colwise().squaredNorm() + twist_inertia * f.psi.row(0).cwiseAbs2()).transpose();
+      if (!inertia.isZero(0)) shape_.sections.push_back({inertia, e});
+      modal_mass += (f.psi.transpose() * inertia * f.psi).diagonal();
+      shape_.stiffness += w * stiffness_of(f, x[k]);
     }
     for (Eigen::Index i = 0; i < n; ++i) {
-      shape_.damping(i, i) = 2 * damping_ratio * std::sqrt(shape_.stiffness(i, i) * modal_mass[i]);
+      shape_.damping(i, i) = 2 * material.damping_ratio * std::sqrt(shape_.stiffness(i, i) * modal_mass[i]);
     }
   }
 
@@ -93,6 +107,17 @@ class Beam final : public Body {
     return beta;
   }
 
+  static std::vector<double> kinks(const Material& material, const std::vector<Strain>& strains) {
+    std::vector<double> x = material.mass_per_length.knots();
+    const auto add = [&](const Profile& p) {
+      const std::vector<double> more = p.knots();
+      x.insert(x.end(), more.begin(), more.end());
+    };
+    for (const auto& [axis, inertia] : material.inertias) add(inertia);
+    for (const Strain& s : strains) add(s.stiffness);
+    return x;
+  }
+
   LinearFields linear_fields(double x) const {
     const Eigen::Index n = shape_.modes();
     LinearFields f{Matrix3X::Zero(3, n), Matrix3X::Zero(3, n), Matrix3X::Zero(3, n), Matrix3X::Zero(3, n)};
@@ -102,7 +127,7 @@ class Beam final : public Body {
       std::vector<double> value(count), slope(count), curvature(count);
       s.functions->evaluate(x, value, slope, curvature);
       for (std::size_t i = 0; i < count; ++i, ++at) {
-        if (s.beam.strain == BeamData::Strain::torsion) {
+        if (s.kind == BeamData::Strain::torsion) {
           f.psi.col(at) = s.rotation * value[i];
           f.psi_slope.col(at) = s.rotation * slope[i];
         } else {
@@ -116,13 +141,13 @@ class Beam final : public Body {
   }
 
   /// Integrand of ½ qᵀKq: EI κ² or GJ t′², coordinates of different strains being independent.
-  Eigen::MatrixXd stiffness_of(const LinearFields& f) const {
+  Eigen::MatrixXd stiffness_of(const LinearFields& f, double x) const {
     Eigen::MatrixXd k = Eigen::MatrixXd::Zero(shape_.modes(), shape_.modes());
     Eigen::Index at = 0;
     for (const Strain& s : strains_) {
       const auto count = static_cast<Eigen::Index>(s.functions->count());
       const auto strain = f.psi_slope.middleCols(at, count);
-      k.block(at, at, count, count) = s.beam.stiffness * strain.transpose() * strain;
+      k.block(at, at, count, count) = s.stiffness(x) * strain.transpose() * strain;
       at += count;
     }
     return k;
@@ -189,78 +214,83 @@ class Beam final : public Body {
   Eigen::MatrixXd theta_slope_, gamma_slope_, theta_at_nodes_, gamma_at_nodes_;
 };
 
-/// The strain a scene asks for under `key`; nothing after a reported error.
-std::optional<Strain> make_strain(const Value& p, const char* key, const Vector3& rotation, BeamData beam,
-                                  const MakeContext& context) {
-  const Value& given = p.at(key);
-  beam.length = p.number_at("length");
-  beam.stiffness = given.number_at("stiffness");
-  const std::size_t count = given.count_at("modes");
-  const Value& family_name = given.at("family");
-  const Plugin<ModeFamily>* plugin = context.registry.find<ModeFamily>(family_name.text());
-  if (plugin == nullptr) {
-    context.diagnostics.error(family_name.place(), "no mode family '" + family_name.text() + "'");
-    return {};
-  }
-  const auto family = plugin->make(Value::map({}), context);
-  if (family == nullptr) return {};
-  if (count > family->most()) {
-    context.diagnostics.error(given.at("modes").place(), "got " + std::to_string(count) + " modes; family '" +
-                                                             family_name.text() + "' gives at most " +
-                                                             std::to_string(family->most()));
-    return {};
-  }
-  auto functions = family->functions(beam, count);
-  if (functions == nullptr) {
-    context.diagnostics.error(family_name.place(),
-                              "mode family '" + family_name.text() + "' has no functions for " + key);
-    return {};
-  }
-  return Strain{key, rotation, beam, std::move(functions)};
-}
+/// Reads a beam's parameters; what is wrong is reported, and nothing made then.
+class Reader {
+ public:
+  Reader(const Value& parameters, const MakeContext& context) : p_(parameters), context_(context) {}
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
-  std::vector<Strain> strains;
-  bool good = true;
-  const auto add = [&](const char* key, const Vector3& rotation, BeamData beam) {
-    if (!p.has(key) || p.at(key).count_at("modes") == 0) return;
-    auto strain = make_strain(p, key, rotation, beam, context);
-    if (strain) {
-      strains.push_back(std::move(*strain));
+  std::unique_ptr<Body> make() {
+    Material material{p_.number_at("length"), profile(p_.at("mass_per_length")), {}, p_.number_at("damping_ratio")};
+    const double mass = material.mass_per_length.mean();
+    using enum BeamData::Strain;
+    add("bending_y", Vector3::UnitZ(), bending, mass, "rotary_inertia", material);
+    add("bending_z", -Vector3::UnitY(), bending, mass, "rotary_inertia", material);
+    add("torsion", Vector3::UnitX(), torsion, 0, "inertia", material);
+    if (!good_) return nullptr;
+    return std::make_unique<Beam>(material, std::move(strains_));
+  }
+
+ private:
+  /// Of no use after a reported error.
+  Profile profile(const Value& value) {
+    const auto read = Profile::read(value, p_.number_at("length"), context_.diagnostics);
+    good_ = good_ && read.has_value();
+    return read.value_or(Profile(1));
+  }
+
+  /// The strain a scene asks for under `key`. Families know a beam by its means: `mass` per length or, in torsion, the
+  /// inertia. A section's inertia stays where the strain has no modes.
+  void add(const char* key, const Vector3& rotation, BeamData::Strain kind, double mass, const char* inertia_key,
+           Material& material) {
+    if (!p_.has(key)) return;
+    const Value& given = p_.at(key);
+    const Profile stiffness = profile(given.at("stiffness"));
+    const Profile inertia = given.has(inertia_key) ? profile(given.at(inertia_key)) : Profile(0);
+    material.inertias.emplace_back(rotation, inertia);
+    if (given.count_at("modes") == 0 || !good_) return;
+    const BeamData beam = {kind, material.length, kind == BeamData::Strain::torsion ? inertia.mean() : mass,
+                           stiffness.mean()};
+    auto functions = make_shape_functions(given.at("family"), given.at("modes"), beam, context_);
+    if (functions == nullptr) {
+      good_ = false;
     } else {
-      good = false;
+      strains_.push_back({key, rotation, kind, stiffness, std::move(functions)});
     }
-  };
-  const double mass_per_length = p.number_at("mass_per_length");
-  using enum BeamData::Strain;
-  add("bending_y", Vector3::UnitZ(), {bending, 0, mass_per_length, 0});
-  add("bending_z", -Vector3::UnitY(), {bending, 0, mass_per_length, 0});
-  // The sections' inertia about x stays where the beam has no twisting modes.
-  const double twist_inertia = p.has("torsion") ? p.at("torsion").number_at("inertia") : 0.0;
-  add("torsion", Vector3::UnitX(), {torsion, 0, twist_inertia, 0});
-  if (!good) return nullptr;
-  return std::make_unique<Beam>(p.number_at("length"), mass_per_length, twist_inertia, p.number_at("damping_ratio"),
-                                std::move(strains));
-}
+  }
+
+  const Value& p_;
+  const MakeContext& context_;
+  std::vector<Strain> strains_;
+  bool good_ = true;
+};
+
+std::unique_ptr<Body> make(const Value& p, const MakeContext& context) { return Reader(p, context).make(); }
 
 std::vector<ParameterSpec> strain_parameters(const char* stiffness) {
-  return {number("stiffness", "N m^2", stiffness).above(0),
+  return {number("stiffness", "N m^2", stiffness).above(0).or_table("m"),
           integer("modes", "number of assumed modes").least(0).most(1000).otherwise(2),
           text("family", "assumed-mode family").naming(ParameterSpec::Refers::mode_family).otherwise("clamped-free")};
 }
 
 void enroll(Enrollment& enrollment) {
   std::vector<ParameterSpec> torsion = strain_parameters("torsional stiffness GJ");
-  torsion.push_back(number("inertia", "kg m", "polar inertia per length, rho I_p").above(0));
+  torsion.push_back(number("inertia", "kg m", "polar inertia per length, rho I_p").above(0).or_table("m"));
+  const auto bending = [](const char* stiffness, const char* inertia) {
+    std::vector<ParameterSpec> specs = strain_parameters(stiffness);
+    specs.push_back(number("rotary_inertia", "kg m", inertia).least(0).or_table("m").optional());
+    return specs;
+  };
   enrollment.add<Body>(
       {.id = "beam",
        .summary = "Slender beam along x, inextensible and without shear, bending in two planes and twisting",
        .parameters = {number("length", "m", "length, undeformed").above(0),
-                      number("mass_per_length", "kg/m", "mass per length").above(0),
-                      map("bending_y", strain_parameters("EI_z, for deflection along y"),
+                      number("mass_per_length", "kg/m", "mass per length").above(0).or_table("m"),
+                      map("bending_y",
+                          bending("EI_z, for deflection along y", "rotary inertia of the sections per length, rho I_z"),
                           "bending with deflection along y")
                           .optional(),
-                      map("bending_z", strain_parameters("EI_y, for deflection along z"),
+                      map("bending_z",
+                          bending("EI_y, for deflection along z", "rotary inertia of the sections per length, rho I_y"),
                           "bending with deflection along z")
                           .optional(),
                       map("torsion", torsion, "twist about x").optional(),

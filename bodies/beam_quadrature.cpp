@@ -46,15 +46,29 @@ Eigen::Matrix<double, 1, order> partial_weights(double s) {
 
 }  // namespace
 
-BeamQuadrature::BeamQuadrature(double length, double wave_number)
-    : panels_(std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::ceil(wave_number * length / 2.5)))) {
-  panel_length_ = length / static_cast<double>(panels_);
-  for (Eigen::Index p = 0; p < panels_; ++p) {
+BeamQuadrature::BeamQuadrature(double length, double wave_number, std::vector<double> kinks) {
+  kinks.push_back(0);
+  kinks.push_back(length);
+  std::sort(kinks.begin(), kinks.end());
+  kinks.erase(std::unique(kinks.begin(), kinks.end()), kinks.end());
+  edges_.push_back(0);
+  for (std::size_t i = 1; i < kinks.size(); ++i) {
+    const double piece = kinks[i] - kinks[i - 1];
+    const int parts = std::max(1, static_cast<int>(std::ceil(wave_number * piece / 2.5)));
+    for (int k = 1; k < parts; ++k) edges_.push_back(kinks[i - 1] + piece * k / parts);
+    edges_.push_back(kinks[i]);
+  }
+  for (Eigen::Index p = 0; p < panels(); ++p) {
     for (Eigen::Index j = 0; j < order; ++j) {
-      nodes_.push_back(panel_length_ * (static_cast<double>(p) + 0.5 * (1 + rule().node[j])));
-      weights_.push_back(0.5 * panel_length_ * rule().weight[j]);
+      nodes_.push_back(edges_[static_cast<std::size_t>(p)] + half_length(p) * (1 + rule().node[j]));
+      weights_.push_back(half_length(p) * rule().weight[j]);
     }
   }
+}
+
+double BeamQuadrature::half_length(Eigen::Index panel) const {
+  const auto p = static_cast<std::size_t>(panel);
+  return 0.5 * (edges_[p + 1] - edges_[p]);
 }
 
 Eigen::MatrixXd BeamQuadrature::running_integral(const Eigen::MatrixXd& values) const {
@@ -65,23 +79,24 @@ Eigen::MatrixXd BeamQuadrature::running_integral(const Eigen::MatrixXd& values) 
   }();
   Eigen::MatrixXd result(values.rows(), values.cols());
   Eigen::RowVectorXd before = Eigen::RowVectorXd::Zero(values.cols());
-  for (Eigen::Index p = 0; p < panels_; ++p) {
+  for (Eigen::Index p = 0; p < panels(); ++p) {
     const auto panel = values.middleRows(p * order, order);
-    result.middleRows(p * order, order) = (0.5 * panel_length_ * to_node * panel).rowwise() + before;
-    before += 0.5 * panel_length_ * rule().weight.transpose() * panel;
+    result.middleRows(p * order, order) = (half_length(p) * to_node * panel).rowwise() + before;
+    before += half_length(p) * rule().weight.transpose() * panel;
   }
   return result;
 }
 
 Eigen::RowVectorXd BeamQuadrature::integral_to(double x, const Eigen::MatrixXd& values) const {
-  const auto whole = std::min<Eigen::Index>(static_cast<Eigen::Index>(x / panel_length_), panels_);
+  const auto after = std::upper_bound(edges_.begin(), edges_.end(), x);
+  const auto whole = std::min<Eigen::Index>(after - edges_.begin() - 1, panels());
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(values.cols());
   for (Eigen::Index p = 0; p < whole; ++p) {
-    sum += 0.5 * panel_length_ * rule().weight.transpose() * values.middleRows(p * order, order);
+    sum += half_length(p) * rule().weight.transpose() * values.middleRows(p * order, order);
   }
-  if (whole < panels_) {
-    const double s = 2 * (x / panel_length_ - static_cast<double>(whole)) - 1;
-    sum += 0.5 * panel_length_ * partial_weights(s) * values.middleRows(whole * order, order);
+  if (whole < panels()) {
+    const double s = (x - edges_[static_cast<std::size_t>(whole)]) / half_length(whole) - 1;
+    sum += half_length(whole) * partial_weights(s) * values.middleRows(whole * order, order);
   }
   return sum;
 }

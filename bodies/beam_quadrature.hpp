@@ -13,7 +13,8 @@ namespace withy {
 /// leaves (2.5)²⁰/(2¹⁹ 20!) ≈ 1e-16 of it, and the integrals of products of four are exact to rounding.
 class BeamQuadrature {
  public:
-  BeamQuadrature(double length, double wave_number);
+  /// No panel has one of the `kinks` inside, points of [0, length] in any order where an integrand may have a kink.
+  BeamQuadrature(double length, double wave_number, std::vector<double> kinks = {});
 
   [[nodiscard]] const std::vector<double>& nodes() const { return nodes_; }      ///< [m], increasing
   [[nodiscard]] const std::vector<double>& weights() const { return weights_; }  ///< [m]
@@ -23,8 +24,10 @@ class BeamQuadrature {
   [[nodiscard]] Eigen::RowVectorXd integral_to(double x, const Eigen::MatrixXd& values) const;
 
  private:
-  double panel_length_ = 0;
-  Eigen::Index panels_ = 0;
+  [[nodiscard]] Eigen::Index panels() const { return static_cast<Eigen::Index>(edges_.size()) - 1; }
+  [[nodiscard]] double half_length(Eigen::Index panel) const;
+
+  std::vector<double> edges_;  ///< of the panels, increasing from 0 to length
   std::vector<double> nodes_;
   std::vector<double> weights_;
 };

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/plugin/mode_family.hpp"
+#include "withy/scene/grammar.hpp"
+#include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/units.hpp"
 
@@ -75,7 +78,6 @@ std::optional<Value> Checker::number(const Value& value, const ParameterSpec& sp
 bool Checker::refers(const Place& place, const std::string& name, ParameterSpec::Refers what) const {
   using enum ParameterSpec::Refers;
   if (what == nothing) return true;
-  if (what == mode_family) return plugin<ModeFamily>(Value(name, place)) != nullptr;
   if (names_ == nullptr) return true;
   std::vector<std::string> known = what == body ? names_->bodies : names_->hinges;
   if (what == frame) {
@@ -87,7 +89,20 @@ bool Checker::refers(const Place& place, const std::string& name, ParameterSpec:
   return false;
 }
 
+std::optional<Value> Checker::mode_family(const Value& value) const {
+  const bool short_form = value.kind() == Value::Kind::text;
+  Made<ModeFamily> made;
+  auto checked = check_plugin_map(short_form ? Value::map({{"name", value}}, value.place()) : value, "name",
+                                  {grammar::family_name()}, *this, made);
+  if (checked && short_form) return value;
+  return checked;
+}
+
 std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec) const {
+  if (spec.refers == ParameterSpec::Refers::mode_family &&
+      (value.kind() == Value::Kind::text || value.kind() == Value::Kind::map)) {
+    return mode_family(value);
+  }
   if (!spec.unit.empty() &&
       (value.kind() == Value::Kind::number || (value.kind() == Value::Kind::text && looks_like_number(value.text())))) {
     return number(value, spec, spec.unit);
@@ -116,7 +131,11 @@ std::optional<Value> Checker::row(const Value& value, const ParameterSpec& spec)
   for (std::size_t i = 0; i < value.items().size(); ++i) {
     ParameterSpec item = spec;
     item.kind = ParameterSpec::Kind::number;
-    if (spec.kind == ParameterSpec::Kind::table) item.unit = spec.columns[i];
+    if (spec.kind == ParameterSpec::Kind::table) {
+      item.unit = spec.columns[i];
+      item.columns.clear();
+      if (i == 0) item.minimum = item.maximum = {};
+    }
     if (auto x = number(value.items()[i], item, item.unit)) {
       result.items().push_back(std::move(*x));
     } else {
@@ -218,6 +237,12 @@ std::optional<Value> Checker::check_members(const Value& value, const std::vecto
 std::optional<Value> Checker::check(const Value& value, const ParameterSpec& spec) const {
   switch (spec.kind) {
     case ParameterSpec::Kind::number:
+      if (!spec.columns.empty() && value.kind() == Value::Kind::list) {
+        ParameterSpec rows = spec;
+        rows.kind = ParameterSpec::Kind::table;
+        return table(value, rows);
+      }
+      return number(value, spec, spec.unit);
     case ParameterSpec::Kind::integer:
       return number(value, spec, spec.unit);
     case ParameterSpec::Kind::text:

@@ -32,7 +32,8 @@ class Checker {
   void know(const SceneNames* names) { names_ = names; }
 
   /// The value in SI units with defaults filled in; nothing where it, or anything in it, is wrong.
-  /// A text specification that has a unit takes a name or a number in that unit.
+  /// A text specification that has a unit takes a name or a number in that unit; one that refers to a mode family takes
+  /// its name or a map of its `name` and options.
   std::optional<Value> check(const Value& value, const ParameterSpec& spec) const;
   /// The same for a map with these members. Members that are right are in `partial`, if given, whatever the others are.
   std::optional<Value> check_members(const Value& value, const std::vector<ParameterSpec>& members,
@@ -58,6 +59,7 @@ class Checker {
  private:
   std::optional<Value> number(const Value& value, const ParameterSpec& spec, const std::string& unit) const;
   std::optional<Value> text(const Value& value, const ParameterSpec& spec) const;
+  std::optional<Value> mode_family(const Value& value) const;
   std::optional<Value> row(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> table(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> named(const Value& value, const ParameterSpec& spec) const;

@@ -47,7 +47,8 @@ std::string expectation(const ParameterSpec& spec) {
   using enum ParameterSpec::Kind;
   switch (spec.kind) {
     case number:
-      return "finite" + range(spec) + bracketed(spec.unit);
+      return "finite" + range(spec) + bracketed(spec.unit) +
+             (spec.columns.empty() ? "" : fmt::format(", or a list of rows [{}]", list_of_units(spec.columns)));
     case integer:
       return "whole number" + range(spec);
     case boolean:
@@ -55,6 +56,9 @@ std::string expectation(const ParameterSpec& spec) {
     case text:
       if (!spec.choices.empty()) return "one of: " + listed(spec.choices);
       if (!spec.unit.empty()) return "a name, or a number" + range(spec) + bracketed(spec.unit);
+      if (spec.refers == ParameterSpec::Refers::mode_family) {
+        return "the name of a mode family, or a map with its name and options";
+      }
       if (spec.refers != ParameterSpec::Refers::nothing) return fmt::format("the name of a {}", referent(spec.refers));
       return "text";
     case vector: {

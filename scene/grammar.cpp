@@ -64,4 +64,6 @@ ParameterSpec choice_name(std::string_view kind, std::string_view otherwise) {
   return text("name", std::string(kind) + " plugin").otherwise(std::string(otherwise).c_str());
 }
 
+ParameterSpec family_name() { return text("name", "mode-family plugin"); }
+
 }  // namespace withy::grammar

@@ -25,5 +25,7 @@ std::vector<ParameterSpec> hinge_members();
 std::vector<ParameterSpec> load_members();
 /// The name of a chosen formulation or integrator beside the plugin's own options.
 ParameterSpec choice_name(std::string_view kind, std::string_view otherwise);
+/// The name of a mode family beside the plugin's own options.
+ParameterSpec family_name();
 
 }  // namespace withy::grammar

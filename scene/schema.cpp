@@ -70,6 +70,7 @@ class SchemaWriter {
         {"$defs",
          {{"quantity", {{"type", "string"}, {"pattern", quantity_pattern}, {"description", "a number with its unit"}}},
           {"numbers", {{"type", "array"}, {"items", number_or_quantity({{"type", "number"}})}}},
+          {"mode-family", mode_family()},
           {"name", {{"type", "string"}, {"pattern", name_pattern}}}}}};
   }
 
@@ -85,11 +86,11 @@ class SchemaWriter {
     return json;
   }
 
-  Json word(const ParameterSpec& spec) {
+  static Json word(const ParameterSpec& spec) {
     if (!spec.unit.empty()) return {{"type", {"string", "number"}}};
+    if (spec.refers == ParameterSpec::Refers::mode_family) return reference("mode-family");
     Json json = {{"type", "string"}};
     if (!spec.choices.empty()) json["enum"] = spec.choices;
-    if (spec.refers == ParameterSpec::Refers::mode_family) json["enum"] = registry_.ids<ModeFamily>();
     return json;
   }
 
@@ -99,12 +100,21 @@ class SchemaWriter {
     return json;
   }
 
-  Json kind(const ParameterSpec& spec) {
+  /// A table; the schema does not tell its columns apart, so that a range of the others is left to the reader.
+  static Json rows(const ParameterSpec& spec) {
+    return {{"type", "array"}, {"items", row(number_or_quantity({{"type", "number"}}), spec.count)}, {"minItems", 1}};
+  }
+
+  static Json kind(const ParameterSpec& spec) {
     using enum ParameterSpec::Kind;
     const auto quantity = [&] { return number_or_quantity(bounded(spec, "number")); };
     switch (spec.kind) {
-      case number:
-        return quantity();
+      case number: {
+        if (spec.columns.empty()) return quantity();
+        Json alternatives = quantity();
+        alternatives["anyOf"].push_back(rows(spec));
+        return alternatives;
+      }
       case integer:
         return bounded(spec, "integer");
       case boolean:
@@ -114,7 +124,7 @@ class SchemaWriter {
       case vector:
         return row(quantity(), spec.count);
       case table:
-        return {{"type", "array"}, {"items", row(quantity(), spec.count)}, {"minItems", 1}};
+        return rows(spec);
       case map:
         return members(spec.members);
       case named:
@@ -124,7 +134,7 @@ class SchemaWriter {
     return {};
   }
 
-  Json described(const ParameterSpec& spec) {
+  static Json described(const ParameterSpec& spec) {
     Json json = kind(spec);
     const bool has_unit = !spec.unit.empty() && spec.unit != "1";
     json["description"] = spec.meaning + (has_unit ? fmt::format(" [{}]", spec.unit) : "");
@@ -132,7 +142,7 @@ class SchemaWriter {
     return json;
   }
 
-  Json members(const Specs& specs) {
+  static Json members(const Specs& specs) {
     Json properties = Json::object();
     Json required = Json::array();
     for (const ParameterSpec& s : specs) {
@@ -180,6 +190,12 @@ class SchemaWriter {
     return {{"description", fmt::format("{} plugin, by name or with options", key)},
             {"default", otherwise},
             {"anyOf", list}};
+  }
+
+  Json mode_family() {
+    Json list = alternatives<ModeFamily>("name", {grammar::family_name()});
+    list.push_back({{"type", "string"}, {"enum", registry_.ids<ModeFamily>()}});
+    return {{"description", "mode-family plugin, by name or with options"}, {"anyOf", list}};
   }
 
   static Json state() {

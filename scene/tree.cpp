@@ -19,14 +19,25 @@ namespace {
 
 constexpr double most_bytes = 4.0 * 1024 * 1024 * 1024;
 
-/// Sum and greatest of the whole numbers named "modes" in a value and below.
-void count_modes(const Value& value, double& sum, double& greatest) {
+/// What makes a body large.
+struct Extent {
+  double modes = 0;     ///< sum of the whole numbers named "modes"
+  double greatest = 0;  ///< of them
+  double rows = 0;      ///< of all tables
+};
+
+/// Of a value and what is below it.
+void measure(const Value& value, Extent& extent) {
+  if (value.kind() == Value::Kind::list && !value.items().empty() &&
+      value.items().front().kind() == Value::Kind::list) {
+    extent.rows += static_cast<double>(value.items().size());
+  }
   for (const auto& [key, member] : value.members()) {
     if (key == "modes" && member.kind() == Value::Kind::number) {
-      sum += member.number();
-      greatest = std::max(greatest, member.number());
+      extent.modes += member.number();
+      extent.greatest = std::max(extent.greatest, member.number());
     }
-    count_modes(member, sum, greatest);
+    measure(member, extent);
   }
 }
 
@@ -258,12 +269,13 @@ class TreeBuilder {
 }  // namespace
 
 double predicted_bytes(const Value& body) {
-  double n = 0;
-  double most = 0;
-  count_modes(body, n, most);
-  // Shape functions up to number m need about 25 m points of quadrature (20 for each 2.5 rad of phase); a point keeps
-  // Φ, Ψ and Γ, Θ; a body four times that: particles, sections, and running integrals.
-  const double points = 25 * most + 20;
+  Extent extent;
+  measure(body, extent);
+  const double n = extent.modes;
+  // Shape functions up to number m need about 25 m points of quadrature (20 for each 2.5 rad of phase), and 20 between
+  // the rows of a table; a point keeps Φ, Ψ and Γ, Θ; a body four times that: particles, sections, and running
+  // integrals.
+  const double points = 25 * extent.greatest + 20 * (1 + extent.rows);
   return 4 * points * 6 * n * (n + 1) * static_cast<double>(sizeof(double));
 }
 

@@ -8,6 +8,9 @@
 
 namespace withy {
 
+class Value;
+struct MakeContext;
+
 /// What a family may know of the beam whose strain it describes.
 struct BeamData {
   enum class Strain { bending, torsion };
@@ -17,7 +20,9 @@ struct BeamData {
   double stiffness = 0;  ///< EI (bending) or GJ (torsion) [N m²]
 };
 
-/// Shape functions φ_i(x), i = 0 … count−1, 0 ≤ x ≤ L: deflections normalized ∫₀ᴸ φ_i² dx = L, twists of amplitude 1.
+/// Shape functions φ_i(x), i = 0 … count−1, 0 ≤ x ≤ L: deflections normalized ∫₀ᴸ φ_i² dx = L, twists of amplitude 1,
+/// where the family does not give its coordinates another meaning (as craig-bampton does). What an end of the beam does
+/// not do, it does not do beyond 1e-12: otherwise a clamped root counts as moving.
 class ShapeFunctions {
  public:
   virtual ~ShapeFunctions() = default;
@@ -38,5 +43,12 @@ class ModeFamily {
   /// The first `count` ≤ most() functions of the beam; null where the family has none for this strain.
   [[nodiscard]] virtual std::unique_ptr<ShapeFunctions> functions(const BeamData& beam, std::size_t count) const = 0;
 };
+
+/// The first `count` functions of the family that a scene's checked `family` names, either as `clamped-free` or with
+/// its options as `{name: clamped-loaded, tip_mass: 2}` (a parameter `naming(ParameterSpec::Refers::mode_family)`).
+/// Null after reporting, at the value's place, that there is no such family, that it gives fewer, or none for this
+/// strain.
+std::unique_ptr<ShapeFunctions> make_shape_functions(const Value& family, const Value& count, const BeamData& beam,
+                                                     const MakeContext& context);
 
 }  // namespace withy

@@ -30,6 +30,12 @@ ParameterSpec ParameterSpec::most(double x) && {
   return std::move(*this);
 }
 
+ParameterSpec ParameterSpec::or_table(std::string abscissa_unit) && {
+  columns = {std::move(abscissa_unit), unit};
+  count = columns.size();
+  return std::move(*this);
+}
+
 ParameterSpec ParameterSpec::otherwise(Value v) && {
   fallback = std::move(v);
   required = false;

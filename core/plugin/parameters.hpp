@@ -18,12 +18,13 @@ namespace withy {
 /// (`otherwise`) or may be left out (`optional`).
 struct ParameterSpec {
   enum class Kind {
-    number,   ///< finite number in `unit`
+    number,   ///< finite number in `unit`; with `columns` a table of it as well (`or_table`)
     integer,  ///< whole number
     boolean,  ///< true or false
     text,     ///< a name; with `choices` one of them; with `refers` the name of a hinge, body, frame or plugin
     vector,   ///< `count` numbers in `unit`
-    table,    ///< rows of `count` numbers, the first column strictly increasing; column units are `columns`
+    table,    ///< rows of `count` numbers, the first column strictly increasing; column units are `columns`; ranges are
+              ///< of the other columns
     map,      ///< the members given in `members`
     named,    ///< any number of named maps, each with `members`; the names refer as `refers` says
   };
@@ -45,9 +46,11 @@ struct ParameterSpec {
   std::vector<std::string> columns;
   std::vector<ParameterSpec> members;
 
-  ParameterSpec above(double x) &&;           ///< value > x
-  ParameterSpec least(double x) &&;           ///< value ≥ x
-  ParameterSpec most(double x) &&;            ///< value ≤ x
+  ParameterSpec above(double x) &&;  ///< value > x
+  ParameterSpec least(double x) &&;  ///< value ≥ x
+  ParameterSpec most(double x) &&;   ///< value ≤ x
+  /// For a number: or a table of it over an abscissa of this unit.
+  ParameterSpec or_table(std::string abscissa_unit) &&;
   ParameterSpec otherwise(Value v) &&;        ///< default
   ParameterSpec otherwise(double x) &&;       ///< default
   ParameterSpec otherwise(const char* s) &&;  ///< default

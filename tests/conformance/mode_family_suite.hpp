@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 #include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
 #include <vector>
 
 #include "withy/core/plugin/mode_family.hpp"
@@ -34,26 +35,39 @@ inline void expect_derivatives(const ShapeFunctions& f, double length) {
   }
 }
 
-/// Gram matrix ∫ φ_i φ_j dx / L by Gauss panels fine against the shortest wave.
-inline Eigen::MatrixXd gram(const ShapeFunctions& f, double length) {
+/// ∫ a_i a_j dx / L by Gauss panels that span at most `phase` of the shortest wave, a being one of the members of
+/// FunctionValues.
+inline Eigen::MatrixXd gram(const ShapeFunctions& f, double length,
+                            std::vector<double> FunctionValues::*member = &FunctionValues::phi, double phase = 4) {
   using Gauss = boost::math::quadrature::gauss<double, 20>;
   const auto n = static_cast<Eigen::Index>(f.count());
-  const int panels = 1 + static_cast<int>(f.wave_number() * length / 4);
+  const int panels = 1 + static_cast<int>(f.wave_number() * length / phase);
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n, n);
   for (int p = 0; p < panels; ++p) {
     for (std::size_t k = 0; k < 10; ++k) {
       for (const double sign : {-1.0, 1.0}) {
         const double x = length * (p + 0.5 * (1 + sign * Gauss::abscissa()[k])) / panels;
         const FunctionValues v(f, x);
-        const Eigen::Map<const Eigen::VectorXd> phi(v.phi.data(), n);
-        G += 0.5 * Gauss::weights()[k] / panels * phi * phi.transpose();
+        const Eigen::Map<const Eigen::VectorXd> a((v.*member).data(), n);
+        G += 0.5 * Gauss::weights()[k] / panels * a * a.transpose();
       }
     }
   }
   return G;
 }
 
-/// Functions are linearly independent, their derivatives are derivatives, and asking for more changes none.
+/// The wave number is honest: panels of the phase that bodies choose integrate products of the functions and of their
+/// curvatures (in torsion: slopes) as panels three times as fine do, to rounding of the largest.
+inline void expect_wave_number_serves_quadrature(const ShapeFunctions& f, double length) {
+  for (const auto member : {&FunctionValues::phi, &FunctionValues::slope, &FunctionValues::curvature}) {
+    const Eigen::MatrixXd coarse = gram(f, length, member, 2.5);
+    const Eigen::MatrixXd fine = gram(f, length, member, 0.8);
+    EXPECT_LE((coarse - fine).cwiseAbs().maxCoeff(), 1e-12 * fine.cwiseAbs().maxCoeff());
+  }
+}
+
+/// Functions are linearly independent, their derivatives are derivatives, and asking for more changes none. All of them
+/// are finite from end to end, and the wave number says how fine they are.
 inline void expect_family_conforms(const ModeFamily& family, const BeamData& beam) {
   const std::size_t count = std::min<std::size_t>(family.most(), 6);
   const auto f = family.functions(beam, count);
@@ -63,6 +77,15 @@ inline void expect_family_conforms(const ModeFamily& family, const BeamData& bea
   EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(gram(*f, beam.length)).info(), Eigen::Success);
   const auto one = family.functions(beam, 1);
   EXPECT_NEAR(FunctionValues(*one, 0.6 * beam.length).phi[0], FunctionValues(*f, 0.6 * beam.length).phi[0], 1e-13);
+  const auto all = family.functions(beam, family.most());
+  for (const double fraction : {0.0, 1e-9, 0.3, 0.5, 1 - 1e-9, 1.0}) {
+    const FunctionValues v(*all, fraction * beam.length);
+    for (std::size_t i = 0; i < all->count(); ++i) {
+      EXPECT_TRUE(std::isfinite(v.phi[i]) && std::isfinite(v.slope[i]) && std::isfinite(v.curvature[i]));
+    }
+  }
+  expect_wave_number_serves_quadrature(*family.functions(beam, std::min<std::size_t>(family.most(), 40)), beam.length);
+  expect_wave_number_serves_quadrature(*one, beam.length);
 }
 
 }  // namespace withy::test

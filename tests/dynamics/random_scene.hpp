@@ -13,9 +13,10 @@ namespace withy::test {
 
 struct SceneWish {
   int bodies = 5;
-  bool planar = false;    ///< everything in the x-y plane
-  bool any_root = false;  ///< beams may be held at their tip
-  bool floating = true;   ///< a free hinge to the world is possible
+  bool planar = false;      ///< everything in the x-y plane
+  bool any_root = false;    ///< beams may be held at their tip
+  bool any_family = false;  ///< beams may bend in any mode family, those whose root moves too
+  bool floating = true;     ///< a free hinge to the world is possible
 };
 
 /// Text of a random scene; the same seed gives the same text.
@@ -53,6 +54,19 @@ class RandomScene {
   int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
   bool chance(double p) { return number(0, 1) < p; }
 
+  std::string family() {
+    if (!wish_.any_family) return "";
+    const char* families[] = {"clamped-free",
+                              "clamped-clamped",
+                              "clamped-pinned",
+                              "pinned-pinned",
+                              "pinned-free",
+                              "free-free",
+                              "craig-bampton",
+                              "orthogonal-polynomials",
+                              "{name: clamped-loaded, tip_mass: 0.7}"};
+    return std::string(", family: ") + families[whole(0, 8)];
+  }
   std::string direction() {
     if (wish_.planar) return "[0, 0, 1]";
     std::ostringstream s;
@@ -77,13 +91,14 @@ class RandomScene {
     if (beam) {
       text_ << "    type: beam\n    length: " << number(0.5, 2) << "\n    mass_per_length: " << number(0.5, 2) << "\n"
             << "    damping_ratio: 0.01\n    bending_y: {stiffness: " << number(20, 90) << ", modes: " << whole(1, 3)
-            << "}\n";
+            << family() << "}\n";
       if (!wish_.planar && chance(0.7)) {
-        text_ << "    bending_z: {stiffness: " << number(20, 90) << ", modes: " << whole(1, 2) << "}\n";
+        text_ << "    bending_z: {stiffness: " << number(20, 90) << ", modes: " << whole(1, 2) << family() << "}\n";
       }
       // Always, so that no hinge can spin a beam about an axis without inertia.
       if (!wish_.planar) {
-        text_ << "    torsion: {stiffness: " << number(20, 90) << ", inertia: 0.003, modes: " << whole(0, 2) << "}\n";
+        text_ << "    torsion: {stiffness: " << number(20, 90) << ", inertia: 0.003, modes: " << whole(0, 2)
+              << (wish_.any_family && chance(0.5) ? ", family: free-free" : "") << "}\n";
       }
       text_ << "    frames: {a: {at: tip, " << pose() << "}, m: {at: 0.31, " << pose() << "}, r: {at: root, " << pose()
             << "}}\n";

@@ -52,7 +52,7 @@ TEST_F(Overrides, AreNamedAsThePlaceOfTheirErrors) {
   EXPECT_EQ(problem("time.ennd=1"), "--set 'time.ennd=1': /time/ennd: unknown key \"ennd\"; did you mean 'end'?");
   EXPECT_EQ(problem("bodies.boom.bending_y={modes: 1}"),
             "--set 'bodies.boom.bending_y={modes: 1}': /bodies/boom/bending_y/stiffness: missing: EI_z, for deflection "
-            "along y; need finite > 0 [N m^2]");
+            "along y; need finite > 0 [N m^2], or a list of rows [m, N m^2]");
   EXPECT_EQ(problem("time.end={a: 1, a: 2}"),
             "--set 'time.end={a: 1, a: 2}': /time/end/a: duplicate key 'a'\n"
             "--set 'time.end={a: 1, a: 2}': /time/end: got a map; need finite >= 0 [s]");

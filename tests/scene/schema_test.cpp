@@ -165,17 +165,34 @@ TEST_F(Schema, AcceptsEverySceneOfTheProject) {
   }
   EXPECT_EQ(fault(good_scene), "");
   EXPECT_EQ(fault(replaced(good_scene, "length: 0.9", "length: 900 mm")), "");
+  EXPECT_EQ(fault(replaced(good_scene, "clamped-free", "{name: clamped-loaded, tip_mass: 2 kg}")), "");
+  EXPECT_EQ(fault(replaced(good_scene, "mass_per_length: 1.3", "mass_per_length: [[0, 1.3], [900 mm, 0.5]]")), "");
   EXPECT_EQ(fault("integrator: {rtol: 1e-9}\n" + std::string(good_scene)), "");
 }
 
 TEST_F(Schema, RefusesWhatTheReaderRefuses) {
   const std::pair<const char*, const char*> changes[] = {
-      {"withy/1", "withy/2"},        {"gravity:", "gravty:"},         {"length: 0.9", "lenght: 0.9"},
-      {"length: 0.9", "length: 0"},  {"mass: 20.0", "mass: -1"},      {"mass: 20.0", "mass: \"20\""},
-      {"mass: 20.0", "mass: heavy"}, {"modes: 2", "modes: 2.5"},      {"clamped-free", "clamped-fre"},
-      {"type: beam", "type: beem"},  {"[0, -9.81, 0]", "[0, -9.81]"}, {"  hub:\n", "  1hub:\n"},
-      {"  hub:\n", "  world:\n"},    {"output: 0.1", "output: 0"},    {"law: sine", "law: sinus"},
-      {", child: boom", ""},         {"mass: 20.0", "mass: 010"},
+      {"withy/1", "withy/2"},
+      {"gravity:", "gravty:"},
+      {"length: 0.9", "lenght: 0.9"},
+      {"length: 0.9", "length: 0"},
+      {"mass: 20.0", "mass: -1"},
+      {"mass: 20.0", "mass: \"20\""},
+      {"mass: 20.0", "mass: heavy"},
+      {"modes: 2", "modes: 2.5"},
+      {"clamped-free", "clamped-fre"},
+      {"type: beam", "type: beem"},
+      {"[0, -9.81, 0]", "[0, -9.81]"},
+      {"  hub:\n", "  1hub:\n"},
+      {"  hub:\n", "  world:\n"},
+      {"output: 0.1", "output: 0"},
+      {"law: sine", "law: sinus"},
+      {"clamped-free", "{name: clamped-loaded, tip_mas: 2}"},
+      {"clamped-free", "{name: clamped-free, tip_mass: 2}"},
+      {"clamped-free", "{tip_mass: 2}"},
+      {"mass_per_length: 1.3", "mass_per_length: [0, 1.3]"},
+      {", child: boom", ""},
+      {"mass: 20.0", "mass: 010"},
   };
   for (const auto& [from, to] : changes) {
     const std::string text = replaced(good_scene, from, to);

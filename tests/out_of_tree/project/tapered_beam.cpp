@@ -101,26 +101,10 @@ std::unique_ptr<withy::Body> make(const withy::Value& p, const withy::MakeContex
   const TaperedBeam::Data data = {p.number_at("length"), p.number_at("mass_per_length"), p.number_at("stiffness"),
                                   p.number_at("taper"), p.number_at("damping_ratio")};
   // A family is another plugin, found by its id: one of withy's own, or anybody's.
-  const withy::Value& name = p.at("family");
-  const auto* plugin = context.registry.find<withy::ModeFamily>(name.text());
-  if (plugin == nullptr) {
-    context.diagnostics.error(name.place(), "no mode family '" + name.text() + "'");
-    return nullptr;
-  }
-  const auto family = plugin->make(withy::Value::map({}), context);
-  if (family == nullptr) return nullptr;
-  const std::size_t count = p.count_at("modes");
-  if (count > family->most()) {
-    context.diagnostics.error(p.at("modes").place(),
-                              "family '" + name.text() + "' gives at most " + std::to_string(family->most()));
-    return nullptr;
-  }
-  auto functions =
-      family->functions({withy::BeamData::Strain::bending, data.length, data.mass_per_length, data.stiffness}, count);
-  if (functions == nullptr) {
-    context.diagnostics.error(name.place(), "mode family '" + name.text() + "' has no functions for bending");
-    return nullptr;
-  }
+  auto functions = withy::make_shape_functions(
+      p.at("family"), p.at("modes"),
+      {withy::BeamData::Strain::bending, data.length, data.mass_per_length, data.stiffness}, context);
+  if (functions == nullptr) return nullptr;
   return std::make_unique<TaperedBeam>(data, std::move(functions));
 }
 

@@ -183,7 +183,7 @@ TEST_F(Example, says_what_is_wrong_with_a_scene) {
     tapered(0.5, 21, "polynomial-clamped");
     FAIL() << "21 modes were given";
   } catch (const std::runtime_error& e) {
-    EXPECT_STREQ(e.what(), "family 'polynomial-clamped' gives at most 20");
+    EXPECT_STREQ(e.what(), "got 21 modes; mode family 'polynomial-clamped' gives at most 20");
   }
   EXPECT_THROW(tapered(0.5, 2, "nobodys-modes"), std::runtime_error);
 }

@@ -1,0 +1,47 @@
+#include "withy/core/plugin/mode_family.hpp"
+
+#include <string>
+
+#include "withy/core/plugin/registry.hpp"
+
+namespace withy {
+namespace {
+
+/// The family's options; a name alone leaves all at their defaults.
+Value options(const Value& family, const std::vector<ParameterSpec>& specs) {
+  if (family.kind() == Value::Kind::map) return family;
+  Value map = Value::map({}, family.place());
+  for (const ParameterSpec& spec : specs) {
+    if (spec.fallback) map.set(spec.key, *spec.fallback);
+  }
+  return map;
+}
+
+}  // namespace
+
+std::unique_ptr<ShapeFunctions> make_shape_functions(const Value& family, const Value& count, const BeamData& beam,
+                                                     const MakeContext& context) {
+  const Value& name = family.kind() == Value::Kind::map ? family.at("name") : family;
+  const std::string id = "mode family '" + name.text() + "'";
+  const Plugin<ModeFamily>* plugin = context.registry.find<ModeFamily>(name.text());
+  if (plugin == nullptr) {
+    context.diagnostics.error(name.place(), "no " + id);
+    return nullptr;
+  }
+  const auto made = plugin->make(options(family, plugin->parameters), context);
+  if (made == nullptr) return nullptr;
+  const auto modes = static_cast<std::size_t>(count.number());
+  if (modes > made->most()) {
+    context.diagnostics.error(count.place(), "got " + std::to_string(modes) + " modes; " + id + " gives at most " +
+                                                 std::to_string(made->most()));
+    return nullptr;
+  }
+  auto functions = made->functions(beam, modes);
+  if (functions == nullptr) {
+    const bool torsion = beam.strain == BeamData::Strain::torsion;
+    context.diagnostics.error(name.place(), id + " has no functions for " + (torsion ? "torsion" : "bending"));
+  }
+  return functions;
+}
+
+}  // namespace withy
