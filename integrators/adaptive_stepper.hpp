@@ -1,6 +1,6 @@
 /// \file
-/// Step size control for one-step methods with an error estimate O(h⁵): automatic first step and PI control after
-/// Hairer, Nørsett & Wanner, "Solving Ordinary Differential Equations I", II.4 and IV.2 (II).
+/// Step size control for one-step methods with an error estimate O(h⁵), or of another power of h: automatic first step
+/// and PI control after Hairer, Nørsett & Wanner, "Solving Ordinary Differential Equations I", II.4 and IV.2 (II).
 #pragma once
 
 #include "one_step.hpp"
@@ -10,8 +10,13 @@ namespace withy {
 
 class AdaptiveStepper : public OneStep {
  public:
-  AdaptiveStepper(const EquationsOfMotion& equations, const State& start, const StepControl& control)
-      : OneStep(equations, start), error_(Eigen::ArrayXd::Zero(size())), control_(control) {}
+  AdaptiveStepper(const EquationsOfMotion& equations, const State& start, const StepControl& control,
+                  int error_order = 5)
+      : OneStep(equations, start),
+        error_(Eigen::ArrayXd::Zero(size())),
+        control_(control),
+        error_root_(1.0 / error_order),
+        error_power_(error_root_ - 0.75 * stabilization) {}
 
   StepResult step(double t_limit) final {
     const double t = state_.time;
@@ -41,7 +46,7 @@ class AdaptiveStepper : public OneStep {
         continue;
       }
       failures = 0;
-      const double growth = std::pow(trial.error, error_power);
+      const double growth = std::pow(trial.error, error_power_);
       if (trial.error > 1) {
         ++statistics_.rejected;
         wanted = h / std::min(greatest_reduction, growth / safety);
@@ -96,7 +101,6 @@ class AdaptiveStepper : public OneStep {
   static constexpr int most_failures = 20;
   static constexpr double safety = 0.9;
   static constexpr double stabilization = 0.04;
-  static constexpr double error_power = 1.0 / 5 - 0.75 * stabilization;
   static constexpr double greatest_reduction = 5;
   static constexpr double greatest_growth = 10;
 
@@ -108,8 +112,8 @@ class AdaptiveStepper : public OneStep {
   }
 
   /// The first step after HNW I, II.4, with its bounds made free of the unit of time: h0, for which an explicit Euler
-  /// step changes y by 1 %, tells how fast the slope changes; from that time τ follows the step whose fifth-order error
-  /// is about a hundredth of the tolerance.
+  /// step changes y by 1 %, tells how fast the slope changes; from that time τ follows the step whose error, of the
+  /// estimate's order, is about a hundredth of the tolerance.
   double first_step(double remaining) {
     if (control_.initial_step > 0) return control_.initial_step;
     const Eigen::Index n = size() - 1;
@@ -129,10 +133,12 @@ class AdaptiveStepper : public OneStep {
     const double longest = std::min(100 * h0, remaining);
     if (!(d2 > 0)) return longest;
     const double tau = std::max(d1 / d2, h0);
-    return std::min(tau * std::pow(0.01 / (d2 * tau * tau), 1.0 / 5), longest);
+    return std::min(tau * std::pow(0.01 / (d2 * tau * tau), error_root_), longest);
   }
 
   StepControl control_;
+  double error_root_;    ///< 1 / order of the error estimate
+  double error_power_;   ///< of the controller
   double proposal_ = 0;  ///< [s], the next step; 0: to be found
   double error_before_ = 1e-4;
   int accuracy_to_blame_ = 0;  ///< the last rejections: more for the error (above 0) or for failures (below)

@@ -69,6 +69,21 @@ struct WorldPose {
   std::array<double, 9> rotation{};
 };
 
+/// Linear systems with W = 1 − δ A, where A is what makes flexible trees stiff: the part of ∂ẏ/∂y that comes from modal
+/// stiffness and damping,
+///   q' = u_q,   u' = −M⁻¹ (K q + D u_q),
+/// and nothing else. Linearly implicit integrators ask for it.
+class LinearlyImplicit {
+ public:
+  virtual ~LinearlyImplicit() = default;
+  /// Memory for the factors, allocated once.
+  [[nodiscard]] virtual Work make_factors() const = 0;
+  /// Factors of M(y) + δ D + δ² K, in about the time of an evaluation. δ > 0 [s].
+  virtual Evaluation factorize(std::span<const double> y, double delta, Work& factors) const noexcept = 0;
+  /// Replaces r, laid out as y, by the solution of W z = r; about half the time of an evaluation.
+  virtual void solve(std::span<double> r, Work& factors) const noexcept = 0;
+};
+
 /// Made by Formulation::compile for one model; const, so that threads share it, each with its own Work.
 class EquationsOfMotion {
  public:
@@ -82,6 +97,8 @@ class EquationsOfMotion {
   /// On an outcome other than ok the content of y_dot is meaningless.
   virtual Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
                                  Work& work) const noexcept = 0;
+  /// Solves linear systems for linearly implicit integrators; null where the formulation has no way to.
+  [[nodiscard]] virtual const LinearlyImplicit* linearly_implicit() const { return nullptr; }
   /// Scales quaternions in y back to unit length.
   virtual void normalize(std::span<double> y) const noexcept = 0;
 

@@ -12,9 +12,15 @@
 namespace withy {
 namespace {
 
+/// Whether a sweep solves with G + δ D + δ² K in the place of the modal masses.
+template <class Sweep>
+constexpr bool has_modal_solver = requires(const Sweep& s, double* a, std::byte* work) {
+  s.solve(a, 0.0, a, work);
+};
+
 /// A sweep, its loads, and the reference for everything that is not hot.
 template <class Sweep>
-class SweepEquations final : public EquationsOfMotion {
+class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
  public:
   SweepEquations(std::shared_ptr<const Model> model, Terms terms, Tree tree, const std::vector<Terms>& node_terms)
       : model_(std::move(model)),
@@ -23,11 +29,14 @@ class SweepEquations final : public EquationsOfMotion {
         savings_(std::move(tree.savings)) {
     for (const BodyNode& b : model_->bodies()) {
       const Eigen::MatrixXd& D = b.body->shape().damping;
+      const Eigen::MatrixXd& K = b.body->shape().stiffness;
       const std::size_t first = D.size() > 0 ? layout().body(b.name)->speed : 0;
       for (Eigen::Index i = 0; i < D.rows(); ++i) {
         for (Eigen::Index j = 0; j < D.cols(); ++j) {
-          if (D(i, j) != 0)
-            damped_.push_back({first + static_cast<std::size_t>(i), first + static_cast<std::size_t>(j), D(i, j)});
+          const std::size_t row = first + static_cast<std::size_t>(i), column = first + static_cast<std::size_t>(j);
+          if (K(i, j) != 0)
+            springs_.push_back({row, column, layout().body(b.name)->position + static_cast<std::size_t>(j), K(i, j)});
+          if (D(i, j) != 0) damped_.push_back({row, column, D(i, j)});
         }
       }
     }
@@ -55,6 +64,9 @@ class SweepEquations final : public EquationsOfMotion {
     efforts_offset_ = memory.take<double>(layout().speeds);
     scratch_offset_ = memory.take<double>(scratch);
     sweep_offset_ = memory.size();
+    sweep::WorkLayout factors;
+    factors.take<double>(1 + 3 * layout().speeds);
+    factors_offset_ = factors.size();
   }
 
   const Layout& layout() const override { return model_->layout(); }
@@ -97,6 +109,37 @@ class SweepEquations final : public EquationsOfMotion {
     return evaluation;
   }
 
+  const LinearlyImplicit* linearly_implicit() const override { return has_modal_solver<Sweep> ? this : nullptr; }
+  // In the factors' memory: δ, zeros for the speeds, forces, the solution, the sweep's own.
+  Work make_factors() const override { return Work(factors_offset_ + sweep_.work_size()); }
+  Evaluation factorize(std::span<const double> y, double delta, Work& factors) const noexcept override {
+    auto* memory = reinterpret_cast<double*>(factors.data());
+    memory[0] = delta;
+    for (std::size_t i = 0; i < layout().speeds; ++i) memory[1 + i] = 0;
+    if constexpr (has_modal_solver<Sweep>) {
+      return sweep_.factorize(y.data(), memory + 1, delta, factors.data() + factors_offset_);
+    } else {
+      return {Evaluation::Outcome::singular};
+    }
+  }
+  // With z_q = r_q + δ z_u:  (M + δ D + δ² K) (r_u − z_u) = (δ D + δ² K) r_u + δ K r_q, all K, D on modes alone.
+  void solve(std::span<double> r, Work& factors) const noexcept override {
+    auto* memory = reinterpret_cast<double*>(factors.data());
+    const std::size_t n = layout().speeds;
+    const double delta = memory[0];
+    double* forces = memory + 1 + n;
+    double* change = memory + 1 + 2 * n;
+    double* u = r.data() + layout().positions;
+    for (std::size_t i = 0; i < n; ++i) forces[i] = 0;
+    for (const Spring& k : springs_) forces[k.i] += delta * k.value * (r[k.position] + delta * u[k.j]);
+    for (const Damper& d : damped_) forces[d.i] += delta * d.value * u[d.j];
+    if constexpr (has_modal_solver<Sweep>) sweep_.solve(forces, delta, change, factors.data() + factors_offset_);
+    for (std::size_t i = 0; i < n; ++i) u[i] -= change[i];
+    for (const Slot& slot : layout().bodies) {
+      for (std::size_t i = 0; i < slot.speeds; ++i) r[slot.position + i] += delta * u[slot.speed + i];
+    }
+  }
+
   void normalize(std::span<double> y) const noexcept override {
     for (std::size_t h = 0; h < layout().hinges.size(); ++h) {
       const Slot& slot = layout().hinges[h];
@@ -135,6 +178,11 @@ class SweepEquations final : public EquationsOfMotion {
     if (count > 0) copies_.push_back({position, speed, count});
   }
 
+  /// An element of a body's stiffness matrix: speeds of row and column, position of the column.
+  struct Spring {
+    std::size_t i, j, position;
+    double value;
+  };
   /// An element of a body's damping matrix, by speeds.
   struct Damper {
     std::size_t i, j;
@@ -148,10 +196,11 @@ class SweepEquations final : public EquationsOfMotion {
   ReferenceDynamics reference_;
   Sweep sweep_;
   std::vector<std::string> savings_;
+  std::vector<Spring> springs_;
   std::vector<Damper> damped_;
   std::vector<Run> copies_;
   std::vector<std::size_t> general_;  ///< hinges with derivatives of their own
-  std::size_t efforts_offset_ = 0, scratch_offset_ = 0, sweep_offset_ = 0;
+  std::size_t efforts_offset_ = 0, scratch_offset_ = 0, sweep_offset_ = 0, factors_offset_ = 0;
 };
 
 }  // namespace

@@ -90,7 +90,7 @@ template <class Space, int N, Flavor flavor>
     }
   }
   w.V = V;
-  if (flavor == Flavor::frozen && !node.factor.empty()) return;  // nothing is added to what it has precomputed
+  if (flavor == Flavor::frozen && is_constant(node, s)) return;  // nothing is added to what it has precomputed
   w.I = node.base.inertia;
   w.p = node.base.velocity_wrench(V);
 }
@@ -115,7 +115,7 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
   if constexpr (flavor == Flavor::frozen) {
     const auto square = Variation<Space>::bilinear(V, V);
     for (int i = 0; i < n; ++i) y[i] = -0.5 * dot(node.I1[static_cast<std::size_t>(i)], square);
-    constant = !node.factor.empty();
+    constant = is_constant(node, s);
     if (!constant) {
       for (int i = 0; i < n; ++i) C[i] = node.C0[static_cast<std::size_t>(i)];
       for (int i = 0; i < n * n; ++i) G[i] = node.G0[static_cast<std::size_t>(i)];
@@ -159,6 +159,14 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
     for (int i = 0; i < n; ++i) p += node.Y0[static_cast<std::size_t>(i)] * (L[i * n + i] * y[i]);
     for (int i = 0; i < n; ++i) y_kept[i] = y[i];
     return true;
+  }
+  if (s.delta > 0) {
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        const auto ij = static_cast<std::size_t>(i * n + j);
+        G[ij] += s.delta * (node.damping[ij] + s.delta * node.stiffness[ij]);
+      }
+    }
   }
   if (!factorize<N>(G, n)) return false;
   solve_lower<N>(G, n, C);
@@ -204,7 +212,7 @@ template <class Space, int N, Flavor flavor>
 [[gnu::flatten]] inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
-  const bool constant = flavor == Flavor::frozen && !node.factor.empty();
+  const bool constant = flavor == Flavor::frozen && is_constant(node, s);
   typename Space::Inertia I = constant ? node.reduced : w.I;
   Twist p = constant ? node.base.velocity_wrench(w.V) : w.p;
   if constexpr (flavor != Flavor::rigid) {
@@ -251,6 +259,59 @@ template <class Space, int N, Flavor flavor>
   return true;
 }
 
+/// What the inward pass has left for `forces` at rest: generalized forces alone, one for each speed, against the
+/// factors already in the work memory. Stations and nodes begin with p = 0.
+template <class Space, int N, Flavor flavor>
+inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+  using Twist = typename Space::Twist;
+  const int n = count<N>(node.modes);
+  auto& w = *at<NodeWork<Space>>(s.work, node.work);
+  Twist p = w.p;
+  if constexpr (flavor != Flavor::rigid) {
+    const auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+    const Twist* J = at<Twist>(s.work, node.work_J);
+    double* y = at<double>(s.work, node.work_y);
+    const double* force = s.efforts + node.mode_speed;
+    for (int i = 0; i < n; ++i) y[i] = force[i];
+    for (std::size_t k = 0; k < node.stations.size(); ++k) {
+      const auto& station = node.stations[k];
+      if (!station.has_children) continue;
+      const Twist& carried = stations[k].p;
+      const Twist* partial = flavor == Flavor::frozen ? station.J.data() : J + static_cast<int>(k) * n;
+      p += flavor == Flavor::frozen ? Space::shift_to_parent(station.fields.X, carried)
+                                    : Space::to_parent(stations[k].frame, carried);
+      for (int i = 0; i < n; ++i) y[i] -= Space::dot(partial[i], carried);
+    }
+    if (flavor == Flavor::full && node.root_station >= 0) {
+      p = Space::to_parent(Space::inverse(w.root), p);
+      const Twist* JM = J + n * static_cast<int>(node.stations.size());
+      for (int i = 0; i < n; ++i) y[i] += Space::dot(JM[i], p);
+    }
+    const double* L = at<double>(s.work, node.work_G);
+    const Twist* Y = at<Twist>(s.work, node.work_C);
+    solve_lower<N>(L, n, y);
+    for (int i = 0; i < n; ++i) p += Y[i] * (L[i * n + i] * y[i]);
+  }
+  const JointData<Space>& joint = node.joint;
+  if (single(joint.kind)) {
+    w.u = joint.direction * s.efforts[joint.speed] - component<Space>(joint.kind, p);
+    p += w.U * (w.inverse * w.u);
+  } else if constexpr (Space::angular == 3) {
+    if (joint.kind != Joint::fixed) {
+      JointElimination<Space>& e = w.elimination;
+      const auto k = static_cast<int>(joint.speeds);
+      for (int i = 0; i < k; ++i) e.y[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Space::dot(e.H[i], p);
+      solve_lower<-1>(e.L, k, e.y);
+      for (int i = 0; i < k; ++i) p += e.Y[i] * (e.L[i * k + i] * e.y[i]);
+    }
+  }
+  if (node.parent < 0) return;
+  const SymmetricNode<Space>& parent = s.nodes[node.parent];
+  Twist& outer = node.parent_station < 0 ? at<NodeWork<Space>>(s.work, parent.work)->p
+                                         : at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].p;
+  outer += Space::to_parent(w.SM, p);
+}
+
 template <class Space, int N, Flavor flavor>
 [[gnu::flatten]] inline void outward_acceleration(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
@@ -281,7 +342,7 @@ template <class Space, int N, Flavor flavor>
     w.A = A;
     return;
   } else {
-    const bool constant = flavor == Flavor::frozen && !node.factor.empty();
+    const bool constant = flavor == Flavor::frozen && is_constant(node, s);
     const double* L = constant ? node.factor.data() : at<double>(s.work, node.work_G);
     const Twist* Y = constant ? node.Y0.data() : at<Twist>(s.work, node.work_C);
     double* a = s.result + node.mode_speed;

@@ -123,9 +123,7 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
 }
 
 template <class Space>
-Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const double* speeds, const double* efforts,
-                                                double* result, std::byte* work) const noexcept {
-  const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_};
+Evaluation SymmetricSweep<Space>::inward(const SymmetricState<Space>& state) const noexcept {
   for (const SymmetricNode<Space>& node : nodes_) {
     with_flavor(node, [&](auto n, auto flavor) { outward_motion<Space, n.value, flavor.value>(node, state); });
   }
@@ -135,10 +133,44 @@ Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const d
     with_flavor(node, [&](auto n, auto flavor) { good = inward_inertia<Space, n.value, flavor.value>(node, state); });
     if (!good) return {Evaluation::Outcome::singular, node.body};
   }
+  return {};
+}
+
+template <class Space>
+void SymmetricSweep<Space>::outward(const SymmetricState<Space>& state) const noexcept {
   for (const SymmetricNode<Space>& node : nodes_) {
     with_flavor(node, [&](auto n, auto flavor) { outward_acceleration<Space, n.value, flavor.value>(node, state); });
   }
-  return {};
+}
+
+template <class Space>
+Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const double* speeds, const double* efforts,
+                                                double* result, std::byte* work) const noexcept {
+  const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_};
+  const Evaluation evaluation = inward(state);
+  if (evaluation.ok()) outward(state);
+  return evaluation;
+}
+
+template <class Space>
+Evaluation SymmetricSweep<Space>::factorize(const double* positions, const double* at_rest, double delta,
+                                            std::byte* work) const noexcept {
+  return inward({positions, at_rest, at_rest, nullptr, work, nodes_.data(), &world_acceleration_, delta});
+}
+
+template <class Space>
+void SymmetricSweep<Space>::solve(const double* forces, double delta, double* result, std::byte* work) const noexcept {
+  const typename Space::Twist still = Space::Twist::zero();
+  const SymmetricState<Space> state{nullptr, nullptr, forces, result, work, nodes_.data(), &still, delta};
+  for (const SymmetricNode<Space>& node : nodes_) {
+    at<NodeWork<Space>>(work, node.work)->p = still;
+    auto* stations = at<StationWork<Space>>(work, node.work_stations);
+    for (std::size_t k = 0; k < node.stations.size(); ++k) stations[k].p = still;
+  }
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    with_flavor(nodes_[i], [&](auto n, auto flavor) { inward_force<Space, n.value, flavor.value>(nodes_[i], state); });
+  }
+  outward(state);
 }
 
 template class SymmetricSweep<Spatial>;

@@ -63,6 +63,9 @@ struct SymmetricNode {
   SymmetricNode(const NodeSpec& spec, Terms terms);
 };
 
+template <class Space>
+struct SymmetricState;
+
 /// The sweep over all nodes.
 template <class Space>
 class SymmetricSweep {
@@ -74,8 +77,15 @@ class SymmetricSweep {
   /// Accelerations of all speeds from positions, speeds and applied efforts.
   Evaluation accelerations(const double* positions, const double* speeds, const double* efforts, double* result,
                            std::byte* work) const noexcept;
+  /// Leaves in `work` the factors of M + δ D + δ² K; `at_rest` are zeros, one for each speed.
+  Evaluation factorize(const double* positions, const double* at_rest, double delta, std::byte* work) const noexcept;
+  /// Solves (M + δ D + δ² K) result = forces with these factors.
+  void solve(const double* forces, double delta, double* result, std::byte* work) const noexcept;
 
  private:
+  Evaluation inward(const SymmetricState<Space>& state) const noexcept;
+  void outward(const SymmetricState<Space>& state) const noexcept;
+
   std::vector<SymmetricNode<Space>> nodes_;
   typename Space::Twist world_acceleration_;  ///< −g: weight as an acceleration of the world
   std::size_t work_size_ = 0;

@@ -53,7 +53,14 @@ struct SymmetricState {
   std::byte* work;
   const SymmetricNode<Space>* nodes;
   const typename Space::Twist* world;
+  double delta = 0;  ///< above 0: G + δ D + δ² K in the place of G
 };
+
+/// Whether the elimination of a node's modes is known before the sweep begins.
+template <class Space>
+inline bool is_constant(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+  return !node.factor.empty() && s.delta == 0;
+}
 
 /// Factors of the lower triangle of G = L Δ Lᵀ, in place: L below the diagonal, the inverse of Δ on it; false where G
 /// is not positive definite. Without square roots, whose latency a small block would feel.
