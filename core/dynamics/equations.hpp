@@ -97,6 +97,14 @@ class EquationsOfMotion {
   /// On an outcome other than ok the content of y_dot is meaningless.
   virtual Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
                                  Work& work) const noexcept = 0;
+  /// Inverse dynamics: efforts [N m, N] on all speeds that, with weight, stiffness, damping and velocity terms, give
+  /// the accelerations u_dot at y: M u_dot − f. In time proportional to the number of bodies where the mass matrix is
+  /// symmetric; the strict forms assemble M. The loads' efforts are not taken off.
+  virtual void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
+                                Work& work) const = 0;
+  /// M(y) a, in the same time.
+  virtual void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> product,
+                          Work& work) const = 0;
   /// Solves linear systems for linearly implicit integrators; null where the formulation has no way to.
   [[nodiscard]] virtual const LinearlyImplicit* linearly_implicit() const { return nullptr; }
   /// Scales quaternions in y back to unit length.

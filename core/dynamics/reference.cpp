@@ -226,7 +226,9 @@ class Tree {
 }  // namespace
 
 ReferenceDynamics::ReferenceDynamics(std::shared_ptr<const Model> model, Terms terms)
-    : model_(std::move(model)), terms_(terms) {}
+    : model_(std::move(model)), terms_(terms) {
+  for (const BodyNode& body : model_->bodies()) slots_.push_back(model_->layout().body(body.name));
+}
 
 Terms ReferenceDynamics::terms_of(std::size_t body) const { return model_->bodies()[body].terms.value_or(terms_); }
 
@@ -313,7 +315,7 @@ std::array<double, 3> ReferenceDynamics::deflection(std::span<const double> y, i
   const BodyNode& node = model_->bodies()[b];
   std::array<double, 3> d{};
   if (node.body->shape().modes() == 0) return d;
-  const Slot& slot = *model_->layout().body(node.name);
+  const Slot& slot = *slots_[b];
   const Eigen::Index n = node.body->shape().modes();
   const Eigen::Map<const Eigen::VectorXd> q(y.data() + slot.position, n);
   const PointExpansion& e = node.frames[static_cast<std::size_t>(frame)].section;

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "withy/core/dynamics/equations.hpp"
 #include "withy/core/model/model.hpp"
@@ -30,6 +31,7 @@ class ReferenceDynamics {
 
   std::shared_ptr<const Model> model_;
   Terms terms_;
+  std::vector<const Slot*> slots_;  ///< of each body's modes; null where it has none
 };
 
 }  // namespace withy

@@ -109,6 +109,28 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     return evaluation;
   }
 
+  void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
+                        Work& work) const override {
+    if constexpr (has_modal_solver<Sweep>) {
+      sweep_.inverse(y.data(), y.data() + layout().positions, u_dot.data(), false, efforts.data(),
+                     work.data() + sweep_offset_);
+    } else {
+      const DenseSystem s = reference_.system(0, y);
+      product(s, u_dot, efforts);
+      for (std::size_t i = 0; i < s.size; ++i) efforts[i] -= s.force[i];
+    }
+  }
+  void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> result,
+                  Work& work) const override {
+    if constexpr (has_modal_solver<Sweep>) {
+      auto* at_rest = reinterpret_cast<double*>(work.data() + efforts_offset_);
+      for (std::size_t i = 0; i < layout().speeds; ++i) at_rest[i] = 0;
+      sweep_.inverse(y.data(), at_rest, a.data(), true, result.data(), work.data() + sweep_offset_);
+    } else {
+      product(reference_.system(0, y), a, result);
+    }
+  }
+
   const LinearlyImplicit* linearly_implicit() const override { return has_modal_solver<Sweep> ? this : nullptr; }
   // In the factors' memory: δ, zeros for the speeds, forces, the solution, the sweep's own.
   Work make_factors() const override { return Work(factors_offset_ + sweep_.work_size()); }
@@ -158,6 +180,12 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   std::vector<std::string> savings() const override { return savings_; }
 
  private:
+  static void product(const DenseSystem& s, std::span<const double> a, std::span<double> result) {
+    for (std::size_t i = 0; i < s.size; ++i) {
+      result[i] = 0;
+      for (std::size_t j = 0; j < s.size; ++j) result[i] += s.mass[i * s.size + j] * a[j];
+    }
+  }
   /// The body whose hinge or modes have the first acceleration that is not finite.
   int first_nonfinite(const double* accelerations) const noexcept {
     const auto bad = [&](const Slot& slot) {

@@ -1,5 +1,6 @@
 #include "withy/core/sweep/symmetric_sweep.hpp"
 
+#include "withy/core/sweep/symmetric_inverse.hpp"
 #include "withy/core/sweep/symmetric_kernel.hpp"
 #include "withy/core/sweep/with_modes.hpp"
 
@@ -113,6 +114,7 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
     node.work_C = memory.template take<Twist>(2 * n);  // and room for the partial velocities of sections
     node.work_G = memory.template take<double>(n * n);
     node.work_y = memory.template take<double>(n);
+    node.work_h = memory.template take<double>(n);
     node.work_P = memory.template take<Pack>(n * Space::linear);
     if (node.frozen && node.leaf) precompute(node);
   }
@@ -171,6 +173,26 @@ void SymmetricSweep<Space>::solve(const double* forces, double delta, double* re
     with_flavor(nodes_[i], [&](auto n, auto flavor) { inward_force<Space, n.value, flavor.value>(nodes_[i], state); });
   }
   outward(state);
+}
+
+template <class Space>
+void SymmetricSweep<Space>::inverse(const double* positions, const double* speeds, const double* accelerations,
+                                    bool inertial, double* efforts, std::byte* work) const noexcept {
+  const typename Space::Twist still = Space::Twist::zero();
+  const SymmetricState<Space> state{
+      positions, speeds, accelerations, efforts, work, nodes_.data(), inertial ? &still : &world_acceleration_};
+  for (const SymmetricNode<Space>& node : nodes_) {
+    with_flavor(node, [&](auto n, auto flavor) {
+      outward_motion<Space, n.value, flavor.value>(node, state);
+      given_acceleration<Space, n.value, flavor.value>(node, state);
+    });
+  }
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    const SymmetricNode<Space>& node = nodes_[i];
+    with_flavor(node, [&](auto n, auto flavor) {
+      inward_effort<Space, n.value, flavor.value>(node, state, inertial ? 0.0 : 1.0);
+    });
+  }
 }
 
 template class SymmetricSweep<Spatial>;

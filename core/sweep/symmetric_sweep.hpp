@@ -58,7 +58,7 @@ struct SymmetricNode {
   std::vector<Twist> Y0;            ///< L⁻¹ C0ᵀ, n twists
   typename Space::Inertia reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
   // Work memory.
-  std::size_t work = 0, work_J = 0, work_C = 0, work_G = 0, work_y = 0, work_P = 0, work_stations = 0;
+  std::size_t work = 0, work_J = 0, work_h = 0, work_C = 0, work_G = 0, work_y = 0, work_P = 0, work_stations = 0;
 
   SymmetricNode(const NodeSpec& spec, Terms terms);
 };
@@ -77,6 +77,10 @@ class SymmetricSweep {
   /// Accelerations of all speeds from positions, speeds and applied efforts.
   Evaluation accelerations(const double* positions, const double* speeds, const double* efforts, double* result,
                            std::byte* work) const noexcept;
+  /// M u̇ − f from positions, speeds and accelerations; with `inertial` alone, M u̇: speeds, weight and K q count as
+  /// zero.
+  void inverse(const double* positions, const double* speeds, const double* accelerations, bool inertial,
+               double* efforts, std::byte* work) const noexcept;
   /// Leaves in `work` the factors of M + δ D + δ² K; `at_rest` are zeros, one for each speed.
   Evaluation factorize(const double* positions, const double* at_rest, double delta, std::byte* work) const noexcept;
   /// Solves (M + δ D + δ² K) result = forces with these factors.

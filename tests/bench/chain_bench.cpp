@@ -129,6 +129,10 @@ struct Nothing final : withy::EquationsOfMotion {
     y_dot[0] = t + y[0];
     return {};
   }
+  void inverse_dynamics(std::span<const double> /*y*/, std::span<const double> /*u_dot*/, std::span<double> /*efforts*/,
+                        withy::Work& /*work*/) const override {}
+  void mass_times(std::span<const double> /*y*/, std::span<const double> /*a*/, std::span<double> /*product*/,
+                  withy::Work& /*work*/) const override {}
   void normalize(std::span<double> /*y*/) const noexcept override {}
   withy::DenseSystem system(double /*t*/, std::span<const double> /*y*/) const override { return {}; }
   withy::Energies energies(std::span<const double> /*y*/) const override { return {}; }

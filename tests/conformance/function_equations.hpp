@@ -34,6 +34,8 @@ class FunctionEquations : public EquationsOfMotion {
   void normalize(std::span<double> y) const noexcept override {
     if (normalize_) normalize_(y);
   }
+  void inverse_dynamics(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {}
+  void mass_times(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {}
   DenseSystem system(double t, std::span<const double> y) const override {
     if (system_) return system_(t, y);
     DenseSystem s{layout_.speeds, std::vector<double>(layout_.speeds * layout_.speeds),
