@@ -27,6 +27,20 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
         reference_(model_, terms),
         sweep_(tree, node_terms, model_->gravity()),
         savings_(std::move(tree.savings)) {
+    std::size_t aligned = 0;
+    for (const NodeSpec& node : tree.nodes) {
+      const auto kind = node.kernel ? node.kernel->kind : HingeKernel::Kind::free;
+      if (kind == HingeKernel::Kind::revolute || kind == HingeKernel::Kind::prismatic) ++aligned;
+    }
+    if (aligned > 0)
+      savings_.push_back(std::to_string(aligned) + " of " + std::to_string(tree.nodes.size()) +
+                         " hinges lie along an axis of their frame: a column of the inertia in place of a product");
+    for (std::string& line : sweep_.savings(tree)) savings_.push_back(std::move(line));
+#ifdef __AVX2__
+    savings_.emplace_back("sweeps compiled for x86-64-v3 (AVX2, FMA), which this processor has");
+#else
+    savings_.emplace_back("sweeps compiled for any x86-64 processor");
+#endif
     for (const BodyNode& b : model_->bodies()) {
       const Eigen::MatrixXd& D = b.body->shape().damping;
       const Eigen::MatrixXd& K = b.body->shape().stiffness;

@@ -61,7 +61,8 @@ MassTable<Space>::MassTable(const NodeSpec& node) {
   }
   const Eigen::MatrixXd R = orthonormal_coefficients(fields);
   root_mass = R(0, 0);
-  packs = (static_cast<std::size_t>(R.rows()) + lanes - 1) / lanes;
+  rank = static_cast<std::size_t>(R.rows());
+  packs = (rank + lanes - 1) / lanes;
   stride = static_cast<std::size_t>(columns - 1);
   data.assign(packs * stride, spread(0.0));
   for (Eigen::Index k = 0; k < R.rows(); ++k) {

@@ -15,7 +15,8 @@ namespace withy::sweep {
 /// The first basis function is the constant, so that ∫ f dm = √mass · (first coefficient of f).
 template <class Space>
 struct MassTable {
-  std::size_t packs = 0;      ///< generalized particles / 4, rounded up
+  std::size_t rank = 0;       ///< generalized particles
+  std::size_t packs = 0;      ///< rank / 4, rounded up
   bool second_order = false;  ///< some Γ is there
   double root_mass = 0;       ///< √mass; 0: no particles
   /// For each pack: X (linear), then Φ_i (n·linear), then Γ_ij for i ≤ j (pairs·linear), components innermost.

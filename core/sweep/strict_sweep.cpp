@@ -97,6 +97,16 @@ StrictSweep<Space>::StrictSweep(const Tree& tree, const std::vector<Terms>& term
 }
 
 template <class Space>
+std::vector<std::string> StrictSweep<Space>::savings(const Tree& tree) const {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (nodes_[i].modes > 0)
+      lines.push_back("'" + tree.nodes[i].name + "': mass integrals and their first derivatives, computed once");
+  }
+  return lines;
+}
+
+template <class Space>
 Evaluation StrictSweep<Space>::accelerations(const double* positions, const double* speeds, const double* efforts,
                                              double* result, std::byte* work) const noexcept {
   const StrictState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_};

@@ -14,6 +14,7 @@
 /// symmetric recursion, with four matrices in the place of one.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "withy/core/dynamics/equations.hpp"
@@ -59,6 +60,8 @@ class StrictSweep {
  public:
   StrictSweep(const Tree& tree, const std::vector<Terms>& terms, const Vector3& gravity);
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
+  /// What was computed once for all evaluations, a line each.
+  [[nodiscard]] std::vector<std::string> savings(const Tree& tree) const;
   /// Accelerations of all speeds from positions, speeds and applied efforts.
   Evaluation accelerations(const double* positions, const double* speeds, const double* efforts, double* result,
                            std::byte* work) const noexcept;

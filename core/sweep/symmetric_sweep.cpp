@@ -125,6 +125,27 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
 }
 
 template <class Space>
+std::vector<std::string> SymmetricSweep<Space>::savings(const Tree& tree) const {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const SymmetricNode<Space>& node = nodes_[i];
+    const std::string name = "'" + tree.nodes[i].name + "': ";
+    if (!node.factor.empty()) {
+      lines.push_back(name + "its modes are eliminated once for all evaluations: nothing hangs on it");
+    } else if (node.frozen) {
+      lines.push_back(name + "mass integrals are those of the undeformed body, computed once");
+    } else if (node.mass.packs > 0) {
+      lines.push_back(name + std::to_string(tree.nodes[i].particles.size()) + " mass points became " +
+                      std::to_string(node.mass.rank) + " generalized particles");
+    }
+    if (!node.sections.empty())
+      lines.push_back(name + std::to_string(node.sections.size()) +
+                      " sections with rotary inertia are evaluated one by one");
+  }
+  return lines;
+}
+
+template <class Space>
 Evaluation SymmetricSweep<Space>::inward(const SymmetricState<Space>& state) const noexcept {
   for (const SymmetricNode<Space>& node : nodes_) {
     with_flavor(node, [&](auto n, auto flavor) { outward_motion<Space, n.value, flavor.value>(node, state); });

@@ -4,6 +4,7 @@
 /// coordinates eliminated together with its hinge (Jain & Rodriguez 1992).
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "withy/core/dynamics/equations.hpp"
@@ -74,6 +75,8 @@ class SymmetricSweep {
   SymmetricSweep(const Tree& tree, const std::vector<Terms>& terms, const Vector3& gravity);
   /// Bytes of work memory.
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
+  /// What was computed once for all evaluations, a line each.
+  [[nodiscard]] std::vector<std::string> savings(const Tree& tree) const;
   /// Accelerations of all speeds from positions, speeds and applied efforts.
   Evaluation accelerations(const double* positions, const double* speeds, const double* efforts, double* result,
                            std::byte* work) const noexcept;
