@@ -57,6 +57,14 @@ class OneStep : public Stepper {
   /// The interpolant at fraction theta in (0, 1) of the last accepted step.
   virtual void inside(double theta, Values values) const = 0;
 
+  /// The cubic through values and slopes of both ends: error O(h⁴).
+  void cubic(double theta, Values values) const {
+    const double h = state_.time - previous_time_;
+    const double u = 1 - theta;
+    values = u * u * ((1 + 2 * theta) * previous_ + h * theta * previous_slope_) +
+             theta * theta * ((1 + 2 * u) * y() - h * u * slope_);
+  }
+
   /// To be called first in a step: sets the limit of stage times and finds the slope at the start where it is unknown.
   StepResult begin(double t_limit) {
     latest_ = std::nextafter(t_limit, state_.time);
@@ -70,12 +78,14 @@ class OneStep : public Stepper {
   Evaluation evaluate(double t, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) {
     ++statistics_.evaluations;
     const auto n = static_cast<std::size_t>(size_);
-    return equations_.derivatives(std::min(t, latest_), {values.data(), n}, {slope.data(), n}, work_);
+    const Evaluation e = equations_.derivatives(std::min(t, latest_), {values.data(), n}, {slope.data(), n}, work_);
+    sign_ = e.determinant_sign;
+    return e;
   }
 
   void normalize(Eigen::ArrayXd& values) { equations_.normalize({values.data(), static_cast<std::size_t>(size_)}); }
 
-  /// Makes next_ and next_slope_ the state at t_new.
+  /// Makes next_ and next_slope_ the state at t_new; the last evaluation was that of next_slope_.
   void accept(double t_new) {
     const double h = t_new - state_.time;
     previous_time_ = state_.time;
@@ -87,6 +97,7 @@ class OneStep : public Stepper {
     statistics_.smallest_step = statistics_.accepted == 0 ? h : std::min(statistics_.smallest_step, h);
     statistics_.largest_step = std::max(statistics_.largest_step, h);
     ++statistics_.accepted;
+    statistics_.determinant_sign = sign_;
   }
 
   /// Whether all are finite; vectorizes, unlike a search for the first that is not.
@@ -114,6 +125,7 @@ class OneStep : public Stepper {
   Work work_;
   Eigen::Index size_;
   double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which the step may evaluate
+  int sign_ = 1;                                             ///< of det M in the last evaluation
   bool slope_known_ = false;
 };
 

@@ -62,13 +62,7 @@ class RosenbrockWStepper final : public AdaptiveStepper {
 
   void accepted(double /*h*/) override {}
 
-  /// Cubic through values and slopes of both ends.
-  void inside(double theta, Values values) const override {
-    const double h = state_.time - previous_time_;
-    const double u = 1 - theta;
-    values = u * u * ((1 + 2 * theta) * previous_ + h * theta * previous_slope_) +
-             theta * theta * ((1 + 2 * u) * y() - h * u * slope_);
-  }
+  void inside(double theta, Values values) const override { cubic(theta, values); }
 
   const LinearlyImplicit& linear_;
   Work factors_;

@@ -30,6 +30,7 @@ struct StepStatistics {
   std::size_t evaluations = 0;
   double smallest_step = 0;  ///< [s], of the accepted ones
   double largest_step = 0;   ///< [s]
+  int determinant_sign = 1;  ///< of M at the last accepted state
 };
 
 /// One integration under way. It owns its work arrays; stepping allocates nothing.

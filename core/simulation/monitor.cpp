@@ -15,7 +15,6 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       rates_(equations.size()),
       work_(equations.make_work()),
       initial_work_(initial.y.back()),
-      examined_(model.layout().speeds <= largest_examined),
       checked_(initial.time) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
@@ -32,7 +31,7 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
   summary.peak_effort.assign(model.layout().speeds, 0.0);
   const Energies e = equations.energies(initial.y);
   initial_energy_ = e.kinetic + e.potential;
-  if (examined_) initial_sign_ = mass_matrix_sign(initial);
+  initial_sign_ = mass_matrix_sign(initial);
 }
 
 std::array<double, 3> Monitor::deflection(const Tip& tip, const State& state) const {
@@ -81,12 +80,10 @@ int Monitor::mass_matrix_sign(const State& state) {
   return evaluation.ok() ? evaluation.determinant_sign : 0;
 }
 
-void Monitor::audit_mass_matrix(const State& state) {
-  if (sign_change_ || !examined_) return;
-  const int sign = mass_matrix_sign(state);
+void Monitor::audit_mass_matrix(const State& state, int sign) {
   if (sign == initial_sign_) {
     checked_ = state.time;
-  } else {
+  } else if (!sign_change_) {
     sign_change_ = {checked_, state.time};
   }
 }

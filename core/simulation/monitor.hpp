@@ -23,8 +23,8 @@ class Monitor {
   [[nodiscard]] const std::string& excess() const { return excess_; }
   /// Energy against the work done.
   void audit_energy(const State& state);
-  /// Sign of det M against that of the start; after a change, and for models too large, it is not asked.
-  void audit_mass_matrix(const State& state);
+  /// Sign of det M at an accepted state against that of the start.
+  void audit_mass_matrix(const State& state, int sign);
   /// Rejections up to now, after an accepted step: notes the time where they pile up.
   void audit_steps(const State& state, const StepStatistics& steps);
 
@@ -53,7 +53,6 @@ class Monitor {
   Work work_;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;
-  bool examined_;         ///< whether M is looked at
   int initial_sign_ = 0;  ///< of det M
   double checked_;        ///< time of the last look at the sign of det M
   std::optional<SignChange> sign_change_;

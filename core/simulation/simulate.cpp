@@ -88,9 +88,7 @@ class Run {
         stepper_(integrator.start(equations, initial)),
         monitor_(model, equations, stepper_->state(), options.deflection_limit, summary),
         times_(initial.time, options.output, options.end),
-        sample_(stepper_->state()),
-        audit_interval_((options.end - initial.time) / 100),
-        next_audit_(initial.time + audit_interval_) {
+        sample_(stepper_->state()) {
     emit(stepper_->state());
     monitor_.observe(stepper_->state());
   }
@@ -122,7 +120,6 @@ class Run {
     const State& state = stepper_->state();
     if (state.time > emitted_) emit(state);
     monitor_.audit_energy(state);
-    monitor_.audit_mass_matrix(state);
   }
 
   [[nodiscard]] const Stepper& stepper() const { return *stepper_; }
@@ -142,11 +139,9 @@ class Run {
       monitor_.audit_energy(state);
     }
     monitor_.observe(state);
-    // A hundred looks at the mass matrix tell when it turned; more would cost as much as the run.
-    if (state.time >= next_audit_) {
-      monitor_.audit_mass_matrix(state);
-      next_audit_ = state.time + audit_interval_;
-    }
+    monitor_.audit_mass_matrix(state, stepper_->statistics().determinant_sign);
+    // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
+    if (monitor_.sign_change()) return {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
     if (!monitor_.excess().empty()) return {RunStatus::diverged, monitor_.excess()};
     return {};
   }
@@ -164,9 +159,7 @@ class Run {
   Monitor monitor_;
   OutputTimes times_;
   State sample_;
-  double emitted_ = 0;     ///< time of the last output
-  double audit_interval_;  ///< [s]
-  double next_audit_;      ///< [s]
+  double emitted_ = 0;  ///< time of the last output
 };
 
 std::string note_on_jumps(const std::vector<double>& times) {
@@ -214,7 +207,6 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
     summary.conditioning = conditioning(equations.system(summary.final.time, summary.final.y));
   }
   if (stop.status == RunStatus::completed) {
-    if (change) summary.message = "The run reached its end, but do not trust it. " + describe(history, model.layout());
     if (!summary.suspected_jumps.empty())
       summary.message += (summary.message.empty() ? "" : " ") + note_on_jumps(summary.suspected_jumps);
   } else {

@@ -13,13 +13,8 @@ inline void given_acceleration(const SymmetricNode<Space>& node, const Symmetric
   using Twist = typename Space::Twist;
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
   const JointData<Space>& joint = node.joint;
-  const Twist* outer = s.world;
-  if (node.parent >= 0) {
-    const SymmetricNode<Space>& parent = s.nodes[node.parent];
-    outer = node.parent_station < 0 ? &at<NodeWork<Space>>(s.work, parent.work)->A
-                                    : &at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].A;
-  }
-  Twist A = Space::to_child(w.SM, *outer) + w.sigma;
+  const Twist& outer = node.parent < 0 ? *s.world : *Outer(node, s).A;
+  Twist A = Space::to_child(w.SM, outer) + w.sigma;
   if (single(joint.kind)) {
     A += along<Space>(joint.kind, joint.direction * s.efforts[joint.speed]);
   } else if constexpr (Space::angular == 3) {
@@ -132,10 +127,7 @@ template <class Space, int N, Flavor flavor>
     }
   }
   if (node.parent < 0) return;
-  const SymmetricNode<Space>& parent = s.nodes[node.parent];
-  Twist& outer = node.parent_station < 0 ? at<NodeWork<Space>>(s.work, parent.work)->p
-                                         : at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].p;
-  outer += Space::to_parent(w.SM, F);
+  *Outer(node, s).p += Space::to_parent(w.SM, F);
 }
 
 }  // namespace withy::sweep

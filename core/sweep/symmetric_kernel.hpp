@@ -30,13 +30,6 @@ void precompute(SymmetricNode<Space>& node) {
     node.reduced.subtract_square(node.Y0[i], node.factor[i * n + i]);
 }
 
-template <class Space>
-inline const typename Space::Twist& outer_twist(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
-  const SymmetricNode<Space>& parent = s.nodes[node.parent];
-  return node.parent_station < 0 ? at<NodeWork<Space>>(s.work, parent.work)->V
-                                 : at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].V;
-}
-
 template <class Space, int N, Flavor flavor>
 [[gnu::flatten]] inline void outward_motion(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
@@ -46,7 +39,7 @@ template <class Space, int N, Flavor flavor>
   joint_motion<Space>(node.joint, s.positions + node.joint.position, s.speeds + node.joint.speed, joint);
   Twist V = joint.rate;
   w.SM = joint.SM;
-  if (node.parent >= 0) V += Space::to_child(joint.SM, outer_twist(node, s));
+  if (node.parent >= 0) V += Space::to_child(joint.SM, *Outer(node, s).V);
   w.sigma = node.parent >= 0 ? Space::cross(V, joint.rate) : Twist::zero();
   if (has_bias(node.joint.kind)) w.sigma += joint.bias;
 
@@ -241,20 +234,13 @@ template <class Space, int N, Flavor flavor>
     if (node.parent < 0) return true;
     p += I * w.sigma;
   }
-  const SymmetricNode<Space>& parent = s.nodes[node.parent];
-  if (node.parent_station < 0) {
-    auto& pw = *at<NodeWork<Space>>(s.work, parent.work);
-    pw.I += Space::to_parent(w.SM, I);
-    pw.p += Space::to_parent(w.SM, p);
+  const Outer outer(node, s);
+  if (node.begins) {
+    *outer.I = Space::to_parent(w.SM, I);
+    *outer.p = Space::to_parent(w.SM, p);
   } else {
-    auto& pw = at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station];
-    if (node.begins) {
-      pw.I = Space::to_parent(w.SM, I);
-      pw.p = Space::to_parent(w.SM, p);
-    } else {
-      pw.I += Space::to_parent(w.SM, I);
-      pw.p += Space::to_parent(w.SM, p);
-    }
+    *outer.I += Space::to_parent(w.SM, I);
+    *outer.p += Space::to_parent(w.SM, p);
   }
   return true;
 }
@@ -306,10 +292,7 @@ inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<
     }
   }
   if (node.parent < 0) return;
-  const SymmetricNode<Space>& parent = s.nodes[node.parent];
-  Twist& outer = node.parent_station < 0 ? at<NodeWork<Space>>(s.work, parent.work)->p
-                                         : at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].p;
-  outer += Space::to_parent(w.SM, p);
+  *Outer(node, s).p += Space::to_parent(w.SM, p);
 }
 
 template <class Space, int N, Flavor flavor>
@@ -318,14 +301,9 @@ template <class Space, int N, Flavor flavor>
   const int n = count<N>(node.modes);
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
   const JointData<Space>& joint = node.joint;
-  const Twist* outer = s.world;
-  if (node.parent >= 0) {
-    const SymmetricNode<Space>& parent = s.nodes[node.parent];
-    outer = node.parent_station < 0 ? &at<NodeWork<Space>>(s.work, parent.work)->A
-                                    : &at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].A;
-  }
+  const Twist& outer = node.parent < 0 ? *s.world : *Outer(node, s).A;
   Twist A = w.sigma;
-  if (joint.pose_matters) A += Space::to_child(w.SM, *outer);
+  if (joint.pose_matters) A += Space::to_child(w.SM, outer);
   if (single(joint.kind)) {
     const double x = (w.u - Space::dot(w.U, A)) * w.inverse;
     A += along<Space>(joint.kind, x);

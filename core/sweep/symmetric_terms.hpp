@@ -56,6 +56,24 @@ struct SymmetricState {
   double delta = 0;  ///< above 0: G + δ D + δ² K in the place of G
 };
 
+/// The quantities of what a node hangs on – a node's frame or a station – in the parent's work memory.
+template <class Space>
+struct Outer {
+  typename Space::Twist *V, *A, *p;
+  typename Space::Inertia* I;
+
+  Outer(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+    const SymmetricNode<Space>& parent = s.nodes[node.parent];
+    if (node.parent_station < 0) {
+      auto& w = *at<NodeWork<Space>>(s.work, parent.work);
+      V = &w.V, A = &w.A, p = &w.p, I = &w.I;
+    } else {
+      auto& w = at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station];
+      V = &w.V, A = &w.A, p = &w.p, I = &w.I;
+    }
+  }
+};
+
 /// Whether the elimination of a node's modes is known before the sweep begins.
 template <class Space>
 inline bool is_constant(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {

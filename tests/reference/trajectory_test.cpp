@@ -150,6 +150,9 @@ struct Outcome {
   bool completes;
 };
 
+/// Names the case in reports.
+void PrintTo(const Outcome& o, std::ostream* out) { *out << o.formulation << " at time scale " << o.time_scale; }
+
 class Paper : public testing::TestWithParam<Outcome> {};
 
 /// Theory section 3: angles of an independent program, relative tolerance 1e-7.
