@@ -31,10 +31,14 @@ struct LinearFields {
   Matrix3X phi, psi, psi_slope, strain;  ///< Φ; ψ; ψ′; strain (curvature or twist rate) as a vector
 };
 
-class Beam final : public Body {
+class Beam final : public Body, private Rod {
  public:
   Beam(double length, double mass_per_length, double twist_inertia, double damping_ratio, std::vector<Strain> strains)
-      : length_(length), strains_(std::move(strains)), quadrature_(length, wave_number(strains_)) {
+      : length_(length),
+        mass_per_length_(mass_per_length),
+        twist_inertia_(twist_inertia),
+        strains_(std::move(strains)),
+        quadrature_(length, wave_number(strains_)) {
     shape_.length = length;
     for (const Strain& s : strains_) {
       for (std::size_t i = 1; i <= s.functions->count(); ++i) {
@@ -85,8 +89,22 @@ class Beam final : public Body {
   std::string stations() const override {
     return "root, tip, or a coordinate x from 0 to " + std::to_string(length_) + " m";
   }
+  const Rod* rod() const override {
+    // A rod is clamped at x = 0. Shape functions that vanish there leave rounding, at most 1e-12 of a mode's size.
+    const LinearFields root = linear_fields(0);
+    const double moved = root.phi.cwiseAbs().sum() + length_ * root.psi.cwiseAbs().sum();
+    return shape_.modes() > 0 && moved < 1e-9 * static_cast<double>(shape_.modes()) ? this : nullptr;
+  }
 
  private:
+  Eigen::Index modes() const override { return shape_.modes(); }
+  double length() const override { return length_; }
+  double wave_number() const override { return wave_number(strains_); }
+  RodSection section(double x) const override {
+    LinearFields f = linear_fields(x);
+    return {std::move(f.psi_slope), std::move(f.psi), mass_per_length_, twist_inertia_};
+  }
+
   static double wave_number(const std::vector<Strain>& strains) {
     double beta = 0;
     for (const Strain& s : strains) beta = std::max(beta, s.functions->wave_number());
@@ -182,7 +200,7 @@ class Beam final : public Body {
     return e;
   }
 
-  double length_;
+  double length_, mass_per_length_, twist_inertia_;
   std::vector<Strain> strains_;
   BeamQuadrature quadrature_;
   ModalShape shape_;

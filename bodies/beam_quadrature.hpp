@@ -1,32 +1,22 @@
 /// \file
-/// Quadrature along a beam: Gauss–Legendre panels, and running integrals ∫₀ˣ from values at their nodes.
+/// Quadrature along a beam, by the wave number of its shape functions.
 #pragma once
 
-#include <Eigen/Core>
-#include <vector>
+#include <algorithm>
+#include <cmath>
+
+#include "withy/core/shape/panel_quadrature.hpp"
 
 namespace withy {
 
-/// Nodes and weights on [0, length], fine enough for products of functions of wave number up to `wave_number`.
+/// Panels fine enough for products of functions of wave number up to `wave_number`.
 ///
 /// A panel has 20 Gauss nodes and spans at most 2.5 wave-number lengths: interpolating a product of two functions there
 /// leaves (2.5)²⁰/(2¹⁹ 20!) ≈ 1e-16 of it, and the integrals of products of four are exact to rounding.
-class BeamQuadrature {
+class BeamQuadrature : public PanelQuadrature {
  public:
-  BeamQuadrature(double length, double wave_number);
-
-  [[nodiscard]] const std::vector<double>& nodes() const { return nodes_; }      ///< [m], increasing
-  [[nodiscard]] const std::vector<double>& weights() const { return weights_; }  ///< [m]
-  /// ∫₀ˣ f at every node, from the values of f at the nodes; one row a node, one column a function.
-  [[nodiscard]] Eigen::MatrixXd running_integral(const Eigen::MatrixXd& values) const;
-  /// ∫₀ˣ f at one x in [0, length]; one element a function.
-  [[nodiscard]] Eigen::RowVectorXd integral_to(double x, const Eigen::MatrixXd& values) const;
-
- private:
-  double panel_length_ = 0;
-  Eigen::Index panels_ = 0;
-  std::vector<double> nodes_;
-  std::vector<double> weights_;
+  BeamQuadrature(double length, double wave_number)
+      : PanelQuadrature(length, std::max<Eigen::Index>(1, std::lround(std::ceil(wave_number * length / 2.5))), 20) {}
 };
 
 }  // namespace withy

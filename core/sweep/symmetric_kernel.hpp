@@ -8,12 +8,13 @@
 /// Children and carried bodies enter (3) through their stations; then q̈, then ẍ are eliminated.
 #pragma once
 
+#include "withy/core/sweep/rod_terms.hpp"
 #include "withy/core/sweep/symmetric_terms.hpp"
 
 namespace withy::sweep {
 
-/// What of a node the compiler knows: rigid; ruthless; or its modes without truncation.
-enum class Flavor { rigid, frozen, full };
+/// What of a node the compiler knows: rigid; ruthless; its modes without truncation, of expanded or exact kinematics.
+enum class Flavor { rigid, frozen, full, exact };
 
 /// Constant elimination of a frozen leaf's modes.
 template <class Space>
@@ -37,6 +38,20 @@ inline const typename Space::Twist& outer_twist(const SymmetricNode<Space>& node
                                  : at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station].V;
 }
 
+/// Motion of a station's section in a node that is not truncated; see station_motion.
+template <class Space, int N, Flavor flavor>
+inline void section_motion(const SymmetricNode<Space>& node, std::size_t station, const SymmetricState<Space>& s,
+                           StationMotion<Space>& out, typename Space::Twist* J) {
+  const double* q = s.positions + node.mode_position;
+  const double* q_dot = s.speeds + node.mode_speed;
+  if constexpr (flavor == Flavor::exact) {
+    const RodWork work = rod_work_at(node.rod, node.modes, at<Pack>(s.work, node.work_rod));
+    rod_station_motion<N>(node.rod, station, work, node.modes, q, q_dot, out, J);
+  } else {
+    station_motion<Space, N>(node.stations[station].fields, node.modes, q, q_dot, out, J);
+  }
+}
+
 template <class Space, int N, Flavor flavor>
 [[gnu::flatten]] inline void outward_motion(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
@@ -58,17 +73,18 @@ template <class Space, int N, Flavor flavor>
       stations[k].V = Space::shift_to_child(station.fields.X, V);
     }
   }
-  if constexpr (flavor == Flavor::full) {
-    const double* q = s.positions + node.mode_position;
-    const double* q_dot = s.speeds + node.mode_speed;
+  if constexpr (flavor == Flavor::exact) {
+    rod_motion<N>(node.rod, n, s.positions + node.mode_position, s.speeds + node.mode_speed,
+                  rod_work_at(node.rod, n, at<Pack>(s.work, node.work_rod)));
+  }
+  if constexpr (flavor == Flavor::full || flavor == Flavor::exact) {
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
     Twist* J = at<Twist>(s.work, node.work_J);
     if (node.root_station >= 0) {
       // The root section moves with q: V_M = X V_B + J q̇, solved for V_B.
-      const auto& root = node.stations[static_cast<std::size_t>(node.root_station)];
       StationMotion<Space> m;
       Twist* JM = J + n * static_cast<int>(node.stations.size());
-      station_motion<Space, N>(root.fields, n, q, q_dot, m, JM);
+      section_motion<Space, N, flavor>(node, static_cast<std::size_t>(node.root_station), s, m, JM);
       const Twist rate = Space::to_child(node.M, m.rate);
       w.root = Space::compose(m.frame, node.M);
       w.root_sigma = Space::cross(V, rate) + Space::to_child(node.M, m.bias);
@@ -80,7 +96,7 @@ template <class Space, int N, Flavor flavor>
       if (!station.loaded) continue;
       StationWork<Space>& sw = stations[k];
       StationMotion<Space> m;
-      station_motion<Space, N>(station.fields, n, q, q_dot, m, J + static_cast<int>(k) * n);
+      section_motion<Space, N, flavor>(node, k, s, m, J + static_cast<int>(k) * n);
       const Twist VS = Space::to_child(m.frame, V) + m.rate;
       sw.frame = m.frame;
       sw.V = VS;
@@ -130,7 +146,13 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
       y[i] = 0;
     }
     for (int i = 0; i < n * n; ++i) G[i] = 0;
-    integrate<N>(node.mass, n, q, q_dot, V, at<Pack>(s.work, node.work_P), I, C, G, p, y);
+    Pack* P = at<Pack>(s.work, node.work_P);
+    if constexpr (flavor == Flavor::exact) {
+      const RodWork rod = rod_work_at(node.rod, n, at<Pack>(s.work, node.work_rod));
+      integrate<N>(node.rod, rod, n, q_dot, V, P, I, C, G, p, y);
+    } else {
+      integrate<N>(node.mass, n, q, q_dot, V, P, I, C, G, p, y);
+    }
     Twist* J = at<Twist>(s.work, node.work_J);
     for (std::size_t k = 0; k < node.stations.size(); ++k) {
       if (node.stations[k].loaded)

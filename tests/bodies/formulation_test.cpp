@@ -59,7 +59,7 @@ TEST_P(Formulations, without_modes_are_bitwise_the_same_rigid_body) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, Formulations,
-                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear"));
+                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact"));
 
 struct Neglect {
   const char* formulation;
@@ -76,7 +76,8 @@ TEST(Truncation, neglected_terms_have_the_order_the_name_says) {
   for (std::size_t i = 0; i < state.y.size(); ++i) state.y[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
   const auto quadratic = make_plugin<Formulation>(registry, "quadratic");
   for (const Neglect& n :
-       {Neglect{"ruthless", 1}, Neglect{"inconsistent", 1}, Neglect{"linear", 1}, Neglect{"consistent", 2}}) {
+       {Neglect{"ruthless", 1}, Neglect{"inconsistent", 1}, Neglect{"linear", 1}, Neglect{"consistent", 2},
+                          Neglect{"exact", 3}}) {
     const auto formulation = make_plugin<Formulation>(registry, n.formulation);
     EXPECT_NEAR(order_of_difference(*formulation, *quadratic, s.model, state), n.order, 0.1) << n.formulation;
   }

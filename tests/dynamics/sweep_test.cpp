@@ -34,7 +34,7 @@ struct Case {
   }
 };
 
-const std::vector<std::string> formulations = {"ruthless", "inconsistent", "consistent", "quadratic", "linear"};
+const std::vector<std::string> formulations = {"ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact"};
 
 class RandomTrees : public testing::TestWithParam<std::string> {};
 
@@ -117,7 +117,7 @@ TEST_P(Untruncated, power_of_the_motion_is_the_rate_of_energy) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formulations, Untruncated, testing::Values("quadratic", "linear"));
+INSTANTIATE_TEST_SUITE_P(Formulations, Untruncated, testing::Values("quadratic", "linear", "exact"));
 
 }  // namespace
 }  // namespace withy::test

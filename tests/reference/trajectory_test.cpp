@@ -93,6 +93,20 @@ TEST(Trajectory, driven_arm_linear) {
   expect_trajectory(SceneRun("driven-arm", "linear", {"integrator.rtol=1e-10"}), "driven-arm.linear");
 }
 
+TEST(Trajectory, two_link_slew_exact) {
+  expect_trajectory(SceneRun("two-link-slew", "exact", {"integrator.rtol=1e-9", "time.output=0.05"}),
+                    "two-link-slew.exact");
+}
+
+TEST(Trajectory, driven_arm_exact_and_its_tip_at_ten_seconds) {
+  const SceneRun run("driven-arm", "exact", {"integrator.rtol=1e-10"});
+  expect_trajectory(run, "driven-arm.exact");
+  const int payload = run.scene.model->body("payload");
+  const WorldPose pose = run.equations->frame_pose(run.summary.final.y, payload, 0);
+  EXPECT_NEAR(pose.position[0], 0.72271, 1e-5);  // theory section 8: five digits are given
+  EXPECT_NEAR(pose.position[1], -1.70760, 1e-5);
+}
+
 struct Outcome {
   const char* formulation;
   double time_scale;
