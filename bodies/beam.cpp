@@ -102,7 +102,7 @@ class Beam final : public Body, private Rod {
   double wave_number() const override { return wave_number(strains_); }
   RodSection section(double x) const override {
     LinearFields f = linear_fields(x);
-    return {std::move(f.psi_slope), std::move(f.psi), mass_per_length_, twist_inertia_};
+    return {std::move(f.psi_slope), std::move(f.psi), std::move(f.phi), mass_per_length_, twist_inertia_};
   }
 
   static double wave_number(const std::vector<Strain>& strains) {

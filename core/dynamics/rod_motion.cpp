@@ -57,6 +57,11 @@ std::vector<Matrix3> rotations(const RodTable& table, const Eigen::VectorXd& q) 
   return R;
 }
 
+/// r′ = R e_x without e_x and its first order.
+Vector3 stretch(const Matrix3& R, const RodSection& section, const Eigen::VectorXd& q) {
+  return R.col(0) - Vector3::UnitX() - Vector3(section.rotation * q).cross(Vector3::UnitX());
+}
+
 Vector3 vector(const Eigen::MatrixXd& m, Eigen::Index row, Eigen::Index column) {
   return m.block<1, 3>(row, column).transpose();
 }
@@ -74,38 +79,42 @@ RodMotion::RodMotion(const RodTable& table, const Eigen::VectorXd& q, const Eige
   };
   for (Eigen::Index k = 0; k < nodes; ++k) {
     const Matrix3& R = R_[static_cast<std::size_t>(k)];
-    slopes_.block<1, 3>(k, 0) = R.col(0).transpose();
-    const Matrix3X u = R * table.sections[static_cast<std::size_t>(k)].strain;
+    const RodSection& section = table.sections[static_cast<std::size_t>(k)];
+    slopes_.block<1, 3>(k, 0) = stretch(R, section, q).transpose();
+    const Matrix3X u = R * section.strain - section.strain;
     for (Eigen::Index i = 0; i < n; ++i) slopes_.block<1, 3>(k, w + 3 * i) = u.col(i).transpose();
   }
   integrate(0, P);
   Matrix3X omega = Matrix3X::Zero(3, nodes);
   for (Eigen::Index k = 0; k < nodes; ++k) {
-    const Vector3 t = vector(slopes_, k, 0);
-    Vector3 rate = Vector3::Zero();
+    const Matrix3& R = R_[static_cast<std::size_t>(k)];
+    const Vector3 t = R.col(0);
+    const RodSection& section = table.sections[static_cast<std::size_t>(k)];
+    const Vector3 rate = R * section.strain * q_dot;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const Vector3 wi = vector(at_nodes_, k, w + 3 * i);
+      const Vector3 psi = section.rotation.col(i);
+      const Vector3 wi = psi + vector(at_nodes_, k, w + 3 * i);
       omega.col(k) += wi * q_dot[i];
-      rate += vector(slopes_, k, w + 3 * i) * q_dot[i];
-      slopes_.block<1, 3>(k, P + 3 * i) = wi.cross(t).transpose();
+      slopes_.block<1, 3>(k, P + 3 * i) = (wi.cross(t) - psi.cross(Vector3::UnitX())).transpose();
     }
     slopes_.block<1, 3>(k, b) = omega.col(k).cross(rate).transpose();
   }
   integrate(P, 3 * n + 3);
   for (Eigen::Index k = 0; k < nodes; ++k) {
-    const Vector3 t = vector(slopes_, k, 0), spin = omega.col(k);
+    const Vector3 t = R_[static_cast<std::size_t>(k)].col(0), spin = omega.col(k);
     slopes_.block<1, 3>(k, a) = (vector(at_nodes_, k, b).cross(t) + spin.cross(spin.cross(t))).transpose();
   }
   integrate(a, 3);
 }
 
-PointMotionOf<double> RodMotion::motion(const Matrix3& R, const Eigen::RowVectorXd& integrals) const {
+PointMotionOf<double> RodMotion::motion(const Matrix3& R, const Eigen::RowVectorXd& integrals, double x,
+                                        const RodSection& section) const {
   const Eigen::Index n = q_dot_.size();
   PointMotionOf<double> m;
   m.R = R;
-  m.r = vector(integrals, 0, 0);
-  m.W = Eigen::Map<const Matrix3X>(integrals.data() + 3, 3, n);
-  m.P = Eigen::Map<const Matrix3X>(integrals.data() + 3 + 3 * n, 3, n);
+  m.r = x * Vector3::UnitX() + section.deflection * q_ + vector(integrals, 0, 0);
+  m.W = section.rotation + Eigen::Map<const Matrix3X>(integrals.data() + 3, 3, n);
+  m.P = section.deflection + Eigen::Map<const Matrix3X>(integrals.data() + 3 + 3 * n, 3, n);
   m.w_bias = vector(integrals, 0, 3 + 6 * n);
   m.r_bias = vector(integrals, 0, 6 + 6 * n);
   m.w_rate = m.W * q_dot_;
@@ -114,7 +123,8 @@ PointMotionOf<double> RodMotion::motion(const Matrix3& R, const Eigen::RowVector
 }
 
 PointMotionOf<double> RodMotion::at_node(std::size_t node) const {
-  return motion(R_[node], at_nodes_.row(static_cast<Eigen::Index>(node)));
+  return motion(R_[node], at_nodes_.row(static_cast<Eigen::Index>(node)), table_.quadrature.nodes()[node],
+                table_.sections[node]);
 }
 
 PointMotionOf<double> RodMotion::at(double x) const {
@@ -123,14 +133,15 @@ PointMotionOf<double> RodMotion::at(double x) const {
   const double from = next > 0 ? nodes[next - 1] : 0.0;
   const Matrix3 R =
       turned(table_, next > 0 ? R_[next - 1] : Matrix3::Identity(), table_.strains_between(from, x), q_, x - from);
-  return motion(R, table_.quadrature.integral_to(x, slopes_));
+  return motion(R, table_.quadrature.integral_to(x, slopes_), x, table_.rod->section(x));
 }
 
 Vector3 RodMotion::position(const RodTable& table, const Eigen::VectorXd& q, double x) {
   const Eigen::RowVectorXd weights = table.quadrature.weights_to(x);
   const std::vector<Matrix3> R = rotations(table, q);
-  Vector3 r = Vector3::Zero();
-  for (std::size_t k = 0; k < R.size(); ++k) r += weights[static_cast<Eigen::Index>(k)] * R[k].col(0);
+  Vector3 r = x * Vector3::UnitX() + table.rod->section(x).deflection * q;
+  for (std::size_t k = 0; k < R.size(); ++k)
+    r += weights[static_cast<Eigen::Index>(k)] * stretch(R[k], table.sections[k], q);
   return r;
 }
 

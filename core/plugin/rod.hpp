@@ -9,7 +9,8 @@ namespace withy {
 /// A section of a rod.
 struct RodSection {
   Matrix3X strain;            ///< κ_i [1/m], section axes, 3×n
-  Matrix3X rotation;          ///< ∫₀ˣ κ_i, 3×n; zero at x = 0
+  Matrix3X rotation;          ///< ψ_i = ∫₀ˣ κ_i, 3×n; zero at x = 0
+  Matrix3X deflection;        ///< Φ_i = ∫₀ˣ ψ_i × e_x [m], 3×n; zero at x = 0
   double mass_per_length;     ///< [kg/m]
   double inertia_per_length;  ///< rotary inertia about the section's own x axis [kg m], ≥ 0
 };

@@ -21,6 +21,18 @@ std::vector<Pack> packed(const double* values, std::size_t count) {
   return packs;
 }
 
+/// First order of a section at x, the rod's frame given in the node's.
+template <class Space>
+RodStation<Space> rod_station(const Pose& frame, double x, const RodSection& section) {
+  RodStation<Space> station;
+  station.X = Space::position(frame.p + x * frame.R.col(0));
+  for (Eigen::Index i = 0; i < section.rotation.cols(); ++i) {
+    station.first.push_back(Space::Twist::of(Space::angle(frame.R * section.rotation.col(i)),
+                                             Space::position(frame.R * section.deflection.col(i))));
+  }
+  return station;
+}
+
 }  // namespace
 
 RodIntegrals::RodIntegrals(const RodTable& table, const std::vector<double>& station_x) {
@@ -44,47 +56,52 @@ RodKinematics<Planar>::RodKinematics(const NodeSpec& spec) {
   const RodTable table(*spec.rod);
   const std::vector<double> x = station_coordinates(spec);
   integrals = RodIntegrals(table, x);
-  origin = Planar::position(spec.rod_frame.p);
-  const Matrix3& R = spec.rod_frame.R;
-  heading = std::atan2(R(1, 0), R(0, 0));
-  const auto angles = [&](const RodSection& section, Eigen::Index i) { return R.row(2).dot(section.rotation.col(i)); };
-  const auto n = static_cast<Eigen::Index>(spec.modes);
-  angle.resize(static_cast<std::size_t>(integrals.packs) * spec.modes);
+  const Pose& frame = spec.rod_frame;
+  heading = std::atan2(frame.R(1, 0), frame.R(0, 0));
+  const std::size_t n = spec.modes;
+  X.resize(static_cast<std::size_t>(integrals.packs) * 2);
+  first.resize(static_cast<std::size_t>(integrals.packs) * n * 3);
   for (std::size_t k = 0; k < table.sections.size(); ++k) {
-    for (Eigen::Index i = 0; i < n; ++i)
-      angle[(k / lanes) * spec.modes + static_cast<std::size_t>(i)][k % lanes] = angles(table.sections[k], i);
+    const RodStation<Planar> node = rod_station<Planar>(frame, table.quadrature.nodes()[k], table.sections[k]);
+    for (int c = 0; c < 2; ++c) X[(k / lanes) * 2 + static_cast<std::size_t>(c)][k % lanes] = node.X[c];
+    for (std::size_t i = 0; i < n; ++i) {
+      for (int c = 0; c < 3; ++c)
+        first[((k / lanes) * n + i) * 3 + static_cast<std::size_t>(c)][k % lanes] = node.first[i][c];
+    }
   }
-  for (const double at : x) {
-    const RodSection section = spec.rod->section(at);
-    station_angle.emplace_back();
-    for (Eigen::Index i = 0; i < n; ++i) station_angle.back().push_back(angles(section, i));
-  }
+  for (const double at : x) stations.push_back(rod_station<Planar>(frame, at, spec.rod->section(at)));
 }
 
 RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
   const RodTable table(*spec.rod);
   const std::vector<double> x = station_coordinates(spec);
   integrals = RodIntegrals(table, x);
-  const Matrix3& R = spec.rod_frame.R;
-  origin = Spatial::position(spec.rod_frame.p);
+  const Pose& frame = spec.rod_frame;
+  const Matrix3& R = frame.R;
   direction = Spatial::position(R.col(0));
   const std::size_t n = spec.modes;
   const std::vector<double>& nodes = table.quadrature.nodes();
-  strain.resize(static_cast<std::size_t>(integrals.packs) * n * 3);
+  X.resize(static_cast<std::size_t>(integrals.packs) * 3);
+  first.resize(static_cast<std::size_t>(integrals.packs) * n * 12);
   std::vector<double> section_inertia(nodes.size());
   bool rotary = false;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const Matrix3X kappa = R * table.sections[k].strain;
+    const RodSection& section = table.sections[k];
+    const Vector3 place = frame.p + nodes[k] * R.col(0);
+    for (std::size_t c = 0; c < 3; ++c) X[(k / lanes) * 3 + c][k % lanes] = place[static_cast<Eigen::Index>(c)];
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        strain[((k / lanes) * n + i) * 3 + c][k % lanes] =
-            kappa(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(i));
-      }
+      const auto mode = static_cast<Eigen::Index>(i);
+      const Vector3 psi = section.rotation.col(mode);
+      Matrix3X fields(3, 4);
+      fields << section.strain.col(mode), psi, psi.cross(Vector3::UnitX()), section.deflection.col(mode);
+      fields = R * fields;
+      for (std::size_t c = 0; c < 12; ++c) first[((k / lanes) * n + i) * 12 + c][k % lanes] = fields.data()[c];
     }
-    section_inertia[k] = table.quadrature.weights()[k] * table.sections[k].inertia_per_length;
+    section_inertia[k] = table.quadrature.weights()[k] * section.inertia_per_length;
     rotary = rotary || section_inertia[k] > 0;
   }
   if (rotary) inertia = packed(section_inertia.data(), nodes.size());
+  for (const double at : x) stations.push_back(rod_station<Spatial>(frame, at, spec.rod->section(at)));
 
   // Turns: from node to node, then from the node before each station to it.
   first_station = nodes.size();

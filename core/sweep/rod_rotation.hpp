@@ -17,6 +17,9 @@ struct PackVector {
   friend PackVector operator+(const PackVector& a, const PackVector& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
   }
+  friend PackVector operator-(const PackVector& a, const PackVector& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  }
   friend PackVector operator*(const PackVector& a, double s) {
     return {a[0] * spread(s), a[1] * spread(s), a[2] * spread(s)};
   }
@@ -31,10 +34,10 @@ struct PackVector {
 ///   θ = ∫κ + (20 a₀ + a₂ + c) × (a₁ − d)/240,  c = a₀ × a₁,  d = a₀ × (c − 2 a₂)/60.
 /// The error is of the seventh power of h and vanishes where κ keeps its direction.
 inline PackVector magnus(const PackVector& integral, const PackVector& a1, const PackVector& a2) {
-  const PackVector a0 = integral + a2 * (-1.0 / 12);
+  const PackVector a0 = integral - a2 * (1.0 / 12);
   const PackVector c = cross(a0, a1);
-  const PackVector d = cross(a0, c + a2 * -2.0) * (1.0 / 60);
-  return integral + cross(a0 * 20 + a2 + c, a1 + d * -1.0) * (1.0 / 240);
+  const PackVector d = cross(a0, c - a2 * 2) * (1.0 / 60);
+  return integral + cross(a0 * 20 + a2 + c, a1 - d) * (1.0 / 240);
 }
 
 struct PackQuaternion {

@@ -17,7 +17,7 @@ inline void integrate(const RodKinematics<Planar>& rod, const RodWork& work, int
   for (int k = 0; k < packs; ++k) {
     const Pack m = rod.integrals.root_mass[static_cast<std::size_t>(k)];
     const Pack* y = work.value + k;
-    Pack r[2] = {m * (y[0] + spread(rod.origin.x)), m * (y[packs] + spread(rod.origin.y))};
+    Pack r[2] = {m * y[0], m * y[packs]};
     Pack a[2] = {m * (y[Rod::a(n) * packs] - spread(V.w * V.y)), m * (y[(Rod::a(n) + 1) * packs] + spread(V.w * V.x))};
     Pack v[2] = {spread(0.0), spread(0.0)};
     for (int i = 0; i < n; ++i) {
@@ -78,7 +78,7 @@ inline void integrate(const RodKinematics<Spatial>& rod, const RodWork& work, in
     const Pack* y = work.value + k;
     Pack r[3], a[3], v[3];
     for (int c = 0; c < 3; ++c) {
-      r[c] = m * (y[c * packs] + spread(rod.origin[c]));
+      r[c] = m * y[c * packs];
       a[c] = m * (y[(Rod::a(n) + c) * packs] + spread(carried[c]));
       v[c] = spread(0.0);
     }
@@ -94,7 +94,7 @@ inline void integrate(const RodKinematics<Spatial>& rod, const RodWork& work, in
     p.v += Triple(sum(m * a[0]), sum(m * a[1]), sum(m * a[2]));
     add_products<N>(r, a, P, n, I, C, G, p, h);
     if (rod.inertia.empty()) continue;
-    const Pack* t = work.slope + k;
+    const Pack* t = work.slope + Rod::axis(n) * packs + k;
     PackVector omega = PackVector::zero();
     for (int i = 0; i < n; ++i) {
       for (int c = 0; c < 3; ++c) omega[c] += y[(Rod::w + 3 * i + c) * packs] * spread(q_dot[i]);
@@ -118,17 +118,18 @@ inline void rod_station_motion(const RodKinematics<Planar>& rod, std::size_t sta
     const Pack* f = work.slope + function * packs;
     return Planar::Position{rod.integrals.to(station, f), rod.integrals.to(station, f + packs)};
   };
-  const double* psi = rod.station_angle[station].data();
-  double angle = 0;
-  for (int i = 0; i < n; ++i) angle += psi[i] * q[i];
-  out.frame.R = {std::cos(angle), std::sin(angle)};
-  out.frame.p = rod.origin + vector(0);
+  const RodStation<Planar>& at = rod.stations[station];
+  Planar::Twist displacement = Planar::Twist::zero();
+  for (int i = 0; i < n; ++i) displacement += at.first[static_cast<std::size_t>(i)] * q[i];
+  out.frame.R = {std::cos(displacement.w), std::sin(displacement.w)};
+  out.frame.p = at.X + Planar::Position{displacement.x, displacement.y} + vector(0);
   const auto back = [&](double w, const Planar::Position& v) {
     return Planar::Twist::of(w, Planar::unrotate(out.frame.R, v));
   };
   out.rate = Planar::Twist::zero();
   for (int i = 0; i < n; ++i) {
-    J[i] = back(psi[i], vector(Rod::P + 2 * i));
+    const Planar::Twist& first = at.first[static_cast<std::size_t>(i)];
+    J[i] = back(first.w, Planar::Position{first.x, first.y} + vector(Rod::P + 2 * i));
     out.rate += J[i] * q_dot[i];
   }
   const Planar::Twist b = back(0, vector(Rod::a(n)));
@@ -137,8 +138,7 @@ inline void rod_station_motion(const RodKinematics<Planar>& rod, std::size_t sta
 
 template <int N>
 inline void rod_station_motion(const RodKinematics<Spatial>& rod, std::size_t station, const RodWork& work, int modes,
-                               const double* /*q*/, const double* q_dot, StationMotion<Spatial>& out,
-                               Spatial::Twist* J) {
+                               const double* q, const double* q_dot, StationMotion<Spatial>& out, Spatial::Twist* J) {
   using Rod = RodKinematics<Spatial>;
   const int n = count<N>(modes), packs = rod.integrals.packs;
   const auto vector = [&](int function) {
@@ -149,11 +149,14 @@ inline void rod_station_motion(const RodKinematics<Spatial>& rod, std::size_t st
   const Pack turn = work.rotation[rod.first_station + station];
   const PackMatrix R = rotation({spread(turn[0]), {spread(turn[1]), spread(turn[2]), spread(turn[3])}});
   for (int j = 0; j < 3; ++j) out.frame.R.c[j] = Triple(R.column[j][0][0], R.column[j][1][0], R.column[j][2][0]);
-  out.frame.p = rod.origin + vector(0);
+  const RodStation<Spatial>& at = rod.stations[station];
+  out.frame.p = at.X + vector(0);
   const Block back = transpose(out.frame.R);
   out.rate = Spatial::Twist::zero();
   for (int i = 0; i < n; ++i) {
-    J[i] = {back * vector(Rod::w + 3 * i), back * vector(Rod::P(n) + 3 * i)};
+    const Spatial::Twist& first = at.first[static_cast<std::size_t>(i)];
+    J[i] = {back * (first.w + vector(Rod::w + 3 * i)), back * (first.v + vector(Rod::P(n) + 3 * i))};
+    out.frame.p += first.v * q[i];
     out.rate += J[i] * q_dot[i];
   }
   out.bias = {back * vector(Rod::b(n)), back * vector(Rod::a(n)) - cross(out.rate.w, out.rate.v)};
