@@ -40,11 +40,15 @@ struct RodIntegrals {
       for (int panel = 0; panel < packs; panel += 3, f += 3, y += 3) {
         Pack y0 = spread(before), y1 = y0, y2 = y0;
         const Pack* from = running.data();
-        for (std::size_t j = 0; j < RodTable::order; ++j, from += 3) {
-          const Pack value = spread(f[j / lanes][j % lanes]);
-          y0 += from[0] * value;
-          y1 += from[1] * value;
-          y2 += from[2] * value;
+        for (int m = 0; m < packs_per_panel; ++m, from += 12) {
+          const Pack values = f[m];
+#pragma GCC unroll 4
+          for (int lane = 0; lane < 4; ++lane) {  // known to the compiler, which otherwise goes through memory
+            const Pack value = spread(values[lane]);
+            y0 += from[lane * 3] * value;
+            y1 += from[lane * 3 + 1] * value;
+            y2 += from[lane * 3 + 2] * value;
+          }
         }
         before += sum(weights[0] * f[0] + weights[1] * f[1] + weights[2] * f[2]);
         y[0] = y0, y[1] = y1, y[2] = y2;
