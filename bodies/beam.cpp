@@ -42,13 +42,19 @@ struct LinearFields {
   Matrix3X phi, psi, psi_slope, strain;  ///< Φ; ψ; ψ′; strain (curvature or twist rate) as a vector
 };
 
-class Beam final : public Body {
+class Beam final : public Body, private Rod {
  public:
   Beam(const Material& material, std::vector<Strain> strains)
       : length_(material.length),
+        mass_per_length_(material.mass_per_length.mean()),
         strains_(std::move(strains)),
         quadrature_(material.length, wave_number(strains_), kinks(material, strains_)) {
     shape_.length = length_;
+    uniform_rod_ = material.mass_per_length.knots().empty();
+    for (const auto& [axis, inertia] : material.inertias) {
+      uniform_rod_ = uniform_rod_ && axis == Vector3::UnitX() && inertia.knots().empty();
+      twist_inertia_ += inertia.mean();
+    }
     for (const Strain& s : strains_) {
       for (std::size_t i = 1; i <= s.functions->count(); ++i) {
         shape_.mode_names.push_back(std::string(s.name) + "[" + std::to_string(i) + "]");
@@ -99,8 +105,23 @@ class Beam final : public Body {
   std::string stations() const override {
     return "root, tip, or a coordinate x from 0 to " + std::to_string(length_) + " m";
   }
+  const Rod* rod() const override {
+    // The exact rod is uniform but for its stiffness, without rotary inertia in bending, and clamped at x = 0. Shape
+    // functions that vanish there leave rounding, at most 1e-12 of a mode's size.
+    const LinearFields root = linear_fields(0);
+    const double moved = root.phi.cwiseAbs().sum() + length_ * root.psi.cwiseAbs().sum();
+    return uniform_rod_ && shape_.modes() > 0 && moved < 1e-9 * static_cast<double>(shape_.modes()) ? this : nullptr;
+  }
 
  private:
+  Eigen::Index modes() const override { return shape_.modes(); }
+  double length() const override { return length_; }
+  double wave_number() const override { return wave_number(strains_); }
+  RodSection section(double x) const override {
+    LinearFields f = linear_fields(x);
+    return {std::move(f.psi_slope), std::move(f.psi), std::move(f.phi), mass_per_length_, twist_inertia_};
+  }
+
   static double wave_number(const std::vector<Strain>& strains) {
     double beta = 0;
     for (const Strain& s : strains) beta = std::max(beta, s.functions->wave_number());
@@ -207,7 +228,9 @@ class Beam final : public Body {
     return e;
   }
 
-  double length_;
+  double length_, mass_per_length_;
+  double twist_inertia_ = 0;  ///< mean, where uniform_rod_ the value
+  bool uniform_rod_ = true;
   std::vector<Strain> strains_;
   BeamQuadrature quadrature_;
   ModalShape shape_;

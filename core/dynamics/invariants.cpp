@@ -110,7 +110,7 @@ Invariants::Invariants(const NodeSpec& node, StrainOrder order) {
 }
 
 NodeSpec in_strain_order(NodeSpec node, StrainOrder order) {
-  if (order == StrainOrder::quadratic) return node;
+  if (order != StrainOrder::linear) return node;
   const auto strip = [](PointExpansion& e) {
     for (std::size_t c = 0; c < 3; ++c) {
       e.gamma[c].setZero();

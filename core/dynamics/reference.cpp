@@ -1,7 +1,11 @@
 #include "withy/core/dynamics/reference.hpp"
 
 #include <Eigen/Dense>
+#include <optional>
+#include <stdexcept>
 #include <unsupported/Eigen/AutoDiff>
+
+#include "withy/core/dynamics/rod_motion.hpp"
 
 namespace withy {
 namespace {
@@ -97,16 +101,20 @@ WorldMotion<S> across(const WorldMotion<S>& F, const HingeMotion& h, std::span<c
   return M;
 }
 
-/// How one body's elastic coordinates enter: its strain order, and the factor of q and q̇ (a dual ε, 0 or 1).
+}  // namespace
+
+/// How one body's elastic coordinates enter: its strain order, and the factor of q and q̇ (a dual ε, 0 or 1); a rod of
+/// exact kinematics.
 template <class S>
-struct BodyTerms {
+struct ReferenceDynamics::BodyTerms {
   StrainOrder order;
   S scale;
+  const RodTable* rod = nullptr;
 };
 
 /// Everything about the tree at one state.
 template <class S>
-class Tree {
+class ReferenceDynamics::Tree {
  public:
   Tree(const Model& model, std::vector<BodyTerms<S>> terms, std::span<const double> y)
       : model_(model), terms_(std::move(terms)) {
@@ -126,6 +134,10 @@ class Tree {
           q[i] = terms_[b].scale * S(y[slot.position + static_cast<std::size_t>(i)]);
           q_dot[i] = terms_[b].scale * S(y[layout.positions + slot.speed + static_cast<std::size_t>(i)]);
         }
+      }
+      rods_.emplace_back();
+      if constexpr (std::is_same_v<S, double>) {
+        if (terms_[b].rod != nullptr) rods_.back().emplace(*terms_[b].rod, q, q_dot);
       }
       q_.push_back(std::move(q));
       q_dot_.push_back(std::move(q_dot));
@@ -152,14 +164,31 @@ class Tree {
   [[nodiscard]] PointMotionOf<S> relative(int body, int frame_index, const Pose& offset) const {
     const auto b = static_cast<std::size_t>(body);
     const Frame& f = model_.bodies()[b].frames[static_cast<std::size_t>(frame_index)];
-    return offset_motion<S>(point_motion<S>(f.section, terms_[b].order, q_[b], q_dot_[b]), f.pose * offset);
+    return offset_motion<S>(section(b, f.section), f.pose * offset);
   }
   [[nodiscard]] WorldMotion<S> frame(int body, int frame_index, const Pose& offset) const {
     const auto b = static_cast<std::size_t>(body);
     return outward<S>(bodies_[b], relative(body, frame_index, offset), first_mode_[b]);
   }
-  [[nodiscard]] WorldMotion<S> point(std::size_t b, const PointExpansion& e) const {
-    return outward<S>(bodies_[b], point_motion<S>(e, terms_[b].order, q_[b], q_dot_[b]), first_mode_[b]);
+  /// Calls particle(mass, motion) and section(inertia, motion) for all mass of a body.
+  template <class OfParticle, class OfSection>
+  void each(std::size_t b, OfParticle&& particle, OfSection&& section_of) const {
+    if constexpr (std::is_same_v<S, double>) {
+      if (rods_[b]) {
+        const RodTable& rod = *terms_[b].rod;
+        for (std::size_t k = 0; k < rod.sections.size(); ++k) {
+          const double w = rod.quadrature.weights()[k];
+          const WorldMotion<S> A = outward<S>(bodies_[b], rods_[b]->at_node(k), first_mode_[b]);
+          particle(w * rod.sections[k].mass_per_length, A);
+          section_of(Matrix3(w * rod.sections[k].inertia_per_length * Vector3::UnitX() * Vector3::UnitX().transpose()),
+                     A);
+        }
+        return;
+      }
+    }
+    const ModalShape& shape = model_.bodies()[b].body->shape();
+    for (const Particle& p : shape.particles) particle(p.mass, point(b, p.at));
+    for (const Section& s : shape.sections) section_of(s.inertia, point(b, s.at));
   }
 
   /// M = Σ m JᵀJ + Σ J_ωᵀ I J_ω and f = −Σ m Jᵀ(a_bias − g) − Σ J_ωᵀ(I α_bias + ω × Iω).
@@ -169,18 +198,17 @@ class Tree {
     f = VX<S>::Zero(n);
     const V3<S> g = model_.gravity().template cast<S>();
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      const ModalShape& shape = model_.bodies()[b].body->shape();
-      for (const Particle& particle : shape.particles) {
-        const WorldMotion<S> A = point(b, particle.at);
-        M += S(particle.mass) * (A.JV.transpose() * A.JV);
-        f -= S(particle.mass) * (A.JV.transpose() * (A.v_bias - g));
-      }
-      for (const Section& section : shape.sections) {
-        const WorldMotion<S> A = point(b, section.at);
-        const M3<S> I = A.R * section.inertia.template cast<S>() * A.R.transpose();
-        M += A.JW.transpose() * I * A.JW;
-        f -= A.JW.transpose() * (I * A.w_bias + A.w.cross(I * A.w));
-      }
+      each(
+          b,
+          [&](double mass, const WorldMotion<S>& A) {
+            M += S(mass) * (A.JV.transpose() * A.JV);
+            f -= S(mass) * (A.JV.transpose() * (A.v_bias - g));
+          },
+          [&](const Matrix3& inertia, const WorldMotion<S>& A) {
+            const M3<S> I = A.R * inertia.template cast<S>() * A.R.transpose();
+            M += A.JW.transpose() * I * A.JW;
+            f -= A.JW.transpose() * (I * A.w_bias + A.w.cross(I * A.w));
+          });
     }
   }
 
@@ -188,23 +216,29 @@ class Tree {
     Energies e;
     V3<S> linear = V3<S>::Zero(), angular = V3<S>::Zero();
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      const ModalShape& shape = model_.bodies()[b].body->shape();
-      const WorldMotion<S>& B = bodies_[b];
-      for (const Particle& particle : shape.particles) {
-        const auto [r, r_rate] = point_velocity(particle.at, terms_[b].order, q_[b], q_dot_[b]);
-        const V3<S> arm = B.R * r;
-        const V3<S> v = B.v + B.w.cross(arm) + B.R * r_rate;
-        const V3<S> p = B.p + arm;
-        e.kinetic += 0.5 * particle.mass * v.squaredNorm();
-        e.potential -= particle.mass * model_.gravity().dot(p);
-        linear += particle.mass * v;
-        angular += particle.mass * p.cross(v);
-      }
-      for (const Section& section : shape.sections) {
-        const WorldMotion<S> A = point(b, section.at);
-        const V3<S> h = A.R * section.inertia * A.R.transpose() * A.w;
+      const auto add_mass = [&](double mass, const V3<S>& p, const V3<S>& v) {
+        e.kinetic += 0.5 * mass * v.squaredNorm();
+        e.potential -= mass * model_.gravity().dot(p);
+        linear += mass * v;
+        angular += mass * p.cross(v);
+      };
+      const auto add_section = [&](const Matrix3& inertia, const WorldMotion<S>& A) {
+        const V3<S> h = A.R * inertia * A.R.transpose() * A.w;
         e.kinetic += 0.5 * A.w.dot(h);
         angular += h;
+      };
+      const ModalShape& shape = model_.bodies()[b].body->shape();
+      const WorldMotion<S>& B = bodies_[b];
+      if (rods_[b]) {
+        each(
+            b, [&](double mass, const WorldMotion<S>& A) { add_mass(mass, A.p, A.v); }, add_section);
+      } else {
+        for (const Particle& particle : shape.particles) {
+          const auto [r, r_rate] = point_velocity(particle.at, terms_[b].order, q_[b], q_dot_[b]);
+          const V3<S> arm = B.R * r;
+          add_mass(particle.mass, B.p + arm, B.v + B.w.cross(arm) + B.R * r_rate);
+        }
+        for (const Section& section : shape.sections) add_section(section.inertia, point(b, section.at));
       }
       if (q_[b].size() > 0) e.potential += 0.5 * q_[b].dot(shape.stiffness * q_[b]);
     }
@@ -216,18 +250,42 @@ class Tree {
   }
 
  private:
+  /// A section of a body relative to it.
+  [[nodiscard]] PointMotionOf<S> section(std::size_t b, const PointExpansion& e) const {
+    if constexpr (std::is_same_v<S, double>) {
+      if (rods_[b]) return rods_[b]->at(e.X.x());
+    }
+    return point_motion<S>(e, terms_[b].order, q_[b], q_dot_[b]);
+  }
+  [[nodiscard]] WorldMotion<S> point(std::size_t b, const PointExpansion& e) const {
+    return outward<S>(bodies_[b], section(b, e), first_mode_[b]);
+  }
+
   const Model& model_;
   std::vector<BodyTerms<S>> terms_;
   std::vector<WorldMotion<S>> bodies_;
   std::vector<Eigen::Index> first_mode_;
   std::vector<VX<S>> q_, q_dot_;
+  std::vector<std::optional<RodMotion>> rods_;
 };
-
-}  // namespace
 
 ReferenceDynamics::ReferenceDynamics(std::shared_ptr<const Model> model, Terms terms)
     : model_(std::move(model)), terms_(terms) {
   for (const BodyNode& body : model_->bodies()) slots_.push_back(model_->layout().body(body.name));
+  for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
+    const BodyNode& node = model_->bodies()[b];
+    rods_.emplace_back();
+    const Terms own = terms_of(b);
+    if (node.body->shape().modes() == 0 || own.strain != StrainOrder::exact || own.truncation != Truncation::none)
+      continue;
+    const Rod* rod = node.body->rod();
+    if (rod == nullptr) {
+      throw std::invalid_argument("body '" + node.name +
+                                  "' has no exact kinematics: a body offers it that is a rod clamped at its root; "
+                                  "give it a formulation of its own");
+    }
+    rods_.back() = std::make_shared<const RodTable>(*rod);
+  }
 }
 
 Terms ReferenceDynamics::terms_of(std::size_t body) const { return model_->bodies()[body].terms.value_or(terms_); }
@@ -260,7 +318,7 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
   } else {
     std::vector<BodyTerms<double>> terms;
     for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
-      terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? 0.0 : 1.0});
+      terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? 0.0 : 1.0, rods_[b].get()});
     }
     Tree<double>(*model_, std::move(terms), y).assemble(M, f);
   }
@@ -287,23 +345,16 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
   return s;
 }
 
-namespace {
-
-/// Every body in its own strain kinematics, without truncation.
-std::vector<BodyTerms<double>> untruncated(const Model& model, Terms otherwise) {
+ReferenceDynamics::Tree<double> ReferenceDynamics::untruncated(std::span<const double> y) const {
   std::vector<BodyTerms<double>> terms;
-  for (const BodyNode& b : model.bodies()) terms.push_back({b.terms.value_or(otherwise).strain, 1.0});
-  return terms;
+  for (std::size_t b = 0; b < model_->bodies().size(); ++b) terms.push_back({terms_of(b).strain, 1.0, rods_[b].get()});
+  return {*model_, std::move(terms), y};
 }
 
-}  // namespace
-
-Energies ReferenceDynamics::energies(std::span<const double> y) const {
-  return Tree<double>(*model_, untruncated(*model_, terms_), y).energies();
-}
+Energies ReferenceDynamics::energies(std::span<const double> y) const { return untruncated(y).energies(); }
 
 WorldPose ReferenceDynamics::frame_pose(std::span<const double> y, int body, int frame) const {
-  const WorldMotion<double> A = Tree<double>(*model_, untruncated(*model_, terms_), y).frame(body, frame, Pose{});
+  const WorldMotion<double> A = untruncated(y).frame(body, frame, Pose{});
   WorldPose pose;
   Eigen::Map<Vector3>(pose.position.data()) = A.p;
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.rotation.data()) = A.R;
@@ -315,11 +366,12 @@ std::array<double, 3> ReferenceDynamics::deflection(std::span<const double> y, i
   const BodyNode& node = model_->bodies()[b];
   std::array<double, 3> d{};
   if (node.body->shape().modes() == 0) return d;
-  const Slot& slot = *slots_[b];
-  const Eigen::Index n = node.body->shape().modes();
-  const Eigen::Map<const Eigen::VectorXd> q(y.data() + slot.position, n);
   const PointExpansion& e = node.frames[static_cast<std::size_t>(frame)].section;
-  Eigen::Map<Vector3>(d.data()) = point_velocity(e, terms_of(b).strain, q, q).first - e.X;
+  const Slot& slot = *slots_[b];
+  const Eigen::Map<const Eigen::VectorXd> q(y.data() + slot.position, node.body->shape().modes());
+  const Vector3 r = rods_[b] != nullptr ? RodMotion::position(*rods_[b], q, e.X.x())
+                                        : point_velocity(e, terms_of(b).strain, q, q).first;
+  Eigen::Map<Vector3>(d.data()) = r - e.X;
   return d;
 }
 

@@ -13,10 +13,13 @@
 
 namespace withy {
 
+struct RodTable;
+
 /// Dense reference dynamics of a model. Const functions allocate; they may throw std::bad_alloc.
 class ReferenceDynamics {
  public:
   /// `terms` hold for every body that has none of its own.
+  /// \throws std::invalid_argument where a body's kinematics is to be exact and it offers none; the text names it.
   ReferenceDynamics(std::shared_ptr<const Model> model, Terms terms);
 
   /// M and f of M u̇ = f (theory (3) for the strict truncation), and the loads' efforts at t.
@@ -28,10 +31,17 @@ class ReferenceDynamics {
 
  private:
   [[nodiscard]] Terms terms_of(std::size_t body) const;
+  template <class S>
+  class Tree;
+  template <class S>
+  struct BodyTerms;
+  /// Every body in its own strain kinematics, without truncation.
+  [[nodiscard]] Tree<double> untruncated(std::span<const double> y) const;
 
   std::shared_ptr<const Model> model_;
   Terms terms_;
-  std::vector<const Slot*> slots_;  ///< of each body's modes; null where it has none
+  std::vector<const Slot*> slots_;                     ///< of each body's modes; null where it has none
+  std::vector<std::shared_ptr<const RodTable>> rods_;  ///< one a body; null where its kinematics is an expansion
 };
 
 }  // namespace withy

@@ -52,6 +52,8 @@ struct NodeSpec {
   std::vector<Section> sections;
   Eigen::MatrixXd stiffness, damping;
   std::vector<StationSpec> stations;
+  const Rod* rod = nullptr;  ///< of the model's body
+  Pose rod_frame;            ///< that body's frame in the node's
 };
 
 /// The nodes, parents first.

@@ -13,6 +13,7 @@ void rebase(Tree& tree, std::size_t index, const Pose& AN) {
   for (Particle& p : n.particles) p.at = moved(p.at, AN);
   for (Section& s : n.sections) s = {turn(s.inertia), moved(s.at, AN)};
   for (StationSpec& s : n.stations) s = {moved(s.at, AN), s.carried.seen_from(turned(AN.R))};
+  n.rod_frame = AN * n.rod_frame;
   n.M = n.root_station < 0 ? AN * n.M : turned(AN.R) * n.M;
   for (NodeSpec& child : tree.nodes) {
     if (child.parent != static_cast<int>(index)) continue;

@@ -136,6 +136,8 @@ class Merger {
     n.mode_speed = slot.speed;
     n.stiffness = shape.stiffness;
     n.damping = shape.damping;
+    n.rod = body.body->rod();
+    n.rod_frame = where;
     for (const Particle& p : shape.particles) n.particles.push_back({p.mass, moved(p.at, where)});
     for (const Section& s : shape.sections) {
       n.sections.push_back({where.R * s.inertia * where.R.transpose(), moved(s.at, where)});

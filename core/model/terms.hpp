@@ -6,8 +6,9 @@ namespace withy {
 
 /// Which terms of the expansion r = X + Φq + ½qᵀΓq, θ = Ψq + ½qᵀΘq a strain kinematics keeps.
 enum class StrainOrder {
-  linear,    ///< Φ, Ψ alone
-  quadratic  ///< Φ, Ψ, Γ, Θ
+  linear,     ///< Φ, Ψ alone
+  quadratic,  ///< Φ, Ψ, Γ, Θ
+  exact       ///< no expansion: a rod (rod.hpp); truncated to order 0 or 1 it is `quadratic`
 };
 
 /// How elastic coordinates enter the equations.

@@ -6,6 +6,7 @@
 #include <string>
 #include <variant>
 
+#include "withy/core/plugin/rod.hpp"
 #include "withy/core/shape/modal_shape.hpp"
 
 namespace withy {
@@ -24,6 +25,8 @@ class Body {
   [[nodiscard]] virtual std::optional<PointExpansion> station(const StationName& name) const = 0;
   /// Names of the stations, for messages.
   [[nodiscard]] virtual std::string stations() const = 0;
+  /// The body as a rod of exact kinematics; null where it cannot be one. It lives as long as the body.
+  [[nodiscard]] virtual const Rod* rod() const { return nullptr; }
 };
 
 }  // namespace withy

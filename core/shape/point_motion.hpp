@@ -75,8 +75,8 @@ struct ExponentialCoefficients {
 
 }  // namespace detail
 
-/// Evaluates theory (1), (2) and their rates at q, q̇. With R = exp(θ̂) the section's angular velocity is T(θ) θ̇,
-/// T = 1 + b θ̂ + c θ̂² (left Jacobian of the rotation group).
+/// Evaluates theory (1), (2), to second order unless `order` is linear, and their rates at q, q̇. With R = exp(θ̂) the
+/// section's angular velocity is T(θ) θ̇, T = 1 + b θ̂ + c θ̂² (left Jacobian of the rotation group).
 template <class S>
 PointMotionOf<S> point_motion(const PointExpansion& e, StrainOrder order, const Eigen::Matrix<S, Eigen::Dynamic, 1>& q,
                               const Eigen::Matrix<S, Eigen::Dynamic, 1>& q_dot) {
@@ -90,7 +90,7 @@ PointMotionOf<S> point_motion(const PointExpansion& e, StrainOrder order, const 
   V3 theta_bias = V3::Zero();
   V3 theta = T * q;
   m.r = e.X.template cast<S>() + m.P * q;
-  if (order == StrainOrder::quadratic && n > 0) {
+  if (order != StrainOrder::linear && n > 0) {
     for (Eigen::Index c = 0; c < 3; ++c) {
       const auto gamma = e.gamma[static_cast<std::size_t>(c)].template cast<S>().eval();
       const auto twist = e.theta[static_cast<std::size_t>(c)].template cast<S>().eval();

@@ -73,6 +73,61 @@ struct ParticleMotion {
   }
 };
 
+/// Adds ω×(ω×r) + 2 ω×ṙ to four points' accelerations a.
+inline void add_turning(const Planar::Twist& V, const Pack* r, const Pack* v, Pack* a) {
+  const Pack w2 = spread(V.w * V.w);
+  const Pack w = spread(2 * V.w);
+  a[0] -= w2 * r[0] + w * v[1];
+  a[1] -= w2 * r[1] - w * v[0];
+}
+
+inline void add_turning(const Spatial::Twist& V, const Pack* r, const Pack* v, Pack* a) {
+  const double w0 = V.w[0], w1 = V.w[1], w2 = V.w[2];
+  // ω×(ω×r) = ω (ω·r) − |ω|² r, as a symmetric matrix.
+  const double xx = -(w1 * w1 + w2 * w2), yy = -(w0 * w0 + w2 * w2), zz = -(w0 * w0 + w1 * w1);
+  const double xy = w0 * w1, xz = w0 * w2, yz = w1 * w2;
+  a[0] += xx * r[0] + xy * r[1] + xz * r[2] + 2 * (w1 * v[2] - w2 * v[1]);
+  a[1] += xy * r[0] + yy * r[1] + yz * r[2] + 2 * (w2 * v[0] - w0 * v[2]);
+  a[2] += xz * r[0] + yz * r[1] + zz * r[2] + 2 * (w0 * v[1] - w1 * v[0]);
+}
+
+/// Adds the integrals of four points, fields times root masses, in which the constant function has no part.
+template <int N>
+inline void add_products(const Pack* r, const Pack* a, const Pack* P, int modes, Planar::Inertia& I, Planar::Twist* C,
+                         double* G, Planar::Twist& p, double* h) {
+  const int n = count<N>(modes);
+  I.ww += sum(r[0] * r[0] + r[1] * r[1]);
+  p.w += sum(r[0] * a[1] - r[1] * a[0]);
+  for (int i = 0; i < n; ++i) {
+    const Pack* Pi = P + i * 2;
+    C[i].w += sum(r[0] * Pi[1] - r[1] * Pi[0]);
+    h[i] += sum(Pi[0] * a[0] + Pi[1] * a[1]);
+    for (int j = 0; j <= i; ++j) G[i * n + j] += sum(Pi[0] * P[j * 2] + Pi[1] * P[j * 2 + 1]);
+  }
+}
+
+template <int N>
+inline void add_products(const Pack* r, const Pack* a, const Pack* P, int modes, Spatial::Inertia& I, Spatial::Twist* C,
+                         double* G, Spatial::Twist& p, double* h) {
+  const int n = count<N>(modes);
+  const double rxx = sum(r[0] * r[0]), ryy = sum(r[1] * r[1]), rzz = sum(r[2] * r[2]);
+  const double rxy = sum(r[0] * r[1]), rxz = sum(r[0] * r[2]), ryz = sum(r[1] * r[2]);
+  I.A += Block{{Triple(ryy + rzz, -rxy, -rxz), Triple(-rxy, rxx + rzz, -ryz), Triple(-rxz, -ryz, rxx + ryy)}};
+  const auto moment = [&](const Pack* f) {
+    return Triple(sum(r[1] * f[2] - r[2] * f[1]), sum(r[2] * f[0] - r[0] * f[2]), sum(r[0] * f[1] - r[1] * f[0]));
+  };
+  p.w += moment(a);
+  for (int i = 0; i < n; ++i) {
+    const Pack* Pi = P + i * 3;
+    C[i].w += moment(Pi);
+    h[i] += sum(Pi[0] * a[0] + Pi[1] * a[1] + Pi[2] * a[2]);
+    for (int j = 0; j <= i; ++j) {
+      const Pack* Pj = P + j * 3;
+      G[i * n + j] += sum(Pi[0] * Pj[0] + Pi[1] * Pj[1] + Pi[2] * Pj[2]);
+    }
+  }
+}
+
 /// Adds the particles' integrals at q, q̇ and twist V of the node's frame:
 ///   I: ∫ of the rigid part; C, G: coupling and modal mass (lower triangle); p, h: velocity terms, so that the
 ///   particles exert F = I A + C q̈ + p and Q = Cᵀ A + G q̈ + h.
@@ -87,29 +142,19 @@ inline void integrate(const MassTable<Planar>& table, int modes, const double* q
   const double m = table.root_mass;
   for (std::size_t k = 0; k < table.packs; ++k) {
     ParticleMotion<Planar, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
-    Pack *r = x.r, *v = x.v, *a = x.a;
-    const Pack w2 = spread(V.w * V.w);
-    const Pack w = spread(2 * V.w);
-    a[0] -= w2 * r[0] + w * v[1];
-    a[1] -= w2 * r[1] - w * v[0];
+    Pack *r = x.r, *a = x.a;
+    add_turning(V, r, x.v, a);
     if (k == 0) {
       a[0][0] -= m * V.w * V.y;  // ω×v acts through the constant function
       a[1][0] += m * V.w * V.x;
       I += Planar::Inertia{0, -m * r[1][0], m * r[0][0], m * m, 0, m * m};
       p += Planar::Twist{0, m * a[0][0], m * a[1][0]};
-    }
-    I.ww += sum(r[0] * r[0] + r[1] * r[1]);
-    p.w += sum(r[0] * a[1] - r[1] * a[0]);
-    for (int i = 0; i < n; ++i) {
-      const Pack* Pi = P + i * 2;
-      C[i].w += sum(r[0] * Pi[1] - r[1] * Pi[0]);
-      if (k == 0) {
-        C[i].x += m * Pi[0][0];
-        C[i].y += m * Pi[1][0];
+      for (int i = 0; i < n; ++i) {
+        C[i].x += m * P[i * 2][0];
+        C[i].y += m * P[i * 2 + 1][0];
       }
-      h[i] += sum(Pi[0] * a[0] + Pi[1] * a[1]);
-      for (int j = 0; j <= i; ++j) G[i * n + j] += sum(Pi[0] * P[j * 2] + Pi[1] * P[j * 2 + 1]);
     }
+    add_products<N>(r, a, P, n, I, C, G, p, h);
   }
 }
 
@@ -118,16 +163,10 @@ inline void integrate(const MassTable<Spatial>& table, int modes, const double* 
                       const Spatial::Twist& V, Pack* P, Spatial::Inertia& I, Spatial::Twist* C, double* G,
                       Spatial::Twist& p, double* h) {
   const int n = count<N>(modes);
-  const double w0 = V.w[0], w1 = V.w[1], w2 = V.w[2];
-  // ω×(ω×r) = ω (ω·r) − |ω|² r, as a symmetric matrix.
-  const double xx = -(w1 * w1 + w2 * w2), yy = -(w0 * w0 + w2 * w2), zz = -(w0 * w0 + w1 * w1);
-  const double xy = w0 * w1, xz = w0 * w2, yz = w1 * w2;
   for (std::size_t k = 0; k < table.packs; ++k) {
     ParticleMotion<Spatial, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
-    Pack *r = x.r, *v = x.v, *a = x.a;
-    a[0] += xx * r[0] + xy * r[1] + xz * r[2] + 2 * (w1 * v[2] - w2 * v[1]);
-    a[1] += xy * r[0] + yy * r[1] + yz * r[2] + 2 * (w2 * v[0] - w0 * v[2]);
-    a[2] += xz * r[0] + yz * r[1] + zz * r[2] + 2 * (w0 * v[1] - w1 * v[0]);
+    Pack *r = x.r, *a = x.a;
+    add_turning(V, r, x.v, a);
     if (k == 0) {
       const double m = table.root_mass;
       const Triple acceleration = cross(V.w, V.v) * m;
@@ -137,22 +176,7 @@ inline void integrate(const MassTable<Spatial>& table, int modes, const double* 
       p.v += Triple(a[0][0], a[1][0], a[2][0]) * m;
       for (int i = 0; i < n; ++i) C[i].v += Triple(P[i * 3][0], P[i * 3 + 1][0], P[i * 3 + 2][0]) * m;
     }
-    const double rxx = sum(r[0] * r[0]), ryy = sum(r[1] * r[1]), rzz = sum(r[2] * r[2]);
-    const double rxy = sum(r[0] * r[1]), rxz = sum(r[0] * r[2]), ryz = sum(r[1] * r[2]);
-    I.A += Block{{Triple(ryy + rzz, -rxy, -rxz), Triple(-rxy, rxx + rzz, -ryz), Triple(-rxz, -ryz, rxx + ryy)}};
-    const auto moment = [&](const Pack* f) {
-      return Triple(sum(r[1] * f[2] - r[2] * f[1]), sum(r[2] * f[0] - r[0] * f[2]), sum(r[0] * f[1] - r[1] * f[0]));
-    };
-    p.w += moment(a);
-    for (int i = 0; i < n; ++i) {
-      const Pack* Pi = P + i * 3;
-      C[i].w += moment(Pi);
-      h[i] += sum(Pi[0] * a[0] + Pi[1] * a[1] + Pi[2] * a[2]);
-      for (int j = 0; j <= i; ++j) {
-        const Pack* Pj = P + j * 3;
-        G[i * n + j] += sum(Pi[0] * Pj[0] + Pi[1] * Pj[1] + Pi[2] * Pj[2]);
-      }
-    }
+    add_products<N>(r, a, P, n, I, C, G, p, h);
   }
 }
 

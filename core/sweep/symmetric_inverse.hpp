@@ -86,8 +86,7 @@ template <class Space, int N, Flavor flavor>
       }
       for (int i = 0; i < n * n; ++i) G[i] = node.G0[static_cast<std::size_t>(i)];
     } else {
-      integrate<N>(node.mass, n, q, q_dot, w.V, at<Pack>(s.work, node.work_P), I, C, G, p, h);
-      if (!node.sections.empty()) collect_sections<Space, N>(node, q, q_dot, w.V, I, p, C + n, C, G, h);
+      integrate_mass<Space, N, flavor>(node, s, w.V, I, p, C, G, h);
     }
     F += I * w.A + p;
     for (int i = 0; i < n; ++i) {

@@ -8,12 +8,13 @@
 /// Children and carried bodies enter (3) through their stations; then q̈, then ẍ are eliminated.
 #pragma once
 
+#include "withy/core/sweep/rod_terms.hpp"
 #include "withy/core/sweep/symmetric_terms.hpp"
 
 namespace withy::sweep {
 
-/// What of a node the compiler knows: rigid; ruthless; or its modes without truncation.
-enum class Flavor { rigid, frozen, full };
+/// What of a node the compiler knows: rigid; ruthless; its modes without truncation, of expanded or exact kinematics.
+enum class Flavor { rigid, frozen, full, exact };
 
 /// Constant elimination of a frozen leaf's modes.
 template <class Space>
@@ -28,6 +29,20 @@ void precompute(SymmetricNode<Space>& node) {
   solve_lower<-1>(node.factor.data(), node.modes, node.Y0.data());
   for (std::size_t i = 0, n = node.Y0.size(); i < n; ++i)
     node.reduced.subtract_square(node.Y0[i], node.factor[i * n + i]);
+}
+
+/// Motion of a station's section in a node that is not truncated; see station_motion.
+template <class Space, int N, Flavor flavor>
+inline void section_motion(const SymmetricNode<Space>& node, std::size_t station, const SymmetricState<Space>& s,
+                           StationMotion<Space>& out, typename Space::Twist* J) {
+  const double* q = s.positions + node.mode_position;
+  const double* q_dot = s.speeds + node.mode_speed;
+  if constexpr (flavor == Flavor::exact) {
+    const RodWork work = rod_work_at(node.rod, node.modes, at<Pack>(s.work, node.work_rod));
+    rod_station_motion<N>(node.rod, station, work, node.modes, q, q_dot, out, J);
+  } else {
+    station_motion<Space, N>(node.stations[station].fields, node.modes, q, q_dot, out, J);
+  }
 }
 
 template <class Space, int N, Flavor flavor>
@@ -51,17 +66,18 @@ template <class Space, int N, Flavor flavor>
       stations[k].V = Space::shift_to_child(station.fields.X, V);
     }
   }
-  if constexpr (flavor == Flavor::full) {
-    const double* q = s.positions + node.mode_position;
-    const double* q_dot = s.speeds + node.mode_speed;
+  if constexpr (flavor == Flavor::exact) {
+    rod_motion<N>(node.rod, n, s.positions + node.mode_position, s.speeds + node.mode_speed,
+                  rod_work_at(node.rod, n, at<Pack>(s.work, node.work_rod)));
+  }
+  if constexpr (flavor == Flavor::full || flavor == Flavor::exact) {
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
     Twist* J = at<Twist>(s.work, node.work_J);
     if (node.root_station >= 0) {
       // The root section moves with q: V_M = X V_B + J q̇, solved for V_B.
-      const auto& root = node.stations[static_cast<std::size_t>(node.root_station)];
       StationMotion<Space> m;
       Twist* JM = J + n * static_cast<int>(node.stations.size());
-      station_motion<Space, N>(root.fields, n, q, q_dot, m, JM);
+      section_motion<Space, N, flavor>(node, static_cast<std::size_t>(node.root_station), s, m, JM);
       const Twist rate = Space::to_child(node.M, m.rate);
       w.root = Space::compose(m.frame, node.M);
       w.root_sigma = Space::cross(V, rate) + Space::to_child(node.M, m.bias);
@@ -73,7 +89,7 @@ template <class Space, int N, Flavor flavor>
       if (!station.loaded) continue;
       StationWork<Space>& sw = stations[k];
       StationMotion<Space> m;
-      station_motion<Space, N>(station.fields, n, q, q_dot, m, J + static_cast<int>(k) * n);
+      section_motion<Space, N, flavor>(node, k, s, m, J + static_cast<int>(k) * n);
       const Twist VS = Space::to_child(m.frame, V) + m.rate;
       sw.frame = m.frame;
       sw.V = VS;
@@ -86,6 +102,27 @@ template <class Space, int N, Flavor flavor>
   if (flavor == Flavor::frozen && is_constant(node, s)) return;  // nothing is added to what it has precomputed
   w.I = node.base.inertia;
   w.p = node.base.velocity_wrench(V);
+}
+
+/// Adds the integrals over a body's own mass to (3) where it is not frozen.
+template <class Space, int N, Flavor flavor>
+inline void integrate_mass(const SymmetricNode<Space>& node, const SymmetricState<Space>& s,
+                           const typename Space::Twist& V, typename Space::Inertia& I, typename Space::Twist& p,
+                           typename Space::Twist* C, double* G, double* h) {
+  const int n = count<N>(node.modes);
+  const double* q = s.positions + node.mode_position;
+  const double* q_dot = s.speeds + node.mode_speed;
+  Pack* P = at<Pack>(s.work, node.work_P);
+  if constexpr (flavor == Flavor::exact) {
+    const RodWork rod = rod_work_at(node.rod, n, at<Pack>(s.work, node.work_rod));
+    integrate<N>(node.rod, rod, n, q_dot, V, P, I, C, G, p, h);
+  } else {
+    integrate<N>(node.mass, n, q, q_dot, V, P, I, C, G, p, h);
+    if (!node.sections.empty()) {
+      auto* partial = at<typename Space::Twist>(s.work, node.work_C) + n;
+      collect_sections<Space, N>(node, q, q_dot, V, I, p, partial, C, G, h);
+    }
+  }
 }
 
 /// Elimination of q̈: leaves Y, y, L in the work memory and adds to I, p; false where G is not positive definite.
@@ -123,14 +160,12 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
       y[i] = 0;
     }
     for (int i = 0; i < n * n; ++i) G[i] = 0;
-    integrate<N>(node.mass, n, q, q_dot, V, at<Pack>(s.work, node.work_P), I, C, G, p, y);
+    integrate_mass<Space, N, flavor>(node, s, V, I, p, C, G, y);
     Twist* J = at<Twist>(s.work, node.work_J);
     for (std::size_t k = 0; k < node.stations.size(); ++k) {
       if (node.stations[k].loaded)
         collect_station<Space, N>(stations[k], J + static_cast<int>(k) * n, n, I, p, C, G, y);
     }
-    if (!node.sections.empty())
-      collect_sections<Space, N>(node, q, q_dot, V, I, p, at<Twist>(s.work, node.work_C) + n, C, G, y);
     if (node.root_station >= 0) {
       const auto& w = *at<NodeWork<Space>>(s.work, node.work);
       move_to_root<Space, N>(w.root, w.root_sigma, n, J + n * static_cast<int>(node.stations.size()), I, p, C, G, y);

@@ -23,6 +23,8 @@ inline void with_flavor(const SymmetricNode<Space>& node, Action&& action) {
       action(n, std::integral_constant<Flavor, Flavor::rigid>{});
     } else if (node.frozen) {
       action(n, std::integral_constant<Flavor, Flavor::frozen>{});
+    } else if (node.rod.integrals.packs > 0) {
+      action(n, std::integral_constant<Flavor, Flavor::exact>{});
     } else {
       action(n, std::integral_constant<Flavor, Flavor::full>{});
     }
@@ -66,6 +68,8 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
       C0.push_back(Space::Twist::of(invariants.C0.col(i)));
       I1.push_back(Variation<Space>::of(invariants.I1[static_cast<std::size_t>(i)]));
     }
+  } else if (terms.strain == StrainOrder::exact && modes > 0) {
+    rod = RodKinematics<Space>(spec);
   } else {
     mass = MassTable<Space>(spec);
     for (const Section& s : spec.sections) {
@@ -115,6 +119,7 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
     node.work_G = memory.template take<double>(n * n);
     node.work_y = memory.template take<double>(n);
     node.work_h = memory.template take<double>(n);
+    node.work_rod = memory.template take<Pack>(rod_work(node.rod, node.modes));
     node.work_P = memory.template take<Pack>(n * Space::linear);
     if (node.frozen && node.leaf) precompute(node);
   }

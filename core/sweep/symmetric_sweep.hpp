@@ -11,6 +11,7 @@
 #include "withy/core/model/terms.hpp"
 #include "withy/core/sweep/joint_step.hpp"
 #include "withy/core/sweep/mass_table.hpp"
+#include "withy/core/sweep/rod_kinematics.hpp"
 #include "withy/core/sweep/station_motion.hpp"
 
 namespace withy::sweep {
@@ -48,6 +49,7 @@ struct SymmetricNode {
   std::vector<double> stiffness, damping;  ///< n×n
   RigidPart<Space> base;                   ///< the rigid part; everything in a frozen node
   MassTable<Space> mass;
+  RodKinematics<Space> rod;  ///< in place of mass and sections where the kinematics is exact
   std::vector<RotarySection<Space>> sections;
   std::vector<SymmetricStation<Space>> stations;
   // Frozen nodes: theory (3) at order zero.
@@ -60,6 +62,7 @@ struct SymmetricNode {
   typename Space::Inertia reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
   // Work memory.
   std::size_t work = 0, work_J = 0, work_h = 0, work_C = 0, work_G = 0, work_y = 0, work_P = 0, work_stations = 0;
+  std::size_t work_rod = 0;
 
   SymmetricNode(const NodeSpec& spec, Terms terms);
 };

@@ -3,6 +3,7 @@
 #include "withy/tests/conformance/formulation_suite.hpp"
 #include "withy/tests/conformance/load_suite.hpp"
 #include "withy/tests/conformance/plugins.hpp"
+#include "withy/tests/conformance/test_bodies.hpp"
 
 namespace withy::test {
 namespace {
@@ -59,7 +60,7 @@ TEST_P(Formulations, without_modes_are_bitwise_the_same_rigid_body) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, Formulations,
-                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear"));
+                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact"));
 
 struct Neglect {
   const char* formulation;
@@ -68,6 +69,8 @@ struct Neglect {
 
 /// The forces of a formulation differ from those without truncation by terms of the order it drops: ruthless drops the
 /// first, inconsistent drops first-order terms too (those of second-order kinematics), consistent only the second.
+/// Exact kinematics differ from quadratic ones in P at second order, and first-order terms are the same: the strict
+/// truncation of `exact` is `consistent`.
 TEST(Truncation, neglected_terms_have_the_order_the_name_says) {
   Registry registry;
   enroll_static_plugins(registry);
@@ -75,11 +78,56 @@ TEST(Truncation, neglected_terms_have_the_order_the_name_says) {
   State state = s.model->reference_state();
   for (std::size_t i = 0; i < state.y.size(); ++i) state.y[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
   const auto quadratic = make_plugin<Formulation>(registry, "quadratic");
-  for (const Neglect& n :
-       {Neglect{"ruthless", 1}, Neglect{"inconsistent", 1}, Neglect{"linear", 1}, Neglect{"consistent", 2}}) {
+  const auto exact = make_plugin<Formulation>(registry, "exact");
+  for (const Neglect& n : {Neglect{"ruthless", 1}, Neglect{"inconsistent", 1}, Neglect{"linear", 1},
+                           Neglect{"consistent", 2}, Neglect{"exact", 2}}) {
     const auto formulation = make_plugin<Formulation>(registry, n.formulation);
     EXPECT_NEAR(order_of_difference(*formulation, *quadratic, s.model, state), n.order, 0.1) << n.formulation;
   }
+  const auto consistent = make_plugin<Formulation>(registry, "consistent");
+  EXPECT_NEAR(order_of_difference(*consistent, *exact, s.model, state), 2, 0.1);
+}
+
+/// At q = 0 nothing distinguishes exact kinematics: inertia and, at rest, forces are those of the undeformed body.
+TEST(Exact, is_ruthless_at_zero_deflection) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const Scene s = parse_scene(pendulum(1, 3), "pendulum", registry, {});
+  State state = s.model->reference_state();
+  state.y[s.model->layout().hinge("pivot")->position] = 0.7;
+  const DenseSystem exact = make_plugin<Formulation>(registry, "exact")->compile(s.model)->system(0, state.y);
+  const DenseSystem ruthless = make_plugin<Formulation>(registry, "ruthless")->compile(s.model)->system(0, state.y);
+  for (std::size_t i = 0; i < exact.size; ++i) {
+    EXPECT_NEAR(exact.force[i], ruthless.force[i], 1e-12);
+    for (std::size_t j = 0; j < exact.size; ++j) {
+      const std::size_t k = i * exact.size + j;
+      EXPECT_NEAR(exact.mass[k], ruthless.mass[k], 1e-12);
+    }
+  }
+}
+
+TEST(Exact, names_a_body_that_does_not_offer_it) {
+  const std::shared_ptr<const Body> rod = test_rod(1, 1, 2);
+  Registry registry;
+  enroll_static_plugins(registry);
+  const auto model = [&](std::optional<Terms> own) {
+    std::vector<BodyNode> bodies;
+    bodies.push_back(test_node("whip", rod));
+    bodies.back().terms = own;
+    std::vector<HingeNode> hinges(1);
+    hinges[0].name = "pivot";
+    hinges[0].hinge =
+        make_plugin<Hinge>(registry, "revolute", {{"axis", Value::list({Value(0.0), Value(0.0), Value(1.0)})}});
+    return std::make_shared<const Model>(std::move(bodies), std::move(hinges), Vector3::Zero());
+  };
+  const auto exact = make_plugin<Formulation>(registry, "exact");
+  try {
+    exact->compile(model({}));
+    ADD_FAILURE() << "compiled";
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find("'whip'"), std::string::npos) << e.what();
+  }
+  EXPECT_NE(exact->compile(model(Terms{StrainOrder::quadratic, Truncation::none})), nullptr);
 }
 
 /// A body's own formulation: ruthless terms for one body in an untruncated tree; strict and untruncated do not mix.
