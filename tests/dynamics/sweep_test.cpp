@@ -39,8 +39,8 @@ const std::vector<std::string> formulations = {"ruthless",  "inconsistent", "con
 
 class RandomTrees : public testing::TestWithParam<std::string> {
  protected:
-  /// In space the sweep and the reference turn the sections of a rod by different methods: 3e-10 is the most they
-  /// differ by here.
+  /// In space the sweep and the reference turn the sections of a rod by different methods, which differ by less than
+  /// 1e-8 here.
   static double tolerance() { return GetParam() == "exact" ? 1e-8 : 1e-11; }
 };
 
