@@ -23,7 +23,7 @@ struct RodIntegrals {
   static constexpr int packs_per_panel = RodTable::order / static_cast<int>(lanes);
 
   int packs = 0;                            ///< nodes / 4; 0: no rod
-  std::vector<Pack> running;                ///< of a panel, element j·3 + k: what node j gives to the nodes of pack k
+  std::vector<Pack> running;                ///< of a panel, element j·4 + k: what node j gives to the nodes of pack k
   std::vector<Pack> weights;                ///< of a panel
   std::vector<std::vector<Pack>> stations;  ///< ∫₀ˣ to each station, weights of all nodes
   std::vector<Pack> root_mass;              ///< square roots of the nodes' masses
@@ -34,24 +34,27 @@ struct RodIntegrals {
 
   /// y = ∫₀ˣ f at the nodes.
   void integrate(const Pack* f, Pack* y, int functions) const {
-    static_assert(packs_per_panel == 3);
+    constexpr int m = packs_per_panel;
     for (int function = 0; function < functions; ++function) {
       double before = 0;
-      for (int panel = 0; panel < packs; panel += 3, f += 3, y += 3) {
-        Pack y0 = spread(before), y1 = y0, y2 = y0;
+      for (int panel = 0; panel < packs; panel += m, f += m, y += m) {
+        Pack sums[m];
+        for (Pack& s : sums) s = spread(before);
         const Pack* from = running.data();
-        for (int m = 0; m < packs_per_panel; ++m, from += 12) {
-          const Pack values = f[m];
+        Pack total = spread(0.0);
+        for (int k = 0; k < m; ++k) {
+          const Pack values = f[k];
+          total += weights[static_cast<std::size_t>(k)] * values;
 #pragma GCC unroll 4
-          for (int lane = 0; lane < 4; ++lane) {  // known to the compiler, which otherwise goes through memory
+          for (int lane = 0; lane < 4;
+               ++lane, from += m) {  // known to the compiler, which otherwise goes through memory
             const Pack value = spread(values[lane]);
-            y0 += from[lane * 3] * value;
-            y1 += from[lane * 3 + 1] * value;
-            y2 += from[lane * 3 + 2] * value;
+#pragma GCC unroll 4
+            for (int i = 0; i < m; ++i) sums[i] += from[i] * value;
           }
         }
-        before += sum(weights[0] * f[0] + weights[1] * f[1] + weights[2] * f[2]);
-        y[0] = y0, y[1] = y1, y[2] = y2;
+        before += sum(total);
+        for (int i = 0; i < m; ++i) y[i] = sums[i];
       }
     }
   }

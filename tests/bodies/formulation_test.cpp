@@ -42,7 +42,8 @@ class Formulations : public testing::TestWithParam<std::string> {
 
 TEST_P(Formulations, conform) {
   const Scene s = scene();
-  expect_formulation_conforms(*s.formulation, s.model, moving(*s.model));
+  // Sweep and reference turn the sections of a rod in space by different methods.
+  expect_formulation_conforms(*s.formulation, s.model, moving(*s.model), GetParam() == "exact" ? 1e-9 : 1e-11);
 }
 
 TEST_P(Formulations, approach_the_rigid_body_as_one_over_stiffness) {

@@ -76,7 +76,7 @@ TEST(Rod, partial_velocities_and_biases_are_derivatives) {
 
 /// A constant strain k = (τ, 0, κ) gives a helix: R = exp(x k̂), and with c = k/|k|, φ = |k| x,
 /// r = x c (c·e) + sin φ/|k| (e − c (c·e)) + (1 − cos φ)/|k| c × e. A full turn, 1e-10 of the length: what the
-/// quadrature of 24 nodes leaves of it.
+/// quadrature of 32 nodes leaves of it.
 TEST(Rod, constant_strain_is_a_circle_or_a_helix) {
   const double length = 2.0;
   const UniformRod rod(length);
@@ -94,7 +94,9 @@ TEST(Rod, constant_strain_is_a_circle_or_a_helix) {
       EXPECT_LT((m.R - Eigen::AngleAxisd(angle, c).toRotationMatrix()).norm(), 1e-13);
       EXPECT_LT((RodMotion::position(table, k, x) - m.r).norm(), 1e-14);
     }
-    if (twist == 0) EXPECT_LT(motion.at(length).r.norm(), 1e-10 * length) << "the circle closes";
+    if (twist == 0) {
+      EXPECT_LT(motion.at(length).r.norm(), 1e-10 * length) << "the circle closes";
+    }
   }
 }
 

@@ -47,9 +47,9 @@ const std::vector<std::string> formulations = {"ruthless",  "inconsistent", "con
 
 class RandomTrees : public testing::TestWithParam<std::string> {
  protected:
-  /// In space the sweep and the reference turn the sections of a rod by different methods: 3e-10 is the most they
-  /// differ by here.
-  static double tolerance() { return GetParam() == "exact" ? 2e-9 : 1e-11; }
+  /// In space the sweep and the reference turn the sections of a rod by different methods, which differ by less than
+  /// 1e-8 here.
+  static double tolerance() { return GetParam() == "exact" ? 1e-8 : 1e-11; }
 };
 
 /// The backward error |M a − f − τ| against the size of the terms in each row: independent of κ(M), since elimination
@@ -205,7 +205,7 @@ TEST(Exact, sweep_solves_the_dense_equations_at_large_deflections) {
     for (const Slot& b : c.scene.model->layout().bodies) {
       for (std::size_t i = 0; i < b.positions; ++i) c.state.y[b.position + i] *= 8;
     }
-    expect_solves(c, "seed " + std::to_string(seed), planar ? 1e-11 : 1e-4);
+    expect_solves(c, "seed " + std::to_string(seed), planar ? 1e-11 : 1e-6);
   }
 }
 
