@@ -4,6 +4,7 @@
 
 #include "feasible_moments.hpp"
 #include "mass_integrals.hpp"
+#include "withy/bodies/equal_particles.hpp"
 
 namespace withy {
 namespace {
@@ -29,15 +30,6 @@ MatrixXd elastic_coefficients(const MassIntegrals& m, const MatrixXd& rigid) {
   return L.topRows(rank);
 }
 
-/// An orthogonal matrix whose first column is constant: a reflection that takes the first axis there.
-MatrixXd spreading(Eigen::Index count) {
-  Eigen::VectorXd w = Eigen::VectorXd::Constant(count, -1 / std::sqrt(static_cast<double>(count)));
-  w[0] += 1;
-  MatrixXd H = MatrixXd::Identity(count, count);
-  if (count > 1) H -= 2 / w.squaredNorm() * w * w.transpose();
-  return H;
-}
-
 }  // namespace
 
 std::vector<Particle> particles_of(const MassIntegrals& m, double& defect) {
@@ -54,10 +46,13 @@ std::vector<Particle> particles_of(const MassIntegrals& m, double& defect) {
   for (const Matrix3& x_phi : m.x_phi) size = std::max(size, x_phi.cwiseAbs().maxCoeff());
   if (size > 0) defect = std::max(defect, left / size);
 
-  // Values at particle i are √(count/mass) H_i· times coefficients.
-  const MatrixXd values = std::sqrt(static_cast<double>(count) / m.mass) * spreading(count);
-  const MatrixXd X = values.leftCols<4>() * basis.position();
-  const MatrixXd phi = values * all;
+  const auto at_particles = [&](const MatrixXd& rigid_coefficients) {
+    MatrixXd padded = MatrixXd::Zero(count, rigid_coefficients.cols());
+    padded.topRows<4>() = rigid_coefficients;
+    return at_equal_particles(padded, m.mass);
+  };
+  const MatrixXd X = at_particles(basis.position());
+  const MatrixXd phi = at_equal_particles(all, m.mass);
   std::vector<Particle> particles(static_cast<std::size_t>(count));
   for (Eigen::Index i = 0; i < count; ++i) {
     Particle& p = particles[static_cast<std::size_t>(i)];
@@ -69,7 +64,7 @@ std::vector<Particle> particles_of(const MassIntegrals& m, double& defect) {
   for (Eigen::Index k = 0; k < n; ++k) {
     for (Eigen::Index l = 0; l < n; ++l) {
       const std::size_t at = m.pair(k, l);
-      const MatrixXd g = values.leftCols<4>() * basis.coefficients(m.gamma[at], m.x_gamma[at], left);
+      const MatrixXd g = at_particles(basis.coefficients(m.gamma[at], m.x_gamma[at], left));
       size = std::max({size, m.x_gamma[at].cwiseAbs().maxCoeff(), m.phi_phi[at].cwiseAbs().maxCoeff()});
       for (Eigen::Index i = 0; i < count; ++i) {
         for (Eigen::Index c = 0; c < 3; ++c) {

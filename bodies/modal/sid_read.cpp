@@ -1,83 +1,17 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <memory>
-#include <optional>
 
 #include "sid.hpp"
+#include "sid_text.hpp"
 
 namespace withy::sid {
 namespace {
 
 constexpr int most_modes = 200;        ///< particles with Γ take 144 n³ bytes: 1.2 GB
 constexpr double most_elements = 1e6;  ///< of one matrix; Gr of 200 modes has 4e5
-
-std::string_view trimmed(std::string_view s) {
-  constexpr std::string_view blank = " \t\r";
-  const std::size_t from = s.find_first_not_of(blank);
-  if (from == std::string_view::npos) return {};
-  return s.substr(from, s.find_last_not_of(blank) - from + 1);
-}
-
-/// One line that is not blank: `key` or `key = value`.
-struct Line {
-  int number = 0;
-  std::string_view key, value;
-  bool assigns = false;
-};
-
-class Lines {
- public:
-  explicit Lines(std::string_view text) : rest_(text) {}
-  std::string_view raw() {
-    ++number_;
-    const std::size_t end = rest_.find('\n');
-    const std::string_view line = rest_.substr(0, end);
-    rest_ = end == std::string_view::npos ? std::string_view{} : rest_.substr(end + 1);
-    return trimmed(line);
-  }
-  /// \throws FormatError at the end of the text.
-  Line next(std::string_view expected) {
-    while (!rest_.empty()) {
-      const std::string_view s = raw();
-      if (s.empty()) continue;
-      const std::size_t equals = s.find('=');
-      if (equals == std::string_view::npos) return {number_, s, {}, false};
-      return {number_, trimmed(s.substr(0, equals)), trimmed(s.substr(equals + 1)), true};
-    }
-    throw FormatError(number_, fmt::format("the file ends; need '{}'", expected));
-  }
-
- private:
-  std::string_view rest_;
-  int number_ = 0;
-};
-
-double number(const Line& line) {
-  std::string text(line.value);
-  for (char& c : text) {
-    if (c == 'D' || c == 'd') c = 'E';  // Fortran's double precision
-  }
-  const char* from = text.data() + (text.starts_with('+') ? 1 : 0);
-  double x = 0;
-  const auto [end, error] = std::from_chars(from, text.data() + text.size(), x);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size() || !std::isfinite(x)) {
-    throw FormatError(line.number, fmt::format("got '{} = {}'; need a finite number", line.key, line.value));
-  }
-  return x;
-}
-
-int whole(const Line& line, int least, int most) {
-  const double x = number(line);
-  if (x != std::floor(x) || x < least || x > most) {
-    throw FormatError(line.number, fmt::format("got '{} = {}'; need a whole number from {} to {}", line.key, line.value,
-                                               least, most));
-  }
-  return static_cast<int>(x);
-}
 
 struct Element {
   int line;
@@ -93,26 +27,6 @@ struct Raw {
   std::vector<Element> m0, m1;
   Taylor* target = nullptr;
 };
-
-/// Indices of "m0( 1, 2)" or "m1(1,2,3)"; nothing where the key is none of these.
-std::optional<std::pair<int, std::array<int, 3>>> element(std::string_view key) {
-  if (key.size() < 5 || (key[0] != 'm' && key[0] != 'M') || (key[1] != '0' && key[1] != '1')) return {};
-  const int order = key[1] - '0';
-  key = trimmed(key.substr(2));
-  if (!key.starts_with('(') || !key.ends_with(')')) return {};
-  key = key.substr(1, key.size() - 2);
-  std::array<int, 3> at{};
-  const std::size_t count = order == 0 ? 2 : 3;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t comma = key.find(',');
-    if ((comma == std::string_view::npos) != (k + 1 == count)) return {};
-    const std::string_view index = trimmed(key.substr(0, comma));
-    const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), at[k]);
-    if (error != std::errc{} || end != index.data() + index.size()) return {};
-    key = comma == std::string_view::npos ? std::string_view{} : key.substr(comma + 1);
-  }
-  return std::pair{order, at};
-}
 
 class Reader {
  public:
@@ -375,9 +289,6 @@ class Reader {
 };
 
 }  // namespace
-
-FormatError::FormatError(int line, const std::string& message)
-    : std::runtime_error(line > 0 ? fmt::format("line {}: {}", line, message) : message) {}
 
 Data read(std::string_view text) { return Reader(text).read(); }
 
