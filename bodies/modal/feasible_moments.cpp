@@ -49,15 +49,14 @@ MatrixXd correction(const MatrixXd& R, const MatrixXd& E) {
   return Y;
 }
 
-/// A semidefinite matrix with the kept part of `given`: from its nearest one by congruences R → (1 + Y) R (1 + Y),
-/// Newton's method for the kept part.
-MatrixXd semidefinite(const MatrixXd& given, double& error) {
+/// A semidefinite matrix with the kept part of `given`: from its nearest one, with eigenvalues of at least `floor` of
+/// the greatest, by congruences R → (1 + Y) R (1 + Y), Newton's method for the kept part. They keep the range.
+MatrixXd semidefinite(const MatrixXd& given, double floor, double& error) {
   const MatrixXd target = kept_part(given);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(given);
   const MatrixXd V = eigen.eigenvectors();
-  // A direction that starts at zero stays there; all start with a little.
-  MatrixXd R =
-      V * eigen.eigenvalues().cwiseMax(1e-6 * eigen.eigenvalues().cwiseAbs().maxCoeff()).asDiagonal() * V.transpose();
+  const double least = floor * eigen.eigenvalues().cwiseAbs().maxCoeff();
+  MatrixXd R = V * eigen.eigenvalues().cwiseMax(least).asDiagonal() * V.transpose();
   MatrixXd best = R;
   error = (target - kept_part(R)).cwiseAbs().maxCoeff();
   for (int k = 0; k < 100 && error > 1e-15; ++k) {
@@ -155,8 +154,17 @@ double make_feasible(MassIntegrals& m) {
   const MatrixXd R = scale.asDiagonal() * (D - projected) * scale.asDiagonal();
   const double lowest = Eigen::SelfAdjointEigenSolver<MatrixXd>(R, Eigen::EigenvaluesOnly).eigenvalues()[0];
   if (lowest > -1e-14 * static_cast<double>(n)) return 0;
+  // In the range of the given moments first; where that has none, with a little of every direction.
   double error = 0;
-  const MatrixXd better = semidefinite(R, error);
+  MatrixXd better = semidefinite(R, 0, error);
+  if (error > 1e-12) {
+    double other = 0;
+    const MatrixXd wider = semidefinite(R, 1e-6, other);
+    if (other < error) {
+      better = wider;
+      error = other;
+    }
+  }
   if (error > 1e-6) {
     throw std::domain_error(
         fmt::format("no mass has these integrals: Me contradicts Ct, Cr, J or Ge by {:.2g} of the "

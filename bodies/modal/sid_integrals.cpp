@@ -192,13 +192,14 @@ class SidIntegrals {
   }
 
   /// D: its trace is Me, its skew part ∫ Φ_k × Φ_l; the rest as near as possible to Gr's first order, or to Oe's with
-  /// Γ along the body's extent.
+  /// Γ along the body's extent; without either, to the motion of the nodes.
   void products() {
     const Matrix3 along = extent();
+    const std::vector<Matrix3> directions = node_directions();
     for (Eigen::Index k = 0; k < n_; ++k) {
       for (Eigen::Index l = 0; l < n_; ++l) {
         const double me = 0.5 * (d_.Me.m0(k, l) + d_.Me.m0(l, k));
-        Matrix3 S = me / 3 * Matrix3::Identity();
+        Matrix3 S = Matrix3::Zero();
         if (has_gr1_) {
           const auto block = [&](Eigen::Index i, Eigen::Index j) {
             return Matrix3(columns(d_.Gr.m1[static_cast<std::size_t>(j)], i));
@@ -210,11 +211,32 @@ class SidIntegrals {
         } else if (has_oe1_) {
           S = oe1(k, l);
           S += (me - S.trace()) / along.trace() * along;
+        } else {
+          S = sym(directions[out_.pair(k, l)]) * std::sqrt(d_.Me.m0(k, k) * d_.Me.m0(l, l));
+          S += (me - S.trace()) / 2 * (directions[out_.pair(k, k)] + directions[out_.pair(l, l)]);
         }
         out_.phi_phi[out_.pair(k, l)] = S + skew_part(cross(k, l));
       }
     }
     report_.defect = std::max(report_.defect, make_feasible(out_));
+  }
+
+  /// Σ Φ_k Φ_lᵀ over the nodes, scaled to traces of 1 for k = l; isotropic for modes that no node takes part in.
+  [[nodiscard]] std::vector<Matrix3> node_directions() const {
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(n_);
+    for (const sid::Node& node : d_.nodes) squares += node.phi.m0.colwise().squaredNorm().transpose();
+    std::vector<Matrix3> all(static_cast<std::size_t>(n_ * n_), Matrix3::Zero());
+    for (Eigen::Index k = 0; k < n_; ++k) {
+      if (squares[k] == 0) all[out_.pair(k, k)] = Matrix3::Identity() / 3;
+      for (Eigen::Index l = 0; l < n_; ++l) {
+        if (squares[k] == 0 || squares[l] == 0) continue;
+        for (const sid::Node& node : d_.nodes) {
+          all[out_.pair(k, l)] +=
+              node.phi.m0.col(k) * node.phi.m0.col(l).transpose() / std::sqrt(squares[k] * squares[l]);
+        }
+      }
+    }
+    return all;
   }
 
   /// Projector on the directions in which the body extends.
