@@ -43,6 +43,8 @@ class Checker {
 
   Registry& registry() const { return registry_; }
   Diagnostics& diagnostics() const { return diagnostics_; }
+  /// For what the document's values are made into.
+  MakeContext make_context() const { return {registry_, diagnostics_, document_.directory}; }
   /// Reports a problem with a key rather than with its value.
   void key_error(const std::string& path, std::string message) const;
 

@@ -24,6 +24,7 @@ struct DocumentLimits {
 struct Document {
   Value root;
   std::unordered_map<std::string, Place> keys;  ///< by path: where the key of a value stands
+  std::string directory = {};                   ///< of its file; empty: the working directory
 
   /// Where the key of the value at `path` stands, or else of the nearest ancestor that has one.
   [[nodiscard]] Place key_place(const std::string& path) const;

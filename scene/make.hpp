@@ -30,7 +30,7 @@ std::unique_ptr<Interface> make_object(const Plugin<Interface>& plugin, const Va
   };
   std::unique_ptr<Interface> object;
   try {
-    object = plugin.make(value, MakeContext{checker.registry(), checker.diagnostics()});
+    object = plugin.make(value, checker.make_context());
   } catch (const PluginError&) {
     throw;
   } catch (const std::exception& e) {

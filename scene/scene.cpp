@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "withy/scene/document.hpp"
 #include "withy/scene/grammar.hpp"
@@ -207,6 +208,7 @@ SceneError::SceneError(std::string file, std::vector<Diagnostic> problems, const
 Scene parse_scene(std::string_view text, const std::string& file, Registry& registry, const SceneOptions& options) {
   Diagnostics diagnostics;
   Document document;
+  document.directory = std::filesystem::path(file).parent_path().string();
   if (!read_document(text, {}, document, diagnostics)) throw SceneError(file, diagnostics.errors());
   const std::vector<std::string> origins = apply_options(document, options, diagnostics);
   Scene scene = SceneBuilder(document, registry, diagnostics).build();

@@ -29,6 +29,7 @@ class Registry;
 struct MakeContext {
   Registry& registry;
   Diagnostics& diagnostics;
+  std::string directory = {};  ///< where relative file names start: the scene's; empty: the working directory
 };
 
 /// A plugin: its id (`[a-z0-9-]{1,64}`), what it is for, the parameters it takes, and its factory. `make` returns null

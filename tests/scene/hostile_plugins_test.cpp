@@ -65,7 +65,7 @@ TEST_F(HostilePlugins, ThatThrowAreReported) {
 
 TEST_F(HostilePlugins, ThatMakeNothingAreReported) {
   EXPECT_EQ(problem("type: null"),
-            "s.yaml:4:7: /bodies/b/type: missing; need one of: beam, lump, nan, null, refused, "
+            "s.yaml:4:7: /bodies/b/type: missing; need one of: beam, lump, modal, nan, null, plate, refused, "
             "rigid, rootless, throws");
   EXPECT_EQ(problem("type: 'null'"), "s.yaml:4:3: /bodies/b: body 'null' cannot be made and does not say why");
 }

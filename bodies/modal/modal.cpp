@@ -1,0 +1,62 @@
+/// \file
+/// The modal body: modes, mass integrals and stiffness from a file of Standard Input Data, as finite-element programs
+/// write it. What the file does not determine is described at `integrals_of`.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "sid_body.hpp"
+#include "withy/core/plugin/entry.hpp"
+
+namespace withy {
+namespace {
+
+constexpr std::uintmax_t most_bytes = std::uintmax_t{256} << 20;
+
+std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+  const Value& named = p.at("file");
+  const auto fault = [&](const std::string& why) -> std::unique_ptr<Body> {
+    context.diagnostics.error(named.place(), fmt::format("got '{}'; {}", named.text(), why));
+    return nullptr;
+  };
+  const std::filesystem::path file = std::filesystem::path(context.directory) / named.text();
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none)) {
+    return fault(fmt::format("there is no file '{}'; need a file of Standard Input Data", file.string()));
+  }
+  if (std::filesystem::file_size(file, none) > most_bytes) return fault("need a file of at most 256 MiB");
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(stream)), {});
+  if (!stream) return fault(fmt::format("'{}' cannot be read", file.string()));
+  SidBodyOptions options;
+  if (p.has("root")) options.root = p.text_at("root");
+  if (p.has("damping_ratio")) options.damping_ratio = p.number_at("damping_ratio");
+  try {
+    SidReport report;
+    return body_of(sid::read(text), options, report);
+  } catch (const sid::FormatError& e) {
+    return fault(e.what());
+  } catch (const std::domain_error& e) {
+    return fault(e.what());
+  }
+}
+
+void enroll(Enrollment& enrollment) {
+  enrollment.add<Body>(
+      {.id = "modal",
+       .summary = "Flexible body from a file of Standard Input Data (SID), as finite-element programs write it",
+       .parameters = {text("file", "file of Standard Input Data; a relative name starts at the scene's directory"),
+                      text("root", "node that is the root; without it, the frame the file refers to").optional(),
+                      number("damping_ratio", "1",
+                             "modal damping, as a fraction of critical, in the place of the file's")
+                          .least(0)
+                          .optional()},
+       .make = &make});
+}
+
+}  // namespace
+}  // namespace withy
+
+WITHY_PLUGIN(modal, withy::enroll);

@@ -1,0 +1,160 @@
+#include "sid_body.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace withy {
+namespace {
+
+/// Second-order fields from the first order of a partial velocity: their symmetric part. What is skew in ψ's is half
+/// the product of two rotations, which the finite rotation exp(θ̂) brings along.
+std::array<Eigen::MatrixXd, 3> second_order(const sid::Taylor& field, Eigen::Index n) {
+  std::array<Eigen::MatrixXd, 3> all;
+  all.fill(Eigen::MatrixXd::Zero(n, n));
+  for (std::size_t l = 0; l < field.m1.size(); ++l) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto row = static_cast<Eigen::Index>(c);
+      all[c].col(static_cast<Eigen::Index>(l)) = field.m1[l].row(row).transpose();
+    }
+  }
+  for (Eigen::MatrixXd& m : all) m = 0.5 * (m + m.transpose()).eval();
+  return all;
+}
+
+PointExpansion expansion_of(const sid::Node& node, Eigen::Index n) {
+  PointExpansion e = PointExpansion::rigid(node.origin.m0, n);
+  e.phi = node.phi.m0;
+  e.gamma = second_order(node.phi, n);
+  if (!node.psi.absent()) {
+    e.psi = node.psi.m0;
+    e.theta = second_order(node.psi, n);
+  }
+  return e;
+}
+
+class SidBody final : public Body {
+ public:
+  SidBody(const sid::Data& data, const SidBodyOptions& options, SidReport& report) {
+    const Eigen::Index n = data.modes();
+    for (Eigen::Index k = 0; k < n; ++k) shape_.mode_names.push_back(fmt::format("mode[{}]", k + 1));
+    for (const sid::Node& node : data.nodes) nodes_.emplace_back(node.id, expansion_of(node, n));
+    root_ = PointExpansion::rigid(Vector3::Zero(), n);
+    if (!options.root.empty()) {
+      const auto root = node(options.root);
+      if (!root)
+        throw std::domain_error(
+            fmt::format("there is no node '{}' for a root; nodes are {}", options.root, stations()));
+      root_ = *root;
+    }
+    for (const auto& [id, at] : nodes_) shape_.length = std::max(shape_.length, (at.X - root_.X).norm());
+    const bool weighted =
+        std::any_of(data.nodes.begin(), data.nodes.end(), [](const sid::Node& node) { return !node.phi.m1.empty(); });
+    if (n > 0 && !nodes_.empty() && !weighted) {
+      report.missing.emplace_back("no node's phi has a first order: no geometric stiffness of what acts at nodes");
+    }
+
+    const MassIntegrals integrals = integrals_of(data, report);
+    shape_.particles = particles_of(integrals, report.defect);
+    shape_.stiffness = 0.5 * (data.Ke.m0 + data.Ke.m0.transpose());
+    shape_.damping = Eigen::MatrixXd::Zero(n, n);
+    if (options.damping_ratio >= 0) {
+      shape_.damping.diagonal() =
+          2 * options.damping_ratio *
+          (shape_.stiffness.diagonal().array().max(0) * data.Me.m0.diagonal().array()).sqrt().matrix();
+    } else if (!data.De.absent()) {
+      shape_.damping = 0.5 * (data.De.m0 + data.De.m0.transpose());
+    }
+  }
+
+  const ModalShape& shape() const override { return shape_; }
+  std::optional<PointExpansion> station(const StationName& name) const override {
+    if (const auto* text = std::get_if<std::string>(&name)) return *text == "root" ? root_ : node(*text);
+    const double x = std::get<double>(name);
+    return x == std::floor(x) && std::abs(x) < 1e15 ? node(fmt::format("{:.0f}", x)) : std::nullopt;
+  }
+  std::string stations() const override {
+    std::string all = "root";
+    for (const auto& [id, at] : nodes_) all += fmt::format(", {}", id);
+    return all;
+  }
+
+ private:
+  std::optional<PointExpansion> node(const std::string& id) const {
+    for (const auto& [name, at] : nodes_) {
+      if (name == id) return at;
+    }
+    return {};
+  }
+
+  ModalShape shape_;
+  PointExpansion root_;
+  std::vector<std::pair<std::string, PointExpansion>> nodes_;
+};
+
+void refuse_what_bodies_lack(const sid::Data& data) {
+  if (!data.ksigma.absent() && (!data.ksigma.m0.isZero(0) || data.ksigma.varies())) {
+    throw std::domain_error("ksigma is not zero: bodies under initial stress are not supported");
+  }
+  if (data.Ke.varies())
+    throw std::domain_error("Ke has a first order: bodies whose stiffness changes are not supported");
+  if (data.De.varies()) {
+    throw std::domain_error("De has a first order: bodies whose damping changes are not supported");
+  }
+  if (data.modes() > 0 && Eigen::LLT<Eigen::MatrixXd>(data.Me.m0).info() != Eigen::Success) {
+    throw std::domain_error("Me is not positive definite");
+  }
+}
+
+sid::Node node_of(const Body& body, const Body::StationName& name) {
+  sid::Node node;
+  const auto* text = std::get_if<std::string>(&name);
+  node.id = text != nullptr ? *text : fmt::format("{}", std::get<double>(name));
+  const auto at = body.station(name);
+  if (!at) throw std::domain_error(fmt::format("there is no station '{}'; stations are {}", node.id, body.stations()));
+  node.origin.m0 = at->X;
+  node.phi.m0 = at->phi;
+  node.psi.m0 = at->psi;
+  node.axes.m0 = Matrix3::Identity();
+  for (Eigen::Index l = 0; l < at->phi.cols(); ++l) {
+    node.origin.m1.emplace_back(at->phi.col(l));
+    const Vector3 turn = at->psi.col(l);
+    Matrix3X phi(3, at->phi.cols()), psi(3, at->phi.cols());
+    for (Eigen::Index k = 0; k < at->phi.cols(); ++k) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        phi(static_cast<Eigen::Index>(c), k) = at->gamma[c](k, l);
+        psi(static_cast<Eigen::Index>(c), k) = at->theta[c](k, l);
+      }
+      psi.col(k) += 0.5 * turn.cross(Vector3(at->psi.col(k)));
+    }
+    node.phi.m1.emplace_back(phi);
+    node.psi.m1.emplace_back(psi);
+    node.axes.m1.emplace_back(skew<double>(turn));
+  }
+  return node;
+}
+
+}  // namespace
+
+std::unique_ptr<Body> body_of(const sid::Data& data, const SidBodyOptions& options, SidReport& report) {
+  refuse_what_bodies_lack(data);
+  return std::make_unique<SidBody>(data, options, report);
+}
+
+sid::Data sid_of(const Body& body, const std::vector<Body::StationName>& stations) {
+  const ModalShape& shape = body.shape();
+  sid::Data data;
+  data.title = "written by withy";
+  put_integrals(integrals_of(shape), data);
+  data.mode_names = shape.mode_names;
+  for (const Body::StationName& name : stations) data.nodes.push_back(node_of(body, name));
+  data.ksigma.m0 = Eigen::MatrixXd::Zero(shape.modes(), 1);
+  data.Ke.m0 = shape.stiffness;
+  data.De.m0 = shape.damping;
+  return data;
+}
+
+}  // namespace withy
