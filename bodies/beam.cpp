@@ -269,7 +269,7 @@ class Reader {
     const Value& given = p_.at(key);
     const Profile stiffness = profile(given.at("stiffness"));
     const Profile inertia = given.has(inertia_key) ? profile(given.at(inertia_key)) : Profile(0);
-    material.inertias.emplace_back(rotation, inertia);
+    if (given.has(inertia_key)) material.inertias.emplace_back(rotation, inertia);
     if (given.count_at("modes") == 0 || !good_) return;
     const BeamData beam = {kind, material.length, kind == BeamData::Strain::torsion ? inertia.mean() : mass,
                            stiffness.mean()};

@@ -32,7 +32,7 @@ inline void given_acceleration(const SymmetricNode<Space>& node, const Symmetric
     const int n = count<N>(node.modes);
     const double* a = s.efforts + node.mode_speed;
     const Twist* J = at<Twist>(s.work, node.work_J);
-    if (flavor == Flavor::full && node.root_station >= 0) {
+    if (flavor != Flavor::frozen && node.root_station >= 0) {
       const Twist* JM = J + n * static_cast<int>(node.stations.size());
       A -= w.root_sigma;
       for (int i = 0; i < n; ++i) A -= JM[i] * a[i];
@@ -109,7 +109,7 @@ template <class Space, int N, Flavor flavor>
                                     : Space::to_parent(stations[k].frame, carried);
       for (int i = 0; i < n; ++i) h[i] += Space::dot(partial[i], carried);
     }
-    if (flavor == Flavor::full && node.root_station >= 0) {
+    if (flavor != Flavor::frozen && node.root_station >= 0) {
       // The hinge's wrench acts at M, which the modes move.
       F = Space::to_parent(Space::inverse(w.root), F);
       const Twist* JM = J + n * static_cast<int>(node.stations.size());

@@ -303,7 +303,7 @@ inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<
                                     : Space::to_parent(stations[k].frame, carried);
       for (int i = 0; i < n; ++i) y[i] -= Space::dot(partial[i], carried);
     }
-    if (flavor == Flavor::full && node.root_station >= 0) {
+    if (flavor != Flavor::frozen && node.root_station >= 0) {
       p = Space::to_parent(Space::inverse(w.root), p);
       const Twist* JM = J + n * static_cast<int>(node.stations.size());
       for (int i = 0; i < n; ++i) y[i] += Space::dot(JM[i], p);

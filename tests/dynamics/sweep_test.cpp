@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <stdexcept>
 
 #include "random_scene.hpp"
 #include "withy/core/dynamics/tree.hpp"
@@ -98,7 +100,16 @@ TEST_P(RandomTrees, sweep_solves_the_dense_equations_in_every_mode_family) {
                          .planar = seed % 3 == 0,
                          .any_root = seed % 2 == 0,
                          .any_family = true};
-    const Case c(seed, wish, GetParam());
+    std::optional<Case> made;
+    try {
+      made.emplace(seed, wish, GetParam());
+    } catch (const std::invalid_argument& e) {
+      // A rod's exact kinematics begins at a clamped root.
+      EXPECT_EQ(GetParam(), "exact");
+      EXPECT_NE(std::string(e.what()).find("has no exact kinematics"), std::string::npos) << e.what();
+      continue;
+    }
+    const Case& c = *made;
     if (c.scene.model->layout().speeds == 0) continue;
     expect_solves(c, "seed " + std::to_string(seed));
   }
@@ -122,8 +133,8 @@ TEST_P(RandomTrees, inverse_dynamics_and_mass_products_are_those_of_the_dense_eq
         expected += s.mass[i * s.size + j] * a[j];
         scale += std::abs(s.mass[i * s.size + j] * a[j]);
       }
-      EXPECT_NEAR(product[i], expected, 1e-11 * scale) << "seed " << seed << ", row " << i;
-      EXPECT_NEAR(efforts[i], expected - s.force[i], 1e-11 * scale) << "seed " << seed << ", row " << i;
+      EXPECT_NEAR(product[i], expected, tolerance() * scale) << "seed " << seed << ", row " << i;
+      EXPECT_NEAR(efforts[i], expected - s.force[i], tolerance() * scale) << "seed " << seed << ", row " << i;
     }
   }
 }
@@ -176,7 +187,7 @@ TEST_P(RandomTrees, linearly_implicit_solutions_satisfy_their_equations) {
       }
     }
     for (std::size_t i = 0; i < s.size; ++i)
-      EXPECT_LT(std::abs(residual[i]), 1e-11 * scale[i]) << "seed " << seed << ", row " << layout.speed_names[i];
+      EXPECT_LT(std::abs(residual[i]), tolerance() * scale[i]) << "seed " << seed << ", row " << layout.speed_names[i];
   }
 }
 
@@ -268,7 +279,10 @@ class Untruncated : public testing::TestWithParam<std::string> {};
 /// the difference formula leaves about 1e-9 of the terms) along y + h ẏ, a direction in which dE = ∇E·ẏ exactly.
 TEST_P(Untruncated, power_of_the_motion_is_the_rate_of_energy) {
   for (unsigned seed = 1; seed <= 24; ++seed) {
-    const Case c(seed, {.bodies = 5, .planar = seed % 3 == 0, .any_root = true, .any_family = seed > 12}, GetParam());
+    const Case c(
+        seed,
+        {.bodies = 5, .planar = seed % 3 == 0, .any_root = true, .any_family = seed > 12 && GetParam() != "exact"},
+        GetParam());
     const std::vector<double> y_dot = c.derivatives(c.state);
     double size = 1;
     const auto energy = [&](double h) {
