@@ -4,6 +4,8 @@
 /// Before anything is timed, ours and the rival's accelerations must agree.
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <optional>
 #include <random>
 #include <sstream>
 
@@ -154,8 +156,12 @@ void empty_call(benchmark::State& state) {
 }
 
 void add(const std::string& name, const std::string& text, const std::string& formulation) {
-  benchmark::RegisterBenchmark(
-      name.c_str(), [text, formulation](benchmark::State& state) { Evaluation(text, formulation).time(state); });
+  // Compiled when first asked for, once for all repetitions.
+  auto evaluation = std::make_shared<std::optional<Evaluation>>();
+  benchmark::RegisterBenchmark(name.c_str(), [text, formulation, evaluation](benchmark::State& state) {
+    if (!*evaluation) evaluation->emplace(text, formulation);
+    (*evaluation)->time(state);
+  });
 }
 
 }  // namespace
