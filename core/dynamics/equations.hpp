@@ -78,9 +78,9 @@ class LinearlyImplicit {
   virtual ~LinearlyImplicit() = default;
   /// Memory for the factors, allocated once.
   [[nodiscard]] virtual Work make_factors() const = 0;
-  /// Factors of M(y) + δ D + δ² K, in about the time of an evaluation. δ > 0 [s].
+  /// Factors of M(y) + δ D + δ² K, by two of an evaluation's three passes. δ > 0 [s].
   virtual Evaluation factorize(std::span<const double> y, double delta, Work& factors) const noexcept = 0;
-  /// Replaces r, laid out as y, by the solution of W z = r; about half the time of an evaluation.
+  /// Replaces r, laid out as y, by the solution of W z = r: two of an evaluation's three passes.
   virtual void solve(std::span<double> r, Work& factors) const noexcept = 0;
 };
 
