@@ -97,6 +97,11 @@ class EquationsOfMotion {
   /// On an outcome other than ok the content of y_dot is meaningless.
   virtual Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
                                  Work& work) const noexcept = 0;
+  /// Efforts [N m, N] on all speeds of the model's loads at (t, y), or of one of them alone; for reports and audits.
+  /// \param load index in Model::loads(), or `all_loads`
+  virtual void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
+                            Work& work) const noexcept = 0;
+  static constexpr int all_loads = -1;
   /// Inverse dynamics: efforts [N m, N] on all speeds that, with weight, stiffness, damping and velocity terms, give
   /// the accelerations u_dot at y: M u_dot − f. In time proportional to the number of bodies where the mass matrix is
   /// symmetric; the strict forms assemble M. The loads' efforts are not taken off.

@@ -68,21 +68,18 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 /// Loads that give an effort that is not finite, with the first such time found.
-std::string nonfinite_loads(const Model& model, const State& state, double ahead) {
+std::string nonfinite_loads(const Model& model, const EquationsOfMotion& equations, const State& state, double ahead) {
   const Layout& layout = model.layout();
-  const std::span<const double> y(state.y);
+  Work work = equations.make_work();
   std::string text;
-  for (const LoadNode& node : model.loads()) {
-    std::vector<double> scratch(node.load->scratch());
+  for (std::size_t load = 0; load < model.loads().size(); ++load) {
     std::vector<double> efforts(layout.speeds);
     // From just after the state on, at intervals that double: a load may fail from some time on.
     for (double after = 0; after <= ahead; after = after > 0 ? 2 * after : ahead * 0x1p-30) {
-      std::fill(efforts.begin(), efforts.end(), 0.0);
-      node.load->add(state.time + after, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), efforts,
-                     scratch);
+      equations.load_efforts(state.time + after, state.y, static_cast<int>(load), efforts, work);
       const auto bad = std::find_if(efforts.begin(), efforts.end(), [](double e) { return !std::isfinite(e); });
       if (bad != efforts.end()) {
-        text += (text.empty() ? "" : "; ") + ("load '" + node.name + "' gives " + brief(*bad) + " on ") +
+        text += (text.empty() ? "" : "; ") + ("load '" + model.loads()[load].name + "' gives " + brief(*bad) + " on ") +
                 layout.speed_names[static_cast<std::size_t>(bad - efforts.begin())] +
                 " at t = " + brief(state.time + after) + " s";
         break;
@@ -147,7 +144,7 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
 
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,
                                double ahead) {
-  if (const std::string loads = nonfinite_loads(model, state, ahead); !loads.empty()) return loads;
+  if (const std::string loads = nonfinite_loads(model, equations, state, ahead); !loads.empty()) return loads;
   const Layout& layout = equations.layout();
   std::vector<std::string> names;
   for (std::size_t i = 0; i < layout.speeds; ++i) {

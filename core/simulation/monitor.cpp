@@ -25,9 +25,6 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     tips_.push_back(
         {slot, static_cast<int>(b), node.frame("tip"), *section, length, &summary.peak_deflection[node.name]});
   }
-  std::size_t scratch = 0;
-  for (const LoadNode& node : model.loads()) scratch = std::max(scratch, node.load->scratch());
-  scratch_.resize(scratch);
   summary.peak_effort.assign(model.layout().speeds, 0.0);
   const Energies e = equations.energies(initial.y);
   initial_energy_ = e.kinetic + e.potential;
@@ -55,13 +52,8 @@ void Monitor::observe(const State& state) {
     excess_ = "the tip of '" + tip.slot->name + "' is deflected by " + brief(size) + " m, " + brief(size / tip.length) +
               " times its length (limit " + brief(deflection_limit_) + ")";
   }
-  const Layout& layout = model_.layout();
-  const std::span<const double> y(state.y);
-  std::fill(efforts_.begin(), efforts_.end(), 0.0);
-  for (const LoadNode& node : model_.loads()) {
-    node.load->add(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), efforts_,
-                   scratch_);
-  }
+  if (model_.loads().empty()) return;
+  equations_.load_efforts(state.time, state.y, EquationsOfMotion::all_loads, efforts_, work_);
   for (std::size_t i = 0; i < efforts_.size(); ++i)
     summary_.peak_effort[i] = std::max(summary_.peak_effort[i], std::abs(efforts_[i]));
 }

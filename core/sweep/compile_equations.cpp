@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "withy/core/dynamics/reference.hpp"
+#include "withy/core/sweep/applied_loads.hpp"
 #include "withy/core/sweep/strict_sweep.hpp"
 #include "withy/core/sweep/symmetric_sweep.hpp"
 
@@ -25,6 +26,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   SweepEquations(std::shared_ptr<const Model> model, Terms terms, Tree tree, const std::vector<Terms>& node_terms)
       : model_(std::move(model)),
         reference_(model_, terms),
+        loads_(*model_, terms),
         sweep_(tree, node_terms, model_->gravity()),
         savings_(std::move(tree.savings)) {
     std::size_t aligned = 0;
@@ -71,12 +73,10 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
       before.count += copies_[i].count;
       copies_.erase(copies_.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    // Efforts, then the loads' scratch, then the sweep's own memory.
-    std::size_t scratch = 0;
-    for (const LoadNode& l : model_->loads()) scratch = std::max(scratch, l.load->scratch());
+    // Efforts, then the loads' memory, then the sweep's own.
     sweep::WorkLayout memory;
     efforts_offset_ = memory.take<double>(layout().speeds);
-    scratch_offset_ = memory.take<double>(scratch);
+    loads_offset_ = memory.take<std::byte>(loads_.work_size());
     sweep_offset_ = memory.size();
     sweep::WorkLayout factors;
     factors.take<double>(1 + 3 * layout().speeds);
@@ -94,10 +94,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     std::byte* memory = work.data();
     const std::span<double> efforts(reinterpret_cast<double*>(memory + efforts_offset_), order.speeds);
     for (double& e : efforts) e = 0;
-    for (const LoadNode& l : model_->loads()) {
-      l.load->add(t, positions, speeds, efforts,
-                  {reinterpret_cast<double*>(memory + scratch_offset_), l.load->scratch()});
-    }
+    loads_.add(t, positions, speeds, efforts, memory + loads_offset_);
     double* accelerations = y_dot.data() + order.positions;
     const Evaluation evaluation =
         sweep_.accelerations(positions.data(), speeds.data(), efforts.data(), accelerations, memory + sweep_offset_);
@@ -123,6 +120,12 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     return evaluation;
   }
 
+  void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
+                    Work& work) const noexcept override {
+    std::fill(efforts.begin(), efforts.end(), 0.0);
+    loads_.add(t, y.first(layout().positions), y.subspan(layout().positions, layout().speeds), efforts,
+               work.data() + loads_offset_, load);
+  }
   void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
                         Work& work) const override {
     if constexpr (has_modal_solver<Sweep>) {
@@ -236,13 +239,14 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   };
   std::shared_ptr<const Model> model_;
   ReferenceDynamics reference_;
+  AppliedLoads loads_;
   Sweep sweep_;
   std::vector<std::string> savings_;
   std::vector<Spring> springs_;
   std::vector<Damper> damped_;
   std::vector<Run> copies_;
   std::vector<std::size_t> general_;  ///< hinges with derivatives of their own
-  std::size_t efforts_offset_ = 0, scratch_offset_ = 0, sweep_offset_ = 0, factors_offset_ = 0;
+  std::size_t efforts_offset_ = 0, loads_offset_ = 0, sweep_offset_ = 0, factors_offset_ = 0;
 };
 
 }  // namespace
