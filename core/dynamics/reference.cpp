@@ -354,6 +354,12 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(s.mass.data(), n, n) = M;
   s.force.assign(f.data(), f.data() + n);
   s.applied.assign(applied.data(), applied.data() + n);
+  std::vector<double> u_dot(s.size);
+  model_->prescribe_accelerations(t, u_dot);
+  for (const MotionNode& node : model_->motions()) {
+    const Slot& slot = layout.hinges[static_cast<std::size_t>(node.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) s.prescribed.push_back({slot.speed + i, u_dot[slot.speed + i]});
+  }
   for (const LoadNode& node : model_->loads()) {
     std::vector<double> scratch(node.load->scratch());
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), s.applied, scratch);

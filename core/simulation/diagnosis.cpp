@@ -12,11 +12,24 @@ std::string sign_text(int sign) { return sign > 0 ? "positive" : (sign < 0 ? "ne
 
 using DenseMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// M, with prescribed speeds of unit mass on their own: they are in no direction that is weak.
+DenseMatrix decoupled(const DenseSystem& system) {
+  const auto n = static_cast<Eigen::Index>(system.size);
+  DenseMatrix M = Eigen::Map<const DenseMatrix>(system.mass.data(), n, n);
+  for (const PrescribedRate& p : system.prescribed) {
+    const auto i = static_cast<Eigen::Index>(p.speed);
+    M.row(i).setZero();
+    M.col(i).setZero();
+    M(i, i) = 1;
+  }
+  return M;
+}
+
 /// Unit vector of the scaled coordinates along which M acts least or, where M is indefinite and not singular, that of
 /// the lowest eigenvalue.
 Eigen::VectorXd weakest_direction(const MassMatrixHistory& h, bool negative) {
   const auto n = static_cast<Eigen::Index>(h.first.size);
-  const Eigen::Map<const DenseMatrix> first(h.first.mass.data(), n, n), last(h.last.mass.data(), n, n);
+  const DenseMatrix first = decoupled(h.first), last = decoupled(h.last);
   Eigen::VectorXd scale = first.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
   if (!scale.allFinite()) scale.setOnes();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * last * scale.asDiagonal();

@@ -64,6 +64,9 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
         general_.push_back(h);
       }
     }
+    for (std::size_t h = 0; h < layout().hinges.size(); ++h) {
+      if (model_->driven(h)) driven_.push_back(layout().hinges[h]);
+    }
     for (const Slot& slot : layout().bodies) copy(slot.position, slot.speed, slot.speeds);
     std::sort(copies_.begin(), copies_.end(), [](const Run& a, const Run& b) { return a.position < b.position; });
     for (std::size_t i = copies_.size(); i-- > 1;) {
@@ -77,6 +80,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     sweep::WorkLayout memory;
     efforts_offset_ = memory.take<double>(layout().speeds);
     loads_offset_ = memory.take<std::byte>(loads_.work_size());
+    rates_offset_ = memory.take<double>(model_->motions().empty() ? 0 : size());
     sweep_offset_ = memory.size();
     sweep::WorkLayout factors;
     factors.take<double>(1 + 3 * layout().speeds);
@@ -96,6 +100,8 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     for (double& e : efforts) e = 0;
     loads_.add(t, positions, speeds, efforts, memory + loads_offset_);
     double* accelerations = y_dot.data() + order.positions;
+    const bool driven = !model_->motions().empty();
+    if (driven) model_->prescribe_accelerations(t, {accelerations, order.speeds});
     const Evaluation evaluation =
         sweep_.accelerations(positions.data(), speeds.data(), efforts.data(), accelerations, memory + sweep_offset_);
     if (!evaluation.ok()) return evaluation;
@@ -109,7 +115,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
                                              y_dot.subspan(slot.position, slot.positions));
     }
     double power = 0;
-    if (!model_->loads().empty()) {
+    if (driven || !model_->loads().empty()) {
       for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
     }
     for (const Damper& d : damped_) power -= speeds[d.i] * d.value * speeds[d.j];
@@ -125,6 +131,24 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     std::fill(efforts.begin(), efforts.end(), 0.0);
     loads_.add(t, y.first(layout().positions), y.subspan(layout().positions, layout().speeds), efforts,
                work.data() + loads_offset_, load);
+  }
+  Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
+                            Work& work) const noexcept override {
+    std::fill(efforts.begin(), efforts.end(), 0.0);
+    if (model_->motions().empty()) return {};
+    const std::span<double> y_dot(reinterpret_cast<double*>(work.data() + rates_offset_), size());
+    const Evaluation evaluation = derivatives(t, y, y_dot, work);
+    if (!evaluation.ok()) return evaluation;
+    // The evaluation leaves there all efforts on driven speeds.
+    const double* all = reinterpret_cast<const double*>(work.data() + efforts_offset_);
+    load_efforts(t, y, all_loads, efforts, work);
+    std::size_t next = 0;  // the first speed not yet looked at
+    for (const Slot& slot : driven_) {
+      for (; next < slot.speed; ++next) efforts[next] = 0;
+      for (; next < slot.speed + slot.speeds; ++next) efforts[next] = all[next] - efforts[next];
+    }
+    for (; next < efforts.size(); ++next) efforts[next] = 0;
+    return evaluation;
   }
   void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
                         Work& work) const override {
@@ -245,8 +269,9 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   std::vector<Spring> springs_;
   std::vector<Damper> damped_;
   std::vector<Run> copies_;
+  std::vector<Slot> driven_;          ///< hinges that motions drive, in State's order
   std::vector<std::size_t> general_;  ///< hinges with derivatives of their own
-  std::size_t efforts_offset_ = 0, loads_offset_ = 0, sweep_offset_ = 0, factors_offset_ = 0;
+  std::size_t efforts_offset_ = 0, loads_offset_ = 0, rates_offset_ = 0, sweep_offset_ = 0, factors_offset_ = 0;
 };
 
 }  // namespace

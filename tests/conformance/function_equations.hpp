@@ -39,6 +39,10 @@ class FunctionEquations : public EquationsOfMotion {
     for (double& e : efforts) e = 0;
     if (load_efforts_) load_efforts_(t, y, load, efforts);
   }
+  Evaluation motion_efforts(double, std::span<const double>, std::span<double> efforts, Work&) const noexcept override {
+    for (double& e : efforts) e = 0;
+    return {};
+  }
   void inverse_dynamics(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {}
   void mass_times(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {}
   DenseSystem system(double t, std::span<const double> y) const override {
