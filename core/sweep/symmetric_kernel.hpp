@@ -54,6 +54,9 @@ template <class Space, int N, Flavor flavor>
   if (node.parent >= 0) V += Space::to_child(joint.SM, *Outer(node, s).V);
   w.sigma = node.parent >= 0 ? Space::cross(V, joint.rate) : Twist::zero();
   if (has_bias(node.joint.kind)) w.sigma += joint.bias;
+  if (node.joint.driven && s.driven != nullptr) [[unlikely]]
+    w.sigma += driven_acceleration<Space>(node.joint, s.positions + node.joint.position, s.speeds + node.joint.speed,
+                                          s.result + node.joint.speed);
 
   if constexpr (flavor == Flavor::frozen) {
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
@@ -250,7 +253,12 @@ template <class Space, int N, Flavor flavor>
   }
   // Elimination of ẍ, and what the hinge passes to the parent's station: inertia I, wrench p at zero A'.
   const JointData<Space>& joint = node.joint;
-  if (single(joint.kind)) {
+  if (joint.driven) [[unlikely]] {  // passes on everything; what is left here gives the effort
+    w.I = I;
+    w.p = p;
+    if (node.parent < 0) return true;
+    p += I * w.sigma;
+  } else if (single(joint.kind)) {
     const bool turns = joint.kind == Joint::rotate;
     const Twist U = turns ? I.turn_column() : I.slide_column();
     const double inertia = turns ? U.turn() : U.slide();
@@ -320,7 +328,9 @@ inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<
     for (int i = 0; i < n; ++i) p += Y[i] * (L[i * n + i] * y[i]);
   }
   const JointData<Space>& joint = node.joint;
-  if (single(joint.kind)) {
+  if (joint.driven) [[unlikely]] {
+    // The force passes on whole.
+  } else if (single(joint.kind)) {
     w.u = joint.direction * s.efforts[joint.speed] - component<Space>(joint.kind, p);
     p += w.U * (w.inverse * w.u);
   } else if constexpr (Space::angular == 3) {
@@ -345,7 +355,14 @@ template <class Space, int N, Flavor flavor>
   const Twist& outer = node.parent < 0 ? *s.world : *Outer(node, s).A;
   Twist A = w.sigma;
   if (joint.pose_matters) A += Space::to_child(w.SM, outer);
-  if (single(joint.kind)) {
+  if (joint.driven) [[unlikely]] {
+    if (s.driven != nullptr) {
+      driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed, w.I * A + w.p,
+                            s.driven + joint.speed);
+    } else {
+      for (std::size_t i = 0; i < joint.speeds; ++i) s.result[joint.speed + i] = 0;
+    }
+  } else if (single(joint.kind)) {
     const double x = (w.u - Space::dot(w.U, A)) * w.inverse;
     A += along<Space>(joint.kind, x);
     s.result[joint.speed] = joint.direction * x;

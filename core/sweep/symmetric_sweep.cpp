@@ -202,9 +202,10 @@ void SymmetricSweep<Space>::outward(const SymmetricState<Space>& state) const no
 }
 
 template <class Space>
-Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const double* speeds, const double* efforts,
+Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const double* speeds, double* efforts,
                                                 double* result, std::byte* work) const noexcept {
-  const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_};
+  const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_,
+                                    0,         efforts};
   const Evaluation evaluation = inward(state);
   if (evaluation.ok()) outward(state);
   return evaluation;

@@ -56,6 +56,8 @@ struct SymmetricState {
   const SymmetricNode<Space>* nodes;
   const typename Space::Twist* world;
   double delta = 0;  ///< above 0: G + δ D + δ² K in the place of G
+  /// Receives all efforts on driven rates, whose accelerations `result` holds; null: they do not accelerate.
+  double* driven = nullptr;
 };
 
 /// The quantities of what a node hangs on – a node's frame or a station – in the parent's work memory.
