@@ -1,6 +1,8 @@
 // Every kind of bad scene and the message a user gets: the place in the file, the path, what is wrong, what is needed.
 #include <gmock/gmock.h>
 
+#include <ostream>
+
 #include "scene_fixture.hpp"
 
 namespace withy::test {
@@ -12,6 +14,8 @@ struct BadScene {
   std::string to;
   const char* message;  ///< after the name of the file, the beginning of the whole report
 };
+/// Instead of its bytes, among them addresses.
+void PrintTo(const BadScene& scene, std::ostream* out) { *out << scene.kind; }
 
 const BadScene bad_scenes[] = {
     {"syntax_unclosed_list", "gravity: [0, -9.81, 0]", "gravity: [0, -9.81, 0",
