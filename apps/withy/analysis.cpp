@@ -30,6 +30,11 @@ Configuration::Configuration(const ConfigurationArguments& arguments)
       dynamics_(engine_.scene().model, engine_.scene().formulation->terms()),
       state_(engine_.state(arguments.state)),
       held_(layout().speeds, false) {
+  engine_.model().prescribe(state_);
+  for (const MotionNode& motion : engine_.model().motions()) {
+    const Slot& slot = layout().hinges[static_cast<std::size_t>(motion.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) held_[slot.speed + i] = true;
+  }
   for (const std::string& name : arguments.lock) {
     for (const std::size_t s : speeds_of(name, "--lock")) held_[s] = true;
   }
@@ -55,6 +60,11 @@ SpunRate Configuration::read_spin(const std::string& text, const std::string& op
         read_quantity(value, rate_is_angular(engine_.model(), speeds[0]) ? "rad/s" : "m/s");
     if (!quantity.value) throw InputError(option + ": rate of '" + name + "': " + quantity.problem);
     rate = quantity.value;
+  }
+  for (std::size_t h = 0; h < layout().hinges.size(); ++h) {
+    const Slot& slot = layout().hinges[h];
+    if (engine_.model().driven(h) && speeds[0] >= slot.speed && speeds[0] < slot.speed + slot.speeds)
+      throw InputError(fmt::format("{}: a motion of the scene drives '{}' already", option, slot.name));
   }
   if (!std::isfinite(*rate)) throw InputError(option + ": rate of '" + name + "': need a finite number");
   return {speeds[0], *rate};

@@ -39,8 +39,8 @@ TextTable hinge_table(const Configuration& c, const SteadyState& steady) {
 ExitStatus equilibrium(const EquilibriumArguments& arguments) {
   const Configuration c(arguments);
   const SteadyState steady = find_steady_state(c.dynamics(), c.state(), c.held());
-  const auto n = static_cast<Eigen::Index>(c.layout().speeds);
-  const Tangents tangents = c.dynamics().tangents(steady.state.time, steady.state.y, Eigen::VectorXd::Zero(n));
+  const Tangents tangents =
+      c.dynamics().tangents(steady.state.time, steady.state.y, c.dynamics().steady_accelerations(steady.state.time));
   const bool steady_for_good = stays_steady(c.dynamics(), tangents, steady.state, c.held());
   const std::string problem = no_steady_state(c, steady);
   const Scene& scene = c.engine().scene();

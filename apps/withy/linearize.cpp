@@ -117,19 +117,6 @@ double acceleration_tolerance(const Configuration& c, const FirstOrderForm& form
   return 1e-9 + (form.A.size() > 0 ? 1e-12 * form.A.cwiseAbs().maxCoeff() * greatest : 0.0);
 }
 
-/// The accelerations of the free speeds, those of held ones zero.
-Eigen::VectorXd free_accelerations(const Configuration& c) {
-  const auto n = static_cast<Eigen::Index>(c.layout().speeds);
-  Eigen::VectorXd a = Eigen::VectorXd::Zero(n);
-  const std::vector<Eigen::Index> free = free_speeds(c.held());
-  if (free.empty()) return a;
-  const Tangents t = c.dynamics().tangents(c.state().time, c.state().y, a);
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(t.mass(free, free));
-  if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular at this state");
-  a(free) = -lu.solve(t.residual(free));
-  return a;
-}
-
 }  // namespace
 
 ExitStatus linearize(const LinearizeArguments& arguments) {
@@ -141,7 +128,7 @@ ExitStatus linearize(const LinearizeArguments& arguments) {
   Tangents tangents;
   FirstOrderForm form;
   try {
-    a = free_accelerations(c);
+    a = accelerations(c.dynamics(), c.state(), c.held());
     tangents = c.dynamics().tangents(c.state().time, c.state().y, a);
     form = first_order_form(tangents, c.held());
   } catch (const std::domain_error& e) {

@@ -58,7 +58,6 @@ Sweep read_sweep(const std::string& text) {
 ModesAt modes_at(Configuration& c, bool as_is, std::optional<State>& last, BranchTracker& tracker) {
   ModesAt at;
   at.names = c.layout().speed_names;
-  const auto n = static_cast<Eigen::Index>(c.layout().speeds);
   State state = c.state();
   if (!as_is) {
     if (last && last->y.size() == state.y.size()) c.begin_at(*last);
@@ -70,8 +69,7 @@ ModesAt modes_at(Configuration& c, bool as_is, std::optional<State>& last, Branc
     last = state;
   }
   try {
-    Eigen::VectorXd a = Eigen::VectorXd::Zero(n);
-    const Tangents tangents = c.dynamics().tangents(state.time, state.y, a);
+    const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
     at.modes = tracker.follow(natural_modes(tangents, c.held()), tangents.mass.diagonal().cwiseAbs());
     if (!as_is) {
       at.steady["stays_steady"] = stays_steady(c.dynamics(), tangents, state, c.held());

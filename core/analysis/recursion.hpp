@@ -34,6 +34,20 @@ struct BodyState {
   Eigen::Matrix<S, Eigen::Dynamic, 1> q, q_dot, q_ddot;
 };
 
+/// A frame's axes, position, angular velocity and velocity, as FrameMotion.
+template <class S>
+struct FrameState {
+  Eigen::Matrix<S, 3, 3> R;
+  Eigen::Matrix<S, 3, 1> p, w, v;
+};
+
+/// A wrench of a load and where it acts.
+template <class S>
+struct AppliedWrench {
+  FrameIndex at;
+  Eigen::Matrix<S, 3, 1> moment, force;
+};
+
 template <class S>
 class Recursion {
  public:
@@ -69,12 +83,20 @@ class Recursion {
   }
 
   /// Σ m Jᵀ (a − g) + Σ J_ωᵀ (I α + ω × I ω): the efforts that the accelerations need beside those of stiffness and
-  /// damping.
-  [[nodiscard]] VX efforts() const {
+  /// damping, less what the wrenches give.
+  [[nodiscard]] VX efforts(const std::vector<AppliedWrench<S>>& wrenches) const {
     const Layout& layout = model_.layout();
     VX result = VX::Zero(static_cast<Eigen::Index>(layout.speeds));
     std::vector<Load> loads(frames_.size());
     for (std::size_t b = 0; b < frames_.size(); ++b) loads[b] = own_load(b);
+    for (const AppliedWrench<S>& w : wrenches) {
+      const auto b = static_cast<std::size_t>(w.at.body);
+      const M3& R = frames_[b].R;
+      const PointMotionOf<S> m = relative(w.at.body, w.at.frame, Pose{});
+      loads[b].force -= w.force;
+      loads[b].moment -= w.moment + V3(R * m.r).cross(w.force);
+      loads[b].modes -= m.P.transpose() * V3(R.transpose() * w.force) + m.W.transpose() * V3(R.transpose() * w.moment);
+    }
     for (std::size_t b = frames_.size(); b-- > 0;) {
       const HingeNode& h = model_.hinges()[b];
       const Frame& B = frames_[b];
@@ -106,6 +128,11 @@ class Recursion {
     return result;
   }
 
+  [[nodiscard]] FrameState<S> frame_state(FrameIndex at) const {
+    const auto b = static_cast<std::size_t>(at.body);
+    const Frame A = outward(frames_[b], relative(at.body, at.frame, Pose{}), states_[b].q_ddot);
+    return {A.R, A.p, A.w, A.v};
+  }
   /// Position of a frame of a body in the world, and the displacement r − X of its section in the body frame.
   [[nodiscard]] std::pair<V3, V3> frame_position(int body, int frame) const {
     const auto b = static_cast<std::size_t>(body);

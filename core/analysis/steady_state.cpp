@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <stdexcept>
 
 namespace withy {
 namespace {
@@ -23,7 +24,7 @@ class Newton {
     for (const Slot& slot : layout.bodies) {
       for (std::size_t i = 0; i < slot.speeds; ++i) state_.y[layout.positions + slot.speed + i] = 0;
     }
-    rest_ = Eigen::VectorXd::Zero(n_);
+    rest_ = dynamics.steady_accelerations(start.time);
   }
 
   SteadyState solve() {
@@ -127,6 +128,17 @@ std::vector<Eigen::Index> free_speeds(const Held& held) {
     if (!held[i]) indices.push_back(static_cast<Eigen::Index>(i));
   }
   return indices;
+}
+
+Eigen::VectorXd accelerations(const TangentDynamics& dynamics, const State& state, const Held& held) {
+  Eigen::VectorXd a = dynamics.steady_accelerations(state.time);
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  if (free.empty()) return a;
+  const Tangents t = dynamics.tangents(state.time, state.y, a);
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(t.mass(free, free));
+  if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular at this state");
+  a(free) = -lu.solve(t.residual(free));
+  return a;
 }
 
 SteadyState find_steady_state(const TangentDynamics& dynamics, const State& start, const Held& held) {

@@ -10,11 +10,15 @@
 namespace withy {
 
 /// Which generalized speeds are held: their coordinates follow the rates that the state gives them, by whatever effort
-/// that takes. One a speed.
+/// that takes. One a speed. Hinges that a motion drives are to be among them.
 using Held = std::vector<bool>;
 
 /// Indices of the speeds that are not held.
 std::vector<Eigen::Index> free_speeds(const Held& held);
+
+/// Accelerations at a state: of held speeds zero or as a motion prescribes, of the free ones those that follow.
+/// \throws std::domain_error where the mass matrix of the free speeds is singular.
+Eigen::VectorXd accelerations(const TangentDynamics& dynamics, const State& state, const Held& held);
 
 struct SteadyState {
   State state;  ///< the steady state, or the best found
@@ -26,10 +30,11 @@ struct SteadyState {
   Eigen::VectorXd neutral;
 };
 
-/// Displaces the free coordinates until their accelerations vanish, all speeds constant: those of modes zero, those of
-/// hinges as `start` has them. Newton's method with exact derivatives, its steps shortened until the next simplified
-/// step is smaller (the affine-invariant test of Deuflhard 2004, section 3.3); where the stiffness is singular, the
-/// shortest step in the least-squares sense, so that neutral coordinates stay where they are.
+/// Displaces the free coordinates until their accelerations vanish, with the accelerations that motions prescribe, all
+/// speeds constant: those of modes zero, those of hinges as `start` has them. Newton's method with exact derivatives,
+/// its steps shortened until the next simplified step is smaller (the affine-invariant test of Deuflhard 2004,
+/// section 3.3); where the stiffness is singular, the shortest step in the least-squares sense, so that neutral
+/// coordinates stay where they are.
 SteadyState find_steady_state(const TangentDynamics& dynamics, const State& start, const Held& held);
 
 /// Whether what the free speeds feel stays the same while the hinges turn with the state's rates; not so where gravity

@@ -8,7 +8,9 @@
 
 namespace withy {
 
+using analysis::AppliedWrench;
 using analysis::BodyState;
+using analysis::FrameState;
 using analysis::HingeState;
 using analysis::Recursion;
 
@@ -23,6 +25,77 @@ using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<T, 1, 1>>;
 
 /// Loads and hinges that have no derivatives of their own are differentiated with this step [rad, m, s⁻¹ of these].
 constexpr double load_step = 1e-3;
+
+/// Wrenches at frames in motion.
+std::vector<AppliedWrench<double>> wrenches_of(const BoundLoad& load, double t,
+                                               const std::vector<FrameState<double>>& frames, bool& /*depends*/) {
+  std::vector<FrameMotion> motions;
+  for (const FrameState<double>& f : frames) motions.push_back({f.R, f.p, f.w, f.v});
+  std::vector<Wrench> values(frames.size());
+  load.wrenches(t, motions, values);
+  std::vector<AppliedWrench<double>> result;
+  for (std::size_t k = 0; k < frames.size(); ++k)
+    result.push_back({load.frames()[k], values[k].moment, values[k].force});
+  return result;
+}
+
+/// The same with derivatives: those of the wrenches with respect to the frames' motion by central differences, that
+/// motion's own exactly. `depends` becomes true where they are not zero.
+std::vector<AppliedWrench<Jet>> wrenches_of(const BoundLoad& load, double t, const std::vector<FrameState<Jet>>& frames,
+                                            bool& depends) {
+  const auto value = [](const Jet& x) { return x.value(); };
+  std::vector<FrameMotion> motions;
+  for (const FrameState<Jet>& f : frames)
+    motions.push_back({f.R.unaryExpr(value), f.p.unaryExpr(value), f.w.unaryExpr(value), f.v.unaryExpr(value)});
+  const auto wrenches_at = [&](const std::vector<FrameMotion>& at) {
+    std::vector<Wrench> values(at.size());
+    load.wrenches(t, at, values);
+    Eigen::Matrix<double, 6, Eigen::Dynamic> all(6, static_cast<Eigen::Index>(at.size()));
+    for (std::size_t k = 0; k < at.size(); ++k)
+      all.col(static_cast<Eigen::Index>(k)) << values[k].moment, values[k].force;
+    return all;
+  };
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> here = wrenches_at(motions);
+  Eigen::Matrix<Jet, 6, Eigen::Dynamic> all = here.cast<Jet>();
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const FrameMotion& m = motions[k];
+    for (int part = 0; part < 4; ++part) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        // The change of this element along each direction; a turn is Ṙ Rᵀ, whose axial vector it is.
+        Jet::DerType change;
+        if (part == 0) {
+          const Eigen::Index i = (axis + 1) % 3, j = (axis + 2) % 3;
+          change.setZero();
+          for (Eigen::Index c = 0; c < 3; ++c) change += frames[k].R(j, c).derivatives() * m.R(i, c);
+        } else {
+          const auto& x = part == 1 ? frames[k].p : part == 2 ? frames[k].w : frames[k].v;
+          change = x[axis].derivatives();
+        }
+        if (change.isZero(0)) continue;
+        const Eigen::Matrix<double, 6, Eigen::Dynamic> slope = central_difference(
+            [&](double h) {
+              std::vector<FrameMotion> moved = motions;
+              const Vector3 step = h * Vector3::Unit(axis);
+              if (part == 0) moved[k].R = Eigen::AngleAxisd(h, Vector3::Unit(axis)) * m.R;
+              if (part == 1) moved[k].position += step;
+              if (part == 2) moved[k].angular_velocity += step;
+              if (part == 3) moved[k].velocity += step;
+              return wrenches_at(moved);
+            },
+            load_step);
+        if (slope.isZero(0)) continue;
+        depends = true;
+        for (Eigen::Index e = 0; e < slope.size(); ++e) all(e).derivatives() += slope(e) * change;
+      }
+    }
+  }
+  std::vector<AppliedWrench<Jet>> result;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const auto column = all.col(static_cast<Eigen::Index>(k));
+    result.push_back({load.frames()[k], column.head<3>(), column.tail<3>()});
+  }
+  return result;
+}
 
 }  // namespace
 
@@ -160,14 +233,27 @@ TangentDynamics::TangentDynamics(std::shared_ptr<const Model> model, Terms terms
 }
 
 template <class T>
-VX<T> TangentDynamics::efforts(std::span<const double> y, const Eigen::VectorXd& a, Seeds seeds) const {
+VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen::VectorXd& a, Seeds seeds,
+                               std::vector<bool>* differenced) const {
   const Builder<T> build{*this, y, a, seeds};
   const auto ruthless = [&](std::size_t b) { return terms_[b].truncation == Truncation::ruthless; };
-  if (!strict_) return Recursion<T>(*model_, build.hinges(), build.bodies(ruthless)).efforts();
+  // Loads see frames at the deformation that the truncations keep.
+  const Recursion<T> shown(*model_, build.hinges(), build.bodies(ruthless));
+  std::vector<AppliedWrench<T>> wrenches;
+  for (std::size_t l = 0; l < model_->loads().size(); ++l) {
+    const BoundLoad& load = *model_->loads()[l].load;
+    if (load.frames().empty()) continue;
+    std::vector<FrameState<T>> frames;
+    for (const FrameIndex& at : load.frames()) frames.push_back(shown.frame_state(at));
+    bool depends = false;
+    for (AppliedWrench<T>& w : wrenches_of(load, t, frames, depends)) wrenches.push_back(std::move(w));
+    if (differenced != nullptr && depends) (*differenced)[l] = true;
+  }
+  if (!strict_) return shown.efforts(wrenches);
 
   // Theory (3): the undeformed tree with q̈, and the part of first order in ε of the tree with εq, εq̇ and without q̈.
   const auto all = [](std::size_t) { return true; };
-  VX<T> r = Recursion<T>(*model_, build.hinges(), build.bodies(all)).efforts();
+  VX<T> r = Recursion<T>(*model_, build.hinges(), build.bodies(all)).efforts(wrenches);
   using D = Dual<T>;
   std::vector<HingeState<D>> hinges;
   for (const HingeState<T>& h : build.hinges()) {
@@ -188,7 +274,10 @@ VX<T> TangentDynamics::efforts(std::span<const double> y, const Eigen::VectorXd&
     s.q_ddot = VX<D>::Zero(b.q.size());
     bodies.push_back(std::move(s));
   }
-  const VX<D> first = Recursion<D>(*model_, std::move(hinges), std::move(bodies)).efforts();
+  std::vector<AppliedWrench<D>> constant;
+  for (const AppliedWrench<T>& w : wrenches)
+    constant.push_back({w.at, w.moment.template cast<D>(), w.force.template cast<D>()});
+  const VX<D> first = Recursion<D>(*model_, std::move(hinges), std::move(bodies)).efforts(constant);
   for (Eigen::Index i = 0; i < r.size(); ++i) r[i] += first[i].derivatives()[0];
   return r;
 }
@@ -216,16 +305,23 @@ Eigen::VectorXd TangentDynamics::load_efforts(double t, std::span<const double> 
   return Eigen::Map<const Eigen::VectorXd>(efforts.data(), static_cast<Eigen::Index>(efforts.size()));
 }
 
+Eigen::VectorXd TangentDynamics::steady_accelerations(double t) const {
+  Eigen::VectorXd a = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model_->layout().speeds));
+  model_->prescribe_accelerations(t, {a.data(), model_->layout().speeds});
+  return a;
+}
+
 Eigen::VectorXd TangentDynamics::residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
-  return efforts<double>(y, a, {}) + elastic(y) - load_efforts(t, y);
+  return efforts<double>(t, y, a, {}) + elastic(y) - load_efforts(t, y);
 }
 
 Tangents TangentDynamics::tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
   const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
   Eigen::MatrixXd all(n, 3 * n);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(n);
+  std::vector<bool> differenced(model_->loads().size(), false);
   for (Eigen::Index first = 0; first < 3 * n; first += 8) {
-    const VX<Jet> r = efforts<Jet>(y, a, {static_cast<std::size_t>(first)});
+    const VX<Jet> r = efforts<Jet>(t, y, a, {static_cast<std::size_t>(first)}, &differenced);
     const Eigen::Index count = std::min<Eigen::Index>(8, 3 * n - first);
     for (Eigen::Index i = 0; i < n; ++i) {
       values[i] = r[i].value();
@@ -244,6 +340,9 @@ Tangents TangentDynamics::tangents(double t, std::span<const double> y, const Ei
     result.by_position.block(at, at, shape.modes(), shape.modes()) += shape.stiffness;
     result.by_speed.block(at, at, shape.modes(), shape.modes()) += shape.damping;
   }
+  for (std::size_t l = 0; l < differenced.size(); ++l) {
+    if (differenced[l]) result.differenced.push_back(model_->loads()[l].name);
+  }
   add_loads(t, y, result);
   result.drift = drift(y);
   return result;
@@ -257,7 +356,7 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, Tangents& t
     const BoundLoad& load = *node.load;
     const auto positions = y.first(layout.positions), speeds = y.subspan(layout.positions, layout.speeds);
     if (load.add_derivatives(t, positions, speeds, by_position, by_speed)) continue;
-    tangents.differenced.push_back(node.name);
+    const Eigen::MatrixXd position_before = by_position, speed_before = by_speed;
     const auto at = [&](std::span<const double> state) -> Eigen::VectorXd {
       Eigen::VectorXd efforts = Eigen::VectorXd::Zero(n);
       std::vector<double> scratch(load.scratch());
@@ -281,6 +380,7 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, Tangents& t
           },
           load_step);
     }
+    if (by_position != position_before || by_speed != speed_before) tangents.differenced.push_back(node.name);
   }
   tangents.by_position -= by_position;
   tangents.by_speed -= by_speed;

@@ -23,7 +23,9 @@ struct Tangents {
   Eigen::MatrixXd by_speed;     ///< ∂r/∂u: damping and gyroscopic terms
   /// C of δ̇ = δu + C δ: zero but where speeds are no derivatives of coordinates (angular velocities).
   Eigen::MatrixXd drift;
-  std::vector<std::string> differenced;  ///< loads whose derivatives are numerical (BoundLoad::add_derivatives)
+  /// Loads whose derivatives are numerical: without BoundLoad::add_derivatives, or wrenches that depend on their
+  /// frame's motion, with respect to that motion.
+  std::vector<std::string> differenced;
 };
 
 /// Position of a frame with its derivatives.
@@ -45,6 +47,8 @@ class TangentDynamics {
   TangentDynamics(std::shared_ptr<const Model> model, Terms terms);
 
   [[nodiscard]] const Model& model() const { return *model_; }
+  /// The accelerations of steady motion: those that prescribed motions have at t, all others zero.
+  [[nodiscard]] Eigen::VectorXd steady_accelerations(double t) const;
   /// r at time t, y as in State, a one number a speed.
   [[nodiscard]] Eigen::VectorXd residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
   [[nodiscard]] Tangents tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
@@ -58,8 +62,9 @@ class TangentDynamics {
   template <class T>
   struct Builder;
   template <class T>
-  [[nodiscard]] Eigen::Matrix<T, Eigen::Dynamic, 1> efforts(std::span<const double> y, const Eigen::VectorXd& a,
-                                                            Seeds seeds) const;
+  [[nodiscard]] Eigen::Matrix<T, Eigen::Dynamic, 1> efforts(double t, std::span<const double> y,
+                                                            const Eigen::VectorXd& a, Seeds seeds,
+                                                            std::vector<bool>* differenced = nullptr) const;
   void add_loads(double t, std::span<const double> y, Tangents& tangents) const;
   [[nodiscard]] Eigen::VectorXd load_efforts(double t, std::span<const double> y) const;
   [[nodiscard]] Eigen::VectorXd elastic(std::span<const double> y) const;

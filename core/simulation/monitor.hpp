@@ -49,7 +49,7 @@ class Monitor {
   std::vector<Tip> tips_;
   double deflection_limit_;
   std::string excess_;
-  std::vector<double> efforts_, scratch_, rates_;
+  std::vector<double> efforts_, rates_;
   Work work_;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;
