@@ -17,6 +17,11 @@ class BoundHingeEffort final : public BoundLoad {
            std::span<double> efforts, std::span<double> /*scratch*/) const noexcept override {
     efforts[speed_] += effort_(t);
   }
+  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
+                       Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
+    return true;  // a function of time alone
+  }
   std::vector<double> discontinuities() const override { return effort_.discontinuities(); }
   double end() const override { return effort_.end(); }
   void begin(State& /*state*/) const override {}

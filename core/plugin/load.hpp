@@ -2,6 +2,7 @@
 /// The interface of loads.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -46,6 +47,15 @@ class BoundLoad {
   /// `positions` and `speeds` are those of State.
   virtual void add(double t, std::span<const double> positions, std::span<const double> speeds,
                    std::span<double> efforts, std::span<double> scratch) const noexcept = 0;
+  /// Adds the derivatives of the efforts that `add` gives: `by_position(i, j)` of effort i with respect to a
+  /// displacement along speed j (position changes as if that speed alone were one), `by_speed(i, j)` to speed j. For
+  /// analyses: may allocate. \returns false, adding nothing, where the load has none; it is then differentiated
+  /// numerically.
+  virtual bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+                               Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
+                               Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const {
+    return false;
+  }
   /// Frames at which the load acts by wrenches. Which partial velocities turn these into efforts, and at which
   /// deformation the frames are shown to `wrenches`, is the formulation's (docs/theory.md, "Loads at frames").
   [[nodiscard]] virtual std::span<const FrameIndex> frames() const { return {}; }
