@@ -27,18 +27,15 @@ class FrameLoad : public BoundLoad {
   std::vector<FrameIndex> frames_;
 };
 
-/// The frame that a scene calls "body.frame", or "body" for its root.
+/// The frame that a scene calls "body.frame", or "body" for its root; of a body that was cut, its segment's.
 /// \throws std::invalid_argument where the model has none.
 inline FrameIndex frame_index(const Model& model, const std::string& name) {
+  if (const std::optional<FrameIndex> index = model.find_frame(name)) return *index;
   const std::size_t dot = name.find('.');
-  const int body = model.body(name.substr(0, dot));
-  if (body < 0) throw std::invalid_argument("there is no body '" + name.substr(0, dot) + "'");
-  const std::string frame = dot == std::string::npos ? "root" : name.substr(dot + 1);
-  const int index = model.bodies()[static_cast<std::size_t>(body)].frame(frame);
-  if (index < 0)
-    throw std::invalid_argument("body '" + name.substr(0, dot) + "' has no frame '" + frame +
-                                "'; a station without a name becomes one under the body's 'frames'");
-  return {body, index};
+  const std::string body = name.substr(0, dot);
+  if (model.segments(body).empty()) throw std::invalid_argument("there is no body '" + body + "'");
+  throw std::invalid_argument("body '" + body + "' has no frame '" + name.substr(dot + 1) +
+                              "'; a station without a name becomes one under the body's 'frames'");
 }
 
 }  // namespace withy

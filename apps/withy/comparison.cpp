@@ -42,10 +42,9 @@ double hinge_distance(const HingeNode& hinge, const Slot& slot, const State& a, 
   return most;
 }
 
-double tip_distance(const FramePlace& tip, const ComparedRun& a, const State& at, const ComparedRun& b,
-                    const State& bt) {
-  const auto p = a.engine->equations().frame_pose(at.y, tip.body, tip.frame).position;
-  const auto q = b.engine->equations().frame_pose(bt.y, tip.body, tip.frame).position;
+double tip_distance(const Tip& tip, const ComparedRun& a, const State& at, const ComparedRun& b, const State& bt) {
+  const auto p = a.engine->equations().frame_pose(at.y, tip.tip.body, tip.tip.frame).position;
+  const auto q = b.engine->equations().frame_pose(bt.y, tip.tip.body, tip.tip.frame).position;
   return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
 }
 
@@ -94,8 +93,8 @@ Distances distances(const ComparedRun& run, const ComparedRun& reference) {
       double& most = d.hinges[slot.name];
       most = std::max(most, hinge_distance(model.hinges()[h], slot, a, b));
     }
-    for (const FramePlace& tip : places) {
-      double& most = d.tips[tip.name];
+    for (const Tip& tip : places) {
+      double& most = d.tips[tip.body + ".tip"];
       most = std::max(most, tip_distance(tip, run, a, reference, b));
     }
   }
@@ -110,12 +109,12 @@ std::string picture(const std::string& title, const std::vector<const ComparedRu
   }
   const Model& model = runs.front()->engine->model();
   std::vector<Panel> panels;
-  for (const FramePlace& tip : tips(model)) {
+  for (const Tip& tip : tips(model)) {
     if (!tip.flexible) continue;
     for (const std::size_t axis : {std::size_t{1}, std::size_t{2}}) {
-      Panel panel = panel_of(tip.name + " deflection " + "xyz"[axis] + " [m]", runs,
+      Panel panel = panel_of(tip.body + ".tip deflection " + "xyz"[axis] + " [m]", runs,
                              [&tip, axis](const ComparedRun& run, const State& s) {
-                               return run.engine->equations().deflection(s.y, tip.body, tip.frame)[axis];
+                               return deflection(run.engine->equations(), s.y, tip)[axis];
                              });
       // A direction in which nothing bends has no panel.
       if (panel.y_range.first != 0 || panel.y_range.second != 0) panels.push_back(std::move(panel));

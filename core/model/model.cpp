@@ -132,6 +132,36 @@ void Model::lay_out() {
 int Model::body(std::string_view name) const { return find_index(bodies_, name); }
 int Model::hinge(std::string_view name) const { return find_index(hinges_, name); }
 
+std::vector<int> Model::segments(std::string_view name) const {
+  if (const int index = body(name); index >= 0) return {index};
+  std::vector<int> indices;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const std::optional<Segment>& segment = bodies_[b].segment;
+    if (!segment || segment->whole != name) continue;
+    indices.resize(std::max(indices.size(), segment->index + 1), -1);
+    indices[segment->index] = static_cast<int>(b);
+  }
+  return indices;
+}
+
+std::optional<FrameIndex> Model::find_frame(std::string_view name) const {
+  const auto lookup = [&](const std::vector<int>& in, std::string_view frame) -> std::optional<FrameIndex> {
+    if (in.empty()) return {};
+    // Every segment has a root and a tip of its own; the whole's are those at its ends.
+    if (frame == "root") return FrameIndex{in.front(), 0};
+    const bool tip = frame == "tip";
+    for (auto b = tip ? in.end() - 1 : in.begin(); b != in.end(); ++b) {
+      const int index = bodies_[static_cast<std::size_t>(*b)].frame(frame);
+      if (index >= 0) return FrameIndex{*b, index};
+    }
+    return {};
+  };
+  if (auto root = lookup(segments(name), "root")) return root;
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos) return {};
+  return lookup(segments(name.substr(0, dot)), name.substr(dot + 1));
+}
+
 State Model::reference_state() const {
   State s;
   s.y.assign(layout_.positions + layout_.speeds + 1, 0.0);

@@ -25,12 +25,21 @@ struct Frame {
   Pose pose;
 };
 
+/// Says that a body is a segment of one that was cut across. The segments of a whole lie one behind the other, welded,
+/// from its root on; each has the frames "root" and "tip".
+struct Segment {
+  std::string whole;      ///< name of the body that was cut; no body of the model has it
+  std::size_t index = 0;  ///< from the root, from 0
+  std::size_t count = 1;  ///< of the whole
+};
+
 /// A body in the tree.
 struct BodyNode {
   std::string name;
   std::shared_ptr<const Body> body;
   std::vector<Frame> frames;
-  std::optional<Terms> terms;  ///< of this body's own formulation; none: the scene's
+  std::optional<Terms> terms = {};      ///< of this body's own formulation; none: the scene's
+  std::optional<Segment> segment = {};  ///< none: a body by itself
 
   /// Index of a frame; −1 where there is none.
   [[nodiscard]] int frame(std::string_view frame_name) const;
@@ -80,6 +89,13 @@ class Model {
   /// Index of a body or hinge; −1 where there is none.
   [[nodiscard]] int body(std::string_view name) const;
   [[nodiscard]] int hinge(std::string_view name) const;
+  /// The frame that "body.frame" names, or "body" for its root. The name of a body that was cut stands for its
+  /// segments: its root is that of the first, its tip that of the last, and any other frame that of the segment which
+  /// has it.
+  [[nodiscard]] std::optional<FrameIndex> find_frame(std::string_view name) const;
+  /// Indices of the pieces of a body that was cut, from its root; of any other body its index alone; empty where there
+  /// is no such body.
+  [[nodiscard]] std::vector<int> segments(std::string_view body) const;
 
   /// The state at time 0 with every coordinate at its reference, at rest.
   [[nodiscard]] State reference_state() const;

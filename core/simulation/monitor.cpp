@@ -22,8 +22,11 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     const double length = node.body->shape().length;
     const auto section = node.body->station("tip");
     if (slot == nullptr || !section || !(length > 0)) continue;
-    tips_.push_back(
-        {slot, static_cast<int>(b), node.frame("tip"), *section, length, &summary.peak_deflection[node.name]});
+    ends_.push_back({slot, static_cast<int>(b), node.frame("tip"), *section, length,
+                     node.segment ? nullptr : &summary.peak_deflection[node.name]});
+  }
+  for (Tip& tip : tips(model)) {
+    if (tip.in_segments() && tip.flexible) wholes_.push_back(std::move(tip));
   }
   summary.peak_effort.assign(model.layout().speeds, 0.0);
   summary.peak_motion_effort.assign(model.layout().speeds, 0.0);
@@ -32,26 +35,32 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
   initial_sign_ = mass_matrix_sign(initial);
 }
 
-std::array<double, 3> Monitor::deflection(const Tip& tip, const State& state) const {
-  if (tip.frame >= 0) return equations_.deflection(state.y, tip.body, tip.frame);
-  const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + tip.slot->position,
-                                            static_cast<Eigen::Index>(tip.slot->positions));
+std::array<double, 3> Monitor::deflection_of(const End& end, const State& state) const {
+  if (end.frame >= 0) return equations_.deflection(state.y, end.body, end.frame);
+  const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + end.slot->position,
+                                            static_cast<Eigen::Index>(end.slot->positions));
   std::array<double, 3> d{};
   for (Eigen::Index k = 0; k < 3; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    d[i] = tip.section.phi.row(k).dot(q) + 0.5 * q.dot(tip.section.gamma[i] * q);
+    d[i] = end.section.phi.row(k).dot(q) + 0.5 * q.dot(end.section.gamma[i] * q);
   }
   return d;
 }
 
-void Monitor::observe(const State& state) {
-  for (const Tip& tip : tips_) {
-    const std::array<double, 3> d = deflection(tip, state);
-    for (std::size_t k = 0; k < 3; ++k) (*tip.peak)[k] = std::max((*tip.peak)[k], std::abs(d[k]));
-    const double size = std::hypot(d[0], d[1], d[2]);
-    if (!excess_.empty() || size <= deflection_limit_ * tip.length) continue;
-    excess_ = "the tip of '" + tip.slot->name + "' is deflected by " + brief(size) + " m, " + brief(size / tip.length) +
-              " times its length (limit " + brief(deflection_limit_) + ")";
+void Monitor::note(const std::string& name, double length, const std::array<double, 3>& d,
+                   std::array<double, 3>* peak) {
+  for (std::size_t k = 0; peak != nullptr && k < 3; ++k) (*peak)[k] = std::max((*peak)[k], std::abs(d[k]));
+  const double size = std::hypot(d[0], d[1], d[2]);
+  if (!excess_.empty() || size <= deflection_limit_ * length) return;
+  excess_ = "the tip of '" + name + "' is deflected by " + brief(size) + " m, " + brief(size / length) +
+            " times its length (limit " + brief(deflection_limit_) + ")";
+}
+
+void Monitor::observe(const State& state, bool output) {
+  for (const End& end : ends_) note(end.slot->name, end.length, deflection_of(end, state), end.peak);
+  if (output) {
+    for (const Tip& tip : wholes_)
+      note(tip.body, tip.length, deflection(equations_, state.y, tip), &summary_.peak_deflection[tip.body]);
   }
   const auto raise = [&](std::vector<double>& peak) {
     for (std::size_t i = 0; i < efforts_.size(); ++i) peak[i] = std::max(peak[i], std::abs(efforts_[i]));

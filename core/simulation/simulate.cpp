@@ -95,7 +95,7 @@ class Run {
         times_(initial.time, options.output, options.end),
         sample_(stepper_->state()) {
     emit(stepper_->state());
-    monitor_.observe(stepper_->state());
+    monitor_.observe(stepper_->state(), true);
   }
 
   Stop to_end(double start) {
@@ -123,7 +123,10 @@ class Run {
   /// The last state is an output, however the run ended.
   void finish() {
     const State& state = stepper_->state();
-    if (state.time > emitted_) emit(state);
+    if (state.time > emitted_) {
+      monitor_.observe(state, true);
+      emit(state);
+    }
     monitor_.audit_energy(state);
   }
 
@@ -138,12 +141,12 @@ class Run {
       for (; times_.due(state.time); times_.pass()) {
         sample_.time = times_.next();
         stepper_->interpolate(sample_.time, sample_.y);
-        monitor_.observe(sample_);
+        monitor_.observe(sample_, true);
         emit(sample_);
       }
       monitor_.audit_energy(state);
     }
-    monitor_.observe(state);
+    monitor_.observe(state, false);
     monitor_.audit_mass_matrix(state, stepper_->statistics().determinant_sign);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
     if (monitor_.sign_change()) return {RunStatus::singular, "the determinant of the mass matrix changed its sign"};

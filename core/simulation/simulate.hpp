@@ -36,7 +36,7 @@ struct RunSummary {
   std::string message;  ///< the physical reason, or what a completed run should not keep to itself; else empty
   State final;          ///< the last accepted state
   /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and outputs,
-  /// body axes x, y, z [m].
+  /// body axes x, y, z [m]; of a body in segments under its own name, over the outputs.
   std::map<std::string, std::array<double, 3>> peak_deflection;
   /// Greatest |effort| of the loads on each generalized speed over all accepted steps and outputs [N m, N].
   std::vector<double> peak_effort;

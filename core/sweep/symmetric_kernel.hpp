@@ -253,9 +253,8 @@ template <class Space, int N, Flavor flavor>
   }
   // Elimination of ẍ, and what the hinge passes to the parent's station: inertia I, wrench p at zero A'.
   const JointData<Space>& joint = node.joint;
-  if (joint.driven) [[unlikely]] {  // passes on everything; what is left here gives the effort
-    w.I = I;
-    w.p = p;
+  if (joint.driven) [[unlikely]] {  // passes on everything
+    *at<DrivenWork<Space>>(s.work, node.work_driven) = {I, p};
     if (node.parent < 0) return true;
     p += I * w.sigma;
   } else if (single(joint.kind)) {
@@ -357,7 +356,8 @@ template <class Space, int N, Flavor flavor>
   if (joint.pose_matters) A += Space::to_child(w.SM, outer);
   if (joint.driven) [[unlikely]] {
     if (s.driven != nullptr) {
-      driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed, w.I * A + w.p,
+      const auto& asked = *at<DrivenWork<Space>>(s.work, node.work_driven);
+      driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed, asked.I * A + asked.p,
                             s.driven + joint.speed);
     } else {
       for (std::size_t i = 0; i < joint.speeds; ++i) s.result[joint.speed + i] = 0;

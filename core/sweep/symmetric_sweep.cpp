@@ -120,6 +120,7 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
     node.work_h = memory.template take<double>(n);
     node.work_rod = memory.template take<Pack>(rod_work(node.rod, node.modes));
     node.work_P = memory.template take<Pack>(n * Space::linear);
+    if (node.joint.driven) node.work_driven = memory.template take<DrivenWork<Space>>(1);
     if (node.root_station >= 0) node.work_root = memory.template take<RootWork<Space>>(1);
     if (!single(node.joint.kind) && node.joint.kind != Joint::fixed)
       node.work_elimination = memory.template take<JointElimination<Space>>(1);

@@ -71,7 +71,7 @@ struct SymmetricNode {
   typename Space::Inertia reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
   // Work memory.
   std::size_t work = 0, work_J = 0, work_h = 0, work_C = 0, work_G = 0, work_y = 0, work_P = 0, work_stations = 0;
-  std::size_t work_rod = 0, work_root = 0, work_elimination = 0;
+  std::size_t work_rod = 0, work_root = 0, work_elimination = 0, work_driven = 0;
 
   SymmetricNode(const NodeSpec& spec, Terms terms);
 };

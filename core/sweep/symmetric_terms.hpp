@@ -32,6 +32,13 @@ struct RootWork {
   typename Space::Twist sigma;  ///< σ of the root station
 };
 
+/// What a node with a driven hinge asks of the hinge: F = I A + p.
+template <class Space>
+struct DrivenWork {
+  typename Space::Inertia I;
+  typename Space::Twist p;
+};
+
 /// Work of a node.
 template <class Space>
 struct NodeWork {
