@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 TextTable hinge_table(const Configuration& c, const SteadyState& steady) {
-  TextTable table({"<coordinate", "value", "<unit", "rate\n[1/s]", "<held", "effort\n[N m, N]"});
+  TextTable table({"<coordinate", "value", "<unit", "rate\n[rad/s, m/s]", "<held", "effort\n[N m, N]"});
   const Model& model = c.engine().model();
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const Slot& slot = c.layout().hinges[h];

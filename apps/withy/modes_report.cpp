@@ -25,6 +25,11 @@ double greatest_of(const ModesAt& at) {
 }
 bool unstable(const ModesAt& at, const Mode& m) { return !m.rigid && m.growth() > 1e-10 * greatest_of(at); }
 
+/// A growth without what rounding leaves of it.
+double shown_growth(const ModesAt& at, const Mode& m) {
+  return std::abs(m.growth()) > 1e-10 * greatest_of(at) ? m.growth() : 0.0;
+}
+
 std::string state_of(const ModesAt& at, const Mode& m) {
   if (m.rigid) return "rigid";
   if (unstable(at, m)) return m.eigenvalue.imag() == 0 ? "diverges" : "flutters";
@@ -50,8 +55,8 @@ std::string modes_text(const ModesOf& run, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const Mode& m = at.modes[i];
     table.add({std::to_string(i + 1), fmt::format("{:.6g}", m.frequency()), fmt::format("{:.6g}", hertz(m)),
-               m.rigid ? "-" : fmt::format("{:.3g}", std::abs(m.damping_ratio()) < 1e-12 ? 0.0 : m.damping_ratio()),
-               fmt::format("{:.3g}", m.growth()), state_of(at, m), dominating(at, m)});
+               m.rigid ? "-" : fmt::format("{:.3g}", -shown_growth(at, m) / m.frequency() + 0.0),
+               fmt::format("{:.3g}", shown_growth(at, m)), state_of(at, m), dominating(at, m)});
   }
   std::string text = table.str();
   if (count < at.modes.size()) text += fmt::format("{} more: --count {}\n", at.modes.size() - count, at.modes.size());

@@ -2,7 +2,7 @@
 /// What `withy modes` shows: tables, CSV, JSON and a picture of modes at one configuration or along a sweep.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 

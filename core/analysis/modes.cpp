@@ -121,7 +121,8 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
   const Scaled s(tangents, free);
   const bool at_rest = s.G.isZero(0) && s.C.isZero(0);
   std::vector<Root> roots = at_rest ? roots_at_rest(s) : roots_in_motion(s);
-  clear_zeros(roots, nullity(s.K));
+  // Constant displacements, u = −C δ, that ask for no acceleration.
+  clear_zeros(roots, nullity(s.K - s.G * s.C));
 
   std::vector<Mode> modes;
   std::vector<const Root*> real;
