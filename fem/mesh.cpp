@@ -168,24 +168,6 @@ Mesh read_mesh(const std::filesystem::path& file) {
   return mesh;
 }
 
-std::string model_part(const std::filesystem::path& deck) {
-  const std::string text = text_of(deck);
-  std::string part;
-  Lines lines(text);
-  std::string_view line;
-  while (lines.next(line)) {
-    const std::string name = line.starts_with("*") && !line.starts_with("**") ? keyword_of(line).name : "";
-    if (name == "STEP") break;
-    for (const char* held : {"BOUNDARY", "MPC", "EQUATION", "RIGIDBODY", "TIE", "COUPLING"}) {
-      if (name == held)
-        throw InputError(fmt::format("{}:{}: got *{} before the first step; need the free mesh", deck.string(),
-                                     lines.number(), name));
-    }
-    part.append(line).append("\n");
-  }
-  return part;
-}
-
 std::vector<long> nodes_of(const Mesh& mesh, const std::string& text) {
   std::vector<long> numbers;
   if (const auto set = mesh.sets.find(capitals(text)); set != mesh.sets.end()) {

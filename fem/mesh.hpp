@@ -28,10 +28,6 @@ struct Mesh {
 /// \throws InputError
 Mesh read_mesh(const std::filesystem::path& file);
 
-/// The part of an input deck before its first step: nodes, elements, sets, materials, sections, as they stand.
-/// \throws InputError where it has a boundary condition or a constraint: the mesh is to be free.
-std::string model_part(const std::filesystem::path& deck);
-
 /// Numbers of the nodes that a text names: a set, or numbers separated by commas.
 /// \throws InputError where there is no such set or node.
 std::vector<long> nodes_of(const Mesh& mesh, const std::string& text);

@@ -1,7 +1,6 @@
 /// \file
 /// Craig–Bampton reduction of a free mesh that is clamped at its root, and the Standard Input Data of the result.
-/// R. R. Craig and M. C. C. Bampton, AIAA J. 6 (1968), 1313–1319; geometric stiffness from unit loads after
-/// A. K. Banerjee and J. M. Dickens, J. Guidance 13 (1990), 221–227.
+/// R. R. Craig and M. C. C. Bampton, AIAA J. 6 (1968), 1313–1319.
 #pragma once
 
 #include <Eigen/Core>
@@ -46,12 +45,8 @@ struct Reduction {
 /// \throws InputError where the mesh is not free, not in one piece with its root, or has no such modes.
 Reduction reduce(const Matrices& matrices, const ReductionOptions& options);
 
-/// Reduced geometric stiffness matrices of unit loads: see unit_loads.hpp for their order.
-using GeometricStiffness = std::vector<Eigen::MatrixXd>;
-
-/// SID of the reduced body. With geometric stiffness every first order is there; without, those that need it are left
-/// out, and readers say so.
-sid::Data sid_of(const Reduction& body, const Matrices& matrices, const ReductionOptions& options,
-                 const GeometricStiffness& geometric);
+/// SID of the reduced body, without geometric stiffness, which K and M do not know: the first orders of Ct, Cr, Oe and
+/// of the nodes' phi and psi are left out, and readers say so.
+sid::Data sid_of(const Reduction& body);
 
 }  // namespace withy::fem

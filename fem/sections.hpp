@@ -1,5 +1,5 @@
 /// \file
-/// Interface nodes as a section: its centre, and loads and motions of it.
+/// Interface nodes as a section.
 #pragma once
 
 #include <Eigen/Dense>
@@ -19,11 +19,6 @@ struct Section {
   }
   /// Σ r rᵀ
   [[nodiscard]] Matrix3 spread() const { return arms * arms.transpose(); }
-  /// w such that forces w × r on the nodes have the unit moment about an axis, and no resultant.
-  [[nodiscard]] Vector3 twist_of_moment(Eigen::Index axis) const {
-    const Matrix3 S = spread();
-    return (S.trace() * Matrix3::Identity() - S).inverse().col(axis);
-  }
 };
 
 /// \throws InputError where a node is not in the matrices.

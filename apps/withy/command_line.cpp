@@ -83,8 +83,7 @@ void add_import(Commands& commands) {
   auto& a = commands.add<ImportArguments>(
       "import", "Reduce a finite-element mesh to a modal body",
       "  withy import boom --root ROOT --interface TIP --modes 6\n"
-      "  withy import boom --root ROOT --interface TIP --modes 6 --write-unit-loads loads\n"
-      "  withy import boom --root ROOT --interface TIP --modes 6 --unit-loads loads --out boom.SID_FEM\n"
+      "  withy import boom --root ROOT --interface TIP --station 17 --highest 500 --out boom.SID_FEM\n"
       "  withy import block --stiffness block_STIF1.mtx --mass block_MASS1.mtx --root BASE --modes 4",
       import_mesh, c);
   c->add_option("JOB", a.job, "Name of the job: JOB.inp, and of CalculiX JOB.sti, JOB.mas and JOB.dof")->required();
@@ -110,12 +109,6 @@ void add_import(Commands& commands) {
   c->add_option("--highest", a.highest, "Drop modes of the reduced body above this frequency [Hz]")
       ->type_name("HZ")
       ->check(CLI::PositiveNumber);
-  auto* write = c->add_option("--write-unit-loads", a.write_unit_loads,
-                              "Write decks of CalculiX for the geometric stiffness into a folder, and stop");
-  write->type_name("DIR");
-  c->add_option("--unit-loads", a.unit_loads, "Folder with the decks and what CalculiX made of them")
-      ->type_name("DIR")
-      ->excludes(write);
   c->add_option("--out", a.out, "File of Standard Input Data; default: JOB.SID_FEM")->type_name("FILE");
   add_common(*c, a);
 }

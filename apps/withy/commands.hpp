@@ -58,11 +58,9 @@ struct ImportArguments : CommonArguments {
   std::string root;         ///< node set or numbers
   std::vector<std::string> interfaces;
   std::vector<std::string> stations;
-  int modes = 10;                ///< fixed-interface modes
-  double highest = 0;            ///< [Hz]; 0: none
-  std::string write_unit_loads;  ///< folder; empty: no decks are written
-  std::string unit_loads;        ///< folder with what CalculiX made of them; empty: no geometric stiffness
-  std::string out;               ///< empty: <job>.SID_FEM
+  int modes = 10;      ///< fixed-interface modes
+  double highest = 0;  ///< [Hz]; 0: none
+  std::string out;     ///< empty: <job>.SID_FEM
 };
 
 struct PluginsArguments : CommonArguments {

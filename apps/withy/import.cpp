@@ -12,7 +12,6 @@
 #include "withy/bodies/modal/sid_body.hpp"
 #include "withy/fem/reduce.hpp"
 #include "withy/fem/summary.hpp"
-#include "withy/fem/unit_loads.hpp"
 
 namespace withy::app {
 namespace {
@@ -152,21 +151,7 @@ ExitStatus import_mesh(const ImportArguments& a) {
     for (const std::string& text : a.interfaces) options.interfaces.push_back(interface_of(mesh, text));
     for (const std::string& text : a.stations) options.stations.push_back(interface_of(mesh, text));
     const fem::Reduction body = fem::reduce(matrices, options);
-    if (!a.write_unit_loads.empty()) {
-      const auto loads = fem::unit_loads(matrices, body, options);
-      fem::write_decks(a.write_unit_loads, files.mesh, matrices.nodes, loads, options);
-      print(
-          fmt::format("{0} decks are in {1}. Run them, then withy import with --unit-loads {1}:\n"
-                      "  cd {1} && for deck in unit-*.inp; do ccx \"${{deck%.inp}}\"; done\n",
-                      2 * loads.size(), a.write_unit_loads));
-      return ExitStatus::done;
-    }
-    fem::GeometricStiffness geometric;
-    if (!a.unit_loads.empty()) {
-      const auto loads = fem::unit_loads(matrices, body, options);
-      geometric = fem::read_geometric_stiffness(a.unit_loads, matrices, body, loads);
-    }
-    const sid::Data data = fem::sid_of(body, matrices, options, geometric);
+    const sid::Data data = fem::sid_of(body);
     // What the modal body will make of it, before anything is written.
     SidReport sid_report;
     (void)body_of(data, {}, sid_report);
