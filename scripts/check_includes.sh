@@ -19,6 +19,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["bodies"] = inner "|withy/bodies/.*|fmt/.*|boost/math/.*"
     may["integrators"] = inner "|withy/integrators/.*|fmt/.*"
     may["loads"] = inner "|withy/loads/.*|fmt/.*"
+    may["fem"] = inner "|withy/fem/.*|withy/bodies/modal/.*|fmt/.*|Spectra/.*"
     may["apps"] = ".*"
     may["tests"] = ".*"
 
@@ -26,6 +27,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     only["yaml-cpp/"] = "scene"
     only["CLI/"] = "apps"
     only["boost/dll"] = "plugins/host"
+    only["Spectra/"] = "fem"
   }
   function room_of(file,   parts) {
     split(file, parts, "/")

@@ -89,6 +89,41 @@ class Commands {
   std::vector<Entry> entries_;
 };
 
+void add_import(Commands& commands) {
+  CLI::App* c = nullptr;
+  auto& a = commands.add<ImportArguments>(
+      "import", "Reduce a finite-element mesh to a modal body",
+      "  withy import boom --root ROOT --interface TIP --modes 6\n"
+      "  withy import boom --root ROOT --interface TIP --station 17 --highest 500 --out boom.SID_FEM\n"
+      "  withy import block --stiffness block_STIF1.mtx --mass block_MASS1.mtx --root BASE --modes 4",
+      import_mesh, c);
+  c->add_option("JOB", a.job, "Name of the job: JOB.inp, and of CalculiX JOB.sti, JOB.mas and JOB.dof")->required();
+  c->add_option("--mesh", a.mesh, "Input deck or .frd file with the nodes; default: JOB.inp")->type_name("FILE");
+  c->add_option("--stiffness", a.stiffness, "Stiffness matrix of Abaqus (*_STIF*.mtx)")->type_name("FILE");
+  c->add_option("--mass", a.mass_matrix, "Mass matrix of Abaqus (*_MASS*.mtx)")->type_name("FILE");
+  c->add_option("--root", a.root, "Nodes that are clamped: a node set, or numbers separated by commas")
+      ->type_name("NODES")
+      ->required();
+  const auto several = [&](const char* name, std::vector<std::string>& value, const char* meaning) {
+    c->add_option(name, value, meaning)
+        ->type_name("NODES")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->expected(1)
+        ->allow_extra_args(false);
+  };
+  several("--interface", a.interfaces,
+          "Nodes to attach to, a rigid section with static modes: a set, a node, or name=17,18,19; repeatable");
+  several("--station", a.stations, "A node to attach to without modes of its own; repeatable");
+  c->add_option("--modes", a.modes, "Number of normal modes with the interfaces held")
+      ->check(CLI::Range(0, 200))
+      ->capture_default_str();
+  c->add_option("--highest", a.highest, "Drop modes of the reduced body above this frequency [Hz]")
+      ->type_name("HZ")
+      ->check(CLI::PositiveNumber);
+  c->add_option("--out", a.out, "File of Standard Input Data; default: JOB.SID_FEM")->type_name("FILE");
+  add_common(*c, a);
+}
+
 void add_commands(Commands& commands) {
   CLI::App* c = nullptr;
 
@@ -193,6 +228,8 @@ void add_commands(Commands& commands) {
   add_formulations(*c, bench_arguments.formulations, "--formulation,--formulations",
                    "One formulation, several, or all; default: the scene's");
   add_state(*c, bench_arguments);
+
+  add_import(commands);
 
   auto& plugins_arguments =
       commands.add<PluginsArguments>("plugins", "List the plugins found, or describe one with its options",

@@ -73,6 +73,20 @@ struct BenchArguments : StateArguments {
   std::vector<std::string> formulations;  ///< `all` is every one found; empty: the scene's
 };
 
+/// Files of a finite-element program, and what to reduce them to.
+struct ImportArguments : CommonArguments {
+  std::string job;          ///< of CalculiX: the files' name without extension
+  std::string mesh;         ///< input deck or result file; empty: that of the job
+  std::string stiffness;    ///< of Abaqus; empty: the job's
+  std::string mass_matrix;  ///< the same
+  std::string root;         ///< node set or numbers
+  std::vector<std::string> interfaces;
+  std::vector<std::string> stations;
+  int modes = 10;      ///< fixed-interface modes
+  double highest = 0;  ///< [Hz]; 0: none
+  std::string out;     ///< empty: <job>.SID_FEM
+};
+
 struct PluginsArguments : CommonArguments {
   std::string name;  ///< id or kind/id; empty: all
 };
@@ -85,6 +99,7 @@ ExitStatus equilibrium(const EquilibriumArguments& arguments);
 ExitStatus linearize(const LinearizeArguments& arguments);
 ExitStatus modes(const ModesArguments& arguments);
 ExitStatus bench(const BenchArguments& arguments);
+ExitStatus import_mesh(const ImportArguments& arguments);
 ExitStatus plugins(const PluginsArguments& arguments);
 ExitStatus schema(const CommonArguments& arguments);
 

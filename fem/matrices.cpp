@@ -1,0 +1,206 @@
+#include "matrices.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "text_lines.hpp"
+
+namespace withy::fem {
+namespace {
+
+using Triplet = Eigen::Triplet<double>;
+
+/// The whole matrix from triplets of one triangle or both, rows from 0. Where both are given they must agree.
+SparseMatrix symmetric(const std::vector<Triplet>& triplets, Eigen::Index size, const std::filesystem::path& file) {
+  SparseMatrix given(size, size);
+  given.setFromTriplets(triplets.begin(), triplets.end());
+  SparseMatrix lower = given.triangularView<Eigen::StrictlyLower>();
+  const SparseMatrix upper = SparseMatrix(given.triangularView<Eigen::StrictlyUpper>()).transpose();
+  if (lower.norm() == 0) {
+    lower = upper;
+  } else if (upper.norm() != 0 && (lower - upper).norm() > 1e-9 * lower.norm()) {
+    throw InputError(file.string() + ": the matrix is not symmetric; need symmetric matrices");
+  }
+  SparseMatrix all = lower + SparseMatrix(lower.transpose());
+  for (Eigen::Index i = 0; i < size; ++i) {
+    if (const double d = given.coeff(i, i); d != 0) all.coeffRef(i, i) = d;
+  }
+  all.makeCompressed();
+  return all;
+}
+
+[[noreturn]] void fault(const std::filesystem::path& file, int line, const std::string& message) {
+  throw InputError(fmt::format("{}:{}: {}", file.string(), line, message));
+}
+
+std::vector<std::string_view> words(std::string_view line) {
+  auto fields = split(line, " \t,");
+  std::erase_if(fields, [](std::string_view f) { return f.empty(); });
+  return fields;
+}
+
+double value_of(std::string_view text, const std::filesystem::path& file, int line) {
+  const auto value = number_of<double>(text);
+  if (!value || !std::isfinite(*value)) fault(file, line, fmt::format("got '{}'; need a finite number", text));
+  return *value;
+}
+
+/// Lines "row column value", rows from 1.
+std::vector<Triplet> read_triplets(const std::filesystem::path& file, Eigen::Index most) {
+  const std::string text = text_of(file);
+  std::vector<Triplet> triplets;
+  Lines lines(text);
+  std::string_view line;
+  while (lines.next(line)) {
+    line = trimmed(line);
+    if (line.empty() || line.front() == '%' || line.front() == '*') continue;
+    const auto fields = words(line);
+    const auto row = number_of<long>(fields[0]);
+    const auto column = fields.size() == 3 ? number_of<long>(fields[1]) : std::nullopt;
+    if (!row || !column || *row < 1 || *column < 1) fault(file, lines.number(), "need a row, a column and a value");
+    if (*row > most || *column > most)
+      fault(file, lines.number(), fmt::format("got row {}, column {}; there are {} rows", *row, *column, most));
+    triplets.emplace_back(*row - 1, *column - 1, value_of(fields[2], file, lines.number()));
+  }
+  return triplets;
+}
+
+/// Lines "node, freedom, node, freedom, value".
+NamedMatrix read_matrix_input(const std::string& text, const std::filesystem::path& file) {
+  struct Entry {
+    Freedom row, column;
+    double value;
+  };
+  std::vector<Entry> entries;
+  std::vector<Freedom> rows;
+  Lines lines(text);
+  std::string_view line;
+  while (lines.next(line)) {
+    line = trimmed(line);
+    if (line.empty() || line.front() == '*') continue;
+    const auto fields = split(line, ",");
+    std::vector<long> n;
+    for (std::size_t i = 0; i < std::min<std::size_t>(4, fields.size()); ++i) {
+      if (const auto number = number_of<long>(fields[i])) n.push_back(*number);
+    }
+    if (n.size() != 4 || fields.size() < 5) fault(file, lines.number(), "need node, freedom, node, freedom, value");
+    if (n[1] < 1 || n[1] > 3 || n[3] < 1 || n[3] > 3)
+      fault(file, lines.number(), "a rotation or another freedom than 1 to 3; need a mesh of solid elements");
+    const Entry e{{n[0], static_cast<int>(n[1]) - 1},
+                  {n[2], static_cast<int>(n[3]) - 1},
+                  value_of(fields[4], file, lines.number())};
+    entries.push_back(e);
+    rows.push_back(e.row);
+    rows.push_back(e.column);
+  }
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  const auto index = [&](const Freedom& f) {
+    return static_cast<int>(std::lower_bound(rows.begin(), rows.end(), f) - rows.begin());
+  };
+  std::vector<Triplet> triplets;
+  for (const Entry& e : entries) triplets.emplace_back(index(e.row), index(e.column), e.value);
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  return {std::move(rows), symmetric(triplets, size, file)};
+}
+
+}  // namespace
+
+NamedMatrix read_calculix(const std::filesystem::path& values, const std::filesystem::path& freedoms) {
+  NamedMatrix matrix;
+  const std::string text = text_of(freedoms);
+  std::set<std::pair<long, int>> seen;
+  Lines lines(text);
+  std::string_view line;
+  while (lines.next(line)) {
+    line = trimmed(line);
+    if (line.empty()) continue;
+    const std::size_t dot = line.find('.');
+    const auto node = number_of<long>(line.substr(0, dot));
+    const auto axis = dot == std::string_view::npos ? std::nullopt : number_of<int>(line.substr(dot + 1));
+    if (!node || !axis || *axis < 1 || *axis > 3)
+      fault(freedoms, lines.number(), fmt::format("got '{}'; need a node and one of its axes 1 to 3, as 12.3", line));
+    if (!seen.emplace(*node, *axis).second)
+      fault(freedoms, lines.number(),
+            fmt::format("freedom {} stands there twice: CalculiX makes solids of beams and shells and does not name "
+                        "their nodes; need a mesh of solid elements",
+                        line));
+    matrix.rows.push_back({*node, *axis - 1});
+  }
+  const auto size = static_cast<Eigen::Index>(matrix.rows.size());
+  matrix.values = symmetric(read_triplets(values, size), size, values);
+  return matrix;
+}
+
+NamedMatrix read_abaqus(const std::filesystem::path& file, const Mesh& mesh) {
+  const std::string text = text_of(file);
+  if (text.find(',') != std::string::npos) return read_matrix_input(text, file);
+  NamedMatrix matrix;
+  for (const auto& [node, X] : mesh.nodes) {
+    for (int axis = 0; axis < 3; ++axis) matrix.rows.push_back({node, axis});
+  }
+  const auto size = static_cast<Eigen::Index>(matrix.rows.size());
+  const std::vector<Triplet> triplets = read_triplets(file, size);
+  matrix.values = symmetric(triplets, size, file);
+  const bool last =
+      std::any_of(triplets.begin(), triplets.end(), [&](const Triplet& t) { return t.row() == size - 1; });
+  if (!last)
+    throw InputError(
+        fmt::format("{}: there are fewer rows than 3 for each of the mesh's {} nodes, so that rows have no "
+                    "names; write it with FORMAT=MATRIX INPUT",
+                    file.string(), mesh.nodes.size()));
+  return matrix;
+}
+
+SparseMatrix arranged(const NamedMatrix& matrix, const std::vector<long>& nodes) {
+  std::vector<int> place;
+  for (const Freedom& f : matrix.rows) {
+    const auto it = std::lower_bound(nodes.begin(), nodes.end(), f.node);
+    if (it == nodes.end() || *it != f.node)
+      throw InputError(fmt::format("a matrix has node {}, which the others have not", f.node));
+    place.push_back(3 * static_cast<int>(it - nodes.begin()) + f.axis);
+  }
+  std::vector<Triplet> triplets;
+  for (Eigen::Index column = 0; column < matrix.values.outerSize(); ++column) {
+    for (SparseMatrix::InnerIterator it(matrix.values, column); it; ++it) {
+      triplets.emplace_back(place[static_cast<std::size_t>(it.row())], place[static_cast<std::size_t>(it.col())],
+                            it.value());
+    }
+  }
+  const auto size = 3 * static_cast<Eigen::Index>(nodes.size());
+  SparseMatrix all(size, size);
+  all.setFromTriplets(triplets.begin(), triplets.end());
+  return all;
+}
+
+Matrices combined(const NamedMatrix& K, const NamedMatrix& M, const Mesh& mesh) {
+  Matrices m;
+  std::map<long, int> axes;
+  for (const Freedom& f : K.rows) axes[f.node] += 1 << f.axis;
+  std::vector<long> nowhere;
+  for (const auto& [node, which] : axes) {
+    if (which != 7)
+      throw InputError(
+          fmt::format("node {} has not all of its freedoms 1 to 3: a boundary condition, or no solid "
+                      "element; need the stiffness of the free mesh",
+                      node));
+    if (!mesh.nodes.contains(node)) nowhere.push_back(node);
+    m.nodes.push_back(node);
+  }
+  if (!nowhere.empty())
+    throw InputError(
+        fmt::format("the matrices have {} nodes that the mesh file has not, the first is {}: nodes inside "
+                    "elements, as of C3D8I? Mesh with others, as C3D20R",
+                    nowhere.size(), nowhere.front()));
+  if (m.nodes.empty()) throw InputError("the stiffness matrix has no rows");
+  m.X.resize(3, static_cast<Eigen::Index>(m.nodes.size()));
+  for (std::size_t a = 0; a < m.nodes.size(); ++a) m.X.col(static_cast<Eigen::Index>(a)) = mesh.nodes.at(m.nodes[a]);
+  m.K = arranged(K, m.nodes);
+  m.M = arranged(M, m.nodes);
+  return m;
+}
+
+}  // namespace withy::fem

@@ -1,0 +1,283 @@
+#include "reduce.hpp"
+
+#include <Spectra/MatOp/SparseSymMatProd.h>
+#include <Spectra/SymGEigsShiftSolver.h>
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sections.hpp"
+
+namespace withy::fem {
+namespace {
+
+using Factor = Eigen::SimplicialLDLT<SparseMatrix>;
+using Triplet = Eigen::Triplet<double>;
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+/// K⁻¹ for Spectra's iteration about the shift zero, with a factor that is there already.
+class Inverse {
+ public:
+  using Scalar = double;
+  explicit Inverse(const Factor& factor) : factor_(factor) {}
+  [[nodiscard]] Eigen::Index rows() const { return factor_.rows(); }
+  [[nodiscard]] Eigen::Index cols() const { return factor_.cols(); }
+  void set_shift(double /*zero*/) {}
+  void perform_op(const double* in, double* out) const {
+    Eigen::Map<Eigen::VectorXd>(out, rows()) = factor_.solve(Eigen::Map<const Eigen::VectorXd>(in, rows()));
+  }
+
+ private:
+  const Factor& factor_;
+};
+
+/// The scalar mass matrix of M = m ⊗ 1₃, as elements without rotations have.
+SparseMatrix node_mass_of(const SparseMatrix& M) {
+  std::vector<Triplet> triplets;
+  for (Eigen::Index column = 0; column < M.outerSize(); ++column) {
+    for (SparseMatrix::InnerIterator it(M, column); it; ++it) {
+      if (it.row() % 3 == 0 && it.col() % 3 == 0) triplets.emplace_back(it.row() / 3, it.col() / 3, it.value());
+    }
+  }
+  SparseMatrix m(M.rows() / 3, M.rows() / 3);
+  m.setFromTriplets(triplets.begin(), triplets.end());
+  std::vector<Triplet> thrice;
+  for (const Triplet& t : triplets) {
+    for (int c = 0; c < 3; ++c) thrice.emplace_back(3 * t.row() + c, 3 * t.col() + c, t.value());
+  }
+  SparseMatrix whole(M.rows(), M.rows());
+  whole.setFromTriplets(thrice.begin(), thrice.end());
+  if ((M - whole).norm() > 1e-8 * M.norm())
+    throw InputError("the mass matrix differs between the axes or couples them; need a mesh of solid elements");
+  return m;
+}
+
+class Reducer {
+ public:
+  Reducer(const Matrices& matrices, const ReductionOptions& options) : m_(matrices), options_(options) {}
+
+  Reduction run() {
+    body_.node_mass = node_mass_of(m_.M);
+    place_origin();
+    classify();
+    check_free();
+    coordinates_of_interfaces();
+    solve();
+    add_nodes();
+    return std::move(body_);
+  }
+
+ private:
+  void place_origin() {
+    const Section root = section_of(options_.root, m_);
+    if (!root.rigid()) throw InputError("the root needs three nodes or more that are not in a line: they are clamped");
+    body_.origin = root.centre;
+    body_.X = m_.X.colwise() - body_.origin;
+  }
+
+  /// Every row is clamped (−1), interior (0), or of an interface (1).
+  void classify() {
+    kind_.assign(static_cast<std::size_t>(m_.K.rows()), 0);
+    const auto mark = [&](const std::vector<long>& nodes, int kind, const std::string& name) {
+      for (const Eigen::Index a : section_of(nodes, m_).rows) {
+        for (Eigen::Index c = 0; c < 3; ++c) {
+          int& k = kind_[static_cast<std::size_t>(3 * a + c)];
+          if (k != 0)
+            throw InputError(fmt::format("node {} of {} is in the root or another interface too",
+                                         m_.nodes[static_cast<std::size_t>(a)], name));
+          k = kind;
+        }
+      }
+    };
+    mark(options_.root, -1, "the root");
+    for (const Interface& interface : options_.interfaces) {
+      mark(interface.nodes, 1, interface.name);
+      if (interface.nodes.size() > 1 && !section_of(interface.nodes, m_).rigid())
+        throw InputError(
+            fmt::format("interface {} needs one node, or three or more that are not in a line", interface.name));
+    }
+    place_.assign(kind_.size(), -1);
+    for (std::size_t i = 0; i < kind_.size(); ++i) {
+      if (kind_[i] >= 0) body_.free.push_back(static_cast<Eigen::Index>(i));
+      if (kind_[i] != 0) continue;
+      place_[i] = static_cast<Eigen::Index>(interior_.size());
+      interior_.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+
+  /// A free mesh has no stiffness against rigid motions.
+  void check_free() const {
+    Eigen::MatrixXd rigid = Eigen::MatrixXd::Zero(m_.K.rows(), 6);
+    const double size = body_.X.colwise().norm().maxCoeff();
+    for (Eigen::Index a = 0; a < body_.X.cols(); ++a) {
+      rigid.block<3, 3>(3 * a, 0).setIdentity();
+      rigid.block<3, 3>(3 * a, 3) = -skew<double>(Vector3(body_.X.col(a) / size));
+    }
+    const double scale = m_.K.diagonal().cwiseAbs().maxCoeff();
+    const double stiff = (m_.K * rigid).cwiseAbs().maxCoeff() / scale;
+    if (!(stiff < 1e-5))
+      throw InputError(
+          fmt::format("rigid motions of the mesh meet {:.1g} of its greatest stiffness; need the stiffness "
+                      "of the free mesh, in the axes and units of the node positions",
+                      stiff));
+  }
+
+  /// The rows of the interfaces as functions of their own coordinates b: three of a node, or translation and rotation
+  /// of a rigid section.
+  void coordinates_of_interfaces() {
+    Eigen::Index count = 0;
+    for (const Interface& i : options_.interfaces) count += i.nodes.size() == 1 ? 3 : 6;
+    std::vector<Triplet> triplets;
+    Eigen::Index first = 0;
+    for (const Interface& interface : options_.interfaces) {
+      const Section section = section_of(interface.nodes, m_);
+      for (std::size_t s = 0; s < section.rows.size(); ++s) {
+        const Eigen::Index a = section.rows[s];
+        const Matrix3 turn = -skew<double>(Vector3(section.arms.col(static_cast<Eigen::Index>(s))));
+        for (int c = 0; c < 3; ++c) {
+          triplets.emplace_back(3 * a + c, first + c, 1.0);
+          for (int k = 0; section.rigid() && k < 3; ++k) triplets.emplace_back(3 * a + c, first + 3 + k, turn(c, k));
+        }
+      }
+      first += section.rigid() ? 6 : 3;
+    }
+    rigid_.resize(m_.K.rows(), count);
+    rigid_.setFromTriplets(triplets.begin(), triplets.end());
+  }
+
+  /// The rows and columns of the interior.
+  [[nodiscard]] SparseMatrix interior(const SparseMatrix& matrix) const {
+    std::vector<Triplet> triplets;
+    for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
+      for (SparseMatrix::InnerIterator it(matrix, column); it; ++it) {
+        const Eigen::Index i = place_[static_cast<std::size_t>(it.row())], j = place_[static_cast<std::size_t>(column)];
+        if (i >= 0 && j >= 0) triplets.emplace_back(i, j, it.value());
+      }
+    }
+    const auto size = static_cast<Eigen::Index>(interior_.size());
+    SparseMatrix part(size, size);
+    part.setFromTriplets(triplets.begin(), triplets.end());
+    return part;
+  }
+
+  void solve() {
+    const SparseMatrix K = interior(m_.K), M = interior(m_.M);
+    const auto size = K.rows();
+    const Eigen::Index count = options_.modes;
+    if (count > 0 && count >= size)
+      throw InputError(fmt::format("got {} modes; the interior has {} freedoms", count, size));
+    const Eigen::Index held = rigid_.cols();
+    if (count + held == 0) throw InputError("got no modes and no interface: that is a rigid body");
+    Eigen::MatrixXd V = Eigen::MatrixXd::Zero(m_.K.rows(), held + count);
+    V.leftCols(held) = rigid_;
+    if (size > 0) move_interior(K, M, V);
+    take_modes(V);
+  }
+
+  /// Rows of the interior: constraint modes, what it does under motions of the interfaces, then its own modes.
+  void move_interior(const SparseMatrix& K, const SparseMatrix& M, Eigen::MatrixXd& V) {
+    const Factor factor(K);
+    if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0))
+      throw InputError(
+          "the clamped mesh is not stiff: some of it hangs on neither the root nor an interface, or its "
+          "elements have motions without stiffness, as a single row of reduced ones");
+    const auto size = K.rows(), held = rigid_.cols(), count = V.cols() - held;
+    const Eigen::MatrixXd pulled = m_.K * V.leftCols(held);
+    Eigen::MatrixXd inside(size, held + count);
+    Eigen::MatrixXd load(size, held);
+    for (Eigen::Index i = 0; i < size; ++i) load.row(i) = pulled.row(interior_[static_cast<std::size_t>(i)]);
+    if (held > 0) inside.leftCols(held) = -factor.solve(load);
+    if (count > 0) inside.rightCols(count) = fixed_modes(factor, M, count);
+    for (Eigen::Index i = 0; i < size; ++i) V.row(interior_[static_cast<std::size_t>(i)]) = inside.row(i);
+  }
+
+  /// Lowest modes of the interior with interfaces held.
+  Eigen::MatrixXd fixed_modes(const Factor& factor, const SparseMatrix& M, Eigen::Index count) {
+    Inverse inverse(factor);
+    Spectra::SparseSymMatProd<double> mass(M);
+    const Eigen::Index krylov = std::min<Eigen::Index>(M.rows(), std::max<Eigen::Index>(2 * count + 1, 20));
+    Spectra::SymGEigsShiftSolver<Inverse, Spectra::SparseSymMatProd<double>, Spectra::GEigsMode::ShiftInvert> solver(
+        inverse, mass, count, krylov, 0.0);
+    solver.init();
+    solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-11, Spectra::SortRule::SmallestAlge);
+    if (solver.info() != Spectra::CompInfo::Successful)
+      throw InputError(fmt::format("the {} lowest modes were not found", count));
+    for (const double lambda : solver.eigenvalues()) body_.fixed_frequencies.push_back(std::sqrt(lambda) / two_pi);
+    return solver.eigenvectors();
+  }
+
+  /// Eigenvectors of the reduced body, of unit modal mass, their largest element positive.
+  void take_modes(const Eigen::MatrixXd& V) {
+    const Eigen::MatrixXd K = V.transpose() * (m_.K * V), M = V.transpose() * (m_.M * V);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (K + K.transpose()),
+                                                                          0.5 * (M + M.transpose()));
+    if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] > 0))
+      throw InputError("the reduced body has no positive definite mass and stiffness");
+    const Eigen::VectorXd omega = eigen.eigenvalues().cwiseSqrt();
+    Eigen::Index kept = omega.size();
+    while (options_.highest > 0 && kept > 0 && omega[kept - 1] > two_pi * options_.highest) --kept;
+    for (Eigen::Index k = kept; k < omega.size(); ++k) body_.dropped_frequencies.push_back(omega[k] / two_pi);
+    if (kept == 0)
+      throw InputError(
+          fmt::format("every mode is above {} Hz; the lowest has {:.4g} Hz", options_.highest, omega[0] / two_pi));
+    Eigen::MatrixXd turn = eigen.eigenvectors().leftCols(kept);
+    body_.modes = V * turn;
+    for (Eigen::Index k = 0; k < kept; ++k) {
+      Eigen::Index most = 0;
+      body_.modes.col(k).cwiseAbs().maxCoeff(&most);
+      if (body_.modes(most, k) > 0) continue;
+      body_.modes.col(k) *= -1;
+      turn.col(k) *= -1;
+    }
+    body_.omega = omega.head(kept);
+    turn_ = turn.topRows(rigid_.cols());
+  }
+
+  void add_nodes() {
+    const Eigen::Index n = body_.modes.cols();
+    const auto node = [&](const std::string& id, const Vector3& X) -> sid::Node& {
+      for (const sid::Node& other : body_.nodes) {
+        if (other.id == id) throw InputError(fmt::format("two nodes are named '{}'", id));
+      }
+      sid::Node& fresh = body_.nodes.emplace_back();
+      fresh.id = id;
+      fresh.origin.m0 = X - body_.origin;
+      fresh.phi.m0 = fresh.psi.m0 = Eigen::MatrixXd::Zero(3, n);
+      fresh.axes.m0 = Matrix3::Identity();
+      return fresh;
+    };
+    node("base", body_.origin);
+    Eigen::Index first = 0;
+    for (const Interface& interface : options_.interfaces) {
+      sid::Node& at = node(interface.name, section_of(interface.nodes, m_).centre);
+      at.phi.m0 = turn_.middleRows(first, 3);
+      if (interface.nodes.size() > 1) at.psi.m0 = turn_.middleRows(first + 3, 3);
+      first += interface.nodes.size() > 1 ? 6 : 3;
+    }
+    for (const Interface& station : options_.stations) {
+      if (station.nodes.size() != 1) throw InputError(fmt::format("station {} needs one node", station.name));
+      const Section at = section_of(station.nodes, m_);
+      node(station.name, at.centre).phi.m0 = body_.modes.middleRows(3 * at.rows[0], 3);
+    }
+  }
+
+  const Matrices& m_;
+  const ReductionOptions& options_;
+  Reduction body_;
+  std::vector<int> kind_;
+  std::vector<Eigen::Index> place_;     ///< among the interior; −1: none of it
+  std::vector<Eigen::Index> interior_;  ///< rows of K
+  SparseMatrix rigid_;                  ///< 3N × coordinates of the interfaces
+  Eigen::MatrixXd turn_;                ///< coordinates of the interfaces × modes
+};
+
+}  // namespace
+
+Reduction reduce(const Matrices& matrices, const ReductionOptions& options) { return Reducer(matrices, options).run(); }
+
+}  // namespace withy::fem
