@@ -233,7 +233,7 @@ TEST(DrivenHinge, needs_the_effort_of_inverse_dynamics) {
   }
   EXPECT_GE(s.summary.peak_motion_effort[0], peak - 1e-4);
   EXPECT_LT(s.summary.peak_motion_effort[0], peak + 1);
-  EXPECT_LT(s.summary.energy_drift, 1e-6);
+  EXPECT_LT(s.summary.energy_drift, 1e-5);  // at the integrator's default tolerance, 1e-6
 }
 
 /// With every hinge but one locked the tree moves as if these were welds.
