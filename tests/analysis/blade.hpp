@@ -12,12 +12,12 @@ namespace withy::test {
 
 /// Lag is bending_y, in the plane of rotation; flap is bending_z. Extra lines go among the bodies and hinges.
 inline std::string blade(int lag, int flap, const std::string& bodies = "", const std::string& hinges = "",
-                         const std::string& gravity = "[0, 0, 0]") {
+                         const std::string& gravity = "[0, 0, 0]", const std::string& family = "clamped-free") {
   return "format: withy/1\ntime: {end: 1}\ngravity: " + gravity +
          "\nbodies:\n  blade: {type: beam, length: 1, mass_per_length: 1" +
-         (lag > 0 ? ", bending_y: {stiffness: 1, modes: " + std::to_string(lag) + "}" : "") +
-         (flap > 0 ? ", bending_z: {stiffness: 1, modes: " + std::to_string(flap) + "}" : "") + "}\n" + bodies +
-         "hinges:\n" +
+         (lag > 0 ? ", bending_y: {stiffness: 1, modes: " + std::to_string(lag) + ", family: " + family + "}" : "") +
+         (flap > 0 ? ", bending_z: {stiffness: 1, modes: " + std::to_string(flap) + ", family: " + family + "}" : "") +
+         "}\n" + bodies + "hinges:\n" +
          (hinges.empty() ? "  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: blade}\n" : hinges);
 }
 
