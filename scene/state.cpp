@@ -39,9 +39,10 @@ class StateReader {
 
   bool read(const Value& value) {
     if (!map_with(value, {"hinges", "bodies", "time", "work"})) return false;
+    scalar(value, number("time", "s", ""), state_.time);
+    model_.prescribe(state_);  // what the state does not say of driven hinges, their motions do
     if (const Value* hinges = value.find("hinges")) read_hinges(*hinges);
     if (const Value* bodies = value.find("bodies")) read_bodies(*bodies);
-    scalar(value, number("time", "s", ""), state_.time);
     scalar(value, number("work", "J", ""), state_.y.back());
     return good_;
   }

@@ -78,6 +78,12 @@ ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equati
   for (const Tip& tip : tips_)
     if (tip.flexible) add(columns_, tip.body, {".tip.deflection_x", ".tip.deflection_y", ".tip.deflection_z"}, "m");
   for (const Tip& tip : tips_) add(columns_, tip.body, {".tip.x", ".tip.y", ".tip.z"}, "m");
+  for (const MotionNode& motion : model.motions()) {
+    const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(motion.hinge)];
+    const std::vector<HingeRate> rates = hinge_rates(*hinge.hinge);
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      columns_.push_back({numbered(hinge.name + ".motion_effort", i, rates.size()), rates[i].angular ? "N m" : "N"});
+  }
   add(columns_, "", {"kinetic_energy", "potential_energy", "work"}, "J");
   add(columns_, "linear_momentum", {".x", ".y", ".z"}, "kg m/s");
   add(columns_, "angular_momentum", {".x", ".y", ".z"}, "kg m^2/s");
@@ -103,6 +109,15 @@ std::vector<double> ResultColumns::row(const State& state) const {
   for (const Tip& tip : tips_) {
     const auto p = equations_.frame_pose(state.y, tip.tip.body, tip.tip.frame).position;
     row.insert(row.end(), p.begin(), p.end());
+  }
+  if (!model_.motions().empty()) {
+    std::vector<double> efforts(layout.speeds);
+    Work work = equations_.make_work();
+    equations_.motion_efforts(state.time, state.y, efforts, work);
+    for (const MotionNode& motion : model_.motions()) {
+      const Slot& slot = layout.hinges[static_cast<std::size_t>(motion.hinge)];
+      for (std::size_t i = 0; i < slot.speeds; ++i) row.push_back(efforts[slot.speed + i]);
+    }
   }
   const Energies e = equations_.energies(state.y);
   row.insert(row.end(), {e.kinetic, e.potential, state.y.back()});

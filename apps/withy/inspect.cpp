@@ -96,6 +96,11 @@ Json inspect_json(const Engine& engine, const State& state) {
   j["loads"] = Json::array();
   for (const LoadNode& load : engine.model().loads())
     j["loads"].push_back({{"name", load.name}, {"type", type_of(scene, "loads", load.name)}});
+  j["motions"] = Json::array();
+  for (const MotionNode& motion : engine.model().motions())
+    j["motions"].push_back({{"name", motion.name},
+                            {"type", type_of(scene, "motions", motion.name)},
+                            {"hinge", engine.model().hinges()[static_cast<std::size_t>(motion.hinge)].name}});
   j["coordinates"] = engine.model().layout().speed_names;
   j["compiled"] = engine.equations().savings();
   j["mass_matrix"] = mass_matrix_json(engine, state);

@@ -181,6 +181,46 @@ Model Model::rigidified() const {
   return Model(std::move(bodies), hinges_, gravity_);
 }
 
+bool Model::driven(std::size_t hinge) const {
+  return std::any_of(motions_.begin(), motions_.end(),
+                     [&](const MotionNode& m) { return static_cast<std::size_t>(m.hinge) == hinge; });
+}
+
+void Model::prescribe(State& state) const {
+  for (const MotionNode& node : motions_) {
+    const Slot& slot = layout_.hinges[static_cast<std::size_t>(node.hinge)];
+    double* rates = state.y.data() + layout_.positions + slot.speed;
+    std::fill(rates, rates + slot.speeds, 0.0);
+    if (node.motion->locks()) continue;
+    const MotionPoint point = node.motion->at(state.time);
+    state.y[slot.position] = point.position;
+    rates[0] = point.rate;
+  }
+}
+
+void Model::prescribe_accelerations(double t, std::span<double> u_dot) const noexcept {
+  for (const MotionNode& node : motions_) {
+    const Slot& slot = layout_.hinges[static_cast<std::size_t>(node.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) u_dot[slot.speed + i] = 0;
+    if (!node.motion->locks()) u_dot[slot.speed] = node.motion->at(t).acceleration;
+  }
+}
+
+void Model::add_motion(std::string name, const std::string& hinge_name, std::shared_ptr<const Motion> motion) {
+  const int index = hinge(hinge_name);
+  if (index < 0) throw std::invalid_argument("there is no hinge '" + hinge_name + "'");
+  const Slot& slot = layout_.hinges[static_cast<std::size_t>(index)];
+  if (slot.speeds == 0) throw std::invalid_argument("hinge '" + hinge_name + "' does not move: it needs no motion");
+  if (!motion->locks() && (slot.positions != 1 || slot.speeds != 1))
+    throw std::invalid_argument("hinge '" + hinge_name + "' has " + std::to_string(slot.speeds) +
+                                " rates; a motion moves hinges with one coordinate, and 'locked' holds any");
+  for (const MotionNode& other : motions_) {
+    if (other.hinge == index)
+      throw std::invalid_argument("hinge '" + hinge_name + "' is driven by motion '" + other.name + "' already");
+  }
+  motions_.push_back({std::move(name), index, std::move(motion)});
+}
+
 void Model::add_load(std::string name, const Load& load) { loads_.push_back({std::move(name), load.bind(*this)}); }
 
 }  // namespace withy

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/load.hpp"
+#include "withy/core/plugin/motion.hpp"
 
 namespace withy {
 
@@ -54,16 +56,17 @@ struct HingeNode {
   int child_frame = 0;
 };
 
-/// A frame of the model: index of the body, and index among its frames.
-struct FrameIndex {
-  int body = 0;
-  int frame = 0;
-};
-
 /// A load in the tree.
 struct LoadNode {
   std::string name;
   std::shared_ptr<const BoundLoad> load;
+};
+
+/// A prescribed motion in the tree.
+struct MotionNode {
+  std::string name;
+  int hinge = 0;  ///< index among the hinges
+  std::shared_ptr<const Motion> motion;
 };
 
 /// A tree of bodies. Hinge i carries body i: hinges()[i].child == i, and every parent has a smaller index.
@@ -77,6 +80,9 @@ class Model {
   [[nodiscard]] const std::vector<BodyNode>& bodies() const { return bodies_; }
   [[nodiscard]] const std::vector<HingeNode>& hinges() const { return hinges_; }
   [[nodiscard]] const std::vector<LoadNode>& loads() const { return loads_; }
+  [[nodiscard]] const std::vector<MotionNode>& motions() const { return motions_; }
+  /// Whether a motion prescribes all coordinates of a hinge.
+  [[nodiscard]] bool driven(std::size_t hinge) const;
   /// Acceleration of gravity [m/s²], world axes.
   [[nodiscard]] const Vector3& gravity() const { return gravity_; }
   [[nodiscard]] const Layout& layout() const { return layout_; }
@@ -93,12 +99,19 @@ class Model {
 
   /// The state at time 0 with every coordinate at its reference, at rest.
   [[nodiscard]] State reference_state() const;
-  /// The same tree with every body rigid in its undeformed shape and without loads.
+  /// Puts driven hinges where their motions have them at the state's time; locked ones stay, at rest.
+  void prescribe(State& state) const;
+  /// Sets the accelerations of the driven speeds at time t [s] in u_dot, one a speed; leaves the others.
+  void prescribe_accelerations(double t, std::span<double> u_dot) const noexcept;
+  /// The same tree with every body rigid in its undeformed shape, without loads and motions.
   [[nodiscard]] Model rigidified() const;
 
   /// Adds a load, bound to this model. For builders of a model, before it is shared.
   /// \throws std::invalid_argument as Load::bind.
   void add_load(std::string name, const Load& load);
+  /// Prescribes the motion of a hinge. For builders of a model, before it is shared.
+  /// \throws std::invalid_argument where there is no such hinge, it cannot move so, or it is driven already.
+  void add_motion(std::string name, const std::string& hinge, std::shared_ptr<const Motion> motion);
 
  private:
   void lay_out();
@@ -106,6 +119,7 @@ class Model {
   std::vector<BodyNode> bodies_;
   std::vector<HingeNode> hinges_;
   std::vector<LoadNode> loads_;
+  std::vector<MotionNode> motions_;
   Vector3 gravity_;
   Layout layout_;
 };

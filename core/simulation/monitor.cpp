@@ -28,10 +28,8 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
   for (Tip& tip : tips(model)) {
     if (tip.in_segments() && tip.flexible) wholes_.push_back(std::move(tip));
   }
-  std::size_t scratch = 0;
-  for (const LoadNode& node : model.loads()) scratch = std::max(scratch, node.load->scratch());
-  scratch_.resize(scratch);
   summary.peak_effort.assign(model.layout().speeds, 0.0);
+  summary.peak_motion_effort.assign(model.layout().speeds, 0.0);
   const Energies e = equations.energies(initial.y);
   initial_energy_ = e.kinetic + e.potential;
   initial_sign_ = mass_matrix_sign(initial);
@@ -64,15 +62,15 @@ void Monitor::observe(const State& state, bool output) {
     for (const Tip& tip : wholes_)
       note(tip.body, tip.length, deflection(equations_, state.y, tip), &summary_.peak_deflection[tip.body]);
   }
-  const Layout& layout = model_.layout();
-  const std::span<const double> y(state.y);
-  std::fill(efforts_.begin(), efforts_.end(), 0.0);
-  for (const LoadNode& node : model_.loads()) {
-    node.load->add(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), efforts_,
-                   scratch_);
+  const auto raise = [&](std::vector<double>& peak) {
+    for (std::size_t i = 0; i < efforts_.size(); ++i) peak[i] = std::max(peak[i], std::abs(efforts_[i]));
+  };
+  if (!model_.loads().empty()) {
+    equations_.load_efforts(state.time, state.y, EquationsOfMotion::all_loads, efforts_, work_);
+    raise(summary_.peak_effort);
   }
-  for (std::size_t i = 0; i < efforts_.size(); ++i)
-    summary_.peak_effort[i] = std::max(summary_.peak_effort[i], std::abs(efforts_[i]));
+  if (!model_.motions().empty() && equations_.motion_efforts(state.time, state.y, efforts_, work_).ok())
+    raise(summary_.peak_motion_effort);
 }
 
 void Monitor::audit_energy(const State& state) {

@@ -54,7 +54,7 @@ class Monitor {
   std::vector<Tip> wholes_;  ///< of bodies in segments
   double deflection_limit_;
   std::string excess_;
-  std::vector<double> efforts_, scratch_, rates_;
+  std::vector<double> efforts_, rates_;
   Work work_;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;

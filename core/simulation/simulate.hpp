@@ -40,6 +40,8 @@ struct RunSummary {
   std::map<std::string, std::array<double, 3>> peak_deflection;
   /// Greatest |effort| of the loads on each generalized speed over all accepted steps and outputs [N m, N].
   std::vector<double> peak_effort;
+  /// The same of the efforts that motions need.
+  std::vector<double> peak_motion_effort;
   /// Greatest |E(t) − E(0) − work| over the accepted states that follow the outputs, relative to the greatest of |E|,
   /// |work| and kinetic energy seen.
   double energy_drift = 0;

@@ -59,7 +59,7 @@ TEST(Manifest, that_leads_out_of_its_directory_or_to_another_symbol_is_refused) 
 TEST(Manifest, that_promises_what_cannot_be_is_refused) {
   const auto provides = [](const std::string& text) { return reason(manifest("a.so", "withy_plugin_a", text)); };
   EXPECT_THAT(provides("a"), HasSubstr("'a' under provides is not kind/id with a kind among body, hinge, mode-family, "
-                                       "formulation, integrator, load"));
+                                       "formulation, integrator, load, motion"));
   EXPECT_THAT(provides("wheel/a"), HasSubstr("'wheel/a' under provides is not kind/id"));
   EXPECT_THAT(provides("body/A"), HasSubstr("the id in 'body/A' under provides is not 1 to 64 of a-z, 0-9 and '-'"));
   EXPECT_THAT(provides("body/"), HasSubstr("the id in 'body/'"));

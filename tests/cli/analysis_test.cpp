@@ -1,0 +1,176 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+json result(const Folder& folder, const std::vector<std::string>& arguments) {
+  const Finished f = withy(folder, arguments);
+  EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_EQ(f.err, "");
+  return json::parse(f.out);
+}
+
+const std::string blade = "scenes/rotating-blade.yaml";
+
+/// Flap 3.68165, lag √(3.68165² − 1) at η = 1 (docs/modes.md); four modes.
+TEST(Modes, OfASpinningBladeAreThePublishedOnes) {
+  const Folder folder;
+  const json j = result(folder, {"modes", blade, "--spin", "axle=1", "--json"});
+  const json& modes = j.at("runs").at(0).at("points").at(0).at("modes");
+  ASSERT_EQ(modes.size(), 8U) << "the axle is held";
+  EXPECT_NEAR(modes[0].at("frequency"), std::sqrt(3.68165 * 3.68165 - 1), 1e-4);
+  EXPECT_NEAR(modes[1].at("frequency"), 3.68165, 1e-4);
+  EXPECT_EQ(modes[0].at("dominated_by"), "blade.bending_y[1]");
+  EXPECT_EQ(modes[1].at("dominated_by"), "blade.bending_z[1]");
+  EXPECT_EQ(modes[1].at("state"), "stable");
+  const Finished text = withy(folder, {"modes", blade, "--spin", "axle=1"});
+  EXPECT_THAT(text.out, HasSubstr("3.68165"));
+  EXPECT_THAT(text.out, HasSubstr("blade.bending_z[1]"));
+}
+
+TEST(Modes, ASweepKeepsBranchesInTableAndPicture) {
+  const Folder folder;
+  const Finished f = withy(folder, {"modes", blade, "--formulations", "inconsistent,consistent", "--sweep",
+                                    "spin.axle=0:5:6", "--out", "campbell"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("unstable"));
+  const std::string csv = folder.read("campbell/modes.csv");
+  const auto rows = lines(csv);
+  EXPECT_EQ(rows.size(), 1U + 2 * 6 * 8);
+  EXPECT_THAT(rows[0], HasSubstr("formulation,spin.axle,branch"));
+  EXPECT_THAT(folder.read("campbell/modes.svg"), HasSubstr("</svg>"));
+  const json j = json::parse(folder.read("campbell/modes.json"));
+  // Inconsistent lag at 5: grows with √(25 − ω₁²), and it is the branch that began as lag.
+  const json& last = j.at("runs").at(0).at("points").at(5).at("modes");
+  std::size_t branch = 99;
+  const json& first = j.at("runs").at(0).at("points").at(0).at("modes");
+  for (std::size_t i = first.size(); i-- > 0;)
+    if (first[i].at("dominated_by") == "blade.bending_y[1]") branch = i;
+  EXPECT_NEAR(last.at(branch).at("growth"), std::sqrt(25 - 3.5160152685 * 3.5160152685), 1e-6);
+  EXPECT_EQ(last.at(branch).at("state"), "diverges");
+}
+
+TEST(Modes, AnyNumberOfTheSceneIsSwept) {
+  const Folder folder;
+  const json j = result(folder, {"modes", "scenes/two-link-slew.yaml", "--lock", "shoulder,elbow", "--sweep",
+                                 "bodies.payload.mass=1:3:3", "--json"});
+  double before = 1e9;
+  for (const json& p : j.at("runs").at(0).at("points")) {
+    const double w = p.at("modes").at(0).at("frequency");
+    EXPECT_LT(w, before) << "a heavier payload swings slower";
+    before = w;
+  }
+}
+
+TEST(Modes, BadSweepsSpinsAndLocksAreNamed) {
+  const Folder folder;
+  const std::vector<std::pair<std::vector<std::string>, std::string>> bad = {
+      {{"--sweep", "spin.axle=0:5"}, "FROM:TO:COUNT"},
+      {{"--sweep", "spin.axle=0:5:1"}, "from 2"},
+      {{"--sweep", "spin.wheel=0:5:3"}, "known: axle"},
+      {{"--spin", "axle"}, "HINGE=RATE"},
+      {{"--spin", "axle=5 kg"}, "axle"},
+      {{"--lock", "axel"}, "known: axle"},
+      {{"--sweep", "bodies.blade.lenth=1:2:2"}, "length"}};
+  for (const auto& [options, named] : bad) {
+    std::vector<std::string> arguments = {"modes", blade};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Finished f = withy(folder, arguments);
+    EXPECT_EQ(f.status, 2) << options[1];
+    EXPECT_EQ(f.out, "");
+    EXPECT_THAT(f.err, HasSubstr(named));
+  }
+}
+
+TEST(Equilibrium, GivesAStateThatLinearizeFindsSteady) {
+  const Folder folder;
+  const Finished f = withy(folder, {"equilibrium", "scenes/two-link-slew.yaml", "--lock", "shoulder,elbow", "--set",
+                                    "gravity.1=-9.81", "--out", "bent.json"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("link1.tip"));
+  const json j = result(folder, {"linearize", "scenes/two-link-slew.yaml", "--at", "bent.json", "--lock",
+                                 "shoulder,elbow", "--set", "gravity.1=-9.81"});
+  EXPECT_EQ(j.at("equilibrium"), true);
+  EXPECT_EQ(j.at("states").size(), 8U);
+  EXPECT_EQ(j.at("inputs").size(), 0U) << "held hinges take no effort";
+  const json away = result(
+      folder, {"linearize", "scenes/two-link-slew.yaml", "--lock", "shoulder,elbow", "--set", "gravity.1=-9.81"});
+  EXPECT_EQ(away.at("equilibrium"), false);
+}
+
+/// The effort that holds a pendulum out level is its weight's moment.
+TEST(Equilibrium, GivesTheEffortsOfHeldHinges) {
+  const Folder folder;
+  folder.write("level.yaml", R"(format: withy/1
+gravity: [0, -9.81, 0]
+time: {end: 1}
+bodies: {bob: {type: rigid, mass: 2, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}}
+hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: bob}}
+)");
+  const json held = result(folder, {"equilibrium", "level.yaml", "--lock", "pivot", "--json"});
+  EXPECT_NEAR(held.at("efforts").at("pivot.0"), 2 * 9.81 * 0.5, 1e-12);
+  folder.write("state.json", R"({"hinges": {"pivot": {"position": [-1.2]}}})");
+  const json free = result(folder, {"equilibrium", "level.yaml", "--at", "state.json", "--json"});
+  EXPECT_NEAR(free.at("state").at("hinges").at("pivot").at("position").at(0), -std::acos(0.0), 1e-9);
+}
+
+TEST(Equilibrium, SaysWhatNothingHolds) {
+  const Folder folder;
+  folder.write("falling.yaml", R"(format: withy/1
+gravity: [0, -9.81, 0]
+time: {end: 1}
+bodies: {stone: {type: rigid, mass: 2, inertia: [0.1, 0.1, 0.1, 0, 0, 0]}}
+hinges: {drop: {type: prismatic, axis: [0, 1, 0], parent: world, child: stone}}
+)");
+  const Finished f = withy(folder, {"equilibrium", "falling.yaml"});
+  EXPECT_EQ(f.status, 1);
+  EXPECT_THAT(f.err, HasSubstr("nothing holds drop.0"));
+}
+
+/// A rigid pendulum about its lower rest: δ̈ = −(m g l/J) δ + τ/J, read off the matrices.
+TEST(Linearize, GivesTheMatricesOfAPendulum) {
+  const Folder folder;
+  folder.write("pendulum.yaml", R"(format: withy/1
+gravity: [9.81, 0, 0]
+time: {end: 1}
+bodies: {bob: {type: rigid, mass: 2, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0], frames: {tip: {position: [1, 0, 0]}}}}
+hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: bob}}
+)");
+  const json j = result(folder, {"linearize", "pendulum.yaml"});
+  const double J = 0.1 + 2 * 0.25;
+  EXPECT_EQ(j.at("states"), json({"pivot.0", "pivot.0.rate"}));
+  EXPECT_EQ(j.at("inputs"), json({"pivot.0"}));
+  EXPECT_NEAR(j.at("A").at(1).at(0), -2 * 9.81 * 0.5 / J, 1e-12);
+  EXPECT_EQ(j.at("A").at(0).at(1), 1.0);
+  EXPECT_NEAR(j.at("B").at(1).at(0), 1 / J, 1e-12);
+  EXPECT_EQ(j.at("outputs"), json({"pivot.0", "pivot.0.rate", "bob.tip.x", "bob.tip.y", "bob.tip.z"}));
+  EXPECT_NEAR(j.at("C").at(3).at(0), 1, 1e-12) << "the tip, 1 m away, moves along y";
+  EXPECT_EQ(j.at("D").at(0).at(0), 0.0);
+  EXPECT_EQ(j.at("equilibrium"), true);
+  EXPECT_EQ(j.at("derivatives"), "exact");
+}
+
+TEST(Linearize, NamesOfInputsAndOutputsAreChecked) {
+  const Folder folder;
+  for (const auto& [option, name] :
+       std::vector<std::pair<std::string, std::string>>{{"--inputs", "sholder"}, {"--outputs", "link3.tip"}}) {
+    const Finished f = withy(folder, {"linearize", "scenes/two-link-slew.yaml", option, name});
+    EXPECT_EQ(f.status, 2);
+    EXPECT_THAT(f.err, HasSubstr(option));
+    EXPECT_THAT(f.err, HasSubstr("known: "));
+  }
+}
+
+}  // namespace
+}  // namespace withy::test
