@@ -48,8 +48,8 @@ ExitStatus equilibrium(const EquilibriumArguments& arguments) {
   if (!arguments.out.empty() && steady.converged) write_file(arguments.out, state + '\n');
 
   Json deflections = Json::object();
-  for (const FramePlace& tip : tips(c.engine().model())) {
-    if (tip.flexible) deflections[tip.name] = c.engine().equations().deflection(steady.state.y, tip.body, tip.frame);
+  for (const Tip& tip : tips(c.engine().model())) {
+    if (tip.flexible) deflections[tip.body + ".tip"] = deflection(c.engine().equations(), steady.state.y, tip);
   }
   const std::string changing =
       steady_for_good

@@ -43,15 +43,16 @@ std::vector<Output> all_outputs(const Configuration& c) {
   for (const std::size_t s : c.hinge_speeds())
     add(layout.speed_names[s] + ".rate", state.y[layout.positions + s])[n + static_cast<Eigen::Index>(s)] = 1;
   const char* axes = "xyz";
-  for (const FramePlace& tip : tips(c.engine().model())) {
-    const FrameTangent t = c.dynamics().frame(state.y, tip.body, tip.frame);
+  for (const Tip& tip : tips(c.engine().model())) {
+    const FrameTangent t = c.dynamics().frame(state.y, tip.tip.body, tip.tip.frame);
     for (Eigen::Index i = 0; i < 3; ++i) {
-      if (tip.flexible)
-        add(fmt::format("{}.deflection_{}", tip.name, axes[i]), t.deflection[i]).head(n) =
+      // Of a beam in segments the last one's own deflection says nothing: its place alone is an output.
+      if (tip.flexible && !tip.in_segments())
+        add(fmt::format("{}.tip.deflection_{}", tip.body, axes[i]), t.deflection[i]).head(n) =
             t.deflection_by_position.row(i);
     }
     for (Eigen::Index i = 0; i < 3; ++i)
-      add(fmt::format("{}.{}", tip.name, axes[i]), t.position[i]).head(n) = t.by_position.row(i);
+      add(fmt::format("{}.tip.{}", tip.body, axes[i]), t.position[i]).head(n) = t.by_position.row(i);
   }
   return outputs;
 }
