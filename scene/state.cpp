@@ -130,9 +130,10 @@ class StateReader {
       if (slot == nullptr) {
         const std::size_t segments = model_.segments(name).size();
         key_error(member,
-                  segments > 1   ? fmt::format("body '{0}' is in segments; name each, '{0}.1' to '{0}.{1}'", name, segments)
+                  segments > 1
+                      ? fmt::format("body '{0}' is in segments; name each, '{0}.1' to '{0}.{1}'", name, segments)
                   : segments > 0 ? fmt::format("body '{}' is rigid: it has no modes", name)
-                               : fmt::format("no flexible body {}{}", in_quotes(name), suggestion(name, names)));
+                                 : fmt::format("no flexible body {}{}", in_quotes(name), suggestion(name, names)));
         continue;
       }
       if (!map_with(member, {"modes", "rates"})) continue;

@@ -93,9 +93,8 @@ void add_import(Commands& commands) {
   CLI::App* c = nullptr;
   auto& a = commands.add<ImportArguments>(
       "import", "Reduce a finite-element mesh to a modal body",
-      "  withy import boom --root ROOT --interface TIP --modes 6\n"
-      "  withy import boom --root ROOT --interface TIP --station 17 --highest 500 --out boom.SID_FEM\n"
-      "  withy import block --stiffness block_STIF1.mtx --mass block_MASS1.mtx --root BASE --modes 4",
+      "  withy import scenes/meshes/cantilever --root ROOT --interface TIP --modes 6\n"
+      "  withy import scenes/meshes/cantilever --root ROOT --station 85 --modes 4 --out boom.SID_FEM",
       import_mesh, c);
   c->add_option("JOB", a.job, "Name of the job: JOB.inp, and of CalculiX JOB.sti, JOB.mas and JOB.dof")->required();
   c->add_option("--mesh", a.mesh, "Input deck or .frd file with the nodes; default: JOB.inp")->type_name("FILE");

@@ -9,7 +9,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::vector<std::string> commands = {"run",       "compare", "eval",  "inspect", "equilibrium",
+const std::vector<std::string> commands = {"run",       "compare", "eval",  "inspect", "equilibrium", "import",
                                            "linearize", "modes",   "bench", "plugins", "schema"};
 
 /// The command lines under "Examples:" in a help text, without the program's name.

@@ -1,6 +1,6 @@
 /// \file
 /// Reduction of finite-element meshes: files, modes, mass properties. The meshes are described in
-/// tests/reference/fem/README.md; what is expected are closed forms.
+/// tests/reference/fem/README.md and scenes/meshes/README.md; what is expected are closed forms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -26,6 +26,7 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 const fs::path data = WITHY_FEM_FILES;
+const fs::path cantilever = fs::path(WITHY_MESHES) / "cantilever";
 constexpr double pi = std::numbers::pi;
 
 /// A mesh that CalculiX made, and its reduction.
@@ -35,10 +36,10 @@ struct Case {
   ReductionOptions options;
   Reduction body;
 
-  Case(const std::string& job, int modes, double highest = 0)
-      : mesh(read_mesh(data / (job + ".inp"))),
-        matrices(combined(read_calculix(data / (job + ".sti"), data / (job + ".dof")),
-                          read_calculix(data / (job + ".mas"), data / (job + ".dof")), mesh)) {
+  Case(const fs::path& job, int modes, double highest = 0)
+      : mesh(read_mesh(job.string() + ".inp")),
+        matrices(combined(read_calculix(job.string() + ".sti", job.string() + ".dof"),
+                          read_calculix(job.string() + ".mas", job.string() + ".dof"), mesh)) {
     options.root = nodes_of(mesh, "root");
     options.interfaces = {{"TIP", nodes_of(mesh, "TIP")}};
     options.modes = modes;
@@ -74,7 +75,7 @@ std::string refusal(Call&& call) {
 /// Euler–Bernoulli: ω = β² √(EI/ρA)/L², for 1 m of steel, 20 mm in y by 10 mm in z. Demanded: 0.5 % of the first four;
 /// the coarse mesh has the third of a plane 3 % too high.
 TEST(Reduction, steel_cantilever_has_the_beams_frequencies) {
-  const Case c("cantilever", 8);
+  const Case c(cantilever, 8);
   const double wave = std::sqrt(2.1e11 / 7850.0);
   const double radius_y = 0.02 / std::sqrt(12.0), radius_z = 0.01 / std::sqrt(12.0);
   const auto bending = [&](double beta, double radius) { return beta * beta * wave * radius / (2 * pi); };
@@ -87,7 +88,7 @@ TEST(Reduction, steel_cantilever_has_the_beams_frequencies) {
 /// Against the mesh's own eigenvalues, by a dense solver: Craig–Bampton gives them from above, and its eigenvectors are
 /// orthonormal in M. The rigid tip section alone stiffens the mesh.
 TEST(Reduction, frequencies_are_those_of_the_mesh_from_above) {
-  const Case c("cantilever", 12);
+  const Case c(cantilever, 12);
   const auto size = static_cast<Eigen::Index>(c.body.free.size());
   const Eigen::MatrixXd K = c.matrices.K, M = c.matrices.M;
   Eigen::MatrixXd k(size, size), m(size, size);
@@ -113,7 +114,7 @@ TEST(Reduction, frequencies_are_those_of_the_mesh_from_above) {
 /// ρ b h L = 1.57 kg, centre at half the length, inertia m (b² + h²)/12 …: bricks have them exactly, but for the 14
 /// digits of the files.
 TEST(Reduction, mass_properties_are_those_of_the_brick) {
-  const Case c("cantilever", 4);
+  const Case c(cantilever, 4);
   const sid::Data sid = sid_of(c.body);
   const Summary s = summary_of(c.matrices, c.body, sid);
   EXPECT_NEAR(s.mass, 1.57, 1e-11);
@@ -128,7 +129,7 @@ TEST(Reduction, mass_properties_are_those_of_the_brick) {
 }
 
 TEST(Reduction, says_what_it_drops_and_what_is_missing) {
-  const Case c("cantilever", 8, 300);
+  const Case c(cantilever, 8, 300);
   EXPECT_EQ(c.body.fixed_frequencies.size(), 8u);
   ASSERT_FALSE(c.body.dropped_frequencies.empty());
   EXPECT_GT(c.body.dropped_frequencies.front(), 300);
@@ -141,7 +142,7 @@ TEST(Reduction, says_what_it_drops_and_what_is_missing) {
 /// What `withy eval` sees of the file is what was written: ω² and the unit modal mass, and a static tip deflection
 /// F L³/3EI within 0.5 %.
 TEST(Reduction, file_read_by_a_scene_is_the_reduced_body) {
-  const Case c("cantilever", 8);
+  const Case c(cantilever, 8);
   const Folder folder;
   (void)folder.with("c.SID_FEM", sid::write(sid_of(c.body)));
   Registry registry;
@@ -171,7 +172,7 @@ TEST(Reduction, file_read_by_a_scene_is_the_reduced_body) {
 
 /// The forms that Abaqus writes, made from the brick's matrices: one triangle or both, by row or by node and freedom.
 TEST(Files, of_abaqus_are_read_in_every_form) {
-  const Case c("brick", 0);
+  const Case c(data / "brick", 0);
   const Folder folder;
   std::ostringstream both, lower, named;
   both.precision(17);
@@ -231,7 +232,7 @@ TEST(Files, decks_and_result_files_give_the_same_nodes) {
 }
 
 TEST(Reduction, roots_and_interfaces_that_hold_nothing_are_refused) {
-  const Case c("brick", 0);
+  const Case c(data / "brick", 0);
   const auto with = [&](std::vector<long> root, std::vector<Interface> interfaces, int modes) {
     ReductionOptions o;
     o.root = std::move(root);

@@ -1,0 +1,45 @@
+#include <algorithm>
+
+#include "withy/scene/tree.hpp"
+
+namespace withy {
+namespace {
+
+/// What makes a body large.
+struct Extent {
+  double modes = 0;     ///< sum of the whole numbers named "modes"
+  double greatest = 0;  ///< of them
+  double rows = 0;      ///< of all tables
+  double segments = 1;  ///< it is cut into
+};
+
+/// Of a value and what is below it.
+void measure(const Value& value, Extent& extent) {
+  if (value.kind() == Value::Kind::list && !value.items().empty() &&
+      value.items().front().kind() == Value::Kind::list) {
+    extent.rows += static_cast<double>(value.items().size());
+  }
+  for (const auto& [key, member] : value.members()) {
+    if (key == "modes" && member.kind() == Value::Kind::number) {
+      extent.modes += member.number();
+      extent.greatest = std::max(extent.greatest, member.number());
+    }
+    if (key == "segments" && member.kind() == Value::Kind::number) extent.segments = member.number();
+    measure(member, extent);
+  }
+}
+
+}  // namespace
+
+double predicted_bytes(const Value& body) {
+  Extent extent;
+  measure(body, extent);
+  const double n = extent.modes;
+  // Shape functions up to number m need about 25 m points of quadrature (20 for each 2.5 rad of phase), and 20 between
+  // the rows of a table; a point keeps Φ, Ψ and Γ, Θ; a body four times that: particles, sections, and running
+  // integrals.
+  const double points = 25 * extent.greatest * extent.segments + 20 * (extent.segments + extent.rows);
+  return 4 * points * 6 * n * (n + 1) * static_cast<double>(sizeof(double));
+}
+
+}  // namespace withy
