@@ -33,6 +33,12 @@ class Newton {
     for (; result.iterations < most_iterations; ++result.iterations) {
       const Tangents t = dynamics_.tangents(state_.time, state_.y, rest_);
       result.efforts = t.residual;
+      result.step = rest_ * 0;
+      // Nothing is free to move.
+      if (free_.empty()) {
+        result.converged = t.residual.allFinite();
+        break;
+      }
       if (!factorize(t)) break;
       const Eigen::VectorXd step = solve_for(t.residual);
       result.step = spread(step);
