@@ -131,6 +131,12 @@ struct Nothing final : withy::EquationsOfMotion {
     y_dot[0] = t + y[0];
     return {};
   }
+  void load_efforts(double /*t*/, std::span<const double> /*y*/, int /*load*/, std::span<double> /*efforts*/,
+                    withy::Work& /*work*/) const noexcept override {}
+  withy::Evaluation motion_efforts(double /*t*/, std::span<const double> /*y*/, std::span<double> /*efforts*/,
+                                   withy::Work& /*work*/) const noexcept override {
+    return {};
+  }
   void inverse_dynamics(std::span<const double> /*y*/, std::span<const double> /*u_dot*/, std::span<double> /*efforts*/,
                         withy::Work& /*work*/) const override {}
   void mass_times(std::span<const double> /*y*/, std::span<const double> /*a*/, std::span<double> /*product*/,
