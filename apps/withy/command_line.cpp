@@ -90,6 +90,11 @@ void add_commands(Commands& commands) {
   add_formulation(*c, run_arguments);
   c->add_option("--out", run_arguments.out, "Folder of the results; default: results/<scene>-<formulation>")
       ->type_name("DIR");
+  c->add_option("--estimate", run_arguments.estimate,
+                "Estimate the error against the next model up: auto (where that is quadratic), always, never")
+      ->type_name("WHEN")
+      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->capture_default_str();
 
   auto& compare_arguments =
       commands.add<CompareArguments>("compare", "Simulate a scene in several formulations, side by side",

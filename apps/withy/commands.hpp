@@ -31,6 +31,8 @@ struct SceneArguments : CommonArguments {
 
 struct RunArguments : SceneArguments {
   std::string out;  ///< folder of the results; empty: results/<scene>-<formulation>
+  /// When the error against the next model up is estimated: auto (against `quadratic`), always, never.
+  std::string estimate = "auto";
 };
 
 struct CompareArguments : SceneArguments {

@@ -42,13 +42,6 @@ double hinge_distance(const HingeNode& hinge, const Slot& slot, const State& a, 
   return most;
 }
 
-double tip_distance(const FramePlace& tip, const ComparedRun& a, const State& at, const ComparedRun& b,
-                    const State& bt) {
-  const auto p = a.engine->equations().frame_pose(at.y, tip.body, tip.frame).position;
-  const auto q = b.engine->equations().frame_pose(bt.y, tip.body, tip.frame).position;
-  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-}
-
 /// A panel of one quantity, a curve a run. The range is that of the runs completed, or of all where none was.
 Panel panel_of(const std::string& label, const std::vector<const ComparedRun*>& runs,
                const std::function<double(const ComparedRun&, const State&)>& quantity) {
@@ -78,26 +71,32 @@ Panel panel_of(const std::string& label, const std::vector<const ComparedRun*>& 
 double Distances::greatest_hinge() const { return greatest(hinges); }
 double Distances::greatest_tip() const { return greatest(tips); }
 
+void add_distances(Distances& d, const Model& model, const EquationsOfMotion& a, const State& at,
+                   const EquationsOfMotion& b, const State& bt) {
+  d.until = at.time;
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    if (slot.positions == 0) continue;
+    double& most = d.hinges[slot.name];
+    most = std::max(most, hinge_distance(model.hinges()[h], slot, at, bt));
+  }
+  for (const FramePlace& tip : tips(model)) {
+    const auto p = a.frame_pose(at.y, tip.body, tip.frame).position;
+    const auto q = b.frame_pose(bt.y, tip.body, tip.frame).position;
+    double& most = d.tips[tip.name];
+    most = std::max(most, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
+  }
+}
+
 Distances distances(const ComparedRun& run, const ComparedRun& reference) {
   Distances d;
   const Model& model = run.engine->model();
-  const auto places = tips(model);
   // The last output of a run that stopped need not be at a common time.
   for (std::size_t i = 0; i < std::min(run.outputs.size(), reference.outputs.size()); ++i) {
     const State& a = run.outputs[i];
     const State& b = reference.outputs[i];
     if (a.time != b.time) break;
-    d.until = a.time;
-    for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-      const Slot& slot = model.layout().hinges[h];
-      if (slot.positions == 0) continue;
-      double& most = d.hinges[slot.name];
-      most = std::max(most, hinge_distance(model.hinges()[h], slot, a, b));
-    }
-    for (const FramePlace& tip : places) {
-      double& most = d.tips[tip.name];
-      most = std::max(most, tip_distance(tip, run, a, reference, b));
-    }
+    add_distances(d, model, run.engine->equations(), a, reference.engine->equations(), b);
   }
   return d;
 }

@@ -31,6 +31,10 @@ struct Distances {
 };
 Distances distances(const ComparedRun& run, const ComparedRun& reference);
 
+/// Adds the distances of two states at one time of models with the same hinges and tips.
+void add_distances(Distances& d, const Model& model, const EquationsOfMotion& a, const State& at,
+                   const EquationsOfMotion& b, const State& bt);
+
 /// Tip deflections and the coordinates of one-coordinate hinges over time, as SVG. The axes fit the runs that were
 /// completed; one that diverged leaves the frame.
 std::string picture(const std::string& title, const std::vector<const ComparedRun*>& runs);

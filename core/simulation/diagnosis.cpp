@@ -145,6 +145,25 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
          owners_of(layout, weakest_direction(h, negative)) + ".";
 }
 
+double fastest_mode(const Model& model, const DenseSystem& system) {
+  const auto n = static_cast<Eigen::Index>(system.size);
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+  for (const BodyNode& body : model.bodies()) {
+    const ModalShape& shape = body.body->shape();
+    if (shape.modes() == 0) continue;
+    const auto at = static_cast<Eigen::Index>(model.layout().body(body.name)->speed);
+    K.block(at, at, shape.modes(), shape.modes()) = shape.stiffness;
+  }
+  const Eigen::Map<const DenseMatrix> M(system.mass.data(), n, n);
+  if (n == 0 || K.isZero(0) || !M.allFinite()) return 0;
+  const Eigen::LLT<Eigen::MatrixXd> factor(0.5 * (M + M.transpose()));
+  if (factor.info() != Eigen::Success) return 0;
+  const Eigen::MatrixXd half = factor.matrixL().solve(K);
+  const Eigen::MatrixXd square = factor.matrixL().solve(half.transpose());
+  return std::sqrt(std::max(
+      0.0, Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(square, Eigen::EigenvaluesOnly).eigenvalues()[n - 1]));
+}
+
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,
                                double ahead) {
   if (const std::string loads = nonfinite_loads(model, state, ahead); !loads.empty()) return loads;

@@ -22,8 +22,8 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     const double length = node.body->shape().length;
     const auto section = node.body->station("tip");
     if (slot == nullptr || !section || !(length > 0)) continue;
-    tips_.push_back(
-        {slot, static_cast<int>(b), node.frame("tip"), *section, length, &summary.peak_deflection[node.name]});
+    tips_.push_back({slot, static_cast<int>(b), node.frame("tip"), *section, length,
+                     &summary.peak_deflection[node.name], &summary.peak_deflection_ratio[node.name]});
   }
   std::size_t scratch = 0;
   for (const LoadNode& node : model.loads()) scratch = std::max(scratch, node.load->scratch());
@@ -51,6 +51,7 @@ void Monitor::observe(const State& state) {
     const std::array<double, 3> d = deflection(tip, state);
     for (std::size_t k = 0; k < 3; ++k) (*tip.peak)[k] = std::max((*tip.peak)[k], std::abs(d[k]));
     const double size = std::hypot(d[0], d[1], d[2]);
+    *tip.ratio = std::max(*tip.ratio, size / tip.length);
     if (!excess_.empty() || size <= deflection_limit_ * tip.length) continue;
     excess_ = "the tip of '" + tip.slot->name + "' is deflected by " + brief(size) + " m, " + brief(size / tip.length) +
               " times its length (limit " + brief(deflection_limit_) + ")";

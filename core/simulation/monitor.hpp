@@ -38,6 +38,7 @@ class Monitor {
     PointExpansion section;
     double length;  ///< [m]
     std::array<double, 3>* peak;
+    double* ratio;
   };
   [[nodiscard]] std::array<double, 3> deflection(const Tip& tip, const State& state) const;
   /// Sign of det M by one evaluation; 0 where it cannot be solved.
