@@ -19,36 +19,41 @@ bool has_terms_throughout(const Scene& scene, Terms terms) {
                      [&](const BodyNode& body) { return !flexible(body) || !body.terms || same(*body.terms, terms); });
 }
 
+Beyond compile_throughout(const Engine& engine, const SceneArguments& arguments, const std::string& formulation) {
+  const Scene& scene = engine.scene();
+  Beyond compiled{formulation, scene.model, nullptr};
+  SceneOptions options = arguments.options;
+  options.formulation = formulation;
+  bool own = false;
+  for (const BodyNode& body : scene.model->bodies()) {
+    if (!body.terms) continue;
+    options.overrides.push_back("bodies." + body.name + ".formulation=" + formulation);
+    own = true;
+  }
+  if (own) {
+    const Scene all = read_scene(arguments.scene, engine.registry(), options);
+    compiled.model = all.model;
+    compiled.equations = all.formulation->compile(all.model);
+    return compiled;
+  }
+  const auto* plugin = engine.registry().find<Formulation>(formulation);
+  if (plugin == nullptr) throw InputError("no formulation '" + formulation + "'");
+  Diagnostics diagnostics;
+  compiled.equations = plugin->make(Value::map({}), {engine.registry(), diagnostics})->compile(scene.model);
+  return compiled;
+}
+
 std::optional<Beyond> next_model_up(const Engine& engine, const SceneArguments& arguments) {
   const Scene& scene = engine.scene();
   const auto& bodies = scene.model->bodies();
   if (std::none_of(bodies.begin(), bodies.end(), flexible)) return {};
   if (has_terms_throughout(scene, {StrainOrder::exact, Truncation::none})) return {};
   const bool quadratic = has_terms_throughout(scene, {StrainOrder::quadratic, Truncation::none});
-  Beyond beyond{quadratic ? "exact" : "quadratic", scene.model, nullptr};
-  SceneOptions options = arguments.options;
-  options.formulation = beyond.formulation;
-  bool own = false;
-  for (const BodyNode& body : bodies) {
-    if (!body.terms) continue;
-    options.overrides.push_back("bodies." + body.name + ".formulation=" + beyond.formulation);
-    own = true;
-  }
   try {
-    if (own) {
-      const Scene up = read_scene(arguments.scene, engine.registry(), options);
-      beyond.model = up.model;
-      beyond.equations = up.formulation->compile(up.model);
-    } else {
-      Diagnostics diagnostics;
-      const auto* plugin = engine.registry().find<Formulation>(beyond.formulation);
-      if (plugin == nullptr) return {};
-      beyond.equations = plugin->make(Value::map({}), {engine.registry(), diagnostics})->compile(scene.model);
-    }
+    return compile_throughout(engine, arguments, quadratic ? "exact" : "quadratic");
   } catch (const std::invalid_argument&) {
     return {};  // a body without exact kinematics
   }
-  return beyond;
 }
 
 std::unique_ptr<Integrator> make_integrator(Registry& registry, const std::string& id, Value options) {

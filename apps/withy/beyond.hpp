@@ -17,6 +17,9 @@ struct Beyond {
   std::shared_ptr<const Model> model;  ///< the scene's, or the same without formulations of single bodies
   std::unique_ptr<EquationsOfMotion> equations;
 };
+/// The scene's model with every body in one formulation.
+/// \throws std::invalid_argument where a body cannot be; InputError where there is no such formulation.
+Beyond compile_throughout(const Engine& engine, const SceneArguments& arguments, const std::string& formulation);
 /// Nothing where no body is flexible or there is no model up.
 std::optional<Beyond> next_model_up(const Engine& engine, const SceneArguments& arguments);
 

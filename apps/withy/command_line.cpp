@@ -113,6 +113,17 @@ void add_commands(Commands& commands) {
   c->add_option("--out", compare_arguments.out, "Folder for results and pictures; default: nothing is kept")
       ->type_name("DIR");
 
+  auto& terms_arguments =
+      commands.add<TermsArguments>("terms", "Measure the terms of the equations of motion along a run",
+                                   "  withy terms scenes/two-link-slew.yaml\n"
+                                   "  withy terms scenes/two-link-slew.yaml --formulation ruthless "
+                                   "--set loads.slew.time_scale=1.2 --out results/terms",
+                                   terms, c);
+  add_scene(*c, terms_arguments);
+  add_formulation(*c, terms_arguments);
+  c->add_option("--out", terms_arguments.out, "Folder for table, series and picture; default: nothing is kept")
+      ->type_name("DIR");
+
   auto& eval_arguments = commands.add<StateArguments>(
       "eval", "Evaluate the equations of motion at a state, as JSON",
       "  withy eval scenes/two-link-slew.yaml\n"

@@ -42,6 +42,10 @@ struct CompareArguments : SceneArguments {
   std::string out;                      ///< folder of the results; empty: none are kept
 };
 
+struct TermsArguments : SceneArguments {
+  std::string out;  ///< folder of the results; empty: none are kept
+};
+
 /// Commands that look at one state of a scene.
 struct StateArguments : SceneArguments {
   std::string state;  ///< file; empty: the scene's initial state
@@ -57,6 +61,7 @@ struct PluginsArguments : CommonArguments {
 
 ExitStatus run(const RunArguments& arguments);
 ExitStatus compare(const CompareArguments& arguments);
+ExitStatus terms(const TermsArguments& arguments);
 ExitStatus eval(const StateArguments& arguments);
 ExitStatus inspect(const StateArguments& arguments);
 ExitStatus bench(const BenchArguments& arguments);
