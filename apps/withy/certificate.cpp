@@ -131,11 +131,11 @@ ErrorEstimate estimate_error(const Engine& engine, const Beyond& beyond, const R
   options.output = engine.scene().output;
   options.most_evaluations = summary.steps.evaluations;
   options.interrupted = interrupted;
-  const PairedRun run =
-      run_paired(engine.model(), engine.equations(), *beyond.equations, *integrator, engine.scene().initial, options,
-                 [&](const State& used, const State& up) {
-                   add_distances(e.distances, engine.model(), engine.equations(), used, *beyond.equations, up);
-                 });
+  const PairedRun run = run_paired(
+      engine.model(), engine.equations(), *beyond.equations, *integrator, engine.scene().initial, options,
+      [&](const State& used, const State& up) {
+        add_distances(e.distances, {engine.model(), engine.equations(), used}, {*beyond.model, *beyond.equations, up});
+      });
   e.cpu_seconds = run.cpu_seconds;
   e.distances.until = run.until;
   return e;

@@ -28,17 +28,17 @@ Eigen::Quaterniond quaternion_at(const State& s, std::size_t i) {
 }
 
 /// Distance of one hinge's coordinates in two states; q and −q are the same orientation.
-double hinge_distance(const HingeNode& hinge, const Slot& slot, const State& a, const State& b) {
-  const std::size_t p = slot.position;
+double hinge_distance(const HingeNode& hinge, std::size_t p, const State& a, std::size_t q, const State& b,
+                      std::size_t positions) {
   const auto kernel = hinge.hinge->kernel();
   const auto kind = kernel ? std::optional(kernel->kind) : std::nullopt;
   if (kind == HingeKernel::Kind::spherical || kind == HingeKernel::Kind::free) {
-    const double angle = quaternion_at(a, p).angularDistance(quaternion_at(b, p));
+    const double angle = quaternion_at(a, p).angularDistance(quaternion_at(b, q));
     if (kind == HingeKernel::Kind::spherical) return angle;
-    return std::max(angle, (vector_at(a, p + 4) - vector_at(b, p + 4)).norm());
+    return std::max(angle, (vector_at(a, p + 4) - vector_at(b, q + 4)).norm());
   }
   double most = 0;
-  for (std::size_t i = 0; i < slot.positions; ++i) most = std::max(most, std::abs(a.y[p + i] - b.y[p + i]));
+  for (std::size_t i = 0; i < positions; ++i) most = std::max(most, std::abs(a.y[p + i] - b.y[q + i]));
   return most;
 }
 
@@ -71,19 +71,20 @@ Panel panel_of(const std::string& label, const std::vector<const ComparedRun*>& 
 double Distances::greatest_hinge() const { return greatest(hinges); }
 double Distances::greatest_tip() const { return greatest(tips); }
 
-void add_distances(Distances& d, const Model& model, const EquationsOfMotion& a, const State& at,
-                   const EquationsOfMotion& b, const State& bt) {
-  d.until = at.time;
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const Slot& slot = model.layout().hinges[h];
+void add_distances(Distances& d, const Moment& a, const Moment& b) {
+  d.until = a.state.time;
+  for (std::size_t h = 0; h < a.model.hinges().size(); ++h) {
+    const Slot& slot = a.model.layout().hinges[h];
     if (slot.positions == 0) continue;
     double& most = d.hinges[slot.name];
-    most = std::max(most, hinge_distance(model.hinges()[h], slot, at, bt));
+    most = std::max(most, hinge_distance(a.model.hinges()[h], slot.position, a.state,
+                                         b.model.layout().hinges[h].position, b.state, slot.positions));
   }
-  for (const FramePlace& tip : tips(model)) {
-    const auto p = a.frame_pose(at.y, tip.body, tip.frame).position;
-    const auto q = b.frame_pose(bt.y, tip.body, tip.frame).position;
-    double& most = d.tips[tip.name];
+  const auto places = tips(a.model), others = tips(b.model);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto p = a.equations.frame_pose(a.state.y, places[i].body, places[i].frame).position;
+    const auto q = b.equations.frame_pose(b.state.y, others[i].body, others[i].frame).position;
+    double& most = d.tips[places[i].name];
     most = std::max(most, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
   }
 }
@@ -96,7 +97,8 @@ Distances distances(const ComparedRun& run, const ComparedRun& reference) {
     const State& a = run.outputs[i];
     const State& b = reference.outputs[i];
     if (a.time != b.time) break;
-    add_distances(d, model, run.engine->equations(), a, reference.engine->equations(), b);
+    add_distances(d, {model, run.engine->equations(), a},
+                  {reference.engine->model(), reference.engine->equations(), b});
   }
   return d;
 }

@@ -106,6 +106,12 @@ void draw_curve(std::string& out, const Curve& curve, const Scale& s, const Pen&
   if (curve.x.empty()) return;
   // Far outside the frame is as good as further outside, and keeps renderers away from huge coordinates.
   const auto y = [&](double v) { return std::clamp(s.y(v), s.top - 5000, s.top + 5000); };
+  if (curve.points) {
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+      fmt::format_to(std::back_inserter(out), "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4.5\" fill=\"{}\"/>\n",
+                     s.x(curve.x[i]), y(curve.y[i]), p.colour);
+    return;
+  }
   out += "<polyline " + stroke(p) + " points=\"";
   for (std::size_t i = 0; i < curve.x.size(); ++i)
     fmt::format_to(std::back_inserter(out), "{:.2f},{:.2f} ", s.x(curve.x[i]), y(curve.y[i]));

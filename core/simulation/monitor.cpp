@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/shape/point_motion.hpp"
+
 namespace withy {
 
 Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
@@ -22,8 +24,14 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     const double length = node.body->shape().length;
     const auto section = node.body->station("tip");
     if (slot == nullptr || !section || !(length > 0)) continue;
-    tips_.push_back({slot, static_cast<int>(b), node.frame("tip"), *section, length,
-                     &summary.peak_deflection[node.name], &summary.peak_deflection_ratio[node.name]});
+    tips_.push_back({slot,
+                     static_cast<int>(b),
+                     node.frame("tip"),
+                     *section,
+                     length,
+                     &summary.peak_deflection[node.name],
+                     &summary.peak_deflection_ratio[node.name],
+                     {}});
   }
   std::size_t scratch = 0;
   for (const LoadNode& node : model.loads()) scratch = std::max(scratch, node.load->scratch());
@@ -35,19 +43,27 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
 }
 
 std::array<double, 3> Monitor::deflection(const Tip& tip, const State& state) const {
-  if (tip.frame >= 0) return equations_.deflection(state.y, tip.body, tip.frame);
-  const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + tip.slot->position,
-                                            static_cast<Eigen::Index>(tip.slot->positions));
-  std::array<double, 3> d{};
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    d[i] = tip.section.phi.row(k).dot(q) + 0.5 * q.dot(tip.section.gamma[i] * q);
-  }
-  return d;
+  return tip.frame >= 0 ? equations_.deflection(state.y, tip.body, tip.frame) : expanded(tip, state);
 }
 
-void Monitor::observe(const State& state) {
-  for (const Tip& tip : tips_) {
+std::array<double, 3> Monitor::expanded(const Tip& tip, const State& state) {
+  const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + tip.slot->position,
+                                            static_cast<Eigen::Index>(tip.slot->positions));
+  const Vector3 d = point_velocity(tip.section, StrainOrder::quadratic, q, q).first - tip.section.X;
+  return {d.x(), d.y(), d.z()};
+}
+
+void Monitor::observe(const State& state, bool output) {
+  for (Tip& tip : tips_) {
+    // Exact kinematics integrates along the body, at the cost of several evaluations: between outputs only where the
+    // expansion says that the deflection has not been so great before.
+    const std::array<double, 3> rough = expanded(tip, state);
+    bool greater = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      greater = greater || std::abs(rough[k]) > tip.rough[k];
+      tip.rough[k] = std::max(tip.rough[k], std::abs(rough[k]));
+    }
+    if (!output && !greater) continue;
     const std::array<double, 3> d = deflection(tip, state);
     for (std::size_t k = 0; k < 3; ++k) (*tip.peak)[k] = std::max((*tip.peak)[k], std::abs(d[k]));
     const double size = std::hypot(d[0], d[1], d[2]);

@@ -18,7 +18,7 @@ class Monitor {
           RunSummary& summary);
 
   /// Peaks of deflections and efforts: for every accepted step and output.
-  void observe(const State& state);
+  void observe(const State& state, bool output);
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
   /// Energy against the work done.
@@ -39,8 +39,11 @@ class Monitor {
     double length;  ///< [m]
     std::array<double, 3>* peak;
     double* ratio;
+    std::array<double, 3> rough{};  ///< greatest |deflection| by the expansion
   };
   [[nodiscard]] std::array<double, 3> deflection(const Tip& tip, const State& state) const;
+  /// The same by the second-order expansion of the section.
+  [[nodiscard]] static std::array<double, 3> expanded(const Tip& tip, const State& state);
   /// Sign of det M by one evaluation; 0 where it cannot be solved.
   [[nodiscard]] int mass_matrix_sign(const State& state);
 

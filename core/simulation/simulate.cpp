@@ -53,7 +53,7 @@ class Run {
         times_(initial.time, options.output, options.end),
         sample_(stepper_->state()) {
     emit(stepper_->state());
-    monitor_.observe(stepper_->state());
+    monitor_.observe(stepper_->state(), true);
     validity_.observe(stepper_->state(), 0);
   }
 
@@ -83,6 +83,7 @@ class Run {
   void finish(RunStatus status) {
     const State& state = stepper_->state();
     if (state.time > emitted_) emit(state);
+    monitor_.observe(state, true);
     monitor_.audit_energy(state);
     validity_.finish(state, stepper_->statistics().evaluations, status == RunStatus::completed);
   }
@@ -98,12 +99,12 @@ class Run {
       for (; times_.due(state.time); times_.pass()) {
         sample_.time = times_.next();
         stepper_->interpolate(sample_.time, sample_.y);
-        monitor_.observe(sample_);
+        monitor_.observe(sample_, true);
         emit(sample_);
       }
       monitor_.audit_energy(state);
     }
-    monitor_.observe(state);
+    monitor_.observe(state, false);
     validity_.observe(state, stepper_->statistics().evaluations);
     monitor_.audit_mass_matrix(state, stepper_->statistics().determinant_sign);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
