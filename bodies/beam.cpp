@@ -9,6 +9,9 @@
 /// Along x this is the foreshortening −½∫(v′² + w′²) of Padilla & von Flotow, across it the coupling of bending and
 /// twist. The sections' inertia is ρI_p about x, and in bending ρI where a scene gives it (Rayleigh's beam). Mass,
 /// stiffness and inertias may vary along the beam; the assumed modes are then Ritz functions, K and M their integrals.
+#include <fmt/format.h>
+
+#include <Eigen/QR>
 #include <cmath>
 
 #include "beam_profile.hpp"
@@ -274,11 +277,35 @@ class Reader {
     const BeamData beam = {kind, material.length, kind == BeamData::Strain::torsion ? inertia.mean() : mass,
                            stiffness.mean()};
     auto functions = make_shape_functions(given.at("family"), given.at("modes"), beam, context_);
-    if (functions == nullptr) {
+    if (functions == nullptr || !can_join(*functions, given.at("family"), kind, material.length)) {
       good_ = false;
     } else {
       strains_.push_back({key, rotation, kind, stiffness, std::move(functions)});
     }
+  }
+
+  /// Segments pass moments on to each other, so functions that have no strain at an end leave each of them too stiff,
+  /// and all of them together as well, however many there are: one that is strained evenly must be among their sums.
+  bool can_join(const ShapeFunctions& functions, const Value& family, BeamData::Strain kind, double length) {
+    if (p_.count_at("segments") == 1) return true;
+    constexpr Eigen::Index points = 64;
+    const std::size_t n = functions.count();
+    Eigen::MatrixXd strain(points, static_cast<Eigen::Index>(n));
+    for (Eigen::Index k = 0; k < points; ++k) {
+      std::vector<double> value(n), slope(n), curvature(n);
+      functions.evaluate(length * (static_cast<double>(k) + 0.5) / points, value, slope, curvature);
+      const std::vector<double>& of = kind == BeamData::Strain::torsion ? slope : curvature;
+      for (std::size_t i = 0; i < n; ++i) strain(k, static_cast<Eigen::Index>(i)) = of[i];
+    }
+    const Eigen::VectorXd even = Eigen::VectorXd::Ones(points);
+    const double miss = (strain * strain.completeOrthogonalDecomposition().solve(even) - even).norm() / even.norm();
+    if (miss < 1e-6) return true;
+    context_.diagnostics.error(
+        family.place(), fmt::format("these {} modes of a segment cannot be strained evenly, so that the segments would "
+                                    "be too stiff however many; need family orthogonal-polynomials, or craig-bampton "
+                                    "with 2 modes at least in bending",
+                                    n));
+    return false;
   }
 
   const Value& p_;
@@ -317,7 +344,12 @@ void enroll(Enrollment& enrollment) {
                           "bending with deflection along z")
                           .optional(),
                       map("torsion", torsion, "twist about x").optional(),
-                      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0)},
+                      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0),
+                      integer("segments",
+                              "number of beams, welded one behind the other, it is cut into; modes are of each")
+                          .least(1)
+                          .most(1000)
+                          .otherwise(1)},
        .make = &make});
 }
 

@@ -75,7 +75,8 @@ class OneStep : public Stepper {
     return {};
   }
 
-  Evaluation evaluate(double t, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) {
+  /// Const, so that interpolants may evaluate too: only memory for the work and counters change.
+  Evaluation evaluate(double t, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) const {
     ++statistics_.evaluations;
     const auto n = static_cast<std::size_t>(size_);
     const Evaluation e = equations_.derivatives(std::min(t, latest_), {values.data(), n}, {slope.data(), n}, work_);
@@ -118,14 +119,14 @@ class OneStep : public Stepper {
   Eigen::ArrayXd previous_slope_;  ///< ẏ there
   Eigen::ArrayXd next_;            ///< y at the end of the step being tried
   Eigen::ArrayXd next_slope_;      ///< ẏ there
-  StepStatistics statistics_;
+  mutable StepStatistics statistics_;
 
  private:
   const EquationsOfMotion& equations_;
-  Work work_;
+  mutable Work work_;
   Eigen::Index size_;
   double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which the step may evaluate
-  int sign_ = 1;                                             ///< of det M in the last evaluation
+  mutable int sign_ = 1;                                     ///< of det M in the last evaluation
   bool slope_known_ = false;
 };
 

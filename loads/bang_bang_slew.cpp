@@ -30,6 +30,11 @@ class BoundBangBangSlew final : public BoundLoad {
       efforts[axes_[i].speed] += t >= plan_.end ? holding_[i] : (passed % 2 == 0 ? axis.first : -axis.first);
     }
   }
+  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
+                       Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
+    return true;  // a function of time alone
+  }
   std::vector<double> discontinuities() const override {
     std::vector<double> all{0, plan_.end};
     for (const SwitchingPlan::Axis& axis : plan_.axes)

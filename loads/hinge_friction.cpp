@@ -16,6 +16,14 @@ class BoundFriction final : public BoundLoad {
            std::span<double> efforts, std::span<double> /*scratch*/) const noexcept override {
     efforts[speed_] -= effort_ * std::tanh(speeds[speed_] / scale_);
   }
+  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> speeds,
+                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
+                       Eigen::Ref<Eigen::MatrixXd> by_speed) const override {
+    const auto i = static_cast<Eigen::Index>(speed_);
+    const double share = std::tanh(speeds[speed_] / scale_);
+    by_speed(i, i) -= effort_ / scale_ * (1 - share * share);
+    return true;
+  }
   std::vector<double> discontinuities() const override { return {}; }
   double end() const override { return 0; }
   void begin(State& /*state*/) const override {}

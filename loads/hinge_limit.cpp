@@ -4,6 +4,7 @@
 /// a stop pushes and never pulls, and the effort sets in with slope zero.
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "withy/core/plugin/entry.hpp"
 #include "withy/loads/hinge_rate.hpp"
@@ -24,6 +25,17 @@ struct Limits {
     const double elastic = depth < onset ? stiffness * depth * depth / (2 * onset) : stiffness * (depth - 0.5 * onset);
     return elastic * std::max(0.0, 1 + dissipation * rate);
   }
+  /// Derivatives of `push` with respect to depth and rate.
+  std::pair<double, double> push_slopes(double depth, double rate) const noexcept {
+    if (depth <= 0 || 1 + dissipation * rate <= 0) return {0, 0};
+    const double stiffness_here = depth < onset ? stiffness * depth / onset : stiffness;
+    return {stiffness_here * (1 + dissipation * rate), dissipation * push(depth, 0)};
+  }
+  /// Derivatives of the effort with respect to x and its rate: both stops push against a displacement towards them.
+  std::pair<double, double> slopes(double x, double rate) const noexcept {
+    const auto below = push_slopes(lower - x, -rate), above = push_slopes(x - upper, rate);
+    return {-below.first - above.first, -below.second - above.second};
+  }
   double operator()(double x, double rate) const noexcept { return push(lower - x, -rate) - push(x - upper, rate); }
 };
 
@@ -35,6 +47,14 @@ class BoundLimit final : public BoundLoad {
   void add(double /*t*/, std::span<const double> positions, std::span<const double> speeds, std::span<double> efforts,
            std::span<double> /*scratch*/) const noexcept override {
     efforts[speed_] += limits_(positions[position_], speeds[speed_]);
+  }
+  bool add_derivatives(double /*t*/, std::span<const double> positions, std::span<const double> speeds,
+                       Eigen::Ref<Eigen::MatrixXd> by_position, Eigen::Ref<Eigen::MatrixXd> by_speed) const override {
+    const auto i = static_cast<Eigen::Index>(speed_);
+    const auto [by_x, by_rate] = limits_.slopes(positions[position_], speeds[speed_]);
+    by_position(i, i) += by_x;
+    by_speed(i, i) += by_rate;
+    return true;
   }
   std::vector<double> discontinuities() const override { return {}; }
   double end() const override { return 0; }

@@ -25,6 +25,13 @@ class BoundSpring final : public BoundLoad {
     if (spring_.stiffness > 0) effort -= spring_.stiffness * (positions[position_] - spring_.free_position);
     efforts[speed_] += effort;
   }
+  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+                       Eigen::Ref<Eigen::MatrixXd> by_position, Eigen::Ref<Eigen::MatrixXd> by_speed) const override {
+    const auto i = static_cast<Eigen::Index>(speed_);
+    by_position(i, i) -= spring_.stiffness;
+    by_speed(i, i) -= spring_.damping;
+    return true;
+  }
   std::vector<double> discontinuities() const override { return {}; }
   double end() const override { return 0; }
   void begin(State& /*state*/) const override {}

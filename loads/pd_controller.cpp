@@ -15,6 +15,11 @@ struct Gains {
   double damping = 0;                                      ///< c [N m s/rad, N s/m]
   double limit = std::numeric_limits<double>::infinity();  ///< τ_max [N m, N]
 
+  /// Derivative of the effort with respect to what it would be without limit.
+  double slope(double error, double error_rate) const noexcept {
+    const double share = std::tanh((stiffness * error + damping * error_rate) / limit);
+    return 1 - share * share;
+  }
   double operator()(double error, double error_rate) const noexcept {
     const double effort = stiffness * error + damping * error_rate;
     return limit < std::numeric_limits<double>::infinity() ? limit * std::tanh(effort / limit) : effort;
@@ -45,6 +50,18 @@ class BoundPdController final : public BoundLoad {
       const MotionPoint r = at(axis.trajectory, t);
       efforts[axis.speed] += gains_[i](r.position - positions[axis.position], r.rate - speeds[axis.speed]);
     }
+  }
+  bool add_derivatives(double t, std::span<const double> positions, std::span<const double> speeds,
+                       Eigen::Ref<Eigen::MatrixXd> by_position, Eigen::Ref<Eigen::MatrixXd> by_speed) const override {
+    for (std::size_t k = 0; k < axes_.size(); ++k) {
+      const FollowedAxis& axis = axes_[k];
+      const MotionPoint r = at(axis.trajectory, t);
+      const double share = gains_[k].slope(r.position - positions[axis.position], r.rate - speeds[axis.speed]);
+      const auto i = static_cast<Eigen::Index>(axis.speed);
+      by_position(i, i) -= share * gains_[k].stiffness;
+      by_speed(i, i) -= share * gains_[k].damping;
+    }
+    return true;
   }
   std::vector<double> discontinuities() const override { return jumps_of(axes_); }
   double end() const override { return end_of(axes_); }

@@ -39,6 +39,11 @@ class BoundSlew final : public BoundLoad {
     for (const FollowedAxis& axis : axes_) efforts[axis.speed] += tau[axis.speed];
   }
 
+  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
+                       Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
+    return true;  // a function of time alone
+  }
   std::vector<double> discontinuities() const override { return jumps_of(axes_); }
   double end() const override { return end_of(axes_); }
   void begin(State& state) const override { begin_on(axes_, positions_, state); }

@@ -1,5 +1,5 @@
 /// \file
-/// Motions of one coordinate as functions of time: what slews and controllers follow.
+/// Motions of one coordinate as functions of time: what slews and controllers follow, and hinges are driven along.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,9 @@
 #include <variant>
 #include <vector>
 
-namespace withy {
+#include "withy/core/plugin/motion.hpp"
 
-/// A coordinate and its derivatives [rad, rad/s, rad/s² or m, m/s, m/s²].
-struct MotionPoint {
-  double position = 0;
-  double rate = 0;
-  double acceleration = 0;
-};
+namespace withy {
 
 /// Stays where it is.
 struct Hold {

@@ -22,7 +22,9 @@ std::vector<ParameterSpec> scene_members() {
       text("name", "title of the scene").otherwise(""),
       vector("gravity", 3, "m/s^2", "acceleration of gravity, world axes").otherwise(numbers({0, 0, 0})),
       map("time",
-          {number("end", "s", "end of the simulation; without it, the latest end of a load").least(0).optional(),
+          {number("end", "s", "end of the simulation; without it, the latest end of a load or motion")
+               .least(0)
+               .optional(),
            number("output", "s", "interval of the outputs").above(0).otherwise(0.01)},
           "span of the simulation")
           .otherwise(Value::map({})),
@@ -59,6 +61,10 @@ std::vector<ParameterSpec> hinge_members() {
 }
 
 std::vector<ParameterSpec> load_members() { return {text("type", "load plugin")}; }
+
+std::vector<ParameterSpec> motion_members() {
+  return {text("type", "motion plugin"), text("hinge", "hinge that it moves").naming(ParameterSpec::Refers::hinge)};
+}
 
 ParameterSpec choice_name(std::string_view kind, std::string_view otherwise) {
   return text("name", std::string(kind) + " plugin").otherwise(std::string(otherwise).c_str());

@@ -18,6 +18,8 @@ namespace withy {
 namespace {
 
 constexpr double most_outputs = 1e8;
+// What integration may have left between a driven hinge and its motion, for states that a run has written.
+constexpr double driven_tolerance = 1e-6;
 
 std::string report(const std::string& file, const std::vector<Diagnostic>& problems,
                    const std::vector<std::string>& origins) {
@@ -67,13 +69,13 @@ class SceneBuilder {
     read_plain_values();
     scene_.formulation = choose<Formulation>("formulation", grammar::default_formulation, scene_.formulation_name);
     scene_.integrator = choose<Integrator>("integrator", grammar::default_integrator, scene_.integrator_name);
-    refuse("motions", "prescribed motions are not part of this version; leave them out");
     refuse("outputs", "outputs cannot be chosen in this version; leave them out");
 
     Tree tree = build_tree(part("bodies"), part("hinges"), gravity_, checker_);
     scene_.source.set("bodies", std::move(tree.bodies));
     scene_.source.set("hinges", std::move(tree.hinges));
     checker_.know(&tree.names);
+    add_motions(tree.model.get());
     add_loads(tree.model.get());
     if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model);
     if (tree.model != nullptr && diagnostics_.ok()) set_span(*tree.model);
@@ -142,43 +144,83 @@ class SceneBuilder {
     return make_object(*made.plugin, *value, checker_);
   }
 
-  /// Checks all loads; adds them to the model if there is one.
-  void add_loads(Model* model) {
-    const Value loads = part("loads");
-    Value checked = Value::map({}, loads.place());
-    for (const auto& [name, given] : loads.members()) {
-      const std::string path = "/loads/" + name;
+  /// Checks the plugins named under a key of the scene and makes them; `add` gives each to the model if there is one.
+  template <class Interface, class Add>
+  void add_parts(const std::string& key, const std::vector<ParameterSpec>& members, bool to_model, Add&& add) {
+    const Value parts = part(key);
+    Value checked = Value::map({}, parts.place());
+    for (const auto& [name, given] : parts.members()) {
+      const std::string path = "/" + key + "/" + name;
       if (const std::string problem = name_problem(name); !problem.empty()) {
         checker_.key_error(path, fmt::format("got name {}; {}", in_quotes(name), problem));
       }
-      Made<Load> made;
-      const auto value = check_plugin_map(given, "type", grammar::load_members(), checker_, made);
+      Made<Interface> made;
+      const auto value = check_plugin_map(given, "type", members, checker_, made);
       if (!value) continue;
-      const auto load = make_object(*made.plugin, *value, checker_);
+      auto object = make_object(*made.plugin, *value, checker_);
       checked.members().emplace_back(name, *value);
-      if (load == nullptr || model == nullptr) continue;
+      if (object == nullptr || !to_model) continue;
       try {
-        model->add_load(name, *load);
+        add(name, *value, std::move(object));
       } catch (const std::invalid_argument& e) {
         checker_.key_error(path, e.what());
       }
     }
-    scene_.source.set("loads", std::move(checked));
+    scene_.source.set(key, std::move(checked));
   }
 
-  /// Where the loads begin, then what the scene says.
+  void add_loads(Model* model) {
+    add_parts<Load>("loads", grammar::load_members(), model != nullptr,
+                    [&](const std::string& name, const Value&, const std::unique_ptr<Load>& load) {
+                      model->add_load(name, *load);
+                    });
+  }
+  void add_motions(Model* model) {
+    add_parts<Motion>("motions", grammar::motion_members(), model != nullptr,
+                      [&](const std::string& name, const Value& value, std::unique_ptr<Motion> motion) {
+                        model->add_motion(name, value.text_at("hinge"), std::move(motion));
+                      });
+  }
+
+  /// Where the loads begin, then what the scene says; driven hinges where their motions have them.
   void set_start(const Model& model) {
     scene_.initial = model.reference_state();
     for (const LoadNode& l : model.loads()) l.load->begin(scene_.initial);
     const Value* given = document_.root.find("initial");
-    if (given == nullptr) return;
-    set_state(*given, model, checker_, scene_.initial);
-    scene_.source.set("initial", *given);
+    if (given != nullptr) {
+      set_state(*given, model, checker_, scene_.initial);
+      scene_.source.set("initial", *given);
+      check_driven(model);
+    }
+    model.prescribe(scene_.initial);
+  }
+
+  /// Reports what `initial` says of driven hinges against their motions.
+  void check_driven(const Model& model) {
+    State moved = scene_.initial;
+    model.prescribe(moved);
+    for (const MotionNode& node : model.motions()) {
+      const Slot& slot = model.layout().hinges[static_cast<std::size_t>(node.hinge)];
+      const auto compare = [&](std::size_t first, std::size_t count, const char* key) {
+        for (std::size_t i = first; i < first + count; ++i) {
+          const double given = scene_.initial.y[i], needed = moved.y[i];
+          if (std::abs(given - needed) <= driven_tolerance * (1 + std::abs(needed))) continue;
+          checker_.key_error(fmt::format("/initial/hinges/{}/{}", slot.name, key),
+                             fmt::format("got {}, but motion '{}' has the hinge at {} at {} s; leave it out", given,
+                                         node.name, needed, moved.time));
+        }
+      };
+      compare(slot.position, slot.positions, "position");
+      compare(model.layout().positions + slot.speed, slot.speeds, "rate");
+    }
   }
 
   void set_span(const Model& model) {
     for (const LoadNode& l : model.loads()) {
       if (const double end = l.load->end(); end > scene_.end.value_or(0)) scene_.end = end;
+    }
+    for (const MotionNode& m : model.motions()) {
+      if (const double end = m.motion->end(); end > scene_.end.value_or(0)) scene_.end = end;
     }
     if (const Value* end = scene_.source.at("time").find("end")) scene_.end = end->number();
     if (!scene_.end) return;
@@ -221,7 +263,7 @@ double end_of_run(const Scene& scene) {
   if (scene.end) return *scene.end;
   const Place& time = scene.source.at("time").place();
   throw SceneError(scene.file, {{{time.line, time.column, "/time/end"},
-                                 "missing, and no load has an end of its own; need finite >= 0 [s]"}});
+                                 "missing, and no load or motion has an end of its own; need finite >= 0 [s]"}});
 }
 
 Scene read_scene(const std::string& file, Registry& registry, const SceneOptions& options) {

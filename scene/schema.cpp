@@ -56,10 +56,9 @@ class SchemaWriter {
     properties["bodies"]["minProperties"] = 1;
     properties["hinges"] = plugins<Hinge>(grammar::hinge_members(), "hinges; each body is the child of exactly one");
     properties["loads"] = plugins<Load>(grammar::load_members(), "loads on the tree");
+    properties["motions"] = plugins<Motion>(grammar::motion_members(), "prescribed motions of hinges");
     properties["initial"] = state();
-    for (const char* key : {"motions", "outputs"}) {
-      properties[key] = {{"type", "object"}, {"maxProperties", 0}, {"description", "not part of this version"}};
-    }
+    properties["outputs"] = {{"type", "object"}, {"maxProperties", 0}, {"description", "not part of this version"}};
     return {
         {"$schema", "https://json-schema.org/draft/2020-12/schema"},
         {"title", "Withy scene"},

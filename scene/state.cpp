@@ -39,9 +39,10 @@ class StateReader {
 
   bool read(const Value& value) {
     if (!map_with(value, {"hinges", "bodies", "time", "work"})) return false;
+    scalar(value, number("time", "s", ""), state_.time);
+    model_.prescribe(state_);  // what the state does not say of driven hinges, their motions do
     if (const Value* hinges = value.find("hinges")) read_hinges(*hinges);
     if (const Value* bodies = value.find("bodies")) read_bodies(*bodies);
-    scalar(value, number("time", "s", ""), state_.time);
     scalar(value, number("work", "J", ""), state_.y.back());
     return good_;
   }
@@ -127,9 +128,11 @@ class StateReader {
     for (const auto& [name, member] : value.members()) {
       const Slot* slot = model_.layout().body(name);
       if (slot == nullptr) {
-        key_error(member, model_.body(name) >= 0
-                              ? fmt::format("body '{}' is rigid: it has no modes", name)
-                              : fmt::format("no flexible body {}{}", in_quotes(name), suggestion(name, names)));
+        const std::size_t segments = model_.segments(name).size();
+        key_error(member,
+                  segments > 1   ? fmt::format("body '{0}' is in segments; name each, '{0}.1' to '{0}.{1}'", name, segments)
+                  : segments > 0 ? fmt::format("body '{}' is rigid: it has no modes", name)
+                               : fmt::format("no flexible body {}{}", in_quotes(name), suggestion(name, names)));
         continue;
       }
       if (!map_with(member, {"modes", "rates"})) continue;

@@ -11,6 +11,7 @@
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/segments.hpp"
 #include "withy/scene/state.hpp"
 #include "withy/scene/topology.hpp"
 
@@ -24,6 +25,7 @@ struct Extent {
   double modes = 0;     ///< sum of the whole numbers named "modes"
   double greatest = 0;  ///< of them
   double rows = 0;      ///< of all tables
+  double segments = 1;  ///< it is cut into
 };
 
 /// Of a value and what is below it.
@@ -37,6 +39,7 @@ void measure(const Value& value, Extent& extent) {
       extent.modes += member.number();
       extent.greatest = std::max(extent.greatest, member.number());
     }
+    if (key == "segments" && member.kind() == Value::Kind::number) extent.segments = member.number();
     measure(member, extent);
   }
 }
@@ -65,6 +68,7 @@ class TreeBuilder {
   Tree build(const Value& bodies, const Value& hinges, const Vector3& gravity) {
     for (const auto& [name, value] : bodies.members()) add_body(name, value);
     for (const auto& [name, value] : hinges.members()) add_hinge(name, value);
+    for (const Entry& entry : entries_) weld_segments(entry);
     good_ = check_topology(tree_.names.bodies, links_, checker_) && good_;
     tree_.bodies = Value::map(std::move(body_values_), bodies.place());
     tree_.hinges = Value::map(std::move(hinge_values_), hinges.place());
@@ -74,6 +78,7 @@ class TreeBuilder {
     }
     tree_.names.frames_complete = good_;
     if (!good_) return std::move(tree_);
+    add_names_of_wholes();
     try {
       tree_.model = std::make_unique<Model>(std::move(nodes_), std::move(hinge_nodes_), gravity);
     } catch (const std::invalid_argument& e) {
@@ -83,6 +88,20 @@ class TreeBuilder {
   }
 
  private:
+  /// A body of the scene: the nodes it became, one or, in segments, several from its root on.
+  struct Entry {
+    std::string name;
+    int first = 0;
+    int count = 1;
+    int held = -1;  ///< the node that the inboard hinge holds
+    Place place;
+  };
+  /// A node and one of its frames.
+  struct NodeFrame {
+    int node = -1;
+    int frame = 0;
+  };
+
   void error(const Value& value, std::string message) {
     checker_.diagnostics().error(value.place(), std::move(message));
     good_ = false;
@@ -101,7 +120,8 @@ class TreeBuilder {
 
   void add_body(const std::string& name, const Value& given) {
     check_name(name, given);
-    index_.emplace(name, static_cast<int>(nodes_.size()));
+    index_.emplace(name, static_cast<int>(entries_.size()));
+    entries_.push_back({name, static_cast<int>(nodes_.size()), 1, -1, given.place()});
     tree_.names.bodies.push_back(name);
     BodyNode& node = nodes_.emplace_back();
     node.name = name;
@@ -128,15 +148,81 @@ class TreeBuilder {
       good_ = false;
       return;
     }
+    if (!check_shape(*made.object, made.plugin->id, *value)) return;
     node.body = std::move(made.object);
-    if (const std::string fault = find_fault(node.body->shape()); !fault.empty()) {
-      key_error(value->place().path,
-                fmt::format("body plugin '{}' made a shape that cannot be: {}", made.plugin->id, fault));
-      node.body = nullptr;
+    if (const std::size_t n = segments_of(*value, made.plugin->parameters); n > 1) {
+      add_segments(*made.plugin, *value, n);
+    } else {
+      add_ends(node, *value);
+      if (node.body != nullptr) add_frames(value->at("frames"), *node.body);
+    }
+    body_values_.emplace_back(name, *value);
+  }
+
+  bool check_shape(const Body& body, const std::string& plugin, const Value& value) {
+    const std::string fault = find_fault(body.shape());
+    if (fault.empty()) return true;
+    key_error(value.place().path, fmt::format("body plugin '{}' made a shape that cannot be: {}", plugin, fault));
+    return false;
+  }
+
+  /// Replaces the last node, the whole body, by its segments.
+  void add_segments(const Plugin<Body>& plugin, const Value& value, std::size_t n) {
+    const BodyNode whole = std::move(nodes_.back());
+    nodes_.pop_back();
+    for (std::size_t k = 0; k < n; ++k) {
+      BodyNode& node = nodes_.emplace_back();
+      node.name = fmt::format("{}.{}", whole.name, k + 1);
+      node.terms = whole.terms;
+      node.segment = Segment{whole.name, k, n};
+      auto segment = make_object(plugin, segment_of(value, plugin.parameters, k, n), checker_);
+      if (segment == nullptr || !check_shape(*segment, plugin.id, value)) {
+        good_ = false;
+        return;
+      }
+      node.body = damped_as(whole.body->shape(), std::move(segment));
+      add_ends(node, value);
+      if (node.body == nullptr) return;
+      if (node.frame("tip") < 0) {
+        key_error(value.place().path + "/segments", "got a body without a tip; only one with a tip can be cut");
+        return;
+      }
+    }
+    entries_.back().count = static_cast<int>(n);
+    add_frames(value.at("frames"), *whole.body);
+  }
+
+  /// Welds the segments of a body to each other, outwards from the one that the body's hinge holds.
+  void weld_segments(const Entry& entry) {
+    if (entry.count == 1 || entry.held < 0 || !good_) return;
+    const auto* plugin = checker_.registry().find<Hinge>("weld");
+    if (plugin == nullptr) {
+      key_error(entry.place.path + "/segments", "no hinge plugin 'weld' to join the segments with");
       return;
     }
-    add_frames(node, value->at("frames"));
-    body_values_.emplace_back(name, *value);
+    for (int i = entry.first; i < entry.first + entry.count; ++i) {
+      if (i == entry.held) continue;
+      const bool outwards = i > entry.held;
+      HingeNode& hinge = hinge_nodes_.emplace_back();
+      hinge.parent = outwards ? i - 1 : i + 1;
+      hinge.child = i;
+      hinge.name = nodes_[static_cast<std::size_t>(i)].name + ".weld";
+      hinge.parent_frame = nodes_[static_cast<std::size_t>(hinge.parent)].frame(outwards ? "tip" : "root");
+      hinge.child_frame = nodes_[static_cast<std::size_t>(i)].frame(outwards ? "root" : "tip");
+      hinge.hinge = make_object(*plugin, Value::map({}, entry.place), checker_);
+      if (hinge.hinge == nullptr) good_ = false;
+    }
+  }
+
+  void add_names_of_wholes() {
+    for (const Entry& entry : entries_) {
+      if (entry.count == 1) continue;
+      tree_.names.frames.insert(entry.name);
+      for (int i = entry.first; i < entry.first + entry.count; ++i) {
+        for (const Frame& f : nodes_[static_cast<std::size_t>(i)].frames)
+          tree_.names.frames.insert(entry.name + "." + f.name);
+      }
+    }
   }
 
   /// What a body's own formulation keeps; it has no options there.
@@ -150,30 +236,52 @@ class TreeBuilder {
     return {};
   }
 
-  void add_frames(BodyNode& node, const Value& frames) {
-    // The ends of a body are frames whether a hinge uses them or not: results speak of them.
+  /// The ends of a body are frames whether a hinge uses them or not: results speak of them.
+  void add_ends(BodyNode& node, const Value& value) {
     for (const char* station : {"root", "tip"}) {
       if (auto section = node.body->station(std::string(station))) node.frames.push_back({station, *section, {}});
     }
-    if (node.frames.empty() || node.frames[0].name != "root") {
-      key_error(frames.place().path, fmt::format("body '{}' has no station 'root'", node.name));
-      node.body = nullptr;
-      return;
-    }
+    if (!node.frames.empty() && node.frames[0].name == "root") return;
+    key_error(value.at("frames").place().path, fmt::format("body '{}' has no station 'root'", node.name));
+    node.body = nullptr;
+  }
+
+  /// The frames of the last body, `whole` in segments or not.
+  void add_frames(const Value& frames, const Body& whole) {
     for (const auto& [name, frame] : frames.members()) {
-      if (node.body->station(name)) {
+      if (whole.station(name)) {
         key_error(frame.place().path, fmt::format("'{}' is a station of the body already; choose another name", name));
         continue;
       }
       const Value& at = frame.at("at");
-      const auto section =
-          at.kind() == Value::Kind::number ? node.body->station(at.number()) : node.body->station(at.text());
+      const Body::StationName station =
+          at.kind() == Value::Kind::number ? Body::StationName(at.number()) : Body::StationName(at.text());
+      BodyNode* node = nullptr;
+      std::optional<PointExpansion> section;
+      if (whole.station(station)) section = section_of(station, node);
       if (!section) {
-        error(at, fmt::format("no station {}; need {}", shown(at), node.body->stations()));
+        error(at, fmt::format("no station {}; need {}", shown(at), whole.stations()));
         continue;
       }
-      node.frames.push_back({name, *section, pose_of(frame)});
+      node->frames.push_back({name, *section, pose_of(frame)});
     }
+  }
+
+  /// The section at a station of the last body, and the node that has it: of segments the one where x lies.
+  std::optional<PointExpansion> section_of(const Body::StationName& station, BodyNode*& node) {
+    const Entry& entry = entries_.back();
+    const auto piece = [&](int k) { return &nodes_[static_cast<std::size_t>(entry.first + k)]; };
+    node = piece(0);
+    if (entry.count == 1) return node->body->station(station);
+    const double length = node->body->shape().length;
+    if (const auto* name = std::get_if<std::string>(&station)) {
+      if (*name == "tip") node = piece(entry.count - 1);
+      return *name == "tip" || *name == "root" ? node->body->station(station) : std::nullopt;
+    }
+    const double x = std::get<double>(station);
+    const int k = std::clamp(static_cast<int>(x / length), 0, entry.count - 1);
+    node = piece(k);
+    return node->body->station(std::clamp(x - k * length, 0.0, length));
   }
 
   /// After reporting a bad orientation the pose is meaningless.
@@ -191,20 +299,29 @@ class TreeBuilder {
     return -2;
   }
 
-  /// Index of a frame of a body; a station it has becomes a frame when it is asked for.
-  int find_frame(const Value& end, int body, const std::string& name) {
-    if (body < 0) return 0;
-    BodyNode& node = nodes_[static_cast<std::size_t>(body)];
-    if (node.body == nullptr) return 0;  // reported already
-    if (const int index = node.frame(name); index >= 0) return index;
-    if (const auto section = node.body->station(name)) {
-      node.frames.push_back({name, *section, {}});
-      return static_cast<int>(node.frames.size()) - 1;
+  /// A frame of a body; a station it has becomes a frame when it is asked for.
+  NodeFrame find_frame(const Value& end, int body, const std::string& name) {
+    if (body < 0) return {};
+    const Entry& entry = entries_[static_cast<std::size_t>(body)];
+    const auto node = [&](int i) -> BodyNode& { return nodes_[static_cast<std::size_t>(i)]; };
+    for (int i = entry.first; i < entry.first + entry.count; ++i) {
+      if (static_cast<std::size_t>(i) >= nodes_.size() || node(i).body == nullptr) return {};  // reported already
     }
+    const int last = entry.first + entry.count - 1;
+    if (name == "tip" && node(last).frame(name) >= 0) return {last, node(last).frame(name)};
     std::vector<std::string> known;
-    for (const Frame& f : node.frames) known.push_back(f.name);
-    error(end, fmt::format("body '{}' has no frame {}{}", node.name, in_quotes(name), suggestion(name, known)));
-    return 0;
+    for (int i = entry.first; i <= last; ++i) {
+      if (const int index = node(i).frame(name); index >= 0) return {i, index};
+      for (const Frame& f : node(i).frames) known.push_back(f.name);
+    }
+    if (const auto section = entry.count == 1 ? node(last).body->station(name) : std::nullopt) {
+      node(last).frames.push_back({name, *section, {}});
+      return {last, static_cast<int>(node(last).frames.size()) - 1};
+    }
+    std::sort(known.begin(), known.end());
+    known.erase(std::unique(known.begin(), known.end()), known.end());
+    error(end, fmt::format("body '{}' has no frame {}{}", entry.name, in_quotes(name), suggestion(name, known)));
+    return {};
   }
 
   void add_hinge(const std::string& name, const Value& given) {
@@ -224,7 +341,9 @@ class TreeBuilder {
       const FrameName at = split(parent->text());
       if (at.body != "world") {
         link.parent = find_body(*parent, at);
-        node.parent_frame = find_frame(*parent, link.parent, at.frame);
+        const NodeFrame found = find_frame(*parent, link.parent, at.frame);
+        node.parent = found.node;
+        node.parent_frame = found.frame;
       } else if (at.frame == "root") {
         link.parent = -1;
       } else {
@@ -238,11 +357,12 @@ class TreeBuilder {
         error(*child, "the world cannot be a child");
       } else {
         link.child = find_body(*child, at);
-        node.child_frame = find_frame(*child, link.child, at.frame);
+        const NodeFrame found = find_frame(*child, link.child, at.frame);
+        node.child = found.node;
+        node.child_frame = found.frame;
+        if (link.child >= 0) entries_[static_cast<std::size_t>(link.child)].held = found.node;
       }
     }
-    node.parent = link.parent;
-    node.child = link.child;
     if (!value) {
       good_ = false;
       return;
@@ -259,7 +379,8 @@ class TreeBuilder {
   std::vector<BodyNode> nodes_;
   std::vector<HingeNode> hinge_nodes_;
   std::vector<Link> links_;
-  std::unordered_map<std::string, int> index_;
+  std::vector<Entry> entries_;
+  std::unordered_map<std::string, int> index_;  ///< in entries_
   std::vector<Value::Member> body_values_;
   std::vector<Value::Member> hinge_values_;
   double bytes_ = 0;
@@ -275,7 +396,7 @@ double predicted_bytes(const Value& body) {
   // Shape functions up to number m need about 25 m points of quadrature (20 for each 2.5 rad of phase), and 20 between
   // the rows of a table; a point keeps Φ, Ψ and Γ, Θ; a body four times that: particles, sections, and running
   // integrals.
-  const double points = 25 * extent.greatest + 20 * (1 + extent.rows);
+  const double points = 25 * extent.greatest * extent.segments + 20 * (extent.segments + extent.rows);
   return 4 * points * 6 * n * (n + 1) * static_cast<double>(sizeof(double));
 }
 

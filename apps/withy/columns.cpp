@@ -59,16 +59,6 @@ std::vector<Column> rate_columns(const HingeNode& hinge) {
   return c;
 }
 
-std::vector<FramePlace> tips(const Model& model) {
-  std::vector<FramePlace> places;
-  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    const BodyNode& body = model.bodies()[b];
-    const int frame = body.frame("tip");
-    if (frame >= 0) places.push_back({body.name + ".tip", static_cast<int>(b), frame, body.body->shape().modes() > 0});
-  }
-  return places;
-}
-
 ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equations)
     : model_(model), equations_(equations), tips_(tips(model)) {
   const Layout& layout = model.layout();
@@ -85,9 +75,15 @@ ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equati
   add_modes("");
   for (const HingeNode& h : model.hinges()) append(rate_columns(h));
   add_modes(".rate");
-  for (const FramePlace& tip : tips_)
-    if (tip.flexible) add(columns_, tip.name, {".deflection_x", ".deflection_y", ".deflection_z"}, "m");
-  for (const FramePlace& tip : tips_) add(columns_, tip.name, {".x", ".y", ".z"}, "m");
+  for (const Tip& tip : tips_)
+    if (tip.flexible) add(columns_, tip.body, {".tip.deflection_x", ".tip.deflection_y", ".tip.deflection_z"}, "m");
+  for (const Tip& tip : tips_) add(columns_, tip.body, {".tip.x", ".tip.y", ".tip.z"}, "m");
+  for (const MotionNode& motion : model.motions()) {
+    const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(motion.hinge)];
+    const std::vector<HingeRate> rates = hinge_rates(*hinge.hinge);
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      columns_.push_back({numbered(hinge.name + ".motion_effort", i, rates.size()), rates[i].angular ? "N m" : "N"});
+  }
   add(columns_, "", {"kinetic_energy", "potential_energy", "work"}, "J");
   add(columns_, "linear_momentum", {".x", ".y", ".z"}, "kg m/s");
   add(columns_, "angular_momentum", {".x", ".y", ".z"}, "kg m^2/s");
@@ -105,14 +101,23 @@ std::vector<double> ResultColumns::row(const State& state) const {
   for (const Slot& s : layout.bodies) append(s.position, s.positions);
   for (const Slot& s : layout.hinges) append(layout.positions + s.speed, s.speeds);
   for (const Slot& s : layout.bodies) append(layout.positions + s.speed, s.speeds);
-  for (const FramePlace& tip : tips_) {
+  for (const Tip& tip : tips_) {
     if (!tip.flexible) continue;
-    const auto d = equations_.deflection(state.y, tip.body, tip.frame);
+    const auto d = deflection(equations_, state.y, tip);
     row.insert(row.end(), d.begin(), d.end());
   }
-  for (const FramePlace& tip : tips_) {
-    const auto p = equations_.frame_pose(state.y, tip.body, tip.frame).position;
+  for (const Tip& tip : tips_) {
+    const auto p = equations_.frame_pose(state.y, tip.tip.body, tip.tip.frame).position;
     row.insert(row.end(), p.begin(), p.end());
+  }
+  if (!model_.motions().empty()) {
+    std::vector<double> efforts(layout.speeds);
+    Work work = equations_.make_work();
+    equations_.motion_efforts(state.time, state.y, efforts, work);
+    for (const MotionNode& motion : model_.motions()) {
+      const Slot& slot = layout.hinges[static_cast<std::size_t>(motion.hinge)];
+      for (std::size_t i = 0; i < slot.speeds; ++i) row.push_back(efforts[slot.speed + i]);
+    }
   }
   const Energies e = equations_.energies(state.y);
   row.insert(row.end(), {e.kinetic, e.potential, state.y.back()});

@@ -7,6 +7,7 @@
 
 #include "withy/core/dynamics/equations.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/simulation/tips.hpp"
 
 namespace withy::app {
 
@@ -21,16 +22,6 @@ std::vector<Column> coordinate_columns(const HingeNode& hinge);
 /// Their rates: `shoulder.rate` [rad/s], `base.wx` [rad/s] … `base.vz` [m/s], `joint.rate.0` [rad/s] ….
 std::vector<Column> rate_columns(const HingeNode& hinge);
 
-/// A frame of a body.
-struct FramePlace {
-  std::string name;  ///< as `link1.tip`
-  int body = 0;
-  int frame = 0;
-  bool flexible = false;
-};
-/// Every frame named "tip".
-std::vector<FramePlace> tips(const Model& model);
-
 /// What `results.csv` holds: time, hinge and modal coordinates and their rates, deflections and world positions of the
 /// tips, energies, work and momenta.
 class ResultColumns {
@@ -44,7 +35,7 @@ class ResultColumns {
  private:
   const Model& model_;
   const EquationsOfMotion& equations_;
-  std::vector<FramePlace> tips_;
+  std::vector<Tip> tips_;
   std::vector<Column> columns_;
 };
 

@@ -47,6 +47,17 @@ void add_state(CLI::App& command, StateArguments& a) {
       ->type_name("FILE");
 }
 
+void add_configuration(CLI::App& command, ConfigurationArguments& a) {
+  command.add_option("--at,--state", a.state, "State file (JSON or YAML); default: the scene's initial state")
+      ->type_name("FILE");
+  command.add_option("--lock", a.lock, "Hinges that are held, at the state's coordinates and rates")
+      ->type_name("HINGE,HINGE,...")
+      ->delimiter(',');
+  command.add_option("--spin", a.spin, "Hinges held at a constant rate, in rad/s, m/s or with a unit")
+      ->type_name("HINGE=RATE,...")
+      ->delimiter(',');
+}
+
 /// Commands and what they will be called with: made by the parser, called after it.
 class Commands {
  public:
@@ -171,6 +182,55 @@ void add_commands(Commands& commands) {
   add_scene(*c, inspect_arguments);
   add_formulation(*c, inspect_arguments);
   add_state(*c, inspect_arguments);
+
+  auto& equilibrium_arguments = commands.add<EquilibriumArguments>(
+      "equilibrium", "Find the state that stays as it is: at rest, or spinning steadily",
+      "  withy equilibrium scenes/rotating-blade.yaml --spin axle=6\n"
+      "  withy equilibrium scenes/two-link-slew.yaml --lock shoulder,elbow --set gravity.1=-9.81 --out bent.json",
+      equilibrium, c);
+  add_scene(*c, equilibrium_arguments);
+  add_formulation(*c, equilibrium_arguments);
+  add_configuration(*c, equilibrium_arguments);
+  c->add_option("--out", equilibrium_arguments.out, "File for the state, as --at, --state and `initial` read it")
+      ->type_name("FILE");
+
+  auto& linearize_arguments = commands.add<LinearizeArguments>(
+      "linearize", "Matrices A, B, C, D of small motions about a state, for control design, as JSON",
+      "  withy linearize scenes/two-link-slew.yaml --at scenes/states/two-link-bent.json\n"
+      "  withy linearize scenes/two-link-slew.yaml --inputs shoulder --outputs shoulder,elbow.0.rate,link2.tip",
+      linearize, c);
+  add_scene(*c, linearize_arguments);
+  add_formulation(*c, linearize_arguments);
+  add_configuration(*c, linearize_arguments);
+  c->add_option("--inputs", linearize_arguments.inputs,
+                "Hinges whose efforts are inputs, or all: every generalized speed; default: every free hinge")
+      ->type_name("HINGE,...")
+      ->delimiter(',');
+  c->add_option("--outputs", linearize_arguments.outputs,
+                "Hinge coordinates (elbow.0), rates (elbow.0.rate), tips (link2.tip.y); default: all")
+      ->type_name("NAME,...")
+      ->delimiter(',');
+
+  auto& modes_arguments = commands.add<ModesArguments>(
+      "modes", "Frequencies, damping and shapes of small motions; over a sweep, if wanted",
+      "  withy modes scenes/two-link-slew.yaml --lock shoulder,elbow\n"
+      "  withy modes scenes/rotating-blade.yaml --spin axle=6 --count 4\n"
+      "  withy modes scenes/rotating-blade.yaml --formulations ruthless,inconsistent,consistent --sweep "
+      "spin.axle=0:6:13 --count 4 --out results/campbell",
+      modes, c);
+  add_scene(*c, modes_arguments);
+  add_formulations(*c, modes_arguments.formulations, "--formulations,--formulation",
+                   "Formulations; default: the scene's");
+  add_configuration(*c, modes_arguments);
+  c->add_option("--sweep", modes_arguments.sweep, "Any number of the scene, or spin.HINGE, over a range")
+      ->type_name("PATH=FROM:TO:COUNT");
+  c->add_option("--count", modes_arguments.count, "Modes that are shown (files hold all)")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100000}))
+      ->capture_default_str();
+  c->add_flag("--as-is", modes_arguments.as_is, "About the state as it is given, without finding the steady one");
+  c->add_option("--out", modes_arguments.out, "Folder for modes.csv, modes.json and, of a sweep, modes.svg")
+      ->type_name("DIR");
 
   auto& bench_arguments =
       commands.add<BenchArguments>("bench", "Time one evaluation of the equations of motion, as JSON",

@@ -67,6 +67,30 @@ struct StateArguments : SceneArguments {
   std::string state;  ///< file; empty: the scene's initial state
 };
 
+/// Commands that look at small motions about a state.
+struct ConfigurationArguments : StateArguments {
+  std::vector<std::string>
+      lock;  ///< hinges, or single speeds of them, that are held at the state's coordinates and rates
+  std::vector<std::string> spin;  ///< `hinge=rate`: held at that rate
+};
+
+struct EquilibriumArguments : ConfigurationArguments {
+  std::string out;  ///< file for the state; empty: none
+};
+
+struct LinearizeArguments : ConfigurationArguments {
+  std::vector<std::string> inputs;   ///< hinges or speeds; `all` is every speed; empty: every hinge
+  std::vector<std::string> outputs;  ///< names or their beginnings; empty: every output
+};
+
+struct ModesArguments : ConfigurationArguments {
+  std::vector<std::string> formulations;  ///< empty: the scene's
+  std::string sweep;      ///< `path=a:b:n`, a path of the scene or `spin.hinge`; empty: one configuration
+  std::size_t count = 6;  ///< modes that are shown
+  bool as_is = false;     ///< about the state as it is given, steady or not
+  std::string out;        ///< folder for table and picture; empty: none are kept
+};
+
 struct BenchArguments : StateArguments {
   std::vector<std::string> formulations;  ///< `all` is every one found; empty: the scene's
 };
@@ -81,6 +105,9 @@ ExitStatus terms(const TermsArguments& arguments);
 ExitStatus trade(const TradeArguments& arguments);
 ExitStatus eval(const StateArguments& arguments);
 ExitStatus inspect(const StateArguments& arguments);
+ExitStatus equilibrium(const EquilibriumArguments& arguments);
+ExitStatus linearize(const LinearizeArguments& arguments);
+ExitStatus modes(const ModesArguments& arguments);
 ExitStatus bench(const BenchArguments& arguments);
 ExitStatus plugins(const PluginsArguments& arguments);
 ExitStatus schema(const CommonArguments& arguments);

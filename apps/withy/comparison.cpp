@@ -82,9 +82,9 @@ void add_distances(Distances& d, const Moment& a, const Moment& b) {
   }
   const auto places = tips(a.model), others = tips(b.model);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto p = a.equations.frame_pose(a.state.y, places[i].body, places[i].frame).position;
-    const auto q = b.equations.frame_pose(b.state.y, others[i].body, others[i].frame).position;
-    double& most = d.tips[places[i].name];
+    const auto p = a.equations.frame_pose(a.state.y, places[i].tip.body, places[i].tip.frame).position;
+    const auto q = b.equations.frame_pose(b.state.y, others[i].tip.body, others[i].tip.frame).position;
+    double& most = d.tips[places[i].body + ".tip"];
     most = std::max(most, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
   }
 }
@@ -111,12 +111,12 @@ std::string picture(const std::string& title, const std::vector<const ComparedRu
   }
   const Model& model = runs.front()->engine->model();
   std::vector<Panel> panels;
-  for (const FramePlace& tip : tips(model)) {
+  for (const Tip& tip : tips(model)) {
     if (!tip.flexible) continue;
     for (const std::size_t axis : {std::size_t{1}, std::size_t{2}}) {
-      Panel panel = panel_of(tip.name + " deflection " + "xyz"[axis] + " [m]", runs,
+      Panel panel = panel_of(tip.body + ".tip deflection " + "xyz"[axis] + " [m]", runs,
                              [&tip, axis](const ComparedRun& run, const State& s) {
-                               return run.engine->equations().deflection(s.y, tip.body, tip.frame)[axis];
+                               return deflection(run.engine->equations(), s.y, tip)[axis];
                              });
       // A direction in which nothing bends has no panel.
       if (panel.y_range.first != 0 || panel.y_range.second != 0) panels.push_back(std::move(panel));

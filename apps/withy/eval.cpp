@@ -35,6 +35,11 @@ ExitStatus eval(const StateArguments& arguments) {
     j["accelerations"] = std::vector<double>(first, first + static_cast<std::ptrdiff_t>(layout.speeds));
   else
     j["accelerations"] = nullptr;
+  if (evaluation.ok() && !engine.model().motions().empty()) {
+    std::vector<double> efforts(layout.speeds);
+    equations.motion_efforts(state.time, state.y, efforts, work);
+    j["motion_efforts"] = efforts;
+  }
   j["kinetic_energy"] = energies.kinetic;
   j["potential_energy"] = energies.potential;
   j["linear_momentum"] = energies.linear_momentum;

@@ -30,17 +30,23 @@ std::string type_of(const Scene& scene, const char* group, const std::string& na
   return said(scene, group, name, "type");
 }
 
+/// The name that the scene has for a body: the whole's for a segment.
+const std::string& scene_name(const BodyNode& body) { return body.segment ? body.segment->whole : body.name; }
+
 double mass_of(const Body& body) {
   double mass = 0;
   for (const Particle& p : body.shape().particles) mass += p.mass;
   return mass;
 }
 
-/// Where a hinge is fixed on its parent: "world", "link1.tip".
+/// Where a hinge is fixed on its parent: "world", "link1.tip". A weld between segments names the segment.
 std::string parent_of(const Model& model, const HingeNode& hinge) {
   if (hinge.parent < 0) return "world";
   const BodyNode& parent = model.bodies()[static_cast<std::size_t>(hinge.parent)];
-  return parent.name + '.' + parent.frames[static_cast<std::size_t>(hinge.parent_frame)].name;
+  const BodyNode& child = model.bodies()[static_cast<std::size_t>(hinge.child)];
+  const bool inside = parent.segment && child.segment && parent.segment->whole == child.segment->whole;
+  return (inside ? parent.name : scene_name(parent)) + '.' +
+         parent.frames[static_cast<std::size_t>(hinge.parent_frame)].name;
 }
 
 Json bodies_json(const Scene& scene) {
@@ -49,15 +55,18 @@ Json bodies_json(const Scene& scene) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& body = model.bodies()[b];
     const HingeNode& hinge = model.hinges()[b];
-    const std::string own = said(scene, "bodies", body.name, "formulation");
+    const std::string own = said(scene, "bodies", scene_name(body), "formulation");
+    // The welds between segments are not in the scene.
+    const std::string hinge_type = type_of(scene, "hinges", hinge.name);
     bodies.push_back({{"name", body.name},
-                      {"type", type_of(scene, "bodies", body.name)},
+                      {"type", type_of(scene, "bodies", scene_name(body))},
                       {"mass", mass_of(*body.body)},
                       {"modes", body.body->shape().mode_names},
+                      {"remarks", body.body->remarks()},
                       {"formulation", own.empty() ? scene.formulation_name : own},
                       {"hinge",
                        {{"name", hinge.name},
-                        {"type", type_of(scene, "hinges", hinge.name)},
+                        {"type", hinge_type.empty() ? "weld" : hinge_type},
                         {"parent", parent_of(model, hinge)},
                         {"child_frame", body.frames[static_cast<std::size_t>(hinge.child_frame)].name},
                         {"speeds", hinge.hinge->speeds()}}}});
@@ -87,6 +96,11 @@ Json inspect_json(const Engine& engine, const State& state) {
   j["loads"] = Json::array();
   for (const LoadNode& load : engine.model().loads())
     j["loads"].push_back({{"name", load.name}, {"type", type_of(scene, "loads", load.name)}});
+  j["motions"] = Json::array();
+  for (const MotionNode& motion : engine.model().motions())
+    j["motions"].push_back({{"name", motion.name},
+                            {"type", type_of(scene, "motions", motion.name)},
+                            {"hinge", engine.model().hinges()[static_cast<std::size_t>(motion.hinge)].name}});
   j["coordinates"] = engine.model().layout().speed_names;
   j["compiled"] = engine.equations().savings();
   j["mass_matrix"] = mass_matrix_json(engine, state);
@@ -97,13 +111,45 @@ Json inspect_json(const Engine& engine, const State& state) {
   return j;
 }
 
+/// What a line of the tree stands for: a body, or all segments of one that was cut.
+struct Branch {
+  int held = 0;  ///< the body that the scene's hinge holds
+  std::size_t segments = 1;
+  double mass = 0;
+  std::size_t modes = 0;
+};
+
+/// Branches by the index of the body held, and of which branch each body is part.
+std::map<int, Branch> branches(const Model& model, std::vector<int>& branch_of) {
+  std::map<int, Branch> all;
+  branch_of.resize(model.bodies().size());
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const BodyNode& body = model.bodies()[b];
+    // Parents come first: the first segment seen is the one that the others hang on.
+    int held = static_cast<int>(b);
+    for (const int other : body.segment ? model.segments(body.segment->whole) : std::vector<int>{})
+      held = std::min(held, other);
+    branch_of[b] = held;
+    Branch& branch = all[held];
+    branch.held = held;
+    branch.segments = body.segment ? body.segment->count : 1;
+    branch.mass += mass_of(*body.body);
+    branch.modes += body.body->shape().mode_names.size();
+  }
+  return all;
+}
+
 /// The tree without recursion: chains may be long.
 std::string tree_text(const Engine& engine) {
   const Scene& scene = engine.scene();
   const Model& model = engine.model();
+  std::vector<int> branch_of;
+  const std::map<int, Branch> all = branches(model, branch_of);
   std::map<int, std::vector<int>> children;
-  for (std::size_t b = 0; b < model.bodies().size(); ++b)
-    children[model.hinges()[b].parent].push_back(static_cast<int>(b));
+  for (const auto& [held, branch] : all) {
+    const int parent = model.hinges()[static_cast<std::size_t>(held)].parent;
+    children[parent < 0 ? -1 : branch_of[static_cast<std::size_t>(parent)]].push_back(held);
+  }
   struct Entry {
     int body;
     std::string indent;
@@ -111,22 +157,23 @@ std::string tree_text(const Engine& engine) {
   };
   std::vector<Entry> open;
   const auto push_children = [&](int parent, const std::string& indent) {
-    const auto& all = children[parent];
-    for (std::size_t i = all.size(); i-- > 0;) open.push_back({all[i], indent, i + 1 == all.size()});
+    const auto& below = children[parent];
+    for (std::size_t i = below.size(); i-- > 0;) open.push_back({below[i], indent, i + 1 == below.size()});
   };
   std::string out = "world\n";
   push_children(-1, "");
   while (!open.empty()) {
     const Entry e = open.back();
     open.pop_back();
+    const Branch& branch = all.at(e.body);
     const BodyNode& body = model.bodies()[static_cast<std::size_t>(e.body)];
     const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(e.body)];
-    const std::string own = said(scene, "bodies", body.name, "formulation");
-    const std::size_t modes = body.body->shape().mode_names.size();
-    out += fmt::format("{}{} {}: {}, {:.6g} kg{}   [{}: {} at {}{}]\n", e.indent, e.last ? "└─" : "├─", body.name,
-                       type_of(scene, "bodies", body.name), mass_of(*body.body),
-                       modes > 0 ? fmt::format(", {} mode{}", modes, modes > 1 ? "s" : "") : "", hinge.name,
-                       type_of(scene, "hinges", hinge.name), parent_of(model, hinge),
+    const std::string own = said(scene, "bodies", scene_name(body), "formulation");
+    out += fmt::format("{}{} {}: {}{}, {:.6g} kg{}   [{}: {} at {}{}]\n", e.indent, e.last ? "└─" : "├─",
+                       scene_name(body), type_of(scene, "bodies", scene_name(body)),
+                       branch.segments > 1 ? fmt::format(" in {} segments", branch.segments) : "", branch.mass,
+                       branch.modes > 0 ? fmt::format(", {} mode{}", branch.modes, branch.modes > 1 ? "s" : "") : "",
+                       hinge.name, type_of(scene, "hinges", hinge.name), parent_of(model, hinge),
                        own.empty() ? "" : ", formulation " + own);
     push_children(e.body, e.indent + (e.last ? "   " : "│  "));
   }
@@ -154,6 +201,11 @@ std::string inspect_text(const Engine& engine, const Json& j) {
   };
   list(fmt::format("{} coordinates", j["coordinates"].size()), "coordinates");
   list("compiled", "compiled");
+  for (const Json& body : j["bodies"]) {
+    if (body["remarks"].empty()) continue;
+    out += fmt::format("\nof body {}\n", body["name"].get<std::string>());
+    for (const Json& remark : body["remarks"]) out += "  " + remark.get<std::string>() + '\n';
+  }
   for (const Json& load : j["loads"])
     out += fmt::format("\nload {}: {}\n", load["name"].get<std::string>(), load["type"].get<std::string>());
   const Json& m = j["mass_matrix"];

@@ -15,6 +15,7 @@
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/load.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/motion.hpp"
 
 namespace withy::app {
 namespace {
@@ -41,7 +42,8 @@ Description describe(Registry& registry, const PluginRecord& r) {
   Description d;
   static_cast<void>(describe_as<Body>(registry, r, d) || describe_as<Hinge>(registry, r, d) ||
                     describe_as<ModeFamily>(registry, r, d) || describe_as<Formulation>(registry, r, d) ||
-                    describe_as<Integrator>(registry, r, d) || describe_as<Load>(registry, r, d));
+                    describe_as<Integrator>(registry, r, d) || describe_as<Load>(registry, r, d) ||
+                    describe_as<Motion>(registry, r, d));
   return d;
 }
 

@@ -21,13 +21,26 @@ Json tip_peaks(const RunSummary& summary) {
   return peaks;
 }
 
+/// Peaks on the rates of a hinge.
+Json peaks_of(const Slot& hinge, const std::vector<double>& peaks) {
+  Json efforts = Json::array();
+  for (std::size_t i = 0; i < hinge.speeds; ++i) efforts.push_back(peaks.at(hinge.speed + i));
+  return efforts;
+}
+
 Json effort_peaks(const Model& model, const RunSummary& summary) {
   Json peaks = Json::object();
   for (const Slot& hinge : model.layout().hinges) {
-    if (hinge.speeds == 0) continue;
-    Json efforts = Json::array();
-    for (std::size_t i = 0; i < hinge.speeds; ++i) efforts.push_back(summary.peak_effort.at(hinge.speed + i));
-    peaks[hinge.name] = std::move(efforts);
+    if (hinge.speeds > 0) peaks[hinge.name] = peaks_of(hinge, summary.peak_effort);
+  }
+  return peaks;
+}
+
+Json motion_effort_peaks(const Model& model, const RunSummary& summary) {
+  Json peaks = Json::object();
+  for (const MotionNode& motion : model.motions()) {
+    const Slot& hinge = model.layout().hinges[static_cast<std::size_t>(motion.hinge)];
+    peaks[hinge.name] = peaks_of(hinge, summary.peak_motion_effort);
   }
   return peaks;
 }
@@ -53,6 +66,7 @@ Json run_json(const Engine& engine, const RunSummary& summary, const Evidence& e
   j["t_end"] = summary.final.time;
   j["final"] = state_json(*scene.model, summary.final);
   j["peaks"] = {{"tip_deflection", tip_peaks(summary)}, {"effort", effort_peaks(*scene.model, summary)}};
+  if (!scene.model->motions().empty()) j["peaks"]["motion_effort"] = motion_effort_peaks(*scene.model, summary);
   j["energy_drift"] = summary.energy_drift;
   j["steps"] = summary.steps.accepted;
   j["rejected_steps"] = summary.steps.rejected;
@@ -99,6 +113,13 @@ std::string run_table(const Engine& engine, const RunSummary& summary) {
       const double effort = summary.peak_effort.at(slot.speed + i);
       if (effort > 0) line("peak effort " + model.layout().speed_names[slot.speed + i], fmt::format("{:.5g}", effort));
     }
+  }
+  for (const MotionNode& motion : model.motions()) {
+    const Slot& slot = model.layout().hinges[static_cast<std::size_t>(motion.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i)
+      line("effort of motion " + motion.name,
+           fmt::format("peak {:.5g} on {}", summary.peak_motion_effort.at(slot.speed + i),
+                       model.layout().speed_names[slot.speed + i]));
   }
   line("energy drift", fmt::format("{:.2g}", summary.energy_drift));
   line("steps", fmt::format("{} ({} rejected), {} evaluations", summary.steps.accepted, summary.steps.rejected,

@@ -11,7 +11,6 @@ namespace withy::app {
 namespace {
 
 constexpr double width = 860;
-constexpr double panel_height = 200;
 constexpr double left = 88;
 constexpr double right = 24;
 constexpr double foot = 52;  ///< below each panel: marks and label of its axis
@@ -60,13 +59,13 @@ std::string stroke(const Pen& p) {
 
 /// From data to the picture, for one panel whose upper edge is at `top`.
 struct Scale {
-  double x0, x1, y0, y1, top;
+  double x0, x1, y0, y1, top, height;
   [[nodiscard]] double x(double v) const { return left + (v - x0) / (x1 - x0) * (width - left - right); }
-  [[nodiscard]] double y(double v) const { return top + (y1 - v) / (y1 - y0) * panel_height; }
+  [[nodiscard]] double y(double v) const { return top + (y1 - v) / (y1 - y0) * height; }
 };
 
 Scale scale_of(const Panel& panel, double top) {
-  Scale s{0, 0, panel.y_range.first, panel.y_range.second, top};
+  Scale s{0, 0, panel.y_range.first, panel.y_range.second, top, panel.height};
   for (const Curve& c : panel.curves) {
     for (const double x : c.x) {
       s.x0 = std::min(s.x0, x);
@@ -81,7 +80,7 @@ Scale scale_of(const Panel& panel, double top) {
 }
 
 void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
-  const double bottom = s.top + panel_height;
+  const double bottom = s.top + s.height;
   for (const double v : axis_marks(s.y0, s.y1)) {
     fmt::format_to(std::back_inserter(out),
                    "<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#ddd\"/>\n"
@@ -98,8 +97,8 @@ void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
                  "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>\n"
                  "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n"
                  "<text transform=\"translate(20 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-                 left, s.top, width - left - right, panel_height, (left + width - right) / 2, bottom + 38,
-                 escaped(panel.x_label), s.top + panel_height / 2, escaped(panel.y_label));
+                 left, s.top, width - left - right, s.height, (left + width - right) / 2, bottom + 38,
+                 escaped(panel.x_label), s.top + s.height / 2, escaped(panel.y_label));
 }
 
 void draw_curve(std::string& out, const Curve& curve, const Scale& s, const Pen& p) {
@@ -118,7 +117,7 @@ void draw_curve(std::string& out, const Curve& curve, const Scale& s, const Pen&
   out += "\"/>\n";
   if (!curve.ends_early) return;
   const double cx = s.x(curve.x.back());
-  const double cy = std::clamp(s.y(curve.y.back()), s.top + 7, s.top + panel_height - 7);
+  const double cy = std::clamp(s.y(curve.y.back()), s.top + 7, s.top + s.height - 7);
   fmt::format_to(std::back_inserter(out),
                  "<path d=\"M{0:.2f} {1:.2f} l10 10 m0 -10 l-10 10\" stroke=\"{2}\" stroke-width=\"2.6\"/>\n", cx - 5,
                  cy - 5, p.colour);
@@ -154,7 +153,8 @@ std::string svg_plot(const std::string& title, const std::vector<std::string>& l
     x += room + 20;
   }
   double top = y + 25;
-  const double height = top + static_cast<double>(panels.size()) * (panel_height + foot) + 8;
+  double height = top + 8;
+  for (const Panel& panel : panels) height += panel.height + foot;
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"13\">\n"
@@ -168,10 +168,11 @@ std::string svg_plot(const std::string& title, const std::vector<std::string>& l
     fmt::format_to(std::back_inserter(out),
                    "<clipPath id=\"frame{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n"
                    "<g clip-path=\"url(#frame{})\">\n",
-                   i, left, top, width - left - right, panel_height, i);
-    for (std::size_t c = 0; c < panels[i].curves.size(); ++c) draw_curve(out, panels[i].curves[c], s, pen(c));
+                   i, left, top, width - left - right, panels[i].height, i);
+    for (std::size_t c = 0; c < panels[i].curves.size(); ++c)
+      draw_curve(out, panels[i].curves[c], s, pen(panels[i].curves[c].pen.value_or(c)));
     out += "</g>\n";
-    top += panel_height + foot;
+    top += panels[i].height + foot;
   }
   return out + "</svg>\n";
 }

@@ -2,18 +2,22 @@
 /// Line charts as SVG text, readable in any browser.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace withy::app {
 
-/// One curve. Its place in Panel::curves chooses its colour and dashes, the same in every panel.
+/// One curve. Its place in Panel::curves, or `pen`, chooses its colour and dashes, the same in every panel and in the
+/// legend.
 struct Curve {
   std::vector<double> x;
   std::vector<double> y;
   bool ends_early = false;  ///< its last point is marked with a cross
   bool points = false;      ///< dots in place of a line
+  std::optional<std::size_t> pen;
 };
 
 /// One pair of axes.
@@ -22,6 +26,7 @@ struct Panel {
   std::string y_label;
   std::pair<double, double> y_range;  ///< least and greatest value shown; curves are cut there
   std::vector<Curve> curves;
+  double height = 200;
 };
 
 /// A title, a legend with one entry a curve, and the panels below each other.

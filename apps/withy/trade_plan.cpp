@@ -107,7 +107,9 @@ SceneArguments arguments_at(const SceneArguments& base, const Scene& scene, cons
     const Value* start = starts != nullptr ? starts->find(name) : nullptr;
     if (start == nullptr) continue;
     const Layout& layout = scene.model->layout();
-    const Slot& slot = *layout.body(name);
+    const Slot* const found = layout.body(name);
+    if (found == nullptr) continue;  // cut into segments, whose initial states have names of their own
+    const Slot& slot = *found;
     const auto values = [&](std::size_t first) {
       const auto begin = scene.initial.y.begin() + static_cast<std::ptrdiff_t>(first);
       return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(slot.speeds));

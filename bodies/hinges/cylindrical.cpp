@@ -18,6 +18,10 @@ class Cylindrical final : public HolonomicHinge {
     out.H.col(1).tail<3>() = axis_;
     out.bias.setZero();
   }
+  void motion_derivative(std::span<const double> /*x*/, std::span<const double> /*rates*/, std::size_t /*along*/,
+                         HingeMotion& out) const override {
+    no_motion_derivative(*this, out);
+  }
   std::optional<HingeKernel> kernel() const override { return {}; }
 
  private:

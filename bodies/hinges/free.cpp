@@ -25,6 +25,20 @@ class Free final : public Hinge {
     out.bias.head<3>().setZero();
     out.bias.tail<3>() = -(out.pose.R.transpose() * omega.cross(velocity));
   }
+  // Along an angular velocity Ṙᵀ = −Rᵀ ω̂ with ω = e_along in F; along a velocity nothing changes.
+  void motion_derivative(std::span<const double> x, std::span<const double> rates, std::size_t along,
+                         HingeMotion& out) const override {
+    out.H.setZero(6, 6);
+    out.bias.setZero();
+    if (along >= 3) return;
+    const Matrix3 R = rotation_from_quaternion(x[0], x[1], x[2], x[3]);
+    const Matrix3 Rt_rate = -R.transpose() * skew<double>(Vector3(Vector3::Unit(static_cast<Eigen::Index>(along))));
+    out.H.topLeftCorner<3, 3>() = Rt_rate;
+    out.H.bottomRightCorner<3, 3>() = Rt_rate;
+    const Vector3 omega(rates[0], rates[1], rates[2]);
+    const Vector3 velocity(rates[3], rates[4], rates[5]);
+    out.bias.tail<3>() = -(Rt_rate * omega.cross(velocity));
+  }
   void derivatives(std::span<const double> x, std::span<const double> rates,
                    std::span<double> x_dot) const noexcept override {
     quaternion_rates(x, rates.first(3), x_dot.first(4));

@@ -32,6 +32,12 @@ inline Value direction(double x, double y, double z) { return Value::list({Value
 /// Whether two unit vectors are within a microradian of one line: no plane then lies through both to any accuracy.
 inline bool nearly_parallel(const Vector3& a, const Vector3& b) { return a.cross(b).norm() < 1e-6; }
 
+/// The motion_derivative of a hinge with constant motion subspace and no bias.
+inline void no_motion_derivative(const Hinge& hinge, HingeMotion& out) {
+  out.H.setZero(6, static_cast<Eigen::Index>(hinge.speeds()));
+  out.bias.setZero();
+}
+
 /// A hinge whose coordinates are the integrals of its rates: the part every such hinge shares.
 class HolonomicHinge : public Hinge {
  public:

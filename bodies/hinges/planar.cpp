@@ -19,6 +19,16 @@ class PlanarHinge final : public HolonomicHinge {
     const Vector3 velocity = out.H.bottomRightCorner<3, 2>() * Eigen::Vector2d(rates[1], rates[2]);
     out.bias << Vector3::Zero(), -rates[0] * normal_.cross(velocity);
   }
+  // v = Rᵀ (d ẋ[1] + e ẋ[2]) turns as −n × v with x[0].
+  void motion_derivative(std::span<const double> x, std::span<const double> rates, std::size_t along,
+                         HingeMotion& out) const override {
+    no_motion_derivative(*this, out);
+    if (along > 0) return;
+    HingeMotion here;
+    motion(x, rates, here);
+    out.H.bottomRightCorner<3, 2>() = -skew<double>(normal_) * here.H.bottomRightCorner<3, 2>();
+    out.bias.tail<3>() = -normal_.cross(here.bias.tail<3>());
+  }
   std::optional<HingeKernel> kernel() const override { return {}; }
 
  private:

@@ -16,6 +16,10 @@ class Revolute final : public HolonomicHinge {
     out.H << axis_, Vector3::Zero();
     out.bias.setZero();
   }
+  void motion_derivative(std::span<const double> /*x*/, std::span<const double> /*rates*/, std::size_t /*along*/,
+                         HingeMotion& out) const override {
+    no_motion_derivative(*this, out);
+  }
   std::optional<HingeKernel> kernel() const override { return HingeKernel{HingeKernel::Kind::revolute, axis_}; }
 
  private:

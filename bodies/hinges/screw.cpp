@@ -16,6 +16,10 @@ class Screw final : public HolonomicHinge {
     out.H << axis_, axis_ * pitch_;
     out.bias.setZero();
   }
+  void motion_derivative(std::span<const double> /*x*/, std::span<const double> /*rates*/, std::size_t /*along*/,
+                         HingeMotion& out) const override {
+    no_motion_derivative(*this, out);
+  }
   std::optional<HingeKernel> kernel() const override { return {}; }
 
  private:

@@ -21,6 +21,14 @@ class Spherical final : public Hinge {
     out.H.topRows<3>() = out.pose.R.transpose();
     out.bias.setZero();
   }
+  // Ṙᵀ = −Rᵀ ω̂ with ω = e_along in F.
+  void motion_derivative(std::span<const double> x, std::span<const double> /*rates*/, std::size_t along,
+                         HingeMotion& out) const override {
+    const Matrix3 R = rotation_from_quaternion(x[0], x[1], x[2], x[3]);
+    out.H.setZero(6, 3);
+    out.H.topRows<3>() = -R.transpose() * skew<double>(Vector3(Vector3::Unit(static_cast<Eigen::Index>(along))));
+    out.bias.setZero();
+  }
   void derivatives(std::span<const double> x, std::span<const double> rates,
                    std::span<double> x_dot) const noexcept override {
     quaternion_rates(x, rates, x_dot);

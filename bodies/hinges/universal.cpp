@@ -19,6 +19,16 @@ class Universal final : public HolonomicHinge {
     out.H.topRows<3>() << first, second_;
     out.bias << first.cross(second_) * (rates[0] * rates[1]), Vector3::Zero();
   }
+  // R_bᵀ a turns as −b × R_bᵀ a with x[1].
+  void motion_derivative(std::span<const double> x, std::span<const double> rates, std::size_t along,
+                         HingeMotion& out) const override {
+    no_motion_derivative(*this, out);
+    if (along == 0) return;
+    const Vector3 first = Eigen::AngleAxisd(x[1], second_).toRotationMatrix().transpose() * first_;
+    const Vector3 turned = -second_.cross(first);
+    out.H.col(0).head<3>() = turned;
+    out.bias.head<3>() = turned.cross(second_) * (rates[0] * rates[1]);
+  }
   std::optional<HingeKernel> kernel() const override { return {}; }
 
  private:

@@ -14,6 +14,10 @@ class Weld final : public HolonomicHinge {
     out.H.resize(6, 0);
     out.bias.setZero();
   }
+  void motion_derivative(std::span<const double> /*x*/, std::span<const double> /*rates*/, std::size_t /*along*/,
+                         HingeMotion& out) const override {
+    no_motion_derivative(*this, out);
+  }
   std::optional<HingeKernel> kernel() const override { return HingeKernel{HingeKernel::Kind::weld, Vector3::UnitZ()}; }
 };
 

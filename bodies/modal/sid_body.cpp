@@ -36,6 +36,9 @@ PointExpansion expansion_of(const sid::Node& node, Eigen::Index n) {
   return e;
 }
 
+/// Relative errors that files of 6 digits leave are none to speak of.
+constexpr double worth_saying = 1e-5;
+
 class SidBody final : public Body {
  public:
   SidBody(const sid::Data& data, const SidBodyOptions& options, SidReport& report) {
@@ -68,9 +71,16 @@ class SidBody final : public Body {
     } else if (!data.De.absent()) {
       shape_.damping = 0.5 * (data.De.m0 + data.De.m0.transpose());
     }
+    remarks_ = report.missing;
+    if (report.inconsistency > worth_saying)
+      remarks_.push_back(fmt::format("what the data say twice differs by {:.1g} of the largest", report.inconsistency));
+    if (report.defect > worth_saying)
+      remarks_.push_back(
+          fmt::format("the particles miss the data's integrals by {:.1g} of the largest", report.defect));
   }
 
   const ModalShape& shape() const override { return shape_; }
+  std::vector<std::string> remarks() const override { return remarks_; }
   std::optional<PointExpansion> station(const StationName& name) const override {
     if (const auto* text = std::get_if<std::string>(&name)) return *text == "root" ? root_ : node(*text);
     const double x = std::get<double>(name);
@@ -91,6 +101,7 @@ class SidBody final : public Body {
   }
 
   ModalShape shape_;
+  std::vector<std::string> remarks_;
   PointExpansion root_;
   std::vector<std::pair<std::string, PointExpansion>> nodes_;
 };

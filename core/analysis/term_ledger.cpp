@@ -22,6 +22,12 @@ Forces minus(const Forces& a, const Forces& b) {
   return f;
 }
 
+Forces plus(const Forces& a, const Forces& b) {
+  Forces f(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) f[i] = a[i] + b[i];
+  return f;
+}
+
 /// What one formulation makes of a state: M u̇, its velocity terms with damping, and the rest with weight and −K q.
 struct Parts {
   Forces inertia, velocity, rest;
@@ -76,7 +82,13 @@ TermForces TermLedger::evaluate(const State& state, std::span<const double> u_do
   set(Term::weight, std::move(weight));
   set(Term::stiffness, std::move(stiffness));
   set(Term::damping, std::move(damping));
-  set(Term::loads, of_.quadratic->system(state.time, state.y).applied);
+  Forces loads = of_.quadratic->system(state.time, state.y).applied;
+  if (!model_.motions().empty()) {
+    Forces motions(layout.speeds);
+    Work work = of_.quadratic->make_work();
+    if (of_.quadratic->motion_efforts(state.time, state.y, motions, work).ok()) loads = plus(loads, motions);
+  }
+  set(Term::loads, std::move(loads));
   return forces;
 }
 

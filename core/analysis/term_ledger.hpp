@@ -29,7 +29,7 @@ enum class Term {
   weight,              ///< of all orders
   stiffness,           ///< K q
   damping,             ///< D q̇
-  loads
+  loads                ///< and the efforts of prescribed motions
 };
 inline constexpr std::size_t terms_of_motion = 12;
 /// "M0 a", "M*1 a", …, "f1", "f2-1", "f2-2", "f3", "weight", "K q", "D q'", "loads".

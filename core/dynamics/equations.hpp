@@ -47,15 +47,23 @@ struct Energies {
   std::array<double, 3> angular_momentum{};  ///< about the world origin, world axes
 };
 
-/// The dense system M u̇ = f + applied, for eyes, tests and analyses. Row-major.
+/// The acceleration that a motion prescribes for a speed.
+struct PrescribedRate {
+  std::size_t speed = 0;    ///< index
+  double acceleration = 0;  ///< [rad/s², m/s²]
+};
+
+/// The dense system M u̇ = f + applied + motion efforts, for eyes, tests and analyses. Row-major, all speeds. The
+/// efforts of motions are unknowns on the prescribed speeds, in the place of their accelerations.
 struct DenseSystem {
   std::size_t size = 0;
   std::vector<double> mass;     ///< M; not symmetric in the strict formulations
   std::vector<double> force;    ///< f: weight, stiffness, damping and velocity terms
   std::vector<double> applied;  ///< efforts of the loads
+  std::vector<PrescribedRate> prescribed = {};
 };
 
-/// What is known of the mass matrix at a state.
+/// What is known of the mass matrix of the free speeds at a state.
 struct Conditioning {
   double condition = 0;            ///< κ(M), ratio of the extreme singular values
   int determinant_sign = 0;        ///< sign of det M: −1, 0, +1
@@ -97,9 +105,18 @@ class EquationsOfMotion {
   /// On an outcome other than ok the content of y_dot is meaningless.
   virtual Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
                                  Work& work) const noexcept = 0;
+  /// Efforts [N m, N] on all speeds of the model's loads at (t, y), or of one of them alone; for reports and audits.
+  /// \param load index in Model::loads(), or `all_loads`
+  virtual void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
+                            Work& work) const noexcept = 0;
+  static constexpr int all_loads = -1;
+  /// Efforts [N m, N] that the model's motions need at (t, y) on their speeds, zero on all others: what inverse
+  /// dynamics asks for there beyond the loads. For reports.
+  virtual Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
+                                    Work& work) const noexcept = 0;
   /// Inverse dynamics: efforts [N m, N] on all speeds that, with weight, stiffness, damping and velocity terms, give
   /// the accelerations u_dot at y: M u_dot − f. In time proportional to the number of bodies where the mass matrix is
-  /// symmetric; the strict forms assemble M. The loads' efforts are not taken off.
+  /// symmetric; the strict forms assemble M. The loads' efforts are not taken off, and motions do not matter.
   virtual void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
                                 Work& work) const = 0;
   /// M(y) a, in the same time.
@@ -120,11 +137,13 @@ class EquationsOfMotion {
   [[nodiscard]] virtual std::vector<std::string> savings() const = 0;
 };
 
-/// Sign of det M: −1, 0, +1; 0 too where M is not finite.
+/// The rows and columns of the free speeds, in their order, with what the prescribed ones ask of them in `force`.
+DenseSystem free_part(const DenseSystem& system);
+/// Sign of det M of the free speeds: −1, 0, +1; 0 too where M is not finite.
 int determinant_sign(const DenseSystem& system);
-/// κ(M), the sign of det M and M's weakest direction.
+/// κ(M), the sign of det M and M's weakest direction, of the free speeds; the direction has all speeds.
 Conditioning conditioning(const DenseSystem& system);
-/// Solves M u̇ = f + applied by LU with complete pivoting.
+/// Accelerations of all speeds: M u̇ = f + applied in the free rows by LU with complete pivoting.
 /// \throws std::domain_error where M is singular to working accuracy.
 std::vector<double> solve(const DenseSystem& system);
 

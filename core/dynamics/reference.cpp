@@ -170,6 +170,11 @@ class ReferenceDynamics::Tree {
     const auto b = static_cast<std::size_t>(body);
     return outward<S>(bodies_[b], relative(body, frame_index, offset), first_mode_[b]);
   }
+  /// Adds J_ωᵀ m + J_vᵀ f of a wrench at a frame.
+  void add_efforts(FrameIndex at, const Wrench& wrench, VX<S>& efforts) const {
+    const WorldMotion<S> A = frame(at.body, at.frame, Pose{});
+    efforts += A.JW.transpose() * wrench.moment.template cast<S>() + A.JV.transpose() * wrench.force.template cast<S>();
+  }
   /// Calls particle(mass, motion) and section(inertia, motion) for all mass of a body.
   template <class OfParticle, class OfSection>
   void each(std::size_t b, OfParticle&& particle, OfSection&& section_of) const {
@@ -295,7 +300,12 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
   const auto n = static_cast<Eigen::Index>(layout.speeds);
   Eigen::MatrixXd M;
   Eigen::VectorXd f;
-  if (terms_.truncation == Truncation::strict) {
+  Eigen::VectorXd applied = Eigen::VectorXd::Zero(n);
+  const std::vector<PlacedWrench> wrenches = wrenches_at(t, y);
+  bool strict = false;
+  for (std::size_t b = 0; b < model_->bodies().size(); ++b)
+    strict = strict || (slots_[b] != nullptr && terms_of(b).truncation == Truncation::strict);
+  if (strict) {
     // Theory (3): the directional derivative along the elastic coordinates is the dual part.
     Dual epsilon(0.0);
     epsilon.derivatives()[0] = 1.0;
@@ -305,8 +315,12 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
     for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
       terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? Dual(0.0) : epsilon});
     }
-    Tree<Dual>(*model_, std::move(terms), y).assemble(dual_mass, dual_force);
+    const Tree<Dual> tree(*model_, std::move(terms), y);
+    tree.assemble(dual_mass, dual_force);
+    VX<Dual> dual_applied = VX<Dual>::Zero(n);
+    for (const auto& [at, wrench] : wrenches) tree.add_efforts(at, wrench, dual_applied);
     const auto first = [](const Dual& d) { return d.derivatives()[0]; };
+    applied = dual_applied.unaryExpr([](const Dual& d) { return d.value(); }) + dual_applied.unaryExpr(first);
     M = dual_mass.unaryExpr([](const Dual& d) { return d.value(); });
     const Eigen::MatrixXd M1 = dual_mass.unaryExpr(first);
     f = dual_force.unaryExpr([](const Dual& d) { return d.value(); }) + dual_force.unaryExpr(first);
@@ -320,7 +334,9 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
     for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
       terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? 0.0 : 1.0, rods_[b].get()});
     }
-    Tree<double>(*model_, std::move(terms), y).assemble(M, f);
+    const Tree<double> tree(*model_, std::move(terms), y);
+    tree.assemble(M, f);
+    for (const auto& [at, wrench] : wrenches) tree.add_efforts(at, wrench, applied);
   }
   std::size_t flexible = 0;
   for (const BodyNode& node : model_->bodies()) {
@@ -337,12 +353,37 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
   s.mass.resize(s.size * s.size);
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(s.mass.data(), n, n) = M;
   s.force.assign(f.data(), f.data() + n);
-  s.applied.assign(s.size, 0.0);
+  s.applied.assign(applied.data(), applied.data() + n);
+  std::vector<double> u_dot(s.size);
+  model_->prescribe_accelerations(t, u_dot);
+  for (const MotionNode& node : model_->motions()) {
+    const Slot& slot = layout.hinges[static_cast<std::size_t>(node.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) s.prescribed.push_back({slot.speed + i, u_dot[slot.speed + i]});
+  }
   for (const LoadNode& node : model_->loads()) {
     std::vector<double> scratch(node.load->scratch());
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), s.applied, scratch);
   }
   return s;
+}
+
+std::vector<ReferenceDynamics::PlacedWrench> ReferenceDynamics::wrenches_at(double t, std::span<const double> y) const {
+  std::vector<BodyTerms<double>> terms;
+  for (std::size_t b = 0; b < model_->bodies().size(); ++b)
+    terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? 0.0 : 1.0, rods_[b].get()});
+  const Tree<double> tree(*model_, std::move(terms), y);
+  std::vector<PlacedWrench> all;
+  for (const LoadNode& node : model_->loads()) {
+    std::vector<FrameMotion> motions;
+    for (const FrameIndex& at : node.load->frames()) {
+      const WorldMotion<double> A = tree.frame(at.body, at.frame, Pose{});
+      motions.push_back({A.R, A.p, A.w, A.v});
+    }
+    std::vector<Wrench> wrenches(motions.size());
+    node.load->wrenches(t, motions, wrenches);
+    for (std::size_t i = 0; i < wrenches.size(); ++i) all.push_back({node.load->frames()[i], wrenches[i]});
+  }
+  return all;
 }
 
 ReferenceDynamics::Tree<double> ReferenceDynamics::untruncated(std::span<const double> y) const {

@@ -35,6 +35,13 @@ class ReferenceDynamics {
   class Tree;
   template <class S>
   struct BodyTerms;
+  /// A wrench of a load and where it acts.
+  struct PlacedWrench {
+    FrameIndex at;
+    Wrench wrench;
+  };
+  /// Those of all loads, given at the deformation that the truncations keep.
+  [[nodiscard]] std::vector<PlacedWrench> wrenches_at(double t, std::span<const double> y) const;
   /// Every body in its own strain kinematics, without truncation.
   [[nodiscard]] Tree<double> untruncated(std::span<const double> y) const;
 

@@ -1,9 +1,10 @@
 /// \file
-/// Motion of the sections of a rod in exact kinematics, the plain way.
+/// Motion of the sections of a rod in exact kinematics, the plain way, for numbers and for numbers with derivatives.
 #pragma once
 
 #include <vector>
 
+#include "withy/core/dynamics/jet.hpp"
 #include "withy/core/shape/point_motion.hpp"
 #include "withy/core/shape/rod_table.hpp"
 
@@ -13,24 +14,32 @@ namespace withy {
 ///   r′ = t,  w_i′ = u_i,  P_i′ = w_i × t,  b′ = ω × Σ u_i q̇_i,  a′ = b × t + ω × (ω × t),
 /// all zero at x = 0: positions, partial velocities and the biases b = Ẇ q̇, a = Ṗ q̇. What r, w_i, P_i are to first
 /// order is known, X + Φ q, ψ_i, Φ_i; the rest is integrated.
-class RodMotion {
+/// S is double or Jet.
+template <class S>
+class RodMotionOf {
  public:
+  using Vector = Eigen::Matrix<S, Eigen::Dynamic, 1>;
+  using Matrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
+  using RowVector = Eigen::Matrix<S, 1, Eigen::Dynamic>;
+
   /// The table must outlive the motion.
-  RodMotion(const RodTable& table, const Eigen::VectorXd& q, const Eigen::VectorXd& q_dot);
-  [[nodiscard]] PointMotionOf<double> at_node(std::size_t node) const;
-  [[nodiscard]] PointMotionOf<double> at(double x) const;
+  RodMotionOf(const RodTable& table, const Vector& q, const Vector& q_dot);
+  [[nodiscard]] PointMotionOf<S> at_node(std::size_t node) const;
+  [[nodiscard]] PointMotionOf<S> at(double x) const;
   /// r(x) alone.
-  [[nodiscard]] static Vector3 position(const RodTable& table, const Eigen::VectorXd& q, double x);
+  [[nodiscard]] static Eigen::Matrix<S, 3, 1> position(const RodTable& table, const Vector& q, double x);
 
  private:
-  [[nodiscard]] PointMotionOf<double> motion(const Matrix3& R, const Eigen::RowVectorXd& integrals, double x,
-                                             const RodSection& section) const;
+  [[nodiscard]] PointMotionOf<S> motion(const Eigen::Matrix<S, 3, 3>& R, const RowVector& integrals, double x,
+                                        const RodSection& section) const;
 
   const RodTable& table_;
-  Eigen::VectorXd q_, q_dot_;
-  std::vector<Matrix3> R_;    ///< at the nodes
-  Eigen::MatrixXd slopes_;    ///< r′, w_i′, P_i′ but for what is known, b′, a′: one row a node
-  Eigen::MatrixXd at_nodes_;  ///< their integrals
+  Vector q_, q_dot_;
+  std::vector<Eigen::Matrix<S, 3, 3>> R_;  ///< at the nodes
+  Matrix slopes_;                          ///< r′, w_i′, P_i′ but for what is known, b′, a′: one row a node
+  Matrix at_nodes_;                        ///< their integrals
 };
+
+using RodMotion = RodMotionOf<double>;
 
 }  // namespace withy

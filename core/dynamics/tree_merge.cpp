@@ -165,6 +165,7 @@ class Merger {
     n.hinge = h.hinge;
     n.kernel = h.hinge->kernel();
     n.slot = model_.layout().hinges[b];
+    n.driven = model_.driven(b);
     n.M = root.pose;
     if (body.body->shape().modes() > 0) {
       take_modes(b, n, Pose{});

@@ -132,6 +132,36 @@ void Model::lay_out() {
 int Model::body(std::string_view name) const { return find_index(bodies_, name); }
 int Model::hinge(std::string_view name) const { return find_index(hinges_, name); }
 
+std::vector<int> Model::segments(std::string_view name) const {
+  if (const int index = body(name); index >= 0) return {index};
+  std::vector<int> indices;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const std::optional<Segment>& segment = bodies_[b].segment;
+    if (!segment || segment->whole != name) continue;
+    indices.resize(std::max(indices.size(), segment->index + 1), -1);
+    indices[segment->index] = static_cast<int>(b);
+  }
+  return indices;
+}
+
+std::optional<FrameIndex> Model::find_frame(std::string_view name) const {
+  const auto lookup = [&](const std::vector<int>& in, std::string_view frame) -> std::optional<FrameIndex> {
+    if (in.empty()) return {};
+    // Every segment has a root and a tip of its own; the whole's are those at its ends.
+    if (frame == "root") return FrameIndex{in.front(), 0};
+    const bool tip = frame == "tip";
+    for (auto b = tip ? in.end() - 1 : in.begin(); b != in.end(); ++b) {
+      const int index = bodies_[static_cast<std::size_t>(*b)].frame(frame);
+      if (index >= 0) return FrameIndex{*b, index};
+    }
+    return {};
+  };
+  if (auto root = lookup(segments(name), "root")) return root;
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos) return {};
+  return lookup(segments(name.substr(0, dot)), name.substr(dot + 1));
+}
+
 State Model::reference_state() const {
   State s;
   s.y.assign(layout_.positions + layout_.speeds + 1, 0.0);
@@ -149,6 +179,46 @@ Model Model::rigidified() const {
     for (Frame& f : b.frames) f.section = PointExpansion::rigid(f.section.X, 0);
   }
   return Model(std::move(bodies), hinges_, gravity_);
+}
+
+bool Model::driven(std::size_t hinge) const {
+  return std::any_of(motions_.begin(), motions_.end(),
+                     [&](const MotionNode& m) { return static_cast<std::size_t>(m.hinge) == hinge; });
+}
+
+void Model::prescribe(State& state) const {
+  for (const MotionNode& node : motions_) {
+    const Slot& slot = layout_.hinges[static_cast<std::size_t>(node.hinge)];
+    double* rates = state.y.data() + layout_.positions + slot.speed;
+    std::fill(rates, rates + slot.speeds, 0.0);
+    if (node.motion->locks()) continue;
+    const MotionPoint point = node.motion->at(state.time);
+    state.y[slot.position] = point.position;
+    rates[0] = point.rate;
+  }
+}
+
+void Model::prescribe_accelerations(double t, std::span<double> u_dot) const noexcept {
+  for (const MotionNode& node : motions_) {
+    const Slot& slot = layout_.hinges[static_cast<std::size_t>(node.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) u_dot[slot.speed + i] = 0;
+    if (!node.motion->locks()) u_dot[slot.speed] = node.motion->at(t).acceleration;
+  }
+}
+
+void Model::add_motion(std::string name, const std::string& hinge_name, std::shared_ptr<const Motion> motion) {
+  const int index = hinge(hinge_name);
+  if (index < 0) throw std::invalid_argument("there is no hinge '" + hinge_name + "'");
+  const Slot& slot = layout_.hinges[static_cast<std::size_t>(index)];
+  if (slot.speeds == 0) throw std::invalid_argument("hinge '" + hinge_name + "' does not move: it needs no motion");
+  if (!motion->locks() && (slot.positions != 1 || slot.speeds != 1))
+    throw std::invalid_argument("hinge '" + hinge_name + "' has " + std::to_string(slot.speeds) +
+                                " rates; a motion moves hinges with one coordinate, and 'locked' holds any");
+  for (const MotionNode& other : motions_) {
+    if (other.hinge == index)
+      throw std::invalid_argument("hinge '" + hinge_name + "' is driven by motion '" + other.name + "' already");
+  }
+  motions_.push_back({std::move(name), index, std::move(motion)});
 }
 
 void Model::add_load(std::string name, const Load& load) { loads_.push_back({std::move(name), load.bind(*this)}); }

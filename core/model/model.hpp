@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/load.hpp"
+#include "withy/core/plugin/motion.hpp"
 
 namespace withy {
 
@@ -23,12 +25,21 @@ struct Frame {
   Pose pose;
 };
 
+/// Says that a body is a segment of one that was cut across. The segments of a whole lie one behind the other, welded,
+/// from its root on; each has the frames "root" and "tip".
+struct Segment {
+  std::string whole;      ///< name of the body that was cut; no body of the model has it
+  std::size_t index = 0;  ///< from the root, from 0
+  std::size_t count = 1;  ///< of the whole
+};
+
 /// A body in the tree.
 struct BodyNode {
   std::string name;
   std::shared_ptr<const Body> body;
   std::vector<Frame> frames;
-  std::optional<Terms> terms;  ///< of this body's own formulation; none: the scene's
+  std::optional<Terms> terms = {};      ///< of this body's own formulation; none: the scene's
+  std::optional<Segment> segment = {};  ///< none: a body by itself
 
   /// Index of a frame; −1 where there is none.
   [[nodiscard]] int frame(std::string_view frame_name) const;
@@ -51,6 +62,13 @@ struct LoadNode {
   std::shared_ptr<const BoundLoad> load;
 };
 
+/// A prescribed motion in the tree.
+struct MotionNode {
+  std::string name;
+  int hinge = 0;  ///< index among the hinges
+  std::shared_ptr<const Motion> motion;
+};
+
 /// A tree of bodies. Hinge i carries body i: hinges()[i].child == i, and every parent has a smaller index.
 class Model {
  public:
@@ -62,21 +80,38 @@ class Model {
   [[nodiscard]] const std::vector<BodyNode>& bodies() const { return bodies_; }
   [[nodiscard]] const std::vector<HingeNode>& hinges() const { return hinges_; }
   [[nodiscard]] const std::vector<LoadNode>& loads() const { return loads_; }
+  [[nodiscard]] const std::vector<MotionNode>& motions() const { return motions_; }
+  /// Whether a motion prescribes all coordinates of a hinge.
+  [[nodiscard]] bool driven(std::size_t hinge) const;
   /// Acceleration of gravity [m/s²], world axes.
   [[nodiscard]] const Vector3& gravity() const { return gravity_; }
   [[nodiscard]] const Layout& layout() const { return layout_; }
   /// Index of a body or hinge; −1 where there is none.
   [[nodiscard]] int body(std::string_view name) const;
   [[nodiscard]] int hinge(std::string_view name) const;
+  /// The frame that "body.frame" names, or "body" for its root. The name of a body that was cut stands for its
+  /// segments: its root is that of the first, its tip that of the last, and any other frame that of the segment which
+  /// has it.
+  [[nodiscard]] std::optional<FrameIndex> find_frame(std::string_view name) const;
+  /// Indices of the pieces of a body that was cut, from its root; of any other body its index alone; empty where there
+  /// is no such body.
+  [[nodiscard]] std::vector<int> segments(std::string_view body) const;
 
   /// The state at time 0 with every coordinate at its reference, at rest.
   [[nodiscard]] State reference_state() const;
-  /// The same tree with every body rigid in its undeformed shape and without loads.
+  /// Puts driven hinges where their motions have them at the state's time; locked ones stay, at rest.
+  void prescribe(State& state) const;
+  /// Sets the accelerations of the driven speeds at time t [s] in u_dot, one a speed; leaves the others.
+  void prescribe_accelerations(double t, std::span<double> u_dot) const noexcept;
+  /// The same tree with every body rigid in its undeformed shape, without loads and motions.
   [[nodiscard]] Model rigidified() const;
 
   /// Adds a load, bound to this model. For builders of a model, before it is shared.
   /// \throws std::invalid_argument as Load::bind.
   void add_load(std::string name, const Load& load);
+  /// Prescribes the motion of a hinge. For builders of a model, before it is shared.
+  /// \throws std::invalid_argument where there is no such hinge, it cannot move so, or it is driven already.
+  void add_motion(std::string name, const std::string& hinge, std::shared_ptr<const Motion> motion);
 
  private:
   void lay_out();
@@ -84,6 +119,7 @@ class Model {
   std::vector<BodyNode> bodies_;
   std::vector<HingeNode> hinges_;
   std::vector<LoadNode> loads_;
+  std::vector<MotionNode> motions_;
   Vector3 gravity_;
   Layout layout_;
 };

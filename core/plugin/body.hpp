@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "withy/core/plugin/rod.hpp"
 #include "withy/core/shape/modal_shape.hpp"
@@ -27,6 +28,8 @@ class Body {
   [[nodiscard]] virtual std::string stations() const = 0;
   /// The body as a rod of exact kinematics; null where it cannot be one. It lives as long as the body.
   [[nodiscard]] virtual const Rod* rod() const { return nullptr; }
+  /// What a user should know of the body beyond its numbers, such as what its data lack: each a sentence.
+  [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
 };
 
 }  // namespace withy

@@ -2,18 +2,42 @@
 /// The interface of loads.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "withy/core/spatial/pose.hpp"
+
 namespace withy {
 
 class Model;
 struct State;
 
-/// A load fixed to one model: it knows which generalized speeds it acts on. Immutable; scratch space is the caller's.
+/// A frame of a body of a model.
+struct FrameIndex {
+  int body = 0;   ///< index in Model::bodies()
+  int frame = 0;  ///< index among the body's frames
+};
+
+/// Where a frame is and how it moves in the world, world axes.
+struct FrameMotion {
+  Matrix3 R = Matrix3::Identity();             ///< its axes as columns
+  Vector3 position = Vector3::Zero();          ///< [m]
+  Vector3 angular_velocity = Vector3::Zero();  ///< [rad/s]
+  Vector3 velocity = Vector3::Zero();          ///< of its origin [m/s]
+};
+
+/// A moment about the origin of a frame and a force there, world axes.
+struct Wrench {
+  Vector3 moment = Vector3::Zero();  ///< [N m]
+  Vector3 force = Vector3::Zero();   ///< [N]
+};
+
+/// A load fixed to one model: it knows which generalized speeds and frames it acts on. Immutable; scratch space is the
+/// caller's.
 class BoundLoad {
  public:
   virtual ~BoundLoad() = default;
@@ -23,6 +47,21 @@ class BoundLoad {
   /// `positions` and `speeds` are those of State.
   virtual void add(double t, std::span<const double> positions, std::span<const double> speeds,
                    std::span<double> efforts, std::span<double> scratch) const noexcept = 0;
+  /// Adds the derivatives of the efforts that `add` gives: `by_position(i, j)` of effort i with respect to a
+  /// displacement along speed j (position changes as if that speed alone were one), `by_speed(i, j)` to speed j. For
+  /// analyses: may allocate. \returns false, adding nothing, where the load has none; it is then differentiated
+  /// numerically.
+  virtual bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+                               Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
+                               Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const {
+    return false;
+  }
+  /// Frames at which the load acts by wrenches. Which partial velocities turn these into efforts, and at which
+  /// deformation the frames are shown to `wrenches`, is the formulation's (docs/theory.md, "Loads at frames").
+  [[nodiscard]] virtual std::span<const FrameIndex> frames() const { return {}; }
+  /// Sets the wrench at each of `frames()` from their motion at time t [s], all three in one order.
+  virtual void wrenches(double /*t*/, std::span<const FrameMotion> /*motions*/,
+                        std::span<Wrench> /*wrenches*/) const noexcept {}
   /// Times [s], increasing, where the effort or one of its first derivatives jumps: integrators land on them.
   [[nodiscard]] virtual std::vector<double> discontinuities() const = 0;
   /// Time [s] at which the load has done its work (a slew's end); 0 where it has no end of its own.

@@ -75,6 +75,36 @@ struct ExponentialCoefficients {
 
 }  // namespace detail
 
+/// r, ṙ, P and Ṗ q̇ of point_motion alone: all a particle needs, which has no rotation. R, W and their rates are left
+/// unset.
+template <class S>
+PointMotionOf<S> path_motion(const PointExpansion& e, StrainOrder order, const Eigen::Matrix<S, Eigen::Dynamic, 1>& q,
+                             const Eigen::Matrix<S, Eigen::Dynamic, 1>& q_dot) {
+  PointMotionOf<S> m;
+  const Eigen::Index n = q.size();
+  m.P = e.phi.template cast<S>();
+  m.r_bias.setZero();
+  m.r = e.X.template cast<S>() + m.P * q;
+  if (order != StrainOrder::linear && n > 0) {
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const Eigen::MatrixXd& gamma = e.gamma[static_cast<std::size_t>(c)];
+      for (Eigen::Index i = 0; i < n; ++i) {
+        S slope(0.0), slope_rate(0.0);
+        for (Eigen::Index j = 0; j < n; ++j) {
+          if (gamma(i, j) == 0) continue;
+          slope += q[j] * gamma(i, j);
+          slope_rate += q_dot[j] * gamma(i, j);
+        }
+        m.P(c, i) += slope;
+        m.r[c] += S(0.5) * slope * q[i];
+        m.r_bias[c] += slope_rate * q_dot[i];
+      }
+    }
+  }
+  m.r_rate = m.P * q_dot;
+  return m;
+}
+
 /// Evaluates theory (1), (2), to second order unless `order` is linear, and their rates at q, q̇. With R = exp(θ̂) the
 /// section's angular velocity is T(θ) θ̇, T = 1 + b θ̂ + c θ̂² (left Jacobian of the rotation group).
 template <class S>

@@ -12,11 +12,24 @@ std::string sign_text(int sign) { return sign > 0 ? "positive" : (sign < 0 ? "ne
 
 using DenseMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// M, with prescribed speeds of unit mass on their own: they are in no direction that is weak.
+DenseMatrix decoupled(const DenseSystem& system) {
+  const auto n = static_cast<Eigen::Index>(system.size);
+  DenseMatrix M = Eigen::Map<const DenseMatrix>(system.mass.data(), n, n);
+  for (const PrescribedRate& p : system.prescribed) {
+    const auto i = static_cast<Eigen::Index>(p.speed);
+    M.row(i).setZero();
+    M.col(i).setZero();
+    M(i, i) = 1;
+  }
+  return M;
+}
+
 /// Unit vector of the scaled coordinates along which M acts least or, where M is indefinite and not singular, that of
 /// the lowest eigenvalue.
 Eigen::VectorXd weakest_direction(const MassMatrixHistory& h, bool negative) {
   const auto n = static_cast<Eigen::Index>(h.first.size);
-  const Eigen::Map<const DenseMatrix> first(h.first.mass.data(), n, n), last(h.last.mass.data(), n, n);
+  const DenseMatrix first = decoupled(h.first), last = decoupled(h.last);
   Eigen::VectorXd scale = first.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
   if (!scale.allFinite()) scale.setOnes();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * last * scale.asDiagonal();
@@ -68,21 +81,18 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 /// Loads that give an effort that is not finite, with the first such time found.
-std::string nonfinite_loads(const Model& model, const State& state, double ahead) {
+std::string nonfinite_loads(const Model& model, const EquationsOfMotion& equations, const State& state, double ahead) {
   const Layout& layout = model.layout();
-  const std::span<const double> y(state.y);
+  Work work = equations.make_work();
   std::string text;
-  for (const LoadNode& node : model.loads()) {
-    std::vector<double> scratch(node.load->scratch());
+  for (std::size_t load = 0; load < model.loads().size(); ++load) {
     std::vector<double> efforts(layout.speeds);
     // From just after the state on, at intervals that double: a load may fail from some time on.
     for (double after = 0; after <= ahead; after = after > 0 ? 2 * after : ahead * 0x1p-30) {
-      std::fill(efforts.begin(), efforts.end(), 0.0);
-      node.load->add(state.time + after, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), efforts,
-                     scratch);
+      equations.load_efforts(state.time + after, state.y, static_cast<int>(load), efforts, work);
       const auto bad = std::find_if(efforts.begin(), efforts.end(), [](double e) { return !std::isfinite(e); });
       if (bad != efforts.end()) {
-        text += (text.empty() ? "" : "; ") + ("load '" + node.name + "' gives " + brief(*bad) + " on ") +
+        text += (text.empty() ? "" : "; ") + ("load '" + model.loads()[load].name + "' gives " + brief(*bad) + " on ") +
                 layout.speed_names[static_cast<std::size_t>(bad - efforts.begin())] +
                 " at t = " + brief(state.time + after) + " s";
         break;
@@ -154,19 +164,26 @@ double fastest_mode(const Model& model, const DenseSystem& system) {
     const auto at = static_cast<Eigen::Index>(model.layout().body(body.name)->speed);
     K.block(at, at, shape.modes(), shape.modes()) = shape.stiffness;
   }
-  const Eigen::Map<const DenseMatrix> M(system.mass.data(), n, n);
-  if (n == 0 || K.isZero(0) || !M.allFinite()) return 0;
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (std::none_of(system.prescribed.begin(), system.prescribed.end(),
+                     [i](const PrescribedRate& p) { return static_cast<Eigen::Index>(p.speed) == i; }))
+      free.push_back(i);
+  }
+  const Eigen::MatrixXd M = Eigen::Map<const DenseMatrix>(system.mass.data(), n, n)(free, free);
+  K = K(free, free).eval();
+  if (free.empty() || K.isZero(0) || !M.allFinite()) return 0;
   const Eigen::LLT<Eigen::MatrixXd> factor(0.5 * (M + M.transpose()));
   if (factor.info() != Eigen::Success) return 0;
   const Eigen::MatrixXd half = factor.matrixL().solve(K);
   const Eigen::MatrixXd square = factor.matrixL().solve(half.transpose());
   return std::sqrt(std::max(
-      0.0, Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(square, Eigen::EigenvaluesOnly).eigenvalues()[n - 1]));
+      0.0, Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(square, Eigen::EigenvaluesOnly).eigenvalues().tail<1>()[0]));
 }
 
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,
                                double ahead) {
-  if (const std::string loads = nonfinite_loads(model, state, ahead); !loads.empty()) return loads;
+  if (const std::string loads = nonfinite_loads(model, equations, state, ahead); !loads.empty()) return loads;
   const Layout& layout = equations.layout();
   std::vector<std::string> names;
   for (std::size_t i = 0; i < layout.speeds; ++i) {

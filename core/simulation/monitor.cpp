@@ -24,63 +24,73 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     const double length = node.body->shape().length;
     const auto section = node.body->station("tip");
     if (slot == nullptr || !section || !(length > 0)) continue;
-    tips_.push_back({slot,
+    ends_.push_back({slot,
                      static_cast<int>(b),
                      node.frame("tip"),
                      *section,
                      length,
-                     &summary.peak_deflection[node.name],
+                     node.segment ? nullptr : &summary.peak_deflection[node.name],
                      &summary.peak_deflection_ratio[node.name],
                      {}});
   }
-  std::size_t scratch = 0;
-  for (const LoadNode& node : model.loads()) scratch = std::max(scratch, node.load->scratch());
-  scratch_.resize(scratch);
+  for (Tip& tip : tips(model)) {
+    if (tip.in_segments() && tip.flexible) wholes_.push_back(std::move(tip));
+  }
   summary.peak_effort.assign(model.layout().speeds, 0.0);
+  summary.peak_motion_effort.assign(model.layout().speeds, 0.0);
   const Energies e = equations.energies(initial.y);
   initial_energy_ = e.kinetic + e.potential;
   initial_sign_ = mass_matrix_sign(initial);
 }
 
-std::array<double, 3> Monitor::deflection(const Tip& tip, const State& state) const {
-  return tip.frame >= 0 ? equations_.deflection(state.y, tip.body, tip.frame) : expanded(tip, state);
+std::array<double, 3> Monitor::deflection_of(const End& end, const State& state) const {
+  return end.frame >= 0 ? equations_.deflection(state.y, end.body, end.frame) : expanded(end, state);
 }
 
-std::array<double, 3> Monitor::expanded(const Tip& tip, const State& state) {
-  const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + tip.slot->position,
-                                            static_cast<Eigen::Index>(tip.slot->positions));
-  const Vector3 d = point_velocity(tip.section, StrainOrder::quadratic, q, q).first - tip.section.X;
+std::array<double, 3> Monitor::expanded(const End& end, const State& state) {
+  const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + end.slot->position,
+                                            static_cast<Eigen::Index>(end.slot->positions));
+  const Vector3 d = point_velocity(end.section, StrainOrder::quadratic, q, q).first - end.section.X;
   return {d.x(), d.y(), d.z()};
 }
 
+void Monitor::note(const std::string& name, double length, const std::array<double, 3>& d,
+                   std::array<double, 3>* peak) {
+  for (std::size_t k = 0; peak != nullptr && k < 3; ++k) (*peak)[k] = std::max((*peak)[k], std::abs(d[k]));
+  const double size = std::hypot(d[0], d[1], d[2]);
+  if (!excess_.empty() || size <= deflection_limit_ * length) return;
+  excess_ = "the tip of '" + name + "' is deflected by " + brief(size) + " m, " + brief(size / length) +
+            " times its length (limit " + brief(deflection_limit_) + ")";
+}
+
 void Monitor::observe(const State& state, bool output) {
-  for (Tip& tip : tips_) {
+  for (End& end : ends_) {
     // Exact kinematics integrates along the body, at the cost of several evaluations: between outputs only where the
     // expansion says that the deflection has not been so great before.
-    const std::array<double, 3> rough = expanded(tip, state);
+    const std::array<double, 3> rough = expanded(end, state);
     bool greater = false;
     for (std::size_t k = 0; k < 3; ++k) {
-      greater = greater || std::abs(rough[k]) > tip.rough[k];
-      tip.rough[k] = std::max(tip.rough[k], std::abs(rough[k]));
+      greater = greater || std::abs(rough[k]) > end.rough[k];
+      end.rough[k] = std::max(end.rough[k], std::abs(rough[k]));
     }
     if (!output && !greater) continue;
-    const std::array<double, 3> d = deflection(tip, state);
-    for (std::size_t k = 0; k < 3; ++k) (*tip.peak)[k] = std::max((*tip.peak)[k], std::abs(d[k]));
-    const double size = std::hypot(d[0], d[1], d[2]);
-    *tip.ratio = std::max(*tip.ratio, size / tip.length);
-    if (!excess_.empty() || size <= deflection_limit_ * tip.length) continue;
-    excess_ = "the tip of '" + tip.slot->name + "' is deflected by " + brief(size) + " m, " + brief(size / tip.length) +
-              " times its length (limit " + brief(deflection_limit_) + ")";
+    const std::array<double, 3> d = deflection_of(end, state);
+    *end.ratio = std::max(*end.ratio, std::hypot(d[0], d[1], d[2]) / end.length);
+    note(end.slot->name, end.length, d, end.peak);
   }
-  const Layout& layout = model_.layout();
-  const std::span<const double> y(state.y);
-  std::fill(efforts_.begin(), efforts_.end(), 0.0);
-  for (const LoadNode& node : model_.loads()) {
-    node.load->add(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), efforts_,
-                   scratch_);
+  if (output) {
+    for (const Tip& tip : wholes_)
+      note(tip.body, tip.length, deflection(equations_, state.y, tip), &summary_.peak_deflection[tip.body]);
   }
-  for (std::size_t i = 0; i < efforts_.size(); ++i)
-    summary_.peak_effort[i] = std::max(summary_.peak_effort[i], std::abs(efforts_[i]));
+  const auto raise = [&](std::vector<double>& peak) {
+    for (std::size_t i = 0; i < efforts_.size(); ++i) peak[i] = std::max(peak[i], std::abs(efforts_[i]));
+  };
+  if (!model_.loads().empty()) {
+    equations_.load_efforts(state.time, state.y, EquationsOfMotion::all_loads, efforts_, work_);
+    raise(summary_.peak_effort);
+  }
+  if (!model_.motions().empty() && equations_.motion_efforts(state.time, state.y, efforts_, work_).ok())
+    raise(summary_.peak_motion_effort);
 }
 
 void Monitor::audit_energy(const State& state) {

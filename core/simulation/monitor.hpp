@@ -8,6 +8,7 @@
 
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/simulate.hpp"
+#include "withy/core/simulation/tips.hpp"
 
 namespace withy {
 
@@ -17,7 +18,8 @@ class Monitor {
   Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
           RunSummary& summary);
 
-  /// Peaks of deflections and efforts: for every accepted step and output.
+  /// Peaks of deflections and efforts: for every accepted step and output. Those of bodies in segments are left to the
+  /// outputs, since they cost more than a step.
   void observe(const State& state, bool output);
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
@@ -31,29 +33,32 @@ class Monitor {
   [[nodiscard]] const std::optional<SignChange>& sign_change() const { return sign_change_; }
 
  private:
-  struct Tip {
+  /// A flexible body's tip, or a segment's.
+  struct End {
     const Slot* slot;  ///< of the body's modes
     int body;
     int frame;  ///< −1: `section` stands for it
     PointExpansion section;
-    double length;  ///< [m]
-    std::array<double, 3>* peak;
+    double length;                ///< [m]
+    std::array<double, 3>* peak;  ///< null: a segment's
     double* ratio;
     std::array<double, 3> rough{};  ///< greatest |deflection| by the expansion
   };
-  [[nodiscard]] std::array<double, 3> deflection(const Tip& tip, const State& state) const;
+  [[nodiscard]] std::array<double, 3> deflection_of(const End& end, const State& state) const;
   /// The same by the second-order expansion of the section.
-  [[nodiscard]] static std::array<double, 3> expanded(const Tip& tip, const State& state);
+  [[nodiscard]] static std::array<double, 3> expanded(const End& end, const State& state);
+  void note(const std::string& name, double length, const std::array<double, 3>& d, std::array<double, 3>* peak);
   /// Sign of det M by one evaluation; 0 where it cannot be solved.
   [[nodiscard]] int mass_matrix_sign(const State& state);
 
   const Model& model_;
   const EquationsOfMotion& equations_;
   RunSummary& summary_;
-  std::vector<Tip> tips_;
+  std::vector<End> ends_;
+  std::vector<Tip> wholes_;  ///< of bodies in segments
   double deflection_limit_;
   std::string excess_;
-  std::vector<double> efforts_, scratch_, rates_;
+  std::vector<double> efforts_, rates_;
   Work work_;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;

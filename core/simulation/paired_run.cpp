@@ -57,6 +57,11 @@ class PairedEquations final : public EquationsOfMotion {
   void mass_times(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {
     refuse();
   }
+  // Reports ask for these, steppers do not.
+  void load_efforts(double, std::span<const double>, int, std::span<double>, Work&) const noexcept override {}
+  Evaluation motion_efforts(double, std::span<const double>, std::span<double>, Work&) const noexcept override {
+    return {Evaluation::Outcome::singular};
+  }
   DenseSystem system(double, std::span<const double>) const override { refuse(); }
   Energies energies(std::span<const double>) const override { refuse(); }
   WorldPose frame_pose(std::span<const double>, int, int) const override { refuse(); }

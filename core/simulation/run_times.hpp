@@ -27,6 +27,11 @@ inline std::vector<double> landings(const Model& model, double start, double end
       if (t > start && t < end) times.push_back(t);
     }
   }
+  for (const MotionNode& node : model.motions()) {
+    for (const double t : node.motion->discontinuities()) {
+      if (t > start && t < end) times.push_back(t);
+    }
+  }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;

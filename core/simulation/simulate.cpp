@@ -82,8 +82,8 @@ class Run {
   /// The last state is an output, however the run ended.
   void finish(RunStatus status) {
     const State& state = stepper_->state();
-    if (state.time > emitted_) emit(state);
     monitor_.observe(state, true);
+    if (state.time > emitted_) emit(state);
     monitor_.audit_energy(state);
     validity_.finish(state, stepper_->statistics().evaluations, status == RunStatus::completed);
   }

@@ -39,12 +39,14 @@ struct RunSummary {
   std::string message;  ///< the physical reason, or what a completed run should not keep to itself; else empty
   State final;          ///< the last accepted state
   /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and outputs,
-  /// body axes x, y, z [m].
+  /// body axes x, y, z [m]; of a body in segments under its own name, over the outputs.
   std::map<std::string, std::array<double, 3>> peak_deflection;
   /// Of each of them, the greatest distance of the tip from its undeformed place, over the body's length.
   std::map<std::string, double> peak_deflection_ratio;
   /// Greatest |effort| of the loads on each generalized speed over all accepted steps and outputs [N m, N].
   std::vector<double> peak_effort;
+  /// The same of the efforts that motions need.
+  std::vector<double> peak_motion_effort;
   /// Greatest |E(t) − E(0) − work| over the accepted states that follow the outputs, relative to the greatest of |E|,
   /// |work| and kinetic energy seen.
   double energy_drift = 0;

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "withy/core/dynamics/reference.hpp"
+#include "withy/core/sweep/applied_loads.hpp"
 #include "withy/core/sweep/strict_sweep.hpp"
 #include "withy/core/sweep/symmetric_sweep.hpp"
 
@@ -25,6 +26,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   SweepEquations(std::shared_ptr<const Model> model, Terms terms, Tree tree, const std::vector<Terms>& node_terms)
       : model_(std::move(model)),
         reference_(model_, terms),
+        loads_(*model_, terms),
         sweep_(tree, node_terms, model_->gravity()),
         savings_(std::move(tree.savings)) {
     std::size_t aligned = 0;
@@ -62,6 +64,9 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
         general_.push_back(h);
       }
     }
+    for (std::size_t h = 0; h < layout().hinges.size(); ++h) {
+      if (model_->driven(h)) driven_.push_back(layout().hinges[h]);
+    }
     for (const Slot& slot : layout().bodies) copy(slot.position, slot.speed, slot.speeds);
     std::sort(copies_.begin(), copies_.end(), [](const Run& a, const Run& b) { return a.position < b.position; });
     for (std::size_t i = copies_.size(); i-- > 1;) {
@@ -71,12 +76,11 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
       before.count += copies_[i].count;
       copies_.erase(copies_.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    // Efforts, then the loads' scratch, then the sweep's own memory.
-    std::size_t scratch = 0;
-    for (const LoadNode& l : model_->loads()) scratch = std::max(scratch, l.load->scratch());
+    // Efforts, then the loads' memory, then the sweep's own.
     sweep::WorkLayout memory;
     efforts_offset_ = memory.take<double>(layout().speeds);
-    scratch_offset_ = memory.take<double>(scratch);
+    loads_offset_ = memory.take<std::byte>(loads_.work_size());
+    rates_offset_ = memory.take<double>(model_->motions().empty() ? 0 : size());
     sweep_offset_ = memory.size();
     sweep::WorkLayout factors;
     factors.take<double>(1 + 3 * layout().speeds);
@@ -94,11 +98,10 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     std::byte* memory = work.data();
     const std::span<double> efforts(reinterpret_cast<double*>(memory + efforts_offset_), order.speeds);
     for (double& e : efforts) e = 0;
-    for (const LoadNode& l : model_->loads()) {
-      l.load->add(t, positions, speeds, efforts,
-                  {reinterpret_cast<double*>(memory + scratch_offset_), l.load->scratch()});
-    }
+    loads_.add(t, positions, speeds, efforts, memory + loads_offset_);
     double* accelerations = y_dot.data() + order.positions;
+    const bool driven = !model_->motions().empty();
+    if (driven) model_->prescribe_accelerations(t, {accelerations, order.speeds});
     const Evaluation evaluation =
         sweep_.accelerations(positions.data(), speeds.data(), efforts.data(), accelerations, memory + sweep_offset_);
     if (!evaluation.ok()) return evaluation;
@@ -112,7 +115,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
                                              y_dot.subspan(slot.position, slot.positions));
     }
     double power = 0;
-    if (!model_->loads().empty()) {
+    if (driven || !model_->loads().empty()) {
       for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
     }
     for (const Damper& d : damped_) power -= speeds[d.i] * d.value * speeds[d.j];
@@ -123,6 +126,30 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     return evaluation;
   }
 
+  void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
+                    Work& work) const noexcept override {
+    std::fill(efforts.begin(), efforts.end(), 0.0);
+    loads_.add(t, y.first(layout().positions), y.subspan(layout().positions, layout().speeds), efforts,
+               work.data() + loads_offset_, load);
+  }
+  Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
+                            Work& work) const noexcept override {
+    std::fill(efforts.begin(), efforts.end(), 0.0);
+    if (model_->motions().empty()) return {};
+    const std::span<double> y_dot(reinterpret_cast<double*>(work.data() + rates_offset_), size());
+    const Evaluation evaluation = derivatives(t, y, y_dot, work);
+    if (!evaluation.ok()) return evaluation;
+    // The evaluation leaves there all efforts on driven speeds.
+    const double* all = reinterpret_cast<const double*>(work.data() + efforts_offset_);
+    load_efforts(t, y, all_loads, efforts, work);
+    std::size_t next = 0;  // the first speed not yet looked at
+    for (const Slot& slot : driven_) {
+      for (; next < slot.speed; ++next) efforts[next] = 0;
+      for (; next < slot.speed + slot.speeds; ++next) efforts[next] = all[next] - efforts[next];
+    }
+    for (; next < efforts.size(); ++next) efforts[next] = 0;
+    return evaluation;
+  }
   void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
                         Work& work) const override {
     if constexpr (has_modal_solver<Sweep>) {
@@ -236,13 +263,15 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   };
   std::shared_ptr<const Model> model_;
   ReferenceDynamics reference_;
+  AppliedLoads loads_;
   Sweep sweep_;
   std::vector<std::string> savings_;
   std::vector<Spring> springs_;
   std::vector<Damper> damped_;
   std::vector<Run> copies_;
+  std::vector<Slot> driven_;          ///< hinges that motions drive, in State's order
   std::vector<std::size_t> general_;  ///< hinges with derivatives of their own
-  std::size_t efforts_offset_ = 0, scratch_offset_ = 0, sweep_offset_ = 0, factors_offset_ = 0;
+  std::size_t efforts_offset_ = 0, loads_offset_ = 0, rates_offset_ = 0, sweep_offset_ = 0, factors_offset_ = 0;
 };
 
 }  // namespace

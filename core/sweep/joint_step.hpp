@@ -91,4 +91,31 @@ inline void joint_motion(const JointData<Space>& joint, const double* x, const d
   }
 }
 
+/// H a of a driven hinge at coordinates x and rates u (its own) for the accelerations a of its rates.
+template <class Space>
+[[gnu::noinline]] typename Space::Twist driven_acceleration(const JointData<Space>& joint, const double* x,
+                                                            const double* u, const double* a) {
+  if (single(joint.kind)) return along<Space>(joint.kind, joint.direction * a[0]);
+  auto A = Space::Twist::zero();
+  if constexpr (Space::angular == 3) {
+    const HingeMotion m = general_motion(joint, x, u);
+    for (Eigen::Index i = 0; i < m.H.cols(); ++i) A += Space::Twist::of(m.H.col(i)) * a[i];
+  }
+  return A;
+}
+
+/// Sets the efforts Hᵀ F on its rates, F the wrench that it passes on.
+template <class Space>
+[[gnu::noinline]] void driven_efforts(const JointData<Space>& joint, const double* x, const double* u,
+                                      const typename Space::Twist& F, double* efforts) {
+  if (single(joint.kind)) {
+    efforts[0] = joint.direction * component<Space>(joint.kind, F);
+    return;
+  }
+  if constexpr (Space::angular == 3) {
+    const HingeMotion m = general_motion(joint, x, u);
+    for (Eigen::Index i = 0; i < m.H.cols(); ++i) efforts[i] = Space::dot(Space::Twist::of(m.H.col(i)), F);
+  }
+}
+
 }  // namespace withy::sweep

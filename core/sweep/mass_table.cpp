@@ -68,7 +68,7 @@ MassTable<Space>::MassTable(const NodeSpec& node) {
   for (Eigen::Index k = 0; k < R.rows(); ++k) {
     const auto row = static_cast<std::size_t>(k);
     for (std::size_t c = 0; c < stride; ++c) {
-      data[(row / lanes) * stride + c][row % lanes] = R(k, static_cast<Eigen::Index>(c) + 1);
+      set_lane(data[(row / lanes) * stride + c], row % lanes, R(k, static_cast<Eigen::Index>(c) + 1));
     }
   }
 }

@@ -145,8 +145,8 @@ inline void integrate(const MassTable<Planar>& table, int modes, const double* q
     Pack *r = x.r, *a = x.a;
     add_turning(V, r, x.v, a);
     if (k == 0) {
-      a[0][0] -= m * V.w * V.y;  // ω×v acts through the constant function
-      a[1][0] += m * V.w * V.x;
+      add_to_first(a[0], -m * V.w * V.y);  // ω×v acts through the constant function
+      add_to_first(a[1], m * V.w * V.x);
       I += Planar::Inertia{0, -m * r[1][0], m * r[0][0], m * m, 0, m * m};
       p += Planar::Twist{0, m * a[0][0], m * a[1][0]};
       for (int i = 0; i < n; ++i) {
@@ -170,7 +170,7 @@ inline void integrate(const MassTable<Spatial>& table, int modes, const double* 
     if (k == 0) {
       const double m = table.root_mass;
       const Triple acceleration = cross(V.w, V.v) * m;
-      for (int c = 0; c < 3; ++c) a[c][0] += acceleration[c];
+      for (int c = 0; c < 3; ++c) add_to_first(a[c], acceleration[c]);
       I.L -= Block::skew(Triple(r[0][0], r[1][0], r[2][0]) * m);
       I.M += Block{{Triple(m * m, 0, 0), Triple(0, m * m, 0), Triple(0, 0, m * m)}};
       p.v += Triple(a[0][0], a[1][0], a[2][0]) * m;

@@ -138,6 +138,7 @@ struct JointData {
   double direction = 1;
   typename Space::Frame F;  ///< in the parent station's section, the parent node's frame, or the world
   const Hinge* hinge = nullptr;
+  bool driven = false;       ///< its rates' accelerations are given, and the efforts on them are found
   bool pose_matters = true;  ///< false on a world without weight, whose accelerations are zero in any axes
   std::size_t position = 0, positions = 0, speed = 0, speeds = 0;
 
@@ -145,6 +146,7 @@ struct JointData {
       : direction(node.direction),
         F(Space::make(node.F)),
         hinge(node.hinge.get()),
+        driven(node.driven),
         position(node.slot.position),
         positions(node.slot.positions),
         speed(node.slot.speed),

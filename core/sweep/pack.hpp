@@ -6,20 +6,75 @@
 
 namespace withy {
 
-/// Four lanes. Sums over lanes have a fixed order, so that results do not depend on the instruction set's width.
-using Pack = double __attribute__((vector_size(32)));
 constexpr std::size_t lanes = 4;
 
-inline double sum(const Pack& p) { return (p[0] + p[2]) + (p[1] + p[3]); }
+#ifdef __AVX__
+
+/// Four lanes. Sums over lanes have a fixed order, so that results do not depend on the instruction set's width.
+using Pack = double __attribute__((vector_size(32)));
 inline Pack spread(double a) { return Pack{a, a, a, a}; }
+inline void set_lane(Pack& p, std::size_t i, double a) { p[i] = a; }
+inline void add_to_first(Pack& p, double a) { p[0] += a; }
 
 namespace detail {
-/// Lanes of two packs, as a shuffle instruction takes them.
-inline Pack shuffle(const Pack& a, const Pack& b, long i, long j, long k, long l) {
-  using Lanes = long __attribute__((vector_size(32)));
-  return __builtin_shuffle(a, b, Lanes{i, j, k, l});
+/// Lanes i, j, k, l of two packs' eight.
+template <int i, int j, int k, int l>
+inline Pack shuffle(const Pack& a, const Pack& b) {
+  return __builtin_shufflevector(a, b, i, j, k, l);
 }
 }  // namespace detail
+
+#else
+
+namespace detail {
+using Half = double __attribute__((vector_size(16)));
+}
+
+/// The same in two registers. A vector type wider than the registers would be taken apart through memory.
+struct Pack {
+  detail::Half low, high;
+
+  Pack() = default;
+  Pack(double a, double b, double c, double d) : low{a, b}, high{c, d} {}
+  Pack(const detail::Half& first, const detail::Half& second) : low(first), high(second) {}
+  double operator[](std::size_t i) const { return i < 2 ? low[i] : high[i - 2]; }
+  Pack& operator+=(const Pack& b) { return low += b.low, high += b.high, *this; }
+  Pack& operator-=(const Pack& b) { return low -= b.low, high -= b.high, *this; }
+  friend Pack operator+(const Pack& a, const Pack& b) { return {a.low + b.low, a.high + b.high}; }
+  friend Pack operator-(const Pack& a, const Pack& b) { return {a.low - b.low, a.high - b.high}; }
+  friend Pack operator*(const Pack& a, const Pack& b) { return {a.low * b.low, a.high * b.high}; }
+  friend Pack operator*(double s, const Pack& a) { return {a.low * s, a.high * s}; }
+  friend Pack operator-(const Pack& a) { return {-a.low, -a.high}; }
+};
+inline Pack spread(double a) { return {a, a, a, a}; }
+inline void set_lane(Pack& p, std::size_t i, double a) {
+  if (i < 2) {
+    p.low[i] = a;
+  } else {
+    p.high[i - 2] = a;
+  }
+}
+inline void add_to_first(Pack& p, double a) { p.low[0] += a; }
+
+namespace detail {
+template <int i>
+inline const Half& half(const Pack& a, const Pack& b) {
+  if constexpr (i < 4) {
+    return i < 2 ? a.low : a.high;
+  } else {
+    return i < 6 ? b.low : b.high;
+  }
+}
+template <int i, int j, int k, int l>
+inline Pack shuffle(const Pack& a, const Pack& b) {
+  return {__builtin_shufflevector(half<i>(a, b), half<j>(a, b), i % 2, 2 + j % 2),
+          __builtin_shufflevector(half<k>(a, b), half<l>(a, b), k % 2, 2 + l % 2)};
+}
+}  // namespace detail
+
+#endif
+
+inline double sum(const Pack& p) { return (p[0] + p[2]) + (p[1] + p[3]); }
 
 /// A vector of three components; the fourth lane is zero.
 struct Triple {
@@ -30,7 +85,7 @@ struct Triple {
   Triple(double x, double y, double z) : p{x, y, z, 0} {}
   static Triple zero() { return Pack{0, 0, 0, 0}; }
 
-  double operator[](int i) const { return p[i]; }
+  double operator[](int i) const { return p[static_cast<std::size_t>(i)]; }
   Triple& operator+=(const Triple& b) { return p += b.p, *this; }
   Triple& operator-=(const Triple& b) { return p -= b.p, *this; }
   friend Triple operator+(const Triple& a, const Triple& b) { return a.p + b.p; }
@@ -43,10 +98,10 @@ struct Triple {
 inline double dot(const Triple& a, const Triple& b) { return sum(a.p * b.p); }
 
 inline Triple cross(const Triple& a, const Triple& b) {
-  const Pack a1 = detail::shuffle(a.p, a.p, 1, 2, 0, 3);
-  const Pack b1 = detail::shuffle(b.p, b.p, 1, 2, 0, 3);
+  const Pack a1 = detail::shuffle<1, 2, 0, 3>(a.p, a.p);
+  const Pack b1 = detail::shuffle<1, 2, 0, 3>(b.p, b.p);
   const Pack c = a.p * b1 - a1 * b.p;
-  return detail::shuffle(c, c, 1, 2, 0, 3);
+  return detail::shuffle<1, 2, 0, 3>(c, c);
 }
 
 /// A 3×3 matrix by columns.
@@ -82,19 +137,19 @@ struct Block {
 
 inline Block transpose(const Block& m) {
   using detail::shuffle;
-  const Pack low = shuffle(m.c[0].p, m.c[1].p, 0, 4, 2, 6);   // 00 01 20 21
-  const Pack high = shuffle(m.c[0].p, m.c[1].p, 1, 5, 3, 7);  // 10 11 0 0
+  const Pack low = shuffle<0, 4, 2, 6>(m.c[0].p, m.c[1].p);   // 00 01 20 21
+  const Pack high = shuffle<1, 5, 3, 7>(m.c[0].p, m.c[1].p);  // 10 11 0 0
   return {
-      {shuffle(low, m.c[2].p, 0, 1, 4, 7), shuffle(high, m.c[2].p, 0, 1, 5, 7), shuffle(low, m.c[2].p, 2, 3, 6, 7)}};
+      {shuffle<0, 1, 4, 7>(low, m.c[2].p), shuffle<0, 1, 5, 7>(high, m.c[2].p), shuffle<2, 3, 6, 7>(low, m.c[2].p)}};
 }
 
 /// mᵀ v.
 inline Triple transposed_times(const Block& m, const Triple& v) {
   using detail::shuffle;
   const Pack a = m.c[0].p * v.p, b = m.c[1].p * v.p, c = m.c[2].p * v.p, none = {0, 0, 0, 0};
-  const Pack ab = shuffle(a, b, 0, 4, 2, 6) + shuffle(a, b, 1, 5, 3, 7);
-  const Pack cc = shuffle(c, none, 0, 4, 2, 6) + shuffle(c, none, 1, 5, 3, 7);
-  return shuffle(ab, cc, 0, 1, 4, 5) + shuffle(ab, cc, 2, 3, 6, 7);
+  const Pack ab = shuffle<0, 4, 2, 6>(a, b) + shuffle<1, 5, 3, 7>(a, b);
+  const Pack cc = shuffle<0, 4, 2, 6>(c, none) + shuffle<1, 5, 3, 7>(c, none);
+  return shuffle<0, 1, 4, 5>(ab, cc) + shuffle<2, 3, 6, 7>(ab, cc);
 }
 /// m aˆ, aˆ = a ×.
 inline Block times_skew(const Block& m, const Triple& a) {

@@ -17,7 +17,7 @@ std::vector<double> station_coordinates(const NodeSpec& spec) {
 
 std::vector<Pack> packed(const double* values, std::size_t count) {
   std::vector<Pack> packs(count / lanes);
-  for (std::size_t i = 0; i < count; ++i) packs[i / lanes][i % lanes] = values[i];
+  for (std::size_t i = 0; i < count; ++i) set_lane(packs[i / lanes], i % lanes, values[i]);
   return packs;
 }
 
@@ -63,10 +63,10 @@ RodKinematics<Planar>::RodKinematics(const NodeSpec& spec) {
   first.resize(static_cast<std::size_t>(integrals.packs) * n * 3);
   for (std::size_t k = 0; k < table.sections.size(); ++k) {
     const RodStation<Planar> node = rod_station<Planar>(frame, table.quadrature.nodes()[k], table.sections[k]);
-    for (int c = 0; c < 2; ++c) X[(k / lanes) * 2 + static_cast<std::size_t>(c)][k % lanes] = node.X[c];
+    for (int c = 0; c < 2; ++c) set_lane(X[(k / lanes) * 2 + static_cast<std::size_t>(c)], k % lanes, node.X[c]);
     for (std::size_t i = 0; i < n; ++i) {
       for (int c = 0; c < 3; ++c)
-        first[((k / lanes) * n + i) * 3 + static_cast<std::size_t>(c)][k % lanes] = node.first[i][c];
+        set_lane(first[((k / lanes) * n + i) * 3 + static_cast<std::size_t>(c)], k % lanes, node.first[i][c]);
     }
   }
   for (const double at : x) stations.push_back(rod_station<Planar>(frame, at, spec.rod->section(at)));
@@ -88,14 +88,15 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const RodSection& section = table.sections[k];
     const Vector3 place = frame.p + nodes[k] * R.col(0);
-    for (std::size_t c = 0; c < 3; ++c) X[(k / lanes) * 3 + c][k % lanes] = place[static_cast<Eigen::Index>(c)];
+    for (std::size_t c = 0; c < 3; ++c)
+      set_lane(X[(k / lanes) * 3 + c], k % lanes, place[static_cast<Eigen::Index>(c)]);
     for (std::size_t i = 0; i < n; ++i) {
       const auto mode = static_cast<Eigen::Index>(i);
       const Vector3 psi = section.rotation.col(mode);
       Matrix3X fields(3, 4);
       fields << section.strain.col(mode), psi, psi.cross(Vector3::UnitX()), section.deflection.col(mode);
       fields = R * fields;
-      for (std::size_t c = 0; c < 12; ++c) first[((k / lanes) * n + i) * 12 + c][k % lanes] = fields.data()[c];
+      for (std::size_t c = 0; c < 12; ++c) set_lane(first[((k / lanes) * n + i) * 12 + c], k % lanes, fields.data()[c]);
     }
     section_inertia[k] = table.quadrature.weights()[k] * section.inertia_per_length;
     rotary = rotary || section_inertia[k] > 0;
@@ -137,9 +138,9 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
       for (std::size_t c = 0; c < 3; ++c) {
         Pack* moment = step.data() + ((s / lanes) * n + i) * 9 + c;
         const auto row = static_cast<Eigen::Index>(c), column = static_cast<Eigen::Index>(i);
-        moment[0][s % lanes] = turn(row, column);
-        moment[3][s % lanes] = a1(row, column);
-        moment[6][s % lanes] = a2(row, column);
+        set_lane(moment[0], s % lanes, turn(row, column));
+        set_lane(moment[3], s % lanes, a1(row, column));
+        set_lane(moment[6], s % lanes, a2(row, column));
       }
     }
   }

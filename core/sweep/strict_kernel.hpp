@@ -26,6 +26,9 @@ template <class Space, int N>
   }
   w.sigma0 = Space::cross(w.V0, joint.rate);
   if (has_bias(node.joint.kind)) w.sigma0 += joint.bias;
+  if (node.joint.driven) [[unlikely]]
+    w.sigma0 += driven_acceleration<Space>(node.joint, s.positions + node.joint.position, s.speeds + node.joint.speed,
+                                           s.result + node.joint.speed);
   w.sigma = w.sigma0 + Space::cross(w.V1, joint.rate);
 
   if constexpr (N != 0) {
@@ -131,7 +134,9 @@ template <class Space, int N>
   }
 
   const JointData<Space>& joint = node.joint;
-  if (single(joint.kind)) {
+  if (joint.driven) [[unlikely]] {
+    w.row = r.p;
+  } else if (single(joint.kind)) {
     const bool turns = joint.kind == Joint::rotate;
     const typename Space::Twist column =
         turns ? r.P.turn_column() + r.Q.turn_column() : r.P.slide_column() + r.Q.slide_column();
@@ -185,7 +190,10 @@ template <class Space, int N>
   w.A = Space::to_child(w.SM, *A) + w.sigma;
   w.A0 = Space::to_child(w.SM, *A0) + w.sigma0;
   const JointData<Space>& joint = node.joint;
-  if (single(joint.kind)) {
+  if (joint.driven) [[unlikely]] {
+    driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed,
+                          w.response.P * w.A + w.response.Q * w.A0 + w.row, s.efforts + joint.speed);
+  } else if (single(joint.kind)) {
     const double x = w.u - Space::dot(w.row, w.A) - Space::dot(w.row0, w.A0);
     w.A += along<Space>(joint.kind, x);
     w.A0 += along<Space>(joint.kind, x);

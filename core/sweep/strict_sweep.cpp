@@ -107,7 +107,7 @@ std::vector<std::string> StrictSweep<Space>::savings(const Tree& tree) const {
 }
 
 template <class Space>
-Evaluation StrictSweep<Space>::accelerations(const double* positions, const double* speeds, const double* efforts,
+Evaluation StrictSweep<Space>::accelerations(const double* positions, const double* speeds, double* efforts,
                                              double* result, std::byte* work) const noexcept {
   const StrictState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_};
   for (const StrictNode<Space>& node : nodes_) {

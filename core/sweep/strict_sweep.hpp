@@ -62,8 +62,9 @@ class StrictSweep {
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
   /// What was computed once for all evaluations, a line each.
   [[nodiscard]] std::vector<std::string> savings(const Tree& tree) const;
-  /// Accelerations of all speeds from positions, speeds and applied efforts.
-  Evaluation accelerations(const double* positions, const double* speeds, const double* efforts, double* result,
+  /// Accelerations of all speeds from positions, speeds and applied efforts. Those of driven speeds are given in
+  /// `result`; all efforts on them, the applied ones among them, are left in `efforts`.
+  Evaluation accelerations(const double* positions, const double* speeds, double* efforts, double* result,
                            std::byte* work) const noexcept;
 
  private:

@@ -45,7 +45,7 @@ struct StrictNodeWork {
   typename Space::Twist sigma, sigma0;  ///< σ̄ and σ0 of the hinge
   Response<Space> response;
   typename Space::Twist A, A0;
-  // One rate: ẍ = u − row·Ā' − row0·A0'.
+  // One rate: ẍ = u − row·Ā' − row0·A0'. Of a driven hinge `row` keeps p of the response.
   typename Space::Twist row, row0;
   double u;
   StrictElimination<Space> elimination;  ///< several rates
@@ -55,7 +55,7 @@ template <class Space>
 struct StrictState {
   const double* positions;
   const double* speeds;
-  const double* efforts;
+  double* efforts;  ///< on driven rates overwritten with all efforts there
   double* result;
   std::byte* work;
   const StrictNode<Space>* nodes;

@@ -20,9 +20,10 @@ inline void given_acceleration(const SymmetricNode<Space>& node, const Symmetric
   } else if constexpr (Space::angular == 3) {
     if (joint.kind != Joint::fixed) {
       const HingeMotion motion = general_motion(joint, s.positions + joint.position, s.speeds + joint.speed);
+      Twist* H = at<JointElimination<Space>>(s.work, node.work_elimination)->H;
       for (Eigen::Index i = 0; i < motion.H.cols(); ++i) {
-        w.elimination.H[i] = Twist::of(motion.H.col(i));
-        A += w.elimination.H[i] * s.efforts[joint.speed + static_cast<std::size_t>(i)];
+        H[i] = Twist::of(motion.H.col(i));
+        A += H[i] * s.efforts[joint.speed + static_cast<std::size_t>(i)];
       }
     }
   }
@@ -34,9 +35,10 @@ inline void given_acceleration(const SymmetricNode<Space>& node, const Symmetric
     const Twist* J = at<Twist>(s.work, node.work_J);
     if (flavor != Flavor::frozen && node.root_station >= 0) {
       const Twist* JM = J + n * static_cast<int>(node.stations.size());
-      A -= w.root_sigma;
+      const auto& root = *at<RootWork<Space>>(s.work, node.work_root);
+      A -= root.sigma;
       for (int i = 0; i < n; ++i) A -= JM[i] * a[i];
-      A = Space::from_child(w.root, A);
+      A = Space::from_child(root.frame, A);
     }
     w.A = A;
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
@@ -49,7 +51,7 @@ inline void given_acceleration(const SymmetricNode<Space>& node, const Symmetric
                                       : Space::to_child(sw.frame, A) + sw.sigma;
       for (int i = 0; i < n; ++i) sw.A += partial[i] * a[i];
       // From here on p is the wrench that holds what the station carries.
-      sw.p = flavor == Flavor::frozen ? Twist::zero() : sw.p + sw.I * sw.A;
+      sw.p = flavor == Flavor::frozen ? Twist::zero() : sw.p + station.carried.inertia * sw.A;
     }
   }
   w.p = node.base.inertia * A + node.base.velocity_wrench(w.V);
@@ -111,7 +113,7 @@ template <class Space, int N, Flavor flavor>
     }
     if (flavor != Flavor::frozen && node.root_station >= 0) {
       // The hinge's wrench acts at M, which the modes move.
-      F = Space::to_parent(Space::inverse(w.root), F);
+      F = Space::to_parent(Space::inverse(at<RootWork<Space>>(s.work, node.work_root)->frame), F);
       const Twist* JM = J + n * static_cast<int>(node.stations.size());
       for (int i = 0; i < n; ++i) h[i] -= Space::dot(JM[i], F);
     }
@@ -122,7 +124,8 @@ template <class Space, int N, Flavor flavor>
     s.result[joint.speed] = joint.direction * component<Space>(joint.kind, F);
   } else if constexpr (Space::angular == 3) {
     if (joint.kind != Joint::fixed) {
-      for (std::size_t i = 0; i < joint.speeds; ++i) s.result[joint.speed + i] = Space::dot(w.elimination.H[i], F);
+      const Twist* H = at<JointElimination<Space>>(s.work, node.work_elimination)->H;
+      for (std::size_t i = 0; i < joint.speeds; ++i) s.result[joint.speed + i] = Space::dot(H[i], F);
     }
   }
   if (node.parent < 0) return;

@@ -13,9 +13,6 @@
 
 namespace withy::sweep {
 
-/// What of a node the compiler knows: rigid; ruthless; its modes without truncation, of expanded or exact kinematics.
-enum class Flavor { rigid, frozen, full, exact };
-
 /// Constant elimination of a frozen leaf's modes.
 template <class Space>
 void precompute(SymmetricNode<Space>& node) {
@@ -57,6 +54,9 @@ template <class Space, int N, Flavor flavor>
   if (node.parent >= 0) V += Space::to_child(joint.SM, *Outer(node, s).V);
   w.sigma = node.parent >= 0 ? Space::cross(V, joint.rate) : Twist::zero();
   if (has_bias(node.joint.kind)) w.sigma += joint.bias;
+  if (node.joint.driven && s.driven != nullptr) [[unlikely]]
+    w.sigma += driven_acceleration<Space>(node.joint, s.positions + node.joint.position, s.speeds + node.joint.speed,
+                                          s.result + node.joint.speed);
 
   if constexpr (flavor == Flavor::frozen) {
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
@@ -79,10 +79,11 @@ template <class Space, int N, Flavor flavor>
       Twist* JM = J + n * static_cast<int>(node.stations.size());
       section_motion<Space, N, flavor>(node, static_cast<std::size_t>(node.root_station), s, m, JM);
       const Twist rate = Space::to_child(node.M, m.rate);
-      w.root = Space::compose(m.frame, node.M);
-      w.root_sigma = Space::cross(V, rate) + Space::to_child(node.M, m.bias);
+      auto& root = *at<RootWork<Space>>(s.work, node.work_root);
+      root.frame = Space::compose(m.frame, node.M);
+      root.sigma = Space::cross(V, rate) + Space::to_child(node.M, m.bias);
       for (int i = 0; i < n; ++i) JM[i] = Space::to_child(node.M, JM[i]);
-      V = Space::from_child(w.root, V - rate);
+      V = Space::from_child(root.frame, V - rate);
     }
     for (std::size_t k = 0; k < node.stations.size(); ++k) {
       const auto& station = node.stations[k];
@@ -94,13 +95,11 @@ template <class Space, int N, Flavor flavor>
       sw.frame = m.frame;
       sw.V = VS;
       sw.sigma = Space::cross(VS, m.rate) + m.bias;
-      sw.I = station.carried.inertia;
       sw.p = station.carried.velocity_wrench(VS);
     }
   }
   w.V = V;
   if (flavor == Flavor::frozen && is_constant(node, s)) return;  // nothing is added to what it has precomputed
-  w.I = node.base.inertia;
   w.p = node.base.velocity_wrench(V);
 }
 
@@ -150,8 +149,10 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
       for (int i = 0; i < n; ++i) C[i] = node.C0[static_cast<std::size_t>(i)];
       for (int i = 0; i < n * n; ++i) G[i] = node.G0[static_cast<std::size_t>(i)];
       for (std::size_t k = 0; k < node.stations.size(); ++k) {
-        if (node.stations[k].has_children)
-          collect_frozen_station<Space, N>(stations[k], node.stations[k], n, I, p, C, G, y);
+        const auto& station = node.stations[k];
+        if (!station.has_children) continue;
+        const auto& IS = *at<typename Space::Inertia>(s.work, station.work_I);
+        collect_frozen_station<Space, N>(stations[k], IS, station, n, I, p, C, G, y);
       }
     }
   } else {
@@ -163,12 +164,15 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
     integrate_mass<Space, N, flavor>(node, s, V, I, p, C, G, y);
     Twist* J = at<Twist>(s.work, node.work_J);
     for (std::size_t k = 0; k < node.stations.size(); ++k) {
-      if (node.stations[k].loaded)
-        collect_station<Space, N>(stations[k], J + static_cast<int>(k) * n, n, I, p, C, G, y);
+      const auto& station = node.stations[k];
+      if (!station.loaded) continue;
+      typename Space::Inertia IS = station.carried.inertia;
+      if (station.has_children) IS += *at<typename Space::Inertia>(s.work, station.work_I);
+      collect_station<Space, N>(stations[k], IS, J + static_cast<int>(k) * n, n, I, p, C, G, y);
     }
     if (node.root_station >= 0) {
-      const auto& w = *at<NodeWork<Space>>(s.work, node.work);
-      move_to_root<Space, N>(w.root, w.root_sigma, n, J + n * static_cast<int>(node.stations.size()), I, p, C, G, y);
+      const auto& root = *at<RootWork<Space>>(s.work, node.work_root);
+      move_to_root<Space, N>(root.frame, root.sigma, n, J + n * static_cast<int>(node.stations.size()), I, p, C, G, y);
     }
   }
   // q̈ = G⁻¹ (−K q − D q̇ − h − Cᵀ A), with G = L Δ Lᵀ, Y = L⁻¹ Cᵀ, y = L⁻¹ (…).
@@ -241,14 +245,19 @@ template <class Space, int N, Flavor flavor>
   using Twist = typename Space::Twist;
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
   const bool constant = flavor == Flavor::frozen && is_constant(node, s);
-  typename Space::Inertia I = constant ? node.reduced : w.I;
+  typename Space::Inertia I = constant ? node.reduced : node.base.inertia;
+  if (node.has_children) I += *at<typename Space::Inertia>(s.work, node.work_I);
   Twist p = constant ? node.base.velocity_wrench(w.V) : w.p;
   if constexpr (flavor != Flavor::rigid) {
     if (!eliminate_modes<Space, N, flavor>(node, s, w.V, I, p)) return false;
   }
   // Elimination of ẍ, and what the hinge passes to the parent's station: inertia I, wrench p at zero A'.
   const JointData<Space>& joint = node.joint;
-  if (single(joint.kind)) {
+  if (joint.driven) [[unlikely]] {  // passes on everything
+    *at<DrivenWork<Space>>(s.work, node.work_driven) = {I, p};
+    if (node.parent < 0) return true;
+    p += I * w.sigma;
+  } else if (single(joint.kind)) {
     const bool turns = joint.kind == Joint::rotate;
     const Twist U = turns ? I.turn_column() : I.slide_column();
     const double inertia = turns ? U.turn() : U.slide();
@@ -265,17 +274,21 @@ template <class Space, int N, Flavor flavor>
     if (node.parent < 0) return true;
     p += I * w.sigma;
   } else if constexpr (Space::angular == 3) {  // a planar tree has no other hinges
-    if (!eliminate_joint(joint, s, w.elimination, I, p)) return false;
+    if (!eliminate_joint(joint, s, *at<JointElimination<Space>>(s.work, node.work_elimination), I, p)) return false;
     if (node.parent < 0) return true;
     p += I * w.sigma;
   }
-  const Outer outer(node, s);
+  auto& outer_I = *at<typename Space::Inertia>(s.work, node.work_outer_I);
   if (node.begins) {
-    *outer.I = Space::to_parent(w.SM, I);
-    *outer.p = Space::to_parent(w.SM, p);
+    outer_I = Space::to_parent(w.SM, I);
   } else {
-    *outer.I += Space::to_parent(w.SM, I);
-    *outer.p += Space::to_parent(w.SM, p);
+    outer_I += Space::to_parent(w.SM, I);
+  }
+  Twist& outer_p = *Outer(node, s).p;
+  if (node.begins_frozen) {
+    outer_p = Space::to_parent(w.SM, p);
+  } else {
+    outer_p += Space::to_parent(w.SM, p);
   }
   return true;
 }
@@ -304,7 +317,7 @@ inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<
       for (int i = 0; i < n; ++i) y[i] -= Space::dot(partial[i], carried);
     }
     if (flavor != Flavor::frozen && node.root_station >= 0) {
-      p = Space::to_parent(Space::inverse(w.root), p);
+      p = Space::to_parent(Space::inverse(at<RootWork<Space>>(s.work, node.work_root)->frame), p);
       const Twist* JM = J + n * static_cast<int>(node.stations.size());
       for (int i = 0; i < n; ++i) y[i] += Space::dot(JM[i], p);
     }
@@ -314,12 +327,14 @@ inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<
     for (int i = 0; i < n; ++i) p += Y[i] * (L[i * n + i] * y[i]);
   }
   const JointData<Space>& joint = node.joint;
-  if (single(joint.kind)) {
+  if (joint.driven) [[unlikely]] {
+    // The force passes on whole.
+  } else if (single(joint.kind)) {
     w.u = joint.direction * s.efforts[joint.speed] - component<Space>(joint.kind, p);
     p += w.U * (w.inverse * w.u);
   } else if constexpr (Space::angular == 3) {
     if (joint.kind != Joint::fixed) {
-      JointElimination<Space>& e = w.elimination;
+      auto& e = *at<JointElimination<Space>>(s.work, node.work_elimination);
       const auto k = static_cast<int>(joint.speeds);
       for (int i = 0; i < k; ++i) e.y[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Space::dot(e.H[i], p);
       solve_lower<-1>(e.L, k, e.y);
@@ -339,13 +354,21 @@ template <class Space, int N, Flavor flavor>
   const Twist& outer = node.parent < 0 ? *s.world : *Outer(node, s).A;
   Twist A = w.sigma;
   if (joint.pose_matters) A += Space::to_child(w.SM, outer);
-  if (single(joint.kind)) {
+  if (joint.driven) [[unlikely]] {
+    if (s.driven != nullptr) {
+      const auto& asked = *at<DrivenWork<Space>>(s.work, node.work_driven);
+      driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed, asked.I * A + asked.p,
+                            s.driven + joint.speed);
+    } else {
+      for (std::size_t i = 0; i < joint.speeds; ++i) s.result[joint.speed + i] = 0;
+    }
+  } else if (single(joint.kind)) {
     const double x = (w.u - Space::dot(w.U, A)) * w.inverse;
     A += along<Space>(joint.kind, x);
     s.result[joint.speed] = joint.direction * x;
   } else if constexpr (Space::angular == 3) {
     if (joint.kind != Joint::fixed) {
-      const JointElimination<Space>& e = w.elimination;
+      const auto& e = *at<JointElimination<Space>>(s.work, node.work_elimination);
       double* x = s.result + joint.speed;
       back_substitute<-1, Space>(e.L, e.Y, e.y, static_cast<int>(joint.speeds), A, x);
       for (std::size_t i = 0; i < joint.speeds; ++i) A += e.H[i] * x[i];
@@ -374,9 +397,10 @@ template <class Space, int N, Flavor flavor>
       const Twist* J = at<Twist>(s.work, node.work_J);
       if (node.root_station >= 0) {
         const Twist* JM = J + n * static_cast<int>(node.stations.size());
-        A -= w.root_sigma;
+        const auto& root = *at<RootWork<Space>>(s.work, node.work_root);
+        A -= root.sigma;
         for (int i = 0; i < n; ++i) A -= JM[i] * a[i];
-        A = Space::from_child(w.root, A);
+        A = Space::from_child(root.frame, A);
       }
       w.A = A;
       for (std::size_t k = 0; k < node.stations.size(); ++k) {

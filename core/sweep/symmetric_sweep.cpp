@@ -1,5 +1,7 @@
 #include "withy/core/sweep/symmetric_sweep.hpp"
 
+#include <map>
+
 #include "withy/core/sweep/symmetric_inverse.hpp"
 #include "withy/core/sweep/symmetric_kernel.hpp"
 #include "withy/core/sweep/with_modes.hpp"
@@ -21,9 +23,9 @@ inline void with_flavor(const SymmetricNode<Space>& node, Action&& action) {
   with_modes(node.modes, [&](auto n) {
     if constexpr (n.value == 0) {
       action(n, std::integral_constant<Flavor, Flavor::rigid>{});
-    } else if (node.frozen) {
+    } else if (node.flavor == Flavor::frozen) {
       action(n, std::integral_constant<Flavor, Flavor::frozen>{});
-    } else if (node.rod.integrals.packs > 0) {
+    } else if (node.flavor == Flavor::exact) {
       action(n, std::integral_constant<Flavor, Flavor::exact>{});
     } else {
       action(n, std::integral_constant<Flavor, Flavor::full>{});
@@ -39,12 +41,12 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
       parent(given.parent),
       parent_station(given.parent_station),
       modes(static_cast<int>(given.modes)),
-      joint(given),
-      frozen(terms.truncation == Truncation::ruthless && given.modes > 0),
       mode_position(given.mode_position),
       mode_speed(given.mode_speed),
+      joint(given),
       stiffness(row_major(given.stiffness)),
       damping(row_major(given.damping)) {
+  const bool frozen = terms.truncation == Truncation::ruthless && given.modes > 0;
   NodeSpec spec = in_strain_order(given, terms.strain);
   if (frozen) spec = rooted(std::move(spec));
   root_station = spec.root_station;
@@ -61,6 +63,7 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
     stations.push_back(std::move(station));
   }
   if (frozen) {
+    flavor = Flavor::frozen;
     const Invariants invariants(given, terms.strain);
     base = RigidPart<Space>(invariants.I0);
     G0 = row_major(invariants.G0);
@@ -70,7 +73,9 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
     }
   } else if (terms.strain == StrainOrder::exact && modes > 0) {
     rod = RodKinematics<Space>(spec);
+    flavor = rod.integrals.packs > 0 ? Flavor::exact : Flavor::full;
   } else {
+    flavor = modes > 0 ? Flavor::full : Flavor::rigid;
     mass = MassTable<Space>(spec);
     for (const Section& s : spec.sections) {
       RotarySection<Space> section{Fields<Space>(s.at), s.inertia(2, 2), s.inertia};
@@ -91,24 +96,18 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
     SymmetricNode<Space>& parent = nodes_[static_cast<std::size_t>(spec.parent)];
     const NodeSpec& parent_spec = tree.nodes[static_cast<std::size_t>(spec.parent)];
     parent.leaf = false;
-    if (spec.parent_station >= 0) {
+    if (spec.parent_station < 0) {
+      parent.has_children = true;
+    } else {
       SymmetricStation<Space>& station = parent.stations[static_cast<std::size_t>(spec.parent_station)];
       station.loaded = station.has_children = true;
       // Rooting turned the section's axes with the frame.
-      if (parent.frozen && parent_spec.root_station >= 0) {
+      if (parent.flavor == Flavor::frozen && parent_spec.root_station >= 0) {
         node.joint.F = Space::make(Pose{parent_spec.M.R.transpose(), Vector3::Zero()} * spec.F);
       }
     }
   }
-  std::vector<std::vector<bool>> begun(nodes_.size());
-  for (std::size_t i = nodes_.size(); i-- > 0;) {  // the order in which the inward pass meets them
-    SymmetricNode<Space>& node = nodes_[i];
-    if (node.parent_station < 0 || !nodes_[static_cast<std::size_t>(node.parent)].frozen) continue;
-    std::vector<bool>& stations = begun[static_cast<std::size_t>(node.parent)];
-    stations.resize(nodes_[static_cast<std::size_t>(node.parent)].stations.size());
-    node.begins = !stations[static_cast<std::size_t>(node.parent_station)];
-    stations[static_cast<std::size_t>(node.parent_station)] = true;
-  }
+  place_sums(memory);
   for (SymmetricNode<Space>& node : nodes_) {
     using Twist = typename Space::Twist;
     const auto n = static_cast<std::size_t>(node.modes);
@@ -121,12 +120,44 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
     node.work_h = memory.template take<double>(n);
     node.work_rod = memory.template take<Pack>(rod_work(node.rod, node.modes));
     node.work_P = memory.template take<Pack>(n * Space::linear);
-    if (node.frozen && node.leaf) precompute(node);
+    if (node.joint.driven) node.work_driven = memory.template take<DrivenWork<Space>>(1);
+    if (node.root_station >= 0) node.work_root = memory.template take<RootWork<Space>>(1);
+    if (!single(node.joint.kind) && node.joint.kind != Joint::fixed)
+      node.work_elimination = memory.template take<JointElimination<Space>>(1);
+    if (node.flavor == Flavor::frozen && node.leaf) precompute(node);
   }
   work_size_ = memory.size();
   const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
   world_acceleration_ = Space::Twist::of(Space::angle(Vector3::Zero()), Space::position(-g));
   for (SymmetricNode<Space>& node : nodes_) node.joint.pose_matters = node.parent >= 0 || !g.isZero(0);
+}
+
+template <class Space>
+void SymmetricSweep<Space>::place_sums(WorkLayout& memory) {
+  std::vector<std::size_t> vacant;
+  std::map<std::pair<int, int>, std::size_t> sums;  // of node and station
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    SymmetricNode<Space>& node = nodes_[i];
+    // Its own have been read when it writes to the next.
+    for (int k = -1; k < static_cast<int>(node.stations.size()); ++k) {
+      const auto own = sums.find({static_cast<int>(i), k});
+      if (own == sums.end()) continue;
+      (k < 0 ? node.work_I : node.stations[static_cast<std::size_t>(k)].work_I) = own->second;
+      vacant.push_back(own->second);
+      sums.erase(own);
+    }
+    if (node.parent < 0) continue;
+    const auto [outer, first] = sums.try_emplace({node.parent, node.parent_station});
+    if (first) {
+      if (vacant.empty()) vacant.push_back(memory.template take<typename Space::Inertia>(1));
+      outer->second = vacant.back();
+      vacant.pop_back();
+    }
+    node.begins = first;
+    node.begins_frozen =
+        first && node.parent_station >= 0 && nodes_[static_cast<std::size_t>(node.parent)].flavor == Flavor::frozen;
+    node.work_outer_I = outer->second;
+  }
 }
 
 template <class Space>
@@ -137,7 +168,7 @@ std::vector<std::string> SymmetricSweep<Space>::savings(const Tree& tree) const 
     const std::string name = "'" + tree.nodes[i].name + "': ";
     if (!node.factor.empty()) {
       lines.push_back(name + "its modes are eliminated once for all evaluations: nothing hangs on it");
-    } else if (node.frozen) {
+    } else if (node.flavor == Flavor::frozen) {
       lines.push_back(name + "mass integrals are those of the undeformed body, computed once");
     } else if (node.mass.packs > 0) {
       lines.push_back(name + std::to_string(tree.nodes[i].particles.size()) + " mass points became " +
@@ -172,9 +203,10 @@ void SymmetricSweep<Space>::outward(const SymmetricState<Space>& state) const no
 }
 
 template <class Space>
-Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const double* speeds, const double* efforts,
+Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const double* speeds, double* efforts,
                                                 double* result, std::byte* work) const noexcept {
-  const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_};
+  const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_,
+                                    0,         efforts};
   const Evaluation evaluation = inward(state);
   if (evaluation.ok()) outward(state);
   return evaluation;

@@ -16,6 +16,9 @@
 
 namespace withy::sweep {
 
+/// What of a node the compiler knows: rigid; ruthless; its modes without truncation, of expanded or exact kinematics.
+enum class Flavor { rigid, frozen, full, exact };
+
 /// A station in a symmetric sweep.
 template <class Space>
 struct SymmetricStation {
@@ -23,6 +26,7 @@ struct SymmetricStation {
   RigidPart<Space> carried;  ///< rigid bodies it carries; nothing in a frozen node
   bool loaded = false;       ///< it carries mass or children
   bool has_children = false;
+  std::size_t work_I = 0;                ///< where its children sum their articulated inertia
   std::vector<typename Space::Twist> J;  ///< at q = 0
 };
 
@@ -40,12 +44,17 @@ struct SymmetricNode {
   using Twist = typename Space::Twist;
 
   int body = 0, parent = -1, parent_station = -1, root_station = -1, modes = 0;
-  JointData<Space> joint;
-  typename Space::Frame M;  ///< hinge frame in the root station's section
-  bool frozen = false;      ///< ruthless: integrals at q = 0, velocity terms at q̇ = 0; sections parallel to its frame
-  bool leaf = true;         ///< nothing hangs on it
-  bool begins = false;      ///< it is the first to write the sums of the parent's station, which carries nothing else
+  /// Frozen is ruthless: integrals at q = 0, velocity terms at q̇ = 0; sections parallel to the node's frame.
+  Flavor flavor = Flavor::rigid;
+  bool leaf = true;              ///< nothing hangs on it
+  bool has_children = false;     ///< on its frame, not on a station
+  bool begins = false;           ///< it is the first to write the sum of inertias of what it hangs on
+  bool begins_frozen = false;    ///< and of the velocity wrench, of a station that carries nothing else
+  std::size_t work_I = 0;        ///< where its children sum their articulated inertia
+  std::size_t work_outer_I = 0;  ///< the same of what it hangs on
   std::size_t mode_position = 0, mode_speed = 0;
+  JointData<Space> joint;
+  typename Space::Frame M;                 ///< hinge frame in the root station's section
   std::vector<double> stiffness, damping;  ///< n×n
   RigidPart<Space> base;                   ///< the rigid part; everything in a frozen node
   MassTable<Space> mass;
@@ -62,7 +71,7 @@ struct SymmetricNode {
   typename Space::Inertia reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
   // Work memory.
   std::size_t work = 0, work_J = 0, work_h = 0, work_C = 0, work_G = 0, work_y = 0, work_P = 0, work_stations = 0;
-  std::size_t work_rod = 0;
+  std::size_t work_rod = 0, work_root = 0, work_elimination = 0, work_driven = 0;
 
   SymmetricNode(const NodeSpec& spec, Terms terms);
 };
@@ -80,8 +89,9 @@ class SymmetricSweep {
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
   /// What was computed once for all evaluations, a line each.
   [[nodiscard]] std::vector<std::string> savings(const Tree& tree) const;
-  /// Accelerations of all speeds from positions, speeds and applied efforts.
-  Evaluation accelerations(const double* positions, const double* speeds, const double* efforts, double* result,
+  /// Accelerations of all speeds from positions, speeds and applied efforts. Those of driven speeds are given in
+  /// `result`; all efforts on them, the applied ones among them, are left in `efforts`.
+  Evaluation accelerations(const double* positions, const double* speeds, double* efforts, double* result,
                            std::byte* work) const noexcept;
   /// M u̇ − f from positions, speeds and accelerations; with `inertial` alone, M u̇: speeds, weight and K q count as
   /// zero.
@@ -93,6 +103,9 @@ class SymmetricSweep {
   void solve(const double* forces, double delta, double* result, std::byte* work) const noexcept;
 
  private:
+  /// Gives each sum of articulated inertias its place: one for each that is alive at a time on the way inward, so that
+  /// a chain needs one, which stays in the nearest cache.
+  void place_sums(WorkLayout& memory);
   Evaluation inward(const SymmetricState<Space>& state) const noexcept;
   void outward(const SymmetricState<Space>& state) const noexcept;
 

@@ -13,8 +13,7 @@ struct StationWork {
   typename Space::Frame frame;  ///< of S in the node's frame
   typename Space::Twist V;      ///< twist of S
   typename Space::Twist sigma;  ///< σ_S of (2)
-  typename Space::Inertia I;    ///< articulated inertia of what it carries
-  typename Space::Twist p;      ///< its velocity wrench
+  typename Space::Twist p;      ///< velocity wrench of what it carries
   typename Space::Twist A;      ///< acceleration of S
 };
 
@@ -26,21 +25,31 @@ struct JointElimination {
   double L[most * most], y[most];
 };
 
+/// Work of a node whose modes move its root station.
+template <class Space>
+struct RootWork {
+  typename Space::Frame frame;  ///< M in the node's frame
+  typename Space::Twist sigma;  ///< σ of the root station
+};
+
+/// What a node with a driven hinge asks of the hinge: F = I A + p.
+template <class Space>
+struct DrivenWork {
+  typename Space::Inertia I;
+  typename Space::Twist p;
+};
+
 /// Work of a node.
 template <class Space>
 struct NodeWork {
   typename Space::Frame SM;     ///< of JointMotion
   typename Space::Twist V;      ///< twist of the node's frame
   typename Space::Twist sigma;  ///< σ of (1)
-  typename Space::Inertia I;    ///< articulated inertia, rigid part
-  typename Space::Twist p;
+  typename Space::Twist p;      ///< velocity wrench
   typename Space::Twist A;
-  typename Space::Twist U;              ///< one rate: column of I
-  double inverse;                       ///< one rate: 1 / its articulated inertia
-  double u;                             ///< one rate: effort left
-  typename Space::Frame root;           ///< M in the node's frame, where the modes move the root station
-  typename Space::Twist root_sigma;     ///< σ of the root station, likewise
-  JointElimination<Space> elimination;  ///< several rates
+  typename Space::Twist U;  ///< one rate: column of the articulated inertia
+  double inverse;           ///< one rate: 1 / its articulated inertia
+  double u;                 ///< one rate: effort left
 };
 
 /// The arrays of one evaluation.
@@ -54,22 +63,23 @@ struct SymmetricState {
   const SymmetricNode<Space>* nodes;
   const typename Space::Twist* world;
   double delta = 0;  ///< above 0: G + δ D + δ² K in the place of G
+  /// Receives all efforts on driven rates, whose accelerations `result` holds; null: they do not accelerate.
+  double* driven = nullptr;
 };
 
 /// The quantities of what a node hangs on – a node's frame or a station – in the parent's work memory.
 template <class Space>
 struct Outer {
   typename Space::Twist *V, *A, *p;
-  typename Space::Inertia* I;
 
   Outer(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
     const SymmetricNode<Space>& parent = s.nodes[node.parent];
     if (node.parent_station < 0) {
       auto& w = *at<NodeWork<Space>>(s.work, parent.work);
-      V = &w.V, A = &w.A, p = &w.p, I = &w.I;
+      V = &w.V, A = &w.A, p = &w.p;
     } else {
       auto& w = at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station];
-      V = &w.V, A = &w.A, p = &w.p, I = &w.I;
+      V = &w.V, A = &w.A, p = &w.p;
     }
   }
 };
@@ -122,17 +132,17 @@ inline void back_substitute(const double* L, const typename Space::Twist* Y, con
   }
 }
 
-/// Adds what a station carries to its body: equations (2) into (3).
+/// Adds what a station carries, of articulated inertia IS, to its body: equations (2) into (3).
 template <class Space, int N>
-inline void collect_station(const StationWork<Space>& sw, const typename Space::Twist* J, int modes,
-                            typename Space::Inertia& I, typename Space::Twist& p, typename Space::Twist* C, double* G,
-                            double* h) {
+inline void collect_station(const StationWork<Space>& sw, const typename Space::Inertia& IS,
+                            const typename Space::Twist* J, int modes, typename Space::Inertia& I,
+                            typename Space::Twist& p, typename Space::Twist* C, double* G, double* h) {
   const int n = count<N>(modes);
-  const typename Space::Twist force = sw.p + sw.I * sw.sigma;
-  I += Space::to_parent(sw.frame, sw.I);
+  const typename Space::Twist force = sw.p + IS * sw.sigma;
+  I += Space::to_parent(sw.frame, IS);
   p += Space::to_parent(sw.frame, force);
   for (int i = 0; i < n; ++i) {
-    const typename Space::Twist IJ = sw.I * J[i];
+    const typename Space::Twist IJ = IS * J[i];
     C[i] += Space::to_parent(sw.frame, IJ);
     h[i] += Space::dot(J[i], force);
     for (int j = 0; j <= i; ++j) G[i * n + j] += Space::dot(IJ, J[j]);
@@ -141,15 +151,15 @@ inline void collect_station(const StationWork<Space>& sw, const typename Space::
 
 /// The same for a frozen node, whose sections are parallel to its frame and whose velocity terms vanish.
 template <class Space, int N>
-inline void collect_frozen_station(const StationWork<Space>& sw, const SymmetricStation<Space>& station, int modes,
-                                   typename Space::Inertia& I, typename Space::Twist& p, typename Space::Twist* C,
-                                   double* G, double* h) {
+inline void collect_frozen_station(const StationWork<Space>& sw, const typename Space::Inertia& IS,
+                                   const SymmetricStation<Space>& station, int modes, typename Space::Inertia& I,
+                                   typename Space::Twist& p, typename Space::Twist* C, double* G, double* h) {
   const int n = count<N>(modes);
   const typename Space::Twist* J = station.J.data();
-  I += Space::shift_to_parent(station.fields.X, sw.I);
+  I += Space::shift_to_parent(station.fields.X, IS);
   p += Space::shift_to_parent(station.fields.X, sw.p);
   for (int i = 0; i < n; ++i) {
-    const typename Space::Twist IJ = sw.I * J[i];
+    const typename Space::Twist IJ = IS * J[i];
     C[i] += Space::shift_to_parent(station.fields.X, IJ);
     h[i] += Space::dot(J[i], sw.p);
     for (int j = 0; j <= i; ++j) G[i * n + j] += Space::dot(IJ, J[j]);

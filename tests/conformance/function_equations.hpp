@@ -34,6 +34,15 @@ class FunctionEquations : public EquationsOfMotion {
   void normalize(std::span<double> y) const noexcept override {
     if (normalize_) normalize_(y);
   }
+  void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
+                    Work&) const noexcept override {
+    for (double& e : efforts) e = 0;
+    if (load_efforts_) load_efforts_(t, y, load, efforts);
+  }
+  Evaluation motion_efforts(double, std::span<const double>, std::span<double> efforts, Work&) const noexcept override {
+    for (double& e : efforts) e = 0;
+    return {};
+  }
   void inverse_dynamics(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {}
   void mass_times(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {}
   DenseSystem system(double t, std::span<const double> y) const override {
@@ -50,6 +59,7 @@ class FunctionEquations : public EquationsOfMotion {
 
   std::function<void(std::span<double>)> normalize_;
   std::function<DenseSystem(double, std::span<const double>)> system_;
+  std::function<void(double, std::span<const double>, int, std::span<double>)> load_efforts_;
   std::function<Energies(std::span<const double>)> energies_;
 
  private:

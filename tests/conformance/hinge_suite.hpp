@@ -56,6 +56,33 @@ inline void expect_rates_are_derivatives(const Hinge& hinge) {
   }
 }
 
+/// Derivatives of H and of the bias along each rate.
+inline void expect_motion_derivatives(const Hinge& hinge) {
+  std::mt19937 random(3);
+  for (int k = 0; k < 5; ++k) {
+    const HingePoint p = random_hinge_point(hinge, random);
+    for (std::size_t along = 0; along < p.u.size(); ++along) {
+      const double h = 1e-5;
+      const auto displaced = [&](double distance) {
+        std::vector<double> unit(p.u.size(), 0.0), direction(p.x.size());
+        unit[along] = 1;
+        hinge.derivatives(p.x, unit, direction);
+        HingePoint at = p;
+        for (std::size_t i = 0; i < at.x.size(); ++i) at.x[i] += distance * direction[i];
+        return motion_at(hinge, at, 0);
+      };
+      const HingeMotion ahead = displaced(h), behind = displaced(-h);
+      HingeMotion derivative;
+      hinge.motion_derivative(p.x, p.u, along, derivative);
+      EXPECT_LT(((ahead.H - behind.H) / (2 * h) - derivative.H).norm(), hinge_tolerance);
+      EXPECT_LT(((ahead.bias - behind.bias) / (2 * h) - derivative.bias).norm(), hinge_tolerance);
+      // What a hinge that does not override it gets.
+      hinge.Hinge::motion_derivative(p.x, p.u, along, derivative);
+      EXPECT_LT(((ahead.H - behind.H) / (2 * h) - derivative.H).norm(), hinge_tolerance);
+    }
+  }
+}
+
 /// The reference pose is the identity, and normalizing twice is normalizing once.
 inline void expect_reference_and_normalization(const Hinge& hinge) {
   std::vector<double> x(hinge.coordinates(), 0.5);
@@ -101,6 +128,7 @@ inline void expect_kernel_is_the_motion(const Hinge& hinge) {
 
 inline void expect_hinge_conforms(const Hinge& hinge) {
   expect_rates_are_derivatives(hinge);
+  expect_motion_derivatives(hinge);
   expect_reference_and_normalization(hinge);
   expect_kernel_is_the_motion(hinge);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -208,6 +209,16 @@ TEST_P(RandomTrees, evaluation_neither_allocates_nor_depends_on_its_work_memory)
 /// Deflections of a few tenths of the length and more, turns of sections to 3 rad. In a plane the two agree to
 /// rounding. In space the sweep goes from node to node with an error of the seventh power of the turn, here to 0.5 rad;
 /// the reference does not.
+/// So that the run without AVX2 (see CMakeLists.txt) is one.
+TEST(InstructionSet, is_the_processors_unless_it_is_denied) {
+  const char* tunables = std::getenv("GLIBC_TUNABLES");
+  const bool denied = tunables != nullptr && std::string(tunables).find("-AVX2") != std::string::npos;
+  bool taken = false;
+  for (const std::string& line : Case(1, {}, "quadratic").equations->savings())
+    taken = taken || line.find("x86-64-v3") != std::string::npos;
+  EXPECT_EQ(taken, !denied && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"));
+}
+
 TEST(Exact, sweep_solves_the_dense_equations_at_large_deflections) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const bool planar = seed % 2 == 0;

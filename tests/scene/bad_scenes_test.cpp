@@ -1,6 +1,8 @@
 // Every kind of bad scene and the message a user gets: the place in the file, the path, what is wrong, what is needed.
 #include <gmock/gmock.h>
 
+#include <ostream>
+
 #include "scene_fixture.hpp"
 
 namespace withy::test {
@@ -12,6 +14,8 @@ struct BadScene {
   std::string to;
   const char* message;  ///< after the name of the file, the beginning of the whole report
 };
+/// Instead of its bytes, among them addresses.
+void PrintTo(const BadScene& scene, std::ostream* out) { *out << scene.kind; }
 
 const BadScene bad_scenes[] = {
     {"syntax_unclosed_list", "gravity: [0, -9.81, 0]", "gravity: [0, -9.81, 0",
@@ -187,8 +191,7 @@ const BadScene bad_scenes[] = {
      "3:18: /time/output: got 1e-12 s, which makes 1e+12 outputs; need at most 1e+08"},
     {"negative_deflection_limit", "format: withy/1", "format: withy/1\nlimits: {deflection: -1}",
      "2:22: /limits/deflection: got -1; need finite > 0"},
-    {"motions", "loads:", "motions: {spin: {hinge: shoulder, rate: 1}}\nloads:",
-     "20:1: /motions: prescribed motions are not part of this version; leave them out"},
+    {"motion_type", "loads:", "motions: {spin: {hinge: shoulder, rate: 1}}\nloads:", "20:11: /motions/spin: missing"},
     {"outputs", "loads:", "outputs: {everything: true}\nloads:",
      "20:1: /outputs: outputs cannot be chosen in this version; leave them out"},
     {"initial_unknown_hinge", "loads:", "initial: {hinges: {sholder: {position: [1]}}}\nloads:",

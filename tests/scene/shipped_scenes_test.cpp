@@ -16,7 +16,7 @@ class ShippedScenes : public SceneTest {
 
 TEST_F(ShippedScenes, AreReadAndCompile) {
   for (const char* name : {"pendulum", "two-link-slew", "driven-arm", "beam-on-base", "spacecraft", "screw", "pd-arm",
-                           "least-time-slew"}) {
+                           "least-time-slew", "thruster"}) {
     const Scene scene = read(std::string("scenes/") + name + ".yaml");
     EXPECT_GT(end_of_run(scene), 0) << name;
     EXPECT_FALSE(scene.name.empty()) << name;

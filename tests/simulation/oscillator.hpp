@@ -69,6 +69,12 @@ inline FunctionEquations boom_equations(const Model& model,
     f[4] = effort[0] * y[2];
     return Evaluation{};
   });
+  e.load_efforts_ = [&model](double t, std::span<const double> y, int load, std::span<double> efforts) {
+    for (std::size_t i = 0; i < model.loads().size(); ++i) {
+      if (load < 0 || i == static_cast<std::size_t>(load))
+        model.loads()[i].load->add(t, y.first(2), y.subspan(2, 2), efforts, {});
+    }
+  };
   return e;
 }
 

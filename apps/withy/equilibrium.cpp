@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "withy/apps/withy/analysis.hpp"
+#include "withy/apps/withy/columns.hpp"
+#include "withy/apps/withy/json_text.hpp"
+#include "withy/apps/withy/output.hpp"
+#include "withy/apps/withy/text_table.hpp"
+
+namespace withy::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+TextTable hinge_table(const Configuration& c, const SteadyState& steady) {
+  TextTable table({"<coordinate", "value", "<unit", "rate\n[1/s]", "<held", "effort\n[N m, N]"});
+  const Model& model = c.engine().model();
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = c.layout().hinges[h];
+    const auto columns = coordinate_columns(model.hinges()[h]);
+    for (std::size_t i = 0; i < std::max(slot.positions, slot.speeds); ++i) {
+      const bool has_speed = i < slot.speeds;
+      const bool held = has_speed && c.held()[slot.speed + i];
+      table.add({i < slot.positions ? columns[i].name : c.layout().speed_names[slot.speed + i],
+                 i < slot.positions ? fmt::format("{:.6g}", steady.state.y[slot.position + i]) : "-",
+                 i < slot.positions ? columns[i].unit : "",
+                 has_speed ? fmt::format("{:.6g}", steady.state.y[c.layout().positions + slot.speed + i]) : "-",
+                 held ? "yes" : "no",
+                 held ? fmt::format("{:.6g}", steady.efforts[static_cast<Eigen::Index>(slot.speed + i)]) : "-"});
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+ExitStatus equilibrium(const EquilibriumArguments& arguments) {
+  const Configuration c(arguments);
+  const SteadyState steady = find_steady_state(c.dynamics(), c.state(), c.held());
+  const Tangents tangents =
+      c.dynamics().tangents(steady.state.time, steady.state.y, c.dynamics().steady_accelerations(steady.state.time));
+  const bool steady_for_good = stays_steady(c.dynamics(), tangents, steady.state, c.held());
+  const std::string problem = no_steady_state(c, steady);
+  const Scene& scene = c.engine().scene();
+  const std::string state = write_state(c.engine().model(), steady.state);
+  if (!arguments.out.empty() && steady.converged) write_file(arguments.out, state + '\n');
+
+  Json deflections = Json::object();
+  for (const Tip& tip : tips(c.engine().model())) {
+    if (tip.flexible) deflections[tip.body + ".tip"] = deflection(c.engine().equations(), steady.state.y, tip);
+  }
+  const std::string changing =
+      steady_for_good
+          ? ""
+          : "The hinges turn and what acts on the free coordinates turns with them (gravity in the plane of "
+            "rotation, as a rule): this state is steady at this angle alone.";
+  if (arguments.json) {
+    Json j;
+    j["scene"] = scene.file;
+    j["formulation"] = scene.formulation_name;
+    j.update(steady_json(c, steady));
+    j["tip_deflections"] = deflections;
+    j["stays_steady"] = steady_for_good;
+    j["derivatives"] = derivatives_text(tangents);
+    j["message"] = problem.empty() ? changing : problem;
+    print(json_text(j));
+  } else if (steady.converged) {
+    std::string text = fmt::format("{} in {}: steady after {} steps of Newton's method\n\n{}", scene.file,
+                                   scene.formulation_name, steady.iterations, hinge_table(c, steady).str());
+    if (!deflections.empty()) {
+      TextTable table({"<tip", "deflection x\n[mm]", "y\n[mm]", "z\n[mm]"});
+      for (const auto& [name, d] : deflections.items()) {
+        std::vector<std::string> cells = {name};
+        for (const double x : d.get<std::vector<double>>()) cells.push_back(fmt::format("{:.6g}", 1e3 * x));
+        table.add(std::move(cells));
+      }
+      text += '\n' + table.str();
+    }
+    if (!changing.empty()) text += '\n' + changing + '\n';
+    text += arguments.out.empty() ? "\nThe state is in the output of --json, or kept with --out FILE.\n"
+                                  : "\nState: " + arguments.out + '\n';
+    print(text);
+  }
+  if (problem.empty()) return ExitStatus::done;
+  complain(problem);
+  return ExitStatus::stopped;
+}
+
+}  // namespace withy::app

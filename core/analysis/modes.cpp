@@ -1,0 +1,211 @@
+#include "withy/core/analysis/modes.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace withy {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// The matrices of the free speeds in coordinates scaled so that the diagonal of M is ±1: masses of modes and hinges
+/// may differ by many powers of ten.
+struct Scaled {
+  Eigen::VectorXd scale;
+  Eigen::MatrixXd M, G, K, C;
+
+  Scaled(const Tangents& t, const std::vector<Eigen::Index>& free) {
+    const auto n = static_cast<Eigen::Index>(free.size());
+    scale = t.mass.diagonal()(free).cwiseAbs();
+    for (Eigen::Index i = 0; i < n; ++i) scale[i] = scale[i] > 0 ? 1 / std::sqrt(scale[i]) : 1.0;
+    const auto of_free = [&](const Eigen::MatrixXd& m) -> Eigen::MatrixXd {
+      return scale.asDiagonal() * m(free, free) * scale.asDiagonal();
+    };
+    M = of_free(t.mass), G = of_free(t.by_speed), K = of_free(t.by_position);
+    C = scale.cwiseInverse().asDiagonal() * t.drift(free, free) * scale.asDiagonal();
+    if (!M.allFinite() || !G.allFinite() || !K.allFinite() || !C.allFinite())
+      throw std::domain_error("the derivatives at this state are not finite");
+  }
+};
+
+Eigen::MatrixXd solve_mass(const Eigen::MatrixXd& M, const Eigen::MatrixXd& right) {
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(M);
+  if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular at this state");
+  return lu.solve(right);
+}
+
+struct Root {
+  Complex value;
+  Eigen::VectorXcd shape;  ///< scaled coordinates
+};
+
+/// λ² of M λ² + K, where nothing depends on speeds: keeps pairs exact and zeros simple.
+std::vector<Root> roots_at_rest(const Scaled& s) {
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(-solve_mass(s.M, s.K));
+  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+  std::vector<Root> roots;
+  for (Eigen::Index i = 0; i < s.M.rows(); ++i) {
+    const Complex square = solver.eigenvalues()[i];
+    const Complex value = square.imag() == 0 ? (square.real() < 0 ? Complex(0, std::sqrt(-square.real()))
+                                                                  : Complex(std::sqrt(square.real()), 0))
+                                             : std::sqrt(square);
+    roots.push_back({value, solver.eigenvectors().col(i)});
+    roots.push_back({-value, solver.eigenvectors().col(i)});
+  }
+  return roots;
+}
+
+std::vector<Root> roots_in_motion(const Scaled& s) {
+  const Eigen::Index n = s.M.rows();
+  Eigen::MatrixXd A(2 * n, 2 * n);
+  A << s.C, Eigen::MatrixXd::Identity(n, n), -solve_mass(s.M, s.K), -solve_mass(s.M, s.G);
+  // Speeds in units of √‖A‖ times displacements: one norm for both halves.
+  const double unit = std::sqrt(std::max(1.0, A.bottomLeftCorner(n, n).cwiseAbs().maxCoeff()));
+  A.topRightCorner(n, n) *= unit;
+  A.bottomLeftCorner(n, n) /= unit;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+  std::vector<Root> roots;
+  for (Eigen::Index i = 0; i < 2 * n; ++i)
+    roots.push_back({solver.eigenvalues()[i], solver.eigenvectors().col(i).head(n)});
+  return roots;
+}
+
+/// Number of directions that no stiffness holds.
+Eigen::Index nullity(const Eigen::MatrixXd& K) {
+  if (K.rows() == 0) return 0;
+  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(K).singularValues();
+  return (values.array() <= 1e-11 * std::max(values[0], 1e-300)).count();
+}
+
+/// Sets eigenvalues to zero that are so but for rounding: as many as free directions allow, of those that are small.
+void clear_zeros(std::vector<Root>& roots, Eigen::Index free_directions) {
+  double greatest = 0;
+  for (const Root& r : roots) greatest = std::max(greatest, std::abs(r.value));
+  std::sort(roots.begin(), roots.end(),
+            [](const Root& a, const Root& b) { return std::abs(a.value) < std::abs(b.value); });
+  // A double eigenvalue without two eigenvectors is found to the square root of rounding.
+  for (std::size_t i = 0; i < roots.size() && i < 2 * static_cast<std::size_t>(free_directions); ++i) {
+    if (std::abs(roots[i].value) <= 1e-6 * greatest) roots[i].value = 0;
+  }
+}
+
+Mode mode_of(const Root& first, const Complex& partner, const Scaled& s, const std::vector<Eigen::Index>& free,
+             const Tangents& t) {
+  Mode mode;
+  mode.eigenvalue = first.value;
+  mode.partner = partner;
+  mode.rigid = first.value == 0.0 && partner == 0.0;
+  mode.shape = Eigen::VectorXcd::Zero(t.mass.rows());
+  mode.shape(free) = s.scale.cast<Complex>().cwiseProduct(first.shape);
+  mode.shape.cwiseAbs2().cwiseProduct(t.mass.diagonal().cwiseAbs()).maxCoeff(&mode.dominant);
+  if (mode.shape[mode.dominant] != 0.0) mode.shape /= Complex(mode.shape[mode.dominant]);
+  return mode;
+}
+
+}  // namespace
+
+double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b, const Eigen::VectorXd& weights) {
+  const auto product = [&](const Eigen::VectorXcd& x, const Eigen::VectorXcd& y) {
+    return x.dot(weights.cast<Complex>().cwiseProduct(y));
+  };
+  const double size = product(a, a).real() * product(b, b).real();
+  return size > 0 ? std::norm(product(a, b)) / size : 0.0;
+}
+
+std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  if (free.empty()) return {};
+  const Scaled s(tangents, free);
+  const bool at_rest = s.G.isZero(0) && s.C.isZero(0);
+  std::vector<Root> roots = at_rest ? roots_at_rest(s) : roots_in_motion(s);
+  clear_zeros(roots, nullity(s.K));
+
+  std::vector<Mode> modes;
+  std::vector<const Root*> real;
+  for (const Root& r : roots) {
+    if (r.value.imag() > 0) modes.push_back(mode_of(r, std::conj(r.value), s, free, tangents));
+    if (r.value.imag() == 0) real.push_back(&r);
+  }
+  // Real eigenvalues belong together whose shapes are alike. The greatest first, so that zeros are left for each other.
+  std::sort(real.begin(), real.end(),
+            [](const Root* a, const Root* b) { return std::abs(a->value) > std::abs(b->value); });
+  const Eigen::VectorXd even = Eigen::VectorXd::Ones(s.M.rows());
+  while (real.size() >= 2) {
+    const Root* first = real.front();
+    real.erase(real.begin());
+    const auto likeness = [&](const Root* r) {
+      return (r->value == 0.0) == (first->value == 0.0) ? modal_assurance(first->shape, r->shape, even) : -1.0;
+    };
+    const auto other = std::max_element(real.begin(), real.end(),
+                                        [&](const Root* a, const Root* b) { return likeness(a) < likeness(b); });
+    const Root* second = *other;
+    real.erase(other);
+    if (second->value.real() > first->value.real()) std::swap(first, second);
+    modes.push_back(mode_of(*first, second->value, s, free, tangents));
+  }
+  std::stable_sort(modes.begin(), modes.end(),
+                   [](const Mode& a, const Mode& b) { return a.squared_frequency() < b.squared_frequency(); });
+  return modes;
+}
+
+std::vector<Mode> BranchTracker::follow(std::vector<Mode> modes, const Eigen::VectorXd& weights) {
+  const std::size_t n = modes.size();
+  const bool same = last_.size() == n && n > 0 && last_.front().shape.size() == modes.front().shape.size();
+  std::vector<double> expected;
+  if (same) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const double now = last_[i].squared_frequency();
+      expected.push_back(before_last_.empty() ? now : 2 * now - before_last_[i]);
+    }
+    // All pairs of branch and mode, the best first. Likeness decides; where shapes mix, the frequency.
+    struct Pair {
+      std::size_t branch, mode;
+      double cost;
+    };
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t k = 0; k < n; ++k) {
+        const double found = modes[k].squared_frequency();
+        const double apart = std::abs(found - expected[i]) / (std::abs(found) + std::abs(expected[i]) + 1e-300);
+        pairs.push_back({i, k, 1 - modal_assurance(last_[i].shape, modes[k].shape, weights) + apart});
+      }
+    }
+    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.cost < b.cost; });
+    std::vector<bool> led(n, false), taken(n, false);
+    std::vector<Mode> ordered(n);
+    for (const Pair& p : pairs) {
+      if (led[p.branch] || taken[p.mode]) continue;
+      led[p.branch] = taken[p.mode] = true;
+      ordered[p.branch] = modes[p.mode];
+    }
+    modes = std::move(ordered);
+    before_last_.clear();
+    for (const Mode& m : last_) before_last_.push_back(m.squared_frequency());
+  } else {
+    before_last_.clear();
+  }
+  last_ = modes;
+  return modes;
+}
+
+FirstOrderForm first_order_form(const Tangents& tangents, const Held& held) {
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  const auto m = static_cast<Eigen::Index>(free.size());
+  FirstOrderForm form{Eigen::MatrixXd::Zero(2 * m, 2 * m), Eigen::MatrixXd::Zero(2 * m, tangents.mass.rows())};
+  if (m == 0) return form;
+  const Scaled s(tangents, free);
+  const auto scale = s.scale.asDiagonal();
+  const Eigen::VectorXd inverse = s.scale.cwiseInverse();
+  form.A.topLeftCorner(m, m) = tangents.drift(free, free);
+  form.A.topRightCorner(m, m).setIdentity();
+  form.A.bottomLeftCorner(m, m) = -(scale * solve_mass(s.M, s.K) * inverse.asDiagonal());
+  form.A.bottomRightCorner(m, m) = -(scale * solve_mass(s.M, s.G) * inverse.asDiagonal());
+  const Eigen::MatrixXd by_effort = scale * solve_mass(s.M, Eigen::MatrixXd(scale));
+  for (Eigen::Index j = 0; j < m; ++j) form.B.col(free[static_cast<std::size_t>(j)]).tail(m) = by_effort.col(j);
+  return form;
+}
+
+}  // namespace withy

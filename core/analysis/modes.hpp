@@ -1,0 +1,62 @@
+/// \file
+/// Natural modes of small motions about a state: M δ̈ + G δ̇ + K δ = 0 with the exact derivatives, none of the matrices
+/// symmetric in general (damping, spin, strict formulations).
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <vector>
+
+#include "withy/core/analysis/steady_state.hpp"
+
+namespace withy {
+
+/// A pair of eigenvalues λ of motions e^{λt}: conjugate, or two real ones with the same shape.
+struct Mode {
+  std::complex<double> eigenvalue;  ///< [1/s] the one with the greater real part; imaginary part ≥ 0
+  std::complex<double> partner;     ///< its conjugate, or the other real eigenvalue
+  /// Displacements δ, one a speed, zero where held; the component that dominates is 1. Dimensions of the coordinates.
+  Eigen::VectorXcd shape;
+  Eigen::Index dominant = 0;  ///< speed with the greatest |δ_i|² M_ii
+  bool rigid = false;         ///< zero but for rounding: a motion that nothing holds back
+
+  /// λ₁ λ₂ [1/s²]: the squared frequency; negative where the pair is real and of two signs. It passes smoothly through
+  /// zero where a mode buckles.
+  [[nodiscard]] double squared_frequency() const { return (eigenvalue * partner).real(); }
+  [[nodiscard]] double frequency() const { return std::abs(eigenvalue); }  ///< undamped natural frequency [rad/s]
+  [[nodiscard]] double growth() const { return eigenvalue.real(); }        ///< [1/s]
+  /// −Re λ/|λ|; meaningless for a rigid mode.
+  [[nodiscard]] double damping_ratio() const { return -eigenvalue.real() / std::abs(eigenvalue); }
+};
+
+/// All modes of the free speeds in the order of squared frequency, unstable first.
+/// \throws std::domain_error where the mass matrix of the free speeds is singular or anything is not finite.
+std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held);
+
+/// Likeness of two shapes, |aᴴ W b|²/(aᴴ W a · bᴴ W b), W diagonal: 1 where they are proportional (modal assurance
+/// criterion).
+double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b, const Eigen::VectorXd& weights);
+
+/// Follows modes through a sweep: the same branch keeps its index although others cross it.
+class BranchTracker {
+ public:
+  /// The modes in the order of their branches, by likeness of shape and by closeness to the squared frequency that the
+  /// last two values of each branch lead to. `weights` as for modal_assurance. Where the number of modes has changed,
+  /// branches begin anew in the order given.
+  std::vector<Mode> follow(std::vector<Mode> modes, const Eigen::VectorXd& weights);
+
+ private:
+  std::vector<Mode> last_;
+  std::vector<double> before_last_;  ///< squared frequencies
+};
+
+/// First-order form of small motions, z = (δ, δu) of the free speeds: ż = A z + B τ with efforts τ on all speeds.
+struct FirstOrderForm {
+  Eigen::MatrixXd A;  ///< 2m × 2m
+  Eigen::MatrixXd B;  ///< 2m × speeds; columns of held speeds are zero
+};
+
+/// \throws std::domain_error as natural_modes.
+FirstOrderForm first_order_form(const Tangents& tangents, const Held& held);
+
+}  // namespace withy

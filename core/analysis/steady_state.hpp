@@ -1,0 +1,44 @@
+/// \file
+/// States that stay as they are: static equilibrium, and steady spin with hinges held at constant rates.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/core/analysis/tangent_dynamics.hpp"
+
+namespace withy {
+
+/// Which generalized speeds are held: their coordinates follow the rates that the state gives them, by whatever effort
+/// that takes. One a speed. Hinges that a motion drives are to be among them.
+using Held = std::vector<bool>;
+
+/// Indices of the speeds that are not held.
+std::vector<Eigen::Index> free_speeds(const Held& held);
+
+/// Accelerations at a state: of held speeds zero or as a motion prescribes, of the free ones those that follow.
+/// \throws std::domain_error where the mass matrix of the free speeds is singular.
+Eigen::VectorXd accelerations(const TangentDynamics& dynamics, const State& state, const Held& held);
+
+struct SteadyState {
+  State state;  ///< the steady state, or the best found
+  bool converged = false;
+  int iterations = 0;       ///< of Newton's method
+  Eigen::VectorXd efforts;  ///< [N m, N] that held speeds need beside the loads; of the free ones what is left over
+  Eigen::VectorXd step;     ///< what Newton's method would still change, one a speed; it measures the error
+  /// Direction of least stiffness: unit vector of displacements, empty unless the tangent stiffness is singular.
+  Eigen::VectorXd neutral;
+};
+
+/// Displaces the free coordinates until their accelerations vanish, with the accelerations that motions prescribe, all
+/// speeds constant: those of modes zero, those of hinges as `start` has them. Newton's method with exact derivatives,
+/// its steps shortened until the next simplified step is smaller (the affine-invariant test of Deuflhard 2004,
+/// section 3.3); where the stiffness is singular, the shortest step in the least-squares sense, so that neutral
+/// coordinates stay where they are.
+SteadyState find_steady_state(const TangentDynamics& dynamics, const State& start, const Held& held);
+
+/// Whether what the free speeds feel stays the same while the hinges turn with the state's rates; not so where gravity
+/// or a load turns in the rotating frame: the state is then steady at this angle alone.
+bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, const State& state, const Held& held);
+
+}  // namespace withy

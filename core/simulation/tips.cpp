@@ -1,0 +1,47 @@
+#include "withy/core/simulation/tips.hpp"
+
+namespace withy {
+namespace {
+
+using Rotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+Tip tip_of(const Model& model, const std::string& name, const std::vector<int>& segments) {
+  Tip tip;
+  tip.body = name;
+  tip.at.setZero();
+  for (const int b : segments) {
+    const BodyNode& node = model.bodies()[static_cast<std::size_t>(b)];
+    const int frame = node.frame("tip");
+    tip.tip = {b, frame};
+    tip.at += node.frames[static_cast<std::size_t>(frame)].section.X;
+    tip.length += node.body->shape().length;
+    tip.flexible = tip.flexible || node.body->shape().modes() > 0;
+  }
+  tip.root = {segments.front(), 0};
+  return tip;
+}
+
+}  // namespace
+
+std::vector<Tip> tips(const Model& model) {
+  std::vector<Tip> all;
+  for (const BodyNode& node : model.bodies()) {
+    if (node.frame("tip") < 0) continue;
+    const std::string& name = node.segment ? node.segment->whole : node.name;
+    if (node.segment && node.segment->index > 0) continue;
+    all.push_back(tip_of(model, name, model.segments(name)));
+  }
+  return all;
+}
+
+std::array<double, 3> deflection(const EquationsOfMotion& equations, std::span<const double> y, const Tip& tip) {
+  if (!tip.in_segments()) return equations.deflection(y, tip.tip.body, tip.tip.frame);
+  const WorldPose from = equations.frame_pose(y, tip.root.body, tip.root.frame);
+  const WorldPose to = equations.frame_pose(y, tip.tip.body, tip.tip.frame);
+  const Vector3 way = Eigen::Map<const Vector3>(to.position.data()) - Eigen::Map<const Vector3>(from.position.data());
+  std::array<double, 3> d{};
+  Eigen::Map<Vector3>(d.data()) = Eigen::Map<const Rotation>(from.rotation.data()).transpose() * way - tip.at;
+  return d;
+}
+
+}  // namespace withy

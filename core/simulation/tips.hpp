@@ -1,0 +1,32 @@
+/// \file
+/// The free ends of bodies: what results tell of first.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// The frame "tip" of a body, or of one in segments.
+struct Tip {
+  std::string body;   ///< name, the whole's where it is in segments
+  FrameIndex root;    ///< frame "root" of the body or of its first segment
+  FrameIndex tip;     ///< frame "tip" of the body or of its last segment
+  Vector3 at;         ///< place of the tip in the root's frame, undeformed [m]; of segments alone
+  double length = 0;  ///< characteristic length [m] of the whole
+  bool flexible = false;
+  [[nodiscard]] bool in_segments() const { return root.body != tip.body; }
+};
+
+/// The tip of every body that has one, in the order of the model's bodies.
+std::vector<Tip> tips(const Model& model);
+
+/// Displacement of a tip in the frame of its body's root [m]. Of a body in segments this is the exact difference of
+/// places in the world, and costs two of EquationsOfMotion::frame_pose.
+std::array<double, 3> deflection(const EquationsOfMotion& equations, std::span<const double> y, const Tip& tip);
+
+}  // namespace withy

@@ -1,0 +1,134 @@
+/// \file
+/// Prescribed motions of hinges.
+#include <memory>
+#include <utility>
+
+#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/motion.hpp"
+#include "withy/loads/trajectory.hpp"
+
+namespace withy {
+namespace {
+
+/// A coordinate on a trajectory.
+template <class Law>
+class Following final : public Motion {
+ public:
+  explicit Following(Law law) : law_(std::move(law)) {}
+  bool locks() const override { return false; }
+  MotionPoint at(double t) const noexcept override { return law_(t); }
+  std::vector<double> discontinuities() const override { return law_.jumps(); }
+  double end() const override { return law_.end(); }
+
+ private:
+  Law law_;
+};
+
+class Locked final : public Motion {
+ public:
+  bool locks() const override { return true; }
+  MotionPoint at(double /*t*/) const noexcept override { return {}; }
+  std::vector<double> discontinuities() const override { return {}; }
+  double end() const override { return 0; }
+};
+
+/// A constant rate from time 0 on and before.
+struct ConstantRate {
+  double from = 0;
+  double rate = 0;
+  MotionPoint operator()(double t) const noexcept { return {from + rate * t, rate, 0}; }
+  std::vector<double> jumps() const { return {}; }
+  double end() const { return 0; }
+};
+
+/// From rest to the rate ω in the time T, with an acceleration that begins and ends at zero with its derivative:
+///   x = from + (ω/T) (t²/2 + (T/2π)² (cos(2π t/T) − 1)),  then  from + ω (t − T/2).
+struct SpinUp {
+  double from = 0;
+  double rate = 0;
+  double duration = 1;  ///< T [s]
+  MotionPoint operator()(double t) const noexcept {
+    if (!(t > 0)) return {from, 0, 0};
+    if (t >= duration) return {from + rate * (t - 0.5 * duration), rate, 0};
+    const double frequency = 2 * std::numbers::pi / duration;
+    const double half = std::sin(0.5 * frequency * t);  // cos a − 1 = −2 sin²(a/2), which loses nothing at small t
+    const double ramp = rate / duration;
+    return {from + ramp * (0.5 * t * t - 2 * half * half / (frequency * frequency)),
+            ramp * (t - std::sin(frequency * t) / frequency), ramp * 2 * half * half};
+  }
+  std::vector<double> jumps() const { return {0, duration}; }
+  double end() const { return duration; }
+};
+
+double value(const Value& p, const char* key) { return p.number_at(key); }
+
+std::unique_ptr<Motion> make_locked(const Value& /*p*/, const MakeContext& /*context*/) {
+  return std::make_unique<Locked>();
+}
+std::unique_ptr<Motion> make_constant_rate(const Value& p, const MakeContext& /*context*/) {
+  return std::make_unique<Following<ConstantRate>>(ConstantRate{value(p, "from"), value(p, "rate")});
+}
+std::unique_ptr<Motion> make_spin_up(const Value& p, const MakeContext& /*context*/) {
+  return std::make_unique<Following<SpinUp>>(SpinUp{value(p, "from"), value(p, "rate"), value(p, "duration")});
+}
+std::unique_ptr<Motion> make_quintic(const Value& p, const MakeContext& /*context*/) {
+  const double from = value(p, "from");
+  return std::make_unique<Following<Quintic>>(Quintic{from, value(p, "to") - from, value(p, "duration")});
+}
+std::unique_ptr<Motion> make_sine(const Value& p, const MakeContext& /*context*/) {
+  return std::make_unique<Following<SineMotion>>(
+      SineMotion{value(p, "center"), value(p, "amplitude"), 1 / value(p, "period"), value(p, "phase")});
+}
+std::unique_ptr<Motion> make_table(const Value& p, const MakeContext& context) {
+  const Value& rows = p.at("table");
+  if (rows.items().empty()) {
+    context.diagnostics.error(rows.place(), "has no row; need [s, rad] at least once");
+    return nullptr;
+  }
+  std::vector<double> times, positions;
+  for (const Value& row : rows.items()) {
+    times.push_back(row.items()[0].number());
+    positions.push_back(row.items()[1].number());
+  }
+  return std::make_unique<Following<Spline>>(Spline(std::move(times), std::move(positions)));
+}
+
+ParameterSpec from_parameter() { return number("from", "rad", "coordinate at time 0").otherwise(0.0); }
+
+void enroll(Enrollment& enrollment) {
+  enrollment.add<Motion>({.id = "locked",
+                          .summary = "The hinge stays where the simulation begins; hinges of any kind",
+                          .parameters = {},
+                          .make = &make_locked});
+  enrollment.add<Motion>({.id = "constant-rate",
+                          .summary = "Constant rate",
+                          .parameters = {number("rate", "rad/s", "rate"), from_parameter()},
+                          .make = &make_constant_rate});
+  enrollment.add<Motion>(
+      {.id = "spin-up",
+       .summary = "Smoothly from rest to a rate, which then stays",
+       .parameters = {number("rate", "rad/s", "rate at the end"),
+                      number("duration", "s", "time until it is reached").above(0), from_parameter()},
+       .make = &make_spin_up});
+  enrollment.add<Motion>({.id = "quintic",
+                          .summary = "From rest to rest, along a polynomial of degree five",
+                          .parameters = {from_parameter(), number("to", "rad", "coordinate at the end"),
+                                         number("duration", "s", "time until the end").above(0)},
+                          .make = &make_quintic});
+  enrollment.add<Motion>({.id = "sine",
+                          .summary = "Oscillation about a centre",
+                          .parameters = {number("amplitude", "rad", "greatest distance from the centre"),
+                                         number("period", "s", "period").above(0),
+                                         number("center", "rad", "coordinate about which it swings").otherwise(0.0),
+                                         number("phase", "rad", "phase at time 0").otherwise(0.0)},
+                          .make = &make_sine});
+  enrollment.add<Motion>({.id = "table",
+                          .summary = "Cubic spline through given points, at rest in the first and the last",
+                          .parameters = {table("table", {"s", "rad"}, "time and coordinate")},
+                          .make = &make_table});
+}
+
+}  // namespace
+}  // namespace withy
+
+WITHY_PLUGIN(motions, withy::enroll);

@@ -1,0 +1,220 @@
+/// \file
+/// Modes, steady states and branches of systems whose answer is known.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "blade.hpp"
+
+namespace withy::test {
+namespace {
+
+std::string scene_file(const std::string& name) {
+  std::ifstream file(std::string(WITHY_SOURCES) + "/scenes/" + name);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// [PvF 5.1]: 3 and 4 rad/s; 3.010 and 4.059 with four modes a link, computed by an independent implementation.
+TEST(LockedArm, has_the_published_frequencies) {
+  const std::vector<std::string> four = {"bodies.link1.bending_y.modes=4", "bodies.link2.bending_y.modes=4"};
+  for (const auto& [elbow, expected] : std::vector<std::pair<double, double>>{{0, 3.010}, {135, 4.059}}) {
+    AnalysedScene c(scene_file("two-link-slew.yaml"), "quadratic", four);
+    const Slot& slot = *c.layout().hinge("elbow");
+    c.state.y[slot.position] = elbow * std::numbers::pi / 180;
+    // The slew's efforts act on the hinges alone, which are held.
+    const std::vector<Mode> modes = steady_modes(c, {"shoulder", "elbow"});
+    EXPECT_NEAR(modes[0].frequency(), expected, 0.5e-3);
+    EXPECT_GT(modes[0].damping_ratio(), 0.005);
+  }
+}
+
+/// A free arm at rest has one rigid motion for each free hinge, and says so.
+TEST(FreeArm, has_a_rigid_mode_for_each_free_hinge) {
+  for (const std::string& formulation : all_formulations) {
+    AnalysedScene c(scene_file("two-link-slew.yaml"), formulation);
+    c.state.time = 100;  // the slew is over
+    const std::vector<Mode> modes = steady_modes(c, {});
+    ASSERT_EQ(modes.size(), 6U);
+    int rigid = 0;
+    for (const Mode& m : modes) rigid += m.rigid;
+    EXPECT_EQ(rigid, 2) << formulation;
+  }
+}
+
+/// Torque-free symmetric top of moments A = B, C spinning at Ω about its axis: nutation at Ω C/A in the inertial frame.
+TEST(Top, nutates) {
+  AnalysedScene c(R"(format: withy/1
+time: {end: 1}
+bodies: {top: {type: rigid, mass: 1, inertia: [2, 2, 3, 0, 0, 0]}}
+hinges: {ball: {type: spherical, parent: world, child: top}}
+)",
+                  "quadratic");
+  c.state.y[c.layout().positions + 2] = 5.0;
+  const std::vector<Mode> modes = steady_modes(c, {});
+  ASSERT_EQ(modes.size(), 3U);
+  EXPECT_NEAR(modes.back().frequency(), 5.0 * 3 / 2, 1e-9);
+}
+
+/// A disk of moment J on an axis that a spring k holds and a damper c brakes: ω² = k/J, ζ = c/(2√(kJ)).
+TEST(DampedDisk, has_the_closed_form_frequency_and_damping) {
+  const std::string text = R"(format: withy/1
+time: {end: 1}
+bodies: {disk: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: disk}}
+loads: {spring: {type: hinge-spring, hinge: axle, stiffness: 8, damping: CCC, free_position: 0.5}}
+)";
+  const auto with = [&](const std::string& damping) {
+    std::string s = text;
+    return s.replace(s.find("CCC"), 3, damping);
+  };
+  AnalysedScene under(with("0.8"), "quadratic");
+  const Mode m = steady_modes(under, {})[0];
+  EXPECT_NEAR(m.frequency(), 2, 1e-12);
+  EXPECT_NEAR(m.damping_ratio(), 0.1, 1e-12);
+  EXPECT_NEAR(under.state.y[0], 0.5, 1e-14) << "where the spring is slack";
+  AnalysedScene over(with("20"), "quadratic");
+  const Mode slow = steady_modes(over, {})[0];
+  EXPECT_NEAR(slow.eigenvalue.real(), -5 + std::sqrt(21.0), 1e-12);
+  EXPECT_NEAR(slow.partner.real(), -5 - std::sqrt(21.0), 1e-12);
+}
+
+/// Tip load P = m g on a light cantilever, P L²/EI = 1 and 2: the elastica's tip is 0.30172 L, 0.49346 L lower and
+/// 0.05643 L, 0.16064 L nearer (Bisshopp & Drucker, Quart. Appl. Math. 3, 1945).
+TEST(SteadyState, of_exact_kinematics_is_the_elastica) {
+  for (const auto& [load, down, in] :
+       std::vector<std::tuple<double, double, double>>{{1, 0.30172, 0.05643}, {2, 0.49346, 0.16064}}) {
+    std::ostringstream text;
+    text << "format: withy/1\ntime: {end: 1}\ngravity: [0, " << -load
+         << ", 0]\nbodies:\n  arm: {type: beam, length: 1, "
+         << "mass_per_length: 1e-9, bending_y: {stiffness: 1, modes: 8}}\n  weight: {type: rigid, mass: 1}\n"
+         << "hinges:\n  wall: {type: weld, parent: world, child: arm}\n"
+         << "  end: {type: weld, parent: arm.tip, child: weight}\n";
+    AnalysedScene c(text.str(), "exact");
+    const SteadyState steady = find_steady_state(*c.dynamics, c.state, Held(c.layout().speeds, false));
+    ASSERT_TRUE(steady.converged);
+    EXPECT_LE(steady.iterations, 12);
+    const auto tip =
+        c.equations->deflection(steady.state.y, c.scene.model->body("arm"), c.scene.model->bodies()[0].frame("tip"));
+    // Eight clamped-free modes leave 1e-4 of the length: the moment's slope at the tip is none of theirs.
+    EXPECT_NEAR(tip[1], -down, 1e-4);
+    EXPECT_NEAR(tip[0], -in, 1e-4);
+  }
+}
+
+/// A steady state has no accelerations, whatever the sweeps are asked.
+TEST(SteadyState, has_no_accelerations) {
+  for (const std::string& formulation : all_formulations) {
+    AnalysedScene c(scene_file("two-link-slew.yaml"), formulation, {"gravity.1=-2"});
+    c.state.time = 100;
+    c.state.y[c.layout().hinge("shoulder")->position] = -1.2;
+    c.state.y[c.layout().hinge("elbow")->position] = 0.3;
+    const SteadyState steady = find_steady_state(*c.dynamics, c.state, Held(c.layout().speeds, false));
+    ASSERT_TRUE(steady.converged) << formulation;
+    std::vector<double> rates(c.equations->size());
+    Work work = c.equations->make_work();
+    ASSERT_TRUE(c.equations->derivatives(100, steady.state.y, rates, work).ok());
+    for (const double r : rates) EXPECT_NEAR(r, 0, 1e-9) << formulation;
+  }
+}
+
+/// Nothing holds a body that falls; the direction is named.
+TEST(SteadyState, of_a_falling_body_is_not_found) {
+  AnalysedScene c(R"(format: withy/1
+time: {end: 1}
+gravity: [0, 0, -9.81]
+bodies: {stone: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {drop: {type: prismatic, axis: [0, 0, 1], parent: world, child: stone}}
+)",
+                  "quadratic");
+  const SteadyState steady = find_steady_state(*c.dynamics, c.state, Held(1, false));
+  EXPECT_FALSE(steady.converged);
+  ASSERT_EQ(steady.neutral.size(), 1);
+  EXPECT_NEAR(std::abs(steady.neutral[0]), 1, 1e-12);
+  EXPECT_NEAR(steady.efforts[0], 9.81, 1e-12) << "what would hold it";
+}
+
+/// A spinning blade under gravity across its plane droops as K q = load says at first order, and flap stiffens it.
+TEST(SteadyState, of_a_spinning_blade_droops_less) {
+  double droop[2];
+  for (const int fast : {0, 1}) {
+    AnalysedScene c(blade(2, 4, "", "", "[0, 0, -0.1]"), "exact");
+    c.spin("axle", 6.0 * fast);
+    const Held held = hold(c, {"axle"});
+    const SteadyState steady = find_steady_state(*c.dynamics, c.state, held);
+    ASSERT_TRUE(steady.converged);
+    const Tangents t = c.dynamics->tangents(0, steady.state.y, Eigen::VectorXd::Zero(c.speeds()));
+    EXPECT_TRUE(stays_steady(*c.dynamics, t, steady.state, held));
+    droop[fast] = -c.equations->deflection(steady.state.y, 0, c.scene.model->bodies()[0].frame("tip"))[2];
+  }
+  EXPECT_NEAR(droop[0], 0.1 / 8, 1e-4) << "ρ g L⁴ / 8 EI";
+  EXPECT_LT(droop[1], 0.5 * droop[0]);
+  AnalysedScene vertical(blade(2, 2, "", "", "[0, -0.1, 0]"), "exact");
+  vertical.spin("axle", 6);
+  const Held held = hold(vertical, {"axle"});
+  EXPECT_FALSE(stays_steady(*vertical.dynamics, steady_tangents(vertical, held), vertical.state, held))
+      << "gravity turns in the rotating frame";
+}
+
+/// Motion from a state displaced along a mode's shape is that mode: after five and a quarter periods the dominating
+/// coordinate passes zero. Fourth-order Runge–Kutta with 8000 steps a period leaves (2π/8000)⁴·5; the amplitude 1e-5,
+/// whose square is the formulations' nonlinearity.
+TEST(Modes, are_what_a_simulation_shows) {
+  for (const std::string formulation : {"quadratic", "consistent", "exact"}) {
+    AnalysedScene c(scene_file("two-link-slew.yaml"), formulation,
+                    {"gravity.1=-2", "bodies.link1.damping_ratio=0", "bodies.link2.damping_ratio=0"});
+    c.state.time = 100;
+    c.state.y[c.layout().hinge("shoulder")->position] = -1.5;
+    c.state.y[c.layout().hinge("elbow")->position] = 0.05;
+    const std::vector<Mode> modes = steady_modes(c, {});
+    const Mode& mode = modes[2];
+    ASSERT_FALSE(mode.rigid);
+    std::vector<double> y = c.state.y;
+    const double amplitude = 1e-5;
+    c.dynamics->displace(y, amplitude * mode.shape.real());
+    const double period = 2 * std::numbers::pi / mode.frequency();
+    const int steps = 42000;
+    const double h = 5.25 * period / steps;
+    Work work = c.equations->make_work();
+    const std::size_t n = y.size();
+    std::vector<double> k(n), sum(n), at(n);
+    for (int i = 0; i < steps; ++i) {
+      at = y;
+      sum.assign(n, 0);
+      for (const auto& [weight, next] : std::vector<std::pair<double, double>>{{1, 0.5}, {2, 0.5}, {2, 1}, {1, 0}}) {
+        ASSERT_TRUE(c.equations->derivatives(100, at, k, work).ok());
+        for (std::size_t j = 0; j < n; ++j) {
+          sum[j] += weight / 6 * k[j];
+          at[j] = y[j] + next * h * k[j];
+        }
+      }
+      for (std::size_t j = 0; j < n; ++j) y[j] += h * sum[j];
+    }
+    const auto dominant = static_cast<std::size_t>(mode.dominant);
+    const double rate = y[c.layout().positions + dominant];
+    EXPECT_NEAR(rate, -amplitude * mode.frequency(), 1e-3 * amplitude * mode.frequency()) << formulation;
+    for (std::size_t i = 0; i < c.layout().speeds; ++i)
+      EXPECT_NEAR(y[i], c.state.y[i], 1e-3 * amplitude) << formulation << " " << c.layout().speed_names[i];
+  }
+}
+
+/// Flap and lag cross as the stiffness of one is swept; each branch keeps its direction.
+TEST(Branches, keep_their_shape_where_they_cross) {
+  BranchTracker tracker;
+  for (int k = 0; k <= 20; ++k) {
+    AnalysedScene c(blade(1, 1), "quadratic", {"bodies.blade.bending_z.stiffness=" + std::to_string(0.505 + 0.05 * k)});
+    const Held held = hold(c, {"axle"});
+    const Tangents t = c.dynamics->tangents(0, c.state.y, Eigen::VectorXd::Zero(c.speeds()));
+    const auto modes = tracker.follow(natural_modes(t, held), t.mass.diagonal());
+    EXPECT_EQ(c.layout().speed_names[static_cast<std::size_t>(modes[0].dominant)], "blade.bending_z[1]") << k;
+    EXPECT_NEAR(modes[1].frequency(), 3.5160152685, 1e-7);
+  }
+}
+
+}  // namespace
+}  // namespace withy::test
