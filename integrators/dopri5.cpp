@@ -67,6 +67,7 @@ class Dopri5 final : public Integrator {
     return std::make_unique<Dopri5Stepper>(equations, state, control_);
   }
   int order() const override { return 5; }
+  std::optional<double> stability_limit() const override { return 1.725; }
 
  private:
   StepControl control_;

@@ -54,6 +54,7 @@ class Rk4 final : public Integrator {
     return std::make_unique<Rk4Stepper>(equations, state, step_);
   }
   int order() const override { return 4; }
+  std::optional<double> stability_limit() const override { return 2.832; }
 
  private:
   double step_;

@@ -71,6 +71,7 @@ class Rk4Adaptive final : public Integrator {
     return std::make_unique<Rk4AdaptiveStepper>(equations, state, control_);
   }
   int order() const override { return 5; }
+  std::optional<double> stability_limit() const override { return 4.828; }
 
  private:
   StepControl control_;

@@ -81,6 +81,7 @@ class RosenbrockW final : public Integrator {
     return std::make_unique<RosenbrockWStepper>(equations, *linear, state, control_);
   }
   int order() const override { return 3; }
+  std::optional<double> stability_limit() const override { return std::numeric_limits<double>::infinity(); }
 
  private:
   StepControl control_;

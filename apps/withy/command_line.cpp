@@ -135,6 +135,11 @@ void add_commands(Commands& commands) {
   add_formulation(*c, run_arguments);
   c->add_option("--out", run_arguments.out, "Folder of the results; default: results/<scene>-<formulation>")
       ->type_name("DIR");
+  c->add_option("--estimate", run_arguments.estimate,
+                "Estimate the error against the next model up: auto (where that is quadratic), always, never")
+      ->type_name("WHEN")
+      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->capture_default_str();
 
   auto& compare_arguments =
       commands.add<CompareArguments>("compare", "Simulate a scene in several formulations, side by side",
@@ -151,6 +156,49 @@ void add_commands(Commands& commands) {
   c->add_option("--over", compare_arguments.over, "Compare at each of these values of the scene")
       ->type_name("PATH=VALUE,VALUE,...");
   c->add_option("--out", compare_arguments.out, "Folder for results and pictures; default: nothing is kept")
+      ->type_name("DIR");
+
+  auto& terms_arguments =
+      commands.add<TermsArguments>("terms", "Measure the terms of the equations of motion along a run",
+                                   "  withy terms scenes/two-link-slew.yaml\n"
+                                   "  withy terms scenes/two-link-slew.yaml --formulation ruthless "
+                                   "--set loads.slew.time_scale=1.2 --out results/terms",
+                                   terms, c);
+  add_scene(*c, terms_arguments);
+  add_formulation(*c, terms_arguments);
+  c->add_option("--out", terms_arguments.out, "Folder for table, series and picture; default: nothing is kept")
+      ->type_name("DIR");
+
+  auto& trade_arguments = commands.add<TradeArguments>(
+      "trade", "Weigh error against cost over formulations, modes, integrators and tolerances",
+      "  withy trade scenes/screw.yaml --formulations ruthless,quadratic --modes 1,2\n"
+      "  withy trade scenes/two-link-slew.yaml --set time.end=1 --modes 2 --tolerances 1e-4 "
+      "--over loads.slew.time_scale=0.5,1 --out results/trade",
+      trade, c);
+  add_scene(*c, trade_arguments);
+  add_formulations(*c, trade_arguments.axes.formulations, "--formulations,--formulation",
+                   "Formulations; default: ruthless,linear,consistent,quadratic,exact");
+  c->add_option("--families,--family", trade_arguments.axes.families, "Mode families of bending; default: the scene's")
+      ->type_name("ID,ID,...")
+      ->delimiter(',');
+  c->add_option("--modes", trade_arguments.axes.modes, "Modes of each family of a beam; default: 1,2,3")
+      ->type_name("N,N,...")
+      ->delimiter(',');
+  c->add_option("--integrators", trade_arguments.axes.integrators,
+                "Integrators with a relative tolerance; default: dopri5,rosenbrock-w")
+      ->type_name("ID,ID,...")
+      ->delimiter(',');
+  c->add_option("--tolerances", trade_arguments.axes.tolerances, "Relative tolerances; default: 1e-4,1e-6")
+      ->type_name("R,R,...")
+      ->delimiter(',');
+  c->add_option("--over", trade_arguments.axes.over, "Trade at each of these values of the scene; repeatable")
+      ->type_name("PATH=VALUE,VALUE,...")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->expected(1)
+      ->allow_extra_args(false);
+  c->add_option("--jobs", trade_arguments.jobs, "Points run at once; default: one a core")->type_name("N");
+  c->add_option("--out", trade_arguments.out,
+                "Folder for table and picture, and for finished points: the same command continues")
       ->type_name("DIR");
 
   auto& eval_arguments = commands.add<StateArguments>(

@@ -31,6 +31,8 @@ struct SceneArguments : CommonArguments {
 
 struct RunArguments : SceneArguments {
   std::string out;  ///< folder of the results; empty: results/<scene>-<formulation>
+  /// When the error against the next model up is estimated: auto (against `quadratic`), always, never.
+  std::string estimate = "auto";
 };
 
 struct CompareArguments : SceneArguments {
@@ -38,6 +40,26 @@ struct CompareArguments : SceneArguments {
   std::string reference = "quadratic";  ///< formulation that the others' errors are measured against
   std::string over;                     ///< `path=value,value,…`: the comparison is made at each value; may be empty
   std::string out;                      ///< folder of the results; empty: none are kept
+};
+
+struct TermsArguments : SceneArguments {
+  std::string out;  ///< folder of the results; empty: none are kept
+};
+
+/// Values of each axis; their product is the study.
+struct TradeAxes {
+  std::vector<std::string> formulations = {"ruthless", "linear", "consistent", "quadratic", "exact"};
+  std::vector<std::string> families = {""};  ///< of bending; empty text: the scene's
+  std::vector<int> modes = {1, 2, 3};        ///< of each family that a beam has
+  std::vector<std::string> integrators = {"dopri5", "rosenbrock-w"};
+  std::vector<double> tolerances = {1e-4, 1e-6};  ///< relative; absolute ones are 1e-2 of them
+  std::vector<std::string> over;                  ///< `path=value,value,…`
+};
+
+struct TradeArguments : SceneArguments {
+  TradeAxes axes;
+  std::string out;       ///< folder of the results and of what is finished; empty: none are kept
+  std::size_t jobs = 0;  ///< threads; 0: one a core
 };
 
 /// Commands that look at one state of a scene.
@@ -93,6 +115,8 @@ struct PluginsArguments : CommonArguments {
 
 ExitStatus run(const RunArguments& arguments);
 ExitStatus compare(const CompareArguments& arguments);
+ExitStatus terms(const TermsArguments& arguments);
+ExitStatus trade(const TradeArguments& arguments);
 ExitStatus eval(const StateArguments& arguments);
 ExitStatus inspect(const StateArguments& arguments);
 ExitStatus equilibrium(const EquilibriumArguments& arguments);

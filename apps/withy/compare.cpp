@@ -16,35 +16,13 @@
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/run_report.hpp"
 #include "withy/apps/withy/text_table.hpp"
+#include "withy/apps/withy/variation.hpp"
 
 namespace withy::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-
-/// `path=value,value,…`
-struct Variation {
-  std::string path;
-  std::vector<std::string> values;
-  [[nodiscard]] bool none() const { return path.empty(); }
-  /// Last part of the path: "time_scale".
-  [[nodiscard]] std::string label() const { return path.substr(path.find_last_of('.') + 1); }
-};
-
-Variation parse_variation(const std::string& text) {
-  if (text.empty()) return {"", {""}};
-  const auto equals = text.find('=');
-  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
-    throw InputError("--over: got '" + text + "'; need PATH=VALUE,VALUE,...");
-  Variation v{text.substr(0, equals), {}};
-  for (std::size_t begin = equals + 1; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    v.values.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return v;
-}
 
 /// The runs at one value, and where they are kept.
 struct Group {

@@ -28,24 +28,18 @@ Eigen::Quaterniond quaternion_at(const State& s, std::size_t i) {
 }
 
 /// Distance of one hinge's coordinates in two states; q and −q are the same orientation.
-double hinge_distance(const HingeNode& hinge, const Slot& slot, const State& a, const State& b) {
-  const std::size_t p = slot.position;
+double hinge_distance(const HingeNode& hinge, std::size_t p, const State& a, std::size_t q, const State& b,
+                      std::size_t positions) {
   const auto kernel = hinge.hinge->kernel();
   const auto kind = kernel ? std::optional(kernel->kind) : std::nullopt;
   if (kind == HingeKernel::Kind::spherical || kind == HingeKernel::Kind::free) {
-    const double angle = quaternion_at(a, p).angularDistance(quaternion_at(b, p));
+    const double angle = quaternion_at(a, p).angularDistance(quaternion_at(b, q));
     if (kind == HingeKernel::Kind::spherical) return angle;
-    return std::max(angle, (vector_at(a, p + 4) - vector_at(b, p + 4)).norm());
+    return std::max(angle, (vector_at(a, p + 4) - vector_at(b, q + 4)).norm());
   }
   double most = 0;
-  for (std::size_t i = 0; i < slot.positions; ++i) most = std::max(most, std::abs(a.y[p + i] - b.y[p + i]));
+  for (std::size_t i = 0; i < positions; ++i) most = std::max(most, std::abs(a.y[p + i] - b.y[q + i]));
   return most;
-}
-
-double tip_distance(const Tip& tip, const ComparedRun& a, const State& at, const ComparedRun& b, const State& bt) {
-  const auto p = a.engine->equations().frame_pose(at.y, tip.tip.body, tip.tip.frame).position;
-  const auto q = b.engine->equations().frame_pose(bt.y, tip.tip.body, tip.tip.frame).position;
-  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
 }
 
 /// A panel of one quantity, a curve a run. The range is that of the runs completed, or of all where none was.
@@ -77,26 +71,34 @@ Panel panel_of(const std::string& label, const std::vector<const ComparedRun*>& 
 double Distances::greatest_hinge() const { return greatest(hinges); }
 double Distances::greatest_tip() const { return greatest(tips); }
 
+void add_distances(Distances& d, const Moment& a, const Moment& b) {
+  d.until = a.state.time;
+  for (std::size_t h = 0; h < a.model.hinges().size(); ++h) {
+    const Slot& slot = a.model.layout().hinges[h];
+    if (slot.positions == 0) continue;
+    double& most = d.hinges[slot.name];
+    most = std::max(most, hinge_distance(a.model.hinges()[h], slot.position, a.state,
+                                         b.model.layout().hinges[h].position, b.state, slot.positions));
+  }
+  const auto places = tips(a.model), others = tips(b.model);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto p = a.equations.frame_pose(a.state.y, places[i].tip.body, places[i].tip.frame).position;
+    const auto q = b.equations.frame_pose(b.state.y, others[i].tip.body, others[i].tip.frame).position;
+    double& most = d.tips[places[i].body + ".tip"];
+    most = std::max(most, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
+  }
+}
+
 Distances distances(const ComparedRun& run, const ComparedRun& reference) {
   Distances d;
   const Model& model = run.engine->model();
-  const auto places = tips(model);
   // The last output of a run that stopped need not be at a common time.
   for (std::size_t i = 0; i < std::min(run.outputs.size(), reference.outputs.size()); ++i) {
     const State& a = run.outputs[i];
     const State& b = reference.outputs[i];
     if (a.time != b.time) break;
-    d.until = a.time;
-    for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-      const Slot& slot = model.layout().hinges[h];
-      if (slot.positions == 0) continue;
-      double& most = d.hinges[slot.name];
-      most = std::max(most, hinge_distance(model.hinges()[h], slot, a, b));
-    }
-    for (const Tip& tip : places) {
-      double& most = d.tips[tip.body + ".tip"];
-      most = std::max(most, tip_distance(tip, run, a, reference, b));
-    }
+    add_distances(d, {model, run.engine->equations(), a},
+                  {reference.engine->model(), reference.engine->equations(), b});
   }
   return d;
 }

@@ -31,6 +31,15 @@ struct Distances {
 };
 Distances distances(const ComparedRun& run, const ComparedRun& reference);
 
+/// A state of a model.
+struct Moment {
+  const Model& model;
+  const EquationsOfMotion& equations;
+  const State& state;
+};
+/// Adds the distances at one time of models with the same hinges and tips, whatever their modes.
+void add_distances(Distances& d, const Moment& a, const Moment& b);
+
 /// Tip deflections and the coordinates of one-coordinate hinges over time, as SVG. The axes fit the runs that were
 /// completed; one that diverged leaves the frame.
 std::string picture(const std::string& title, const std::vector<const ComparedRun*>& runs);

@@ -72,7 +72,7 @@ State Engine::state(const std::string& file) const {
   return as_input(file, [&] { return read_state(file, *scene_.model, scene_.initial); });
 }
 
-RunSummary Engine::simulate(const std::function<void(const State&)>& output) const {
+RunSummary Engine::simulate(const std::function<void(const State&)>& output, const EquationsOfMotion* beyond) const {
   RunOptions options;
   options.end = end_of_run(scene_);
   watch_for_interrupt();
@@ -80,6 +80,7 @@ RunSummary Engine::simulate(const std::function<void(const State&)>& output) con
   options.output = scene_.output;
   options.deflection_limit = scene_.deflection_limit;
   options.interrupted = interrupted;
+  options.beyond = beyond;
   return withy::simulate(*scene_.model, *equations_, *scene_.integrator, scene_.initial, options,
                          [&](const State& state) {
                            progress.at(state.time);

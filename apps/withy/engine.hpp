@@ -52,7 +52,9 @@ class Engine {
 
   /// Simulates from the scene's initial state to its end. Shows progress on standard error where that is a terminal;
   /// ends as interrupted at SIGINT.
-  [[nodiscard]] RunSummary simulate(const std::function<void(const State&)>& output) const;
+  /// What is neglected is measured against `beyond`, where that is not null.
+  [[nodiscard]] RunSummary simulate(const std::function<void(const State&)>& output,
+                                    const EquationsOfMotion* beyond = nullptr) const;
 
  private:
   Plugins plugins_;

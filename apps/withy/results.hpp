@@ -4,8 +4,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 
-#include "withy/apps/withy/engine.hpp"
+#include "withy/apps/withy/certificate.hpp"
 
 namespace withy::app {
 
@@ -14,6 +15,16 @@ namespace withy::app {
 /// \throws std::system_error where something cannot be written.
 RunSummary simulate_into(const std::filesystem::path& folder, const Engine& engine,
                          const std::function<void(const State&)>& also = {});
+
+/// A run with what its certificate needs.
+struct CertifiedRun {
+  RunSummary summary;
+  std::optional<Beyond> beyond;
+  std::optional<ErrorEstimate> estimate;
+  [[nodiscard]] Evidence evidence() const { return {beyond ? &*beyond : nullptr, estimate ? &*estimate : nullptr}; }
+};
+/// The same for `withy run`: what is left out is measured, and its effect estimated after the run.
+CertifiedRun run_into(const std::filesystem::path& folder, const Engine& engine, const RunArguments& arguments);
 
 /// Exit status that a run's end stands for.
 ExitStatus exit_status(RunStatus status);

@@ -16,9 +16,11 @@ ExitStatus run(const RunArguments& arguments) {
     folder = std::filesystem::path("results") /
              (std::filesystem::path(arguments.scene).stem().string() + '-' + engine.scene().formulation_name);
   }
-  const RunSummary summary = simulate_into(folder, engine);
-  print(arguments.json ? json_text(run_json(engine, summary))
-                       : run_table(engine, summary) + "\nresults in " + folder.string() + '\n');
+  const CertifiedRun certified = run_into(folder, engine, arguments);
+  const RunSummary& summary = certified.summary;
+  print(arguments.json ? json_text(run_json(engine, summary, certified.evidence()))
+                       : run_table(engine, summary) + certificate_text(engine, summary, certified.evidence()) +
+                             "\nresults in " + folder.string() + '\n');
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
   return exit_status(summary.status);
 }

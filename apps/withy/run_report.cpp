@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -46,25 +45,8 @@ Json motion_effort_peaks(const Model& model, const RunSummary& summary) {
   return peaks;
 }
 
-/// The condition of M times `factor`; null where it was not looked at.
-Json condition_json(const Conditioning& c, double factor = 1) {
-  return c.condition > 0 ? Json(c.condition * factor) : Json();
-}
-
-/// What was modelled and how far the figures can be trusted.
-Json certificate(const Engine& engine, const RunSummary& summary) {
-  const Scene& scene = engine.scene();
-  Json c;
-  c["program"] = "withy " WITHY_VERSION;
-  c["formulation"] = {{"name", scene.formulation_name}, {"meaning", engine.formulation_summary()}};
-  c["integrator"] = integrator_json(scene);
-  c["output_interval"] = scene.output;
-  c["compiled"] = engine.equations().savings();
-  c["energy_drift"] = summary.energy_drift;
-  // Digits lost in solving for accelerations: no result is better than this, whatever the integrator's tolerance.
-  c["condition_times_epsilon"] = condition_json(summary.conditioning, std::numeric_limits<double>::epsilon());
-  return c;
-}
+/// The condition of M; null where it was not looked at.
+Json condition_json(const Conditioning& c) { return c.condition > 0 ? Json(c.condition) : Json(); }
 
 std::string name_of_sign(int sign) { return sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"); }
 
@@ -72,7 +54,7 @@ std::string name_of_sign(int sign) { return sign > 0 ? "positive" : (sign < 0 ? 
 
 Json state_json(const Model& model, const State& state) { return Json::parse(write_state(model, state)); }
 
-Json run_json(const Engine& engine, const RunSummary& summary) {
+Json run_json(const Engine& engine, const RunSummary& summary, const Evidence& evidence) {
   const Scene& scene = engine.scene();
   Json j;
   j["scene"] = scene.file;
@@ -93,7 +75,7 @@ Json run_json(const Engine& engine, const RunSummary& summary) {
   j["suspected_jumps"] = summary.suspected_jumps;
   j["condition"] = condition_json(summary.conditioning);
   j["determinant_sign"] = summary.conditioning.determinant_sign;
-  j["certificate"] = certificate(engine, summary);
+  j["certificate"] = certificate_json(engine, summary, evidence);
   return j;
 }
 

@@ -5,13 +5,14 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "withy/apps/withy/certificate.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/core/simulation/simulate.hpp"
 
 namespace withy::app {
 
 /// The content of run.json; see docs/command-line.md.
-nlohmann::ordered_json run_json(const Engine& engine, const RunSummary& summary);
+nlohmann::ordered_json run_json(const Engine& engine, const RunSummary& summary, const Evidence& evidence = {});
 
 /// A state as JSON, in the form that `initial` and --state read.
 nlohmann::ordered_json state_json(const Model& model, const State& state);

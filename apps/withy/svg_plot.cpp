@@ -22,12 +22,18 @@ struct Pen {
 };
 // Told apart by dashes too, for those who do not see colours (palette of Okabe and Ito). Thick below thin: curves that
 // coincide stay visible.
-constexpr std::array<Pen, 6> pens{{{"#e69f00", "none", 4.5},
-                                   {"#d55e00", "7 3", 2.4},
-                                   {"#56b4e9", "none", 3.2},
-                                   {"#000000", "2 2", 1.4},
-                                   {"#009e73", "10 3 2 3", 1.8},
-                                   {"#cc79a7", "4 4", 1.6}}};
+constexpr std::array<Pen, 12> pens{{{"#e69f00", "none", 4.5},
+                                    {"#d55e00", "7 3", 2.4},
+                                    {"#56b4e9", "none", 3.2},
+                                    {"#000000", "2 2", 1.4},
+                                    {"#009e73", "10 3 2 3", 1.8},
+                                    {"#cc79a7", "4 4", 1.6},
+                                    {"#0072b2", "none", 2.0},
+                                    {"#999999", "none", 2.4},
+                                    {"#b8a800", "8 3", 2.0},
+                                    {"#7f3c8d", "12 4", 1.6},
+                                    {"#5d4037", "3 3", 2.0},
+                                    {"#80ba5a", "6 2 2 2", 2.0}}};
 
 const Pen& pen(std::size_t i) { return pens[i % pens.size()]; }
 
@@ -99,6 +105,12 @@ void draw_curve(std::string& out, const Curve& curve, const Scale& s, const Pen&
   if (curve.x.empty()) return;
   // Far outside the frame is as good as further outside, and keeps renderers away from huge coordinates.
   const auto y = [&](double v) { return std::clamp(s.y(v), s.top - 5000, s.top + 5000); };
+  if (curve.points) {
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+      fmt::format_to(std::back_inserter(out), "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4.5\" fill=\"{}\"/>\n",
+                     s.x(curve.x[i]), y(curve.y[i]), p.colour);
+    return;
+  }
   out += "<polyline " + stroke(p) + " points=\"";
   for (std::size_t i = 0; i < curve.x.size(); ++i)
     fmt::format_to(std::back_inserter(out), "{:.2f},{:.2f} ", s.x(curve.x[i]), y(curve.y[i]));

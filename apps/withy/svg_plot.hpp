@@ -16,6 +16,7 @@ struct Curve {
   std::vector<double> x;
   std::vector<double> y;
   bool ends_early = false;  ///< its last point is marked with a cross
+  bool points = false;      ///< dots in place of a line
   std::optional<std::size_t> pen;
 };
 

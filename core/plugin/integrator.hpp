@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -57,6 +58,9 @@ class Integrator {
                                                        const State& state) const = 0;
   /// Order of accuracy of a step.
   [[nodiscard]] virtual int order() const = 0;
+  /// Greatest h ω up to which an undamped vibration of frequency ω grows by no more than 1 % a step. Infinite where no
+  /// step is too long; nothing where it is not known.
+  [[nodiscard]] virtual std::optional<double> stability_limit() const { return {}; }
 };
 
 }  // namespace withy

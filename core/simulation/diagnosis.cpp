@@ -155,6 +155,32 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
          owners_of(layout, weakest_direction(h, negative)) + ".";
 }
 
+double fastest_mode(const Model& model, const DenseSystem& system) {
+  const auto n = static_cast<Eigen::Index>(system.size);
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+  for (const BodyNode& body : model.bodies()) {
+    const ModalShape& shape = body.body->shape();
+    if (shape.modes() == 0) continue;
+    const auto at = static_cast<Eigen::Index>(model.layout().body(body.name)->speed);
+    K.block(at, at, shape.modes(), shape.modes()) = shape.stiffness;
+  }
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (std::none_of(system.prescribed.begin(), system.prescribed.end(),
+                     [i](const PrescribedRate& p) { return static_cast<Eigen::Index>(p.speed) == i; }))
+      free.push_back(i);
+  }
+  const Eigen::MatrixXd M = Eigen::Map<const DenseMatrix>(system.mass.data(), n, n)(free, free);
+  K = K(free, free).eval();
+  if (free.empty() || K.isZero(0) || !M.allFinite()) return 0;
+  const Eigen::LLT<Eigen::MatrixXd> factor(0.5 * (M + M.transpose()));
+  if (factor.info() != Eigen::Success) return 0;
+  const Eigen::MatrixXd half = factor.matrixL().solve(K);
+  const Eigen::MatrixXd square = factor.matrixL().solve(half.transpose());
+  return std::sqrt(std::max(
+      0.0, Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(square, Eigen::EigenvaluesOnly).eigenvalues().tail<1>()[0]));
+}
+
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,
                                double ahead) {
   if (const std::string loads = nonfinite_loads(model, equations, state, ahead); !loads.empty()) return loads;

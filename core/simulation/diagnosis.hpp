@@ -41,6 +41,10 @@ MassMatrixHistory examine(const EquationsOfMotion& equations, const State& first
 /// whether angles and modal coordinates are measured in radians, metres or inches.
 std::string describe(const MassMatrixHistory& history, const Layout& layout);
 
+/// Greatest √ of the eigenvalues of M⁻¹K [rad/s], K the stiffness of all bodies: how fast the modes retained can
+/// vibrate in the tree. 0 where the symmetric part of M is not positive definite.
+double fastest_mode(const Model& model, const DenseSystem& system);
+
 /// Names what is not finite at the state or, for loads, up to `ahead` seconds later: loads, speeds, accelerations.
 /// Empty where all of it is finite.
 std::string describe_nonfinite(const Model& model, const EquationsOfMotion& equations, const State& state,

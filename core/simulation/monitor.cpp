@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/shape/point_motion.hpp"
+
 namespace withy {
 
 Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
@@ -22,8 +24,14 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     const double length = node.body->shape().length;
     const auto section = node.body->station("tip");
     if (slot == nullptr || !section || !(length > 0)) continue;
-    ends_.push_back({slot, static_cast<int>(b), node.frame("tip"), *section, length,
-                     node.segment ? nullptr : &summary.peak_deflection[node.name]});
+    ends_.push_back({slot,
+                     static_cast<int>(b),
+                     node.frame("tip"),
+                     *section,
+                     length,
+                     node.segment ? nullptr : &summary.peak_deflection[node.name],
+                     &summary.peak_deflection_ratio[node.name],
+                     {}});
   }
   for (Tip& tip : tips(model)) {
     if (tip.in_segments() && tip.flexible) wholes_.push_back(std::move(tip));
@@ -36,15 +44,14 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
 }
 
 std::array<double, 3> Monitor::deflection_of(const End& end, const State& state) const {
-  if (end.frame >= 0) return equations_.deflection(state.y, end.body, end.frame);
+  return end.frame >= 0 ? equations_.deflection(state.y, end.body, end.frame) : expanded(end, state);
+}
+
+std::array<double, 3> Monitor::expanded(const End& end, const State& state) {
   const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + end.slot->position,
                                             static_cast<Eigen::Index>(end.slot->positions));
-  std::array<double, 3> d{};
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    d[i] = end.section.phi.row(k).dot(q) + 0.5 * q.dot(end.section.gamma[i] * q);
-  }
-  return d;
+  const Vector3 d = point_velocity(end.section, StrainOrder::quadratic, q, q).first - end.section.X;
+  return {d.x(), d.y(), d.z()};
 }
 
 void Monitor::note(const std::string& name, double length, const std::array<double, 3>& d,
@@ -57,7 +64,20 @@ void Monitor::note(const std::string& name, double length, const std::array<doub
 }
 
 void Monitor::observe(const State& state, bool output) {
-  for (const End& end : ends_) note(end.slot->name, end.length, deflection_of(end, state), end.peak);
+  for (End& end : ends_) {
+    // Exact kinematics integrates along the body, at the cost of several evaluations: between outputs only where the
+    // expansion says that the deflection has not been so great before.
+    const std::array<double, 3> rough = expanded(end, state);
+    bool greater = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      greater = greater || std::abs(rough[k]) > end.rough[k];
+      end.rough[k] = std::max(end.rough[k], std::abs(rough[k]));
+    }
+    if (!output && !greater) continue;
+    const std::array<double, 3> d = deflection_of(end, state);
+    *end.ratio = std::max(*end.ratio, std::hypot(d[0], d[1], d[2]) / end.length);
+    note(end.slot->name, end.length, d, end.peak);
+  }
   if (output) {
     for (const Tip& tip : wholes_)
       note(tip.body, tip.length, deflection(equations_, state.y, tip), &summary_.peak_deflection[tip.body]);

@@ -41,8 +41,12 @@ class Monitor {
     PointExpansion section;
     double length;                ///< [m]
     std::array<double, 3>* peak;  ///< null: a segment's
+    double* ratio;
+    std::array<double, 3> rough{};  ///< greatest |deflection| by the expansion
   };
   [[nodiscard]] std::array<double, 3> deflection_of(const End& end, const State& state) const;
+  /// The same by the second-order expansion of the section.
+  [[nodiscard]] static std::array<double, 3> expanded(const End& end, const State& state);
   void note(const std::string& name, double length, const std::array<double, 3>& d, std::array<double, 3>* peak);
   /// Sign of det M by one evaluation; 0 where it cannot be solved.
   [[nodiscard]] int mass_matrix_sign(const State& state);

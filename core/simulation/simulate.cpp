@@ -1,58 +1,15 @@
 #include "withy/core/simulation/simulate.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
 
 #include "withy/core/simulation/monitor.hpp"
+#include "withy/core/simulation/run_times.hpp"
 
 namespace withy {
 namespace {
-
-/// CPU time of this thread [s].
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// Times strictly between start and end at which steps must end, then the end.
-std::vector<double> landings(const Model& model, double start, double end) {
-  std::vector<double> times{end};
-  for (const LoadNode& node : model.loads()) {
-    for (const double t : node.load->discontinuities()) {
-      if (t > start && t < end) times.push_back(t);
-    }
-  }
-  for (const MotionNode& node : model.motions()) {
-    for (const double t : node.motion->discontinuities()) {
-      if (t > start && t < end) times.push_back(t);
-    }
-  }
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
-}
-
-/// The multiples of the interval after `start` and before `end`. Multiples that differ from either by rounding alone
-/// are left out: both are outputs anyway.
-class OutputTimes {
- public:
-  OutputTimes(double start, double interval, double end) : interval_(interval), last_(end - 1e-9 * interval) {
-    index_ = std::floor(start / interval + 1e-9) + 1;
-  }
-  [[nodiscard]] bool due(double t) const { return next() <= t && next() < last_; }
-  [[nodiscard]] double next() const { return index_ * interval_; }
-  void pass() { index_ += 1; }
-
- private:
-  double interval_;
-  double last_;
-  double index_;  ///< whole; a product does not accumulate rounding as a sum would
-};
 
 /// Why stepping ended before the end.
 struct Stop {
@@ -92,10 +49,12 @@ class Run {
         output_(output),
         stepper_(integrator.start(equations, initial)),
         monitor_(model, equations, stepper_->state(), options.deflection_limit, summary),
+        validity_(model, equations, options.beyond, summary.validity),
         times_(initial.time, options.output, options.end),
         sample_(stepper_->state()) {
     emit(stepper_->state());
     monitor_.observe(stepper_->state(), true);
+    validity_.observe(stepper_->state(), 0);
   }
 
   Stop to_end(double start) {
@@ -121,13 +80,12 @@ class Run {
   }
 
   /// The last state is an output, however the run ended.
-  void finish() {
+  void finish(RunStatus status) {
     const State& state = stepper_->state();
-    if (state.time > emitted_) {
-      monitor_.observe(state, true);
-      emit(state);
-    }
+    monitor_.observe(state, true);
+    if (state.time > emitted_) emit(state);
     monitor_.audit_energy(state);
+    validity_.finish(state, stepper_->statistics().evaluations, status == RunStatus::completed);
   }
 
   [[nodiscard]] const Stepper& stepper() const { return *stepper_; }
@@ -147,6 +105,7 @@ class Run {
       monitor_.audit_energy(state);
     }
     monitor_.observe(state, false);
+    validity_.observe(state, stepper_->statistics().evaluations);
     monitor_.audit_mass_matrix(state, stepper_->statistics().determinant_sign);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
     if (monitor_.sign_change()) return {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
@@ -165,6 +124,7 @@ class Run {
   const std::function<void(const State&)>& output_;
   std::unique_ptr<Stepper> stepper_;
   Monitor monitor_;
+  ValidityWatch validity_;
   OutputTimes times_;
   State sample_;
   double emitted_ = 0;  ///< time of the last output
@@ -198,11 +158,11 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
                     const State& initial, const RunOptions& options, const std::function<void(const State&)>& output) {
   if (!(options.end >= initial.time)) throw std::invalid_argument("the end lies before the initial time");
   if (!(options.output > 0)) throw std::invalid_argument("the output interval is not positive");
-  const double began = cpu_seconds();
+  const double began = thread_cpu_seconds();
   RunSummary summary;
   Run run(model, equations, integrator, initial, options, output, summary);
   Stop stop = run.to_end(initial.time);
-  run.finish();
+  run.finish(stop.status);
   summary.final = run.stepper().state();
   summary.steps = run.stepper().statistics();
   const bool examined = equations.layout().speeds <= largest_examined;
@@ -212,8 +172,10 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
     history = examine(equations, initial, summary.final, change);
     summary.conditioning = history.end;
   } else if (examined) {
-    summary.conditioning = conditioning(equations.system(summary.final.time, summary.final.y));
+    history.last = equations.system(summary.final.time, summary.final.y);
+    summary.conditioning = conditioning(history.last);
   }
+  if (examined) summary.fastest_mode = fastest_mode(model, history.last);
   if (stop.status == RunStatus::completed) {
     if (!summary.suspected_jumps.empty())
       summary.message += (summary.message.empty() ? "" : " ") + note_on_jumps(summary.suspected_jumps);
@@ -228,7 +190,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
           examined ? " " + describe(history, model.layout()) : " The mass matrix, with so many rows, was not examined.";
   }
   summary.status = stop.status;
-  summary.cpu_seconds = cpu_seconds() - began;
+  summary.cpu_seconds = thread_cpu_seconds() - began;
   return summary;
 }
 

@@ -13,6 +13,7 @@
 #include "withy/core/dynamics/equations.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/integrator.hpp"
+#include "withy/core/simulation/validity.hpp"
 
 namespace withy {
 
@@ -28,6 +29,8 @@ struct RunOptions {
   std::size_t most_steps = 100'000'000;
   double most_seconds = 0;            ///< wall time; 0: unlimited
   std::function<bool()> interrupted;  ///< asked between steps
+  /// Equations of the same model that neglect less, for RunSummary::validity; null where there are none.
+  const EquationsOfMotion* beyond = nullptr;
 };
 
 /// What a run leaves behind, whatever its end.
@@ -38,6 +41,8 @@ struct RunSummary {
   /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and outputs,
   /// body axes x, y, z [m]; of a body in segments under its own name, over the outputs.
   std::map<std::string, std::array<double, 3>> peak_deflection;
+  /// Of each of them, the greatest distance of the tip from its undeformed place, over the body's length.
+  std::map<std::string, double> peak_deflection_ratio;
   /// Greatest |effort| of the loads on each generalized speed over all accepted steps and outputs [N m, N].
   std::vector<double> peak_effort;
   /// The same of the efforts that motions need.
@@ -48,6 +53,8 @@ struct RunSummary {
   /// Times [s] at which steps were rejected as they are where a load jumps without having declared it.
   std::vector<double> suspected_jumps;
   Conditioning conditioning;  ///< at the final state; empty where there are more than 200 generalized speeds
+  double fastest_mode = 0;  ///< greatest √ of the eigenvalues of M⁻¹K there [rad/s]; 0 where they were not looked at
+  Validity validity;
   StepStatistics steps;
   double cpu_seconds = 0;
 };

@@ -1,0 +1,44 @@
+/// \file
+/// The certificate of a run: what was modelled, what was left out and how large that was, what binds.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "withy/apps/withy/beyond.hpp"
+#include "withy/apps/withy/comparison.hpp"
+
+namespace withy::app {
+
+/// The error of a run's hinges and tips against the next model up, by integrating both coarsely with common steps.
+struct ErrorEstimate {
+  Distances distances;
+  double cpu_seconds = 0;
+  double end = 0;  ///< time the run reached [s]; distances.until is less where the evaluations allowed were spent
+};
+
+/// Estimates it for the time that the run went, with no more evaluations of the pair than the run had of its own.
+ErrorEstimate estimate_error(const Engine& engine, const Beyond& beyond, const RunSummary& summary);
+
+/// How an indicator of validity stands against its limit (theory, section 5).
+struct Indicator {
+  std::string text;  ///< "tip deflection of 'link2' over its length"
+  double value = 0;
+  double limit = 0;
+  std::string meaning;  ///< what happens past the limit
+  [[nodiscard]] double use() const { return value / limit; }
+};
+/// Those that matter to the scene's formulation, the one nearest to its limit (or furthest past it) first.
+std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary);
+
+/// What the certificate is made from beside the run itself; null: not there.
+struct Evidence {
+  const Beyond* beyond = nullptr;
+  const ErrorEstimate* estimate = nullptr;
+};
+nlohmann::ordered_json certificate_json(const Engine& engine, const RunSummary& summary, const Evidence& evidence);
+/// The same in plain words, ending its last line.
+std::string certificate_text(const Engine& engine, const RunSummary& summary, const Evidence& evidence);
+
+}  // namespace withy::app

@@ -1,0 +1,116 @@
+#include "withy/core/analysis/term_ledger.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace withy {
+namespace {
+
+using Forces = std::vector<double>;
+
+Forces product(const DenseSystem& s, std::span<const double> a) {
+  Forces f(s.size);
+  for (std::size_t i = 0; i < s.size; ++i) {
+    for (std::size_t j = 0; j < s.size; ++j) f[i] += s.mass[i * s.size + j] * a[j];
+  }
+  return f;
+}
+
+Forces minus(const Forces& a, const Forces& b) {
+  Forces f(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) f[i] = a[i] - b[i];
+  return f;
+}
+
+Forces plus(const Forces& a, const Forces& b) {
+  Forces f(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) f[i] = a[i] + b[i];
+  return f;
+}
+
+/// What one formulation makes of a state: M u̇, its velocity terms with damping, and the rest with weight and −K q.
+struct Parts {
+  Forces inertia, velocity, rest;
+  Parts(const EquationsOfMotion& equations, const State& state, const State& at_rest, std::span<const double> u_dot) {
+    const DenseSystem moving = equations.system(state.time, state.y), still = equations.system(state.time, at_rest.y);
+    inertia = product(moving, u_dot);
+    velocity = minus(moving.force, still.force);
+    rest = still.force;
+  }
+};
+
+}  // namespace
+
+std::string_view name(Term term) {
+  static constexpr std::array<std::string_view, terms_of_motion> names = {
+      "M0 a", "M*1 a", "M*2 a", "M*3 a", "f1", "f2-1", "f2-2", "f3", "weight", "K q", "D q'", "loads"};
+  return names.at(static_cast<std::size_t>(term));
+}
+
+TermForces TermLedger::evaluate(const State& state, std::span<const double> u_dot) const {
+  const Layout& layout = model_.layout();
+  State at_rest = state;
+  std::fill_n(at_rest.y.begin() + static_cast<std::ptrdiff_t>(layout.positions), layout.speeds, 0.0);
+  const Parts ruthless(*of_.ruthless, state, at_rest, u_dot), inconsistent(*of_.inconsistent, state, at_rest, u_dot),
+      consistent(*of_.consistent, state, at_rest, u_dot), quadratic(*of_.quadratic, state, at_rest, u_dot);
+  TermForces forces;
+  const auto set = [&forces](Term term, Forces f) { forces[static_cast<std::size_t>(term)] = std::move(f); };
+  Forces stiffness(layout.speeds), damping(layout.speeds);
+  for (const BodyNode& body : model_.bodies()) {
+    const ModalShape& shape = body.body->shape();
+    if (shape.modes() == 0) continue;
+    const Slot& slot = *layout.body(body.name);
+    const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + slot.position, shape.modes()),
+        rate(state.y.data() + layout.positions + slot.speed, shape.modes());
+    Eigen::Map<Eigen::VectorXd>(stiffness.data() + slot.speed, shape.modes()) = shape.stiffness * q;
+    Eigen::Map<Eigen::VectorXd>(damping.data() + slot.speed, shape.modes()) = shape.damping * rate;
+  }
+  set(Term::inertia, ruthless.inertia);
+  set(Term::inertia_linear, minus(inconsistent.inertia, ruthless.inertia));
+  set(Term::inertia_quadratic, minus(consistent.inertia, inconsistent.inertia));
+  set(Term::inertia_higher, minus(quadratic.inertia, consistent.inertia));
+  // Every formulation has the same damping, −D q̇.
+  Forces rigid = ruthless.velocity, weight = quadratic.rest;
+  for (std::size_t i = 0; i < layout.speeds; ++i) {
+    rigid[i] += damping[i];
+    weight[i] += stiffness[i];
+  }
+  set(Term::velocity_rigid, std::move(rigid));
+  set(Term::velocity_linear, minus(inconsistent.velocity, ruthless.velocity));
+  set(Term::velocity_quadratic, minus(consistent.velocity, inconsistent.velocity));
+  set(Term::velocity_higher, minus(quadratic.velocity, consistent.velocity));
+  set(Term::weight, std::move(weight));
+  set(Term::stiffness, std::move(stiffness));
+  set(Term::damping, std::move(damping));
+  Forces loads = of_.quadratic->system(state.time, state.y).applied;
+  if (!model_.motions().empty()) {
+    Forces motions(layout.speeds);
+    Work work = of_.quadratic->make_work();
+    if (of_.quadratic->motion_efforts(state.time, state.y, motions, work).ok()) loads = plus(loads, motions);
+  }
+  set(Term::loads, std::move(loads));
+  return forces;
+}
+
+std::vector<CoordinateGroup> coordinate_groups(const Layout& layout) {
+  std::vector<CoordinateGroup> groups{{"hinges", {}}, {"bending", {}}, {"torsion", {}}, {"elastic", {}}};
+  for (const Slot& hinge : layout.hinges) {
+    for (std::size_t i = 0; i < hinge.speeds; ++i) groups[0].speeds.push_back(hinge.speed + i);
+  }
+  for (const Slot& body : layout.bodies) {
+    for (std::size_t i = body.speed; i < body.speed + body.speeds; ++i) {
+      const std::string mode = layout.speed_names[i].substr(body.name.size() + 1);
+      groups[mode.starts_with("bending") ? 1 : (mode.starts_with("torsion") ? 2 : 3)].speeds.push_back(i);
+    }
+  }
+  std::erase_if(groups, [](const CoordinateGroup& g) { return g.speeds.empty(); });
+  return groups;
+}
+
+double size_of(const std::vector<double>& forces, const CoordinateGroup& group, const std::vector<double>& inertias) {
+  double sum = 0;
+  for (const std::size_t i : group.speeds) sum += forces[i] * forces[i] / inertias[i];
+  return std::sqrt(sum);
+}
+
+}  // namespace withy

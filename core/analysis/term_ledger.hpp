@@ -1,0 +1,70 @@
+/// \file
+/// The equations of motion taken apart into the groups of terms that formulations keep or drop.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// Groups of terms, in the order of the ledger. With M = M⁰ + M*¹ + M*² + M*³,
+///   M u̇ + K q + D q̇ = f₁ + f₂¹ + f₂² + f₃ + weight + loads.
+/// Index 1: of order zero in the elastic coordinates; 2: of order one, from linear (¹) and from nonlinear (²) relations
+/// of strain and displacement; 3: all that is of higher order.
+enum class Term {
+  inertia,             ///< M⁰ u̇
+  inertia_linear,      ///< M*¹ u̇
+  inertia_quadratic,   ///< M*² u̇
+  inertia_higher,      ///< M*³ u̇, without which M need not be positive definite
+  velocity_rigid,      ///< f₁
+  velocity_linear,     ///< f₂¹
+  velocity_quadratic,  ///< f₂²
+  velocity_higher,     ///< f₃
+  weight,              ///< of all orders
+  stiffness,           ///< K q
+  damping,             ///< D q̇
+  loads                ///< and the efforts of prescribed motions
+};
+inline constexpr std::size_t terms_of_motion = 12;
+/// "M0 a", "M*1 a", …, "f1", "f2-1", "f2-2", "f3", "weight", "K q", "D q'", "loads".
+std::string_view name(Term term);
+
+/// The terms at one state: for each a force on every generalized speed [N m, N].
+using TermForces = std::array<std::vector<double>, terms_of_motion>;
+
+class TermLedger {
+ public:
+  /// Equations of one model in the four formulations whose differences are the groups.
+  struct Formulations {
+    const EquationsOfMotion* ruthless;
+    const EquationsOfMotion* inconsistent;
+    const EquationsOfMotion* consistent;
+    const EquationsOfMotion* quadratic;
+  };
+  /// What the formulations point to, and the model, must outlive the ledger.
+  TermLedger(const Model& model, const Formulations& formulations) : model_(model), of_(formulations) {}
+  /// At a state with the accelerations u_dot of all generalized speeds, whoever computed them.
+  [[nodiscard]] TermForces evaluate(const State& state, std::span<const double> u_dot) const;
+
+ private:
+  const Model& model_;
+  Formulations of_;
+};
+
+/// Coordinates that are looked at together: "hinges", "bending", "torsion", and "elastic" for other modes.
+struct CoordinateGroup {
+  std::string name;
+  std::vector<std::size_t> speeds;
+};
+std::vector<CoordinateGroup> coordinate_groups(const Layout& layout);
+
+/// √(Σ F_i² / m_i) over a group, m_i the inertia of coordinate i: of one unit, N/√kg, whatever the coordinates are.
+double size_of(const std::vector<double>& forces, const CoordinateGroup& group, const std::vector<double>& inertias);
+
+}  // namespace withy

@@ -1,0 +1,129 @@
+#include "withy/core/simulation/motion_stiffness.hpp"
+
+#include <utility>
+
+#include "withy/core/simulation/elastic_modes.hpp"
+
+namespace withy {
+namespace {
+
+constexpr std::size_t relative_motion = motion_terms - 1;
+
+/// Σ m (a − g) of mass m with first moment s about the body frame's origin, under a unit of one of the twelve terms.
+Vector3 unit_force(std::size_t term, double m, const Vector3& s) {
+  switch (term) {
+    case 0:
+      return {0, -s.y(), -s.z()};
+    case 1:
+      return {-s.x(), 0, -s.z()};
+    case 2:
+      return {-s.x(), -s.y(), 0};
+    case 3:
+      return {s.y(), s.x(), 0};
+    case 4:
+      return {0, s.z(), s.y()};
+    case 5:
+      return {s.z(), 0, s.x()};
+    case 6:
+    case 7:
+    case 8:
+      return Vector3::Unit(static_cast<Eigen::Index>(term - 6)).cross(s);
+    default:
+      return m * Vector3::Unit(static_cast<Eigen::Index>(term - 9));
+  }
+}
+
+std::array<double, 12> term_values(const BodyMotion& B) {
+  const Vector3 w = B.R.transpose() * B.rate, e = B.R.transpose() * B.spin_up, a = B.R.transpose() * B.acceleration;
+  return {w.x() * w.x(), w.y() * w.y(), w.z() * w.z(), w.x() * w.y(), w.y() * w.z(), w.z() * w.x(),
+          e.x(),         e.y(),         e.z(),         a.x(),         a.y(),         a.z()};
+}
+
+Eigen::MatrixXd along(const std::array<Eigen::MatrixXd, 3>& gamma, const Vector3& force) {
+  return force.x() * gamma[0] + force.y() * gamma[1] + force.z() * gamma[2];
+}
+
+}  // namespace
+
+std::string motion_term_name(std::size_t term) {
+  static constexpr std::array<const char*, motion_terms> names = {"wx wx",
+                                                                  "wy wy",
+                                                                  "wz wz",
+                                                                  "wx wy",
+                                                                  "wy wz",
+                                                                  "wz wx",
+                                                                  "dwx/dt",
+                                                                  "dwy/dt",
+                                                                  "dwz/dt",
+                                                                  "dvx/dt - gx",
+                                                                  "dvy/dt - gy",
+                                                                  "dvz/dt - gz",
+                                                                  "motion of outboard bodies"};
+  return names.at(term);
+}
+
+MotionStiffness::MotionStiffness(const Model& model, std::size_t body) : body_(body) {
+  const ModalShape& shape = model.bodies()[body].body->shape();
+  const ElasticModes modes = elastic_modes(shape);
+  if (modes.frequencies.size() == 0) return;
+  const Eigen::MatrixXd S = modes.vectors * modes.frequencies.cwiseInverse().asDiagonal();
+  const auto reduced = [&S](const Eigen::MatrixXd& K) { return Eigen::MatrixXd(S.transpose() * K * S); };
+  for (std::size_t term = 0; term < own_.size(); ++term) {
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(shape.modes(), shape.modes());
+    for (const Particle& p : shape.particles) K += along(p.at.gamma, unit_force(term, p.mass, p.mass * p.at.X));
+    own_[term] = reduced(K);
+  }
+  const auto add_station = [&](std::size_t carried, int frame, double sign) {
+    const auto& gamma = model.bodies()[body].frames[static_cast<std::size_t>(frame)].section.gamma;
+    stations_.push_back({carried, sign, {reduced(gamma[0]), reduced(gamma[1]), reduced(gamma[2])}});
+  };
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const HingeNode& hinge = model.hinges()[h];
+    if (hinge.parent == static_cast<int>(body)) add_station(h, hinge.parent_frame, 1);
+    if (h == body) add_station(h, hinge.child_frame, -1);
+  }
+  total_.setZero(S.cols(), S.cols());
+  solver_ = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S.cols());
+}
+
+LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies) {
+  LoadRatio ratio;
+  if (total_.size() == 0) return ratio;
+  const BodyMotion& B = bodies[body_];
+  const auto values = term_values(B);
+  total_.setZero();
+  for (std::size_t k = 0; k < own_.size(); ++k) total_ += values[k] * own_[k];
+  for (const Station& s : stations_) {
+    const Vector3 force = s.sign * (B.R.transpose() * bodies[s.carried].force);
+    for (Eigen::Index c = 0; c < 3; ++c) total_ += force[c] * s.stiffness[static_cast<std::size_t>(c)];
+  }
+  solver_.compute(total_);
+  const Eigen::Index last = total_.rows() - 1;
+  ratio.least = solver_.eigenvalues()[0];
+  ratio.greatest = solver_.eigenvalues()[last];
+  const auto v = solver_.eigenvectors().col(ratio.greatest > -ratio.least ? last : 0);
+  // vᵀ K v without a temporary.
+  const auto work = [&v](const Eigen::MatrixXd& K) {
+    double sum = 0;
+    for (Eigen::Index i = 0; i < v.size(); ++i) {
+      for (Eigen::Index j = 0; j < v.size(); ++j) sum += v[i] * K(i, j) * v[j];
+    }
+    return sum;
+  };
+  for (std::size_t k = 0; k < own_.size(); ++k) ratio.shares[k] = values[k] * work(own_[k]);
+  for (const Station& s : stations_) {
+    const BodyMotion& carried = bodies[s.carried];
+    const Vector3 force = s.sign * (B.R.transpose() * carried.force);
+    const Vector3 moment = B.R.transpose() * (carried.mass_moment - carried.mass * B.p);
+    const Vector3 works(work(s.stiffness[0]), work(s.stiffness[1]), work(s.stiffness[2]));
+    ratio.shares[relative_motion] += force.dot(works);
+    for (std::size_t k = 0; k < own_.size(); ++k) {
+      const double share = s.sign * values[k] * unit_force(k, carried.mass, moment).dot(works);
+      ratio.shares[k] += share;
+      ratio.shares[relative_motion] -= share;
+    }
+  }
+  return ratio;
+}
+
+}  // namespace withy

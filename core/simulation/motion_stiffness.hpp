@@ -1,0 +1,57 @@
+/// \file
+/// Stiffness that the motion of a body's frame induces in its elastic coordinates, against the body's own.
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "withy/core/simulation/tree_motion.hpp"
+
+namespace withy {
+
+/// The twelve motions that induce stiffness (Banerjee & Dickens, J. Guidance 13, 1990), body axes: the products
+/// ω_x², ω_y², ω_z², ω_x ω_y, ω_y ω_z, ω_z ω_x; ω̇; v̇ − g; and, for bodies that carry others, what these do relative
+/// to the body.
+inline constexpr std::size_t motion_terms = 13;
+/// "wx wx", "wx wy", …, "dwx/dt", "ax-gx", "motion of outboard bodies".
+std::string motion_term_name(std::size_t term);
+
+/// The load of a body at one instant.
+struct LoadRatio {
+  /// Extreme ratios of work: the eigenvalues of the induced stiffness relative to K. Negative: towards buckling, which
+  /// is reached at −1. Positive: stiffening.
+  double least = 0;
+  double greatest = 0;
+  /// Shares of the terms in the eigenvalue of greater magnitude; their sum is that eigenvalue.
+  std::array<double, motion_terms> shares{};
+  [[nodiscard]] double size() const { return greatest > -least ? greatest : -least; }
+};
+
+/// A second-order displacement ½ qᵀΓq does work against the inertia force −m (a − g) of the undeformed body, to which
+/// belongs the stiffness Σ m (a − g)·Γ; a body or section carried at a station adds (Σ m (a − g))·Γ there. Moments of
+/// carried bodies about their station are left out.
+class MotionStiffness {
+ public:
+  /// For a flexible body of the model, which must outlive the object.
+  MotionStiffness(const Model& model, std::size_t body);
+  /// At the motions of the tree. Allocates nothing.
+  LoadRatio evaluate(const std::vector<BodyMotion>& bodies);
+
+ private:
+  /// A hinge that loads the body: an outboard body's (sign +1), or the inboard one where it holds a moving section.
+  struct Station {
+    std::size_t carried;  ///< body whose subtree's force passes here
+    double sign;
+    std::array<Eigen::MatrixXd, 3> stiffness;  ///< of unit force on the subtree along body axes
+  };
+
+  std::size_t body_;
+  std::array<Eigen::MatrixXd, 12> own_;  ///< of unit terms, in coordinates in which K is 1
+  std::vector<Station> stations_;
+  Eigen::MatrixXd total_;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver_;
+};
+
+}  // namespace withy

@@ -1,0 +1,57 @@
+/// \file
+/// Times that the loops over steps share: where steps must end, when outputs are due, CPU time.
+#pragma once
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// CPU time of this thread [s].
+inline double thread_cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Times strictly between start and end at which steps must end, then the end.
+inline std::vector<double> landings(const Model& model, double start, double end) {
+  std::vector<double> times{end};
+  for (const LoadNode& node : model.loads()) {
+    for (const double t : node.load->discontinuities()) {
+      if (t > start && t < end) times.push_back(t);
+    }
+  }
+  for (const MotionNode& node : model.motions()) {
+    for (const double t : node.motion->discontinuities()) {
+      if (t > start && t < end) times.push_back(t);
+    }
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+/// The multiples of the interval after `start` and before `end`. Multiples that differ from either by rounding alone
+/// are left out: both are outputs anyway.
+class OutputTimes {
+ public:
+  OutputTimes(double start, double interval, double end) : interval_(interval), last_(end - 1e-9 * interval) {
+    index_ = std::floor(start / interval + 1e-9) + 1;
+  }
+  [[nodiscard]] bool due(double t) const { return next() <= t && next() < last_; }
+  [[nodiscard]] double next() const { return index_ * interval_; }
+  void pass() { index_ += 1; }
+
+ private:
+  double interval_;
+  double last_;
+  double index_;  ///< whole; a product does not accumulate rounding as a sum would
+};
+
+}  // namespace withy

@@ -1,0 +1,139 @@
+#include "withy/core/simulation/validity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "withy/core/simulation/elastic_modes.hpp"
+
+namespace withy {
+namespace {
+
+// Measured (docs/validity.md): what a sample costs in evaluations of `ruthless`, the cheapest to be watched.
+constexpr std::size_t motion_cost = 20;
+constexpr std::size_t comparison_cost = 20;
+constexpr std::size_t samples_per_cost = 50;  ///< 2 %
+
+}  // namespace
+
+ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equations, const EquationsOfMotion* beyond,
+                             Validity& validity)
+    : model_(model),
+      equations_(equations),
+      beyond_(beyond),
+      validity_(validity),
+      motion_(model),
+      work_(equations.make_work()),
+      beyond_work_(beyond != nullptr ? beyond->make_work() : Work(0)),
+      rates_(equations.size()),
+      beyond_rates_(equations.size()),
+      difference_(model.layout().speeds),
+      product_(model.layout().speeds),
+      cost_(motion_cost + (beyond != nullptr ? comparison_cost : 0)) {
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const BodyNode& node = model.bodies()[b];
+    const ModalShape& shape = node.body->shape();
+    if (shape.modes() == 0) continue;
+    const ElasticModes modes = elastic_modes(shape);
+    BodyValidity v{.name = node.name, .load = {}, .highest = {}};
+    if (modes.frequencies.size() > 0) v.fundamental = modes.frequencies[0];
+    Watched w{b, model.layout().body(node.name), MotionStiffness(model, b), {}};
+    for (const ModeGroup& group : mode_groups(shape)) {
+      const ElasticModes own = elastic_modes(shape, group.coordinates);
+      const Eigen::Index highest = own.frequencies.size() - 1;
+      if (highest < 0) continue;
+      const auto n = static_cast<Eigen::Index>(group.coordinates.size());
+      w.families.push_back({.coordinates = group.coordinates,
+                            .projection = own.mass * own.vectors.col(highest),
+                            .stiffness = shape.stiffness(group.coordinates, group.coordinates),
+                            .mass = own.mass,
+                            .q = Eigen::VectorXd(n),
+                            .rate = Eigen::VectorXd(n)});
+      v.highest.push_back({group.name, own.frequencies[highest], 0, group.coordinates.size()});
+    }
+    bodies_.push_back(std::move(w));
+    validity_.bodies.push_back(std::move(v));
+  }
+}
+
+void ValidityWatch::sample(const State& state, std::size_t evaluations) {
+  next_ = evaluations + samples_per_cost * cost_;
+  if (!equations_.derivatives(state.time, state.y, rates_, work_).ok()) return;
+  ++validity_.samples;
+  const Layout& layout = model_.layout();
+  motion_.update(state.y, std::span<const double>(rates_).subspan(layout.positions, layout.speeds));
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Watched& w = bodies_[i];
+    BodyValidity& v = validity_.bodies[i];
+    if (v.fundamental > 0) {
+      const double ratio = motion_.bodies()[w.body].rate.norm() / v.fundamental;
+      if (ratio > v.rate_ratio) {
+        v.rate_ratio = ratio;
+        v.rate_time = state.time;
+      }
+    }
+    const LoadRatio load = w.stiffness.evaluate(motion_.bodies());
+    v.buckling = std::max(v.buckling, -load.least);
+    if (load.size() > v.load.size()) {
+      v.load = load;
+      v.load_time = state.time;
+    }
+    look_at_energies(state, w);
+  }
+  if (beyond_ != nullptr) compare_accelerations(state);
+}
+
+void ValidityWatch::look_at_energies(const State& state, Watched& w) const {
+  for (std::size_t f = 0; f < w.families.size(); ++f) {
+    Family& family = w.families[f];
+    for (std::size_t k = 0; k < family.coordinates.size(); ++k) {
+      const auto c = static_cast<std::size_t>(family.coordinates[k]);
+      family.q[static_cast<Eigen::Index>(k)] = state.y[w.slot->position + c];
+      family.rate[static_cast<Eigen::Index>(k)] = state.y[model_.layout().positions + w.slot->speed + c];
+    }
+    const double frequency = validity_.bodies[static_cast<std::size_t>(&w - bodies_.data())].highest[f].frequency;
+    const double q = frequency * family.projection.dot(family.q), rate = family.projection.dot(family.rate);
+    family.highest_energy += q * q + rate * rate;
+    for (Eigen::Index i = 0; i < family.q.size(); ++i) {
+      for (Eigen::Index j = 0; j < family.q.size(); ++j) {
+        family.energy +=
+            family.q[i] * family.stiffness(i, j) * family.q[j] + family.rate[i] * family.mass(i, j) * family.rate[j];
+      }
+    }
+  }
+}
+
+void ValidityWatch::compare_accelerations(const State& state) {
+  if (!beyond_->derivatives(state.time, state.y, beyond_rates_, beyond_work_).ok()) return;
+  const Layout& layout = model_.layout();
+  const auto square = [&](std::span<const double> a) {
+    beyond_->mass_times(state.y, a, product_, beyond_work_);
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * product_[i];
+    return std::max(sum, 0.0);
+  };
+  const auto used = std::span<const double>(rates_).subspan(layout.positions, layout.speeds);
+  for (std::size_t i = 0; i < used.size(); ++i) difference_[i] = beyond_rates_[layout.positions + i] - used[i];
+  const double neglected = square(difference_), size = square(used);
+  neglected_squares_ += neglected;
+  squares_ += size;
+  neglected_greatest_ = std::max(neglected_greatest_, neglected);
+  greatest_ = std::max(greatest_, size);
+  ++validity_.neglected.samples;
+}
+
+void ValidityWatch::finish(const State& state, std::size_t evaluations, bool completed) {
+  if (bodies_.empty()) return;
+  // Accelerations at the pole of a singular mass matrix say nothing of the motion before.
+  if (completed) sample(state, evaluations);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (std::size_t f = 0; f < bodies_[i].families.size(); ++f) {
+      const Family& family = bodies_[i].families[f];
+      validity_.bodies[i].highest[f].share = family.energy > 0 ? family.highest_energy / family.energy : 0;
+    }
+  }
+  const auto ratio = [](double a, double b) { return b > 0 ? std::sqrt(a / b) : 0; };
+  validity_.neglected.rms = ratio(neglected_squares_, squares_);
+  validity_.neglected.peak = ratio(neglected_greatest_, greatest_);
+}
+
+}  // namespace withy

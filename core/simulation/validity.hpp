@@ -1,0 +1,93 @@
+/// \file
+/// Whether a formulation holds in the motion that a run makes (theory, section 5): looked at along the run.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/simulation/motion_stiffness.hpp"
+
+namespace withy {
+
+/// How much of the elastic energy of a family of modes is in the highest vibration that its modes can show.
+struct HighestMode {
+  std::string family;
+  double frequency = 0;  ///< of that vibration, the body's frame held [rad/s]
+  double share = 0;      ///< of the energies summed over the samples; 1 where the family has one mode alone
+  std::size_t modes = 0;
+};
+
+/// Extremes of one flexible body over the samples of a run.
+struct BodyValidity {
+  std::string name;
+  double fundamental = 0;  ///< ω₁ of K and the body's own modal mass, its frame held [rad/s]
+  double rate_ratio = 0;   ///< greatest |ω| of the body's frame over ω₁
+  double rate_time = 0;    ///< when [s]
+  LoadRatio load;          ///< where its size is greatest
+  double load_time = 0;    ///< when [s]
+  double buckling = 0;     ///< greatest compressive load over the buckling load, ≥ 0
+  std::vector<HighestMode> highest;
+};
+
+/// What the accelerations lack against those of equations that neglect less, in the norm √(aᵀ M a) of these equations'
+/// mass matrix. By Gauss's principle it does not depend on the choice of coordinates.
+struct NeglectedAcceleration {
+  std::size_t samples = 0;
+  double rms = 0;   ///< root mean square of the difference over that of the accelerations used
+  double peak = 0;  ///< greatest difference over the greatest acceleration used
+};
+
+struct Validity {
+  std::vector<BodyValidity> bodies;  ///< the flexible ones
+  std::size_t samples = 0;
+  NeglectedAcceleration neglected;  ///< no samples where there was nothing to compare with
+};
+
+/// Samples one run. The interval is counted in evaluations of the equations of motion, which makes the samples the same
+/// on every machine, and is such that samples take about 2 % of the run. Allocates nothing after construction.
+class ValidityWatch {
+ public:
+  /// `beyond`: equations of the same model that neglect less, or null.
+  ValidityWatch(const Model& model, const EquationsOfMotion& equations, const EquationsOfMotion* beyond,
+                Validity& validity);
+  /// At an accepted state, with the evaluations made so far.
+  void observe(const State& state, std::size_t evaluations) {
+    if (!bodies_.empty() && evaluations >= next_) sample(state, evaluations);
+  }
+  /// At the last state of a run that went well; sums become ratios.
+  void finish(const State& state, std::size_t evaluations, bool completed);
+
+ private:
+  struct Family {
+    std::vector<Eigen::Index> coordinates;
+    Eigen::VectorXd projection;  ///< row of G times the highest vibration
+    Eigen::MatrixXd stiffness, mass;
+    Eigen::VectorXd q, rate;
+    double highest_energy = 0, energy = 0;
+  };
+  struct Watched {
+    std::size_t body;
+    const Slot* slot;
+    MotionStiffness stiffness;
+    std::vector<Family> families;
+  };
+  void sample(const State& state, std::size_t evaluations);
+  void look_at_energies(const State& state, Watched& w) const;
+  void compare_accelerations(const State& state);
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  const EquationsOfMotion* beyond_;
+  Validity& validity_;
+  TreeMotion motion_;
+  std::vector<Watched> bodies_;
+  Work work_, beyond_work_;
+  std::vector<double> rates_, beyond_rates_, difference_, product_;
+  double squares_ = 0, neglected_squares_ = 0, greatest_ = 0, neglected_greatest_ = 0;
+  std::size_t cost_;      ///< of a sample in evaluations, roughly
+  std::size_t next_ = 0;  ///< evaluations at which the next sample is due
+};
+
+}  // namespace withy

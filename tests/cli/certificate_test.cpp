@@ -1,0 +1,115 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+json run_json(const std::vector<std::string>& more) {
+  const Folder folder;
+  std::vector<std::string> arguments = {"run"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  arguments.emplace_back("--json");
+  const Finished f = withy(folder, arguments);
+  EXPECT_EQ(f.err, "");
+  return json::parse(f.out);
+}
+
+/// Distances of a formulation from `quadratic`, both run with the scene's tolerances.
+json true_distances(const std::vector<std::string>& scene, const std::string& formulation) {
+  const Folder folder;
+  std::vector<std::string> arguments = {"compare"};
+  arguments.insert(arguments.end(), scene.begin(), scene.end());
+  for (const std::string a : {"--formulations", formulation.c_str(), "--json"}) arguments.push_back(a);
+  return json::parse(withy(folder, arguments).out).at("runs").at(0).at("distance");
+}
+
+struct Claim {
+  std::vector<std::string> scene;
+  std::string formulation;
+};
+
+class ErrorClaimed : public testing::TestWithParam<Claim> {};
+
+// A paired run resolves what it is after to a per cent or so: a factor of 1.2 leaves room for outputs that fall
+// between.
+TEST_P(ErrorClaimed, IsTheTrueOneForHingesAndTips) {
+  const Claim& claim = GetParam();
+  std::vector<std::string> arguments = claim.scene;
+  arguments.insert(arguments.end(), {"--formulation", claim.formulation});
+  const json estimate = run_json(arguments).at("certificate").at("estimated_error");
+  EXPECT_EQ(estimate.at("against"), "quadratic");
+  const json truth = true_distances(claim.scene, claim.formulation);
+  for (const char* kind : {"hinges", "tips"}) {
+    for (const auto& [name, value] : truth.at(kind).items()) {
+      const double real = value, claimed = estimate.at(kind).at(name);
+      if (real < 1e-6) continue;  // of the order of the tolerances
+      EXPECT_LT(claimed, 1.2 * real) << name;
+      EXPECT_GT(claimed, real / 1.2) << name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, ErrorClaimed,
+    testing::Values(Claim{{"scenes/driven-arm.yaml"}, "linear"}, Claim{{"scenes/driven-arm.yaml"}, "ruthless"},
+                    Claim{{"scenes/two-link-slew.yaml"}, "ruthless"},
+                    Claim{{"scenes/two-link-slew.yaml"}, "consistent"},
+                    Claim{{"scenes/two-link-slew.yaml", "--set", "loads.slew.time_scale=1.2"}, "ruthless"},
+                    Claim{{"scenes/screw.yaml"}, "ruthless"}, Claim{{"scenes/beam-on-base.yaml"}, "ruthless"}));
+
+TEST(Certificate, OfTheLinearDrivenArmNamesThreeCentimetres) {
+  const Folder folder;
+  const Finished f = withy(folder, {"run", "scenes/driven-arm.yaml", "--formulation", "linear"});
+  const json c = json::parse(folder.read("results/driven-arm-linear/run.json")).at("certificate");
+  EXPECT_NEAR(c.at("estimated_error").at("tips").at("payload.tip").get<double>(), 0.036, 0.003);
+  EXPECT_GT(c.at("neglected_acceleration").at("rms").get<double>(), 0.1);
+  EXPECT_EQ(c.at("steps").at("limited_by"), "accuracy");
+  EXPECT_THAT(f.out, HasSubstr("payload.tip 36 mm"));
+}
+
+TEST(Certificate, OfAQuadraticRunIsAgainstExactAndEstimatesOnDemand) {
+  const std::vector<std::string> scene = {"scenes/two-link-slew.yaml", "--set", "time.end=1"};
+  json c = run_json(scene).at("certificate");
+  EXPECT_EQ(c.at("neglected_acceleration").at("against"), "exact");
+  EXPECT_TRUE(c.at("estimated_error").is_null());
+  std::vector<std::string> always = scene;
+  always.insert(always.end(), {"--estimate", "always"});
+  c = run_json(always).at("certificate");
+  EXPECT_EQ(c.at("estimated_error").at("against"), "exact");
+  EXPECT_EQ(c.at("estimated_error").at("until"), 1.0);
+  c = run_json(
+          {"scenes/two-link-slew.yaml", "--set", "time.end=0.1", "--estimate", "never", "--formulation", "ruthless"})
+          .at("certificate");
+  EXPECT_TRUE(c.at("estimated_error").is_null());
+}
+
+// A stiff boom with a loose tolerance: the step is what the highest mode allows.
+TEST(Certificate, SaysThatStabilityLimitsTheStep) {
+  const std::vector<std::string> stiff = {"scenes/two-link-slew.yaml",
+                                          "--set",
+                                          "bodies.link1.bending_y.stiffness=1e7",
+                                          "--set",
+                                          "bodies.link2.bending_y.stiffness=1e7",
+                                          "--set",
+                                          "time.end=0.5"};
+  std::vector<std::string> loose = stiff;
+  loose.insert(loose.end(), {"--set", "integrator={name: dopri5, rtol: 1e-3, atol: 1e-3}"});
+  EXPECT_EQ(run_json(loose).at("certificate").at("steps").at("limited_by"), "stability");
+}
+
+TEST(Certificate, OfABodyFormulationLooksAtWhatTheBodyLeavesOut) {
+  const json c =
+      run_json({"scenes/two-link-slew.yaml", "--set", "bodies.link2.formulation=ruthless"}).at("certificate");
+  EXPECT_EQ(c.at("neglected_acceleration").at("against"), "quadratic");
+  EXPECT_GT(c.at("estimated_error").at("tips").at("payload.tip").get<double>(), 1e-3);
+}
+
+}  // namespace
+}  // namespace withy::test

@@ -1,0 +1,138 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/property_tree/xml_parser.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::vector<std::string> study = {"trade",          "scenes/two-link-slew.yaml",
+                                        "--set",          "time.end=0.3",
+                                        "--formulations", "inconsistent,linear,quadratic",
+                                        "--modes",        "1,2",
+                                        "--tolerances",   "1e-4",
+                                        "--out",          "out"};
+
+Finished trade(const Folder& folder, std::vector<std::string> more) {
+  std::vector<std::string> arguments = study;
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return withy(folder, arguments);
+}
+
+/// Everything that does not depend on how fast the machine is.
+json without_times(json j) {
+  for (json& p : j.at("points")) {
+    p.erase("cpu_seconds");
+    p.erase("pareto");
+  }
+  return j;
+}
+
+TEST(Trade, PointsAreTheProductAndDoNotDependOnThreads) {
+  const Folder one;
+  const Finished f = trade(one, {"--jobs", "1", "--json"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json j = json::parse(f.out);
+  ASSERT_EQ(j.at("points").size(), 12U) << "3 formulations, 2 numbers of modes, 2 integrators";
+  const Folder three;
+  EXPECT_EQ(without_times(j), without_times(json::parse(trade(three, {"--jobs", "3", "--json"}).out)));
+}
+
+TEST(Trade, FailuresAreRowsWithTheirReason) {
+  const Folder folder;
+  const json points = json::parse(trade(folder, {"--json"}).out).at("points");
+  std::size_t singular = 0, refused = 0;
+  for (const json& p : points) {
+    if (p.at("formulation") != "inconsistent") {
+      EXPECT_EQ(p.at("status"), "completed");
+      EXPECT_GT(p.at("relative_error"), 0.0);
+      continue;
+    }
+    if (p.at("integrator") == "rosenbrock-w") {
+      EXPECT_EQ(p.at("status"), "refused");
+      ++refused;
+    } else if (p.at("modes") == 2) {
+      EXPECT_EQ(p.at("status"), "singular");
+      ++singular;
+    }
+    if (p.at("status") != "completed") {
+      EXPECT_NE(p.at("message"), "");
+      EXPECT_EQ(p.at("pareto"), false);
+    }
+  }
+  EXPECT_EQ(refused, 2U);
+  EXPECT_EQ(singular, 1U);
+  EXPECT_THAT(trade(folder, {}).out, HasSubstr("the determinant of the mass matrix changed its sign"));
+}
+
+// Distances from the reference as `compare` measures them.
+TEST(Trade, ErrorsAreThoseThatCompareMeasures) {
+  const Folder folder;
+  const json j = json::parse(trade(folder, {"--json"}).out);
+  const json& reference = j.at("references").at("");
+  EXPECT_EQ(reference.at("formulation"), "exact");
+  EXPECT_EQ(reference.at("modes"), 3);
+  EXPECT_LT(reference.at("relative_error"), 0.05);
+  const Finished f = withy(folder, {"compare", "scenes/two-link-slew.yaml", "--set", "time.end=0.3", "--formulations",
+                                    "linear", "--reference", "exact", "--json"});
+  const double real = json::parse(f.out).at("runs").at(0).at("distance").at("tips").at("payload.tip");
+  for (const json& p : j.at("points")) {
+    if (p.at("formulation") != "linear" || p.at("modes") != 2) continue;
+    // The reference has a mode more, which is an error of its own.
+    EXPECT_NEAR(p.at("tip_error").get<double>(), real, reference.at("tip_error").get<double>() + 1e-6);
+  }
+}
+
+TEST(Trade, ContinuesWithWhatIsMissing) {
+  const Folder folder;
+  const json first = json::parse(trade(folder, {"--json"}).out);
+  const std::string missing = "out/points/quadratic_2_scene_dopri5_0.0001.json";
+  ASSERT_TRUE(std::filesystem::remove(folder.path() / missing));
+  const auto kept = folder.path() / "out/points/linear_2_scene_dopri5_0.0001.json";
+  const auto time = std::filesystem::last_write_time(kept);
+  const json second = json::parse(trade(folder, {"--json"}).out);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / missing));
+  EXPECT_EQ(std::filesystem::last_write_time(kept), time) << "what is finished is not run again";
+  EXPECT_EQ(without_times(first), without_times(second));
+  // A scene that has changed is another study.
+  static_cast<void>(trade(folder, {"--set", "gravity=[0, -1, 0]"}));
+  EXPECT_NE(std::filesystem::last_write_time(kept), time);
+}
+
+TEST(Trade, KeepsATableAndAWellFormedPicture) {
+  const Folder folder;
+  EXPECT_EQ(trade(folder, {}).status, 0);
+  EXPECT_EQ(lines(folder.read("out/trade.csv")).size(), 13U);
+  boost::property_tree::ptree svg;
+  std::istringstream text(folder.read("out/trade.svg"));
+  EXPECT_NO_THROW(boost::property_tree::read_xml(text, svg));
+}
+
+TEST(Trade, InitialModesAreKeptByNumber) {
+  const Folder folder;
+  const Finished f =
+      withy(folder, {"trade", "scenes/beam-on-base.yaml", "--set", "time.end=0.1", "--formulations", "quadratic",
+                     "--modes", "1,3", "--integrators", "dopri5", "--tolerances", "1e-6", "--json"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  for (const json& p : json::parse(f.out).at("points")) {
+    EXPECT_EQ(p.at("status"), "completed") << p.at("message");
+    EXPECT_LT(p.at("relative_error"), 0.1);
+  }
+}
+
+TEST(Trade, WhatNoAxisCanTakeIsBadInput) {
+  const Folder folder;
+  EXPECT_EQ(trade(folder, {"--modes", "0"}).status, 2);
+  EXPECT_EQ(trade(folder, {"--tolerances", "-1"}).status, 2);
+  EXPECT_EQ(trade(folder, {"--over", "time.end"}).status, 2);
+}
+
+}  // namespace
+}  // namespace withy::test
