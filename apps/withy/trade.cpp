@@ -123,7 +123,7 @@ std::string picture(const std::string& title, const std::vector<TradeResult>& re
     const auto [made, is_new] = curve_of.emplace(results[i].point.formulation, legend.size());
     if (is_new) {
       legend.push_back(results[i].point.formulation);
-      panel.curves.push_back({{}, {}, false, true});
+      panel.curves.emplace_back().points = true;
     }
     const auto [x, y] = place(results[i]);
     panel.curves[made->second].x.push_back(x);
