@@ -288,14 +288,14 @@ class TreeBuilder {
     std::vector<std::string> known;
     for (int i = entry.first; i <= last; ++i) {
       if (const int index = node(i).frame(name); index >= 0) return {i, index};
-      for (const Frame& f : node(i).frames) known.push_back(f.name);
+      for (const Frame& f : node(i).frames) {
+        if (std::find(known.begin(), known.end(), f.name) == known.end()) known.push_back(f.name);
+      }
     }
     if (const auto section = entry.count == 1 ? node(last).body->station(name) : std::nullopt) {
       node(last).frames.push_back({name, *section, {}});
       return {last, static_cast<int>(node(last).frames.size()) - 1};
     }
-    std::sort(known.begin(), known.end());
-    known.erase(std::unique(known.begin(), known.end()), known.end());
     error(end, fmt::format("body '{}' has no frame {}{}", entry.name, in_quotes(name), suggestion(name, known)));
     return {};
   }
