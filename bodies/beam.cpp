@@ -287,7 +287,7 @@ class Reader {
   /// Segments pass moments on to each other, so functions that have no strain at an end leave each of them too stiff,
   /// and all of them together as well, however many there are: one that is strained evenly must be among their sums.
   bool can_join(const ShapeFunctions& functions, const Value& family, BeamData::Strain kind, double length) {
-    if (p_.count_at("segments") == 1) return true;
+    if (const Value* segments = p_.find("segments"); segments == nullptr || segments->number() == 1) return true;
     constexpr Eigen::Index points = 64;
     const std::size_t n = functions.count();
     Eigen::MatrixXd strain(points, static_cast<Eigen::Index>(n));

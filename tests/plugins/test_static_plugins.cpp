@@ -26,8 +26,8 @@ std::vector<std::string> load_all(Registry& registry) {
 }
 
 std::vector<std::string> everything(Registry& registry) {
-  return load_all<withy::Body, withy::Hinge, withy::ModeFamily, withy::Formulation, withy::Integrator, withy::Load>(
-      registry);
+  return load_all<withy::Body, withy::Hinge, withy::ModeFamily, withy::Formulation, withy::Integrator, withy::Load,
+                  withy::Motion>(registry);
 }
 
 TEST(StaticPlugins, are_the_plugins_of_the_libraries) {

@@ -136,7 +136,7 @@ const BadScene bad_scenes[] = {
     {"unknown_formulation_of_a_body", "    type: beam", "    type: beam\n    formulation: ruthles",
      R"(13:18: /bodies/boom/formulation: no formulation plugin "ruthles"; did you mean 'ruthless'?; available: consistent, exact, inconsistent, linear, quadratic, ruthless)"},
     {"unknown_integrator", "format: withy/1", "format: withy/1\nintegrator: {name: dopri}",
-     R"(2:20: /integrator/name: no integrator plugin "dopri"; did you mean 'dopri5'?; available: dopri5, rk4, rk4-adaptive)"},
+     R"(2:20: /integrator/name: no integrator plugin "dopri"; did you mean 'dopri5'?; available: dop853, dopri5, rk4, rk4-adaptive, rosenbrock-w)"},
     {"unknown_option_of_the_integrator", "format: withy/1", "format: withy/1\nintegrator: {name: dopri5, tol: 1}",
      R"(2:28: /integrator/tol: unknown key "tol"; did you mean 'rtol'?)"},
     {"option_out_of_range", "format: withy/1", "format: withy/1\nintegrator: {rtol: 0}",
@@ -268,7 +268,8 @@ TEST_F(BadDocuments, WithoutAnEndCanBeReadButNotRun) {
     (void)end_of_run(scene);
     FAIL() << "no error";
   } catch (const SceneError& e) {
-    EXPECT_STREQ(e.what(), "s.yaml:3:7: /time/end: missing, and no load has an end of its own; need finite >= 0 [s]");
+    EXPECT_STREQ(e.what(),
+                 "s.yaml:3:7: /time/end: missing, and no load or motion has an end of its own; need finite >= 0 [s]");
   }
 }
 
