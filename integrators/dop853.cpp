@@ -3,6 +3,7 @@
 /// 7, "DOP853" (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6; coefficients as
 /// published there). Twelve evaluations a step, three more in a step that is interpolated.
 #include <array>
+#include <optional>
 #include <span>
 
 #include "adaptive_stepper.hpp"
@@ -205,6 +206,7 @@ class Dop853 final : public Integrator {
     return std::make_unique<Dop853Stepper>(equations, state, control_);
   }
   int order() const override { return 8; }
+  std::optional<double> stability_limit() const override { return 5.965; }
 
  private:
   StepControl control_;
