@@ -172,7 +172,10 @@ TEST_P(Motions, do_not_change_inverse_dynamics) {
 TEST_P(Motions, linearly_implicit_solutions_leave_driven_speeds_alone) {
   const Driven c(7, {.bodies = 6}, GetParam());
   const LinearlyImplicit* linear = c.equations->linearly_implicit();
-  if (linear == nullptr) GTEST_SKIP() << "strict forms offer none";
+  if (linear == nullptr) {
+    EXPECT_TRUE(GetParam() == "inconsistent" || GetParam() == "consistent") << "strict forms alone offer none";
+    return;
+  }
   constexpr double delta = 0.01;
   Work factors = linear->make_factors();
   ASSERT_TRUE(linear->factorize(c.state.y, delta, factors).ok());
