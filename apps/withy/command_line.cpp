@@ -129,7 +129,8 @@ void add_commands(Commands& commands) {
   auto& run_arguments = commands.add<RunArguments>("run", "Simulate a scene",
                                                    "  withy run scenes/two-link-slew.yaml\n"
                                                    "  withy run scenes/two-link-slew.yaml --formulation ruthless "
-                                                   "--set loads.slew.time_scale=1.2 --out results/fast",
+                                                   "--set loads.slew.time_scale=1.2 --out results/fast\n"
+                                                   "  withy run scenes/two-link-slew.yaml --resume",
                                                    run, c);
   add_scene(*c, run_arguments);
   add_formulation(*c, run_arguments);
@@ -140,6 +141,13 @@ void add_commands(Commands& commands) {
       ->type_name("WHEN")
       ->check(CLI::IsMember({"auto", "always", "never"}))
       ->capture_default_str();
+
+  c->add_option("--checkpoint", run_arguments.checkpoint,
+                "Wall time between checkpoints; 0: only where the run is interrupted")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  c->add_flag("--resume", run_arguments.resume, "Go on from the checkpoint in the folder of the results");
 
   auto& compare_arguments =
       commands.add<CompareArguments>("compare", "Simulate a scene in several formulations, side by side",

@@ -33,6 +33,8 @@ struct RunArguments : SceneArguments {
   std::string out;  ///< folder of the results; empty: results/<scene>-<formulation>
   /// When the error against the next model up is estimated: auto (against `quadratic`), always, never.
   std::string estimate = "auto";
+  double checkpoint = 60;  ///< wall time between checkpoints [s]; 0: only where the run is interrupted
+  bool resume = false;     ///< go on from the checkpoint in the folder
 };
 
 struct CompareArguments : SceneArguments {

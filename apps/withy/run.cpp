@@ -22,6 +22,7 @@ ExitStatus run(const RunArguments& arguments) {
                        : run_table(engine, summary) + certificate_text(engine, summary, certified.evidence()) +
                              "\nresults in " + folder.string() + '\n');
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
+  if (summary.status == RunStatus::interrupted) complain("the same command with --resume goes on from there");
   return exit_status(summary.status);
 }
 

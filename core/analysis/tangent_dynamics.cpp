@@ -302,6 +302,7 @@ Eigen::VectorXd TangentDynamics::load_efforts(double t, std::span<const double> 
     std::vector<double> scratch(node.load->scratch());
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), efforts, scratch);
   }
+  model_->add_discrete_efforts(y, efforts);
   return Eigen::Map<const Eigen::VectorXd>(efforts.data(), static_cast<Eigen::Index>(efforts.size()));
 }
 

@@ -115,6 +115,25 @@ void Monitor::audit_mass_matrix(const State& state, int sign) {
   }
 }
 
+void Monitor::remember(Memory& memory) {
+  for (auto& [body, peak] : summary_.peak_deflection) {
+    for (double& d : peak) memory(d);
+  }
+  for (auto& [body, ratio] : summary_.peak_deflection_ratio) memory(ratio);
+  for (End& end : ends_) {
+    for (double& d : end.rough) memory(d);
+  }
+  memory(summary_.peak_effort);
+  memory(summary_.peak_motion_effort);
+  memory(summary_.energy_drift);
+  memory(summary_.suspected_jumps);
+  memory(energy_error_);
+  memory(energy_scale_);
+  memory(checked_);
+  memory(rejected_);
+  memory(burst_);
+}
+
 // Where the right-hand side is smooth, error control rejects a step now and then. At a jump inside a step it rejects
 // again and again, until the steps are so short that the jump does not matter.
 void Monitor::audit_steps(const State& state, const StepStatistics& steps) {

@@ -98,7 +98,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     std::byte* memory = work.data();
     const std::span<double> efforts(reinterpret_cast<double*>(memory + efforts_offset_), order.speeds);
     for (double& e : efforts) e = 0;
-    loads_.add(t, positions, speeds, efforts, memory + loads_offset_);
+    loads_.add(t, y, efforts, memory + loads_offset_);
     double* accelerations = y_dot.data() + order.positions;
     const bool driven = !model_->motions().empty();
     if (driven) model_->prescribe_accelerations(t, {accelerations, order.speeds});
@@ -119,7 +119,8 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
       for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
     }
     for (const Damper& d : damped_) power -= speeds[d.i] * d.value * speeds[d.j];
-    y_dot[order.positions + order.speeds] = power;
+    for (std::size_t i = 0; i < order.discrete; ++i) y_dot[order.positions + order.speeds + i] = 0;
+    y_dot[order.positions + order.speeds + order.discrete] = power;
     double total = power;
     for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
     if (!std::isfinite(total)) return {Evaluation::Outcome::nonfinite, first_nonfinite(accelerations)};
@@ -129,8 +130,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
                     Work& work) const noexcept override {
     std::fill(efforts.begin(), efforts.end(), 0.0);
-    loads_.add(t, y.first(layout().positions), y.subspan(layout().positions, layout().speeds), efforts,
-               work.data() + loads_offset_, load);
+    loads_.add(t, y, efforts, work.data() + loads_offset_, load);
   }
   Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
                             Work& work) const noexcept override {
