@@ -27,28 +27,6 @@ void Campaign::holds(const std::string& what, const std::string& oracle, const s
   row(what, oracle, gate, why.empty() ? "holds" : why, why.empty());
 }
 
-const std::vector<Extreme>& extremes() {
-  static const std::vector<Extreme> all = {
-      {"high-modes", "High modes", &high_modes},
-      {"tip-mass", "Hinge, clamped modes, heavy tip", &tip_mass},
-      {"zeros", "Nothing and almost nothing", &zeros},
-      {"spin", "Spin", &spin},
-      {"buckling", "Axial load", &buckling},
-      {"stability", "Explicit stability", &stability},
-      {"rigid-limit", "Stiff and slack", &rigid_limit},
-      {"long-run", "Long conservative run", &long_run},
-      {"chains", "Long chains", &chains},
-      {"rotations", "Rotations", &rotations},
-      {"units", "Units by powers of two", &units},
-      {"invariance", "Invariance", &invariance},
-      {"failures", "Numbers that are none", &failures},
-      {"jumps", "Jumps of the right-hand side", &jumps},
-      {"denormals", "Denormal numbers", &denormals},
-      {"threads", "Threads", &threads},
-  };
-  return all;
-}
-
 std::vector<double> Made::rates(const State& state) const {
   std::vector<double> y_dot(equations->size());
   Work work = equations->make_work();

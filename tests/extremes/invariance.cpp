@@ -44,16 +44,21 @@ void frames(Campaign& campaign) {
     campaign.at_most(fmt::format("spacecraft, world turned and moved by {:g} m", offset), "the accelerations before",
                      worst, gate);
   }
-  double worst = 0;
-  for (const std::string& formulation : formulations) {
-    const Made made(scene_text("spacecraft"), formulation);
-    const State s = moving(made);
-    State fast = s;
-    const std::size_t at = made.layout().positions + made.layout().hinge("float")->speed + 3;
-    for (std::size_t i = 0; i < 3; ++i) fast.y[at + i] += 1000.0 * (static_cast<double>(i) - 0.7);
-    worst = std::max(worst, difference(made.accelerations(fast), made.accelerations(s)));
+  // What is added to the velocity loses its digits in products with the rates of rotation.
+  for (const auto& [speed, gate] : {std::pair(1.0, 1e-12), {1000.0, 1e-9}}) {
+    double worst = 0;
+    for (const std::string& formulation : formulations) {
+      const Made made(scene_text("spacecraft"), formulation);
+      const State s = moving(made);
+      State fast = s;
+      const std::size_t at = made.layout().positions + made.layout().hinge("float")->speed + 3;
+      const double direction[] = {0.6, -0.48, 0.64};
+      for (std::size_t i = 0; i < 3; ++i) fast.y[at + i] += speed * direction[i];
+      worst = std::max(worst, difference(made.accelerations(fast), made.accelerations(s)));
+    }
+    campaign.at_most(fmt::format("spacecraft, {:g} m/s added (Galileo)", speed), "the accelerations before", worst,
+                     gate);
   }
-  campaign.at_most("spacecraft, 1 km/s added (Galileo)", "the accelerations before", worst, 1e-12);
 }
 
 /// A bus with four booms and loads of different kinds, named in this order in the file.

@@ -9,6 +9,32 @@
 
 #include "campaign.hpp"
 
+namespace withy::extremes {
+
+const std::vector<Extreme>& extremes() {
+  static const std::vector<Extreme> all = {
+      {"high-modes", "High modes", &high_modes},
+      {"tip-mass", "Hinge, clamped modes, heavy tip", &tip_mass},
+      {"zeros", "Nothing and almost nothing", &zeros},
+      {"spin", "Spin", &spin},
+      {"buckling", "Axial load", &buckling},
+      {"stability", "Explicit stability", &stability},
+      {"rigid-limit", "Stiff and slack", &rigid_limit},
+      {"long-run", "Long conservative run", &long_run},
+      {"chains", "Long chains", &chains},
+      {"rotations", "Rotations", &rotations},
+      {"units", "Units by powers of two", &units},
+      {"invariance", "Invariance", &invariance},
+      {"failures", "Numbers that are none", &failures},
+      {"jumps", "Jumps of the right-hand side", &jumps},
+      {"denormals", "Denormal numbers", &denormals},
+      {"threads", "Threads", &threads},
+  };
+  return all;
+}
+
+}  // namespace withy::extremes
+
 namespace {
 
 using withy::extremes::Row;

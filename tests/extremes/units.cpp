@@ -100,7 +100,7 @@ void units(Campaign& campaign) {
         if (!d.empty()) wrong += formulation + ": " + d;
         ++compared;
       } catch (const std::invalid_argument& e) {
-        left_out = e.what();
+        if (std::string(e.what()).find("exact kinematics") == std::string::npos) left_out = e.what();
       }
     }
     if (compared == 0) {
