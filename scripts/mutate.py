@@ -18,7 +18,8 @@ from pathlib import Path
 
 root = Path(__file__).resolve().parent.parent
 work = root / "build" / "mutants"
-source, build, report = work / "source", work / "build", work / "report.tsv"
+# The build lies in the copy as the release does in the tree, so that ccache knows what is not changed.
+source, build, report = work / "source", work / "source" / "build" / "release", work / "report.tsv"
 # In the order of their running time: what is quick may kill before what is thorough.
 programs = ["simulation", "formulations", "integrators", "plugins", "validity", "bodies", "loads", "reference", "modes",
             "dynamics", "analysis"]

@@ -15,7 +15,6 @@ namespace {
 using DenseMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double epsilon = 0x1p-52;
-constexpr double nearly_massless = 1e-3;
 
 /// M of the free speeds, scaled, and the scale of each speed; prescribed ones have none.
 struct Scaled {
@@ -125,18 +124,12 @@ std::vector<MasslessDirection> massless_directions(const Model& model, const Den
   for (Eigen::Index k = 0; k < solver.eigenvalues().size() && solver.eigenvalues()[k] < share; ++k) {
     const Eigen::VectorXd v = solver.eigenvectors().col(k);
     const std::vector<double> all = of_all(s, v, system.size);
-    double modal = 0, greatest = 0;
-    MasslessDirection d;
+    double modal = 0;
     for (const Slot& slot : model.layout().bodies) {
-      for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) {
-        modal += all[i] * all[i];
-        if (std::abs(all[i]) <= greatest) continue;
-        greatest = std::abs(all[i]);
-        d.body = slot.name;
-        d.mode = model.layout().speed_names[i].substr(slot.name.size() + 1);
-      }
+      for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) modal += all[i] * all[i];
     }
     if (modal < 0.5) continue;
+    MasslessDirection d;
     d.share = solver.eigenvalues()[k];
     const Eigen::VectorXd u = s.scale.asDiagonal() * v;
     d.frequency = d.share > 0 ? std::sqrt(std::max(0.0, u.dot(K * u)) / d.share) : 0;
@@ -144,6 +137,23 @@ std::vector<MasslessDirection> massless_directions(const Model& model, const Den
     found.push_back(std::move(d));
   }
   return found;
+}
+
+std::optional<Removal> best_removal(const Model& model, const DenseSystem& system) {
+  std::optional<Removal> best;
+  for (const BodyNode& body : model.bodies()) {
+    const Slot* slot = model.layout().body(body.name);
+    if (slot == nullptr) continue;
+    for (const ModeGroup& group : mode_groups(body.body->shape())) {
+      // As a prescribed speed it takes no part.
+      const std::size_t speed = slot->speed + static_cast<std::size_t>(group.coordinates.back());
+      DenseSystem without = system;
+      without.prescribed.push_back({speed, 0});
+      const double condition = attainable_accuracy(without).condition;
+      if (!best || condition < best->condition) best = {model.layout().speed_names[speed], condition};
+    }
+  }
+  return best;
 }
 
 std::string unattainable(const Model& model, const EquationsOfMotion& equations, const State& state, double tolerance) {
@@ -162,11 +172,8 @@ std::string unattainable(const Model& model, const EquationsOfMotion& equations,
       " with each coordinate in the unit of its own inertia, leaves accelerations an error of κ·2⁻⁵² = " +
       brief(a.accuracy) + "; the direction that moves least mass, " + brief(a.share) + " of its coordinates' own, is " +
       (a.weakest.empty() ? "not known" : owners_of(layout, a.weakest));
-  const std::vector<MasslessDirection> massless = massless_directions(model, system, nearly_massless);
-  if (!massless.empty())
-    text += ". Leave out " + massless.front().mode + " of body '" + massless.front().body +
-            "' or choose modes that know the load, as the family clamped-loaded does, or ask for no more accuracy than "
-            "that";
+  if (const std::optional<Removal> removal = best_removal(model, system))
+    text += "; without " + removal->mode + " the condition is " + brief(removal->condition);
   return text;
 }
 

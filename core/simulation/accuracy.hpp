@@ -3,6 +3,7 @@
 /// named and valued before a run.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,13 +31,20 @@ struct MasslessDirection {
   double share = 0;      ///< of the coordinates' own inertia that is left along it
   double frequency = 0;  ///< [rad/s], √(vᵀKv/vᵀMv); 0 where nothing holds it elastically
   std::string owners;    ///< whose coordinates make it up: "62 % modes of 'link1' (most of all link1.bending_y[2])"
-  std::string body;      ///< the body whose mode has the greatest part in it
-  std::string mode;      ///< that mode, as "bending_y[2]"
 };
 
 /// Directions along which less than `share` of the coordinates' own inertia is left, weakest first, that are made up
 /// of modes for the greater part.
 std::vector<MasslessDirection> massless_directions(const Model& model, const DenseSystem& system, double share);
+
+/// A mode that may be left out: the highest of its family on its body.
+struct Removal {
+  std::string mode;      ///< as "link1.bending_y[2]"
+  double condition = 0;  ///< AttainableAccuracy::condition of what is left
+};
+
+/// The highest mode of a body without which the mass matrix is best conditioned; nothing where there are no modes.
+std::optional<Removal> best_removal(const Model& model, const DenseSystem& system);
 
 /// Why a relative tolerance cannot be had at a state: κ·2⁻⁵², the coordinate without inertia or the direction with
 /// least, what may be done. Empty where it can, or where there are more than `largest_examined` speeds.
