@@ -135,7 +135,8 @@ void Monitor::remember(Memory& memory) {
 }
 
 // Where the right-hand side is smooth, error control rejects a step now and then. At a jump inside a step it rejects
-// again and again, until the steps are so short that the jump does not matter.
+// again and again, until the steps are so short that the jump does not matter; until as many in a row go well as make a
+// burst, what follows belongs to the same jump.
 void Monitor::audit_steps(const State& state, const StepStatistics& steps) {
   constexpr std::size_t many = 8;
   constexpr std::size_t most_reports = 16;
@@ -143,12 +144,14 @@ void Monitor::audit_steps(const State& state, const StepStatistics& steps) {
   rejected_ = steps.rejected;
   if (rejected == 0) {
     burst_ = burst_ < many ? burst_ - (burst_ > 0 ? 1 : 0) : 0;
+    if (++calm_ >= many) noted_ = false;
     return;
   }
-  const std::size_t before = burst_;
+  calm_ = 0;
   burst_ += rejected;
-  if (before < many && burst_ >= many && summary_.suspected_jumps.size() < most_reports)
-    summary_.suspected_jumps.push_back(state.time);
+  if (burst_ < many || noted_) return;
+  noted_ = true;
+  if (summary_.suspected_jumps.size() < most_reports) summary_.suspected_jumps.push_back(state.time);
 }
 
 }  // namespace withy

@@ -72,6 +72,8 @@ class Monitor {
   std::optional<SignChange> sign_change_;
   std::size_t rejected_ = 0;  ///< steps rejected so far
   std::size_t burst_ = 0;     ///< of these, in the present burst
+  std::size_t calm_ = 0;      ///< steps in a row that were not rejected
+  bool noted_ = false;        ///< the present burst is in the summary
 };
 
 }  // namespace withy
