@@ -73,6 +73,13 @@ class AdaptiveStepper : public OneStep {
   }
 
  protected:
+  void remember(Memory& memory) override {
+    OneStep::remember(memory);
+    memory(proposal_);
+    memory(error_before_);
+    memory(accuracy_to_blame_);
+  }
+
   struct Trial {
     Evaluation evaluation;
     double error = 0;  ///< greatest error over tolerance; above 1 the step is rejected

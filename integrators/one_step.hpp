@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "withy/core/plugin/integrator.hpp"
+#include "withy/core/plugin/memory.hpp"
 
 namespace withy {
 
@@ -25,9 +26,7 @@ class OneStep : public Stepper {
         equations_(equations),
         work_(equations.make_work()),
         size_(static_cast<Eigen::Index>(equations.size())) {
-    if (start.y.size() != equations.size())
-      throw std::invalid_argument("the state has " + std::to_string(start.y.size()) + " numbers, the equations need " +
-                                  std::to_string(equations.size()));
+    check_size(start);
     equations_.normalize(state_.y);
     previous_ = y();
     for (Eigen::ArrayXd* a : {&slope_, &previous_slope_, &next_, &next_slope_}) a->setZero(size_);
@@ -36,6 +35,22 @@ class OneStep : public Stepper {
   [[nodiscard]] const State& state() const final { return state_; }
   [[nodiscard]] const StepStatistics& statistics() const final { return statistics_; }
   void restart() override { slope_known_ = false; }
+  void jump(const State& state) final {
+    place(state);
+    restart();
+  }
+  [[nodiscard]] std::vector<double> memory() const final {
+    Memory memory;
+    const_cast<OneStep*>(this)->remember(memory);  // which only reads them, since it writes
+    return memory.numbers();
+  }
+  void resume(const State& state, std::span<const double> numbers) final {
+    place(state);
+    Memory memory(numbers);
+    remember(memory);
+    memory.finish();
+    if (slope_.size() != size_) throw std::invalid_argument("the memory is that of a stepper of other equations");
+  }
 
   /// At and outside the ends of the last step: the state at that end, bit by bit. Inside: the method's interpolant with
   /// its quaternions normalized.
@@ -53,6 +68,19 @@ class OneStep : public Stepper {
 
  protected:
   using Values = Eigen::Map<Eigen::ArrayXd>;
+
+  /// Names all that the next steps depend on beyond the state.
+  virtual void remember(Memory& memory) {
+    memory(statistics_.accepted);
+    memory(statistics_.rejected);
+    memory(statistics_.evaluations);
+    memory(statistics_.smallest_step);
+    memory(statistics_.largest_step);
+    memory(statistics_.determinant_sign);
+    memory(sign_);
+    memory(slope_known_);
+    memory(slope_);
+  }
 
   /// The interpolant at fraction theta in (0, 1) of the last accepted step.
   virtual void inside(double theta, Values values) const = 0;
@@ -122,6 +150,19 @@ class OneStep : public Stepper {
   mutable StepStatistics statistics_;
 
  private:
+  void check_size(const State& state) const {
+    if (state.y.size() != equations_.size())
+      throw std::invalid_argument("the state has " + std::to_string(state.y.size()) + " numbers, the equations need " +
+                                  std::to_string(equations_.size()));
+  }
+  /// Takes a state as it is; the last step is one without length.
+  void place(const State& state) {
+    check_size(state);
+    state_ = state;
+    previous_time_ = state.time;
+    previous_ = y();
+  }
+
   const EquationsOfMotion& equations_;
   mutable Work work_;
   Eigen::Index size_;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "withy/core/dynamics/equations.hpp"
 
@@ -46,6 +47,14 @@ class Stepper {
   virtual void interpolate(double t, std::span<double> y) const = 0;
   /// Forgets what was learnt of the right-hand side's smoothness: call at a discontinuity, after its time is reached.
   virtual void restart() = 0;
+  /// Goes to another state, its quaternions of unit length, and begins there as after `restart`: back to an event
+  /// within the last step, or where the state itself jumps.
+  virtual void jump(const State& state) = 0;
+  /// What the stepper knows beyond its state, its statistics among it. Taken up with the state by `resume`, a stepper
+  /// of the same integrator and equations goes on as this one would, bit by bit.
+  [[nodiscard]] virtual std::vector<double> memory() const = 0;
+  /// \throws std::invalid_argument where these numbers are no memory of such a stepper.
+  virtual void resume(const State& state, std::span<const double> memory) = 0;
   [[nodiscard]] virtual const StepStatistics& statistics() const = 0;
 };
 

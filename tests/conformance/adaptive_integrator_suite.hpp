@@ -60,6 +60,14 @@ TEST_P(AdaptiveIntegratorSuite, error_is_proportional_to_the_tolerance) {
   EXPECT_NEAR(slope, 1, 0.2);
 }
 
+TEST_P(AdaptiveIntegratorSuite, goes_on_bit_by_bit_from_what_was_put_down) {
+  for (const double tolerance : {1e-4, 1e-8}) {
+    const auto begin = [&](const EquationsOfMotion& e, const State& s) { return start(e, s, tolerance); };
+    expect_the_same_when_resumed(begin, Duffing::equations(), Duffing::start());
+    expect_the_same_when_resumed(begin, Rotation::equations(), Rotation::start());
+  }
+}
+
 // The solution of y′ = 1/(t − 1), ln|1 − t|, ends at t = 1.
 TEST_P(AdaptiveIntegratorSuite, reports_step_underflow_at_a_singularity) {
   const FunctionEquations equations(1, 1, [](double t, std::span<const double>, std::span<double> f) {

@@ -2,10 +2,15 @@
 /// Problems with known solutions that integrators are measured on.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <boost/math/special_functions/jacobi_elliptic.hpp>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/tests/conformance/function_equations.hpp"
@@ -115,6 +120,34 @@ inline StepResult drive(Stepper& stepper, double t_limit, std::size_t most_steps
     if (r.outcome != StepResult::Outcome::ok) return r;
   }
   return {};
+}
+
+/// One stepper goes on, another is put down and taken up anew after every step and restarted as often: their states and
+/// counts agree bit by bit.
+template <class Start>
+void expect_the_same_when_resumed(const Start& start, const EquationsOfMotion& equations, const State& initial) {
+  const std::unique_ptr<Stepper> whole = start(equations, initial);
+  std::unique_ptr<Stepper> pieces = start(equations, initial);
+  for (const double limit : {0.3, 0.7, 2.3}) {
+    while (whole->state().time < limit) {
+      ASSERT_EQ(whole->step(limit).outcome, StepResult::Outcome::ok);
+      const State state = pieces->state();
+      const std::vector<double> memory = pieces->memory();
+      pieces = start(equations, initial);
+      pieces->resume(state, memory);
+      ASSERT_EQ(pieces->step(limit).outcome, StepResult::Outcome::ok);
+      ASSERT_EQ(pieces->state().time, whole->state().time);
+      ASSERT_EQ(std::memcmp(pieces->state().y.data(), whole->state().y.data(), state.y.size() * sizeof(double)), 0);
+      EXPECT_EQ(pieces->memory(), whole->memory());
+    }
+    whole->restart();
+    pieces->restart();
+  }
+  std::vector<double> memory = whole->memory();
+  memory.push_back(0);
+  EXPECT_THROW(pieces->resume(whole->state(), memory), std::invalid_argument);
+  memory.resize(memory.size() / 2);
+  EXPECT_THROW(pieces->resume(whole->state(), memory), std::invalid_argument);
 }
 
 }  // namespace withy

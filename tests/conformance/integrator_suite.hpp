@@ -201,6 +201,29 @@ TEST_P(IntegratorSuite, gives_the_same_bits_twice) {
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0);
 }
 
+TEST_P(IntegratorSuite, goes_on_bit_by_bit_from_what_was_put_down) {
+  const auto integrator = with_step(0.013);
+  const auto start = [&](const EquationsOfMotion& e, const State& s) { return integrator->start(e, s); };
+  expect_the_same_when_resumed(start, Duffing::equations(), Duffing::start());
+  expect_the_same_when_resumed(start, Rotation::equations(), Rotation::start());
+}
+
+// Back to a state within the last step: from there as if started there.
+TEST_P(IntegratorSuite, jumps_to_another_state) {
+  const FunctionEquations equations = Duffing::equations();
+  const auto integrator = with_step(0.05 * GetParam().stretch);
+  const auto stepper = integrator->start(equations, Duffing::start());
+  ASSERT_EQ(drive(*stepper, 1).outcome, StepResult::Outcome::ok);
+  const State other{0.99, {-0.3, 0.2, 0.1}};
+  stepper->jump(other);
+  EXPECT_EQ(stepper->state().time, other.time);
+  EXPECT_EQ(stepper->state().y, other.y);
+  const auto fresh = integrator->start(equations, other);
+  ASSERT_EQ(drive(*stepper, 2).outcome, StepResult::Outcome::ok);
+  ASSERT_EQ(drive(*fresh, 2).outcome, StepResult::Outcome::ok);
+  EXPECT_EQ(stepper->state().y, fresh->state().y);
+}
+
 // The equations' normalize is applied after each step; dividing by a norm leaves at most 4 ε.
 TEST_P(IntegratorSuite, keeps_quaternions_at_unit_length) {
   const FunctionEquations equations = Rotation::equations();
