@@ -64,6 +64,18 @@ struct TradeArguments : SceneArguments {
   std::size_t jobs = 0;  ///< threads; 0: one a core
 };
 
+/// What is advised is the cheapest of these that holds the accuracy.
+struct AdviseArguments : SceneArguments {
+  std::string accuracy = "1%";
+  std::vector<std::string> outputs;  ///< that errors are measured on; empty: hinges and tips
+  std::vector<std::string> formulations = {"ruthless", "linear", "consistent", "quadratic", "exact"};
+  std::vector<std::string> families;  ///< of bending; empty: the scene's, and another where it means the same beams
+  std::vector<int> modes = {1, 2, 3, 4};
+  std::vector<std::string> integrators = {"dopri5", "dop853", "rosenbrock-w"};
+  std::vector<double> tolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
+  std::string write;  ///< file for the scene as advised; empty: none
+};
+
 /// Commands that look at one state of a scene.
 struct StateArguments : SceneArguments {
   std::string state;  ///< file; empty: the scene's initial state
@@ -119,6 +131,7 @@ ExitStatus run(const RunArguments& arguments);
 ExitStatus compare(const CompareArguments& arguments);
 ExitStatus terms(const TermsArguments& arguments);
 ExitStatus trade(const TradeArguments& arguments);
+ExitStatus advise(const AdviseArguments& arguments);
 ExitStatus eval(const StateArguments& arguments);
 ExitStatus inspect(const StateArguments& arguments);
 ExitStatus equilibrium(const EquilibriumArguments& arguments);
