@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 /// Limits of theory, section 5, for a truncation of linear kinematics; beyond them frequencies are 1 % wrong.
 double rate_limit(const Terms& terms, bool planar_modes) {
-  if (terms.truncation == Truncation::ruthless) return planar_modes ? 0.325 : 0.130;
+  if (terms.truncation == Truncation::ruthless || !terms.products_of_speeds) return planar_modes ? 0.325 : 0.130;
   return 0.129;
 }
 
@@ -144,7 +144,8 @@ ErrorEstimate estimate_error(const Engine& engine, const Beyond& beyond, const R
 
 std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary) {
   const Terms terms = scene.formulation->terms();
-  const bool second_order = terms.strain != StrainOrder::linear && terms.truncation != Truncation::ruthless;
+  const bool second_order =
+      terms.strain != StrainOrder::linear && terms.truncation != Truncation::ruthless && terms.products_of_speeds;
   std::vector<Indicator> all;
   for (const BodyValidity& b : summary.validity.bodies) {
     const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(b.name))];
