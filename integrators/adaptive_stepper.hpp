@@ -23,10 +23,12 @@ class AdaptiveStepper : public OneStep {
     if (!(t_limit > t)) return {};
     if (const StepResult r = begin(t_limit); r.outcome != StepResult::Outcome::ok) return r;
     const double remaining = t_limit - t;
-    if (!(proposal_ > 0)) proposal_ = first_step(remaining);
-    double wanted = std::min(proposal_, control_.max_step);
     const double least = std::max({control_.min_step, 16 * std::numeric_limits<double>::epsilon() * std::abs(t),
                                    std::numeric_limits<double>::min()});
+    // What remains may be a rounding error long: the first step, found as a part of it, is no shorter than any may be.
+    if (!(proposal_ > 0))
+      proposal_ = control_.initial_step > 0 ? control_.initial_step : std::max(first_step(remaining), least);
+    double wanted = std::min(proposal_, control_.max_step);
     bool rejected = false;
     for (int failures = 0;;) {
       if (wanted < least && wanted < remaining) return {StepResult::Outcome::step_underflow, -1};
@@ -57,6 +59,7 @@ class AdaptiveStepper : public OneStep {
       const double factor = growth / std::pow(error_before_, stabilization) / safety;
       double next_step = h / std::clamp(factor, 1 / greatest_growth, greatest_reduction);
       if (rejected) next_step = std::min(next_step, h);
+      next_step = favoured(next_step, h);
       // A step cut short to land says nothing against the step that was wanted.
       proposal_ = h < wanted ? std::max(wanted, next_step) : next_step;
       error_before_ = std::max(trial.error, 1e-4);
@@ -66,7 +69,7 @@ class AdaptiveStepper : public OneStep {
     }
   }
 
-  void restart() final {
+  void restart() override {
     OneStep::restart();
     proposal_ = 0;
     error_before_ = 1e-4;
@@ -90,6 +93,9 @@ class AdaptiveStepper : public OneStep {
   virtual Trial attempt(double h) = 0;
   /// Called after state_, slope_ and their predecessors are those of an accepted step h: keeps what `inside` needs.
   virtual void accepted(double h) = 0;
+
+  /// The step to take where control wants `wanted` after an accepted step h.
+  [[nodiscard]] virtual double favoured(double wanted, double /*h*/) const { return wanted; }
 
   /// Greatest of |error_| / (atol + rtol max(|y|, |next_|)) over positions and speeds. The greatest, not the mean: a
   /// coordinate's error does not hide behind the number of the others.
@@ -122,7 +128,6 @@ class AdaptiveStepper : public OneStep {
   /// step changes y by 1 %, tells how fast the slope changes; from that time τ follows the step whose error, of the
   /// estimate's order, is about a hundredth of the tolerance.
   double first_step(double remaining) {
-    if (control_.initial_step > 0) return control_.initial_step;
     const Eigen::Index n = size() - 1;
     if (n == 0) return remaining;
     const auto norm = [&](const auto& v) {
@@ -150,5 +155,27 @@ class AdaptiveStepper : public OneStep {
   double error_before_ = 1e-4;
   int accuracy_to_blame_ = 0;  ///< the last rejections: more for the error (above 0) or for failures (below)
 };
+
+/// The integrator whose steppers are `Method`, which states its order and its limit on the imaginary axis.
+template <class Method>
+class Controlled final : public Integrator {
+ public:
+  explicit Controlled(const StepControl& control) : control_(control) {}
+  std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
+    return std::make_unique<Method>(equations, state, control_);
+  }
+  int order() const override { return Method::order; }
+  std::optional<double> stability_limit() const override { return Method::stability_limit; }
+
+ private:
+  StepControl control_;
+};
+
+/// Reads checked parameters; null after a reported error.
+template <class Method>
+std::unique_ptr<Integrator> make_controlled(const Value& p, const MakeContext& context) {
+  const std::optional<StepControl> control = read_step_control(p, context);
+  return control ? std::make_unique<Controlled<Method>>(*control) : nullptr;
+}
 
 }  // namespace withy

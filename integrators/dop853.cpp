@@ -123,6 +123,9 @@ constexpr std::span<const Term> stages[] = {{}, a1, a2, a3, a4, a5, a6, a7, a8, 
 
 class Dop853Stepper final : public AdaptiveStepper {
  public:
+  static constexpr int order = 8;
+  static constexpr double stability_limit = 5.965;
+
   Dop853Stepper(const EquationsOfMotion& equations, const State& start, const StepControl& control)
       : AdaptiveStepper(equations, start, control, 8) {
     for (Eigen::ArrayXd& k : k_) k.setZero(size());
@@ -199,24 +202,11 @@ class Dop853Stepper final : public AdaptiveStepper {
   mutable bool dense_ = false;  ///< c_ belongs to the last accepted step
 };
 
-class Dop853 final : public Integrator {
- public:
-  explicit Dop853(const StepControl& control) : control_(control) {}
-  std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
-    return std::make_unique<Dop853Stepper>(equations, state, control_);
-  }
-  int order() const override { return 8; }
-  std::optional<double> stability_limit() const override { return 5.965; }
-
- private:
-  StepControl control_;
-};
-
 void enroll(Enrollment& enrollment) {
   enrollment.add<Integrator>({.id = "dop853",
                               .summary = "Dormand-Prince method of order 8 with dense output of order 7",
                               .parameters = step_control_parameters(),
-                              .make = &make_controlled<Dop853>});
+                              .make = &make_controlled<Dop853Stepper>});
 }
 
 }  // namespace

@@ -9,6 +9,9 @@ namespace {
 
 class Dopri5Stepper final : public AdaptiveStepper {
  public:
+  static constexpr int order = 5;
+  static constexpr double stability_limit = 1.725;
+
   Dopri5Stepper(const EquationsOfMotion& equations, const State& start, const StepControl& control)
       : AdaptiveStepper(equations, start, control) {
     for (Eigen::ArrayXd* a : {&stage_, &k2_, &k3_, &k4_, &k5_, &k6_, &c2_, &c3_, &c4_, &c5_}) a->setZero(size());
@@ -60,24 +63,11 @@ class Dopri5Stepper final : public AdaptiveStepper {
   Eigen::ArrayXd c2_, c3_, c4_, c5_;  ///< the continuous extension over the last accepted step
 };
 
-class Dopri5 final : public Integrator {
- public:
-  explicit Dopri5(const StepControl& control) : control_(control) {}
-  std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
-    return std::make_unique<Dopri5Stepper>(equations, state, control_);
-  }
-  int order() const override { return 5; }
-  std::optional<double> stability_limit() const override { return 1.725; }
-
- private:
-  StepControl control_;
-};
-
 void enroll(Enrollment& enrollment) {
   enrollment.add<Integrator>({.id = "dopri5",
                               .summary = "Dormand-Prince pair of orders 5 and 4 with dense output",
                               .parameters = step_control_parameters(),
-                              .make = &make_controlled<Dopri5>});
+                              .make = &make_controlled<Dopri5Stepper>});
 }
 
 }  // namespace

@@ -1,49 +1,30 @@
 /// \file
 /// The classical Runge–Kutta method of order 4 with equal steps; interpolation is cubic Hermite.
-#include "one_step.hpp"
+#include "equal_steps.hpp"
 #include "withy/core/plugin/entry.hpp"
 
 namespace withy {
 namespace {
 
-class Rk4Stepper final : public OneStep {
+class Rk4Stepper final : public EqualSteps {
  public:
   Rk4Stepper(const EquationsOfMotion& equations, const State& start, double step)
-      : OneStep(equations, start), step_(step), stage_(size()), k2_(size()), k3_(size()), k4_(size()) {}
-
-  StepResult step(double t_limit) override {
-    const double t = state_.time;
-    if (!(t_limit > t)) return {};
-    if (const StepResult r = begin(t_limit); r.outcome != StepResult::Outcome::ok) return r;
-    // What remains is divided equally, so that the last step is no shorter than the others; the allowance keeps the
-    // rounding of earlier steps from adding one.
-    const double steps = std::ceil((t_limit - t) / step_ * (1 - 1e-9));
-    const double t_new = steps > 1 ? t + (t_limit - t) / steps : t_limit;
-    if (!(t_new > t)) return {StepResult::Outcome::step_underflow, -1};
-    const Evaluation e = attempt(t_new - t);
-    if (!e.ok() || !finite(next_) || !finite(next_slope_)) {
-      ++statistics_.rejected;
-      return failure(e);
-    }
-    accept(t_new);
-    return {};
-  }
+      : EqualSteps(equations, start, step), stage_(size()), k2_(size()), k3_(size()), k4_(size()) {}
 
  private:
-  Evaluation attempt(double h) {
+  Attempt attempt(double h) override {
     const double t = state_.time;
     const Eigen::ArrayXd& k1 = slope_;
-    if (const Evaluation e = evaluate(t + h / 2, stage_ = y() + h / 2 * k1, k2_); !e.ok()) return e;
-    if (const Evaluation e = evaluate(t + h / 2, stage_ = y() + h / 2 * k2_, k3_); !e.ok()) return e;
-    if (const Evaluation e = evaluate(t + h, stage_ = y() + h * k3_, k4_); !e.ok()) return e;
+    if (const Evaluation e = evaluate(t + h / 2, stage_ = y() + h / 2 * k1, k2_); !e.ok()) return {e};
+    if (const Evaluation e = evaluate(t + h / 2, stage_ = y() + h / 2 * k2_, k3_); !e.ok()) return {e};
+    if (const Evaluation e = evaluate(t + h, stage_ = y() + h * k3_, k4_); !e.ok()) return {e};
     next_ = y() + h / 6 * (k1 + 2 * k2_ + 2 * k3_ + k4_);
     normalize(next_);
-    return evaluate(t + h, next_, next_slope_);
+    return {evaluate(t + h, next_, next_slope_)};
   }
 
   void inside(double theta, Values values) const override { cubic(theta, values); }
 
-  double step_;
   Eigen::ArrayXd stage_, k2_, k3_, k4_;
 };
 
@@ -61,13 +42,12 @@ class Rk4 final : public Integrator {
 };
 
 void enroll(Enrollment& enrollment) {
-  enrollment.add<Integrator>(
-      {.id = "rk4",
-       .summary = "Classical Runge-Kutta method of order 4, equal steps",
-       .parameters = {number("step", "s", "greatest step; intervals are divided equally").above(0)},
-       .make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Integrator> {
-         return std::make_unique<Rk4>(p.number_at("step"));
-       }});
+  enrollment.add<Integrator>({.id = "rk4",
+                              .summary = "Classical Runge-Kutta method of order 4, equal steps",
+                              .parameters = {step_parameter()},
+                              .make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Integrator> {
+                                return std::make_unique<Rk4>(p.number_at("step"));
+                              }});
 }
 
 }  // namespace

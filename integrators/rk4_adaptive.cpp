@@ -9,6 +9,9 @@ namespace {
 
 class Rk4AdaptiveStepper final : public AdaptiveStepper {
  public:
+  static constexpr int order = 5;
+  static constexpr double stability_limit = 4.828;
+
   Rk4AdaptiveStepper(const EquationsOfMotion& equations, const State& start, const StepControl& control)
       : AdaptiveStepper(equations, start, control) {
     for (Eigen::ArrayXd* a :
@@ -64,24 +67,11 @@ class Rk4AdaptiveStepper final : public AdaptiveStepper {
   Eigen::ArrayXd kept_middle_, kept_middle_slope_;  ///< of the last accepted step, extrapolated
 };
 
-class Rk4Adaptive final : public Integrator {
- public:
-  explicit Rk4Adaptive(const StepControl& control) : control_(control) {}
-  std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
-    return std::make_unique<Rk4AdaptiveStepper>(equations, state, control_);
-  }
-  int order() const override { return 5; }
-  std::optional<double> stability_limit() const override { return 4.828; }
-
- private:
-  StepControl control_;
-};
-
 void enroll(Enrollment& enrollment) {
   enrollment.add<Integrator>({.id = "rk4-adaptive",
                               .summary = "Runge-Kutta of order 4 with step doubling and local extrapolation",
                               .parameters = step_control_parameters(),
-                              .make = &make_controlled<Rk4Adaptive>});
+                              .make = &make_controlled<Rk4AdaptiveStepper>});
 }
 
 }  // namespace

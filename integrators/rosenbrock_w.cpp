@@ -22,13 +22,24 @@ constexpr std::array<double, 4> b_low = {0.37810903145819369, -0.096042292212423
 
 class RosenbrockWStepper final : public AdaptiveStepper {
  public:
-  RosenbrockWStepper(const EquationsOfMotion& equations, const LinearlyImplicit& linear, const State& start,
-                     const StepControl& control)
-      : AdaptiveStepper(equations, start, control, 3), linear_(linear), factors_(linear.make_factors()) {
+  static constexpr int order = 3;
+  static constexpr double stability_limit = std::numeric_limits<double>::infinity();
+
+  RosenbrockWStepper(const EquationsOfMotion& equations, const State& start, const StepControl& control)
+      : AdaptiveStepper(equations, start, control, 3), linear_(solver_of(equations)), factors_(linear_.make_factors()) {
     for (Eigen::ArrayXd* a : {&stage_, &slope_here_, &shift_, &k1_, &k2_, &k3_, &k4_}) a->setZero(size());
   }
 
  private:
+  static const LinearlyImplicit& solver_of(const EquationsOfMotion& equations) {
+    const LinearlyImplicit* linear = equations.linearly_implicit();
+    if (linear == nullptr)
+      throw std::invalid_argument(
+          "integrator 'rosenbrock-w' folds stiffness into a symmetric mass matrix; the strict formulations have none. "
+          "Use quadratic or ruthless, or an explicit integrator such as dopri5");
+    return *linear;
+  }
+
   Trial attempt(double h) override {
     const double t = state_.time;
     if (const Evaluation e = linear_.factorize(state_.y, h * gamma_ii, factors_); !e.ok()) return {e};
@@ -69,30 +80,12 @@ class RosenbrockWStepper final : public AdaptiveStepper {
   Eigen::ArrayXd stage_, slope_here_, shift_, k1_, k2_, k3_, k4_;
 };
 
-class RosenbrockW final : public Integrator {
- public:
-  explicit RosenbrockW(const StepControl& control) : control_(control) {}
-  std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
-    const LinearlyImplicit* linear = equations.linearly_implicit();
-    if (linear == nullptr)
-      throw std::invalid_argument(
-          "integrator 'rosenbrock-w' folds stiffness into a symmetric mass matrix; the strict formulations have none. "
-          "Use quadratic or ruthless, or an explicit integrator such as dopri5");
-    return std::make_unique<RosenbrockWStepper>(equations, *linear, state, control_);
-  }
-  int order() const override { return 3; }
-  std::optional<double> stability_limit() const override { return std::numeric_limits<double>::infinity(); }
-
- private:
-  StepControl control_;
-};
-
 void enroll(Enrollment& enrollment) {
   enrollment.add<Integrator>(
       {.id = "rosenbrock-w",
        .summary = "Linearly implicit method of order 3, L-stable: steps are not limited by the modes' frequencies",
        .parameters = step_control_parameters(),
-       .make = &make_controlled<RosenbrockW>});
+       .make = &make_controlled<RosenbrockWStepper>});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "withy/core/plugin/parameters.hpp"
@@ -34,9 +35,8 @@ inline std::vector<ParameterSpec> step_control_parameters() {
               .optional()};
 }
 
-/// Reads checked parameters; null after a reported error.
-template <class Method>
-std::unique_ptr<Integrator> make_controlled(const Value& p, const MakeContext& context) {
+/// Reads checked parameters; nothing after a reported error.
+inline std::optional<StepControl> read_step_control(const Value& p, const MakeContext& context) {
   StepControl c;
   c.rtol = p.number_at("rtol");
   c.atol = p.number_at("atol");
@@ -45,9 +45,9 @@ std::unique_ptr<Integrator> make_controlled(const Value& p, const MakeContext& c
   if (const Value* v = p.find("min_step")) c.min_step = v->number();
   if (c.min_step > c.max_step) {
     context.diagnostics.error(p.at("min_step").place(), "min_step is greater than max_step");
-    return nullptr;
+    return {};
   }
-  return std::make_unique<Method>(c);
+  return c;
 }
 
 }  // namespace withy

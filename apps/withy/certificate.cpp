@@ -18,27 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What limited the steps of a run.
-struct StepLimit {
-  double mean = 0;     ///< [s]
-  double product = 0;  ///< mean step times the fastest mode; 0 where that is not known
-  std::optional<double> limit;
-  /// Error control that meets the limit goes to and fro about it, so the mean stays a little below.
-  [[nodiscard]] std::string cause() const {
-    if (!limit || product == 0) return "unknown";
-    return product > 0.6 * *limit ? "stability" : "accuracy";
-  }
-};
-
-StepLimit step_limit(const Engine& engine, const RunSummary& summary) {
-  StepLimit s;
-  s.limit = engine.scene().integrator->stability_limit();
-  if (summary.steps.accepted == 0) return s;
-  s.mean = (summary.final.time - engine.scene().initial.time) / static_cast<double>(summary.steps.accepted);
-  s.product = s.mean * summary.fastest_mode;
-  return s;
-}
-
 /// Limits of theory, section 5, for a truncation of linear kinematics; beyond them frequencies are 1 % wrong.
 double rate_limit(const Terms& terms, bool planar_modes) {
   if (terms.truncation == Truncation::ruthless) return planar_modes ? 0.325 : 0.130;
@@ -119,6 +98,28 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
 }
 
 }  // namespace
+
+std::string StepLimit::cause() const {
+  if (!limit || product == 0) return "unknown";
+  return product > 0.6 * *limit ? "stability" : "accuracy";
+}
+
+StepLimit step_limit(const Integrator& integrator, double start, const RunSummary& summary) {
+  StepLimit s;
+  s.limit = integrator.stability_limit();
+  if (summary.steps.accepted == 0) return s;
+  s.mean = (summary.final.time - start) / static_cast<double>(summary.steps.accepted);
+  s.product = s.mean * summary.fastest_mode;
+  return s;
+}
+
+std::string step_limit_text(const StepLimit& s) {
+  if (!s.limit) return fmt::format("mean step times fastest mode {:.2g}", s.product);
+  if (std::isinf(*s.limit))
+    return fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable at any step", s.cause(), s.product);
+  return fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}", s.cause(), s.product,
+                     *s.limit);
+}
 
 ErrorEstimate estimate_error(const Engine& engine, const Beyond& beyond, const RunSummary& summary) {
   const PairedTolerances coarse = paired_tolerances(summary);
@@ -205,7 +206,7 @@ Json certificate_json(const Engine& engine, const RunSummary& summary, const Evi
   } else {
     c["estimated_error"] = Json();
   }
-  const StepLimit s = step_limit(engine, summary);
+  const StepLimit s = step_limit(*engine.scene().integrator, engine.scene().initial.time, summary);
   c["steps"] = {{"limited_by", s.cause()},
                 {"mean", s.mean},
                 {"fastest_mode", summary.fastest_mode > 0 ? Json(summary.fastest_mode) : Json()},
@@ -237,12 +238,8 @@ std::string certificate_text(const Engine& engine, const RunSummary& summary, co
     line("binds", fmt::format("{}: {:.2g}, limit {:.3g}{}", first.text, first.value, first.limit,
                               first.use() > 1 ? "; beyond it " + first.meaning : ""));
   }
-  const StepLimit s = step_limit(engine, summary);
-  if (s.product > 0) {
-    line("steps", s.limit ? fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}",
-                                        s.cause(), s.product, *s.limit)
-                          : fmt::format("mean step times fastest mode {:.2g}", s.product));
-  }
+  const StepLimit s = step_limit(*engine.scene().integrator, engine.scene().initial.time, summary);
+  if (s.product > 0) line("steps", step_limit_text(s));
   return out;
 }
 

@@ -92,13 +92,27 @@ class LinearlyImplicit {
   virtual void solve(std::span<double> r, Work& factors) const noexcept = 0;
 };
 
+/// The exact ∂ẏ/∂y. Implicit integrators may ask for it.
+class Linearization {
+ public:
+  virtual ~Linearization() = default;
+  /// Sets the derivatives of ẋ and u̇ (rows) with respect to positions and speeds (columns), size() − 1 of each,
+  /// column-major, at (t, y) where ẏ is `y_dot`. The work element is a quadrature, on which nothing depends: it has no
+  /// row and no column. With respect to a quaternion they are those along its unit sphere, and zero across it.
+  /// O(size²) memory, O(size²) to O(size³) time; may allocate, as it is asked for once in many steps.
+  virtual Evaluation jacobian(double t, std::span<const double> y, std::span<const double> y_dot,
+                              std::span<double> jacobian) const = 0;
+  /// Names of loads whose part in it at (t, y) is numerical.
+  [[nodiscard]] virtual std::vector<std::string> differenced(double t, std::span<const double> y) const = 0;
+};
+
 /// Made by Formulation::compile for one model; const, so that threads share it, each with its own Work.
 class EquationsOfMotion {
  public:
   virtual ~EquationsOfMotion() = default;
   [[nodiscard]] virtual const Layout& layout() const = 0;
-  /// Number of elements of State::y: positions, speeds, work.
-  [[nodiscard]] std::size_t size() const { return layout().positions + layout().speeds + 1; }
+  /// Number of elements of State::y.
+  [[nodiscard]] std::size_t size() const { return layout().size(); }
   [[nodiscard]] virtual Work make_work() const = 0;
 
   /// The hot call: time derivatives of y at (t, y). Allocates nothing, throws nothing, logs nothing.
@@ -124,6 +138,13 @@ class EquationsOfMotion {
                           Work& work) const = 0;
   /// Solves linear systems for linearly implicit integrators; null where the formulation has no way to.
   [[nodiscard]] virtual const LinearlyImplicit* linearly_implicit() const { return nullptr; }
+  /// The exact ∂ẏ/∂y for implicit integrators; null where the formulation has none.
+  [[nodiscard]] virtual const Linearization* linearization() const { return nullptr; }
+  /// ẋ of the positions alone, into the first elements of y_dot, which has those of y; the others become meaningless.
+  virtual Evaluation position_rates(double t, std::span<const double> y, std::span<double> y_dot,
+                                    Work& work) const noexcept {
+    return derivatives(t, y, y_dot, work);
+  }
   /// Scales quaternions in y back to unit length.
   virtual void normalize(std::span<double> y) const noexcept = 0;
 

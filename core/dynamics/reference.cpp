@@ -366,6 +366,7 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
     std::vector<double> scratch(node.load->scratch());
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), s.applied, scratch);
   }
+  model_->add_discrete_efforts(y, s.applied);
   return s;
 }
 

@@ -35,7 +35,7 @@ struct StepStatistics {
   int determinant_sign = 1;  ///< of M at the last accepted state
 };
 
-/// One integration under way. It owns its work arrays; stepping allocates nothing.
+/// One integration under way. It owns its work arrays; stepping allocates nothing, but for what Linearization does.
 class Stepper {
  public:
   virtual ~Stepper() = default;
@@ -56,6 +56,9 @@ class Stepper {
   /// \throws std::invalid_argument where these numbers are no memory of such a stepper.
   virtual void resume(const State& state, std::span<const double> memory) = 0;
   [[nodiscard]] virtual const StepStatistics& statistics() const = 0;
+  /// What a user should know of how it integrates these equations, a sentence each: that it does without an exact
+  /// Jacobian where one was asked for.
+  [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
 };
 
 /// An integration method with its options.

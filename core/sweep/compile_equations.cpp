@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <stdexcept>
 #include <type_traits>
 
+#include "withy/core/analysis/state_jacobian.hpp"
 #include "withy/core/dynamics/reference.hpp"
 #include "withy/core/sweep/applied_loads.hpp"
 #include "withy/core/sweep/strict_sweep.hpp"
@@ -25,6 +27,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
  public:
   SweepEquations(std::shared_ptr<const Model> model, Terms terms, Tree tree, const std::vector<Terms>& node_terms)
       : model_(std::move(model)),
+        terms_(terms),
         reference_(model_, terms),
         loads_(*model_, terms),
         sweep_(tree, node_terms, model_->gravity()),
@@ -98,28 +101,21 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     std::byte* memory = work.data();
     const std::span<double> efforts(reinterpret_cast<double*>(memory + efforts_offset_), order.speeds);
     for (double& e : efforts) e = 0;
-    loads_.add(t, positions, speeds, efforts, memory + loads_offset_);
+    loads_.add(t, y, efforts, memory + loads_offset_);
     double* accelerations = y_dot.data() + order.positions;
     const bool driven = !model_->motions().empty();
     if (driven) model_->prescribe_accelerations(t, {accelerations, order.speeds});
     const Evaluation evaluation =
         sweep_.accelerations(positions.data(), speeds.data(), efforts.data(), accelerations, memory + sweep_offset_);
     if (!evaluation.ok()) return evaluation;
-    for (const Run& run : copies_) {
-      for (std::size_t i = 0; i < run.count; ++i) y_dot[run.position + i] = speeds[run.speed + i];
-    }
-    for (const std::size_t h : general_) {
-      const Slot& slot = order.hinges[h];
-      model_->hinges()[h].hinge->derivatives(positions.subspan(slot.position, slot.positions),
-                                             speeds.subspan(slot.speed, slot.speeds),
-                                             y_dot.subspan(slot.position, slot.positions));
-    }
+    set_position_rates(y, y_dot);
     double power = 0;
     if (driven || !model_->loads().empty()) {
       for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
     }
     for (const Damper& d : damped_) power -= speeds[d.i] * d.value * speeds[d.j];
-    y_dot[order.positions + order.speeds] = power;
+    for (std::size_t i = 0; i < order.discrete; ++i) y_dot[order.positions + order.speeds + i] = 0;
+    y_dot[order.positions + order.speeds + order.discrete] = power;
     double total = power;
     for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
     if (!std::isfinite(total)) return {Evaluation::Outcome::nonfinite, first_nonfinite(accelerations)};
@@ -129,8 +125,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
                     Work& work) const noexcept override {
     std::fill(efforts.begin(), efforts.end(), 0.0);
-    loads_.add(t, y.first(layout().positions), y.subspan(layout().positions, layout().speeds), efforts,
-               work.data() + loads_offset_, load);
+    loads_.add(t, y, efforts, work.data() + loads_offset_, load);
   }
   Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
                             Work& work) const noexcept override {
@@ -203,6 +198,14 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     }
   }
 
+  const Linearization* linearization() const override {
+    std::call_once(linearized_, [this] { linearization_ = std::make_unique<StateJacobian>(model_, terms_); });
+    return linearization_.get();
+  }
+  Evaluation position_rates(double, std::span<const double> y, std::span<double> y_dot, Work&) const noexcept override {
+    set_position_rates(y, y_dot);
+    return {};
+  }
   void normalize(std::span<double> y) const noexcept override {
     for (std::size_t h = 0; h < layout().hinges.size(); ++h) {
       const Slot& slot = layout().hinges[h];
@@ -221,6 +224,19 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   std::vector<std::string> savings() const override { return savings_; }
 
  private:
+  void set_position_rates(std::span<const double> y, std::span<double> y_dot) const noexcept {
+    const Layout& order = layout();
+    const auto speeds = y.subspan(order.positions, order.speeds);
+    for (const Run& run : copies_) {
+      for (std::size_t i = 0; i < run.count; ++i) y_dot[run.position + i] = speeds[run.speed + i];
+    }
+    for (const std::size_t h : general_) {
+      const Slot& slot = order.hinges[h];
+      model_->hinges()[h].hinge->derivatives(y.subspan(slot.position, slot.positions),
+                                             speeds.subspan(slot.speed, slot.speeds),
+                                             y_dot.subspan(slot.position, slot.positions));
+    }
+  }
   static void product(const DenseSystem& s, std::span<const double> a, std::span<double> result) {
     for (std::size_t i = 0; i < s.size; ++i) {
       result[i] = 0;
@@ -262,6 +278,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     std::size_t position, speed, count;
   };
   std::shared_ptr<const Model> model_;
+  Terms terms_;
   ReferenceDynamics reference_;
   AppliedLoads loads_;
   Sweep sweep_;
@@ -271,6 +288,8 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   std::vector<Run> copies_;
   std::vector<Slot> driven_;          ///< hinges that motions drive, in State's order
   std::vector<std::size_t> general_;  ///< hinges with derivatives of their own
+  mutable std::once_flag linearized_;
+  mutable std::unique_ptr<const StateJacobian> linearization_;  ///< made when it is first asked for
   std::size_t efforts_offset_ = 0, loads_offset_ = 0, rates_offset_ = 0, sweep_offset_ = 0, factors_offset_ = 0;
 };
 

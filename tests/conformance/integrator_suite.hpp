@@ -24,8 +24,8 @@ struct IntegratorCase {
   /// The method with steps of this size and no regard to errors.
   std::function<std::unique_ptr<Integrator>(double step)> equal_steps;
   int interpolation_order = 0;  ///< k, where the interpolant's error over an interval is O(hᵏ)
-  double imaginary_limit = 0;   ///< greatest stable hω of an undamped oscillation; published or derived
-  double stretch = 1;           ///< of the steps that measure orders: high orders reach rounding with short ones
+  double imaginary_limit = 0;  ///< greatest stable hω of an undamped oscillation; published or derived; may be infinite
+  double stretch = 1;          ///< of the steps that measure orders: high orders reach rounding with short ones
 };
 
 inline void PrintTo(const IntegratorCase& c, std::ostream* out) { *out << c.name; }
@@ -34,6 +34,8 @@ inline std::string integrator_case_name(const testing::TestParamInfo<IntegratorC
 class IntegratorSuite : public testing::TestWithParam<IntegratorCase> {
  protected:
   std::unique_ptr<Integrator> with_step(double h) const { return GetParam().equal_steps(h); }
+  /// An error no method of its order has in these tests.
+  double rough() const { return with_step(0.1)->order() > 2 ? 1e-3 : 5e-3; }
 
   /// Error of Duffing's oscillator at t = 4, and within the steps until then.
   struct Errors {
@@ -105,7 +107,7 @@ TEST_P(IntegratorSuite, lands_on_limits_to_the_bit_and_never_passes_them) {
     EXPECT_EQ(stepper->step(limit).outcome, StepResult::Outcome::ok);
     EXPECT_EQ(stepper->statistics().accepted, steps) << "a limit that is reached asks for no step";
   }
-  EXPECT_LT(Duffing::error(3, stepper->state().y), 1e-3);
+  EXPECT_LT(Duffing::error(3, stepper->state().y), rough());
 }
 
 // A force that jumps at times the caller knows costs no order, as long as the step that ends there sees the force
@@ -138,6 +140,12 @@ TEST_P(IntegratorSuite, is_stable_up_to_its_limit_on_the_imaginary_axis) {
     drive(*stepper, 20'000 * h);
     return std::hypot(stepper->state().y[0], stepper->state().y[1]);
   };
+  if (std::isinf(GetParam().imaginary_limit)) {
+    // But for rounding of 20,000 increments h ẏ.
+    for (const double h : {0.1, 1.0, 10.0, 1e3, 1e6})
+      EXPECT_LE(amplitude(h), 1 + 20'000 * 1e-15 * std::max(1.0, h)) << h;
+    return;
+  }
   EXPECT_LE(amplitude(0.99 * GetParam().imaginary_limit), 1.0);
   EXPECT_GT(amplitude(1.01 * GetParam().imaginary_limit), 1.0 + 1e-6);
 }
@@ -236,7 +244,8 @@ TEST_P(IntegratorSuite, keeps_quaternions_at_unit_length) {
     worst = std::max({worst, std::abs(Rotation::norm(stepper->state().y) - 1), std::abs(Rotation::norm(y) - 1)});
   }
   EXPECT_LE(worst, 4 * std::numeric_limits<double>::epsilon());
-  EXPECT_LT(Rotation::error(stepper->state().time, stepper->state().y), 1e-3);
+  EXPECT_LT(Rotation::error(stepper->state().time, stepper->state().y),
+            with_step(0.1)->order() > 2 ? rough() : 20 * rough());
 }
 
 TEST_P(IntegratorSuite, refuses_a_state_of_another_size) {

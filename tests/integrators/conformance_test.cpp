@@ -5,15 +5,15 @@
 namespace withy {
 namespace {
 
-std::unique_ptr<Integrator> rk4(double step) { return make_integrator("rk4", {{"step", Value(step)}}); }
-
-/// Error control that accepts every step: equal steps.
 auto uncontrolled(std::string id) {
-  return [id](double step) {
-    return make_integrator(
-        id, {{"rtol", Value(1.0)}, {"atol", Value(1e300)}, {"initial_step", Value(step)}, {"max_step", Value(step)}});
-  };
+  return [id](double step) { return make_uncontrolled(id, step); };
 }
+
+auto equal_steps(std::string id) {
+  return [id](double step) { return make_integrator(id, {{"step", Value(step)}}); };
+}
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 auto controlled(std::string id) {
   return [id](double tolerance, double first_step) {
@@ -28,16 +28,21 @@ auto controlled(std::string id) {
 // the greatest root of |R| = 1 is 4.8224. (Below the root 2.4926 it grows a little, by at most 0.43 % a step: an error
 // that the error control sees.) dop853: 5.9604, root of |R| = 1 of its stability polynomial, computed from its tableau.
 INSTANTIATE_TEST_SUITE_P(Withy, IntegratorSuite,
-                         testing::Values(IntegratorCase{"rk4", rk4, 4, 2.8284},
+                         testing::Values(IntegratorCase{"rk4", equal_steps("rk4"), 4, 2.8284},
                                          IntegratorCase{"rk4_adaptive", uncontrolled("rk4-adaptive"), 5, 4.8224},
                                          IntegratorCase{"dopri5", uncontrolled("dopri5"), 5, 0.997},
-                                         IntegratorCase{"dop853", uncontrolled("dop853"), 8, 5.9604, 8}),
+                                         IntegratorCase{"dop853", uncontrolled("dop853"), 8, 5.9604, 8},
+                                         IntegratorCase{"radau", uncontrolled("radau"), 4, unlimited, 4},
+                                         IntegratorCase{"gauss", equal_steps("gauss"), 4, unlimited, 4},
+                                         IntegratorCase{"generalized_alpha", equal_steps("generalized-alpha"), 2,
+                                                        unlimited}),
                          integrator_case_name);
 
 INSTANTIATE_TEST_SUITE_P(Withy, AdaptiveIntegratorSuite,
-                         testing::Values(AdaptiveIntegratorCase{"rk4_adaptive", controlled("rk4-adaptive"), 10},
-                                         AdaptiveIntegratorCase{"dopri5", controlled("dopri5"), 10},
-                                         AdaptiveIntegratorCase{"dop853", controlled("dop853"), 10}),
+                         testing::Values(AdaptiveIntegratorCase{"rk4_adaptive", controlled("rk4-adaptive")},
+                                         AdaptiveIntegratorCase{"dopri5", controlled("dopri5")},
+                                         AdaptiveIntegratorCase{"dop853", controlled("dop853")},
+                                         AdaptiveIntegratorCase{"radau", controlled("radau")}),
                          adaptive_case_name);
 
 }  // namespace

@@ -1,0 +1,81 @@
+/// \file
+/// Methods whose step the user gives.
+#pragma once
+
+#include "one_step.hpp"
+#include "withy/core/plugin/parameters.hpp"
+
+namespace withy {
+
+/// Divides every interval between two landings into equal steps, none longer than `step` [s].
+class EqualSteps : public OneStep {
+ public:
+  EqualSteps(const EquationsOfMotion& equations, const State& start, double step)
+      : OneStep(equations, start), step_(step) {}
+
+  StepResult step(double t_limit) final {
+    const double t = state_.time;
+    if (!(t_limit > t)) return {};
+    if (const StepResult r = begin(t_limit); r.outcome != StepResult::Outcome::ok) return r;
+    // What remains is divided equally, so that the last step is no shorter than the others; the allowance keeps the
+    // rounding of earlier steps from adding one.
+    const double steps = std::ceil((t_limit - t) / step_ * (1 - 1e-9));
+    double t_new = steps > 1 ? t + (t_limit - t) / steps : t_limit;
+    if (!(t_new > t)) return {StepResult::Outcome::step_underflow, -1};
+    for (int halvings = 0;; ++halvings) {
+      const Attempt a = attempt(t_new - t);
+      if (a.evaluation.ok() && a.solved && finite(next_) && finite(next_slope_)) break;
+      ++statistics_.rejected;
+      const double half = t + (t_new - t) / 2;
+      if (halvings == most_halvings() || !(half > t && half < t_new)) {
+        if (a.evaluation.ok() && !a.solved) return {StepResult::Outcome::step_underflow, -1};
+        return failure(a.evaluation);
+      }
+      t_new = half;
+    }
+    const double h = t_new - t;
+    accept(t_new);
+    accepted(h);
+    return {};
+  }
+
+ protected:
+  struct Attempt {
+    Evaluation evaluation;
+    bool solved = true;  ///< the equations of an implicit step
+  };
+  /// Tries a step h from state_ with slope_: fills next_ (normalized) and next_slope_.
+  virtual Attempt attempt(double h) = 0;
+  /// Called after state_, slope_ and their predecessors are those of an accepted step h.
+  virtual void accepted(double /*h*/) {}
+  /// How often a step that fails is halved.
+  [[nodiscard]] virtual int most_halvings() const { return 0; }
+
+ private:
+  double step_;
+};
+
+inline ParameterSpec step_parameter() {
+  return number("step", "s", "greatest step; intervals are divided equally").above(0);
+}
+
+/// Running sizes of all positions and speeds, to which the iterations of implicit steps are relative: the greatest
+/// |y| and |h ẏ| since the start, and for what is hardly more than rounding a part of the greatest of all.
+class Sizes {
+ public:
+  explicit Sizes(Eigen::Index size) : sizes_(Eigen::ArrayXd::Zero(size)) {}
+  template <class Values>
+  const Eigen::ArrayXd& update(const Values& y, double h, const Eigen::ArrayXd& slope) {
+    sizes_ = sizes_.max(y.abs()).max(std::abs(h) * slope.abs());
+    const double greatest = sizes_.head(sizes_.size() - 1).maxCoeff();
+    sizes_ = sizes_.max(1e-6 * greatest + std::numeric_limits<double>::min());
+    return sizes_;
+  }
+  void forget() { sizes_.setZero(); }
+  void remember(Memory& memory) { memory(sizes_); }
+
+ private:
+  Eigen::ArrayXd sizes_;
+};
+
+}  // namespace withy

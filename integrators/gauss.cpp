@@ -1,0 +1,133 @@
+/// \file
+/// Gauss collocation of order 6 with three stages and equal steps (Hairer, Lubich & Wanner, "Geometric Numerical
+/// Integration", II.1.3): symmetric, and symplectic in canonical variables. The stages are iterated to rounding and the
+/// steps summed with compensation (VIII.5 and Hairer, McLachlan & Razakarivony, BIT 48, 2008).
+#include "collocation.hpp"
+#include "equal_steps.hpp"
+#include "withy/core/plugin/entry.hpp"
+
+namespace withy {
+namespace {
+
+const Collocation& gauss_6() {
+  static const Collocation method = [] {
+    const double half = std::sqrt(15.0) / 10;
+    Collocation c({0.5 - half, 0.5, 0.5 + half});
+    c.b << 5.0 / 18, 4.0 / 9, 5.0 / 18;
+    return c;
+  }();
+  return method;
+}
+
+class GaussStepper final : public EqualSteps {
+ public:
+  GaussStepper(const EquationsOfMotion& equations, const State& start, double step, StepJacobian::Source source)
+      : EqualSteps(equations, start, step),
+        jacobian_(equations, source),
+        stages_(gauss_6(), jacobian_),
+        sizes_(size()),
+        tolerance_(Eigen::ArrayXd::Zero(size())),
+        lost_(Eigen::ArrayXd::Zero(size())),
+        lost_next_(Eigen::ArrayXd::Zero(size())) {}
+
+  void restart() override {
+    EqualSteps::restart();
+    known_ = false;
+    stages_.forget();
+    sizes_.forget();
+    lost_.setZero();
+  }
+  [[nodiscard]] std::vector<std::string> remarks() const override { return jacobian_.remarks(); }
+
+ private:
+  static constexpr int most_iterations = 50;
+  static constexpr int slow = 12;  ///< iterations that make a new Jacobian worth while
+
+  Attempt attempt(double h) override {
+    const Eigen::Index m = jacobian_.size();
+    const double t = state_.time;
+    if (m == 0) {
+      next_ = y() + h * slope_;
+      return {evaluate(t + h, next_, next_slope_)};
+    }
+    const auto rates = [this](double at, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) {
+      return evaluate(at, values, slope);
+    };
+    tolerance_ = 4 * std::numeric_limits<double>::epsilon() * sizes_.update(y(), h, slope_);
+    CollocationStages::Result r;
+    for (bool fresh = false;;) {
+      if (!known_) {
+        if (const Evaluation e = jacobian_.update(t, h, y(), slope_, rates); !e.ok()) return {e};
+        known_ = fresh = true;
+        stages_.refactorize();
+      }
+      stages_.factorize(h);
+      stages_.predict(h);
+      r = stages_.solve_to_rounding(t, h, y(), tolerance_, most_iterations, rates);
+      if (r.end == CollocationStages::End::converged) break;
+      stages_.accept(0);
+      if (fresh) return {r.evaluation, r.end != CollocationStages::End::slow};
+      known_ = false;
+    }
+    if (r.iterations > slow) known_ = false;
+
+    // y + increment + what earlier sums lost; what this one loses.
+    tolerance_ = (h * (stages_.slopes() * gauss_6().b)).array() + lost_;
+    next_ = y() + tolerance_;
+    lost_next_ = tolerance_ - (next_ - y());
+    normalize(next_);
+    return {evaluate(t + h, next_, next_slope_)};
+  }
+
+  void accepted(double h) override {
+    stages_.accept(h);
+    lost_.swap(lost_next_);
+  }
+  [[nodiscard]] int most_halvings() const override { return 19; }
+
+  void inside(double theta, Values values) const override { cubic(theta, values); }
+
+  void remember(Memory& memory) override {
+    EqualSteps::remember(memory);
+    jacobian_.remember(memory);
+    stages_.remember(memory);
+    sizes_.remember(memory);
+    memory(lost_);
+    memory(known_);
+  }
+
+  StepJacobian jacobian_;
+  CollocationStages stages_;
+  Sizes sizes_;
+  Eigen::ArrayXd tolerance_, lost_, lost_next_;
+  bool known_ = false;  ///< the Jacobian
+};
+
+class Gauss final : public Integrator {
+ public:
+  Gauss(double step, StepJacobian::Source source) : step_(step), source_(source) {}
+  std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
+    return std::make_unique<GaussStepper>(equations, state, step_, source_);
+  }
+  int order() const override { return 6; }
+  std::optional<double> stability_limit() const override { return std::numeric_limits<double>::infinity(); }
+
+ private:
+  double step_;
+  StepJacobian::Source source_;
+};
+
+void enroll(Enrollment& enrollment) {
+  enrollment.add<Integrator>(
+      {.id = "gauss",
+       .summary = "Gauss collocation of order 6, equal steps, symmetric: keeps the energy of undamped motion",
+       .parameters = {step_parameter(), jacobian_parameter()},
+       .make = [](const Value& p, const MakeContext&) -> std::unique_ptr<Integrator> {
+         return std::make_unique<Gauss>(p.number_at("step"), jacobian_source(p));
+       }});
+}
+
+}  // namespace
+}  // namespace withy
+
+WITHY_PLUGIN(gauss, withy::enroll);
