@@ -1,11 +1,14 @@
 /// \file
-/// The beam: slender, inextensible, no shear, along x of the body frame from `root` (x = 0) to `tip` (x = length).
+/// The beam: slender, along x of the body frame from `root` (x = 0) to `tip` (x = length); inextensible and without
+/// shear where a scene does not ask for them.
 ///
 /// Its strains are linear in the modal coordinates (theory, section 1): κ = (t′, −w″, v″) with deflections v, w along
-/// y, z and twist t. With the first-order rotation vector θ₁ = (t, −w′, v′) = Σ ψ_i q_i, second-order kinematics follow
-/// from R′ = R κ̂, r′ = R e_x:
+/// y, z and twist t, and γ = (u′, v_s′, w_s′) with the extension u and what shear adds to the deflections. With the
+/// first-order rotation vector θ₁ = (t, −w′, v′) = Σ ψ_i q_i, second-order kinematics follow from R′ = R κ̂,
+/// r′ = R (e_x + γ):
 ///   θ₂ = ½ ∫₀ˣ θ₁ × θ₁′ dσ                    →  Θ_ij = ½ ∫₀ˣ (ψ_i × ψ_j′ + ψ_j × ψ_i′) dσ
-///   r₂ = ∫₀ˣ θ₂ × e_x + ½ θ₁ × (θ₁ × e_x) dσ  →  Γ_ij = ∫₀ˣ Θ_ij × e_x + ½ (ψ_i × (ψ_j × e_x) + ψ_j × (ψ_i × e_x)) dσ
+///   r₂ = ∫₀ˣ θ₂ × e_x + ½ θ₁ × (θ₁ × e_x) + θ₁ × γ dσ
+///     →  Γ_ij = ∫₀ˣ Θ_ij × e_x + ½ (ψ_i × (ψ_j × e_x) + ψ_j × (ψ_i × e_x)) + ψ_i × γ_j + ψ_j × γ_i dσ
 /// Along x this is the foreshortening −½∫(v′² + w′²) of Padilla & von Flotow, across it the coupling of bending and
 /// twist. The sections' inertia is ρI_p about x, and in bending ρI where a scene gives it (Rayleigh's beam). Mass,
 /// stiffness and inertias may vary along the beam; the assumed modes are then Ritz functions, K and M their integrals.
@@ -25,10 +28,10 @@ namespace {
 
 /// One kind of strain of the beam with its modes.
 struct Strain {
-  const char* name;  ///< "bending_y", …
-  Vector3 rotation;  ///< direction of θ₁ for a unit slope (bending) or unit twist
+  const char* name;   ///< "bending_y", …
+  Vector3 direction;  ///< of θ₁ for a unit slope (bending) or unit twist; of γ (elongation)
   BeamData::Strain kind;
-  Profile stiffness;  ///< EI or GJ [N m²]
+  Profile stiffness;  ///< EI, GJ [N m²], EA or kGA [N]
   std::unique_ptr<ShapeFunctions> functions;
 };
 
@@ -42,7 +45,7 @@ struct Material {
 
 /// Values of every coordinate's fields at one x.
 struct LinearFields {
-  Matrix3X phi, psi, psi_slope, strain;  ///< Φ; ψ; ψ′; strain (curvature or twist rate) as a vector
+  Matrix3X phi, psi, psi_slope, gamma;  ///< Φ; ψ; curvature and twist rate κ = ψ′; elongation γ
 };
 
 class Beam final : public Body, private Rod {
@@ -117,9 +120,12 @@ class Beam final : public Body, private Rod {
     return "root, tip, or a coordinate x from 0 to " + std::to_string(length_) + " m";
   }
   const Rod* rod() const override {
-    // The exact rod is uniform but for its stiffness, without rotary inertia in bending, and clamped at x = 0. Shape
-    // functions that vanish there leave rounding, at most 1e-12 of a mode's size.
+    // The exact rod is inextensible, uniform but for its stiffness, without rotary inertia in bending, and clamped at x
+    // = 0. Shape functions that vanish there leave rounding, at most 1e-12 of a mode's size.
     const LinearFields root = linear_fields(0);
+    for (const Strain& s : strains_) {
+      if (s.kind == BeamData::Strain::elongation) return nullptr;
+    }
     const double moved = root.phi.cwiseAbs().sum() + length_ * root.psi.cwiseAbs().sum();
     return uniform_rod_ && shape_.modes() > 0 && moved < 1e-9 * static_cast<double>(shape_.modes()) ? this : nullptr;
   }
@@ -159,26 +165,33 @@ class Beam final : public Body, private Rod {
       std::vector<double> value(count), slope(count), curvature(count);
       s.functions->evaluate(x, value, slope, curvature);
       for (std::size_t i = 0; i < count; ++i, ++at) {
-        if (s.kind == BeamData::Strain::torsion) {
-          f.psi.col(at) = s.rotation * value[i];
-          f.psi_slope.col(at) = s.rotation * slope[i];
-        } else {
-          f.phi.col(at) = s.rotation.cross(Vector3::UnitX()) * value[i];
-          f.psi.col(at) = s.rotation * slope[i];
-          f.psi_slope.col(at) = s.rotation * curvature[i];
+        switch (s.kind) {
+          case BeamData::Strain::bending:
+            f.phi.col(at) = s.direction.cross(Vector3::UnitX()) * value[i];
+            f.psi.col(at) = s.direction * slope[i];
+            f.psi_slope.col(at) = s.direction * curvature[i];
+            break;
+          case BeamData::Strain::torsion:
+            f.psi.col(at) = s.direction * value[i];
+            f.psi_slope.col(at) = s.direction * slope[i];
+            break;
+          case BeamData::Strain::elongation:
+            f.phi.col(at) = s.direction * value[i];
+            f.gamma.col(at) = s.direction * slope[i];
+            break;
         }
       }
     }
     return f;
   }
 
-  /// Integrand of ½ qᵀKq: EI κ² or GJ t′², coordinates of different strains being independent.
+  /// Integrand of ½ qᵀKq: EI κ², GJ t′², EA u′² or kGA γ², coordinates of different strains being independent.
   Eigen::MatrixXd stiffness_of(const LinearFields& f, double x) const {
     Eigen::MatrixXd k = Eigen::MatrixXd::Zero(shape_.modes(), shape_.modes());
     Eigen::Index at = 0;
     for (const Strain& s : strains_) {
       const auto count = static_cast<Eigen::Index>(s.functions->count());
-      const auto strain = f.psi_slope.middleCols(at, count);
+      const auto strain = (s.kind == BeamData::Strain::elongation ? f.gamma : f.psi_slope).middleCols(at, count);
       k.block(at, at, count, count) = s.stiffness(x) * strain.transpose() * strain;
       at += count;
     }
@@ -212,10 +225,11 @@ class Beam final : public Body, private Rod {
     for (Eigen::Index k = 0; k < nodes; ++k) {
       const LinearFields& f = fields[static_cast<std::size_t>(k)];
       each_pair([&](Eigen::Index i, Eigen::Index j, Eigen::Index column) {
-        const Vector3 a = f.psi.col(i), b = f.psi.col(j);
+        const Vector3 a = f.psi.col(i), b = f.psi.col(j), along_a = f.gamma.col(i), along_b = f.gamma.col(j);
         const Vector3 theta = theta_at_nodes_.block<1, 3>(k, column).transpose();
-        gamma_slope_.block<1, 3>(k, column) =
-            (theta.cross(ex) + 0.5 * (a.cross(b.cross(ex)) + b.cross(a.cross(ex)))).transpose();
+        gamma_slope_.block<1, 3>(k, column) = (theta.cross(ex) + 0.5 * (a.cross(b.cross(ex)) + b.cross(a.cross(ex))) +
+                                               a.cross(along_b) + b.cross(along_a))
+                                                  .transpose();
       });
     }
     gamma_at_nodes_ = quadrature_.running_integral(gamma_slope_);
@@ -260,6 +274,9 @@ class Reader {
     add("bending_y", Vector3::UnitZ(), bending, mass, "rotary_inertia", material);
     add("bending_z", -Vector3::UnitY(), bending, mass, "rotary_inertia", material);
     add("torsion", Vector3::UnitX(), torsion, 0, "inertia", material);
+    add("extension", Vector3::UnitX(), elongation, mass, "", material);
+    add("shear_y", Vector3::UnitY(), elongation, mass, "", material);
+    add("shear_z", Vector3::UnitZ(), elongation, mass, "", material);
     if (!good_) return nullptr;
     return std::make_unique<Beam>(material, std::move(strains_));
   }
@@ -274,13 +291,13 @@ class Reader {
 
   /// The strain a scene asks for under `key`. Families know a beam by its means: `mass` per length or, in torsion, the
   /// inertia. A section's inertia stays where the strain has no modes.
-  void add(const char* key, const Vector3& rotation, BeamData::Strain kind, double mass, const char* inertia_key,
+  void add(const char* key, const Vector3& direction, BeamData::Strain kind, double mass, const char* inertia_key,
            Material& material) {
     if (!p_.has(key)) return;
     const Value& given = p_.at(key);
     const Profile stiffness = profile(given.at("stiffness"));
     const Profile inertia = given.has(inertia_key) ? profile(given.at(inertia_key)) : Profile(0);
-    if (given.has(inertia_key)) material.inertias.emplace_back(rotation, inertia);
+    if (given.has(inertia_key)) material.inertias.emplace_back(direction, inertia);
     if (given.count_at("modes") == 0 || !good_) return;
     const BeamData beam = {kind, material.length, kind == BeamData::Strain::torsion ? inertia.mean() : mass,
                            stiffness.mean()};
@@ -288,7 +305,7 @@ class Reader {
     if (functions == nullptr || !can_join(*functions, given.at("family"), kind, material.length)) {
       good_ = false;
     } else {
-      strains_.push_back({key, rotation, kind, stiffness, std::move(functions)});
+      strains_.push_back({key, direction, kind, stiffness, std::move(functions)});
     }
   }
 
@@ -302,7 +319,7 @@ class Reader {
     for (Eigen::Index k = 0; k < points; ++k) {
       std::vector<double> value(n), slope(n), curvature(n);
       functions.evaluate(length * (static_cast<double>(k) + 0.5) / points, value, slope, curvature);
-      const std::vector<double>& of = kind == BeamData::Strain::torsion ? slope : curvature;
+      const std::vector<double>& of = kind == BeamData::Strain::bending ? curvature : slope;
       for (std::size_t i = 0; i < n; ++i) strain(k, static_cast<Eigen::Index>(i)) = of[i];
     }
     const Eigen::VectorXd even = Eigen::VectorXd::Ones(points);
@@ -324,8 +341,8 @@ class Reader {
 
 std::unique_ptr<Body> make(const Value& p, const MakeContext& context) { return Reader(p, context).make(); }
 
-std::vector<ParameterSpec> strain_parameters(const char* stiffness) {
-  return {number("stiffness", "N m^2", stiffness).above(0).or_table("m"),
+std::vector<ParameterSpec> strain_parameters(const char* stiffness, const char* unit = "N m^2") {
+  return {number("stiffness", unit, stiffness).above(0).or_table("m"),
           integer("modes", "number of assumed modes").least(0).most(1000).otherwise(2),
           text("family", "assumed-mode family").naming(ParameterSpec::Refers::mode_family).otherwise("clamped-free")};
 }
@@ -340,7 +357,7 @@ void enroll(Enrollment& enrollment) {
   };
   enrollment.add<Body>(
       {.id = "beam",
-       .summary = "Slender beam along x, inextensible and without shear, bending in two planes and twisting",
+       .summary = "Slender beam along x, bending in two planes and twisting, if wanted with extension and shear",
        .parameters = {number("length", "m", "length, undeformed").above(0),
                       number("mass_per_length", "kg/m", "mass per length").above(0).or_table("m"),
                       map("bending_y",
@@ -352,6 +369,13 @@ void enroll(Enrollment& enrollment) {
                           "bending with deflection along z")
                           .optional(),
                       map("torsion", torsion, "twist about x").optional(),
+                      map("extension", strain_parameters("axial stiffness EA", "N"), "extension along x").optional(),
+                      map("shear_y", strain_parameters("shear stiffness k G A along y", "N"),
+                          "shear, deflection along y beside that of bending_y")
+                          .optional(),
+                      map("shear_z", strain_parameters("shear stiffness k G A along z", "N"),
+                          "shear, deflection along z beside that of bending_z")
+                          .optional(),
                       number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0),
                       integer("segments",
                               "number of beams, welded one behind the other, it is cut into; modes are of each")

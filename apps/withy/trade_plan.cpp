@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <string_view>
 
 namespace withy::app {
 namespace {
 
-constexpr std::array<const char*, 3> strains = {"bending_y", "bending_z", "torsion"};
+/// In the order of a beam's coordinates.
+constexpr std::array<const char*, 6> strains = {"bending_y", "bending_z", "torsion", "extension", "shear_y", "shear_z"};
 
 /// Modes that a beam of the scene has in a strain; 0 where it has none.
 int modes_of(const Value& beam, const char* strain) {
@@ -101,7 +103,7 @@ SceneArguments arguments_at(const SceneArguments& base, const Scene& scene, cons
     for (const char* strain : strains) {
       if (modes_of(body, strain) == 0) continue;
       overrides.push_back(fmt::format("bodies.{}.{}.modes={}", name, strain, point.modes));
-      if (!point.family.empty() && std::string(strain) != "torsion")
+      if (!point.family.empty() && std::string_view(strain).starts_with("bending"))
         overrides.push_back(fmt::format("bodies.{}.{}.family={}", name, strain, point.family));
     }
     const Value* start = starts != nullptr ? starts->find(name) : nullptr;

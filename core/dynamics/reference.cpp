@@ -285,9 +285,11 @@ ReferenceDynamics::ReferenceDynamics(std::shared_ptr<const Model> model, Terms t
       continue;
     const Rod* rod = node.body->rod();
     if (rod == nullptr) {
-      throw std::invalid_argument("body '" + node.name +
-                                  "' has no exact kinematics: a body offers it that is a rod clamped at its root; "
-                                  "give it a formulation of its own");
+      throw std::invalid_argument(
+          "body '" + node.name +
+          "' has no exact kinematics: a body offers it that is a rod clamped at its root, without "
+          "extension and shear; "
+          "give it a formulation of its own");
     }
     rods_.back() = std::make_shared<const RodTable>(*rod);
   }

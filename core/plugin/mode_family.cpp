@@ -38,8 +38,10 @@ std::unique_ptr<ShapeFunctions> make_shape_functions(const Value& family, const 
   }
   auto functions = made->functions(beam, modes);
   if (functions == nullptr) {
-    const bool torsion = beam.strain == BeamData::Strain::torsion;
-    context.diagnostics.error(name.place(), id + " has no functions for " + (torsion ? "torsion" : "bending"));
+    const char* strain = beam.strain == BeamData::Strain::bending   ? "bending"
+                         : beam.strain == BeamData::Strain::torsion ? "torsion"
+                                                                    : "extension and shear";
+    context.diagnostics.error(name.place(), id + " has no functions for " + strain);
   }
   return functions;
 }

@@ -13,16 +13,18 @@ struct MakeContext;
 
 /// What a family may know of the beam whose strain it describes.
 struct BeamData {
-  enum class Strain { bending, torsion };
+  /// `elongation` is of the axis: along it, extension, or across, shear.
+  enum class Strain { bending, torsion, elongation };
   Strain strain = Strain::bending;
   double length = 0;     ///< [m]
-  double inertia = 0;    ///< mass per length [kg/m] (bending) or polar inertia per length ρI_p [kg m] (torsion)
-  double stiffness = 0;  ///< EI (bending) or GJ (torsion) [N m²]
+  double inertia = 0;    ///< mass per length [kg/m], or in torsion polar inertia per length ρI_p [kg m]
+  double stiffness = 0;  ///< EI, GJ [N m²], or EA, kGA [N]
 };
 
-/// Shape functions φ_i(x), i = 0 … count−1, 0 ≤ x ≤ L: deflections normalized ∫₀ᴸ φ_i² dx = L, twists of amplitude 1,
-/// where the family does not give its coordinates another meaning (as craig-bampton does). What an end of the beam does
-/// not do, it does not do beyond 1e-12: otherwise a clamped root counts as moving.
+/// Shape functions φ_i(x), i = 0 … count−1, 0 ≤ x ≤ L: deflections normalized ∫₀ᴸ φ_i² dx = L, twists and
+/// elongations, which have the same functions, of amplitude 1, where the family does not give its coordinates another
+/// meaning (as craig-bampton does). What an end of the beam does not do, it does not do beyond 1e-12: otherwise a
+/// clamped root counts as moving.
 class ShapeFunctions {
  public:
   virtual ~ShapeFunctions() = default;

@@ -1,8 +1,9 @@
 /// \file
 /// Eigenfunctions of the uniform beam that is clamped at the root and carries a rigid body at its tip: loaded_beam.hpp
 /// in bending, ∫₀ᴸ φ² dx = L; sin βx/L with β tan β = ρI_p L/J in torsion, of amplitude 1, J the tip body's inertia
-/// about the beam's axis. They are orthogonal with respect to the mass of beam and tip body, so that one of them gives
-/// a loaded cantilever's first frequency exactly, where clamped-free functions need many.
+/// about the beam's axis; in extension and shear the same with masses. They are orthogonal with respect to the mass of
+/// beam and tip body, so that one of them gives a loaded cantilever's first frequency exactly, where clamped-free
+/// functions need many.
 #include <stdexcept>
 
 #include "loaded_beam.hpp"
@@ -28,8 +29,8 @@ class ClampedLoaded final : public ModeFamily {
   std::size_t most() const override { return 200; }
   std::unique_ptr<ShapeFunctions> functions(const BeamData& beam, std::size_t count) const override {
     const double L = beam.length;
-    if (beam.strain == BeamData::Strain::torsion) {
-      const double ratio = inertia_ / (beam.inertia * L);
+    if (beam.strain != BeamData::Strain::bending) {
+      const double ratio = (beam.strain == BeamData::Strain::torsion ? inertia_ : mass_) / (beam.inertia * L);
       check(ratio);
       std::vector<double> betas;
       for (std::size_t k = 1; k <= count; ++k) betas.push_back(rod_root(ratio, k));

@@ -1,5 +1,6 @@
 /// \file
-/// What the mode families of this folder share that need no options: a family is its functions in bending and torsion.
+/// What the mode families of this folder share that need no options: a family is its functions in bending and those of
+/// a rod, in torsion or elongation.
 #pragma once
 
 #include "withy/core/plugin/entry.hpp"
@@ -14,12 +15,12 @@ using MakeFunctions = std::unique_ptr<ShapeFunctions> (*)(const BeamData& beam, 
 inline std::unique_ptr<ShapeFunctions> no_functions(const BeamData& /*beam*/, std::size_t /*count*/) { return nullptr; }
 
 /// A family that depends on the beam alone.
-template <MakeFunctions bending, MakeFunctions torsion, std::size_t most_functions>
+template <MakeFunctions bending, MakeFunctions rod, std::size_t most_functions>
 class PlainFamily final : public ModeFamily {
  public:
   std::size_t most() const override { return most_functions; }
   std::unique_ptr<ShapeFunctions> functions(const BeamData& beam, std::size_t count) const override {
-    return (beam.strain == BeamData::Strain::torsion ? torsion : bending)(beam, count);
+    return (beam.strain == BeamData::Strain::bending ? bending : rod)(beam, count);
   }
 };
 

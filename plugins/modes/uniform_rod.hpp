@@ -1,5 +1,5 @@
 /// \file
-/// Torsional eigenfunctions of the uniform rod, φ″ = −(β/L)² φ: sines and cosines of amplitude 1.
+/// Eigenfunctions of the uniform rod in torsion or elongation, φ″ = −(β/L)² φ: sines and cosines of amplitude 1.
 #pragma once
 
 #include <boost/math/constants/constants.hpp>

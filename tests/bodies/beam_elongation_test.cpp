@@ -1,0 +1,205 @@
+/// \file
+/// Beams with extension and shear: closed forms of rods and of Timoshenko's beam, and their second-order kinematics.
+#include <gmock/gmock.h>
+
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "withy/plugins/host/static_plugins.hpp"
+#include "withy/scene/scene.hpp"
+#include "withy/tests/conformance/body_suite.hpp"
+#include "withy/tests/conformance/plugins.hpp"
+
+namespace withy::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double L = 1.6, mass = 1.3;  ///< m, kg/m
+
+Value strain(double stiffness, int modes, const char* family = "orthogonal-polynomials", double rotary = 0) {
+  Value v = Value::map(
+      {{"stiffness", Value(stiffness)}, {"modes", Value(double(modes))}, {"family", Value(std::string(family))}});
+  if (rotary > 0) v.set("rotary_inertia", Value(rotary));
+  return v;
+}
+
+std::unique_ptr<Body> beam(std::vector<Value::Member> strains) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  strains.insert(strains.begin(), {{"length", Value(L)}, {"mass_per_length", Value(mass)}});
+  return make_plugin<Body>(registry, "beam", std::move(strains));
+}
+
+Eigen::MatrixXd modal_mass(const Body& body) {
+  const Eigen::Index n = body.shape().modes();
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
+  for (const Particle& p : body.shape().particles) M += p.mass * p.at.phi.transpose() * p.at.phi;
+  for (const Section& s : body.shape().sections) M += s.at.psi.transpose() * s.inertia * s.at.psi;
+  return M;
+}
+
+/// Angular frequencies, rising.
+Eigen::VectorXd frequencies(const Body& body) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(body.shape().stiffness, modal_mass(body));
+  return eigen.eigenvalues().cwiseSqrt();
+}
+
+/// (2k − 1) π/2 √(EA/μ)/L: clamped-free functions are the eigenfunctions; eight polynomials have the first three to
+/// 1e-8.
+TEST(BeamElongation, rods_have_their_frequencies) {
+  for (const char* key : {"extension", "shear_y", "shear_z"}) {
+    const double EA = 5e4;
+    const Eigen::VectorXd waves = frequencies(*beam({{key, strain(EA, 3, "clamped-free")}}));
+    const Eigen::VectorXd polynomials = frequencies(*beam({{key, strain(EA, 8)}}));
+    for (int k = 1; k <= 3; ++k) {
+      const double exact = (2 * k - 1) * pi / 2 * std::sqrt(EA / mass) / L;
+      EXPECT_NEAR(waves[k - 1] / exact, 1, 1e-12) << key;
+      EXPECT_NEAR(polynomials[k - 1] / exact, 1, 1e-5) << key << k;
+    }
+  }
+}
+
+/// A rod with a mass m at its tip: β tan β = μ L/m; clamped-loaded has its eigenfunctions.
+TEST(BeamElongation, clamped_loaded_rod_carries_a_mass) {
+  const double EA = 5e4, tip = 0.7;
+  Value s = strain(EA, 1);
+  s.set("family", Value::map({{"name", Value(std::string("clamped-loaded"))}, {"tip_mass", Value(tip)}, {"tip_offset", Value(0.0)}}));
+  const auto body = beam({{"extension", s}});
+  const double phi = body->station(std::string("tip"))->phi(0, 0);
+  const double omega = std::sqrt(body->shape().stiffness(0, 0) / (modal_mass(*body)(0, 0) + tip * phi * phi));
+  const double beta = omega * L * std::sqrt(mass / EA);
+  EXPECT_NEAR(beta * std::tan(beta), mass * L / tip, 1e-10);
+}
+
+/// Frequencies of Timoshenko's cantilever, T. C. Huang, J. Appl. Mech. 28 (1961), 579–584: with b² = μ ω² L⁴/EI,
+/// r² = ρI/(μ L²), s² = EI/(kGA L²), 2 (α², β²) = √((r² − s²)² + 4/b²) ∓ (r² + s²),
+///   2 + (b² (r² − s²)² + 2) cosh bα cos bβ = b (r² + s²)/√(1 − b² r² s²) sinh bα sin bβ.
+double timoshenko(double r2, double s2, double low, double high) {
+  const auto f = [&](double b) {
+    const double root = std::sqrt(std::pow(r2 - s2, 2) + 4 / (b * b));
+    const double alpha = b * std::sqrt((root - r2 - s2) / 2), beta = b * std::sqrt((root + r2 + s2) / 2);
+    return 2 + (b * b * std::pow(r2 - s2, 2) + 2) * std::cosh(alpha) * std::cos(beta) -
+           b * (r2 + s2) / std::sqrt(1 - b * b * r2 * s2) * std::sinh(alpha) * std::sin(beta);
+  };
+  std::uintmax_t iterations = 100;
+  const auto [a, b] =
+      boost::math::tools::toms748_solve(f, low, high, boost::math::tools::eps_tolerance<double>(48), iterations);
+  return (a + b) / 2;
+}
+
+TEST(BeamElongation, timoshenko_cantilever_has_huangs_frequencies) {
+  const double EI = 200, r2 = 0.0016, s2 = 0.005;
+  const std::array<std::array<double, 2>, 3> brackets = {{{3, 3.6}, {15, 22.1}, {35, 61}}};
+  for (const char* across : {"y", "z"}) {
+    const auto body =
+        beam({{std::string("bending_") + across, strain(EI, 10, "orthogonal-polynomials", r2 * mass * L * L)},
+              {std::string("shear_") + across, strain(EI / (s2 * L * L), 10)}});
+    const Eigen::VectorXd found = frequencies(*body);
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = brackets[static_cast<std::size_t>(k)];
+      const double exact = timoshenko(r2, s2, low, high) * std::sqrt(EI / mass) / (L * L);
+      EXPECT_NEAR(found[k] / exact, 1, 1e-7) << across << k;
+    }
+  }
+  // Bending alone is 1 % off already in the first.
+  EXPECT_GT(3.51602 / timoshenko(r2, s2, 3, 3.6), 1.01);
+}
+
+/// F L³/3EI + F L/kGA.
+TEST(BeamElongation, shear_adds_to_the_static_deflection) {
+  const double EI = 200, kGA = 900;
+  const auto body = beam({{"bending_y", strain(EI, 3)}, {"shear_y", strain(kGA, 3)}});
+  const Eigen::VectorXd lift = body->station(std::string("tip"))->phi.row(1);
+  EXPECT_NEAR(lift.dot(body->shape().stiffness.ldlt().solve(lift)), L * L * L / (3 * EI) + L / kGA, 1e-12);
+}
+
+/// A column with shear buckles at P (1 + P/kGA) = π² EI/4L² where shear forces are across the turned section
+/// (J. A. Haringx, Philips Res. Rep. 3, 1948): what Γ's product of rotation and shear is for.
+TEST(BeamElongation, column_with_shear_buckles_as_haringx_says) {
+  const double EI = 200, kGA = 900;
+  const auto body = beam({{"bending_y", strain(EI, 8)}, {"shear_y", strain(kGA, 8)}});
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(-body->station(std::string("tip"))->gamma[0],
+                                                                        body->shape().stiffness);
+  const double P = 1 / eigen.eigenvalues().maxCoeff();
+  EXPECT_NEAR(P * (1 + P / kGA) / (pi * pi * EI / (4 * L * L)), 1, 1e-6);
+}
+
+/// Γ and Θ against r′ = R (e_x + γ), R′ = R κ̂ integrated by small steps at ε q: what is left is of the third order, so
+/// that half the ε leaves an eighth.
+TEST(BeamElongation, second_order_is_that_of_the_kinematics) {
+  const auto body = beam({{"bending_y", strain(1, 2)},
+                          {"bending_z", strain(1, 2)},
+                          {"torsion",
+                           [] {
+                             Value v = strain(1, 2);
+                             v.set("inertia", Value(1.0));
+                             return v;
+                           }()},
+                          {"extension", strain(1, 2)},
+                          {"shear_y", strain(1, 2)},
+                          {"shear_z", strain(1, 2)}});
+  const Eigen::Index n = body->shape().modes();
+  ASSERT_EQ(n, 12);
+  Eigen::VectorXd q(n);
+  q << 0.3, -0.2, 0.25, 0.1, 0.4, 0.3, -0.2, 0.3, 0.25, -0.3, 0.2, 0.15;
+  // Strains from the fields at stations: κ = ψ′ and γ = Φ′ − ψ × e_x, by central differences of 1e-5.
+  const auto strains = [&](double x) {
+    const double h = 1e-5, a = std::max(0.0, x - h), b = std::min(L, x + h);
+    const PointExpansion before = *body->station(a), after = *body->station(b), here = *body->station(x);
+    const Matrix3X kappa = (after.psi - before.psi) / (b - a);
+    Matrix3X gamma = (after.phi - before.phi) / (b - a);
+    for (Eigen::Index i = 0; i < n; ++i) gamma.col(i) -= Vector3(here.psi.col(i)).cross(Vector3::UnitX());
+    return std::pair<Vector3, Vector3>(kappa * q, gamma * q);
+  };
+  constexpr int steps = 1000;
+  std::vector<std::pair<Vector3, Vector3>> at;  // at the middles of the steps
+  for (int i = 0; i < steps; ++i) at.push_back(strains(L * (i + 0.5) / steps));
+  const PointExpansion tip = *body->station(std::string("tip"));
+  const auto miss = [&](double eps) {
+    Matrix3 R = Matrix3::Identity();
+    Vector3 r = Vector3::Zero();
+    const double h = L / steps;
+    for (const auto& [kappa, gamma] : at) {
+      const Vector3 turn = eps * h * kappa;
+      const Matrix3 half = Eigen::AngleAxisd(turn.norm() / 2, turn.normalized()).toRotationMatrix();
+      r += h * (R * half * (Vector3::UnitX() + eps * gamma));
+      R = R * half * half;
+    }
+    const Vector3 quadratic(q.dot(tip.gamma[0] * q), q.dot(tip.gamma[1] * q), q.dot(tip.gamma[2] * q));
+    return (r - tip.X - eps * tip.phi * q - 0.5 * eps * eps * quadratic).norm();
+  };
+  const double coarse = miss(0.1), fine = miss(0.05);
+  EXPECT_LT(coarse, 1e-2);
+  EXPECT_NEAR(coarse / fine, 8, 1.5);
+}
+
+TEST(BeamElongation, body_conforms) {
+  expect_body_conforms(*beam({{"bending_y", strain(200, 2, "clamped-free")},
+                              {"extension", strain(5e4, 2, "clamped-free")},
+                              {"shear_y", strain(900, 2, "clamped-free")},
+                              {"shear_z", strain(700, 1, "clamped-free")}}));
+}
+
+TEST(BeamElongation, exact_kinematics_is_refused) {
+  EXPECT_EQ(beam({{"bending_y", strain(200, 2)}, {"extension", strain(5e4, 1)}})->rod(), nullptr);
+  EXPECT_NE(beam({{"bending_y", strain(200, 2)}})->rod(), nullptr);
+}
+
+/// A pin says nothing of stretching.
+TEST(BeamElongation, families_without_rods_are_refused) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  Diagnostics diagnostics;
+  EXPECT_EQ(make_plugin<Body>(
+                registry, "beam",
+                {{"length", Value(L)}, {"mass_per_length", Value(mass)}, {"shear_y", strain(1, 1, "pinned-free")}},
+                diagnostics),
+            nullptr);
+  ASSERT_EQ(diagnostics.errors().size(), 1U);
+  EXPECT_THAT(diagnostics.errors()[0].message,
+              testing::HasSubstr("'pinned-free' has no functions for extension and shear"));
+}
+
+}  // namespace
+}  // namespace withy::test
