@@ -242,6 +242,10 @@ std::string certificate_text(const Engine& engine, const RunSummary& summary, co
     line("steps", s.limit ? fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}",
                                         s.cause(), s.product, *s.limit)
                           : fmt::format("mean step times fastest mode {:.2g}", s.product));
+    if (s.cause() == "stability")
+      line("", fmt::format("fewer modes allow longer steps than {:.2g} s; rosenbrock-w and radau are stable with any, "
+                           "whatever the fastest mode's {:.4g} rad/s",
+                           s.mean, summary.fastest_mode));
   }
   return out;
 }
