@@ -67,6 +67,14 @@ class Beam final : public Body, private Rod {
     const Eigen::Index n = shape_.modes();
     shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd modal_mass = Eigen::VectorXd::Zero(n);
+    // Without modes it is a rigid body, to the last bit the one that a scene would write with ρL and ρL³/12.
+    const bool rigid = n == 0 && material.mass_per_length.knots().empty();
+    if (rigid) {
+      const double mass = mass_per_length_ * length_, central = mass * (length_ * length_) / 12;
+      const PointExpansion middle = PointExpansion::rigid(Vector3(length_ / 2, 0, 0), 0);
+      shape_.particles.push_back({mass, middle});
+      shape_.sections.push_back({Vector3(0, central, central).asDiagonal(), middle});
+    }
     const auto& x = quadrature_.nodes();
     for (std::size_t k = 0; k < x.size(); ++k) {
       const double w = quadrature_.weights()[k];
@@ -74,7 +82,7 @@ class Beam final : public Body, private Rod {
       const PointExpansion e = expansion(x[k], f, gamma_at_nodes_.row(static_cast<Eigen::Index>(k)),
                                          theta_at_nodes_.row(static_cast<Eigen::Index>(k)));
       const double mass = w * material.mass_per_length(x[k]);
-      shape_.particles.push_back({mass, e});
+      if (!rigid) shape_.particles.push_back({mass, e});
       modal_mass += mass * f.phi.colwise().squaredNorm().transpose();
       Matrix3 inertia = Matrix3::Zero();
       for (const auto& [axis, per_length] : material.inertias) {

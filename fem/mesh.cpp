@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "element_shape.hpp"
 #include "text_lines.hpp"
 
 namespace withy::fem {
@@ -59,6 +60,7 @@ class DeckReader {
         continue;
       }
       keyword = keyword_of(line);
+      begin(keyword);
       if (keyword.name == "INCLUDE") {
         read(file.parent_path() / keyword.parameters["INPUT"], depth + 1);
       } else if (keyword.parameters.contains("INPUT") && (keyword.name == "NODE" || keyword.name == "NSET")) {
@@ -70,9 +72,21 @@ class DeckReader {
  private:
   [[noreturn]] void fault(const std::string& message) const { throw InputError(where_ + ": " + message); }
 
+  /// A keyword line: what it says itself.
+  void begin(const Keyword& keyword) {
+    open_ = nullptr;
+    if (keyword.name == "MATERIAL") material_ = name_in(keyword, "NAME");
+    if (keyword.name == "SOLIDSECTION" && !keyword.parameters.contains("ORIENTATION") &&
+        !keyword.parameters.contains("COMPOSITE"))
+      mesh_.sections.push_back({name_in(keyword, "ELSET"), name_in(keyword, "MATERIAL")});
+  }
+
   void data(const Keyword& keyword, std::string_view line) {
     if (keyword.name == "NODE") node(keyword, line);
-    if (keyword.name == "NSET") members(keyword, line);
+    if (keyword.name == "ELEMENT") element(keyword, line);
+    if (keyword.name == "NSET") members(keyword, line, "NSET", mesh_.sets);
+    if (keyword.name == "ELSET") members(keyword, line, "ELSET", mesh_.element_sets);
+    if (keyword.name == "ELASTIC") elastic(keyword, line);
     if (keyword.name == "INSTANCE") fault("an instance that is moved; write the deck without parts and assembly");
   }
 
@@ -93,10 +107,62 @@ class DeckReader {
       mesh_.sets[capitals(set->second)].push_back(*number);
   }
 
-  void members(const Keyword& keyword, std::string_view line) {
-    const auto name = keyword.parameters.find("NSET");
-    if (name == keyword.parameters.end()) fault("need *NSET, NSET=name");
-    std::vector<long>& set = mesh_.sets[capitals(name->second)];
+  /// A parameter's value in capitals; empty where there is none.
+  static std::string name_in(const Keyword& keyword, const char* parameter) {
+    const auto name = keyword.parameters.find(parameter);
+    return name == keyword.parameters.end() ? std::string() : capitals(name->second);
+  }
+
+  /// Number and nodes, on as many lines as they need.
+  void element(const Keyword& keyword, std::string_view line) {
+    auto fields = split(line, ",");
+    std::erase_if(fields, [](std::string_view f) { return f.empty(); });
+    std::size_t first = 0;
+    if (open_ == nullptr) {
+      const auto number = fields.empty() ? std::nullopt : number_of<long>(fields[0]);
+      if (!number || *number <= 0) fault(fmt::format("got '{}'; need an element's number and nodes", line));
+      const std::string type = name_in(keyword, "TYPE");
+      // Of other elements it is not known how many lines they take.
+      if (element_shape(type) == nullptr) {
+        mesh_.other_elements.insert(type);
+        return;
+      }
+      const auto [it, fresh] = mesh_.elements.emplace(*number, Element{type, {}});
+      if (!fresh) fault(fmt::format("element {} is there twice", *number));
+      open_ = &it->second;
+      if (const std::string set = name_in(keyword, "ELSET"); !set.empty()) mesh_.element_sets[set].push_back(*number);
+      first = 1;
+    }
+    for (std::size_t i = first; i < fields.size(); ++i) {
+      const auto node = number_of<long>(fields[i]);
+      if (!node) fault(fmt::format("got '{}'; need a node's number", fields[i]));
+      open_->nodes.push_back(*node);
+    }
+    const auto count = static_cast<std::size_t>(element_shape(open_->type)->nodes);
+    if (open_->nodes.size() > count)
+      fault(fmt::format("got {} nodes; {} has {}", open_->nodes.size(), open_->type, count));
+    if (open_->nodes.size() == count) open_ = nullptr;
+  }
+
+  /// Constants of a material; other kinds, and such that depend on temperature, are left out.
+  void elastic(const Keyword& keyword, std::string_view line) {
+    const std::string type = name_in(keyword, "TYPE");
+    const auto fields = split(line, ",");
+    const auto modulus = number_of<double>(fields[0]);
+    const auto ratio = fields.size() > 1 ? number_of<double>(fields[1]) : std::nullopt;
+    const bool fresh = elastic_.insert(material_).second;
+    if ((!type.empty() && type != "ISO" && type != "ISOTROPIC") || !fresh || !modulus || !ratio) {
+      mesh_.materials.erase(material_);
+    } else {
+      mesh_.materials[material_] = {*modulus, *ratio};
+    }
+  }
+
+  using Sets = std::map<std::string, std::vector<long>>;
+  void members(const Keyword& keyword, std::string_view line, const char* parameter, Sets& sets) {
+    const std::string name = name_in(keyword, parameter);
+    if (name.empty()) fault(fmt::format("need *{0}, {0}=name", parameter));
+    std::vector<long>& set = sets[name];
     const auto fields = split(line, ",");
     if (keyword.parameters.contains("GENERATE")) {
       const auto from = number_of<long>(fields[0]);
@@ -110,17 +176,20 @@ class DeckReader {
       if (field.empty()) continue;
       if (const auto number = number_of<long>(field)) {
         set.push_back(*number);
-      } else if (const auto other = mesh_.sets.find(capitals(field)); other != mesh_.sets.end()) {
+      } else if (const auto other = sets.find(capitals(field)); other != sets.end()) {
         const std::vector<long> copy = other->second;
         set.insert(set.end(), copy.begin(), copy.end());
       } else {
-        fault(fmt::format("got '{}'; need a node's number or a set defined before", field));
+        fault(fmt::format("got '{}'; need a number or a set defined before", field));
       }
     }
   }
 
   Mesh& mesh_;
   std::string where_;
+  Element* open_ = nullptr;        ///< lacks nodes yet
+  std::string material_;           ///< the one that properties are of
+  std::set<std::string> elastic_;  ///< materials that had constants
 };
 
 /// The block "2C" of a result file: " -1", the number in 10 columns, three coordinates in 12 columns each.

@@ -1,9 +1,11 @@
 /// \file
-/// What the reduction needs of a finite-element mesh: the places of its nodes and the names of node sets.
+/// What the reduction needs of a finite-element mesh: its nodes and their sets; for the geometric stiffness its
+/// elements and what they are made of.
 #pragma once
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,12 +20,34 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-struct Mesh {
-  std::map<long, Vector3> nodes;                  ///< by number [m]
-  std::map<std::string, std::vector<long>> sets;  ///< by name in capitals: input decks do not tell cases apart
+struct Element {
+  std::string type;         ///< in capitals, as "C3D20R"; one of element_shape()
+  std::vector<long> nodes;  ///< in the deck's order
 };
 
-/// Reads nodes and node sets of an input deck of CalculiX or Abaqus (`.inp`), or the nodes of a result file of CalculiX
+/// A linear isotropic material.
+struct Elastic {
+  double modulus = 0;        ///< Young's [N/m²]
+  double poisson_ratio = 0;  ///< [1]
+};
+
+/// Elements made of a material. *SOLID SECTION.
+struct SolidSection {
+  std::string elements, material;  ///< names, in capitals
+};
+
+/// Names are in capitals: input decks do not tell cases apart.
+struct Mesh {
+  std::map<long, Vector3> nodes;                          ///< by number [m]
+  std::map<std::string, std::vector<long>> sets;          ///< of nodes
+  std::map<long, Element> elements;                       ///< by number
+  std::set<std::string> other_elements;                   ///< types of those that element_shape() does not know
+  std::map<std::string, std::vector<long>> element_sets;  ///< numbers of elements
+  std::map<std::string, Elastic> materials;               ///< those that are linear and isotropic
+  std::vector<SolidSection> sections;
+};
+
+/// Reads an input deck of CalculiX or Abaqus (`.inp`), or the nodes of a result file of CalculiX
 /// (`.frd`, whose places have 6 digits).
 /// \throws InputError
 Mesh read_mesh(const std::filesystem::path& file);

@@ -1,40 +1,21 @@
 #include "reduce.hpp"
 
-#include <Spectra/MatOp/SparseSymMatProd.h>
-#include <Spectra/SymGEigsShiftSolver.h>
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "interior.hpp"
 #include "sections.hpp"
 
 namespace withy::fem {
 namespace {
 
-using Factor = Eigen::SimplicialLDLT<SparseMatrix>;
 using Triplet = Eigen::Triplet<double>;
 
 constexpr double two_pi = 2 * std::numbers::pi;
-
-/// K⁻¹ for Spectra's iteration about the shift zero, with a factor that is there already.
-class Inverse {
- public:
-  using Scalar = double;
-  explicit Inverse(const Factor& factor) : factor_(factor) {}
-  [[nodiscard]] Eigen::Index rows() const { return factor_.rows(); }
-  [[nodiscard]] Eigen::Index cols() const { return factor_.cols(); }
-  void set_shift(double /*zero*/) {}
-  void perform_op(const double* in, double* out) const {
-    Eigen::Map<Eigen::VectorXd>(out, rows()) = factor_.solve(Eigen::Map<const Eigen::VectorXd>(in, rows()));
-  }
-
- private:
-  const Factor& factor_;
-};
 
 /// The scalar mass matrix of M = m ⊗ 1₃, as elements without rotations have.
 SparseMatrix node_mass_of(const SparseMatrix& M) {
@@ -101,11 +82,9 @@ class Reducer {
         throw InputError(
             fmt::format("interface {} needs one node, or three or more that are not in a line", interface.name));
     }
-    place_.assign(kind_.size(), -1);
     for (std::size_t i = 0; i < kind_.size(); ++i) {
       if (kind_[i] >= 0) body_.free.push_back(static_cast<Eigen::Index>(i));
       if (kind_[i] != 0) continue;
-      place_[i] = static_cast<Eigen::Index>(interior_.size());
       interior_.push_back(static_cast<Eigen::Index>(i));
     }
   }
@@ -150,65 +129,48 @@ class Reducer {
     rigid_.setFromTriplets(triplets.begin(), triplets.end());
   }
 
-  /// The rows and columns of the interior.
-  [[nodiscard]] SparseMatrix interior(const SparseMatrix& matrix) const {
-    std::vector<Triplet> triplets;
-    for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
-      for (SparseMatrix::InnerIterator it(matrix, column); it; ++it) {
-        const Eigen::Index i = place_[static_cast<std::size_t>(it.row())], j = place_[static_cast<std::size_t>(column)];
-        if (i >= 0 && j >= 0) triplets.emplace_back(i, j, it.value());
+  /// Constraint modes, what the mesh does under motions of the interfaces, and its modes with the interfaces held.
+  void solve() {
+    const Interior interior(m_.K, m_.M, interior_);
+    Interior::Modes held = interior.modes(options_.modes);
+    body_.fixed_frequencies = std::move(held.frequencies);
+    if (rigid_.cols() + held.shapes.cols() == 0)
+      throw InputError("got no modes and no interface: that is a rigid body");
+    const Eigen::MatrixXd moved = rigid_;
+    const Eigen::MatrixXd constraint = moved - interior.response(m_.K * moved);
+    Eigen::MatrixXd V(m_.K.rows(), constraint.cols() + held.shapes.cols());
+    V << constraint, held.shapes;
+    take_modes(V);
+    respond(interior, constraint);
+  }
+
+  /// Statics of the mesh under the unit loads. Motions of the interior alone and constraint modes are orthogonal in K.
+  void respond(const Interior& interior, const Eigen::MatrixXd& constraint) {
+    const Eigen::Index held = constraint.cols();
+    const Eigen::Index stations = 3 * static_cast<Eigen::Index>(options_.stations.size());
+    Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(m_.K.rows(), inertial_loads + held + stations);
+    const Eigen::VectorXd mass = body_.node_mass * Eigen::VectorXd::Ones(body_.X.cols());
+    const Eigen::MatrixXd weighted = body_.node_mass * body_.X.transpose();
+    for (Eigen::Index a = 0; a < body_.X.cols(); ++a) {
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        forces(3 * a + c, c) = mass[a];
+        for (Eigen::Index i = 0; i < 3; ++i) forces(3 * a + c, 3 + 3 * i + c) = weighted(a, i);
       }
     }
-    const auto size = static_cast<Eigen::Index>(interior_.size());
-    SparseMatrix part(size, size);
-    part.setFromTriplets(triplets.begin(), triplets.end());
-    return part;
-  }
-
-  void solve() {
-    const SparseMatrix K = interior(m_.K), M = interior(m_.M);
-    const auto size = K.rows();
-    const Eigen::Index count = options_.modes;
-    if (count > 0 && count >= size)
-      throw InputError(fmt::format("got {} modes; the interior has {} freedoms", count, size));
-    const Eigen::Index held = rigid_.cols();
-    if (count + held == 0) throw InputError("got no modes and no interface: that is a rigid body");
-    Eigen::MatrixXd V = Eigen::MatrixXd::Zero(m_.K.rows(), held + count);
-    V.leftCols(held) = rigid_;
-    if (size > 0) move_interior(K, M, V);
-    take_modes(V);
-  }
-
-  /// Rows of the interior: constraint modes, what it does under motions of the interfaces, then its own modes.
-  void move_interior(const SparseMatrix& K, const SparseMatrix& M, Eigen::MatrixXd& V) {
-    const Factor factor(K);
-    if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0))
-      throw InputError(
-          "the clamped mesh is not stiff: some of it hangs on neither the root nor an interface, or its "
-          "elements have motions without stiffness, as a single row of reduced ones");
-    const auto size = K.rows(), held = rigid_.cols(), count = V.cols() - held;
-    const Eigen::MatrixXd pulled = m_.K * V.leftCols(held);
-    Eigen::MatrixXd inside(size, held + count);
-    Eigen::MatrixXd load(size, held);
-    for (Eigen::Index i = 0; i < size; ++i) load.row(i) = pulled.row(interior_[static_cast<std::size_t>(i)]);
-    if (held > 0) inside.leftCols(held) = -factor.solve(load);
-    if (count > 0) inside.rightCols(count) = fixed_modes(factor, M, count);
-    for (Eigen::Index i = 0; i < size; ++i) V.row(interior_[static_cast<std::size_t>(i)]) = inside.row(i);
-  }
-
-  /// Lowest modes of the interior with interfaces held.
-  Eigen::MatrixXd fixed_modes(const Factor& factor, const SparseMatrix& M, Eigen::Index count) {
-    Inverse inverse(factor);
-    Spectra::SparseSymMatProd<double> mass(M);
-    const Eigen::Index krylov = std::min<Eigen::Index>(M.rows(), std::max<Eigen::Index>(2 * count + 1, 20));
-    Spectra::SymGEigsShiftSolver<Inverse, Spectra::SparseSymMatProd<double>, Spectra::GEigsMode::ShiftInvert> solver(
-        inverse, mass, count, krylov, 0.0);
-    solver.init();
-    solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-11, Spectra::SortRule::SmallestAlge);
-    if (solver.info() != Spectra::CompInfo::Successful)
-      throw InputError(fmt::format("the {} lowest modes were not found", count));
-    for (const double lambda : solver.eigenvalues()) body_.fixed_frequencies.push_back(std::sqrt(lambda) / two_pi);
-    return solver.eigenvectors();
+    Eigen::Index column = inertial_loads + held;
+    for (const Interface& station : options_.stations) {
+      const Eigen::Index a = section_of(station.nodes, m_).rows[0];
+      for (Eigen::Index c = 0; c < 3; ++c) forces(3 * a + c, column++) = 1;
+    }
+    body_.loaded = interior.response(forces);
+    if (held > 0) {
+      Eigen::MatrixXd on_interfaces = constraint.transpose() * forces;
+      on_interfaces.middleCols(inertial_loads, held).setIdentity();
+      const Eigen::MatrixXd K = constraint.transpose() * (m_.K * constraint);
+      body_.loaded += constraint * K.ldlt().solve(on_interfaces);
+    }
+    // Motions of clamped rows are none.
+    body_.held = m_.K * body_.loaded - forces;
   }
 
   /// Eigenvectors of the reduced body, of unit modal mass, their largest element positive.
@@ -270,7 +232,6 @@ class Reducer {
   const ReductionOptions& options_;
   Reduction body_;
   std::vector<int> kind_;
-  std::vector<Eigen::Index> place_;     ///< among the interior; −1: none of it
   std::vector<Eigen::Index> interior_;  ///< rows of K
   SparseMatrix rigid_;                  ///< 3N × coordinates of the interfaces
   Eigen::MatrixXd turn_;                ///< coordinates of the interfaces × modes

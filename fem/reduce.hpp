@@ -39,14 +39,33 @@ struct Reduction {
   SparseMatrix node_mass;                   ///< N×N: M is this for each axis
   std::vector<double> fixed_frequencies;    ///< of the fixed-interface modes [Hz]
   std::vector<double> dropped_frequencies;  ///< of modes dropped [Hz]
+  /// Static displacements of the clamped mesh under unit loads, 3N×loads: forces M e_c (c = x, y, z) and M X_i e_c
+  /// (3 + 3 i + c), what 12 inertial loads are sums of; then for each coordinate of an interface, three forces and, of
+  /// a rigid section, three moments; then three forces at each station. In the order of `nodes`, without the base.
+  Eigen::MatrixXd loaded;
+  Eigen::MatrixXd held;  ///< K loaded less what loads the mesh itself: forces that act through interfaces and the root
+  /// Second-order displacements in the direction of each unit load, f · Γ_kl [load's work/mode²], n×n each; empty where
+  /// they are not known.
+  std::vector<Eigen::MatrixXd> second_order;
   [[nodiscard]] double frequency(Eigen::Index k) const { return omega[k] / (2 * std::numbers::pi); }  ///< [Hz]
 };
 
-/// \throws InputError where the mesh is not free, not in one piece with its root, or has no such modes.
+constexpr Eigen::Index inertial_loads = 12;
+
+/// All but the second order. \throws InputError where the mesh is not free, not in one piece with its root, or has no
+/// such modes.
 Reduction reduce(const Matrices& matrices, const ReductionOptions& options);
 
-/// SID of the reduced body, without geometric stiffness, which K and M do not know: the first orders of Ct, Cr, Oe and
-/// of the nodes' phi and psi are left out, and readers say so.
+/// Adds the second order: Γ_kl is what leaves strains linear in the modal coordinates, so that with Green's strain
+///   δᵀ K Γ_kl = −∫ σ(δ) : ∇φ_kᵀ ∇φ_l dV   for every displacement δ,
+/// and f · Γ_kl = −G(u_f; φ_k, φ_l) with the stress of u_f = K⁻¹ f: the geometric stiffness of unit loads of
+/// A. K. Banerjee and J. M. Dickens, J. Guid. Control Dyn. 13 (1990), 221–227. Rigid sections turn by exp(θ̂).
+/// Returns by how much the stresses' forces miss those of K, relative.
+/// \throws InputError where the deck does not tell the stresses: what() says why; `body` is then as it was.
+double add_second_order(const Mesh& mesh, const Matrices& matrices, const ReductionOptions& options, Reduction& body);
+
+/// SID of the reduced body. Without the second order the first orders of Ct, Cr, Oe and of the nodes' phi and psi are
+/// left out, and readers say so.
 sid::Data sid_of(const Reduction& body);
 
 }  // namespace withy::fem

@@ -11,7 +11,6 @@ Matrix3X field(const Reduction& body, Eigen::Index k) {
   return Eigen::Map<const Matrix3X>(body.modes.col(k).data(), 3, body.X.cols());
 }
 
-/// Without Γ: what a stressed mesh does is not in K and M.
 MassIntegrals integrals(const Reduction& body) {
   const Eigen::Index n = body.modes.cols();
   MassIntegrals sum(n);
@@ -29,6 +28,12 @@ MassIntegrals integrals(const Reduction& body) {
     for (Eigen::Index l = 0; l < n; ++l) {
       const std::size_t kl = sum.pair(k, l);
       sum.phi_phi[kl] = weighted_phi * field(body, l).transpose();
+      if (body.second_order.empty()) continue;
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        sum.gamma[kl][c] = body.second_order[static_cast<std::size_t>(c)](k, l);
+        for (Eigen::Index i = 0; i < 3; ++i)
+          sum.x_gamma[kl](i, c) = body.second_order[static_cast<std::size_t>(3 + 3 * i + c)](k, l);
+      }
     }
   }
   return sum;
@@ -46,6 +51,7 @@ sid::Data sid_of(const Reduction& body) {
   data.nodes = body.nodes;
   data.Ke.m0 = body.omega.cwiseAbs2().asDiagonal();
   data.Me.m0 = 0.5 * (data.Me.m0 + data.Me.m0.transpose()).eval();
+  if (!body.second_order.empty()) return data;
   // First orders that Γ would be part of: left out, so that readers say what is missing.
   data.Ct.m1.clear();
   data.Cr.m1.clear();

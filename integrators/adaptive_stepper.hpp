@@ -23,10 +23,12 @@ class AdaptiveStepper : public OneStep {
     if (!(t_limit > t)) return {};
     if (const StepResult r = begin(t_limit); r.outcome != StepResult::Outcome::ok) return r;
     const double remaining = t_limit - t;
-    if (!(proposal_ > 0)) proposal_ = first_step(remaining);
-    double wanted = std::min(proposal_, control_.max_step);
     const double least = std::max({control_.min_step, 16 * std::numeric_limits<double>::epsilon() * std::abs(t),
                                    std::numeric_limits<double>::min()});
+    // What remains may be a rounding error long: the first step, found as a part of it, is no shorter than any may be.
+    if (!(proposal_ > 0))
+      proposal_ = control_.initial_step > 0 ? control_.initial_step : std::max(first_step(remaining), least);
+    double wanted = std::min(proposal_, control_.max_step);
     bool rejected = false;
     for (int failures = 0;;) {
       if (wanted < least && wanted < remaining) return {StepResult::Outcome::step_underflow, -1};
@@ -126,7 +128,6 @@ class AdaptiveStepper : public OneStep {
   /// step changes y by 1 %, tells how fast the slope changes; from that time τ follows the step whose error, of the
   /// estimate's order, is about a hundredth of the tolerance.
   double first_step(double remaining) {
-    if (control_.initial_step > 0) return control_.initial_step;
     const Eigen::Index n = size() - 1;
     if (n == 0) return remaining;
     const auto norm = [&](const auto& v) {

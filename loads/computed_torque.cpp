@@ -8,6 +8,7 @@
 #include "withy/core/plugin/entry.hpp"
 #include "withy/core/sweep/rigid_inverse_dynamics.hpp"
 #include "withy/loads/followed_hinges.hpp"
+#include "withy/loads/sampled.hpp"
 
 namespace withy {
 namespace {
@@ -57,15 +58,20 @@ class BoundComputedTorque final : public BoundLoad {
 
 class ComputedTorque final : public Load {
  public:
-  ComputedTorque(std::vector<FollowedHinge> hinges, const Feedback& feedback)
-      : hinges_(std::move(hinges)), feedback_(feedback) {}
+  /// \param period [s] between samples; 0: continuous
+  ComputedTorque(std::vector<FollowedHinge> hinges, const Feedback& feedback, double period)
+      : hinges_(std::move(hinges)), feedback_(feedback), period_(period) {}
   std::unique_ptr<BoundLoad> bind(const Model& model) const override {
-    return std::make_unique<BoundComputedTorque>(model, hinges_, feedback_);
+    std::vector<std::size_t> speeds;
+    for (const FollowedHinge& h : hinges_) speeds.push_back(single_coordinate(model, h.hinge).speed);
+    return sampled(std::make_unique<BoundComputedTorque>(model, hinges_, feedback_), period_, std::move(speeds),
+                   model.layout().speeds);
   }
 
  private:
   std::vector<FollowedHinge> hinges_;
   Feedback feedback_;
+  double period_;
 };
 
 std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
@@ -73,7 +79,8 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
   if (!hinges) return nullptr;
   return std::make_unique<ComputedTorque>(
       std::move(*hinges),
-      Feedback{p.number_at("bandwidth"), p.number_at("damping_ratio"), p.text_at("law") != "constant"});
+      Feedback{p.number_at("bandwidth"), p.number_at("damping_ratio"), p.text_at("law") != "constant"},
+      sample_period(p));
 }
 
 void enroll(Enrollment& enrollment) {
@@ -82,6 +89,7 @@ void enroll(Enrollment& enrollment) {
                             "hinges to control, of one coordinate each; of the others no acceleration is expected");
   parameters.push_back(number("bandwidth", "rad/s", "natural frequency of the error of a rigid tree").above(0));
   parameters.push_back(number("damping_ratio", "1", "damping ratio of the error").least(0).otherwise(1.0));
+  parameters.push_back(sample_parameter());
   enrollment.add<Load>({.id = "computed-torque",
                         .summary = "Controller: feedback through the inverse dynamics of the tree of rigid bodies",
                         .parameters = std::move(parameters),

@@ -1,11 +1,12 @@
 /// \file
-/// Proportional and derivative feedback on single coordinates, continuous in time:
+/// Proportional and derivative feedback on single coordinates, continuous in time or sampled:
 ///   τ = k (x_r − x) + c (ẋ_r − ẋ),  or  τ_max tanh(τ / τ_max) of it where the effort is limited.
 #include <cmath>
 #include <limits>
 
 #include "withy/core/plugin/entry.hpp"
 #include "withy/loads/followed_hinges.hpp"
+#include "withy/loads/sampled.hpp"
 
 namespace withy {
 namespace {
@@ -78,14 +79,20 @@ class BoundPdController final : public BoundLoad {
 
 class PdController final : public Load {
  public:
-  PdController(std::vector<Loop> loops, bool begins_on) : loops_(std::move(loops)), begins_on_(begins_on) {}
+  /// \param period [s] between samples; 0: continuous
+  PdController(std::vector<Loop> loops, bool begins_on, double period)
+      : loops_(std::move(loops)), begins_on_(begins_on), period_(period) {}
   std::unique_ptr<BoundLoad> bind(const Model& model) const override {
-    return std::make_unique<BoundPdController>(model, loops_, begins_on_);
+    std::vector<std::size_t> speeds;
+    for (const Loop& loop : loops_) speeds.push_back(speed_index(model, loop.rate));
+    return sampled(std::make_unique<BoundPdController>(model, loops_, begins_on_), period_, std::move(speeds),
+                   model.layout().speeds);
   }
 
  private:
   std::vector<Loop> loops_;
   bool begins_on_;
+  double period_;
 };
 
 std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
@@ -97,18 +104,20 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
     if (const Value* limit = h.given->find("limit")) gains.limit = limit->number();
     loops.push_back({{h.hinge, h.given->count_at("component")}, h.trajectory, gains});
   }
-  return std::make_unique<PdController>(std::move(loops), p.text_at("law") != "constant");
+  return std::make_unique<PdController>(std::move(loops), p.text_at("law") != "constant", sample_period(p));
 }
 
 void enroll(Enrollment& enrollment) {
-  enrollment.add<Load>({.id = "pd-controller",
-                        .summary = "Controller: proportional and derivative feedback on coordinates of hinges",
-                        .parameters = trajectory_parameters(
-                            {"quintic", "bang-bang", "table", "sine", "constant"},
+  std::vector<ParameterSpec> parameters =
+      trajectory_parameters({"quintic", "bang-bang", "table", "sine", "constant"},
                             {component_parameter(), number("stiffness", "N m/rad", "proportional gain").least(0),
                              number("damping", "N m s/rad", "derivative gain").least(0),
                              number("limit", "N m", "the effort never exceeds this").above(0).optional()},
-                            "hinges to control"),
+                            "hinges to control");
+  parameters.push_back(sample_parameter());
+  enrollment.add<Load>({.id = "pd-controller",
+                        .summary = "Controller: proportional and derivative feedback on coordinates of hinges",
+                        .parameters = std::move(parameters),
                         .make = &make});
 }
 

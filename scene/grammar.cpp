@@ -34,6 +34,17 @@ std::vector<ParameterSpec> scene_members() {
                .otherwise(1.0)},
           "what ends a simulation early")
           .otherwise(Value::map({})),
+      named("events",
+            {text("hinge", "hinge that is watched"),
+             integer("component", "which of its rates, counted from 0").least(0).otherwise(0.0),
+             text("of", "what is watched: the rate's coordinate or the rate itself")
+                 .one_of({"position", "rate"})
+                 .otherwise("position"),
+             number("value", "rad", "value that it passes; of a rate in rad/s").otherwise(0.0),
+             text("direction", "from below, from above, or both").one_of({"up", "down", "both"}).otherwise("both"),
+             boolean("stop", "whether the run ends there").otherwise(Value(false))},
+            "what is looked for during a simulation and reported with its time")
+          .otherwise(Value::map({})),
   };
 }
 

@@ -14,7 +14,7 @@ namespace withy::grammar {
 inline constexpr std::string_view default_formulation = "quadratic";
 inline constexpr std::string_view default_integrator = "dopri5";
 
-/// Members of a scene that hold plain values: format, name, gravity, time, limits.
+/// Members of a scene that hold plain values: format, name, gravity, time, limits, events.
 std::vector<ParameterSpec> scene_members();
 /// Keys of a scene that hold plugins, states or nothing yet.
 std::vector<std::string> special_keys();

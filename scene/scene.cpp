@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
@@ -79,6 +80,7 @@ class SceneBuilder {
     add_loads(tree.model.get());
     if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model);
     if (tree.model != nullptr && diagnostics_.ok()) set_span(*tree.model);
+    if (tree.model != nullptr && diagnostics_.ok()) set_events(*tree.model);
     scene_.model = std::move(tree.model);
     return std::move(scene_);
   }
@@ -180,6 +182,44 @@ class SceneBuilder {
                       [&](const std::string& name, const Value& value, std::unique_ptr<Motion> motion) {
                         model->add_motion(name, value.text_at("hinge"), std::move(motion));
                       });
+  }
+
+  /// The functions that the scene's events watch.
+  void set_events(const Model& model) {
+    std::vector<std::string> names;
+    for (const HingeNode& h : model.hinges()) names.push_back(h.name);
+    for (const auto& [name, given] : scene_.source.at("events").members()) {
+      const std::string path = "/events/" + name;
+      const std::string& hinge = given.text_at("hinge");
+      const Slot* slot = model.layout().hinge(hinge);
+      if (slot == nullptr) {
+        checker_.key_error(path + "/hinge", fmt::format("no hinge {}{}", in_quotes(hinge), suggestion(hinge, names)));
+        continue;
+      }
+      const std::vector<HingeRate> rates =
+          hinge_rates(*model.hinges()[static_cast<std::size_t>(model.hinge(hinge))].hinge);
+      const std::size_t component = given.count_at("component");
+      if (component >= rates.size()) {
+        checker_.key_error(path, fmt::format("hinge '{}' has {} rates; there is no component {} (they count from 0)",
+                                             hinge, rates.size(), component));
+        continue;
+      }
+      std::size_t index = model.layout().positions + slot->speed + component;
+      if (given.text_at("of") == "position") {
+        if (!rates[component].coordinate) {
+          checker_.key_error(
+              path,
+              fmt::format("rate {} of hinge '{}' is the derivative of no coordinate; need of: rate", component, hinge));
+          continue;
+        }
+        index = slot->position + *rates[component].coordinate;
+      }
+      const std::string& direction = given.text_at("direction");
+      scene_.events.push_back(
+          {name,
+           [index, value = given.number_at("value")](double, std::span<const double> y) { return y[index] - value; },
+           direction == "up" ? 1 : (direction == "down" ? -1 : 0), given.at("stop").boolean()});
+    }
   }
 
   /// Where the loads begin, then what the scene says; driven hinges where their motions have them.

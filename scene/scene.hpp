@@ -13,6 +13,7 @@
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/registry.hpp"
+#include "withy/core/simulation/simulate.hpp"
 
 namespace withy {
 
@@ -49,6 +50,7 @@ struct Scene {
   std::optional<double> end;      ///< [s]; where the scene gives none, the latest end of a load, if one has an end
   double output = 0.01;           ///< [s]
   double deflection_limit = 1.0;  ///< lengths of a body
+  std::vector<RunEvent> events;   ///< for RunOptions
   State initial;
 };
 

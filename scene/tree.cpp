@@ -207,7 +207,9 @@ class TreeBuilder {
     const Value choice = Value::map({{"name", id}}, id.place());
     const auto value = check_plugin_map(choice, "name", {text("name", "")}, checker_, made);
     const auto formulation = value ? make_object(*made.plugin, *value, checker_) : nullptr;
-    if (formulation != nullptr) return formulation->terms();
+    if (formulation != nullptr && formulation->terms().products_of_speeds) return formulation->terms();
+    if (formulation != nullptr)
+      key_error(id.place().path, fmt::format("{} holds for whole scenes, not for single bodies", in_quotes(id.text())));
     good_ = false;
     return {};
   }

@@ -11,7 +11,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     standard = "[a-z_0-9]+|time[.]h"
     inner = standard "|(unsupported/)?Eigen/.*|withy/core/.*"
 
-    may["core"] = inner
+    may["core"] = inner "|boost/math/.*"
     may["scene"] = inner "|withy/scene/.*|yaml-cpp/.*|nlohmann/.*|fmt/.*|spdlog/.*"
     may["plugins/formulations"] = inner "|withy/plugins/formulations/.*|fmt/.*"
     may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"

@@ -30,6 +30,10 @@ Configuration::Configuration(const ConfigurationArguments& arguments)
       dynamics_(engine_.scene().model, engine_.scene().formulation->terms()),
       state_(engine_.state(arguments.state)),
       held_(layout().speeds, false) {
+  for (const DiscreteSlot& slot : layout().discrete_slots)
+    throw InputError(arguments.scene + ": load '" + engine_.model().loads()[slot.load].name +
+                     "' changes at instants (sampled, or a relay); linear analyses need loads that are continuous in "
+                     "time: leave out its 'sample', or the load");
   engine_.model().prescribe(state_);
   for (const MotionNode& motion : engine_.model().motions()) {
     const Slot& slot = layout().hinges[static_cast<std::size_t>(motion.hinge)];

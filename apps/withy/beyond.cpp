@@ -7,7 +7,9 @@
 namespace withy::app {
 namespace {
 
-bool same(const Terms& a, const Terms& b) { return a.strain == b.strain && a.truncation == b.truncation; }
+bool same(const Terms& a, const Terms& b) {
+  return a.strain == b.strain && a.truncation == b.truncation && a.products_of_speeds == b.products_of_speeds;
+}
 
 bool flexible(const BodyNode& body) { return body.body->shape().modes() > 0; }
 

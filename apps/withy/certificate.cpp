@@ -18,30 +18,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What limited the steps of a run.
-struct StepLimit {
-  double mean = 0;     ///< [s]
-  double product = 0;  ///< mean step times the fastest mode; 0 where that is not known
-  std::optional<double> limit;
-  /// Error control that meets the limit goes to and fro about it, so the mean stays a little below.
-  [[nodiscard]] std::string cause() const {
-    if (!limit || product == 0) return "unknown";
-    return product > 0.6 * *limit ? "stability" : "accuracy";
-  }
-};
-
-StepLimit step_limit(const Engine& engine, const RunSummary& summary) {
-  StepLimit s;
-  s.limit = engine.scene().integrator->stability_limit();
-  if (summary.steps.accepted == 0) return s;
-  s.mean = (summary.final.time - engine.scene().initial.time) / static_cast<double>(summary.steps.accepted);
-  s.product = s.mean * summary.fastest_mode;
-  return s;
-}
-
 /// Limits of theory, section 5, for a truncation of linear kinematics; beyond them frequencies are 1 % wrong.
 double rate_limit(const Terms& terms, bool planar_modes) {
-  if (terms.truncation == Truncation::ruthless) return planar_modes ? 0.325 : 0.130;
+  if (terms.truncation == Truncation::ruthless || !terms.products_of_speeds) return planar_modes ? 0.325 : 0.130;
   return 0.129;
 }
 
@@ -120,6 +99,30 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
 
 }  // namespace
 
+std::string StepLimit::cause() const {
+  if (!limit || product == 0) return "unknown";
+  return product > 0.6 * *limit ? "stability" : "accuracy";
+}
+
+StepLimit step_limit(const Integrator& integrator, double start, const RunSummary& summary) {
+  StepLimit s;
+  s.limit = integrator.stability_limit();
+  if (summary.steps.accepted == 0) return s;
+  s.mean = (summary.final.time - start) / static_cast<double>(summary.steps.accepted);
+  s.product = s.mean * summary.fastest_mode;
+  return s;
+}
+
+std::string step_limit_text(const StepLimit& s) {
+  if (!s.limit) return fmt::format("mean step times fastest mode {:.2g}", s.product);
+  if (std::isinf(*s.limit))
+    return fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable at any step", s.cause(), s.product);
+  const std::string text = fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}",
+                                       s.cause(), s.product, *s.limit);
+  if (s.cause() != "stability") return text;
+  return text + fmt::format("; fewer modes allow longer steps than {:.2g} s, rosenbrock-w and radau any", s.mean);
+}
+
 ErrorEstimate estimate_error(const Engine& engine, const Beyond& beyond, const RunSummary& summary) {
   const PairedTolerances coarse = paired_tolerances(summary);
   const auto integrator = make_integrator(engine.registry(), "dopri5",
@@ -143,7 +146,8 @@ ErrorEstimate estimate_error(const Engine& engine, const Beyond& beyond, const R
 
 std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary) {
   const Terms terms = scene.formulation->terms();
-  const bool second_order = terms.strain != StrainOrder::linear && terms.truncation != Truncation::ruthless;
+  const bool second_order =
+      terms.strain != StrainOrder::linear && terms.truncation != Truncation::ruthless && terms.products_of_speeds;
   std::vector<Indicator> all;
   for (const BodyValidity& b : summary.validity.bodies) {
     const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(b.name))];
@@ -205,7 +209,7 @@ Json certificate_json(const Engine& engine, const RunSummary& summary, const Evi
   } else {
     c["estimated_error"] = Json();
   }
-  const StepLimit s = step_limit(engine, summary);
+  const StepLimit s = step_limit(*engine.scene().integrator, engine.scene().initial.time, summary);
   c["steps"] = {{"limited_by", s.cause()},
                 {"mean", s.mean},
                 {"fastest_mode", summary.fastest_mode > 0 ? Json(summary.fastest_mode) : Json()},
@@ -237,16 +241,8 @@ std::string certificate_text(const Engine& engine, const RunSummary& summary, co
     line("binds", fmt::format("{}: {:.2g}, limit {:.3g}{}", first.text, first.value, first.limit,
                               first.use() > 1 ? "; beyond it " + first.meaning : ""));
   }
-  const StepLimit s = step_limit(engine, summary);
-  if (s.product > 0) {
-    line("steps", s.limit ? fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}",
-                                        s.cause(), s.product, *s.limit)
-                          : fmt::format("mean step times fastest mode {:.2g}", s.product));
-    if (s.cause() == "stability")
-      line("", fmt::format("fewer modes allow longer steps than {:.2g} s; rosenbrock-w and radau are stable with any, "
-                           "whatever the fastest mode's {:.4g} rad/s",
-                           s.mean, summary.fastest_mode));
-  }
+  const StepLimit s = step_limit(*engine.scene().integrator, engine.scene().initial.time, summary);
+  if (s.product > 0) line("steps", step_limit_text(s));
   return out;
 }
 

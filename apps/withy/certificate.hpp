@@ -32,6 +32,20 @@ struct Indicator {
 /// Those that matter to the scene's formulation, the one nearest to its limit (or furthest past it) first.
 std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary);
 
+/// What limited the steps of a run.
+struct StepLimit {
+  double mean = 0;     ///< [s]
+  double product = 0;  ///< mean step times the fastest mode; 0 where that is not known
+  std::optional<double> limit;
+  /// "stability", "accuracy" or "unknown". Error control that meets the limit goes to and fro about it, so the mean
+  /// stays a little below.
+  [[nodiscard]] std::string cause() const;
+};
+/// Of a run from a time `start` [s].
+StepLimit step_limit(const Integrator& integrator, double start, const RunSummary& summary);
+/// "limited by accuracy: mean step times fastest mode 0.11, stable to 1.73".
+std::string step_limit_text(const StepLimit& s);
+
 /// What the certificate is made from beside the run itself; null: not there.
 struct Evidence {
   const Beyond* beyond = nullptr;

@@ -123,13 +123,44 @@ void add_import(Commands& commands) {
   add_common(*c, a);
 }
 
+void add_advise(Commands& commands) {
+  CLI::App* c = nullptr;
+  auto& a = commands.add<AdviseArguments>(
+      "advise", "Find the cheapest model and integration that hold an accuracy",
+      "  withy advise scenes/pendulum.yaml --accuracy 1%\n"
+      "  withy advise scenes/two-link-slew.yaml --set time.end=0.5 --accuracy 1mm,0.1deg --output payload.tip,elbow",
+      advise, c);
+  add_scene(*c, a);
+  const auto axis = [&](const char* name, auto& values, const char* type, const char* meaning) {
+    c->add_option(name, values, meaning)->type_name(type)->delimiter(',');
+  };
+  c->add_option(
+       "--accuracy", a.accuracy,
+       "Greatest error of the outputs: a share of the greatest way of any of them, a length, an angle, or several")
+      ->type_name("A,...")
+      ->capture_default_str();
+  axis("--outputs,--output", a.outputs, "NAME,...",
+       "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection; default: all free hinges and tips");
+  axis("--formulations,--formulation", a.formulations, "ID,...",
+       "Formulations to choose from; default: ruthless,linear,consistent,quadratic,exact");
+  axis("--families,--family", a.families, "ID,...",
+       "Mode families of bending to choose from; default: the scene's, and orthogonal-polynomials where they are the "
+       "same beams");
+  axis("--modes", a.modes, "N,...", "Modes of each family of a beam to choose from; default: 1,2,3,4");
+  axis("--integrators", a.integrators, "ID,...",
+       "Integrators to choose from, with a relative tolerance; default: dopri5,dop853,rosenbrock-w");
+  axis("--tolerances", a.tolerances, "R,...", "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
+  c->add_option("--write", a.write, "File for the scene with what is advised; comments are kept")->type_name("FILE");
+}
+
 void add_commands(Commands& commands) {
   CLI::App* c = nullptr;
 
   auto& run_arguments = commands.add<RunArguments>("run", "Simulate a scene",
                                                    "  withy run scenes/two-link-slew.yaml\n"
                                                    "  withy run scenes/two-link-slew.yaml --formulation ruthless "
-                                                   "--set loads.slew.time_scale=1.2 --out results/fast",
+                                                   "--set loads.slew.time_scale=1.2 --out results/fast\n"
+                                                   "  withy run scenes/two-link-slew.yaml --resume",
                                                    run, c);
   add_scene(*c, run_arguments);
   add_formulation(*c, run_arguments);
@@ -140,6 +171,13 @@ void add_commands(Commands& commands) {
       ->type_name("WHEN")
       ->check(CLI::IsMember({"auto", "always", "never"}))
       ->capture_default_str();
+
+  c->add_option("--checkpoint", run_arguments.checkpoint,
+                "Wall time between checkpoints; 0: only where the run is interrupted")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  c->add_flag("--resume", run_arguments.resume, "Go on from the checkpoint in the folder of the results");
 
   auto& compare_arguments =
       commands.add<CompareArguments>("compare", "Simulate a scene in several formulations, side by side",
@@ -200,6 +238,8 @@ void add_commands(Commands& commands) {
   c->add_option("--out", trade_arguments.out,
                 "Folder for table and picture, and for finished points: the same command continues")
       ->type_name("DIR");
+
+  add_advise(commands);
 
   auto& eval_arguments = commands.add<StateArguments>(
       "eval", "Evaluate the equations of motion at a state, as JSON",

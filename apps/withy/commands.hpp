@@ -33,6 +33,8 @@ struct RunArguments : SceneArguments {
   std::string out;  ///< folder of the results; empty: results/<scene>-<formulation>
   /// When the error against the next model up is estimated: auto (against `quadratic`), always, never.
   std::string estimate = "auto";
+  double checkpoint = 60;  ///< wall time between checkpoints [s]; 0: only where the run is interrupted
+  bool resume = false;     ///< go on from the checkpoint in the folder
 };
 
 struct CompareArguments : SceneArguments {
@@ -60,6 +62,18 @@ struct TradeArguments : SceneArguments {
   TradeAxes axes;
   std::string out;       ///< folder of the results and of what is finished; empty: none are kept
   std::size_t jobs = 0;  ///< threads; 0: one a core
+};
+
+/// What is advised is the cheapest of these that holds the accuracy.
+struct AdviseArguments : SceneArguments {
+  std::string accuracy = "1%";
+  std::vector<std::string> outputs;  ///< that errors are measured on; empty: hinges and tips
+  std::vector<std::string> formulations = {"ruthless", "linear", "consistent", "quadratic", "exact"};
+  std::vector<std::string> families;  ///< of bending; empty: the scene's, and another where it means the same beams
+  std::vector<int> modes = {1, 2, 3, 4};
+  std::vector<std::string> integrators = {"dopri5", "dop853", "rosenbrock-w"};
+  std::vector<double> tolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
+  std::string write;  ///< file for the scene as advised; empty: none
 };
 
 /// Commands that look at one state of a scene.
@@ -117,6 +131,7 @@ ExitStatus run(const RunArguments& arguments);
 ExitStatus compare(const CompareArguments& arguments);
 ExitStatus terms(const TermsArguments& arguments);
 ExitStatus trade(const TradeArguments& arguments);
+ExitStatus advise(const AdviseArguments& arguments);
 ExitStatus eval(const StateArguments& arguments);
 ExitStatus inspect(const StateArguments& arguments);
 ExitStatus equilibrium(const EquilibriumArguments& arguments);

@@ -3,6 +3,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <filesystem>
 #include <system_error>
 
@@ -72,7 +73,7 @@ State Engine::state(const std::string& file) const {
   return as_input(file, [&] { return read_state(file, *scene_.model, scene_.initial); });
 }
 
-RunSummary Engine::simulate(const std::function<void(const State&)>& output, const EquationsOfMotion* beyond) const {
+RunSummary Engine::simulate(const std::function<void(const State&)>& output, const SimulationExtras& extras) const {
   RunOptions options;
   options.end = end_of_run(scene_);
   watch_for_interrupt();
@@ -80,7 +81,21 @@ RunSummary Engine::simulate(const std::function<void(const State&)>& output, con
   options.output = scene_.output;
   options.deflection_limit = scene_.deflection_limit;
   options.interrupted = interrupted;
-  options.beyond = beyond;
+  options.beyond = extras.beyond;
+  options.checkpoint = extras.checkpoint;
+  options.resume = extras.resume;
+  using Clock = std::chrono::steady_clock;
+  const std::chrono::duration<double> interval(extras.checkpoint_seconds);
+  Clock::time_point last = Clock::now();
+  if (extras.checkpoint_seconds > 0) {
+    options.put_down = [&] {
+      const Clock::time_point now = Clock::now();
+      if (now - last < interval) return false;
+      last = now;
+      return true;
+    };
+  }
+  options.events = scene_.events;
   return withy::simulate(*scene_.model, *equations_, *scene_.integrator, scene_.initial, options,
                          [&](const State& state) {
                            progress.at(state.time);

@@ -35,6 +35,14 @@ class Plugins {
   std::unique_ptr<Registry> registry_;
 };
 
+/// What a simulation does beside its outputs.
+struct SimulationExtras {
+  const EquationsOfMotion* beyond = nullptr;          ///< what is neglected is measured against it; may be null
+  double checkpoint_seconds = 0;                      ///< wall time between checkpoints; 0: none but at SIGINT
+  std::function<void(const Checkpoint&)> checkpoint;  ///< takes them; may be empty
+  const Checkpoint* resume = nullptr;                 ///< where to go on; null: at the scene's initial state
+};
+
 class Engine {
  public:
   /// Reads the scene, loads what it names and compiles it.
@@ -52,9 +60,8 @@ class Engine {
 
   /// Simulates from the scene's initial state to its end. Shows progress on standard error where that is a terminal;
   /// ends as interrupted at SIGINT.
-  /// What is neglected is measured against `beyond`, where that is not null.
   [[nodiscard]] RunSummary simulate(const std::function<void(const State&)>& output,
-                                    const EquationsOfMotion* beyond = nullptr) const;
+                                    const SimulationExtras& extras = {}) const;
 
  private:
   Plugins plugins_;

@@ -54,10 +54,25 @@ fem::Matrices matrices_of(const ImportArguments& a, const Files& f, const fem::M
   return fem::combined(fem::read_calculix(f.stiffness, freedoms), fem::read_calculix(f.mass, freedoms), mesh);
 }
 
+/// Whether the geometric stiffness is known.
+struct SecondOrder {
+  double imbalance = 0;  ///< of stresses and unit loads, relative
+  std::string lacking;   ///< why it is not known; empty where it is
+};
+
+SecondOrder second_order_of(const fem::Mesh& mesh, const fem::Matrices& matrices, const fem::ReductionOptions& options,
+                            fem::Reduction& body) {
+  try {
+    return {fem::add_second_order(mesh, matrices, options, body), ""};
+  } catch (const fem::InputError& e) {
+    return {0, e.what()};
+  }
+}
+
 Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json report_json(const fem::Reduction& body, const fem::Summary& s, const sid::Data& data, const SidReport& sid,
-                 const std::string& file) {
+                 const SecondOrder& second_order, const std::string& file) {
   Json j;
   j["file"] = file;
   j["origin"] = vector_json(body.origin);
@@ -79,6 +94,13 @@ Json report_json(const fem::Reduction& body, const fem::Summary& s, const sid::D
   j["nodes"] = Json::array();
   for (const sid::Node& node : data.nodes)
     j["nodes"].push_back({{"name", node.id}, {"position", vector_json(node.origin.m0)}});
+  j["geometric_stiffness"] = {{"known", second_order.lacking.empty()}};
+  if (second_order.lacking.empty()) {
+    j["geometric_stiffness"]["unit_loads"] = body.second_order.size();
+    j["geometric_stiffness"]["imbalance"] = second_order.imbalance;
+  } else {
+    j["geometric_stiffness"]["reason"] = second_order.lacking;
+  }
   j["missing"] = sid.missing;
   return j;
 }
@@ -133,6 +155,13 @@ std::string report_text(const Json& j) {
   if (!j["dropped_frequencies"].empty())
     out += fmt::format("dropped: {} modes, from {:.6g} Hz on\n", j["dropped_frequencies"].size(),
                        j["dropped_frequencies"][0].get<double>());
+  const Json& stiffness = j["geometric_stiffness"];
+  if (stiffness["known"].get<bool>()) {
+    out += fmt::format("\ngeometric stiffness of             {} unit loads, which the stresses balance within {:.1g}\n",
+                       stiffness["unit_loads"].get<int>(), stiffness["imbalance"].get<double>());
+  } else {
+    out += fmt::format("\nno geometric stiffness: {}\n", stiffness["reason"].get<std::string>());
+  }
   for (const Json& lack : j["missing"]) out += fmt::format("missing: {}\n", lack.get<std::string>());
   return out;
 }
@@ -150,14 +179,15 @@ ExitStatus import_mesh(const ImportArguments& a) {
     options.highest = a.highest;
     for (const std::string& text : a.interfaces) options.interfaces.push_back(interface_of(mesh, text));
     for (const std::string& text : a.stations) options.stations.push_back(interface_of(mesh, text));
-    const fem::Reduction body = fem::reduce(matrices, options);
+    fem::Reduction body = fem::reduce(matrices, options);
+    const SecondOrder second_order = second_order_of(mesh, matrices, options, body);
     const sid::Data data = fem::sid_of(body);
     // What the modal body will make of it, before anything is written.
     SidReport sid_report;
     (void)body_of(data, {}, sid_report);
     const std::string file = a.out.empty() ? std::filesystem::path(a.job).filename().string() + ".SID_FEM" : a.out;
     write_file(file, sid::write(data));
-    const Json j = report_json(body, fem::summary_of(matrices, body, data), data, sid_report, file);
+    const Json j = report_json(body, fem::summary_of(matrices, body, data), data, sid_report, second_order, file);
     print(a.json ? json_text(j)
                  : report_text(j) + "\nwritten: " + file + "; in a scene:\n\n" + scene_snippet(file, data));
     return ExitStatus::done;

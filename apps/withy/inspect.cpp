@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy::app {
@@ -74,15 +76,29 @@ Json bodies_json(const Scene& scene) {
   return bodies;
 }
 
+/// Directions along which less than this of the coordinates' own inertia is left are shown.
+constexpr double nearly_massless = 1e-2;
+
 /// Null where there is no matrix, or a larger one than runs look at.
 Json mass_matrix_json(const Engine& engine, const State& state) {
   const std::size_t size = engine.model().layout().speeds;
   if (size == 0 || size > largest_examined) return {};
-  const Conditioning c = conditioning(engine.equations().system(state.time, state.y));
+  const DenseSystem system = engine.equations().system(state.time, state.y);
+  const Conditioning c = conditioning(system);
+  const AttainableAccuracy a = attainable_accuracy(system);
+  Json massless = Json::array();
+  for (const MasslessDirection& d : massless_directions(engine.model(), system, nearly_massless))
+    massless.push_back({{"made_up_of", d.owners}, {"inertia_left", d.share}, {"frequency", d.frequency}});
+  const std::optional<Removal> removal =
+      massless.empty() ? std::optional<Removal>() : best_removal(engine.model(), system);
   return {{"condition", c.condition},
           {"condition_times_epsilon", c.condition * std::numeric_limits<double>::epsilon()},
+          {"scaled_condition", a.condition},
+          {"attainable_accuracy", a.accuracy},
           {"determinant_sign", c.determinant_sign},
-          {"smallest_eigenvalue", c.smallest_eigenvalue}};
+          {"smallest_eigenvalue", c.smallest_eigenvalue},
+          {"nearly_massless", std::move(massless)},
+          {"without_mode", removal ? Json{{"mode", removal->mode}, {"scaled_condition", removal->condition}} : Json()}};
 }
 
 Json inspect_json(const Engine& engine, const State& state) {
@@ -212,10 +228,19 @@ std::string inspect_text(const Engine& engine, const Json& j) {
   if (!m.is_null()) {
     const int sign = m["determinant_sign"].get<int>();
     out += fmt::format(
-        "\nmass matrix M at this state\n  condition {:.4g}; digits lost: accelerations are good to {:.1g}\n"
-        "  det M is {}; smallest eigenvalue of its symmetric part {:.4g}\n",
-        m["condition"].get<double>(), m["condition_times_epsilon"].get<double>(),
+        "\nmass matrix M at this state\n  condition {:.4g}, with each coordinate in the unit of its own inertia "
+        "{:.4g}; digits "
+        "lost: accelerations are good to {:.1g}\n  det M is {}; smallest eigenvalue of its symmetric part {:.4g}\n",
+        m["condition"].get<double>(), m["scaled_condition"].get<double>(), m["attainable_accuracy"].get<double>(),
         sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"), m["smallest_eigenvalue"].get<double>());
+    for (const Json& d : m["nearly_massless"])
+      out += fmt::format("  nearly massless: {}; {:.2g} of their inertia is left, {:.4g} rad/s\n",
+                         d["made_up_of"].get<std::string>(), d["inertia_left"].get<double>(),
+                         d["frequency"].get<double>());
+    if (!m["without_mode"].is_null())
+      out += fmt::format("  without {} the condition is {:.2g}; modes that know the load: docs/ill-conditioning.md\n",
+                         m["without_mode"]["mode"].get<std::string>(),
+                         m["without_mode"]["scaled_condition"].get<double>());
   }
   out += "\nplugins loaded\n";
   for (const Json& p : j["plugins"])

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
 namespace withy::app {
@@ -89,6 +90,12 @@ Json integrator_json(const Scene& scene) {
   for (const auto& [key, member] : options->members())
     if (key != "name") j[key] = value_json(member);
   return j;
+}
+
+std::string fingerprint_of(const std::string& text) {
+  std::uint64_t h = 14695981039346656037U;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  return fmt::format("{:016x}", h);
 }
 
 }  // namespace withy::app

@@ -20,4 +20,7 @@ nlohmann::ordered_json parameter_json(const ParameterSpec& parameter);
 /// The integrator of a scene with its options, as {"name": "dopri5", "rtol": 1e-6, …}.
 nlohmann::ordered_json integrator_json(const Scene& scene);
 
+/// FNV-1a of a text, as hexadecimal digits: the same on every machine.
+std::string fingerprint_of(const std::string& text);
+
 }  // namespace withy::app

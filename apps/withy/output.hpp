@@ -21,8 +21,11 @@ void complain(std::string_view text) noexcept;
 class OutputFile {
  public:
   /// \throws std::system_error naming the file, as do the other functions.
-  explicit OutputFile(std::filesystem::path path);
+  /// \param append after what is there, or in its place
+  explicit OutputFile(std::filesystem::path path, bool append = false);
   void write(std::string_view text);
+  /// Makes what was written last through a loss of power.
+  void sync();
   /// To be called once, last: closing may report what writing could not.
   void close();
 
@@ -38,5 +41,7 @@ class OutputFile {
 
 /// Writes a file whole or not at all: under another name first, then renamed. \throws std::system_error
 void write_file(const std::filesystem::path& path, std::string_view text);
+/// The same, made to last through a loss of power.
+void write_lasting_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace withy::app

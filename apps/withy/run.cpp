@@ -6,11 +6,29 @@
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/run_report.hpp"
+#include "withy/core/simulation/accuracy.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy::app {
+namespace {
+
+/// Refuses a tolerance below what the mass matrix leaves to be had, and a start at which it is singular.
+void check_accuracy(const Engine& engine) {
+  const Scene& scene = engine.scene();
+  const Value* rtol = scene.source.at("integrator").find("rtol");
+  const double tolerance = rtol != nullptr ? rtol->number() : 1.0;
+  const std::string why = unattainable(engine.model(), engine.equations(), scene.initial, tolerance);
+  if (why.empty()) return;
+  throw InputError(rtol != nullptr ? scene.file + ": /integrator/rtol: got " + brief(tolerance) +
+                                         ", an accuracy that cannot be had: " + why
+                                   : scene.file + ": " + why);
+}
+
+}  // namespace
 
 ExitStatus run(const RunArguments& arguments) {
   const Engine engine(arguments);
+  check_accuracy(engine);
   std::filesystem::path folder = arguments.out;
   if (folder.empty()) {
     folder = std::filesystem::path("results") /
@@ -22,6 +40,7 @@ ExitStatus run(const RunArguments& arguments) {
                        : run_table(engine, summary) + certificate_text(engine, summary, certified.evidence()) +
                              "\nresults in " + folder.string() + '\n');
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
+  if (summary.status == RunStatus::interrupted) complain("the same command with --resume goes on from there");
   return exit_status(summary.status);
 }
 

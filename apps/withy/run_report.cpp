@@ -45,6 +45,13 @@ Json motion_effort_peaks(const Model& model, const RunSummary& summary) {
   return peaks;
 }
 
+Json events_json(const RunSummary& summary) {
+  Json events = Json::array();
+  for (const EventTime& e : summary.events)
+    events.push_back({{"name", e.name}, {"time", e.time}, {"direction", e.direction > 0 ? "up" : "down"}});
+  return events;
+}
+
 /// The condition of M; null where it was not looked at.
 Json condition_json(const Conditioning& c) { return c.condition > 0 ? Json(c.condition) : Json(); }
 
@@ -73,6 +80,7 @@ Json run_json(const Engine& engine, const RunSummary& summary, const Evidence& e
   j["evaluations"] = summary.steps.evaluations;
   j["cpu_seconds"] = summary.cpu_seconds;
   j["suspected_jumps"] = summary.suspected_jumps;
+  if (!scene.events.empty()) j["events"] = events_json(summary);
   j["condition"] = condition_json(summary.conditioning);
   j["determinant_sign"] = summary.conditioning.determinant_sign;
   j["certificate"] = certificate_json(engine, summary, evidence);
@@ -121,6 +129,9 @@ std::string run_table(const Engine& engine, const RunSummary& summary) {
            fmt::format("peak {:.5g} on {}", summary.peak_motion_effort.at(slot.speed + i),
                        model.layout().speed_names[slot.speed + i]));
   }
+  for (const EventTime& e : summary.events)
+    line("event " + e.name, fmt::format("{:.6g} s, {}", e.time, e.direction > 0 ? "upwards" : "downwards"));
+  if (summary.switchings > 0) line("switchings of loads", std::to_string(summary.switchings));
   line("energy drift", fmt::format("{:.2g}", summary.energy_drift));
   line("steps", fmt::format("{} ({} rejected), {} evaluations", summary.steps.accepted, summary.steps.rejected,
                             summary.steps.evaluations));

@@ -25,13 +25,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-/// FNV-1a: the same on every machine.
-std::string fingerprint_of(const std::string& text) {
-  std::uint64_t h = 14695981039346656037U;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211U;
-  return fmt::format("{:016x}", h);
-}
-
 std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};

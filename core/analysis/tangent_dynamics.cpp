@@ -37,6 +37,7 @@ struct TangentDynamics::Builder {
   std::span<const double> y;
   const Eigen::VectorXd& a;
   Seeds seeds;
+  bool at_rest = false;  ///< all speeds count as zero
 
   /// `value`, with a unit derivative along direction `direction`.
   [[nodiscard]] T seeded(double value, std::size_t direction) const {
@@ -55,14 +56,15 @@ struct TangentDynamics::Builder {
     const Hinge& hinge = *dynamics.model_->hinges()[h].hinge;
     const auto n = static_cast<Eigen::Index>(slot.speeds);
     const auto x = y.subspan(slot.position, slot.positions);
-    const auto rates = y.subspan(layout.positions + slot.speed, slot.speeds);
+    const std::vector<double> none(at_rest ? slot.speeds : 0, 0.0);
+    const auto rates = at_rest ? std::span<const double>(none) : y.subspan(layout.positions + slot.speed, slot.speeds);
     HingeMotion m;
     m.H.resize(6, n);
     hinge.motion(x, rates, m);
     HingeState<T> s{m.pose.R.cast<T>(), m.pose.p.cast<T>(), m.H.cast<T>(), m.bias.cast<T>(), VX<T>(n), VX<T>(n)};
     for (Eigen::Index k = 0; k < n; ++k) {
       const std::size_t at = slot.speed + static_cast<std::size_t>(k);
-      s.rates[k] = seeded(rates[static_cast<std::size_t>(k)], speeds() + at);
+      s.rates[k] = at_rest ? T(0.0) : seeded(rates[static_cast<std::size_t>(k)], speeds() + at);
       s.accelerations[k] = seeded(a[static_cast<Eigen::Index>(at)], 2 * speeds() + at);
     }
     if constexpr (std::is_same_v<T, Jet>) differentiate(hinge, slot, x, rates, m, s);
@@ -117,7 +119,7 @@ struct TangentDynamics::Builder {
     for (Eigen::Index i = 0; i < n; ++i) {
       const std::size_t at = slot->speed + static_cast<std::size_t>(i);
       s.q[i] = seeded(y[slot->position + static_cast<std::size_t>(i)], at);
-      s.q_dot[i] = seeded(y[layout.positions + at], speeds() + at);
+      s.q_dot[i] = at_rest ? T(0.0) : seeded(y[layout.positions + at], speeds() + at);
       s.q_ddot[i] = seeded(a[static_cast<Eigen::Index>(at)], 2 * speeds() + at);
     }
     return s;
@@ -142,7 +144,8 @@ struct TangentDynamics::Builder {
   }
 };
 
-TangentDynamics::TangentDynamics(std::shared_ptr<const Model> model, Terms terms) : model_(std::move(model)) {
+TangentDynamics::TangentDynamics(std::shared_ptr<const Model> model, Terms terms)
+    : model_(std::move(model)), products_of_speeds_(terms.products_of_speeds) {
   for (const BodyNode& body : model_->bodies()) {
     slots_.push_back(model_->layout().body(body.name));
     terms_.push_back(body.terms.value_or(terms));
@@ -173,6 +176,10 @@ VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen:
     bool depends = false;
     for (AppliedWrench<T>& w : analysis::wrenches_of(load, t, frames, depends)) wrenches.push_back(std::move(w));
     if (differenced != nullptr && depends) (*differenced)[l] = true;
+  }
+  if (!products_of_speeds_) {
+    const Builder<T> still{*this, y, a, seeds, true};
+    return Recursion<T>(*model_, still.hinges(), still.bodies(ruthless)).efforts(wrenches);
   }
   if (!strict_) return shown.efforts(wrenches);
 
@@ -227,6 +234,7 @@ Eigen::VectorXd TangentDynamics::load_efforts(double t, std::span<const double> 
     std::vector<double> scratch(node.load->scratch());
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), efforts, scratch);
   }
+  model_->add_discrete_efforts(y, efforts);
   return Eigen::Map<const Eigen::VectorXd>(efforts.data(), static_cast<Eigen::Index>(efforts.size()));
 }
 

@@ -75,6 +75,7 @@ class TangentDynamics {
   std::vector<const Slot*> slots_;                     ///< of each body's modes; null where it has none
   std::vector<std::shared_ptr<const RodTable>> rods_;  ///< of each body; null where its kinematics is an expansion
   bool strict_ = false;
+  bool products_of_speeds_ = true;
 };
 
 }  // namespace withy

@@ -111,8 +111,8 @@ class EquationsOfMotion {
  public:
   virtual ~EquationsOfMotion() = default;
   [[nodiscard]] virtual const Layout& layout() const = 0;
-  /// Number of elements of State::y: positions, speeds, work.
-  [[nodiscard]] std::size_t size() const { return layout().positions + layout().speeds + 1; }
+  /// Number of elements of State::y.
+  [[nodiscard]] std::size_t size() const { return layout().size(); }
   [[nodiscard]] virtual Work make_work() const = 0;
 
   /// The hot call: time derivatives of y at (t, y). Allocates nothing, throws nothing, logs nothing.

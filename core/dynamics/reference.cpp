@@ -334,7 +334,12 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
     for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
       terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? 0.0 : 1.0, rods_[b].get()});
     }
-    const Tree<double> tree(*model_, std::move(terms), y);
+    std::vector<double> seen(y.begin(), y.end());
+    if (!terms_.products_of_speeds) {
+      const auto first = seen.begin() + static_cast<std::ptrdiff_t>(layout.positions);
+      std::fill(first, first + static_cast<std::ptrdiff_t>(layout.speeds), 0.0);
+    }
+    const Tree<double> tree(*model_, std::move(terms), seen);
     tree.assemble(M, f);
     for (const auto& [at, wrench] : wrenches) tree.add_efforts(at, wrench, applied);
   }
@@ -364,6 +369,7 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
     std::vector<double> scratch(node.load->scratch());
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), s.applied, scratch);
   }
+  model_->add_discrete_efforts(y, s.applied);
   return s;
 }
 

@@ -50,14 +50,36 @@ struct Place {
 /// Turns the model's bodies into nodes.
 class Merger {
  public:
-  explicit Merger(const Model& model) : model_(model) {}
+  explicit Merger(const Model& model) : model_(model), places_(model.bodies().size()) {}
 
   Tree run() {
-    for (std::size_t b = 0; b < model_.bodies().size(); ++b) place(b);
+    for (const std::size_t b : by_name()) place(b);
     return std::move(tree_);
   }
 
  private:
+  /// The bodies, each before those that hang on it, siblings by the names of their hinges: sums over siblings then do
+  /// not depend on the order in which a scene has them, to the last bit.
+  [[nodiscard]] std::vector<std::size_t> by_name() const {
+    const std::size_t n = model_.bodies().size();
+    std::vector<std::vector<std::size_t>> children(n + 1);  // of the world last
+    for (std::size_t b = 0; b < n; ++b) {
+      const int parent = model_.hinges()[b].parent;
+      children[parent < 0 ? n : static_cast<std::size_t>(parent)].push_back(b);
+    }
+    std::vector<std::size_t> order, open{n};
+    while (!open.empty()) {
+      const std::size_t b = open.back();
+      open.pop_back();
+      if (b < n) order.push_back(b);
+      // The last is taken first.
+      std::sort(children[b].begin(), children[b].end(),
+                [&](std::size_t a, std::size_t c) { return model_.hinges()[a].name > model_.hinges()[c].name; });
+      open.insert(open.end(), children[b].begin(), children[b].end());
+    }
+    return order;
+  }
+
   void place(std::size_t b) {
     const HingeNode& h = model_.hinges()[b];
     const BodyNode& body = model_.bodies()[b];
@@ -110,7 +132,7 @@ class Merger {
 
   void fix_rigid(std::size_t b, const Place& where) {
     const std::string& name = model_.bodies()[b].name;
-    places_.push_back(where);
+    places_[b] = where;
     if (where.node < 0) {
       tree_.savings.push_back("'" + name + "' is fixed to the world: not modelled");
       return;
@@ -149,7 +171,7 @@ class Merger {
     const std::string rigid = n.name;
     n.name = model_.bodies()[b].name;
     take_modes(b, n, where.pose);
-    places_.push_back(where);
+    places_[b] = where;
     tree_.savings.push_back("'" + rigid + "' is rigidly part of '" + n.name + "'");
   }
 
@@ -177,7 +199,7 @@ class Merger {
     tree_.nodes.push_back(std::move(n));
     const int index = static_cast<int>(tree_.nodes.size()) - 1;
     if (!clamped) node(index).root_station = station(index, root.section);
-    places_.push_back({index, -1, Pose{}});
+    places_[b] = {index, -1, Pose{}};
   }
 
   const Model& model_;

@@ -164,7 +164,7 @@ std::optional<FrameIndex> Model::find_frame(std::string_view name) const {
 
 State Model::reference_state() const {
   State s;
-  s.y.assign(layout_.positions + layout_.speeds + 1, 0.0);
+  s.y.assign(layout_.size(), 0.0);
   for (std::size_t h = 0; h < hinges_.size(); ++h) {
     const Slot& slot = layout_.hinges[h];
     hinges_[h].hinge->reference(std::span(s.y).subspan(slot.position, slot.positions));
@@ -221,6 +221,20 @@ void Model::add_motion(std::string name, const std::string& hinge_name, std::sha
   motions_.push_back({std::move(name), index, std::move(motion)});
 }
 
-void Model::add_load(std::string name, const Load& load) { loads_.push_back({std::move(name), load.bind(*this)}); }
+void Model::add_discrete_efforts(std::span<const double> y, std::span<double> efforts, int only) const noexcept {
+  for (const DiscreteSlot& slot : layout_.discrete_slots) {
+    if (only >= 0 && slot.load != static_cast<std::size_t>(only)) continue;
+    loads_[slot.load].load->discrete()->add(y.subspan(slot.first, slot.count), efforts);
+  }
+}
+
+void Model::add_load(std::string name, const Load& load) {
+  loads_.push_back({std::move(name), load.bind(*this)});
+  if (const DiscretePart* part = loads_.back().load->discrete(); part != nullptr && part->states() > 0) {
+    layout_.discrete_slots.push_back(
+        {loads_.size() - 1, layout_.positions + layout_.speeds + layout_.discrete, part->states()});
+    layout_.discrete += part->states();
+  }
+}
 
 }  // namespace withy

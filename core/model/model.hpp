@@ -103,6 +103,8 @@ class Model {
   void prescribe(State& state) const;
   /// Sets the accelerations of the driven speeds at time t [s] in u_dot, one a speed; leaves the others.
   void prescribe_accelerations(double t, std::span<double> u_dot) const noexcept;
+  /// Adds the efforts [N m, N] of the discrete states in y, of all loads or of one (index in loads()).
+  void add_discrete_efforts(std::span<const double> y, std::span<double> efforts, int only = -1) const noexcept;
   /// The same tree with every body rigid in its undeformed shape, without loads and motions.
   [[nodiscard]] Model rigidified() const;
 

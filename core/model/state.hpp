@@ -18,6 +18,13 @@ struct Slot {
   std::size_t speeds = 0;     ///< count
 };
 
+/// Where the discrete states of a load stand in State::y.
+struct DiscreteSlot {
+  std::size_t load = 0;  ///< index in Model::loads()
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
 /// Order of the numbers in a State: for each body, parents before children, its inboard hinge then its modes.
 struct Layout {
   std::vector<Slot> hinges;
@@ -25,13 +32,18 @@ struct Layout {
   std::vector<std::string> speed_names;  ///< as `shoulder.0`, `link1.bending_y[1]`
   std::size_t positions = 0;
   std::size_t speeds = 0;
+  std::size_t discrete = 0;                  ///< count of discrete states
+  std::vector<DiscreteSlot> discrete_slots;  ///< of the loads that have any, in their order
 
+  /// Number of elements of State::y.
+  [[nodiscard]] std::size_t size() const { return positions + speeds + discrete + 1; }
   [[nodiscard]] const Slot* hinge(std::string_view name) const;
   [[nodiscard]] const Slot* body(std::string_view name) const;
 };
 
 /// Time [s], then in one array y: positions (hinge coordinates [rad, m], modal coordinates), speeds (their rates; for
-/// quaternions the angular velocity), and the work [J] done so far by loads and damping.
+/// quaternions the angular velocity), discrete states of loads (constant between instants, so their derivatives are
+/// zero), and last the work [J] done so far by loads, motions and damping.
 struct State {
   double time = 0;
   std::vector<double> y;

@@ -21,6 +21,9 @@ enum class Truncation {
 struct Terms {
   StrainOrder strain = StrainOrder::quadratic;
   Truncation truncation = Truncation::none;
+  /// Whether inertia forces that are products of speeds are kept, Coriolis and centrifugal ones among them. All bodies
+  /// of a model do or none does, so that only the terms of the whole formulation say it; without truncation alone.
+  bool products_of_speeds = true;
 };
 
 }  // namespace withy

@@ -36,6 +36,35 @@ struct Wrench {
   Vector3 force = Vector3::Zero();   ///< [N]
 };
 
+/// Where a switching function passed through zero.
+struct Crossing {
+  int function = -1;  ///< its index; −1: none did, an instant of the clock or the start of a run
+  int direction = 0;  ///< +1: from below, −1: from above
+};
+
+/// The part of a load that changes at instants alone: a digital controller, a relay. Its numbers are the load's
+/// discrete states; they stand in State and are constant between two instants.
+class DiscretePart {
+ public:
+  virtual ~DiscretePart() = default;
+  /// Count of discrete states.
+  [[nodiscard]] virtual std::size_t states() const = 0;
+  /// [s]: `renew` is called at all multiples of it; 0: not by the clock.
+  [[nodiscard]] virtual double period() const { return 0; }
+  /// Count of switching functions: `renew` is called where one of them passes through zero.
+  [[nodiscard]] virtual std::size_t switches() const { return 0; }
+  /// Sets the values of the switching functions, continuous between two instants.
+  virtual void switching(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+                         std::span<const double> /*discrete*/, std::span<double> /*values*/) const noexcept {}
+  /// Sets the discrete states anew from those before and the state at t: at the start of a run and at each instant.
+  /// \param scratch as BoundLoad::add
+  virtual void renew(double t, std::span<const double> positions, std::span<const double> speeds,
+                     const Crossing& crossing, std::span<double> discrete,
+                     std::span<double> scratch) const noexcept = 0;
+  /// Adds the efforts [N m, N] that belong to the discrete states.
+  virtual void add(std::span<const double> discrete, std::span<double> efforts) const noexcept = 0;
+};
+
 /// A load fixed to one model: it knows which generalized speeds and frames it acts on. Immutable; scratch space is the
 /// caller's.
 class BoundLoad {
@@ -64,6 +93,8 @@ class BoundLoad {
                         std::span<Wrench> /*wrenches*/) const noexcept {}
   /// Times [s], increasing, where the effort or one of its first derivatives jumps: integrators land on them.
   [[nodiscard]] virtual std::vector<double> discontinuities() const = 0;
+  /// What of the load changes at instants alone, beside what `add` and `wrenches` give; null where nothing does.
+  [[nodiscard]] virtual const DiscretePart* discrete() const { return nullptr; }
   /// Time [s] at which the load has done its work (a slew's end); 0 where it has no end of its own.
   [[nodiscard]] virtual double end() const = 0;
   /// Sets the hinge coordinates where the load wants the motion to begin (a slew starts at its `from`).

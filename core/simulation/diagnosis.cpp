@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "withy/core/simulation/elastic_modes.hpp"
+
 namespace withy {
 namespace {
 
@@ -40,40 +42,6 @@ Eigen::VectorXd weakest_direction(const MassMatrixHistory& h, bool negative) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(scaled, Eigen::ComputeFullV).matrixV().col(n - 1);
 }
 
-/// Whose coordinates make up a direction, as "62 % modes of 'link1' (most of all link1.bending_y[2]), 30 % hinge
-/// 'elbow'"; shares below 5 % are left out.
-std::string owners_of(const Layout& layout, const Eigen::VectorXd& direction) {
-  struct Share {
-    double share;
-    std::string text;
-  };
-  std::vector<Share> shares;
-  const auto weigh = [&](const std::vector<Slot>& slots, bool modes) {
-    for (const Slot& slot : slots) {
-      if (slot.speeds == 0) continue;
-      Eigen::Index most = 0;
-      const auto part =
-          direction.segment(static_cast<Eigen::Index>(slot.speed), static_cast<Eigen::Index>(slot.speeds)).array();
-      const double share = part.square().sum();
-      part.abs().maxCoeff(&most);
-      std::string text = modes ? "modes of '" : "hinge '";
-      text += slot.name + "'";
-      if (slot.speeds > 1)
-        text += " (most of all " + layout.speed_names[slot.speed + static_cast<std::size_t>(most)] + ")";
-      if (share >= 0.05) shares.push_back({share, std::move(text)});
-    }
-  };
-  weigh(layout.bodies, true);
-  weigh(layout.hinges, false);
-  std::stable_sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.share > b.share; });
-  std::string text;
-  for (const Share& s : shares) {
-    if (!text.empty()) text += ", ";
-    text += brief(std::round(100 * s.share)) + " % " + s.text;
-  }
-  return text;
-}
-
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
@@ -104,6 +72,39 @@ std::string nonfinite_loads(const Model& model, const EquationsOfMotion& equatio
 }
 
 }  // namespace
+
+std::string owners_of(const Layout& layout, std::span<const double> unit_vector) {
+  const Eigen::Map<const Eigen::VectorXd> direction(unit_vector.data(), static_cast<Eigen::Index>(unit_vector.size()));
+  struct Share {
+    double share;
+    std::string text;
+  };
+  std::vector<Share> shares;
+  const auto weigh = [&](const std::vector<Slot>& slots, bool modes) {
+    for (const Slot& slot : slots) {
+      if (slot.speeds == 0) continue;
+      Eigen::Index most = 0;
+      const auto part =
+          direction.segment(static_cast<Eigen::Index>(slot.speed), static_cast<Eigen::Index>(slot.speeds)).array();
+      const double share = part.square().sum();
+      part.abs().maxCoeff(&most);
+      std::string text = modes ? "modes of '" : "hinge '";
+      text += slot.name + "'";
+      if (slot.speeds > 1)
+        text += " (most of all " + layout.speed_names[slot.speed + static_cast<std::size_t>(most)] + ")";
+      if (share >= 0.05) shares.push_back({share, std::move(text)});
+    }
+  };
+  weigh(layout.bodies, true);
+  weigh(layout.hinges, false);
+  std::stable_sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.share > b.share; });
+  std::string text;
+  for (const Share& s : shares) {
+    if (!text.empty()) text += ", ";
+    text += brief(std::round(100 * s.share)) + " % " + s.text;
+  }
+  return text;
+}
 
 std::string brief(double x) {
   char text[32];
@@ -149,21 +150,16 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
     text = std::string("The mass matrix is ") + (h.end.smallest_eigenvalue > 0 ? "positive definite" : "indefinite") +
            " as it was at the start: det M is " + sign_text(h.end.determinant_sign);
   }
+  const Eigen::VectorXd direction = weakest_direction(h, negative);
   return text + ". Condition of M " + brief(h.end.condition) + " (at the start " + brief(h.start.condition) +
          "), smallest eigenvalue of its symmetric part " + brief(h.end.smallest_eigenvalue) + " (" +
          brief(h.start.smallest_eigenvalue) + "); the direction of " + (negative ? "negative" : "least") + " mass is " +
-         owners_of(layout, weakest_direction(h, negative)) + ".";
+         owners_of(layout, {direction.data(), static_cast<std::size_t>(direction.size())}) + ".";
 }
 
 double fastest_mode(const Model& model, const DenseSystem& system) {
   const auto n = static_cast<Eigen::Index>(system.size);
-  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
-  for (const BodyNode& body : model.bodies()) {
-    const ModalShape& shape = body.body->shape();
-    if (shape.modes() == 0) continue;
-    const auto at = static_cast<Eigen::Index>(model.layout().body(body.name)->speed);
-    K.block(at, at, shape.modes(), shape.modes()) = shape.stiffness;
-  }
+  Eigen::MatrixXd K = stiffness_of_modes(model);
   std::vector<Eigen::Index> free;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (std::none_of(system.prescribed.begin(), system.prescribed.end(),

@@ -44,4 +44,16 @@ std::vector<ModeGroup> mode_groups(const ModalShape& shape) {
   return groups;
 }
 
+Eigen::MatrixXd stiffness_of_modes(const Model& model) {
+  const auto n = static_cast<Eigen::Index>(model.layout().speeds);
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+  for (const BodyNode& body : model.bodies()) {
+    const ModalShape& shape = body.body->shape();
+    if (shape.modes() == 0) continue;
+    const auto at = static_cast<Eigen::Index>(model.layout().body(body.name)->speed);
+    K.block(at, at, shape.modes(), shape.modes()) = shape.stiffness;
+  }
+  return K;
+}
+
 }  // namespace withy

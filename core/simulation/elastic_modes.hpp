@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/model/model.hpp"
 #include "withy/core/shape/modal_shape.hpp"
 
 namespace withy {
@@ -26,5 +27,8 @@ struct ModeGroup {
   std::vector<Eigen::Index> coordinates;
 };
 std::vector<ModeGroup> mode_groups(const ModalShape& shape);
+
+/// K of the whole tree, over all speeds: the stiffness matrices of the bodies on its diagonal.
+Eigen::MatrixXd stiffness_of_modes(const Model& model);
 
 }  // namespace withy

@@ -115,8 +115,28 @@ void Monitor::audit_mass_matrix(const State& state, int sign) {
   }
 }
 
+void Monitor::remember(Memory& memory) {
+  for (auto& [body, peak] : summary_.peak_deflection) {
+    for (double& d : peak) memory(d);
+  }
+  for (auto& [body, ratio] : summary_.peak_deflection_ratio) memory(ratio);
+  for (End& end : ends_) {
+    for (double& d : end.rough) memory(d);
+  }
+  memory(summary_.peak_effort);
+  memory(summary_.peak_motion_effort);
+  memory(summary_.energy_drift);
+  memory(summary_.suspected_jumps);
+  memory(energy_error_);
+  memory(energy_scale_);
+  memory(checked_);
+  memory(rejected_);
+  memory(burst_);
+}
+
 // Where the right-hand side is smooth, error control rejects a step now and then. At a jump inside a step it rejects
-// again and again, until the steps are so short that the jump does not matter.
+// again and again, until the steps are so short that the jump does not matter; until as many in a row go well as make a
+// burst, what follows belongs to the same jump.
 void Monitor::audit_steps(const State& state, const StepStatistics& steps) {
   constexpr std::size_t many = 8;
   constexpr std::size_t most_reports = 16;
@@ -124,12 +144,14 @@ void Monitor::audit_steps(const State& state, const StepStatistics& steps) {
   rejected_ = steps.rejected;
   if (rejected == 0) {
     burst_ = burst_ < many ? burst_ - (burst_ > 0 ? 1 : 0) : 0;
+    if (++calm_ >= many) noted_ = false;
     return;
   }
-  const std::size_t before = burst_;
+  calm_ = 0;
   burst_ += rejected;
-  if (before < many && burst_ >= many && summary_.suspected_jumps.size() < most_reports)
-    summary_.suspected_jumps.push_back(state.time);
+  if (burst_ < many || noted_) return;
+  noted_ = true;
+  if (summary_.suspected_jumps.size() < most_reports) summary_.suspected_jumps.push_back(state.time);
 }
 
 }  // namespace withy

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/core/simulation/tips.hpp"
@@ -27,10 +28,14 @@ class Monitor {
   void audit_energy(const State& state);
   /// Sign of det M at an accepted state against that of the start.
   void audit_mass_matrix(const State& state, int sign);
+  /// Says that a load has changed at an instant known beforehand: rejections after it are no sign of another.
+  void pass_instant() { burst_ = 0; }
   /// Rejections up to now, after an accepted step: notes the time where they pile up.
   void audit_steps(const State& state, const StepStatistics& steps);
 
   [[nodiscard]] const std::optional<SignChange>& sign_change() const { return sign_change_; }
+  /// What has been seen so far, with its part of the summary.
+  void remember(Memory& memory);
 
  private:
   /// A flexible body's tip, or a segment's.
@@ -67,6 +72,8 @@ class Monitor {
   std::optional<SignChange> sign_change_;
   std::size_t rejected_ = 0;  ///< steps rejected so far
   std::size_t burst_ = 0;     ///< of these, in the present burst
+  std::size_t calm_ = 0;      ///< steps in a row that were not rejected
+  bool noted_ = false;        ///< the present burst is in the summary
 };
 
 }  // namespace withy

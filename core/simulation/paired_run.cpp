@@ -1,21 +1,27 @@
 #include "withy/core/simulation/paired_run.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
+#include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_times.hpp"
 
 namespace withy {
 namespace {
 
-/// Both equations as one system for a stepper, of one thread: y holds the positions of the first and of the second,
-/// then the speeds of the first and of the second, then the work of both.
+/// Both equations as one system for a stepper, of one thread: y holds the positions of both, the
+/// speeds of both, the discrete states of both, then the work of both together.
 class PairedEquations final : public EquationsOfMotion {
  public:
   PairedEquations(const EquationsOfMotion& first, const EquationsOfMotion& second)
-      : halves_{Half(first), Half(second)}, positions_(first.layout().positions), speeds_(first.layout().speeds) {
+      : halves_{Half(first), Half(second)},
+        positions_(first.layout().positions),
+        speeds_(first.layout().speeds),
+        discrete_(first.layout().discrete) {
     layout_.positions = 2 * positions_;
     layout_.speeds = 2 * speeds_;
+    layout_.discrete = 2 * discrete_;
   }
   const Layout& layout() const override { return layout_; }
   Work make_work() const override { return Work(0); }
@@ -40,15 +46,13 @@ class PairedEquations final : public EquationsOfMotion {
   }
   /// One of the two states, without its work.
   void take(std::span<const double> y, std::size_t i, std::span<double> own) const noexcept {
-    std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(i * positions_), positions_, own.begin());
-    std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(layout_.positions + i * speeds_), speeds_,
-                own.begin() + static_cast<std::ptrdiff_t>(positions_));
+    for (const Part& part : parts())
+      std::copy_n(y.data() + 2 * part.first + i * part.count, part.count, own.data() + part.first);
     own.back() = 0;
   }
   void put(std::span<const double> own, std::size_t i, std::span<double> y) const noexcept {
-    std::copy_n(own.begin(), positions_, y.begin() + static_cast<std::ptrdiff_t>(i * positions_));
-    std::copy_n(own.begin() + static_cast<std::ptrdiff_t>(positions_), speeds_,
-                y.begin() + static_cast<std::ptrdiff_t>(layout_.positions + i * speeds_));
+    for (const Part& part : parts())
+      std::copy_n(own.data() + part.first, part.count, y.data() + 2 * part.first + i * part.count);
   }
 
   void inverse_dynamics(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {
@@ -69,6 +73,13 @@ class PairedEquations final : public EquationsOfMotion {
   std::vector<std::string> savings() const override { return {}; }
 
  private:
+  /// Numbers of one state that stand together.
+  struct Part {
+    std::size_t first, count;
+  };
+  [[nodiscard]] std::array<Part, 3> parts() const noexcept {
+    return {{{0, positions_}, {positions_, speeds_}, {positions_ + speeds_, discrete_}}};
+  }
   struct Half {
     explicit Half(const EquationsOfMotion& e) : equations(&e), work(e.make_work()), y(e.size()), y_dot(e.size()) {}
     const EquationsOfMotion* equations;
@@ -78,7 +89,7 @@ class PairedEquations final : public EquationsOfMotion {
   [[noreturn]] static void refuse() { throw std::logic_error("two models in one have no dynamics but their own"); }
 
   mutable std::array<Half, 2> halves_;
-  std::size_t positions_, speeds_;
+  std::size_t positions_, speeds_, discrete_;
   Layout layout_;
 };
 
@@ -97,12 +108,16 @@ PairedTolerances paired_tolerances(const RunSummary& summary) {
 PairedRun run_paired(const Model& model, const EquationsOfMotion& first, const EquationsOfMotion& second,
                      const Integrator& integrator, const State& initial, const PairedRunOptions& options,
                      const std::function<void(const State&, const State&)>& output) {
+  if (has_switches(model)) throw std::invalid_argument("loads with switching functions have no common steps");
   const double began = thread_cpu_seconds();
   const PairedEquations pair(first, second);
   State both{initial.time, std::vector<double>(pair.size())};
-  pair.put(initial.y, 0, both.y);
-  pair.put(initial.y, 1, both.y);
-  State one = initial, other = initial;
+  Clocks clocks(model);
+  State one = initial;
+  clocks.begin(one);
+  State other = one;
+  pair.put(one.y, 0, both.y);
+  pair.put(one.y, 1, both.y);
   const auto emit = [&](const State& s) {
     one.time = other.time = s.time;
     pair.take(s.y, 0, one.y);
@@ -116,15 +131,26 @@ PairedRun run_paired(const Model& model, const EquationsOfMotion& first, const E
     return options.most_evaluations > 0 && stepper->statistics().evaluations >= options.most_evaluations;
   };
   bool stopped = false;
-  for (const double limit : landings(model, initial.time, options.end)) {
-    while (!stopped && stepper->state().time < limit) {
+  for (const double landing : landings(model, initial.time, options.end)) {
+    while (!stopped && stepper->state().time < landing) {
       stopped = spent() || (options.interrupted && options.interrupted()) ||
-                stepper->step(limit).outcome != StepResult::Outcome::ok;
+                stepper->step(std::min(landing, clocks.next())).outcome != StepResult::Outcome::ok;
       for (; times.due(stepper->state().time); times.pass()) {
         both.time = emitted = times.next();
         stepper->interpolate(both.time, both.y);
         emit(both);
       }
+      if (stopped || stepper->state().time < clocks.next()) continue;
+      both = stepper->state();
+      one.time = other.time = both.time;
+      pair.take(both.y, 0, one.y);
+      pair.take(both.y, 1, other.y);
+      clocks.renew(one);
+      clocks.renew(other);
+      clocks.go_on_after(both.time);
+      pair.put(one.y, 0, both.y);
+      pair.put(other.y, 1, both.y);
+      stepper->jump(both);
     }
     if (stopped) break;
     stepper->restart();

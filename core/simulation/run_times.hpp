@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/memory.hpp"
 
 namespace withy {
 
@@ -47,6 +48,7 @@ class OutputTimes {
   [[nodiscard]] bool due(double t) const { return next() <= t && next() < last_; }
   [[nodiscard]] double next() const { return index_ * interval_; }
   void pass() { index_ += 1; }
+  void remember(Memory& memory) { memory(index_); }
 
  private:
   double interval_;

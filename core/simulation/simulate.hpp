@@ -22,6 +22,29 @@ enum class RunStatus { completed, diverged, singular, step_underflow, interrupte
 /// "completed", "diverged", "singular", "step-underflow", "interrupted".
 std::string_view name(RunStatus status);
 
+/// A function of the state whose zeros are looked for in a run.
+struct RunEvent {
+  std::string name;
+  std::function<double(double t, std::span<const double> y)> function;  ///< continuous; y as in State
+  int direction = 0;   ///< +1: from below alone, −1: from above alone
+  bool stops = false;  ///< the run ends there, completed
+};
+
+/// Where an event's function was zero.
+struct EventTime {
+  std::string name;
+  double time = 0;    ///< [s]
+  int direction = 0;  ///< +1: from below, −1: from above
+};
+
+/// A run put down between two steps: `simulate` with it and else the same arguments goes on as if it had not ended, bit
+/// by bit.
+struct Checkpoint {
+  State state;
+  std::vector<double> stepper;  ///< Stepper::memory
+  std::vector<double> watches;  ///< what the run has seen so far
+};
+
 struct RunOptions {
   double end = 0;                 ///< [s]
   double output = 0.01;           ///< interval of outputs [s]; the end is always one
@@ -29,6 +52,10 @@ struct RunOptions {
   std::size_t most_steps = 100'000'000;
   double most_seconds = 0;            ///< wall time; 0: unlimited
   std::function<bool()> interrupted;  ///< asked between steps
+  std::vector<RunEvent> events;       ///< looked for on the dense output; those that do not stop do not change the run
+  std::function<bool()> put_down;     ///< asked between steps: whether `checkpoint` is to be called
+  std::function<void(const Checkpoint&)> checkpoint;  ///< called then and when the run is interrupted
+  const Checkpoint* resume = nullptr;                 ///< where to go on; null: begin at the initial state
   /// Equations of the same model that neglect less, for RunSummary::validity; null where there are none.
   const EquationsOfMotion* beyond = nullptr;
 };
@@ -50,6 +77,8 @@ struct RunSummary {
   /// Greatest |E(t) − E(0) − work| over the accepted states that follow the outputs, relative to the greatest of |E|,
   /// |work| and kinetic energy seen.
   double energy_drift = 0;
+  std::vector<EventTime> events;  ///< in their order
+  std::size_t switchings = 0;     ///< of loads, at zeros of their switching functions
   /// Times [s] at which steps were rejected as they are where a load jumps without having declared it.
   std::vector<double> suspected_jumps;
   Conditioning conditioning;  ///< at the final state; empty where there are more than 200 generalized speeds
@@ -61,8 +90,10 @@ struct RunSummary {
 
 /// Integrates from `initial`; `output` receives the state there, at every multiple of the output interval (interpolated
 /// within the steps, so outputs do not change the result) and at the end, whatever it is. Steps land on discontinuities
-/// of the loads and on the end, where time is RunOptions::end bit by bit.
-/// \throws std::invalid_argument where the end lies before the initial time or the output interval is not positive.
+/// of the loads, on the instants of their discrete states and on the end, where time is RunOptions::end bit by bit.
+/// A run that is resumed gives the outputs after its checkpoint.
+/// \throws std::invalid_argument where the end lies before the initial time, the output interval is not positive, or
+/// the checkpoint is not one of such a run.
 RunSummary simulate(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator,
                     const State& initial, const RunOptions& options, const std::function<void(const State&)>& output);
 

@@ -121,6 +121,31 @@ void ValidityWatch::compare_accelerations(const State& state) {
   ++validity_.neglected.samples;
 }
 
+void ValidityWatch::remember(Memory& memory) {
+  for (BodyValidity& v : validity_.bodies) {
+    memory(v.rate_ratio);
+    memory(v.rate_time);
+    memory(v.load.least);
+    memory(v.load.greatest);
+    for (double& share : v.load.shares) memory(share);
+    memory(v.load_time);
+    memory(v.buckling);
+  }
+  for (Watched& w : bodies_) {
+    for (Family& family : w.families) {
+      memory(family.highest_energy);
+      memory(family.energy);
+    }
+  }
+  memory(validity_.samples);
+  memory(validity_.neglected.samples);
+  memory(squares_);
+  memory(neglected_squares_);
+  memory(greatest_);
+  memory(neglected_greatest_);
+  memory(next_);
+}
+
 void ValidityWatch::finish(const State& state, std::size_t evaluations, bool completed) {
   if (bodies_.empty()) return;
   // Accelerations at the pole of a singular mass matrix say nothing of the motion before.

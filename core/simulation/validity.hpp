@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "withy/core/dynamics/equations.hpp"
+#include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
 
 namespace withy {
@@ -58,6 +59,8 @@ class ValidityWatch {
   }
   /// At the last state of a run that went well; sums become ratios.
   void finish(const State& state, std::size_t evaluations, bool completed);
+  /// What has been seen so far.
+  void remember(Memory& memory);
 
  private:
   struct Family {

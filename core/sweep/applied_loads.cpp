@@ -25,14 +25,17 @@ AppliedLoads::AppliedLoads(const Model& model, Terms terms) : model_(model) {
   work_size_ = memory.size() + (paths_ != nullptr ? paths_->work_size() : 0);
 }
 
-void AppliedLoads::add(double t, std::span<const double> positions, std::span<const double> speeds,
-                       std::span<double> efforts, std::byte* work, int only) const noexcept {
+void AppliedLoads::add(double t, std::span<const double> y, std::span<double> efforts, std::byte* work,
+                       int only) const noexcept {
+  const auto positions = y.first(model_.layout().positions);
+  const auto speeds = y.subspan(model_.layout().positions, model_.layout().speeds);
   const std::vector<LoadNode>& loads = model_.loads();
   const auto wanted = [only](std::size_t i) { return only < 0 || i == static_cast<std::size_t>(only); };
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const BoundLoad& load = *loads[i].load;
     if (wanted(i)) load.add(t, positions, speeds, efforts, {sweep::at<double>(work, scratch_offset_), load.scratch()});
   }
+  model_.add_discrete_efforts(y, efforts, only);
   if (paths_ == nullptr) return;
   const std::span<FrameMotion> motions(sweep::at<FrameMotion>(work, motions_offset_), frames_);
   const std::span<Wrench> wrenches(sweep::at<Wrench>(work, wrenches_offset_), frames_);

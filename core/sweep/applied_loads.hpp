@@ -18,10 +18,9 @@ class AppliedLoads {
   AppliedLoads(const Model& model, Terms terms);
   /// Bytes of memory that `add` needs, aligned to 64.
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
-  /// Adds the efforts at time t [s], positions and speeds as in State, of all loads or of one (index in
-  /// Model::loads()).
-  void add(double t, std::span<const double> positions, std::span<const double> speeds, std::span<double> efforts,
-           std::byte* work, int only = -1) const noexcept;
+  /// Adds the efforts at time t [s], y as in State, of all loads or of one (index in Model::loads()).
+  void add(double t, std::span<const double> y, std::span<double> efforts, std::byte* work,
+           int only = -1) const noexcept;
 
  private:
   const Model& model_;

@@ -84,6 +84,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     efforts_offset_ = memory.take<double>(layout().speeds);
     loads_offset_ = memory.take<std::byte>(loads_.work_size());
     rates_offset_ = memory.take<double>(model_->motions().empty() ? 0 : size());
+    at_rest_offset_ = memory.take<double>(terms.products_of_speeds ? 0 : layout().speeds);
     sweep_offset_ = memory.size();
     sweep::WorkLayout factors;
     factors.take<double>(1 + 3 * layout().speeds);
@@ -101,20 +102,23 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     std::byte* memory = work.data();
     const std::span<double> efforts(reinterpret_cast<double*>(memory + efforts_offset_), order.speeds);
     for (double& e : efforts) e = 0;
-    loads_.add(t, positions, speeds, efforts, memory + loads_offset_);
+    loads_.add(t, y, efforts, memory + loads_offset_);
     double* accelerations = y_dot.data() + order.positions;
     const bool driven = !model_->motions().empty();
     if (driven) model_->prescribe_accelerations(t, {accelerations, order.speeds});
-    const Evaluation evaluation =
-        sweep_.accelerations(positions.data(), speeds.data(), efforts.data(), accelerations, memory + sweep_offset_);
+    if (!terms_.products_of_speeds) add_damping(speeds, efforts);
+    const Evaluation evaluation = sweep_.accelerations(positions.data(), inertial(speeds, memory), efforts.data(),
+                                                       accelerations, memory + sweep_offset_);
     if (!evaluation.ok()) return evaluation;
+    if (!terms_.products_of_speeds) add_damping(speeds, efforts, -1);
     set_position_rates(y, y_dot);
     double power = 0;
     if (driven || !model_->loads().empty()) {
       for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
     }
     for (const Damper& d : damped_) power -= speeds[d.i] * d.value * speeds[d.j];
-    y_dot[order.positions + order.speeds] = power;
+    for (std::size_t i = 0; i < order.discrete; ++i) y_dot[order.positions + order.speeds + i] = 0;
+    y_dot[order.positions + order.speeds + order.discrete] = power;
     double total = power;
     for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
     if (!std::isfinite(total)) return {Evaluation::Outcome::nonfinite, first_nonfinite(accelerations)};
@@ -124,8 +128,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
                     Work& work) const noexcept override {
     std::fill(efforts.begin(), efforts.end(), 0.0);
-    loads_.add(t, y.first(layout().positions), y.subspan(layout().positions, layout().speeds), efforts,
-               work.data() + loads_offset_, load);
+    loads_.add(t, y, efforts, work.data() + loads_offset_, load);
   }
   Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
                             Work& work) const noexcept override {
@@ -148,8 +151,10 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
                         Work& work) const override {
     if constexpr (has_modal_solver<Sweep>) {
-      sweep_.inverse(y.data(), y.data() + layout().positions, u_dot.data(), false, efforts.data(),
+      const auto speeds = y.subspan(layout().positions, layout().speeds);
+      sweep_.inverse(y.data(), inertial(speeds, work.data()), u_dot.data(), false, efforts.data(),
                      work.data() + sweep_offset_);
+      if (!terms_.products_of_speeds) add_damping(speeds, efforts, -1);
     } else {
       const DenseSystem s = reference_.system(0, y);
       product(s, u_dot, efforts);
@@ -237,6 +242,17 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
                                              y_dot.subspan(slot.position, slot.positions));
     }
   }
+  /// The speeds that inertia forces see: zeros where their products are dropped.
+  const double* inertial(std::span<const double> speeds, std::byte* memory) const noexcept {
+    if (terms_.products_of_speeds) return speeds.data();
+    auto* at_rest = reinterpret_cast<double*>(memory + at_rest_offset_);
+    std::fill(at_rest, at_rest + speeds.size(), 0.0);
+    return at_rest;
+  }
+  /// Adds −D q̇, or takes it away, where the sweep sees no speeds.
+  void add_damping(std::span<const double> speeds, std::span<double> efforts, double sign = 1) const noexcept {
+    for (const Damper& d : damped_) efforts[d.i] -= sign * d.value * speeds[d.j];
+  }
   static void product(const DenseSystem& s, std::span<const double> a, std::span<double> result) {
     for (std::size_t i = 0; i < s.size; ++i) {
       result[i] = 0;
@@ -290,7 +306,8 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   std::vector<std::size_t> general_;  ///< hinges with derivatives of their own
   mutable std::once_flag linearized_;
   mutable std::unique_ptr<const StateJacobian> linearization_;  ///< made when it is first asked for
-  std::size_t efforts_offset_ = 0, loads_offset_ = 0, rates_offset_ = 0, sweep_offset_ = 0, factors_offset_ = 0;
+  std::size_t efforts_offset_ = 0, loads_offset_ = 0, rates_offset_ = 0, at_rest_offset_ = 0, sweep_offset_ = 0,
+              factors_offset_ = 0;
 };
 
 }  // namespace
@@ -307,6 +324,8 @@ std::unique_ptr<EquationsOfMotion> compile_equations(std::shared_ptr<const Model
     if (node_terms.back().truncation == Truncation::strict) strict = &body.name;
     if (node_terms.back().truncation == Truncation::none) full = &body.name;
   }
+  if (!terms.products_of_speeds && (strict != nullptr || terms.truncation != Truncation::none))
+    throw std::invalid_argument("products of speeds can be dropped only where nothing is truncated");
   if (strict != nullptr && full != nullptr) {
     throw std::invalid_argument("body '" + *strict + "' is truncated to strict first order and body '" + *full +
                                 "' is not truncated; equations of one order cannot hold both");

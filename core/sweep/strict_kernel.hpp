@@ -82,7 +82,7 @@ inline int eliminate_rates(const JointData<Spatial>& joint, const StrictState<Sp
   const auto k = static_cast<int>(joint.speeds);
   const HingeMotion motion = general_motion(joint, s.positions + joint.position, s.speeds + joint.speed);
   Spatial::Twist column[Spatial::dim], column0[Spatial::dim];
-  double D[Spatial::dim * Spatial::dim];
+  double D[Spatial::dim * Spatial::dim], scale[Spatial::dim];
   for (int i = 0; i < k; ++i) e.H[i] = Spatial::Twist::of(motion.H.col(i));
   for (int i = 0; i < k; ++i) {
     column[i] = r.P * e.H[i] + r.Q * e.H[i];
@@ -92,7 +92,7 @@ inline int eliminate_rates(const JointData<Spatial>& joint, const StrictState<Sp
     e.d[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Spatial::dot(e.H[i], r.p);
     for (int j = 0; j < k; ++j) D[j * k + i] = Spatial::dot(e.H[j], column[i]);
   }
-  const int sign = solve_general<-1>(D, k, e.row, e.row0, e.d);
+  const int sign = solve_general<-1>(D, k, e.row, e.row0, e.d, scale);
   if (sign == 0) return 0;
   for (int i = 0; i < k; ++i) eliminate_rate(r, column[i], column0[i], e.row[i], e.row0[i], e.d[i]);
   return sign;
@@ -120,7 +120,7 @@ template <class Space, int N>
                     node.damping[static_cast<std::size_t>(i * n + j)] * q_dot[j];
       }
     }
-    sign = solve_general<N>(m.G, n, m.row, m.row0, m.rhs);
+    sign = solve_general<N>(m.G, n, m.row, m.row0, m.rhs, m.scale);
     if (sign == 0) return 0;
     for (int i = 0; i < n; ++i) {
       if (node.leaf) {  // q̈ does not enter F0

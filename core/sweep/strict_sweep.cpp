@@ -88,7 +88,7 @@ StrictSweep<Space>::StrictSweep(const Tree& tree, const std::vector<Terms>& term
     node.work = memory.template take<StrictNodeWork<Space>>(1);
     node.work_stations = memory.template take<StrictStationWork<Space>>(node.stations.size());
     node.work_vectors = memory.template take<typename Space::Twist>(5 * n);
-    node.work_scalars = memory.template take<double>(n * n + n);
+    node.work_scalars = memory.template take<double>(n * n + 2 * n);
   }
   work_size_ = memory.size();
   const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;

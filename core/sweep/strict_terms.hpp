@@ -69,7 +69,7 @@ struct ModalBlock {
       *row0;  ///< coefficients of Ā and A0 in the modal equations; after elimination G⁻¹ of them
   typename Space::Twist *column, *column0;  ///< coefficients of q̈ in F̄ and F0
   typename Space::Twist* J1;                ///< J1(q) of a station
-  double *G, *rhs;
+  double *G, *rhs, *scale;
 
   ModalBlock(const StrictNode<Space>& node, std::byte* work, int n) {
     auto* twists = at<typename Space::Twist>(work, node.work_vectors);
@@ -80,19 +80,25 @@ struct ModalBlock {
     J1 = twists + 4 * n;
     G = at<double>(work, node.work_scalars);
     rhs = G + n * n;
+    scale = rhs + n;
   }
 };
 
 /// LU factorization with partial pivoting of the n×n row-major G, applied to twist rows a, b and scalars c in place.
-/// Gives the sign of det G, 0 where a pivot vanishes.
+/// Gives the sign of det G, 0 where a pivot vanishes. Rows have different units: elements of a column are compared by
+/// G_ik²/|G_ii|, in which the unit of row i is gone, so that the choice does not depend on the units of mass, length
+/// and time; `scale` is room for the n |G_ii| given.
 template <int N, class Twist>
-inline int solve_general(double* G, int modes, Twist* a, Twist* b, double* c) {
+inline int solve_general(double* G, int modes, Twist* a, Twist* b, double* c, double* scale) {
   const int n = count<N>(modes);
+  for (int i = 0; i < n; ++i) scale[i] = std::abs(G[i * n + i]);
   int sign = 1;
   for (int k = 0; k < n; ++k) {
     int pivot = k;
     for (int i = k + 1; i < n; ++i) {
-      if (std::abs(G[i * n + k]) > std::abs(G[pivot * n + k])) pivot = i;
+      const double here = G[i * n + k], best = G[pivot * n + k];
+      const bool better = here * here * scale[pivot] > best * best * scale[i];
+      if (better || (best == 0 && here != 0)) pivot = i;
     }
     if (!(std::abs(G[pivot * n + k]) > 0)) return 0;
     if ((pivot != k) != (G[pivot * n + k] < 0)) sign = -sign;
@@ -101,6 +107,7 @@ inline int solve_general(double* G, int modes, Twist* a, Twist* b, double* c) {
       std::swap(a[k], a[pivot]);
       std::swap(b[k], b[pivot]);
       std::swap(c[k], c[pivot]);
+      std::swap(scale[k], scale[pivot]);
     }
     const double inverse = 1 / G[k * n + k];
     for (int i = k + 1; i < n; ++i) {

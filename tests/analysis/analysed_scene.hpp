@@ -13,8 +13,8 @@
 
 namespace withy::test {
 
-inline const std::vector<std::string> all_formulations = {"ruthless",  "inconsistent", "consistent",
-                                                          "quadratic", "linear",       "exact"};
+inline const std::vector<std::string> all_formulations = {"ruthless", "inconsistent", "consistent", "quadratic",
+                                                          "linear",   "exact",        "rate-linear"};
 
 struct AnalysedScene {
   Registry registry;

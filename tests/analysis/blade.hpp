@@ -3,6 +3,8 @@
 /// literature.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
 
 #include "analysed_scene.hpp"

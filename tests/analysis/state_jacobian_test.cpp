@@ -2,6 +2,8 @@
 /// The exact ∂ẏ/∂y against differences of the sweeps, another algorithm, on random trees.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "analysed_scene.hpp"
 
 namespace withy::test {
@@ -98,8 +100,11 @@ loads:
   EXPECT_EQ(c.equations->linearization()->differenced(0.3, c.state.y), (std::vector<std::string>{"push", "stay"}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Formulations, JacobianOf, testing::ValuesIn(all_formulations),
-                         [](const auto& parameter) { return parameter.param; });
+INSTANTIATE_TEST_SUITE_P(Formulations, JacobianOf, testing::ValuesIn(all_formulations), [](const auto& parameter) {
+  std::string name = parameter.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 }  // namespace
 }  // namespace withy::test

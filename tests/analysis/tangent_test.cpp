@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "analysed_scene.hpp"
@@ -139,8 +140,11 @@ loads:
   EXPECT_EQ(t.differenced, expected) << "a dead force has no derivative to find numerically";
 }
 
-INSTANTIATE_TEST_SUITE_P(Formulations, TangentsOf, testing::ValuesIn(all_formulations),
-                         [](const auto& parameter) { return parameter.param; });
+INSTANTIATE_TEST_SUITE_P(Formulations, TangentsOf, testing::ValuesIn(all_formulations), [](const auto& parameter) {
+  std::string name = parameter.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 }  // namespace
 }  // namespace withy::test

@@ -61,7 +61,8 @@ TEST_P(Formulations, without_modes_are_bitwise_the_same_rigid_body) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, Formulations,
-                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact"));
+                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact",
+                                         "rate-linear"));
 
 struct Neglect {
   const char* formulation;
@@ -87,6 +88,32 @@ TEST(Truncation, neglected_terms_have_the_order_the_name_says) {
   }
   const auto consistent = make_plugin<Formulation>(registry, "consistent");
   EXPECT_NEAR(order_of_difference(*consistent, *exact, s.model, state), 2, 0.1);
+}
+
+/// Inertia, weight, stiffness and damping are those of `quadratic`; what else depends on speeds there is missing.
+TEST(RateLinear, lacks_the_products_of_speeds_alone) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const Scene s = parse_scene(pendulum(1, 2), "pendulum", registry, {});
+  const Layout& layout = s.model->layout();
+  State moving = s.model->reference_state();
+  for (std::size_t i = 0; i < moving.y.size(); ++i) moving.y[i] = 0.1 * std::sin(1.0 + 2.3 * static_cast<double>(i));
+  State still = moving;
+  std::fill_n(still.y.begin() + static_cast<std::ptrdiff_t>(layout.positions), layout.speeds, 0.0);
+  State twice = moving;
+  for (std::size_t i = 0; i < layout.speeds; ++i) twice.y[layout.positions + i] *= 2;
+  const auto rate_linear = make_plugin<Formulation>(registry, "rate-linear")->compile(s.model);
+  const auto quadratic = make_plugin<Formulation>(registry, "quadratic")->compile(s.model);
+  const DenseSystem a = rate_linear->system(0, moving), b = rate_linear->system(0, twice),
+                    rest = quadratic->system(0, still), whole = quadratic->system(0, moving);
+  EXPECT_EQ(a.mass, rest.mass);
+  double dropped = 0;
+  for (std::size_t i = 0; i < a.size; ++i) {
+    EXPECT_NEAR(b.force[i] - rest.force[i], 2 * (a.force[i] - rest.force[i]), 1e-12) << "only damping is left";
+    dropped = std::max(dropped, std::abs(whole.force[i] - a.force[i]));
+  }
+  EXPECT_GT(dropped, 1e-3);
+  EXPECT_EQ(rate_linear->system(0, still).force, rest.force);
 }
 
 /// At q = 0 nothing distinguishes exact kinematics: inertia and, at rest, forces are those of the undeformed body.

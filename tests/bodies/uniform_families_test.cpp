@@ -1,115 +1,13 @@
 /// \file
 /// Eigenfunctions of the uniform beam against their textbook forms in multiple precision.
 #include <algorithm>
-#include <array>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 
 #include "family_fixture.hpp"
+#include "textbook_waves.hpp"
 
 namespace withy::test {
 namespace {
-
-/// cosh and sinh of β = 629 lose 273 digits to cancellation; 330 leave more than fifty.
-using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<330>>;
-
-/// f and f′ of a characteristic equation f(β) = 0, divided by cosh β.
-struct Equation {
-  Exact f, slope;
-};
-Equation clamped_free_equation(const Exact& b) {
-  return {cos(b) + 1 / cosh(b), -sin(b) - sinh(b) / (cosh(b) * cosh(b))};
-}
-Equation alike_equation(const Exact& b) { return {cos(b) - 1 / cosh(b), -sin(b) + sinh(b) / (cosh(b) * cosh(b))}; }
-Equation pinned_equation(const Exact& b) {
-  const Exact t = tanh(b);
-  return {sin(b) - cos(b) * t, cos(b) + sin(b) * t - cos(b) * (1 - t * t)};
-}
-Equation sine_equation(const Exact& b) { return {sin(b), cos(b)}; }
-
-/// Factors of cosh βξ, cos βξ, sinh βξ, sin βξ.
-struct Textbook {
-  Exact cosh, cos, sinh, sin;
-};
-Textbook clamped_free_form(const Exact& b) {
-  const Exact s = (cosh(b) + cos(b)) / (sinh(b) + sin(b));
-  return {1, -1, -s, s};
-}
-Textbook held_tip_form(const Exact& b) {
-  const Exact s = (cosh(b) - cos(b)) / (sinh(b) - sin(b));
-  return {1, -1, -s, s};
-}
-Textbook free_free_form(const Exact& b) {
-  const Exact s = (cosh(b) - cos(b)) / (sinh(b) - sin(b));
-  return {1, 1, -s, -s};
-}
-Textbook pinned_free_form(const Exact& b) {
-  const Exact C = sin(b) / sinh(b);
-  const Exact n = sqrt(2 / (1 - C * C));
-  return {0, 0, n * C, n};
-}
-Textbook pinned_pinned_form(const Exact&) { return {0, 0, 0, sqrt(Exact(2))}; }
-
-struct Uniform {
-  const char* id;
-  bool torsion;                        ///< has functions for torsion
-  double offset;                       ///< β_k ≈ (k + offset) π
-  Equation (*equation)(const Exact&);  ///< Blevins 1979, table 8-1
-  Textbook (*form)(const Exact&);      ///< the same table
-  std::array<double, 3> blevins;       ///< its first three β
-  std::array<bool, 3> root, tip;       ///< whether φ, φ′, φ″ vanish there
-};
-
-const Uniform uniform_families[] = {
-    {"clamped-free",
-     true,
-     -0.5,
-     &clamped_free_equation,
-     &clamped_free_form,
-     {1.87510407, 4.69409113, 7.85475744},
-     {true, true, false},
-     {false, false, true}},
-    {"clamped-clamped",
-     true,
-     0.5,
-     &alike_equation,
-     &held_tip_form,
-     {4.73004074, 7.85320462, 10.9956078},
-     {true, true, false},
-     {true, true, false}},
-    {"clamped-pinned",
-     false,
-     0.25,
-     &pinned_equation,
-     &held_tip_form,
-     {3.92660231, 7.06858275, 10.21017612},
-     {true, true, false},
-     {true, false, true}},
-    {"pinned-pinned",
-     false,
-     0.0,
-     &sine_equation,
-     &pinned_pinned_form,
-     {3.14159265, 6.28318531, 9.42477796},
-     {true, false, true},
-     {true, false, true}},
-    {"pinned-free",
-     false,
-     0.25,
-     &pinned_equation,
-     &pinned_free_form,
-     {3.92660231, 7.06858275, 10.21017612},
-     {true, false, true},
-     {false, false, true}},
-    {"free-free",
-     true,
-     0.5,
-     &alike_equation,
-     &free_free_form,
-     {4.73004074, 7.85320462, 10.9956078},
-     {false, false, true},
-     {false, false, true}},
-};
 
 class UniformFamilies : public testing::TestWithParam<Uniform> {};
 
@@ -135,21 +33,13 @@ TEST_P(UniformFamilies, agree_with_multiprecision_to_1e12_for_200_modes) {
   const Uniform& u = GetParam();
   const auto f = family(u.id)->functions(bending_beam(), 200);
   for (const int k : sampled_modes) {
-    Exact beta = (Exact(k) + Exact(u.offset)) * boost::math::constants::pi<Exact>();
-    for (int i = 0; i < 12; ++i) {
-      const Equation e = u.equation(beta);
-      beta -= e.f / e.slope;
-    }
+    const Exact beta = textbook_root(u, k);
     const Textbook c = u.form(beta);
     const double b = static_cast<double>(beta);
     for (const double xi : sampled_places) {
       const FunctionValues v(*f, xi);
       const auto i = static_cast<std::size_t>(k - 1);
-      const Exact p = beta * xi;
-      const Exact ch = cosh(p), co = cos(p), sh = sinh(p), si = sin(p);
-      const double phi = static_cast<double>(c.cosh * ch + c.cos * co + c.sinh * sh + c.sin * si);
-      const double slope = static_cast<double>(c.cosh * sh - c.cos * si + c.sinh * ch + c.sin * co);
-      const double curvature = static_cast<double>(c.cosh * ch - c.cos * co + c.sinh * sh - c.sin * si);
+      const auto [phi, slope, curvature] = textbook_values(c, beta * xi);
       EXPECT_NEAR(v.phi[i], phi, 1e-12) << "mode " << k << " at " << xi;
       EXPECT_NEAR(v.slope[i] / b, slope, 1e-12) << "mode " << k << " at " << xi;
       EXPECT_NEAR(v.curvature[i] / (b * b), curvature, 1e-12) << "mode " << k << " at " << xi;

@@ -31,6 +31,27 @@ TEST(Failures, ABadSceneIsReportedWithEveryPlaceAndLeavesNoResults) {
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
 }
 
+// A tip of 1e9 times the beam's mass: κ·2⁻⁵² is 0.4.
+TEST(Failures, AnAccuracyThatCannotBeHadIsRefusedAndWhatCanIsRun) {
+  const Folder folder;
+  const std::string scene =
+      "format: withy/1\ntime: {end: 0.01}\nintegrator: {name: dopri5, rtol: 1e-6}\nbodies:\n"
+      "  arm: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 1, modes: 10}}\n"
+      "  load: {type: rigid, mass: 1e9}\nhinges:\n"
+      "  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}\n"
+      "  tip: {type: weld, parent: arm.tip, child: load}\n";
+  folder.write("heavy.yaml", scene);
+  const Finished refused = withy(folder, {"run", "heavy.yaml", "--out", "out"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("heavy.yaml: /integrator/rtol: got 1e-06, an accuracy that cannot be had"));
+  EXPECT_THAT(refused.err, HasSubstr("modes of 'arm'"));
+  EXPECT_FALSE(fs::exists(folder.path() / "out"));
+  EXPECT_EQ(withy(folder, {"run", "heavy.yaml", "--set", "integrator.rtol=0.9", "--out", "out"}).status, 0);
+  const Finished inspected = withy(folder, {"inspect", "heavy.yaml"});
+  EXPECT_THAT(inspected.out, HasSubstr("nearly massless: "));
+  EXPECT_THAT(inspected.out, HasSubstr("without arm.bending_y[10] the condition is"));
+}
+
 TEST(Failures, AFullDiskIsAnErrorWhereverItIsMet) {
   const Folder folder;
   fs::create_directory(folder.path() / "out");

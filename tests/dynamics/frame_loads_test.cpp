@@ -2,6 +2,7 @@
 /// Wrenches at frames: the sweeps' recursion against explicit Jacobians, virtual power and energy, on random trees.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -118,8 +119,13 @@ TEST_P(FrameLoads, efforts_of_single_loads_add_up) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formulations, FrameLoads,
-                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact"),
-                         [](const auto& of) { return of.param; });
+                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact",
+                                         "rate-linear"),
+                         [](const auto& of) {
+                           std::string name = of.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 /// Where nothing is truncated the efforts' power is force · velocity, the velocity being that of the frame's position
 /// as outputs show it. Central differences over 1e-5 s leave 1e-10 of the third derivative.

@@ -2,6 +2,7 @@
 /// Prescribed motions: the sweeps with driven hinges against the partitioned dense equations, on random trees.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -212,8 +213,13 @@ TEST_P(Motions, linearly_implicit_solutions_leave_driven_speeds_alone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formulations, Motions,
-                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact"),
-                         [](const auto& of) { return of.param; });
+                         testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact",
+                                         "rate-linear"),
+                         [](const auto& of) {
+                           std::string name = of.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 /// Energy gained is the work of motions and loads, and driven coordinates end where their motions are, although they
 /// are integrated as all others: to the accuracy asked for.

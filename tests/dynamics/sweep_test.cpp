@@ -45,8 +45,8 @@ struct Case {
   }
 };
 
-const std::vector<std::string> formulations = {"ruthless",  "inconsistent", "consistent",
-                                               "quadratic", "linear",       "exact"};
+const std::vector<std::string> formulations = {"ruthless", "inconsistent", "consistent", "quadratic",
+                                               "linear",   "exact",        "rate-linear"};
 
 class RandomTrees : public testing::TestWithParam<std::string> {
  protected:

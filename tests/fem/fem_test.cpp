@@ -3,18 +3,15 @@
 /// tests/reference/fem/README.md and scenes/meshes/README.md; what is expected are closed forms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <sstream>
 
+#include "reduced_case.hpp"
 #include "withy/bodies/modal/sid_body.hpp"
 #include "withy/core/dynamics/equations.hpp"
-#include "withy/fem/reduce.hpp"
 #include "withy/fem/summary.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/scene/scene.hpp"
@@ -23,54 +20,6 @@ namespace withy::fem {
 namespace {
 
 using testing::HasSubstr;
-namespace fs = std::filesystem;
-
-const fs::path data = WITHY_FEM_FILES;
-const fs::path cantilever = fs::path(WITHY_MESHES) / "cantilever";
-constexpr double pi = std::numbers::pi;
-
-/// A mesh that CalculiX made, and its reduction.
-struct Case {
-  Mesh mesh;
-  Matrices matrices;
-  ReductionOptions options;
-  Reduction body;
-
-  Case(const fs::path& job, int modes, double highest = 0)
-      : mesh(read_mesh(job.string() + ".inp")),
-        matrices(combined(read_calculix(job.string() + ".sti", job.string() + ".dof"),
-                          read_calculix(job.string() + ".mas", job.string() + ".dof"), mesh)) {
-    options.root = nodes_of(mesh, "root");
-    options.interfaces = {{"TIP", nodes_of(mesh, "TIP")}};
-    options.modes = modes;
-    options.highest = highest;
-    body = reduce(matrices, options);
-  }
-};
-
-class Folder {
- public:
-  Folder() { fs::create_directories(path_); }
-  ~Folder() { fs::remove_all(path_); }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-  [[nodiscard]] fs::path with(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return path_ / name;
-  }
-
- private:
-  fs::path path_ = fs::temp_directory_path() / ("withy-fem-" + std::to_string(getpid()));
-};
-
-template <class Call>
-std::string refusal(Call&& call) {
-  try {
-    call();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return {};
-}
 
 /// Euler–Bernoulli: ω = β² √(EI/ρA)/L², for 1 m of steel, 20 mm in y by 10 mm in z. Demanded: 0.5 % of the first four;
 /// the coarse mesh has the third of a plane 3 % too high.

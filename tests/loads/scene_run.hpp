@@ -40,6 +40,7 @@ struct LoadedScene {
     RunOptions options;
     options.end = end_of_run(scene);
     options.output = scene.output;
+    options.events = scene.events;
     summary = simulate(*scene.model, *equations, *scene.integrator, scene.initial, options,
                        [&](const State& s) { outputs.push_back(s); });
     EXPECT_EQ(summary.status, RunStatus::completed) << summary.message;

@@ -1,0 +1,92 @@
+#include "withy/apps/withy/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/crc.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "withy/apps/withy/json_text.hpp"
+#include "withy/apps/withy/output.hpp"
+
+namespace withy::app {
+namespace {
+
+using Json = nlohmann::json;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr const char* format = "withy-checkpoint/1";
+
+std::uint32_t checksum(const Bytes& bytes) {
+  boost::crc_32_type crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
+}
+
+/// What is wrong with a file, or its content.
+struct Content {
+  std::string fault;
+  Json json;
+};
+
+Content read_content(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return {"is not there", {}};
+  const Bytes bytes{std::istreambuf_iterator<char>(in), {}};
+  const Json outer = Json::from_cbor(bytes, true, false);
+  if (!outer.is_object() || outer.value("format", "") != format) return {"is no checkpoint, or cut short", {}};
+  const auto content = outer.find("content");
+  const auto sum = outer.find("crc32");
+  if (content == outer.end() || !content->is_binary() || sum == outer.end() || !sum->is_number_unsigned())
+    return {"is damaged", {}};
+  const Bytes& packed = content->get_binary();
+  if (checksum(packed) != sum->get<std::uint32_t>()) return {"is damaged: its checksum does not fit", {}};
+  return {"", Json::from_cbor(packed)};
+}
+
+}  // namespace
+
+CheckpointFiles::CheckpointFiles(std::filesystem::path folder, const Scene& scene)
+    : newest_(folder / "checkpoint.cbor"),
+      previous_(folder / "checkpoint.previous.cbor"),
+      run_(fingerprint_of(value_json(scene.source).dump() + WITHY_VERSION)) {}
+
+void CheckpointFiles::write(const StoredRun& run) const {
+  // CBOR keeps every bit of a double, infinities included.
+  const Bytes packed = Json::to_cbor({{"run", run_},
+                                      {"time", run.checkpoint.state.time},
+                                      {"y", run.checkpoint.state.y},
+                                      {"stepper", run.checkpoint.stepper},
+                                      {"watches", run.checkpoint.watches},
+                                      {"table_bytes", run.table_bytes}});
+  const Bytes whole =
+      Json::to_cbor({{"format", format}, {"crc32", checksum(packed)}, {"content", Json::binary(packed)}});
+  if (std::filesystem::exists(newest_)) std::filesystem::rename(newest_, previous_);
+  write_lasting_file(newest_, {reinterpret_cast<const char*>(whole.data()), whole.size()});
+}
+
+StoredRun CheckpointFiles::read() const {
+  Content content = read_content(newest_);
+  if (!content.fault.empty()) {
+    const std::string first = fmt::format("{} {}", newest_.string(), content.fault);
+    content = read_content(previous_);
+    if (!content.fault.empty())
+      throw InputError(
+          fmt::format("{}, and {} {}; there is nothing to resume", first, previous_.string(), content.fault));
+    complain(fmt::format("{}; going on from the checkpoint before", first));
+  }
+  const Json& j = content.json;
+  if (j.at("run") != run_)
+    throw InputError(
+        fmt::format("{} belongs to another scene, formulation, integrator or version; run without --resume "
+                    "to begin anew",
+                    newest_.string()));
+  return {{{j.at("time"), j.at("y")}, j.at("stepper"), j.at("watches")}, j.at("table_bytes")};
+}
+
+void CheckpointFiles::remove() const {
+  std::filesystem::remove(newest_);
+  std::filesystem::remove(previous_);
+}
+
+}  // namespace withy::app

@@ -1,0 +1,180 @@
+#include "withy/core/simulation/accuracy.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/elastic_modes.hpp"
+
+namespace withy {
+namespace {
+
+using DenseMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr double epsilon = 0x1p-52;
+
+/// M of the free speeds, scaled, and the scale of each speed; prescribed ones have none.
+struct Scaled {
+  Eigen::MatrixXd M;
+  std::vector<Eigen::Index> free;
+  Eigen::VectorXd scale;  ///< 1/√M_ii of the free speeds
+};
+
+Scaled scaled_mass(const DenseSystem& system) {
+  const auto n = static_cast<Eigen::Index>(system.size);
+  std::vector<bool> prescribed(system.size);
+  for (const PrescribedRate& p : system.prescribed) prescribed[p.speed] = true;
+  Scaled s;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!prescribed[static_cast<std::size_t>(i)]) s.free.push_back(i);
+  }
+  const Eigen::MatrixXd M = Eigen::Map<const DenseMatrix>(system.mass.data(), n, n)(s.free, s.free);
+  s.scale = M.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
+  s.M = s.scale.asDiagonal() * M * s.scale.asDiagonal();
+  return s;
+}
+
+std::vector<double> of_all(const Scaled& s, const Eigen::VectorXd& v, std::size_t size) {
+  std::vector<double> all(size);
+  for (std::size_t i = 0; i < s.free.size(); ++i)
+    all[static_cast<std::size_t>(s.free[i])] = v[static_cast<Eigen::Index>(i)];
+  return all;
+}
+
+/// Moment of inertia about a hinge's place, over all axes, of what the hinge carries [kg m²].
+double carried_inertia(const Model& model, const EquationsOfMotion& equations, const State& state, int hinge) {
+  const auto h = static_cast<std::size_t>(hinge);
+  const auto place = [&](int body, int frame) {
+    const WorldPose pose = equations.frame_pose(state.y, body, frame);
+    return std::pair(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.rotation.data()).eval(),
+                     Eigen::Map<const Vector3>(pose.position.data()).eval());
+  };
+  const Vector3 at = place(model.hinges()[h].child, model.hinges()[h].child_frame).second;
+  std::vector<bool> carried(model.bodies().size());
+  double inertia = 0;
+  for (std::size_t b = h; b < model.bodies().size(); ++b) {
+    const int parent = model.hinges()[b].parent;
+    carried[b] = b == h || (parent >= 0 && carried[static_cast<std::size_t>(parent)]);
+    if (!carried[b]) continue;
+    const auto [R, p] = place(static_cast<int>(b), 0);
+    const ModalShape& shape = model.bodies()[b].body->shape();
+    for (const Particle& m : shape.particles) inertia += m.mass * (p + R * m.at.X - at).squaredNorm();
+    for (const Section& s : shape.sections) inertia += s.inertia.trace();
+  }
+  return inertia;
+}
+
+/// The hinge rate that turns nothing but rounding; −1 where there is none. κ of the scaled M does not see it.
+int rate_without_inertia(const Model& model, const EquationsOfMotion& equations, const State& state,
+                         const DenseSystem& system) {
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    if (model.driven(h)) continue;
+    const Slot& slot = model.layout().hinges[h];
+    double carried = -1;
+    std::size_t i = slot.speed;
+    for (const HingeRate& rate : hinge_rates(*model.hinges()[h].hinge)) {
+      const double own = system.mass[i * system.size + i];
+      if (rate.angular && carried < 0) carried = carried_inertia(model, equations, state, static_cast<int>(h));
+      if (rate.angular && !(own > 4 * epsilon * carried)) return static_cast<int>(i);
+      if (!rate.angular && !(own > 0)) return static_cast<int>(i);
+      ++i;
+    }
+  }
+  return -1;
+}
+
+std::string body_of_speed(const Model& model, std::size_t speed) {
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    if (speed >= slot.speed && speed < slot.speed + slot.speeds) return model.bodies()[h].name;
+  }
+  return {};
+}
+
+}  // namespace
+
+AttainableAccuracy attainable_accuracy(const DenseSystem& system) {
+  AttainableAccuracy a;
+  const Scaled s = scaled_mass(system);
+  if (s.free.empty()) return a;
+  if (!s.M.allFinite()) {
+    a.condition = a.accuracy = std::numeric_limits<double>::infinity();
+    return a;
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(s.M, Eigen::ComputeFullV);
+  const Eigen::Index last = svd.singularValues().size() - 1;
+  const double least = svd.singularValues()[last];
+  a.condition = least > 0 ? svd.singularValues()[0] / least : std::numeric_limits<double>::infinity();
+  a.accuracy = a.condition * epsilon;
+  const Eigen::VectorXd v = svd.matrixV().col(last);
+  a.weakest = of_all(s, v, system.size);
+  a.share = v.dot(s.M * v);
+  return a;
+}
+
+std::vector<MasslessDirection> massless_directions(const Model& model, const DenseSystem& system, double share) {
+  std::vector<MasslessDirection> found;
+  const Scaled s = scaled_mass(system);
+  if (s.free.empty() || !s.M.allFinite()) return found;
+  const Eigen::MatrixXd K = stiffness_of_modes(model)(s.free, s.free);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (s.M + s.M.transpose()));
+  for (Eigen::Index k = 0; k < solver.eigenvalues().size() && solver.eigenvalues()[k] < share; ++k) {
+    const Eigen::VectorXd v = solver.eigenvectors().col(k);
+    const std::vector<double> all = of_all(s, v, system.size);
+    double modal = 0;
+    for (const Slot& slot : model.layout().bodies) {
+      for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) modal += all[i] * all[i];
+    }
+    if (modal < 0.5) continue;
+    MasslessDirection d;
+    d.share = solver.eigenvalues()[k];
+    const Eigen::VectorXd u = s.scale.asDiagonal() * v;
+    d.frequency = d.share > 0 ? std::sqrt(std::max(0.0, u.dot(K * u)) / d.share) : 0;
+    d.owners = owners_of(model.layout(), all);
+    found.push_back(std::move(d));
+  }
+  return found;
+}
+
+std::optional<Removal> best_removal(const Model& model, const DenseSystem& system) {
+  std::optional<Removal> best;
+  for (const BodyNode& body : model.bodies()) {
+    const Slot* slot = model.layout().body(body.name);
+    if (slot == nullptr) continue;
+    for (const ModeGroup& group : mode_groups(body.body->shape())) {
+      // As a prescribed speed it takes no part.
+      const std::size_t speed = slot->speed + static_cast<std::size_t>(group.coordinates.back());
+      DenseSystem without = system;
+      without.prescribed.push_back({speed, 0});
+      const double condition = attainable_accuracy(without).condition;
+      if (!best || condition < best->condition) best = {model.layout().speed_names[speed], condition};
+    }
+  }
+  return best;
+}
+
+std::string unattainable(const Model& model, const EquationsOfMotion& equations, const State& state, double tolerance) {
+  const Layout& layout = model.layout();
+  if (layout.speeds == 0 || layout.speeds > largest_examined) return {};
+  const DenseSystem system = equations.system(state.time, state.y);
+  if (const int rate = rate_without_inertia(model, equations, state, system); rate >= 0) {
+    const auto i = static_cast<std::size_t>(rate);
+    return "the mass matrix is singular: " + layout.speed_names[i] + " moves no mass beyond rounding; give body '" +
+           body_of_speed(model, i) + "', or what hangs on it, mass or inertia there, or lock the hinge";
+  }
+  const AttainableAccuracy a = attainable_accuracy(system);
+  if (tolerance >= a.accuracy) return {};
+  std::string text =
+      "the condition of the mass matrix, " + brief(a.condition) +
+      " with each coordinate in the unit of its own inertia, leaves accelerations an error of κ·2⁻⁵² = " +
+      brief(a.accuracy) + "; the direction that moves least mass, " + brief(a.share) + " of its coordinates' own, is " +
+      (a.weakest.empty() ? "not known" : owners_of(layout, a.weakest));
+  if (const std::optional<Removal> removal = best_removal(model, system))
+    text += "; without " + removal->mode + " the condition is " + brief(removal->condition);
+  return text;
+}
+
+}  // namespace withy

@@ -1,0 +1,53 @@
+/// \file
+/// What accuracy the mass matrix leaves to be had, and which direction takes the rest: nearly massless ones are found,
+/// named and valued before a run.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// M with every coordinate in the unit in which its own inertia M_ii is one: of all units those whose κ is at most n
+/// times the smallest there is (van der Sluis, Numer. Math. 14 (1969) 14), so that it does not depend on what angles
+/// and deflections are measured in. Prescribed speeds do not take part.
+struct AttainableAccuracy {
+  double condition = 0;  ///< κ of M so scaled; infinite where a coordinate has no inertia of its own
+  double accuracy = 0;   ///< κ·2⁻⁵²: relative error of the accelerations that rounding alone may leave
+  /// Unit vector of the scaled coordinates, all speeds, along which M acts least, and how much of the coordinates' own
+  /// inertia is left along it, > 0 where M is positive definite.
+  std::vector<double> weakest;
+  double share = 0;
+};
+
+AttainableAccuracy attainable_accuracy(const DenseSystem& system);
+
+/// A direction of the modes that moves nearly no mass and therefore vibrates fast.
+struct MasslessDirection {
+  double share = 0;      ///< of the coordinates' own inertia that is left along it
+  double frequency = 0;  ///< [rad/s], √(vᵀKv/vᵀMv); 0 where nothing holds it elastically
+  std::string owners;    ///< whose coordinates make it up: "62 % modes of 'link1' (most of all link1.bending_y[2])"
+};
+
+/// Directions along which less than `share` of the coordinates' own inertia is left, weakest first, that are made up
+/// of modes for the greater part.
+std::vector<MasslessDirection> massless_directions(const Model& model, const DenseSystem& system, double share);
+
+/// A mode that may be left out: the highest of its family on its body.
+struct Removal {
+  std::string mode;      ///< as "link1.bending_y[2]"
+  double condition = 0;  ///< AttainableAccuracy::condition of what is left
+};
+
+/// The highest mode of a body without which the mass matrix is best conditioned; nothing where there are no modes.
+std::optional<Removal> best_removal(const Model& model, const DenseSystem& system);
+
+/// Why a relative tolerance cannot be had at a state: κ·2⁻⁵², the coordinate without inertia or the direction with
+/// least, what may be done. Empty where it can, or where there are more than `largest_examined` speeds.
+std::string unattainable(const Model& model, const EquationsOfMotion& equations, const State& state, double tolerance);
+
+}  // namespace withy

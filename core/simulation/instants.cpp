@@ -1,0 +1,175 @@
+#include "withy/core/simulation/instants.hpp"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+
+namespace withy {
+namespace {
+
+int sign(double value) { return (value > 0) - (value < 0); }
+
+const DiscretePart& part_of(const Model& model, const DiscreteSlot& slot) {
+  return *model.loads()[slot.load].load->discrete();
+}
+
+std::span<const double> positions(const Model& model, std::span<const double> y) {
+  return y.first(model.layout().positions);
+}
+std::span<const double> speeds(const Model& model, std::span<const double> y) {
+  return y.subspan(model.layout().positions, model.layout().speeds);
+}
+
+}  // namespace
+
+bool has_switches(const Model& model) {
+  const auto& slots = model.layout().discrete_slots;
+  return std::any_of(slots.begin(), slots.end(),
+                     [&](const DiscreteSlot& slot) { return part_of(model, slot).switches() > 0; });
+}
+
+Clocks::Clocks(const Model& model) : model_(model) {
+  std::size_t scratch = 0;
+  for (const DiscreteSlot& slot : model.layout().discrete_slots) {
+    scratch = std::max(scratch, model.loads()[slot.load].load->scratch());
+    if (const double period = part_of(model, slot).period(); period > 0) clocks_.push_back({slot, period, 0});
+  }
+  scratch_.resize(scratch);
+}
+
+void Clocks::begin(State& state) {
+  for (const DiscreteSlot& slot : model_.layout().discrete_slots) renew(state, slot, {});
+  go_on_after(state.time);
+}
+
+void Clocks::go_on_after(double time) {
+  for (Clock& clock : clocks_) {
+    clock.index = std::floor(time / clock.period);
+    // The quotient is rounded; an instant is the product.
+    while (clock.index * clock.period > time) clock.index -= 1;
+    while (clock.index * clock.period <= time) clock.index += 1;
+  }
+}
+
+double Clocks::next() const {
+  double first = std::numeric_limits<double>::infinity();
+  for (const Clock& clock : clocks_) first = std::min(first, clock.index * clock.period);
+  return first;
+}
+
+void Clocks::renew(State& state) {
+  for (const Clock& clock : clocks_) {
+    if (clock.index * clock.period == state.time) renew(state, clock.slot, {});
+  }
+}
+
+void Clocks::renew(State& state, const DiscreteSlot& slot, const Crossing& crossing) {
+  const std::span<double> y(state.y);
+  part_of(model_, slot)
+      .renew(state.time, positions(model_, y), speeds(model_, y), crossing, y.subspan(slot.first, slot.count),
+             scratch_);
+}
+
+ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start)
+    : model_(model), events_(events), inside_(start) {
+  for (const DiscreteSlot& slot : model.layout().discrete_slots) {
+    if (part_of(model, slot).switches() == 0) continue;
+    switches_ += part_of(model, slot).switches();
+    slots_.push_back(slot);
+  }
+  values_.resize(switches_ + events.size());
+  signs_.resize(values_.size());
+  begin_at(start);
+}
+
+void ZeroWatch::evaluate(double t, std::span<const double> y, std::span<double> values) const {
+  std::size_t at = 0;
+  for (const DiscreteSlot& slot : slots_) {
+    const DiscretePart& part = part_of(model_, slot);
+    part.switching(t, positions(model_, y), speeds(model_, y), y.subspan(slot.first, slot.count),
+                   values.subspan(at, part.switches()));
+    at += part.switches();
+  }
+  for (const RunEvent& event : events_) values[at++] = event.function(t, y);
+}
+
+bool ZeroWatch::noticed(std::size_t function, int direction) const {
+  return function < switches_ || event(function).direction == 0 || event(function).direction == direction;
+}
+
+void ZeroWatch::begin_at(const State& state) {
+  evaluate(state.time, state.y, values_);
+  std::transform(values_.begin(), values_.end(), signs_.begin(), sign);
+}
+
+const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& state, const Zero& zero) {
+  zeros_.clear();
+  evaluate(state.time, state.y, values_);
+  pass(zero);
+  for (std::size_t f = 0; f < signs_.size(); ++f) {
+    const int now = sign(values_[f]);
+    if (f == zero.function || now == 0) continue;  // its own is zero up to rounding of either sign
+    if (signs_[f] * now < 0 && noticed(f, now)) zeros_.push_back({state.time, f, now});
+    signs_[f] = now;
+  }
+  return zeros_;
+}
+
+const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, double from) {
+  // A function may pass zero and come back within a step; looks inside see what lasts longer than a fraction of it.
+  constexpr int looks = 4;
+  const double to = stepper.state().time;
+  const auto look_at = [&](double t) {
+    stepper.interpolate(t, inside_.y);
+    evaluate(t, inside_.y, values_);
+  };
+  // The end of the bracket, where the function has the new sign.
+  const auto zero_between = [&](std::size_t f, double a, double b, double value_at_b) {
+    const auto value = [&](double t) {
+      look_at(t);
+      return values_[f];
+    };
+    const double value_at_a = value(a);
+    if (value_at_a * value_at_b >= 0) return a;  // rounding: it has passed at the last state already
+    std::uintmax_t most = 100;
+    return boost::math::tools::toms748_solve(value, a, b, value_at_a, value_at_b,
+                                             boost::math::tools::eps_tolerance<double>(50), most)
+        .second;
+  };
+  zeros_.clear();
+  before_ = signs_;
+  double begin = from;
+  for (int look = 1; look <= looks; ++look) {
+    const double end = look == looks ? to : from + (to - from) * look / looks;
+    look_at(end);
+    ends_ = values_;
+    for (std::size_t f = 0; f < ends_.size(); ++f) {
+      const int now = sign(ends_[f]);
+      if (now == 0 || now == before_[f]) continue;
+      if (before_[f] == 0) {
+        signs_[f] = now;  // it began on its zero
+      } else if (noticed(f, now)) {
+        zeros_.push_back({zero_between(f, begin, end, ends_[f]), f, now});
+      } else {
+        signs_[f] = now;
+      }
+      before_[f] = now;
+    }
+    begin = end;
+  }
+  std::stable_sort(zeros_.begin(), zeros_.end(), [](const Zero& a, const Zero& b) { return a.time < b.time; });
+  return zeros_;
+}
+
+std::optional<std::pair<DiscreteSlot, int>> ZeroWatch::switching(std::size_t function) const {
+  if (function >= switches_) return {};
+  std::size_t index = function;
+  for (const DiscreteSlot& slot : slots_) {
+    const std::size_t count = part_of(model_, slot).switches();
+    if (index < count) return std::pair{slot, static_cast<int>(index)};
+    index -= count;
+  }
+  return {};
+}
+
+}  // namespace withy

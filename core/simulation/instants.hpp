@@ -1,0 +1,92 @@
+/// \file
+/// The instants of a run: where loads renew their discrete states, by the clock or at a switching function's zero, and
+/// where functions that the caller watches pass through zero.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+#include "withy/core/plugin/integrator.hpp"
+#include "withy/core/plugin/memory.hpp"
+#include "withy/core/simulation/simulate.hpp"
+
+namespace withy {
+
+/// Whether any load switches where a function of the state is zero.
+bool has_switches(const Model& model);
+
+/// Renews discrete states by their loads' clocks.
+class Clocks {
+ public:
+  explicit Clocks(const Model& model);
+  /// Sets all discrete states for the start of a run at the state's time.
+  void begin(State& state);
+  /// Goes on from a state whose instants up to its time have been.
+  void go_on_after(double time);
+  /// The next instant [s] of any clock; infinity where there is none.
+  [[nodiscard]] double next() const;
+  /// Renews what is due at the state's time.
+  void renew(State& state);
+  /// Renews the states of one load at the zero of a switching function of its own.
+  void renew(State& state, const DiscreteSlot& slot, const Crossing& crossing);
+
+ private:
+  struct Clock {
+    DiscreteSlot slot;
+    double period;
+    double index;  ///< of the next instant; whole
+  };
+  const Model& model_;
+  std::vector<Clock> clocks_;
+  std::vector<double> scratch_;
+};
+
+/// Watches functions for zeros within accepted steps.
+class ZeroWatch {
+ public:
+  /// A zero that a function has passed.
+  struct Zero {
+    double time = 0;           ///< [s]
+    std::size_t function = 0;  ///< switching functions in the loads' order, then the events
+    int direction = 0;         ///< +1: from below, −1: from above
+  };
+  /// Watches the switching functions of the model's loads and `events`, from a state on. Both must outlive the watch.
+  ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start);
+  [[nodiscard]] bool empty() const { return signs_.empty(); }
+
+  /// The zeros passed in the stepper's last step, which began at `from` [s], on its dense output, in their order.
+  const std::vector<Zero>& find(const Stepper& stepper, double from);
+  /// Says that a zero has been dealt with.
+  void pass(const Zero& zero) { signs_[zero.function] = zero.direction; }
+  /// At a state that a step was made to end at because of `zero`: the zeros of others passed with it.
+  const std::vector<Zero>& land(const State& state, const Zero& zero);
+  /// Takes the signs at a state where discrete states have changed.
+  void begin_at(const State& state);
+
+  /// The load and the index within it of a switching function; nothing for an event of the caller.
+  [[nodiscard]] std::optional<std::pair<DiscreteSlot, int>> switching(std::size_t function) const;
+  /// The event of the caller that a function is.
+  [[nodiscard]] const RunEvent& event(std::size_t function) const { return events_[function - switches_]; }
+  void remember(Memory& memory) { memory(signs_); }
+
+ private:
+  void evaluate(double t, std::span<const double> y, std::span<double> values) const;
+  /// Whether a function that has this sign now is to be noticed.
+  [[nodiscard]] bool noticed(std::size_t function, int direction) const;
+
+  const Model& model_;
+  std::span<const RunEvent> events_;
+  std::size_t switches_ = 0;
+  std::vector<DiscreteSlot> slots_;  ///< of loads with switching functions
+  std::vector<int> signs_;           ///< −1, 0, +1 at the last accepted state
+  std::vector<int> before_;
+  std::vector<double> values_, ends_;
+  std::vector<Zero> zeros_;
+  State inside_;
+};
+
+}  // namespace withy

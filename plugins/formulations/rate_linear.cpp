@@ -1,0 +1,15 @@
+/// \file
+/// The common simplification that drops all inertia forces that are products of speeds [Padilla & von Flotow 1989,
+/// section 3], with second-order kinematics in all else. It keeps no energy: it is there to be measured.
+#include "formulation_plugin.hpp"
+
+namespace {
+
+void enroll(withy::Enrollment& enrollment) {
+  withy::enroll_formulation<withy::Terms{withy::StrainOrder::quadratic, withy::Truncation::none, false}>(
+      enrollment, "rate-linear", "Second-order kinematics without Coriolis, centrifugal and gyroscopic terms");
+}
+
+}  // namespace
+
+WITHY_PLUGIN(rate_linear, enroll);

@@ -1,0 +1,155 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::vector<std::string> arm = {"advise", "scenes/driven-arm.yaml", "--set", "time.end=3"};
+
+Finished advise(const Folder& folder, std::vector<std::string> more, std::vector<std::string> first = arm) {
+  first.insert(first.end(), more.begin(), more.end());
+  return withy(folder, first);
+}
+
+/// The two-link arm driven hard: 1 % of its way is not to be had without the stiffening of link 2.
+TEST(Advise, PicksAModelWhoseErrorHoldsTheAccuracyAsCompareMeasuresIt) {
+  const Folder folder;
+  const Finished f = advise(folder, {"--accuracy", "1%", "--modes", "1,2", "--json"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json j = json::parse(f.out);
+  const json& advice = j.at("advice");
+  EXPECT_LE(advice.at("of_accuracy").get<double>() + j.at("reference").at("own_error_of_accuracy").get<double>(), 1.0);
+  std::vector<std::string> compare = {"compare", "scenes/driven-arm.yaml", "--set", "time.end=3",
+                                      "--json",  "--formulations",         "exact", "--reference"};
+  // The same error, as another command measures it: the scene as advised against `exact` with its modes.
+  compare.push_back(advice.at("formulation"));
+  for (const auto& o : advice.at("overrides")) {
+    compare.emplace_back("--set");
+    compare.push_back(o);
+  }
+  const json runs = json::parse(withy(folder, compare).out).at("runs");
+  const double allowed = j.at("reference").at("allowed").at("place");
+  for (const json& run : runs) {
+    if (run.at("formulation") != "exact") continue;
+    EXPECT_LE(run.at("distance").at("tips").at("payload.tip").get<double>(), 1.5 * allowed) << "modes are the same";
+  }
+}
+
+TEST(Advise, NothingCheaperAmongItsProbesPasses) {
+  const Folder folder;
+  const json j = json::parse(advise(folder, {"--accuracy", "0.5%", "--modes", "1,2", "--json"}).out);
+  const double cost = j.at("advice").at("cost_seconds");
+  for (const json& p : j.at("probes")) {
+    EXPECT_NE(p.at("formulation"), "inconsistent");
+    if (p.at("outcome") != "passed") continue;
+    EXPECT_GE(p.at("cost_seconds").get<double>(), 0.999 * cost);
+  }
+}
+
+TEST(Advise, AskedForLessItGivesAModelThatCostsLess) {
+  const Folder folder;
+  const auto evaluations = [&](const char* accuracy) {
+    return json::parse(advise(folder, {"--accuracy", accuracy, "--modes", "1,2", "--json"}).out)
+        .at("advice")
+        .at("cost_seconds")
+        .get<double>();
+  };
+  EXPECT_LT(evaluations("20%"), evaluations("0.1%"));
+}
+
+TEST(Advise, InconsistentIsNeverAdvised) {
+  const Folder folder;
+  const Finished f = advise(folder, {"--formulations", "inconsistent,quadratic"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("'inconsistent' is never advised"));
+}
+
+TEST(Advise, AnAbsoluteAccuracyOfNamedOutputs) {
+  const Folder folder;
+  const Finished f =
+      advise(folder, {"--accuracy", "2mm,0.5deg", "--output", "payload.tip,elbow", "--modes", "1,2", "--json"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json j = json::parse(f.out);
+  EXPECT_EQ(j.at("outputs"), json({"payload.tip", "elbow"}));
+  EXPECT_DOUBLE_EQ(j.at("reference").at("allowed").at("place").get<double>(), 2e-3);
+  EXPECT_LE(j.at("advice").at("distances").at("place").get<double>(), 2e-3);
+  EXPECT_LE(j.at("advice").at("distances").at("angle").get<double>(), 0.5 * 3.14159266 / 180);
+}
+
+TEST(Advise, WhatCannotBeAskedIsBadInputAndSaysWhatCan) {
+  const Folder folder;
+  Finished f = advise(folder, {"--output", "elbow_tip"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("payload.tip"));
+  for (const char* accuracy : {"0", "-1%", "3 kg", "1%,2%", "150%"})
+    EXPECT_EQ(advise(folder, {"--accuracy", accuracy}).status, 2) << accuracy;
+  f = advise(folder, {"--accuracy", "1mm", "--output", "elbow"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("asks nothing"));
+}
+
+TEST(Advise, WhereNoCandidateHoldsTheAccuracyItSaysWhichIsNearest) {
+  const Folder folder;
+  const Finished f = advise(folder, {"--formulations", "ruthless", "--modes", "1", "--accuracy", "0.01%"});
+  EXPECT_EQ(f.status, 1);
+  EXPECT_EQ(f.out, "");
+  EXPECT_THAT(f.err, HasSubstr("none of the candidates holds 0.01 %"));
+}
+
+TEST(Advise, SaysInWordsWhyAndWhatIsLeftOut) {
+  const Folder folder;
+  const std::string out = advise(folder, {"--modes", "1,2"}).out;
+  for (const char* part : {"\nadvice ", "\nerror ", "\nwhy ", "ruthless: ", "\nleft out ", "\nnext up ", "\nmeasured ",
+                           "\nformulation: ", "\nintegrator: {name: "})
+    EXPECT_THAT(out, HasSubstr(part));
+}
+
+TEST(Advise, WritesTheSceneWithItsComments) {
+  const Folder folder;
+  const Finished f = advise(folder, {"--modes", "1", "--write", "advised.yaml", "--accuracy", "5%", "--json"},
+                            {"advise", "scenes/spin-up.yaml"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const std::string text = folder.read("advised.yaml");
+  EXPECT_THAT(text, HasSubstr("# Spin-up of a flexible blade"));
+  EXPECT_THAT(text, HasSubstr("# the moment it needs is axle.motion_effort"));
+  EXPECT_THAT(text, HasSubstr("modes: 1"));
+  const json advice = json::parse(f.out).at("advice");
+  // Running the file is running what was advised.
+  const json run = json::parse(withy(folder, {"run", "advised.yaml", "--json", "--estimate", "never"}).out);
+  EXPECT_EQ(run.at("formulation"), advice.at("formulation"));
+  EXPECT_EQ(run.at("integrator"), advice.at("integrator"));
+  EXPECT_EQ(run.at("evaluations"), advice.at("evaluations"));
+}
+
+TEST(Advise, WritesWhatTheSceneDoesNotSayYet) {
+  const Folder folder;
+  folder.write("bare.yaml",
+               "format: withy/1\n# a comment\nintegrator:\n  name: dopri5\n  rtol: 1e-9   # tight\ntime: {end: 1}\n"
+               "gravity: [0, -9.81, 0]\nbodies:\n  rod:\n    type: beam\n    length: 1\n    mass_per_length: 1\n"
+               "    bending_y:\n      stiffness: 20\n      modes: 3\nhinges:\n"
+               "  pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: rod}\n");
+  const Finished f = advise(folder, {"--write", "new.yaml", "--json"}, {"advise", "bare.yaml"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json advice = json::parse(f.out).at("advice");
+  const json run = json::parse(withy(folder, {"run", "new.yaml", "--json", "--estimate", "never"}).out);
+  EXPECT_EQ(run.at("evaluations"), advice.at("evaluations")) << folder.read("new.yaml");
+  EXPECT_THAT(folder.read("new.yaml"), HasSubstr("# a comment"));
+  EXPECT_THAT(folder.read("new.yaml"), Not(HasSubstr("1e-9")));
+}
+
+TEST(Advise, WritingAndSettingDoNotGoTogether) {
+  const Folder folder;
+  EXPECT_EQ(advise(folder, {"--modes", "1", "--accuracy", "20%", "--write", "x.yaml"}).status, 2);
+  EXPECT_EQ(folder.read("x.yaml"), "");
+}
+
+}  // namespace
+}  // namespace withy::test

@@ -1,0 +1,108 @@
+/// \file
+/// The campaign at the extremes: what is measured, against what, and the table it makes.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "withy/plugins/host/static_plugins.hpp"
+#include "withy/scene/scene.hpp"
+
+namespace withy::extremes {
+
+/// A line of the table: a figure measured beside the gate it has to pass.
+struct Row {
+  std::string extreme;
+  std::string oracle;
+  std::string gate;
+  std::string measured;
+  bool met = false;
+};
+
+class Campaign {
+ public:
+  explicit Campaign(bool quick) : quick_(quick) {}
+  /// Whether only what takes seconds is asked for.
+  [[nodiscard]] bool quick() const { return quick_; }
+  /// The extreme that the rows after this belong to.
+  void begin(std::string extreme) { extreme_ = std::move(extreme); }
+  void row(const std::string& what, const std::string& oracle, const std::string& gate, const std::string& measured,
+           bool met);
+  /// A figure that has to be at most its gate; NaN is not.
+  void at_most(const std::string& what, const std::string& oracle, double measured, double gate);
+  /// A gate without a figure: it holds, or `why` says what went wrong.
+  void holds(const std::string& what, const std::string& oracle, const std::string& gate, const std::string& why);
+  [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+
+ private:
+  bool quick_;
+  std::string extreme_;
+  std::vector<Row> rows_;
+};
+
+/// A named part of the campaign.
+struct Extreme {
+  const char* id;
+  const char* title;
+  void (*measure)(Campaign&);
+};
+
+/// All parts, in the order of the table.
+const std::vector<Extreme>& extremes();
+
+/// A scene made from text, with its equations of motion.
+struct Made {
+  Registry registry;
+  Scene scene;
+  std::unique_ptr<EquationsOfMotion> equations;
+  explicit Made(const std::string& text, const std::string& formulation = "", std::vector<std::string> overrides = {},
+                const std::string& file = "text") {
+    enroll_static_plugins(registry);
+    scene = parse_scene(text, file, registry, {formulation, "", std::move(overrides)});
+    equations = scene.formulation->compile(scene.model);
+  }
+  [[nodiscard]] const Model& model() const { return *scene.model; }
+  [[nodiscard]] const Layout& layout() const { return scene.model->layout(); }
+  /// Derivatives of y at the scene's initial state, or at another.
+  [[nodiscard]] std::vector<double> rates() const { return rates(scene.initial); }
+  [[nodiscard]] std::vector<double> rates(const State& state) const;
+  /// The same for the speeds alone.
+  [[nodiscard]] std::vector<double> accelerations() const { return accelerations(scene.initial); }
+  [[nodiscard]] std::vector<double> accelerations(const State& state) const;
+};
+
+/// An integrator with options as a scene gives them: "{name: rk4, step: 0.01}".
+std::shared_ptr<const Integrator> integrator(const std::string& options);
+/// Ids of all formulations.
+inline const std::vector<std::string> formulations = {"ruthless",  "inconsistent", "consistent",
+                                                      "quadratic", "linear",       "exact"};
+/// Text of a file; of a scene of the project.
+std::string text_of(const std::string& file);
+std::string scene_text(const std::string& name);
+/// Greatest difference of two lists over the greatest element of the second.
+double difference(const std::vector<double>& a, const std::vector<double>& b);
+/// CPU time of this thread [s].
+double cpu_seconds();
+
+// The parts.
+void high_modes(Campaign&);
+void tip_mass(Campaign&);
+void zeros(Campaign&);
+void spin(Campaign&);
+void buckling(Campaign&);
+void stability(Campaign&);
+void rigid_limit(Campaign&);
+void long_run(Campaign&);
+void chains(Campaign&);
+void rotations(Campaign&);
+void units(Campaign&);
+void invariance(Campaign&);
+void failures(Campaign&);
+void jumps(Campaign&);
+void denormals(Campaign&);
+void threads(Campaign&);
+
+}  // namespace withy::extremes

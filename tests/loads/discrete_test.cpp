@@ -1,0 +1,283 @@
+// Loads that change at instants alone: sampled controllers and relays.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <optional>
+
+#include "withy/tests/conformance/load_suite.hpp"
+#include "withy/tests/loads/load_plugins.hpp"
+#include "withy/tests/loads/scene_run.hpp"
+
+namespace withy {
+namespace {
+
+using testing::HasSubstr;
+
+// J = 0.2.
+const std::string turntable = R"(format: withy/1
+time: {end: 2, output: 0.05}
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+)";
+
+std::unique_ptr<Load> load(const std::string& id, std::vector<Value::Member> given) {
+  Registry registry = load_registry();
+  return make_plugin<Load>(registry, id, std::move(given));
+}
+
+const std::string sampled_feedback = turntable + R"(loads:
+  control: {type: pd-controller, law: constant, sample: 0.03, hinges: {axle: {to: 0.5, stiffness: 5, damping: 0.4}}}
+)";
+
+// Between two samples the held effort τ gives x + v s + τ s²/2J: the loop of digital control, exactly.
+TEST(SampledController, moves_as_its_difference_equation) {
+  const double J = 0.2, period = 0.03;
+  for (const char* integrator : {"{name: dopri5, rtol: 1e-10, atol: 1e-12}", "{name: rk4, step: 0.007}", "dop853"}) {
+    test::LoadedScene s(sampled_feedback, {std::string("integrator=") + integrator});
+    double x = 0, v = 0, tau = 0, last = 0;
+    int next = 0;
+    for (const State& state : s.run()) {
+      for (; next * period <= state.time; ++next) {
+        const double h = next * period - last;
+        x += h * v + h * h / (2 * J) * tau;
+        v += h / J * tau;
+        tau = 5 * (0.5 - x) - 0.4 * v;
+        last = next * period;
+      }
+      const double s_ = state.time - last;
+      EXPECT_NEAR(s.position(state, "axle"), x + s_ * v + s_ * s_ / (2 * J) * tau, 1e-12) << integrator;
+      EXPECT_NEAR(s.rate(state, "axle"), v + s_ / J * tau, 1e-12) << integrator;
+    }
+    EXPECT_TRUE(s.summary.suspected_jumps.empty());
+  }
+}
+
+// Against the stability limit of the sampled loop with damping alone: v → (1 − c h / J) v, stable for h < 2J/c = 1 s.
+TEST(SampledController, loses_stability_where_its_difference_equation_does) {
+  const auto last_rate = [](const char* sample) {
+    test::LoadedScene s(turntable + R"(loads:
+  brake: {type: pd-controller, law: constant, sample: 1, hinges: {axle: {stiffness: 0, damping: 0.4}}}
+)",
+                        {std::string("loads.brake.sample=") + sample, "time.end=40", "time.output=40",
+                         "initial={hinges: {axle: {rate: [1]}}}"});
+    return std::abs(s.rate(s.run().back(), "axle"));
+  };
+  EXPECT_LT(last_rate("0.98"), 0.3);
+  EXPECT_GT(last_rate("1.02"), 2.0);  // 1.04³⁹ = 4.6 at the sample before
+}
+
+TEST(SampledController, approaches_the_continuous_one_as_its_period_shrinks) {
+  const auto end = [](const std::vector<std::string>& overrides) {
+    test::LoadedScene s(sampled_feedback, overrides);
+    return s.position(s.run().back(), "axle");
+  };
+  test::LoadedScene continuous(turntable + R"(loads:
+  control: {type: pd-controller, law: constant, hinges: {axle: {to: 0.5, stiffness: 5, damping: 0.4}}}
+)");
+  const double limit = continuous.position(continuous.run().back(), "axle");
+  const double coarse = std::abs(end({"loads.control.sample=4e-3"}) - limit);
+  const double fine = std::abs(end({"loads.control.sample=1e-3"}) - limit);
+  // A hold delays by half a period: an error of first order.
+  EXPECT_NEAR(coarse / fine, 4, 0.2);
+}
+
+TEST(SampledController, computed_torque_holds_the_efforts_of_its_samples) {
+  test::LoadedScene s(turntable + R"(loads:
+  control: {type: computed-torque, law: constant, sample: 0.1, bandwidth: 2, damping_ratio: 1, hinges: {axle: {to: 0.5}}}
+)");
+  const auto work = std::make_unique<Work>(s.equations->make_work());
+  std::vector<double> before;
+  for (const State& state : s.run()) {
+    std::vector<double> efforts(1);
+    s.equations->load_efforts(state.time, state.y, EquationsOfMotion::all_loads, efforts, *work);
+    // The output at an instant shows what was held until then; the last state has passed it.
+    if (state.time > 0 && state.time < 2 && std::lround(state.time / 0.05) % 2 == 0) {
+      EXPECT_EQ(efforts, before) << state.time;
+    }
+    // At rest the inverse dynamics asks for J ω² (x_r − x).
+    if (state.time == 0) {
+      EXPECT_NEAR(efforts[0], 0.2 * 4 * 0.5, 1e-12);
+    }
+    before = efforts;
+    EXPECT_EQ(s.equations->system(state.time, state.y).applied, efforts);
+  }
+}
+
+TEST(SampledController, conforms_to_the_suite) {
+  const test::LoadedScene s(sampled_feedback);
+  test::expect_load_conforms(
+      *load("pd-controller", {{"law", Value(std::string("constant"))},
+                              {"time_scale", Value(1.0)},
+                              {"sample", Value(0.1)},
+                              {"hinges", Value::map({{"axle", Value::map({{"component", Value(0.0)},
+                                                                          {"stiffness", Value(5.0)},
+                                                                          {"damping", Value(1.0)}})}})}}),
+      *s.scene.model);
+}
+
+// Pulses of a constant effort between the zeros of s = x: all arcs are parabolas. From x = 0.5 at rest, −τ until
+// x = off, then coasting at v = −√(2 τ/J (x₀ − off)) to x = −on, braking there and back, and so on between the two.
+TEST(HingeRelay, switches_where_its_signal_says) {
+  test::LoadedScene s(turntable + R"(loads:
+  jets: {type: hinge-relay, hinge: axle, effort: 0.1, on: 0.1, off: 0.02}
+initial: {hinges: {axle: {position: [0.5]}}}
+events:
+  off: {hinge: axle, value: 0.02, direction: down}
+  reversed: {hinge: axle, value: -0.1, direction: down}
+  turned: {hinge: axle, of: rate, direction: up}
+)",
+                      {"time.end=6"});
+  s.run();
+  const double a = 0.1 / 0.2;
+  const double t_off = std::sqrt(2 * 0.48 / a), v = a * t_off, t_on = t_off + 0.12 / v, t_turn = t_on + v / a;
+  ASSERT_GE(s.summary.events.size(), 3U);
+  const std::vector<std::pair<const char*, double>> expected = {{"off", t_off}, {"reversed", t_on}, {"turned", t_turn}};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(s.summary.events[i].name, expected[i].first);
+    EXPECT_NEAR(s.summary.events[i].time, expected[i].second, 1e-9);
+  }
+  EXPECT_GT(s.summary.switchings, 3U);
+  EXPECT_LT(s.summary.energy_drift, 1e-9);
+}
+
+// s = x + T ẋ with T > 0 takes energy out until the motion is a limit cycle within the dead zone.
+TEST(HingeRelay, with_a_rate_comes_to_rest_within_its_dead_zone) {
+  test::LoadedScene s(turntable + R"(loads:
+  jets: {type: hinge-relay, hinge: axle, effort: 0.1, on: 0.1, off: 0.02, rate_time: 1}
+initial: {hinges: {axle: {position: [0.5]}}}
+)",
+                      {"time.end=60"});
+  for (const State& state : s.run()) {
+    if (state.time < 20) continue;
+    EXPECT_LT(std::abs(s.position(state, "axle") + s.rate(state, "axle")), 0.1 + 1e-9);
+  }
+}
+
+TEST(HingeRelay, conforms_to_the_suite) {
+  const test::LoadedScene s(turntable);
+  test::expect_load_conforms(*load("hinge-relay", {{"hinge", Value(std::string("axle"))},
+                                                   {"component", Value(0.0)},
+                                                   {"effort", Value(1.0)},
+                                                   {"target", Value(0.0)},
+                                                   {"rate_time", Value(0.0)},
+                                                   {"on", Value(0.2)},
+                                                   {"off", Value(0.1)}}),
+                             *s.scene.model);
+}
+
+TEST(HingeRelay, without_hysteresis_is_refused) {
+  EXPECT_THAT(test::problem_of(turntable + R"(loads:
+  jets: {type: hinge-relay, hinge: axle, effort: 0.1, on: 0.1, off: 0.1}
+)"),
+              HasSubstr("not below 'on'"));
+}
+
+// A falling weight passes x = −½ g t²: known to the accuracy of the dense output, and known exactly where it stops.
+TEST(Events, are_found_where_they_are_and_do_not_change_the_run) {
+  const std::string falling = R"(format: withy/1
+gravity: [0, 0, -9.81]
+time: {end: 2, output: 0.5}
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+bodies: {weight: {type: rigid, mass: 1}}
+hinges: {rail: {type: prismatic, axis: [0, 0, 1], parent: world, child: weight}}
+)";
+  test::LoadedScene plain(falling);
+  const State undisturbed = plain.run().back();
+  test::LoadedScene watched(falling + R"(events:
+  fifth: {hinge: rail, value: -5, direction: down}
+  never: {hinge: rail, value: -5, direction: up}
+  fast: {hinge: rail, of: rate, value: -9.81}
+)");
+  EXPECT_EQ(watched.run().back().y, undisturbed.y);
+  ASSERT_EQ(watched.summary.events.size(), 2U);
+  EXPECT_EQ(watched.summary.events[0].name, "fast");
+  EXPECT_NEAR(watched.summary.events[0].time, 1, 1e-9);
+  EXPECT_NEAR(watched.summary.events[1].time, std::sqrt(2 * 5 / 9.81), 1e-9);
+  EXPECT_EQ(watched.summary.events[1].direction, -1);
+
+  test::LoadedScene stopped(falling + R"(events:
+  fifth: {hinge: rail, value: -5, stop: true}
+)");
+  const State last = stopped.run().back();
+  EXPECT_NEAR(last.time, std::sqrt(2 * 5 / 9.81), 1e-9);
+  EXPECT_NEAR(stopped.position(last, "rail"), -5, 1e-9);
+  EXPECT_EQ(stopped.summary.events.size(), 1U);
+  EXPECT_THAT(stopped.summary.message, HasSubstr("The event 'fifth' ended the run"));
+}
+
+TEST(Events, of_hinges_that_are_not_there_are_bad_input) {
+  EXPECT_THAT(test::problem_of(turntable + "events: {e: {hinge: axel}}\n"), HasSubstr("did you mean 'axle'"));
+  EXPECT_THAT(test::problem_of(turntable + "events: {e: {hinge: axle, component: 1}}\n"), HasSubstr("no component 1"));
+}
+
+// Put down again and again and taken up anew, a run with samples, a relay, events and a beam gives the same bits.
+TEST(Checkpoints, let_a_run_go_on_bit_by_bit) {
+  const std::string text = R"(format: withy/1
+time: {end: 2, output: 0.05}
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}
+  boom: {type: beam, length: 1, mass_per_length: 0.5, bending_y: {stiffness: 3, modes: 2}, damping_ratio: 0.01}
+  turret: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.1, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub, child: boom}
+  ball: {type: spherical, parent: boom.tip, child: turret}
+loads:
+  control: {type: pd-controller, law: quintic, duration: 1.5, sample: 0.03, hinges: {axle: {to: 1, stiffness: 5, damping: 1}}}
+  push: {type: hinge-effort, hinge: ball, component: 2, law: steps, table: [[0.2, 0.05], [0.9, 0]]}
+events:
+  half: {hinge: axle, value: 0.5}
+  back: {hinge: axle, of: rate, direction: down}
+)";
+  for (const char* integrator : {"{name: dopri5, rtol: 1e-6, atol: 1e-8}", "{name: rk4, step: 0.01}", "dop853",
+                                 "rosenbrock-w", "rk4-adaptive"}) {
+    test::LoadedScene s(text, {std::string("integrator=") + integrator});
+    const std::vector<State> whole = s.run();
+    const RunSummary uninterrupted = s.summary;
+    EXPECT_FALSE(uninterrupted.events.empty());
+    std::vector<State> outputs;
+    std::size_t put_down_at = 0, pieces = 0;
+    std::optional<Checkpoint> stored;
+    RunSummary summary;
+    do {
+      const std::optional<Checkpoint> resumed = stored;
+      outputs.resize(put_down_at);  // without the last state of the interrupted piece, which is no output of the whole
+      RunOptions options;
+      options.end = end_of_run(s.scene);
+      options.output = s.scene.output;
+      options.events = s.scene.events;
+      options.resume = resumed ? &*resumed : nullptr;
+      int steps = 0;
+      options.interrupted = [&] { return steps++ == 7; };
+      options.checkpoint = [&](const Checkpoint& c) {
+        stored = c;
+        put_down_at = outputs.size();
+      };
+      summary = simulate(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options,
+                         [&](const State& state) { outputs.push_back(state); });
+      ++pieces;
+    } while (summary.status == RunStatus::interrupted && pieces < 10'000);
+    EXPECT_GT(pieces, 4U) << integrator;
+    ASSERT_EQ(outputs.size(), whole.size()) << integrator;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      EXPECT_EQ(outputs[i].time, whole[i].time);
+      EXPECT_EQ(outputs[i].y, whole[i].y) << integrator << " at " << whole[i].time;
+    }
+    EXPECT_EQ(summary.steps.evaluations, uninterrupted.steps.evaluations);
+    EXPECT_EQ(summary.steps.rejected, uninterrupted.steps.rejected);
+    EXPECT_EQ(summary.peak_effort, uninterrupted.peak_effort);
+    EXPECT_EQ(summary.peak_deflection, uninterrupted.peak_deflection);
+    EXPECT_EQ(summary.energy_drift, uninterrupted.energy_drift);
+    EXPECT_EQ(summary.validity.samples, uninterrupted.validity.samples);
+    EXPECT_EQ(summary.suspected_jumps, uninterrupted.suspected_jumps);
+    ASSERT_EQ(summary.events.size(), uninterrupted.events.size());
+    for (std::size_t i = 0; i < summary.events.size(); ++i) {
+      EXPECT_EQ(summary.events[i].name, uninterrupted.events[i].name);
+      EXPECT_EQ(summary.events[i].time, uninterrupted.events[i].time);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace withy

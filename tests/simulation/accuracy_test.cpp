@@ -1,0 +1,77 @@
+/// \file
+/// What accuracy the mass matrix leaves to be had: against closed forms, whatever the units.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "made_scene.hpp"
+#include "withy/core/simulation/accuracy.hpp"
+
+namespace withy {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+// Two coordinates coupled to c of the geometric mean of their inertias: eigenvalues 1 ± c, whatever their units.
+TEST(Accuracy, the_condition_does_not_depend_on_units) {
+  const double c = 0.999;
+  for (const double unit : {1.0, 1e-6, 39.37}) {
+    const DenseSystem system{2, {4, 2 * c * unit, 2 * c * unit, unit * unit}, {0, 0}, {0, 0}};
+    const AttainableAccuracy a = attainable_accuracy(system);
+    EXPECT_NEAR(a.condition, (1 + c) / (1 - c), 1e-9 * a.condition);
+    EXPECT_NEAR(a.share, 1 - c, 1e-12);
+    EXPECT_NEAR(a.accuracy / a.condition, std::ldexp(1.0, -52), 1e-30);
+    EXPECT_NEAR(std::abs(a.weakest[0]), std::sqrt(0.5), 1e-9);
+  }
+  EXPECT_EQ(attainable_accuracy({2, {4, 0, 0, 1}, {0, 0}, {0, 0}, {{0, 0}}}).condition, 1) << "prescribed";
+  EXPECT_TRUE(std::isinf(attainable_accuracy({2, {4, 0, 0, 0}, {0, 0}, {0, 0}}).condition));
+}
+
+const std::string arm =
+    "format: withy/1\ntime: {end: 1}\nbodies:\n"
+    "  link: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 1, modes: 3}}\n"
+    "  load: {type: rigid, mass: 1e6}\nhinges:\n"
+    "  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: link}\n"
+    "  tip: {type: weld, parent: link.tip, child: load}\n";
+
+// Hinge and modes all move the heavy tip: of four directions three are nearly massless.
+TEST(Accuracy, nearly_massless_directions_are_found_named_and_valued) {
+  const test::Made made(arm);
+  const DenseSystem system = made.equations->system(0, made.scene.initial.y);
+  const auto massless = massless_directions(*made.scene.model, system, 1e-3);
+  ASSERT_EQ(massless.size(), 3);
+  for (const MasslessDirection& d : massless) {
+    EXPECT_GT(d.share, 0);
+    EXPECT_LT(d.share, 1e-6) << "of the order of the beam's mass over its load's";
+    EXPECT_GT(d.frequency, 10);
+    EXPECT_THAT(d.owners, HasSubstr("'link'"));
+  }
+  const auto removal = best_removal(*made.scene.model, system);
+  ASSERT_TRUE(removal);
+  EXPECT_EQ(removal->mode, "link.bending_y[3]");
+  EXPECT_LT(removal->condition, attainable_accuracy(system).condition);
+}
+
+TEST(Accuracy, a_tolerance_below_what_can_be_had_is_refused_with_the_reason) {
+  const test::Made made(arm);
+  const AttainableAccuracy a = attainable_accuracy(made.equations->system(0, made.scene.initial.y));
+  const auto why = [&](double tolerance) {
+    return unattainable(*made.scene.model, *made.equations, made.scene.initial, tolerance);
+  };
+  EXPECT_EQ(why(1.01 * a.accuracy), "");
+  EXPECT_THAT(why(0.99 * a.accuracy), AllOf(HasSubstr("modes of 'link'"), HasSubstr("hinge 'axle'"),
+                                            HasSubstr("without link.bending_y[3] the condition is")));
+}
+
+// A point on a tilted axis: rounding leaves an inertia that is not zero.
+TEST(Accuracy, a_hinge_that_turns_nothing_is_refused_and_its_body_named) {
+  const test::Made made(
+      "format: withy/1\ntime: {end: 1}\nbodies:\n  bob: {type: rigid, mass: 2, center_of_mass: [0.37, 0.74, 1.11]}\n"
+      "hinges: {pin: {type: revolute, axis: [1, 2, 3], parent: world, child: bob}}\n");
+  EXPECT_THAT(unattainable(*made.scene.model, *made.equations, made.scene.initial, 1.0),
+              AllOf(HasSubstr("singular"), HasSubstr("pin.0"), HasSubstr("'bob'")));
+}
+
+}  // namespace
+}  // namespace withy
