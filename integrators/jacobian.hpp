@@ -16,6 +16,8 @@
 
 namespace withy {
 
+inline constexpr const char* missing_jacobian = "the formulation has no exact Jacobian: differences took its place";
+
 /// ∂f/∂y at the place where it was last found.
 class StepJacobian {
  public:
@@ -77,7 +79,7 @@ class StepJacobian {
   [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> matrix() const { return {values_.data(), size(), size()}; }
   [[nodiscard]] std::vector<std::string> remarks() const {
     if (!missing_) return {};
-    return {"the formulation has no exact Jacobian: differences took its place"};
+    return {missing_jacobian};
   }
 
  private:

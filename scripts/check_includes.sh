@@ -17,7 +17,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"
     may["plugins/host"] = inner "|withy/plugins/host/.*|fmt/.*|boost/.*|(sys/)?[a-z]+[.]h"
     may["bodies"] = inner "|withy/bodies/.*|fmt/.*|boost/math/.*"
-    may["integrators"] = inner "|withy/integrators/.*|fmt/.*"
+    may["integrators"] = inner "|withy/integrators/.*|fmt/.*|(cvode|nvector|sunmatrix|sunlinsol)/.*"
     may["loads"] = inner "|withy/loads/.*|fmt/.*"
     may["fem"] = inner "|withy/fem/.*|withy/bodies/modal/.*|fmt/.*|Spectra/.*"
     may["apps"] = ".*"
@@ -28,6 +28,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     only["CLI/"] = "apps"
     only["boost/dll"] = "plugins/host"
     only["Spectra/"] = "fem"
+    only["cvode/"] = "integrators"
   }
   function room_of(file,   parts) {
     split(file, parts, "/")

@@ -117,8 +117,10 @@ std::string step_limit_text(const StepLimit& s) {
   if (!s.limit) return fmt::format("mean step times fastest mode {:.2g}", s.product);
   if (std::isinf(*s.limit))
     return fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable at any step", s.cause(), s.product);
-  return fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}", s.cause(), s.product,
-                     *s.limit);
+  const std::string text = fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}",
+                                       s.cause(), s.product, *s.limit);
+  if (s.cause() != "stability") return text;
+  return text + fmt::format("; fewer modes allow longer steps than {:.2g} s, rosenbrock-w and radau any", s.mean);
 }
 
 ErrorEstimate estimate_error(const Engine& engine, const Beyond& beyond, const RunSummary& summary) {

@@ -2,6 +2,7 @@
 /// Stiff test equations with known solutions.
 #pragma once
 
+#include <Eigen/Dense>
 #include <cmath>
 
 #include "withy/tests/conformance/function_equations.hpp"

@@ -1,0 +1,281 @@
+/// \file
+/// CVODE of SUNDIALS (Hindmarsh et al., ACM Trans. Math. Software 31, 2005): multistep methods of variable order and
+/// step, backward differentiation (orders 1 to 5) or Adams–Moulton (1 to 12), with Newton's iteration.
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <stdexcept>
+
+#include "jacobian.hpp"
+#include "step_control.hpp"
+#include "withy/core/plugin/entry.hpp"
+
+namespace withy {
+namespace {
+
+struct CvodeOptions {
+  StepControl control;
+  bool stiff = true;
+  StepJacobian::Source jacobian = StepJacobian::Source::differences;
+};
+
+template <auto Free>
+struct Freed {
+  template <class T>
+  void operator()(T* p) const {
+    Free(p);
+  }
+};
+void free_context(SUNContext context) { SUNContext_Free(&context); }
+void free_memory(void* memory) { CVodeFree(&memory); }
+using Context = std::unique_ptr<_SUNContext, Freed<&free_context>>;
+using Vector = std::unique_ptr<_generic_N_Vector, Freed<&N_VDestroy>>;
+using Matrix = std::unique_ptr<_generic_SUNMatrix, Freed<&SUNMatDestroy>>;
+using LinearSolver = std::unique_ptr<_generic_SUNLinearSolver, Freed<&SUNLinSolFree>>;
+using CvodeMemory = std::unique_ptr<void, Freed<&free_memory>>;
+
+Context new_context() {
+  SUNContext context = nullptr;
+  if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
+  return Context(context);
+}
+
+class CvodeStepper final : public Stepper {
+ public:
+  CvodeStepper(const EquationsOfMotion& equations, const State& start, const CvodeOptions& options)
+      : equations_(equations),
+        linearization_(options.jacobian == StepJacobian::Source::exact ? equations.linearization() : nullptr),
+        missing_(options.jacobian == StepJacobian::Source::exact && linearization_ == nullptr),
+        options_(options),
+        work_(equations.make_work()),
+        context_(new_context()) {
+    place(start);
+    equations_.normalize(state_.y);
+    previous_ = state_.y;
+    const auto n = static_cast<sunindextype>(state_.y.size());
+    if (linearization_ != nullptr) jacobian_.resize((state_.y.size() - 1) * (state_.y.size() - 1));
+    y_.reset(N_VNew_Serial(n, context_.get()));
+    inside_.reset(N_VNew_Serial(n, context_.get()));
+    matrix_.reset(SUNDenseMatrix(n, n, context_.get()));
+    solver_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_.get()));
+    cvode_.reset(CVodeCreate(options.stiff ? CV_BDF : CV_ADAMS, context_.get()));
+    const Vector tolerance(N_VNew_Serial(n, context_.get()));
+    if (!y_ || !inside_ || !matrix_ || !solver_ || !cvode_ || !tolerance) throw std::bad_alloc();
+    N_VConst(options.control.atol, tolerance.get());
+    NV_Ith_S(tolerance.get(), n - 1) = 1e300;  // the work has no part in the error
+    std::copy(state_.y.begin(), state_.y.end(), N_VGetArrayPointer(y_.get()));
+    void* c = cvode_.get();
+    const StepControl& control = options.control;
+    const bool good =
+        CVodeSetErrFile(c, nullptr) == CV_SUCCESS &&  // outcomes tell
+        CVodeInit(c, &rates, state_.time, y_.get()) == CV_SUCCESS && CVodeSetUserData(c, this) == CV_SUCCESS &&
+        CVodeSVtolerances(c, control.rtol, tolerance.get()) == CV_SUCCESS &&
+        CVodeSetLinearSolver(c, solver_.get(), matrix_.get()) == CV_SUCCESS &&
+        (linearization_ == nullptr || CVodeSetJacFn(c, &exact_jacobian) == CV_SUCCESS) &&
+        CVodeSetMaxHnilWarns(c, -1) == CV_SUCCESS && CVodeSetInitStep(c, control.initial_step) == CV_SUCCESS &&
+        CVodeSetMinStep(c, control.min_step) == CV_SUCCESS &&
+        (!std::isfinite(control.max_step) || CVodeSetMaxStep(c, control.max_step) == CV_SUCCESS);
+    if (!good) throw std::runtime_error("CVODE does not take these options");
+  }
+
+  StepResult step(double t_limit) override {
+    if (!(t_limit > state_.time)) return {};
+    latest_ = std::nextafter(t_limit, state_.time);
+    if (begin_) {
+      std::copy(state_.y.begin(), state_.y.end(), N_VGetArrayPointer(y_.get()));
+      CVodeReInit(cvode_.get(), state_.time, y_.get());
+      begin_ = false;
+      failures_ = 0;
+    }
+    CVodeSetStopTime(cvode_.get(), t_limit);
+    failed_ = {};
+    double t = state_.time;
+    const int flag = CVode(cvode_.get(), t_limit, y_.get(), &t, CV_ONE_STEP);
+    count_rejections();
+    if (flag < 0) {
+      begin_ = true;
+      return failure();
+    }
+    const double* values = N_VGetArrayPointer(y_.get());
+    const double h = t - state_.time;
+    if (!(h > 0)) return failure();
+    previous_time_ = state_.time;
+    previous_ = state_.y;
+    state_.time = t;
+    std::copy_n(values, state_.y.size(), state_.y.begin());
+    equations_.normalize(state_.y);
+    statistics_.smallest_step = statistics_.accepted == 0 ? h : std::min(statistics_.smallest_step, h);
+    statistics_.largest_step = std::max(statistics_.largest_step, h);
+    ++statistics_.accepted;
+    statistics_.determinant_sign = sign_;
+    return {};
+  }
+
+  [[nodiscard]] const State& state() const override { return state_; }
+  [[nodiscard]] const StepStatistics& statistics() const override { return statistics_; }
+  void interpolate(double t, std::span<double> out) const override {
+    if (t >= state_.time) {
+      std::copy(state_.y.begin(), state_.y.end(), out.begin());
+    } else if (t <= previous_time_ || CVodeGetDky(cvode_.get(), t, 0, inside_.get()) != CV_SUCCESS) {
+      std::copy(previous_.begin(), previous_.end(), out.begin());
+    } else {
+      std::copy_n(N_VGetArrayPointer(inside_.get()), out.size(), out.begin());
+      equations_.normalize(out);
+    }
+  }
+  void restart() override { begin_ = true; }
+  void jump(const State& state) override {
+    place(state);
+    begin_ = true;
+  }
+  // CVODE keeps its history to itself, so that this stepper forgets it too when it is asked what it knows: both go on
+  // alike from here.
+  [[nodiscard]] std::vector<double> memory() const override {
+    begin_ = true;
+    Memory memory;
+    const_cast<CvodeStepper*>(this)->remember(memory);  // which only reads them, since it writes
+    return memory.numbers();
+  }
+  void resume(const State& state, std::span<const double> numbers) override {
+    place(state);
+    Memory memory(numbers);
+    remember(memory);
+    memory.finish();
+    begin_ = true;
+  }
+  [[nodiscard]] std::vector<std::string> remarks() const override {
+    if (!missing_) return {};
+    return {missing_jacobian};
+  }
+
+ private:
+  void place(const State& state) {
+    if (state.y.size() != equations_.size())
+      throw std::invalid_argument("the state has " + std::to_string(state.y.size()) + " numbers, the equations need " +
+                                  std::to_string(equations_.size()));
+    state_ = state;
+    previous_time_ = state.time;
+    previous_ = state.y;
+  }
+  void remember(Memory& memory) {
+    memory(statistics_.accepted);
+    memory(statistics_.rejected);
+    memory(statistics_.evaluations);
+    memory(statistics_.smallest_step);
+    memory(statistics_.largest_step);
+    memory(statistics_.determinant_sign);
+    memory(sign_);
+  }
+  void count_rejections() {
+    long errors = 0, unsolved = 0;
+    CVodeGetNumErrTestFails(cvode_.get(), &errors);
+    CVodeGetNumNonlinSolvConvFails(cvode_.get(), &unsolved);
+    statistics_.rejected += static_cast<std::size_t>(errors + unsolved - failures_);
+    failures_ = errors + unsolved;
+  }
+  /// The evaluations of the step that failed are to blame, if any did: with shorter and shorter steps CVODE itself
+  /// ends in complaints of many kinds.
+  [[nodiscard]] StepResult failure() const {
+    if (failed_.ok()) return {StepResult::Outcome::step_underflow, -1};
+    const bool singular = failed_.outcome == Evaluation::Outcome::singular;
+    return {singular ? StepResult::Outcome::singular : StepResult::Outcome::nonfinite, failed_.body};
+  }
+
+  /// A return of 1 asks CVODE for a shorter step.
+  static int rates(double t, N_Vector y, N_Vector y_dot, void* self) {
+    auto& s = *static_cast<CvodeStepper*>(self);
+    ++s.statistics_.evaluations;
+    const std::size_t n = s.state_.y.size();
+    double* f = N_VGetArrayPointer(y_dot);
+    Evaluation e = s.equations_.derivatives(std::min(t, s.latest_), {N_VGetArrayPointer(y), n}, {f, n}, s.work_);
+    if (e.ok()) {
+      double total = 0;
+      for (std::size_t i = 0; i < n; ++i) total += f[i] * 0.0;
+      if (total != 0.0) e = {Evaluation::Outcome::nonfinite, -1};
+    }
+    s.sign_ = e.determinant_sign;
+    if (e.ok()) return 0;
+    s.failed_ = e;
+    return 1;
+  }
+  static int exact_jacobian(double t, N_Vector y, N_Vector y_dot, SUNMatrix matrix, void* self, N_Vector, N_Vector,
+                            N_Vector) {
+    auto& s = *static_cast<CvodeStepper*>(self);
+    const std::size_t n = s.state_.y.size(), m = n - 1;
+    const Evaluation e = s.linearization_->jacobian(std::min(t, s.latest_), {N_VGetArrayPointer(y), n},
+                                                    {N_VGetArrayPointer(y_dot), n}, s.jacobian_);
+    if (!e.ok()) {
+      s.failed_ = e;
+      return 1;
+    }
+    SUNMatZero(matrix);
+    for (std::size_t j = 0; j < m; ++j)
+      std::copy_n(s.jacobian_.begin() + static_cast<std::ptrdiff_t>(j * m), m,
+                  SUNDenseMatrix_Column(matrix, static_cast<sunindextype>(j)));
+    return 0;
+  }
+
+  const EquationsOfMotion& equations_;
+  const Linearization* linearization_;
+  bool missing_;
+  CvodeOptions options_;
+  Work work_;
+  State state_;
+  double previous_time_ = 0;
+  std::vector<double> previous_, jacobian_;
+  StepStatistics statistics_;
+  double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which the step may evaluate
+  int sign_ = 1;
+  Evaluation failed_;           ///< the last evaluation that failed in this step
+  long failures_ = 0;           ///< of CVODE's, those counted
+  mutable bool begin_ = false;  ///< CVODE begins anew at state_
+  Context context_;
+  Vector y_, inside_;
+  Matrix matrix_;
+  LinearSolver solver_;
+  CvodeMemory cvode_;
+};
+
+class Cvode final : public Integrator {
+ public:
+  explicit Cvode(const CvodeOptions& options) : options_(options) {}
+  std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
+    return std::make_unique<CvodeStepper>(equations, state, options_);
+  }
+  /// The highest: the method chooses.
+  int order() const override { return options_.stiff ? 5 : 12; }
+
+ private:
+  CvodeOptions options_;
+};
+
+std::unique_ptr<Integrator> make(const Value& p, const MakeContext& context) {
+  const std::optional<StepControl> control = read_step_control(p, context);
+  if (!control) return nullptr;
+  return std::make_unique<Cvode>(CvodeOptions{*control, p.at("method").text() == "bdf", jacobian_source(p)});
+}
+
+std::vector<ParameterSpec> parameters() {
+  std::vector<ParameterSpec> all = step_control_parameters();
+  all.push_back(text("method", "backward differentiation, for what is stiff, or Adams-Moulton")
+                    .one_of({"bdf", "adams"})
+                    .otherwise("bdf"));
+  all.push_back(jacobian_parameter());
+  return all;
+}
+
+void enroll(Enrollment& enrollment) {
+  enrollment.add<Integrator>({.id = "cvode",
+                              .summary = "SUNDIALS CVODE: multistep methods of variable order, stiff or not",
+                              .parameters = parameters(),
+                              .make = &make});
+}
+
+}  // namespace
+}  // namespace withy
+
+WITHY_PLUGIN(cvode, withy::enroll);
