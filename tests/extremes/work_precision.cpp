@@ -9,14 +9,30 @@
 namespace withy::extremes {
 namespace {
 
-/// Error at the end over what the tolerance allows, 1 + |y|, of the worst coordinate or speed; NaN where the run fails.
-double error_of(const Made& made, const std::string& options, const std::vector<double>& reference) {
+constexpr std::size_t looks = 10;
+constexpr double end = 0.5;
+
+/// States at tenths of the way, on which the steps land; fewer where the run fails.
+std::vector<std::vector<double>> states(const Made& made, const std::string& options) {
   const auto stepper = integrator(options)->start(*made.equations, made.scene.initial);
-  if (drive(*stepper, 1, 100'000'000).outcome != StepResult::Outcome::ok) return std::nan("");
+  std::vector<std::vector<double>> found;
+  for (std::size_t i = 1; i <= looks; ++i) {
+    const double limit = end * static_cast<double>(i) / looks;
+    if (drive(*stepper, limit, 100'000'000).outcome != StepResult::Outcome::ok) break;
+    found.push_back(stepper->state().y);
+  }
+  return found;
+}
+
+/// Greatest error of a coordinate or speed over what the tolerance weighs it with, 1 + |y|.
+double error_of(const std::vector<std::vector<double>>& run, const std::vector<std::vector<double>>& reference) {
+  if (run.size() < looks || reference.size() < looks) return std::nan("");
   double worst = 0;
-  for (std::size_t i = 0; i + 1 < reference.size(); ++i) {
-    const double e = std::abs(stepper->state().y[i] - reference[i]) / (1 + std::abs(reference[i]));
-    if (!(e <= worst)) worst = e;
+  for (std::size_t k = 0; k < looks; ++k) {
+    for (std::size_t i = 0; i + 1 < run[k].size(); ++i) {
+      const double e = std::abs(run[k][i] - reference[k][i]) / (1 + std::abs(reference[k][i]));
+      if (!(e <= worst)) worst = e;
+    }
   }
   return worst;
 }
@@ -43,11 +59,11 @@ void work_precision(Campaign& campaign) {
     int compared = 0;
     for (const std::string& formulation : ids<Formulation>()) {
       if (campaign.quick() && formulation != "quadratic") continue;
-      const Made made(
-          pendulum, formulation,
-          {"bodies.arm.bending_y.modes=1", "bodies.arm.bending_y.stiffness=5", "initial.bodies.arm.modes=[0.01]"});
-      const auto reference = integrator(with_tolerance("dop853", 1e-14))->start(*made.equations, made.scene.initial);
-      drive(*reference, 1, 100'000'000);
+      // Of moderate deflection, so that no formulation leaves what it is made for.
+      const Made made(pendulum, formulation,
+                      {"bodies.arm.bending_y.modes=1", "initial.bodies.arm.modes=[0.01]", "bodies.bob.mass=0.1",
+                       "bodies.bob.inertia=[0.001, 0.001, 0.001, 0, 0, 0]"});
+      const auto reference = states(made, with_tolerance("dop853", 1e-14));
       const int order = integrator(asked ? with_tolerance(id, 1e-3) : equal_steps(id, 0.1))->order();
       std::vector<double> tolerances, errors;
       double greatest = 0;
@@ -58,8 +74,8 @@ void work_precision(Campaign& campaign) {
           // Without error control: steps whose error, of the method's order, is the tolerance times the same number.
           const double step = 0.02 * std::pow(10.0, -(k - 3.0) / order);
           const double e =
-              error_of(made, asked ? with_tolerance(id, tolerance) : equal_steps(id, step), reference->state().y);
-          monotone = monotone && (errors.empty() || e < errors.back());
+              error_of(states(made, asked ? with_tolerance(id, tolerance) : equal_steps(id, step)), reference);
+          monotone = monotone && (errors.empty() || e < errors.back() || e < 1e-13);
           tolerances.push_back(tolerance);
           errors.push_back(e);
           if (!(e / tolerance <= greatest)) greatest = e / tolerance;
