@@ -105,16 +105,23 @@ TradeStudy::TradeStudy(const SceneArguments& arguments, std::vector<TradePoint> 
   }
   fingerprint_ = fingerprint_of(
       fmt::format("{} {} {:g} {}", text_of(arguments.scene), modes, tolerance, joined(arguments.options.overrides)));
-  if (!options_.folder.empty()) find_finished();
+  find_finished(0);
 }
 
 TradeStudy::~TradeStudy() = default;
 
 const Json& TradeStudy::references() const { return shared_->told; }
 
-void TradeStudy::find_finished() {
+void TradeStudy::add(const TradePoint& point) {
+  points_.push_back(point);
+  finished_.emplace_back();
+  find_finished(points_.size() - 1);
+}
+
+void TradeStudy::find_finished(std::size_t first) {
+  if (options_.folder.empty()) return;
   std::filesystem::create_directories(options_.folder / "points");
-  for (std::size_t i = 0; i < points_.size(); ++i) {
+  for (std::size_t i = first; i < points_.size(); ++i) {
     const Json j = Json::parse(text_of(options_.folder / "points" / (points_[i].key() + ".json")), nullptr, false);
     if (j.is_discarded() || j.value("fingerprint", "") != fingerprint_) continue;
     finished_[i] = result_of(j, points_[i]);
@@ -263,6 +270,13 @@ bool TradeStudy::run() {
   if (terminal && done > 0) show("\r\033[K");
   if (failure) std::rethrow_exception(failure);
   return !interrupted();
+}
+
+const TradeResult* TradeStudy::result(const TradePoint& point) const {
+  const std::string key = point.key();
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (finished_[i] && points_[i].key() == key) return &*finished_[i];
+  return nullptr;
 }
 
 std::vector<TradeResult> TradeStudy::results() const {

@@ -49,10 +49,14 @@ class TradeStudy {
  public:
   TradeStudy(const SceneArguments& arguments, std::vector<TradePoint> points, TradeOptions options);
   ~TradeStudy();
+  /// One more point; it must not have more modes or a smaller tolerance than the others, on which the reference rests.
+  void add(const TradePoint& point);
   /// Runs what is not finished yet; false where the user interrupted. Results do not depend on the number of threads.
   bool run();
   /// Of the finished points, in their order.
   [[nodiscard]] std::vector<TradeResult> results() const;
+  /// Of that point; null where it is not among them or not finished.
+  [[nodiscard]] const TradeResult* result(const TradePoint& point) const;
   /// By the values gone over, joined with spaces.
   [[nodiscard]] const nlohmann::ordered_json& references() const;
   [[nodiscard]] const Engine& engine() const { return engine_; }
@@ -61,7 +65,7 @@ class TradeStudy {
   [[nodiscard]] TradeResult run_point(const TradePoint& point);
   [[nodiscard]] const TradeReference& reference_for(const TradePoint& point);
   [[nodiscard]] ComparedRun simulate(const TradePoint& point, double& cpu_seconds);
-  void find_finished();
+  void find_finished(std::size_t first);
   void keep(const TradeResult& result) const;
 
   struct Shared;
