@@ -196,6 +196,20 @@ void add_commands(Commands& commands) {
   c->add_option("--out", compare_arguments.out, "Folder for results and pictures; default: nothing is kept")
       ->type_name("DIR");
 
+  auto& inverse_arguments = commands.add<InverseArguments>(
+      "inverse", "Efforts that hinges need to follow their motions, flexible bodies swinging along",
+      "  withy inverse scenes/spin-up.yaml\n"
+      "  withy inverse scenes/two-link-slew.yaml --motion scenes/motions/two-link-pick.csv --set loads={} "
+      "--out results/pick",
+      inverse, c);
+  add_scene(*c, inverse_arguments);
+  add_formulation(*c, inverse_arguments);
+  c->add_option("--motion", inverse_arguments.motion,
+                "CSV file with columns t[s] and hinge coordinates, in the place of the scene's motions")
+      ->type_name("FILE");
+  c->add_option("--out", inverse_arguments.out, "Folder of the results; default: results/<scene>-inverse")
+      ->type_name("DIR");
+
   auto& terms_arguments =
       commands.add<TermsArguments>("terms", "Measure the terms of the equations of motion along a run",
                                    "  withy terms scenes/two-link-slew.yaml\n"

@@ -44,6 +44,11 @@ struct CompareArguments : SceneArguments {
   std::string out;                      ///< folder of the results; empty: none are kept
 };
 
+struct InverseArguments : SceneArguments {
+  std::string motion;  ///< file with hinge coordinates over time; empty: the scene's motions
+  std::string out;     ///< folder of the results; empty: results/<scene>-inverse
+};
+
 struct TermsArguments : SceneArguments {
   std::string out;  ///< folder of the results; empty: none are kept
 };
@@ -133,6 +138,7 @@ struct PluginsArguments : CommonArguments {
 
 ExitStatus run(const RunArguments& arguments);
 ExitStatus compare(const CompareArguments& arguments);
+ExitStatus inverse(const InverseArguments& arguments);
 ExitStatus terms(const TermsArguments& arguments);
 ExitStatus trade(const TradeArguments& arguments);
 ExitStatus advise(const AdviseArguments& arguments);

@@ -115,8 +115,9 @@ std::string csv_text(const std::vector<TradeResult>& results, const std::vector<
 std::string picture(const std::string& title, const std::vector<TradeResult>& results, const std::vector<bool>& front) {
   std::vector<std::string> legend;
   std::map<std::string, std::size_t> pens;
-  for (const TradeResult& r : results)
-    if (r.completed() && pens.emplace(r.point.formulation, legend.size()).second) legend.push_back(r.point.formulation);
+  for (const TradeResult& r :
+       results)  // those that failed too: a colour means the same in every study of the same list
+    if (pens.emplace(r.point.formulation, legend.size()).second) legend.push_back(r.point.formulation);
   const std::size_t line = legend.size();
   legend.emplace_back("Pareto front");
   std::vector<std::string> overs;
@@ -170,11 +171,13 @@ ExitStatus trade(const TradeArguments& arguments) {
     j["points"].push_back(result_json(results[i]));
     j["points"].back()["pareto"] = static_cast<bool>(front[i]);
   }
-  std::string text = arguments.json ? json_text(j)
-                                    : title + "\n\n" + table_text(results, front) +
-                                          "\n*: no other point is both more accurate and cheaper. Error "
-                                          "in % of the greatest way of a hinge or tip.\n" +
-                                          references_text(study.references()) + reasons_text(results);
+  std::string text =
+      arguments.json
+          ? json_text(j)
+          : title + "\n\n" + table_text(results, front) +
+                "\n*: no other point is both more accurate, as far as the reference can tell, and cheaper. Error "
+                "in % of the greatest way of a hinge or tip.\n" +
+                references_text(study.references()) + reasons_text(results);
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
     write_file(folder / "trade.json", json_text(j));

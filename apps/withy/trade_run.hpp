@@ -26,6 +26,7 @@ struct TradeResult {
   double relative_error = 0;  ///< the greater of both, over the greatest way that a hinge or tip goes in the reference
   double cpu_seconds = 0;
   std::size_t steps = 0, evaluations = 0;
+  double reference_error = 0;  ///< of its reference, relative: errors below it cannot be told apart
   [[nodiscard]] bool completed() const { return status == "completed"; }
 };
 nlohmann::ordered_json result_json(const TradeResult& result);
@@ -78,7 +79,7 @@ class TradeStudy {
   std::unique_ptr<Shared> shared_;
 };
 
-/// Whether no other completed point is both more accurate and cheaper.
+/// Whether no other completed point is both more accurate, as far as its reference can tell, and cheaper.
 std::vector<bool> pareto_front(const std::vector<TradeResult>& results);
 
 }  // namespace withy::app
