@@ -238,8 +238,8 @@ std::string picture(const std::string& title, const std::vector<Row>& rows, cons
     const auto m = static_cast<std::size_t>(std::find(modes.begin(), modes.end(), row.mode) - modes.begin());
     if (m == modes.size()) {
       modes.push_back(row.mode);
-      panels.push_back({q.range.path,
-                        "log10 error [%]" + (row.mode.empty() ? "" : " of " + row.mode),
+      panels.push_back({q.range.path + (row.mode.empty() ? "" : ", frequency of " + row.mode),
+                        "log10 error [%]",
                         {std::log10(100 * q.limit) - 3, std::log10(100 * q.limit) + 2},
                         {}});
     }

@@ -59,44 +59,66 @@ TEST(Inverse, OfAPendulumIsTheClosedForm) {
   EXPECT_NEAR(std::abs(json::parse(f.out).at("drives").at("pivot.0").at("peak_effort").get<double>()), peak, 2e-3);
 }
 
-/// A run of the driven arm under its torques 20 sin(2πt/5) and −4 sin(2πt/2.5) N m, in `forward`.
-void drive_arm(const Folder& folder) {
-  const Finished f = withy(folder, {"run", "scenes/driven-arm.yaml", "--set", "time.end=2", "--set",
-                                    "time.output=0.004", "--out", "forward", "--estimate", "never"});
-  ASSERT_EQ(f.status, 0) << f.err;
+/// Of the driven arm, one mode a link: time and resolution of what follows.
+std::vector<std::string> arm(const std::string& command, const std::string& step, std::vector<std::string> more) {
+  more.insert(more.begin(), {command, "scenes/driven-arm.yaml", "--set", "time.end=1", "--set", "time.output=" + step,
+                             "--set", "bodies.link1.bending_y.modes=1", "--set", "bodies.link2.bending_y.modes=1"});
+  return more;
 }
 
-// Forward dynamics and back: the arm is led along the hinge angles that its torques gave, and needs these torques for
-// it, while its links bend as they did. What the splines through angles every 4 ms leave out are the fastest
-// vibrations.
-TEST(Inverse, GivesBackTheTorquesThatMadeTheMotion) {
+/// How far the torques come out from 20 sin(2πt/5) and −4 sin(2πt/2.5) N m, which made the motion, and the tip from
+/// where it was.
+struct RoundTrip {
+  double shoulder = 0, elbow = 0, tip = 0;
+};
+RoundTrip round_trip(const std::string& step) {
   const Folder folder;
-  ASSERT_NO_FATAL_FAILURE(drive_arm(folder));
-  const Finished f = withy(folder, {"inverse", "scenes/driven-arm.yaml", "--motion", "forward/results.csv", "--set",
-                                    "loads={}", "--set", "time.output=0.004", "--out", "back"});
-  ASSERT_EQ(f.status, 0) << f.err;
+  RoundTrip worst;
+  const Finished there = withy(folder, arm("run", step, {"--out", "forward", "--estimate", "never"}));
+  EXPECT_EQ(there.status, 0) << there.err;
+  const Finished f =
+      withy(folder, arm("inverse", step, {"--motion", "forward/results.csv", "--set", "loads={}", "--out", "back"}));
+  EXPECT_EQ(f.status, 0) << f.err;
+  if (f.status != 0) return worst;
   EXPECT_THAT(f.out, HasSubstr("elbow.0"));
   EXPECT_THAT(folder.read("back/inverse.svg"), HasSubstr("</svg>"));
   const auto forward = columns(folder.read("forward/results.csv")), back = columns(folder.read("back/results.csv"));
   const auto& t = back.at("t[s]");
-  ASSERT_EQ(t.size(), forward.at("t[s]").size());
+  EXPECT_EQ(t.size(), forward.at("t[s]").size());
+  const auto raise = [](double& most, double error) { most = std::max(most, std::abs(error)); };
   for (std::size_t i = 0; i < t.size(); ++i) {
     const double turn = 2 * std::numbers::pi * t[i];
-    EXPECT_NEAR(back.at("shoulder.motion_effort[N m]")[i], 20 * std::sin(turn / 5), 0.1) << t[i];
-    EXPECT_NEAR(back.at("elbow.motion_effort[N m]")[i], -4 * std::sin(turn / 2.5), 0.02) << t[i];
+    raise(worst.shoulder, back.at("shoulder.motion_effort[N m]")[i] - 20 * std::sin(turn / 5));
+    raise(worst.elbow, back.at("elbow.motion_effort[N m]")[i] + 4 * std::sin(turn / 2.5));
     for (const char* tip : {"payload.tip.x[m]", "payload.tip.y[m]"})
-      EXPECT_NEAR(back.at(tip)[i], forward.at(tip)[i], 1e-4) << t[i];
+      raise(worst.tip, back.at(tip)[i] - forward.at(tip)[i]);
   }
+  return worst;
+}
+
+// Forward dynamics and back: led along the hinge angles that its torques gave, the arm needs these torques for it,
+// while its links bend as they did. Splines miss the second order in the step of what vibrates: measured 0.024 and
+// 0.0079 N m of 20 and 4, half the step makes a quarter of it.
+TEST(Inverse, GivesBackTheTorquesThatMadeTheMotion) {
+  const RoundTrip coarse = round_trip("0.004"), fine = round_trip("0.002");
+  EXPECT_LT(coarse.shoulder, 0.04);
+  EXPECT_LT(coarse.elbow, 0.012);
+  EXPECT_LT(coarse.tip, 2e-4);
+  EXPECT_GT(coarse.shoulder / fine.shoulder, 3);
+  EXPECT_GT(coarse.elbow / fine.elbow, 3);
+  EXPECT_GT(coarse.tip / fine.tip, 3);
 }
 
 TEST(Inverse, NeedsNothingBesideLoadsThatGiveTheMotionAlready) {
   const Folder folder;
-  ASSERT_NO_FATAL_FAILURE(drive_arm(folder));
-  const Finished f = withy(
-      folder, {"inverse", "scenes/driven-arm.yaml", "--motion", "forward/results.csv", "--out", "back", "--json"});
+  const Finished there = withy(folder, arm("run", "0.004", {"--out", "forward", "--estimate", "never"}));
+  ASSERT_EQ(there.status, 0) << there.err;
+  const Finished f = withy(folder, arm("inverse", "0.004", {"--motion", "forward/results.csv", "--json"}));
   ASSERT_EQ(f.status, 0) << f.err;
-  for (const auto& [name, drive] : json::parse(f.out).at("drives").items())
-    EXPECT_LT(std::abs(drive.at("peak_effort").get<double>()), 0.1) << name;
+  const json drives = json::parse(f.out).at("drives");
+  ASSERT_EQ(drives.size(), 2U);
+  for (const auto& [name, drive] : drives.items())
+    EXPECT_LT(std::abs(drive.at("peak_effort").get<double>()), 0.04) << name;
 }
 
 // Nothing is damped and nothing else acts: the work of the drive is the energy at the end.
