@@ -64,7 +64,9 @@ TEST(BeamElongation, rods_have_their_frequencies) {
 TEST(BeamElongation, clamped_loaded_rod_carries_a_mass) {
   const double EA = 5e4, tip = 0.7;
   Value s = strain(EA, 1);
-  s.set("family", Value::map({{"name", Value(std::string("clamped-loaded"))}, {"tip_mass", Value(tip)}, {"tip_offset", Value(0.0)}}));
+  s.set("family",
+        Value::map(
+            {{"name", Value(std::string("clamped-loaded"))}, {"tip_mass", Value(tip)}, {"tip_offset", Value(0.0)}}));
   const auto body = beam({{"extension", s}});
   const double phi = body->station(std::string("tip"))->phi(0, 0);
   const double omega = std::sqrt(body->shape().stiffness(0, 0) / (modal_mass(*body)(0, 0) + tip * phi * phi));

@@ -1,12 +1,10 @@
 /// \file
 /// withy-ill-conditioning: the mass matrix along the slew of the two-link arm, in each formulation and mode family, as
 /// pictures and tables for docs/ill-conditioning.md.
-#include <CLI/CLI.hpp>
 #include <Eigen/Dense>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <map>
 
 #include "campaign.hpp"
 #include "withy/apps/withy/svg_plot.hpp"
@@ -182,14 +180,12 @@ void put(const std::string& document, const std::string& mark, const std::string
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "The mass matrix of the two-link arm along its slew, 1.2 times as fast. Example:\n"
-      "  withy-ill-conditioning docs/ill-conditioning.md docs/pictures",
-      "withy-ill-conditioning");
-  std::string document, pictures;
-  app.add_option("document", document, "its tables are replaced")->required();
-  app.add_option("pictures", pictures, "folder of the pictures")->required();
-  CLI11_PARSE(app, argc, argv);
+  if (argc != 3) {
+    std::fprintf(stderr,
+                 "usage: withy-ill-conditioning DOCUMENT PICTURES, as docs/ill-conditioning.md docs/pictures\n");
+    return 2;
+  }
+  const std::string document = argv[1], pictures = argv[2];
   try {
     put(document, "courses", courses(pictures));
     put(document, "treatments", treatments());

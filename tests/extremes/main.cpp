@@ -1,11 +1,12 @@
 /// \file
 /// withy-extremes: measures every gate, prints the table, writes it into a document between its two marks.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <set>
+#include <sstream>
 
 #include "campaign.hpp"
 
@@ -42,18 +43,53 @@ using withy::extremes::Row;
 constexpr const char* first_mark = "<!-- table of the campaign: begin -->\n";
 constexpr const char* last_mark = "<!-- table of the campaign: end -->\n";
 
-std::string table(const std::vector<Row>& rows) {
+constexpr const char* usage =
+    "withy-extremes: measures withy at its extremes, each against its oracle\n"
+    "  --quick        what takes seconds alone, with shorter runs and fewer modes\n"
+    "  --list         ids of the parts\n"
+    "  --only ID      this part alone; may be given again\n"
+    "  --write FILE   a document whose table, between its two marks, is replaced, the lines of parts not measured "
+    "kept\n"
+    "Example: withy-extremes --write docs/extremes.md\n"
+    "Exit status 1 where a gate is missed.\n";
+
+/// Lines of the table by the title of their part.
+using Lines = std::map<std::string, std::vector<std::string>>;
+
+std::string line(const Row& r) {
   const auto cell = [](std::string text) {
     for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
     return text;
   };
+  return fmt::format("| {} | {} | {} | {} | {} |\n", cell(r.extreme), cell(r.oracle), cell(r.gate), cell(r.measured),
+                     r.met ? "met" : "**missed**");
+}
+
+/// The lines that a document has already: parts that are not measured keep theirs.
+Lines lines_in(const std::string& file) {
+  Lines lines;
+  std::istringstream text(withy::extremes::text_of(file));
+  for (std::string row; std::getline(text, row);) {
+    for (const auto& e : withy::extremes::extremes()) {
+      if (row.starts_with(std::string("| ") + e.title + ": ")) lines[e.title].push_back(row + '\n');
+    }
+  }
+  return lines;
+}
+
+std::string table(const Lines& lines) {
   std::string out = "| extreme | oracle | gate | measured | verdict |\n|---|---|---|---|---|\n";
-  for (const Row& r : rows)
-    out += fmt::format("| {} | {} | {} | {} | {} |\n", cell(r.extreme), cell(r.oracle), cell(r.gate), cell(r.measured),
-                       r.met ? "met" : "**missed**");
-  const auto met = std::count_if(rows.begin(), rows.end(), [](const Row& r) { return r.met; });
-  return out + fmt::format("\n{} gates, {} met, {} missed.\n", rows.size(), met,
-                           static_cast<std::ptrdiff_t>(rows.size()) - met);
+  std::size_t all = 0, missed = 0;
+  for (const auto& e : withy::extremes::extremes()) {
+    const auto part = lines.find(e.title);
+    if (part == lines.end()) continue;
+    for (const std::string& row : part->second) {
+      out += row;
+      ++all;
+      if (row.ends_with("| **missed** |\n")) ++missed;
+    }
+  }
+  return out + fmt::format("\n{} gates, {} met, {} missed.\n", all, all - missed, missed);
 }
 
 void write_into(const std::string& file, const std::string& content) {
@@ -69,18 +105,25 @@ void write_into(const std::string& file, const std::string& content) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "Measures withy at its extremes, each against its oracle. Example:\n"
-      "  withy-extremes --write docs/extremes.md",
-      "withy-extremes");
   bool quick = false, list = false;
   std::vector<std::string> only;
   std::string document;
-  app.add_flag("--quick", quick, "what takes seconds alone, with shorter runs and fewer modes");
-  app.add_flag("--list", list, "ids of the parts");
-  app.add_option("--only", only, "these parts alone, by id");
-  app.add_option("--write", document, "a document whose table, between its two marks, is replaced");
-  CLI11_PARSE(app, argc, argv);
+  for (int i = 1; i < argc; ++i) {
+    const std::string option = argv[i];
+    const bool value = i + 1 < argc;
+    if (option == "--quick") {
+      quick = true;
+    } else if (option == "--list") {
+      list = true;
+    } else if (option == "--only" && value) {
+      only.emplace_back(argv[++i]);
+    } else if (option == "--write" && value) {
+      document = argv[++i];
+    } else {
+      fmt::print(option == "--help" ? stdout : stderr, "{}", usage);
+      return option == "--help" ? 0 : 2;
+    }
+  }
   const std::set<std::string> chosen(only.begin(), only.end());
   withy::extremes::Campaign campaign(quick);
   std::size_t found = 0;
@@ -91,12 +134,20 @@ int main(int argc, char** argv) {
       ++found;
       campaign.begin(e.title);
       const auto began = std::chrono::steady_clock::now();
+      const std::size_t before = campaign.rows().size();
       e.measure(campaign);
+      // Part by part: a campaign that is stopped has not been for nothing.
+      if (!document.empty()) {
+        Lines lines = lines_in(document);
+        std::vector<std::string>& own = lines[e.title];
+        own.clear();
+        for (std::size_t i = before; i < campaign.rows().size(); ++i) own.push_back(line(campaign.rows()[i]));
+        write_into(document, table(lines));
+      }
       fmt::print("       {:.1f} s\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
     }
     if (list) return 0;
     if (found < chosen.size()) throw std::runtime_error("--only names a part that there is not; see --list");
-    if (!document.empty()) write_into(document, table(campaign.rows()));
   } catch (const std::exception& e) {
     fmt::print(stderr, "withy-extremes: {}\n", e.what());
     return 2;

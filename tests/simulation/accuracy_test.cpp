@@ -1,11 +1,12 @@
 /// \file
 /// What accuracy the mass matrix leaves to be had: against closed forms, whatever the units.
+#include "withy/core/simulation/accuracy.hpp"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "made_scene.hpp"
-#include "withy/core/simulation/accuracy.hpp"
 
 namespace withy {
 namespace {
