@@ -132,7 +132,7 @@ std::vector<std::string> stretches_text(const Engine& engine, const EscalatedRun
     std::string text = fmt::format("{} from {:.4g} to {:.4g} s", engine.rungs()[s.rung].name, s.start, s.end);
     if (!s.excess.empty()) {
       const Excess& e = s.excess.front();
-      text += e.limit > 0 ? fmt::format("; left since at {:.4g} s {} of '{}' is {:.2g}, limit {:.3g}", e.time,
+      text += e.limit > 0 ? fmt::format("; left since at {:.4g} s {} of '{}' is {:.3g}, limit {:.3g}", e.time,
                                         e.indicator, e.body, e.value, e.limit)
                           : "; left since " + e.indicator;
     }

@@ -76,7 +76,9 @@ TEST(Escalation, hands_over_before_an_output_is_past_a_limit) {
   LimitWatch watch(*l.made.scene.model);
   std::size_t ruthless = 0;
   for (std::size_t i = 0; i < l.outputs.size(); ++i) {
-    if (i > 0) EXPECT_GT(l.outputs[i].time, l.outputs[i - 1].time);
+    if (i > 0) {
+      EXPECT_GT(l.outputs[i].time, l.outputs[i - 1].time);
+    }
     if (l.of[i] != 0) continue;
     ++ruthless;
     EXPECT_TRUE(watch.excess(l.outputs[i], l.rungs[0], l.rungs[0].terms).empty()) << l.outputs[i].time;
