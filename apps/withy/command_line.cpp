@@ -173,10 +173,9 @@ void add_commands(Commands& commands) {
       ->capture_default_str();
 
   c->add_option("--checkpoint", run_arguments.checkpoint,
-                "Wall time between checkpoints; 0: only where the run is interrupted")
+                "Wall time between checkpoints; 0: only where the run is interrupted; default: 60")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+      ->check(CLI::NonNegativeNumber);
   c->add_flag("--resume", run_arguments.resume,
               "Go on from the checkpoint in the folder of the results: the same command as before, and this");
 

@@ -62,7 +62,7 @@ TEST_P(Formulations, without_modes_are_bitwise_the_same_rigid_body) {
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, Formulations,
                          testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact",
-                                         "rate-linear"));
+                                         "rate-linear", "auto"));
 
 struct Neglect {
   const char* formulation;
