@@ -60,6 +60,8 @@ class Advisor {
   const Probe& run(ProbedModel& model, const TradePoint& point, double most_use, double most_seconds);
   void note_unit_cost(const Probe& probe);
   void choose();
+  void simplify_bodies();
+  [[nodiscard]] bool allowed(const std::string& formulation) const;
   [[nodiscard]] double unit_cost(const TradePoint& point) const;
   ProbedModel& made(const TradePoint& point);
 
