@@ -160,7 +160,7 @@ void add_commands(Commands& commands) {
                                                    "  withy run scenes/two-link-slew.yaml\n"
                                                    "  withy run scenes/two-link-slew.yaml --formulation ruthless "
                                                    "--set loads.slew.time_scale=1.2 --out results/fast\n"
-                                                   "  withy run scenes/two-link-slew.yaml --resume",
+                                                   "  withy run scenes/two-link-slew.yaml --checkpoint 10",
                                                    run, c);
   add_scene(*c, run_arguments);
   add_formulation(*c, run_arguments);
