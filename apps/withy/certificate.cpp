@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string>
 
 #include "withy/apps/withy/columns.hpp"
 #include "withy/apps/withy/json_text.hpp"
@@ -153,7 +154,21 @@ StepLimit step_limit(const Integrator& integrator, double start, const RunSummar
   s.limit = integrator.stability_limit();
   if (summary.steps.accepted == 0) return s;
   s.mean = (summary.final.time - start) / static_cast<double>(summary.steps.accepted);
-  s.product = s.mean * summary.fastest_mode;
+  s.fastest = summary.fastest_mode;
+  s.product = s.mean * s.fastest;
+  return s;
+}
+
+StepLimit step_limit(const Engine& engine, const RunSummary& summary) {
+  StepLimit s = step_limit(*engine.scene().integrator, engine.scene().initial.time, summary);
+  if (s.cause() != "stability") return s;
+  const State& state = summary.final;
+  s.fewer = best_slowing(engine.model(), engine.equations().system(state.time, state.y));
+  // Those with error control, so that no step need be chosen. The first folds stiffness into a symmetric mass matrix.
+  for (const std::string id : {"rosenbrock-w", "radau"}) {
+    const bool able = id != "rosenbrock-w" || engine.equations().linearly_implicit() != nullptr;
+    if (able && engine.registry().find<Integrator>(id) != nullptr) s.unlimited.push_back(id);
+  }
   return s;
 }
 
@@ -161,10 +176,14 @@ std::string step_limit_text(const StepLimit& s) {
   if (!s.limit) return fmt::format("mean step times fastest mode {:.2g}", s.product);
   if (std::isinf(*s.limit))
     return fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable at any step", s.cause(), s.product);
-  const std::string text = fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}",
-                                       s.cause(), s.product, *s.limit);
-  if (s.cause() != "stability") return text;
-  return text + fmt::format("; fewer modes allow longer steps than {:.2g} s, rosenbrock-w and radau any", s.mean);
+  std::string text = fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}", s.cause(),
+                                 s.product, *s.limit);
+  if (s.fewer && s.fewer->fastest > 0 && s.fewer->fastest < s.fastest)
+    text +=
+        fmt::format("; without {} the fastest mode is {:.3g} rad/s in place of {:.3g}, for steps {:.2g} times as long",
+                    s.fewer->mode, s.fewer->fastest, s.fastest, s.fastest / s.fewer->fastest);
+  if (!s.unlimited.empty()) text += fmt::format("; no vibration limits the steps of {}", fmt::join(s.unlimited, ", "));
+  return text;
 }
 
 ErrorEstimate estimate_error(const Engine& engine, const EquationsOfMotion& used_equations, const Beyond& beyond,
@@ -251,12 +270,14 @@ Json certificate_json(const Engine& engine, const RunSummary& summary, const Evi
   } else {
     c["estimated_error"] = Json();
   }
-  const StepLimit s = step_limit(*engine.scene().integrator, engine.scene().initial.time, summary);
+  const StepLimit s = step_limit(engine, summary);
   c["steps"] = {{"limited_by", s.cause()},
                 {"mean", s.mean},
                 {"fastest_mode", summary.fastest_mode > 0 ? Json(summary.fastest_mode) : Json()},
                 {"step_times_fastest_mode", s.product > 0 ? Json(s.product) : Json()},
                 {"stability_limit", s.limit ? Json(*s.limit) : Json()}};
+  if (s.fewer) c["steps"]["fewer_modes"] = {{"without", s.fewer->mode}, {"fastest_mode", s.fewer->fastest}};
+  if (!s.unlimited.empty()) c["steps"]["unlimited_integrators"] = s.unlimited;
   c["indicators"] = Json::array();
   for (const Indicator& i : indicators(scene, summary, last_terms(engine, evidence)))
     c["indicators"].push_back({{"what", i.text}, {"value", i.value}, {"limit", i.limit}, {"beyond", i.meaning}});
@@ -286,7 +307,7 @@ std::string certificate_text(const Engine& engine, const RunSummary& summary, co
     line("binds", fmt::format("{}: {:.2g}, limit {:.3g}{}", first.text, first.value, first.limit,
                               first.use() > 1 ? "; beyond it " + first.meaning : ""));
   }
-  const StepLimit s = step_limit(*engine.scene().integrator, engine.scene().initial.time, summary);
+  const StepLimit s = step_limit(engine, summary);
   if (s.product > 0) line("steps", step_limit_text(s));
   return out;
 }

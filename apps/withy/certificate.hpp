@@ -5,9 +5,11 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "withy/apps/withy/beyond.hpp"
 #include "withy/apps/withy/comparison.hpp"
+#include "withy/core/simulation/accuracy.hpp"
 
 namespace withy::app {
 
@@ -38,14 +40,21 @@ std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary,
 /// What limited the steps of a run.
 struct StepLimit {
   double mean = 0;     ///< [s]
+  double fastest = 0;  ///< fastest mode [rad/s]
   double product = 0;  ///< mean step times the fastest mode; 0 where that is not known
   std::optional<double> limit;
+  /// What helps against stability: the mode without which the fastest vibration is slowest, and the integrators of
+  /// those there are that no vibration limits and that can integrate these equations. Empty where nothing is proposed.
+  std::optional<Slowing> fewer;
+  std::vector<std::string> unlimited;
   /// "stability", "accuracy" or "unknown". Error control that meets the limit goes to and fro about it, so the mean
   /// stays a little below.
   [[nodiscard]] std::string cause() const;
 };
-/// Of a run from a time `start` [s].
+/// Of a run from a time `start` [s], without proposals.
 StepLimit step_limit(const Integrator& integrator, double start, const RunSummary& summary);
+/// Of the engine's own run; where stability limited it, with proposals.
+StepLimit step_limit(const Engine& engine, const RunSummary& summary);
 /// "limited by accuracy: mean step times fastest mode 0.11, stable to 1.73".
 std::string step_limit_text(const StepLimit& s);
 
