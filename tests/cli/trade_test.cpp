@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/property_tree/xml_parser.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -105,6 +106,20 @@ TEST(Trade, ContinuesWithWhatIsMissing) {
   // A scene that has changed is another study.
   static_cast<void>(trade(folder, {"--set", "gravity=[0, -1, 0]"}));
   EXPECT_NE(std::filesystem::last_write_time(kept), time);
+}
+
+TEST(Trade, TheFrontHasTheCheapestOfThoseThatTheReferenceCannotTellApart) {
+  const Folder folder;
+  const json j = json::parse(trade(folder, {"--json", "--modes", "1,2,3"}).out);
+  const double own = j.at("references").at("").at("relative_error");
+  std::vector<double> below, on_front;
+  for (const json& p : j.at("points")) {
+    if (p.at("status") != "completed" || p.at("relative_error") > own) continue;
+    below.push_back(p.at("cpu_seconds"));
+    if (p.at("pareto")) on_front.push_back(p.at("cpu_seconds"));
+  }
+  ASSERT_GE(below.size(), 2U) << "three modes are as near to the reference as its own estimate";
+  EXPECT_EQ(on_front, std::vector<double>{*std::min_element(below.begin(), below.end())});
 }
 
 TEST(Trade, KeepsATableAndAWellFormedPicture) {
