@@ -54,9 +54,9 @@ class CollocationStages {
       : method_(method), jacobian_(jacobian), real_(jacobian), complex_(jacobian) {
     const Eigen::Index m = jacobian.size();
     for (Eigen::MatrixXd* a : {&z_, &before_, &w_, &right_}) a->setZero(m, 3);
-    slopes_.setZero(m + 1, 3);
-    stage_.setZero(m + 1);
-    slope_.setZero(m + 1);
+    slopes_.setZero(jacobian.all(), 3);
+    stage_.setZero(jacobian.all());
+    slope_.setZero(jacobian.all());
     real_part_.setZero(m);
     complex_part_.setZero(m);
   }

@@ -57,7 +57,7 @@ class CvodeStepper final : public Stepper {
     equations_.normalize(state_.y);
     previous_ = state_.y;
     const auto n = static_cast<sunindextype>(state_.y.size());
-    if (linearization_ != nullptr) jacobian_.resize((state_.y.size() - 1) * (state_.y.size() - 1));
+    if (linearization_ != nullptr) jacobian_.resize(moving() * moving());
     y_.reset(N_VNew_Serial(n, context_.get()));
     inside_.reset(N_VNew_Serial(n, context_.get()));
     matrix_.reset(SUNDenseMatrix(n, n, context_.get()));
@@ -85,6 +85,9 @@ class CvodeStepper final : public Stepper {
   StepResult step(double t_limit) override {
     if (!(t_limit > state_.time)) return {};
     latest_ = std::nextafter(t_limit, state_.time);
+    failed_ = {};
+    const double rounding = std::numeric_limits<double>::epsilon() * std::max(std::abs(state_.time), std::abs(t_limit));
+    if (t_limit - state_.time <= 100 * rounding) return hop(t_limit);
     if (begin_) {
       std::copy(state_.y.begin(), state_.y.end(), N_VGetArrayPointer(y_.get()));
       CVodeReInit(cvode_.get(), state_.time, y_.get());
@@ -92,7 +95,6 @@ class CvodeStepper final : public Stepper {
       failures_ = 0;
     }
     CVodeSetStopTime(cvode_.get(), t_limit);
-    failed_ = {};
     double t = state_.time;
     const int flag = CVode(cvode_.get(), t_limit, y_.get(), &t, CV_ONE_STEP);
     count_rejections();
@@ -101,18 +103,8 @@ class CvodeStepper final : public Stepper {
       return failure();
     }
     const double* values = N_VGetArrayPointer(y_.get());
-    const double h = t - state_.time;
-    if (!(h > 0)) return failure();
-    previous_time_ = state_.time;
-    previous_ = state_.y;
-    state_.time = t;
-    std::copy_n(values, state_.y.size(), state_.y.begin());
-    equations_.normalize(state_.y);
-    statistics_.smallest_step = statistics_.accepted == 0 ? h : std::min(statistics_.smallest_step, h);
-    statistics_.largest_step = std::max(statistics_.largest_step, h);
-    ++statistics_.accepted;
-    statistics_.determinant_sign = sign_;
-    return {};
+    if (!(t > state_.time)) return failure();
+    return accept(t, {values, state_.y.size()});
   }
 
   [[nodiscard]] const State& state() const override { return state_; }
@@ -161,6 +153,32 @@ class CvodeStepper final : public Stepper {
     previous_time_ = state.time;
     previous_ = state.y;
   }
+  StepResult accept(double t, std::span<const double> values) {
+    const double h = t - state_.time;
+    previous_time_ = state_.time;
+    previous_ = state_.y;
+    state_.time = t;
+    std::copy(values.begin(), values.end(), state_.y.begin());
+    equations_.normalize(state_.y);
+    statistics_.smallest_step = statistics_.accepted == 0 ? h : std::min(statistics_.smallest_step, h);
+    statistics_.largest_step = std::max(statistics_.largest_step, h);
+    ++statistics_.accepted;
+    statistics_.determinant_sign = sign_;
+    return {};
+  }
+  /// Over an interval of a few roundings of time, as between two instants that are meant to be one, which CVODE takes
+  /// for none: one step of Euler's method, and CVODE begins anew behind it.
+  StepResult hop(double t_limit) {
+    begin_ = true;
+    std::copy(state_.y.begin(), state_.y.end(), N_VGetArrayPointer(y_.get()));
+    if (rates(state_.time, y_.get(), inside_.get(), this) != 0) return failure();
+    double* values = N_VGetArrayPointer(y_.get());
+    const double* slope = N_VGetArrayPointer(inside_.get());
+    for (std::size_t i = 0; i < state_.y.size(); ++i) values[i] = state_.y[i] + (t_limit - state_.time) * slope[i];
+    return accept(t_limit, {values, state_.y.size()});
+  }
+  /// Positions and speeds; discrete states, which are constant, and the work follow them.
+  [[nodiscard]] std::size_t moving() const { return equations_.layout().positions + equations_.layout().speeds; }
   void remember(Memory& memory) {
     memory(statistics_.accepted);
     memory(statistics_.rejected);
@@ -205,7 +223,7 @@ class CvodeStepper final : public Stepper {
   static int exact_jacobian(double t, N_Vector y, N_Vector y_dot, SUNMatrix matrix, void* self, N_Vector, N_Vector,
                             N_Vector) {
     auto& s = *static_cast<CvodeStepper*>(self);
-    const std::size_t n = s.state_.y.size(), m = n - 1;
+    const std::size_t n = s.state_.y.size(), m = s.moving();
     const Evaluation e = s.linearization_->jacobian(std::min(t, s.latest_), {N_VGetArrayPointer(y), n},
                                                     {N_VGetArrayPointer(y_dot), n}, s.jacobian_);
     if (!e.ok()) {

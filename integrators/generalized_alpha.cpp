@@ -131,7 +131,7 @@ class AlphaStepper final : public EqualSteps {
     }
     next_.head(np) = y().head(np) + h * rate_.head(np);
     next_.segment(np, n) = y().segment(np, n) + (h * ((1 - gamma) * a0_ + gamma * a1_)).array();
-    next_[np + n] = y()[np + n];
+    next_.tail(size() - np - n) = y().tail(size() - np - n);
     normalize(next_);
     return {};
   }

@@ -1,6 +1,7 @@
 /// \file
-/// What implicit methods share: the Jacobian of ẏ = f(t, y) and linear systems with μ − ∂f/∂y. The work element, a
-/// quadrature on which nothing depends, has no part in them.
+/// What implicit methods share: the Jacobian of ẏ = f(t, y) and linear systems with μ − ∂f/∂y, of positions and speeds.
+/// What follows them in y has no part in these: discrete states, which are constant, and the work, a quadrature on
+/// which nothing depends.
 #pragma once
 
 #include <Eigen/LU>
@@ -31,8 +32,8 @@ class StepJacobian {
         positions_(static_cast<Eigen::Index>(equations.layout().positions)),
         speeds_(static_cast<Eigen::Index>(equations.layout().speeds)),
         values_(Eigen::VectorXd::Zero(size() * size())),
-        moved_(Eigen::ArrayXd::Zero(size() + 1)),
-        slope_(Eigen::ArrayXd::Zero(size() + 1)) {
+        moved_(Eigen::ArrayXd::Zero(all())),
+        slope_(Eigen::ArrayXd::Zero(all())) {
     std::size_t integrals = 0;
     for (const std::vector<Slot>* slots : {&equations.layout().hinges, &equations.layout().bodies}) {
       for (const Slot& s : *slots)
@@ -72,6 +73,8 @@ class StepJacobian {
 
   /// Positions and speeds.
   [[nodiscard]] Eigen::Index size() const { return positions_ + speeds_; }
+  /// Of y.
+  [[nodiscard]] Eigen::Index all() const { return static_cast<Eigen::Index>(equations_.size()); }
   [[nodiscard]] Eigen::Index positions() const { return positions_; }
   [[nodiscard]] Eigen::Index speeds() const { return speeds_; }
   /// ẋ = u throughout: systems have the size of the speeds alone.

@@ -53,7 +53,7 @@ class RadauStepper final : public AdaptiveStepper {
   static constexpr int most_iterations = 7;
 
   Trial attempt(double h) override {
-    const Eigen::Index m = jacobian_.size();
+    const Eigen::Index m = jacobian_.size(), work = size() - 1;
     const double t = state_.time;
     if (m == 0) {
       next_ = y() + h * slope_;
@@ -89,9 +89,8 @@ class RadauStepper final : public AdaptiveStepper {
     const Eigen::MatrixXd& z = stages_.z();
     next_ = y();
     next_.head(m) += z.col(2).array();
-    next_[m] += h * stages_.slopes().row(m).dot(radau_iia().b);
+    next_[work] += h * stages_.slopes().row(work).dot(radau_iia().b);
     normalize(next_);
-    error_[m] = 0;
     estimate(z, h, slope_);
     double ratio = error_ratio();
     if (ratio >= 1 && (first_ || rejected_)) {

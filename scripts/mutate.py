@@ -3,6 +3,9 @@
 
   scripts/mutate.py                      # all faults of scripts/mutants.tsv, a table in build/mutants/report.tsv
   scripts/mutate.py --only coriolis      # those whose name has this in it
+  scripts/mutate.py --named-only         # run the test programs that the list names and no others
+  scripts/mutate.py --survivors          # run those again that survived
+  scripts/mutate.py --write docs/mutation.md   # run none; the report's table goes between the document's marks
   scripts/mutate.py --check              # only that every fault still finds its place in the sources
 
 Each fault is applied to a copy of the last commit, in build/mutants, built as the release is but for the sweeps: those at
@@ -83,25 +86,54 @@ def first_failure(tests, jobs, limit):
     return None
 
 
+def write_table(document, mutants, lines):
+    """Puts the table between the two marks of the document."""
+    rows = ["| fault | in | verdict | found by |", "|---|---|---|---|"]
+    for name, file, *_ in mutants:
+        if name in lines:
+            _, verdict, killer, _ = lines[name]
+            rows.append(f"| {name} | `{file}` | {verdict} | {f'`{killer}`' if killer else ''} |")
+    verdicts = [lines[m[0]][1] for m in mutants if m[0] in lines]
+    killed, survived = verdicts.count("killed"), verdicts.count("survived")
+    rows += ["", f"{len(mutants)} faults, {len(verdicts)} run: {killed} killed, {survived} survived; "
+                 f"{100 * killed / max(1, killed + survived):.1f} % killed."]
+    text = document.read_text()
+    first, last = "<!-- table of the faults: begin -->\n", "<!-- table of the faults: end -->"
+    head, rest = text.split(first)
+    document.write_text(head + first + "\n" + "\n".join(rows) + "\n\n" + last + rest.split(last)[1])
+
+
+def read_report():
+    """The last line of each fault; a fault that has survived and is found by a new test has two."""
+    if not report.exists():
+        return {}
+    return {l.split("\t")[0]: l.split("\t") for l in report.read_text().splitlines()}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="faults whose name has this in it")
     parser.add_argument("--check", action="store_true", help="only check that every fault finds its place")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--named-only", action="store_true", help="run only the test programs the list names")
+    parser.add_argument("--survivors", action="store_true", help="run again those that survived")
+    parser.add_argument("--write", type=Path, help="write the report's table into this document and run nothing")
     parser.add_argument("--limit", type=float, default=900, help="seconds a test program may take")
     arguments = parser.parse_args()
     mutants = read_mutants()
     if arguments.check:
         print(f"{len(mutants)} faults find their places")
         return 0
+    if arguments.write:
+        write_table(arguments.write, mutants, read_report())
+        return 0
     prepare()
     base = compile_tests(programs, arguments.jobs)
     if base.returncode != 0:
         sys.exit(base.stdout)
-    done = {}
-    if report.exists():
-        done = {l.split("\t")[0]: l.split("\t")[1] for l in report.read_text().splitlines()}
+    done = {name: line[1] for name, line in read_report().items()}
+    if arguments.survivors:
+        done = {name: verdict for name, verdict in done.items() if verdict != "survived"}
     for name, file, old, new, tests in mutants:
         if arguments.only not in name or name in done:
             continue

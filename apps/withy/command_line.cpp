@@ -160,7 +160,7 @@ void add_commands(Commands& commands) {
                                                    "  withy run scenes/two-link-slew.yaml\n"
                                                    "  withy run scenes/two-link-slew.yaml --formulation ruthless "
                                                    "--set loads.slew.time_scale=1.2 --out results/fast\n"
-                                                   "  withy run scenes/two-link-slew.yaml --resume",
+                                                   "  withy run scenes/pendulum.yaml --checkpoint 10",
                                                    run, c);
   add_scene(*c, run_arguments);
   add_formulation(*c, run_arguments);
@@ -173,11 +173,11 @@ void add_commands(Commands& commands) {
       ->capture_default_str();
 
   c->add_option("--checkpoint", run_arguments.checkpoint,
-                "Wall time between checkpoints; 0: only where the run is interrupted")
+                "Wall time between checkpoints; 0: only where the run is interrupted; default: 60")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  c->add_flag("--resume", run_arguments.resume, "Go on from the checkpoint in the folder of the results");
+      ->check(CLI::NonNegativeNumber);
+  c->add_flag("--resume", run_arguments.resume,
+              "Go on from the checkpoint in the folder of the results: the same command as before, and this");
 
   auto& compare_arguments =
       commands.add<CompareArguments>("compare", "Simulate a scene in several formulations, side by side",

@@ -2,6 +2,7 @@
 /// The commands of `withy`: what each is told and how it ends. What they print is described in docs/command-line.md.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,9 @@ struct RunArguments : SceneArguments {
   std::string out;  ///< folder of the results; empty: results/<scene>-<formulation>
   /// When the error against the next model up is estimated: auto (against `quadratic`), always, never.
   std::string estimate = "auto";
-  double checkpoint = 60;  ///< wall time between checkpoints [s]; 0: only where the run is interrupted
-  bool resume = false;     ///< go on from the checkpoint in the folder
+  /// Wall time between checkpoints [s]; 0: only where the run is interrupted; not given: 60.
+  std::optional<double> checkpoint;
+  bool resume = false;  ///< go on from the checkpoint in the folder
 };
 
 struct CompareArguments : SceneArguments {

@@ -71,6 +71,8 @@ std::vector<TradePoint> trade_points(const TradeAxes& axes) {
     if (m < 1 || m > 200) throw InputError(fmt::format("--modes: got {}; need 1 to 200", m));
   for (const double t : axes.tolerances)
     if (!(t > 0 && t <= 1)) throw InputError(fmt::format("--tolerances: got {:g}; need above 0, at most 1", t));
+  for (const std::string& f : axes.formulations)
+    if (f == "auto") throw InputError("--formulations: 'auto' is a choice along a run, not a model; leave it out");
   std::vector<TradePoint> points;
   for (const auto& over : overs) {
     for (const std::string& formulation : axes.formulations) {

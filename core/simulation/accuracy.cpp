@@ -94,6 +94,22 @@ std::string body_of_speed(const Model& model, std::size_t speed) {
   return {};
 }
 
+/// Calls act(speed, system without it) for the highest mode of every family of every body.
+template <class Act>
+void without_highest_modes(const Model& model, const DenseSystem& system, Act&& act) {
+  for (const BodyNode& body : model.bodies()) {
+    const Slot* slot = model.layout().body(body.name);
+    if (slot == nullptr) continue;
+    for (const ModeGroup& group : mode_groups(body.body->shape())) {
+      // As a prescribed speed it takes no part.
+      const std::size_t speed = slot->speed + static_cast<std::size_t>(group.coordinates.back());
+      DenseSystem without = system;
+      without.prescribed.push_back({speed, 0});
+      act(speed, without);
+    }
+  }
+}
+
 }  // namespace
 
 AttainableAccuracy attainable_accuracy(const DenseSystem& system) {
@@ -141,18 +157,19 @@ std::vector<MasslessDirection> massless_directions(const Model& model, const Den
 
 std::optional<Removal> best_removal(const Model& model, const DenseSystem& system) {
   std::optional<Removal> best;
-  for (const BodyNode& body : model.bodies()) {
-    const Slot* slot = model.layout().body(body.name);
-    if (slot == nullptr) continue;
-    for (const ModeGroup& group : mode_groups(body.body->shape())) {
-      // As a prescribed speed it takes no part.
-      const std::size_t speed = slot->speed + static_cast<std::size_t>(group.coordinates.back());
-      DenseSystem without = system;
-      without.prescribed.push_back({speed, 0});
-      const double condition = attainable_accuracy(without).condition;
-      if (!best || condition < best->condition) best = {model.layout().speed_names[speed], condition};
-    }
-  }
+  without_highest_modes(model, system, [&](std::size_t speed, const DenseSystem& without) {
+    const double condition = attainable_accuracy(without).condition;
+    if (!best || condition < best->condition) best = {model.layout().speed_names[speed], condition};
+  });
+  return best;
+}
+
+std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& system) {
+  std::optional<Slowing> best;
+  without_highest_modes(model, system, [&](std::size_t speed, const DenseSystem& without) {
+    const double fastest = fastest_mode(model, without);
+    if (!best || fastest < best->fastest) best = {model.layout().speed_names[speed], fastest};
+  });
   return best;
 }
 

@@ -46,6 +46,15 @@ struct Removal {
 /// The highest mode of a body without which the mass matrix is best conditioned; nothing where there are no modes.
 std::optional<Removal> best_removal(const Model& model, const DenseSystem& system);
 
+/// What leaving out a mode does to the steps of an explicit integrator.
+struct Slowing {
+  std::string mode;    ///< as "link1.bending_y[2]"
+  double fastest = 0;  ///< [rad/s], the fastest vibration of what is left; 0 where nothing vibrates
+};
+
+/// The highest mode of a body without which the fastest vibration is slowest; nothing where there are no modes.
+std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& system);
+
 /// Why a relative tolerance cannot be had at a state: κ·2⁻⁵², the coordinate without inertia or the direction with
 /// least, what may be done. Empty where it can, or where there are more than `largest_examined` speeds.
 std::string unattainable(const Model& model, const EquationsOfMotion& equations, const State& state, double tolerance);

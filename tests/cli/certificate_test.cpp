@@ -101,7 +101,26 @@ TEST(Certificate, SaysThatStabilityLimitsTheStep) {
                                           "time.end=0.5"};
   std::vector<std::string> loose = stiff;
   loose.insert(loose.end(), {"--set", "integrator={name: dopri5, rtol: 1e-3, atol: 1e-3}"});
-  EXPECT_EQ(run_json(loose).at("certificate").at("steps").at("limited_by"), "stability");
+  const json steps = run_json(loose).at("certificate").at("steps");
+  EXPECT_EQ(steps.at("limited_by"), "stability");
+  // What is proposed holds: that mode left out, the fastest is the one foretold, and as many fewer steps are taken.
+  const std::string mode = steps.at("fewer_modes").at("without");
+  ASSERT_THAT(mode, testing::MatchesRegex("link[12]\\.bending_y\\[2\\]"));
+  const double foretold = steps.at("fewer_modes").at("fastest_mode");
+  EXPECT_LT(foretold, steps.at("fastest_mode").get<double>());
+  EXPECT_EQ(steps.at("unlimited_integrators"), (json{"rosenbrock-w", "radau"}));
+  std::vector<std::string> fewer = loose;
+  fewer.insert(fewer.end(), {"--set", "bodies." + mode.substr(0, 5) + ".bending_y.modes=1"});
+  const json slower = run_json(fewer).at("certificate").at("steps");
+  EXPECT_NEAR(slower.at("fastest_mode").get<double>() / foretold, 1, 0.02) << "at another state";
+  EXPECT_NEAR(slower.at("mean").get<double>() / steps.at("mean").get<double>(),
+              steps.at("fastest_mode").get<double>() / foretold,
+              0.3 * steps.at("fastest_mode").get<double>() / foretold);
+  // The strict formulations have no symmetric matrix for rosenbrock-w.
+  loose.insert(loose.end(), {"--formulation", "consistent"});
+  const json strict = run_json(loose).at("certificate").at("steps");
+  EXPECT_EQ(strict.at("limited_by"), "stability");
+  EXPECT_EQ(strict.at("unlimited_integrators"), json{"radau"});
 }
 
 TEST(Certificate, OfABodyFormulationLooksAtWhatTheBodyLeavesOut) {

@@ -52,6 +52,54 @@ std::shared_ptr<const Integrator> integrator(const std::string& options) {
       .integrator;
 }
 
+std::string equal_steps(const std::string& id, double step) {
+  const auto has_step = [&] {
+    Registry registry;
+    enroll_static_plugins(registry);
+    const auto& parameters = registry.find<Integrator>(id)->parameters;
+    return std::any_of(parameters.begin(), parameters.end(), [](const ParameterSpec& p) { return p.key == "step"; });
+  };
+  if (has_step()) return fmt::format("{{name: {}, step: {:.17g}}}", id, step);
+  // What an iteration may leave is a part of the tolerance, which is none here.
+  return fmt::format("{{name: {}, rtol: 1, atol: 1e200, initial_step: {:.17g}, max_step: {:.17g}{}}}", id, step, step,
+                     id == "radau" ? ", iteration_error: 1e-214" : "");
+}
+
+std::string with_tolerance(const std::string& id, double tolerance) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const auto& parameters = registry.find<Integrator>(id)->parameters;
+  if (std::none_of(parameters.begin(), parameters.end(), [](const ParameterSpec& p) { return p.key == "rtol"; }))
+    return "";
+  return fmt::format("{{name: {}, rtol: {:.17g}, atol: {:.17g}}}", id, tolerance, tolerance);
+}
+
+const std::string pendulum =
+    "format: withy/1\ngravity: [0, -9.81, 0]\ntime: {end: 1}\nbodies:\n  arm: {type: beam, length: 1, "
+    "mass_per_length: 1, bending_y: {stiffness: 20, modes: 2}}\n  bob: {type: rigid, mass: 1, inertia: [0.01, 0.01, "
+    "0.01, 0, 0, 0]}\nhinges:\n  pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}\n  tip: {type: "
+    "weld, parent: arm.tip, child: bob}\ninitial: {hinges: {pivot: {position: [-1], rate: [0.5]}}, bodies: {arm: "
+    "{modes: [0.01, 0]}}}\n";
+
+const std::string vibration =
+    "format: withy/1\ntime: {end: 1}\nbodies: {beam: {type: beam, length: 1, mass_per_length: 1, bending_y: "
+    "{stiffness: 1, modes: 1}}}\nhinges: {wall: {type: weld, parent: world, child: beam}}\n"
+    "initial: {bodies: {beam: {modes: [0.01]}}}\n";
+
+double energy(const Made& made, const State& s) {
+  const Energies e = made.equations->energies(s.y);
+  return e.kinetic + e.potential;
+}
+
+double energy_growth(const Made& made, const Integrator& method, double h, std::size_t steps) {
+  const auto stepper = method.start(*made.equations, made.scene.initial);
+  const double before = energy(made, stepper->state());
+  const double end = h * static_cast<double>(steps);
+  for (std::size_t i = 0; i < steps; ++i)
+    if (stepper->step(end).outcome != StepResult::Outcome::ok) return std::numeric_limits<double>::infinity();
+  return std::log(energy(made, stepper->state()) / before);
+}
+
 std::string text_of(const std::string& file) {
   std::ifstream in(file);
   if (!in) throw std::runtime_error("cannot read " + file);

@@ -79,6 +79,26 @@ std::shared_ptr<const Integrator> integrator(const std::string& options);
 /// Ids of all formulations.
 inline const std::vector<std::string> formulations = {"ruthless",  "inconsistent", "consistent",
                                                       "quadratic", "linear",       "exact"};
+/// Ids of all formulations or integrators that there are.
+template <class Plugin>
+std::vector<std::string> ids() {
+  Registry registry;
+  enroll_static_plugins(registry);
+  return registry.ids<Plugin>();
+}
+/// Options of an integrator that make its steps this long whatever the errors; not of `cvode`, which chooses its own.
+std::string equal_steps(const std::string& id, double step);
+/// Options of an integrator that does as well as the tolerance asks, relative and absolute; empty where it has none.
+std::string with_tolerance(const std::string& id, double tolerance);
+/// A beam at a wall with one mode: an undamped vibration of frequency ω₁ = 1.875² in `ruthless` and, as nothing but its
+/// own mode moves, in `consistent`.
+extern const std::string vibration;
+/// Kinetic and potential energy [J].
+double energy(const Made& made, const State& s);
+/// Energy after `steps` steps h over that before, with the given integrator; its logarithm.
+double energy_growth(const Made& made, const Integrator& method, double h, std::size_t steps);
+/// A beam of two modes with a weight at its tip, swinging from a pivot: bent at the start, nothing damped or driven.
+extern const std::string pendulum;
 /// Text of a file; of a scene of the project.
 std::string text_of(const std::string& file);
 std::string scene_text(const std::string& name);
@@ -92,16 +112,21 @@ void high_modes(Campaign&);
 void tip_mass(Campaign&);
 void zeros(Campaign&);
 void spin(Campaign&);
+void spin_up(Campaign&);
 void buckling(Campaign&);
 void stability(Campaign&);
 void rigid_limit(Campaign&);
 void long_run(Campaign&);
+void reversal(Campaign&);
 void chains(Campaign&);
 void rotations(Campaign&);
 void units(Campaign&);
 void invariance(Campaign&);
 void failures(Campaign&);
 void jumps(Campaign&);
+void stiff_orders(Campaign&);
+void checkpoints(Campaign&);
+void work_precision(Campaign&);
 void denormals(Campaign&);
 void threads(Campaign&);
 

@@ -18,12 +18,6 @@ const std::string swinging =
     "  pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}\n  tip: {type: weld, parent: arm.tip, "
     "child: bob}\n";
 
-std::vector<std::string> integrators() {
-  Registry registry;
-  enroll_static_plugins(registry);
-  return registry.ids<Integrator>();
-}
-
 std::shared_ptr<const Integrator> with_default_options(const std::string& id, bool loose = false) {
   Registry registry;
   enroll_static_plugins(registry);
@@ -57,7 +51,7 @@ void from_loads(Campaign& campaign) {
   for (const auto& [what, value] : {std::pair("NaN", std::nan("")), {"Inf", inf}, {"-Inf", -inf}}) {
     std::string bad;
     std::size_t most = 0;
-    for (const std::string& id : integrators()) {
+    for (const std::string& id : ids<Integrator>()) {
       for (const std::string formulation : {"quadratic", "consistent", "exact"}) {
         if (id == "rosenbrock-w" && formulation == "consistent") continue;  // has no solver there
         const Made made(swinging, formulation);
@@ -130,7 +124,7 @@ void collapse(Campaign& campaign) {
     f[2] = 0;
     return Evaluation{};
   });
-  for (const std::string& id : integrators()) {
+  for (const std::string& id : ids<Integrator>()) {
     if (id == "rk4" || id == "rosenbrock-w") continue;  // equal steps; needs a linearly implicit solver
     std::string text;
     bool met = false;

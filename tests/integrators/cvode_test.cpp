@@ -43,6 +43,20 @@ TEST_P(Cvode, errors_follow_the_tolerance) {
   EXPECT_LT(worst, 400);
 }
 
+// Two instants that are meant to be one may be a rounding apart, as 0.9 and 30 · 0.03: an interval that CVODE refuses.
+TEST_P(Cvode, steps_over_intervals_of_rounding_with_their_slope) {
+  const FunctionEquations equations = Duffing::equations();
+  const auto stepper = start(equations, Duffing::start(), 1e-8);
+  ASSERT_EQ(drive(*stepper, 30 * 0.03).outcome, StepResult::Outcome::ok);
+  for (double limit = 30 * 0.03; limit < 0.9 + 1e-14; limit = std::nextafter(limit, 1.0)) {
+    stepper->restart();
+    ASSERT_EQ(stepper->step(limit).outcome, StepResult::Outcome::ok);
+    ASSERT_EQ(stepper->state().time, limit);
+  }
+  ASSERT_EQ(drive(*stepper, 2).outcome, StepResult::Outcome::ok);
+  EXPECT_LT(Duffing::error(2, stepper->state().y), 3e-6);
+}
+
 TEST_P(Cvode, interpolates_and_lands) {
   const FunctionEquations equations = Duffing::equations();
   const auto stepper = start(equations, Duffing::start(), 1e-8);
