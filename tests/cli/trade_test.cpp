@@ -166,7 +166,7 @@ std::map<std::string, json> thresholds(const Finished& f) {
 
 // 1 % error of the frequencies of a rotating cantilever, hub radius 0. The rates over the fundamental frequency were
 // measured with an independent program: in the plane of rotation ruthless 0.325, inconsistent 0.129, across it ruthless
-// 0.130. For one mode, with flap² = ω₁² + 1.193 Ω² and lag² = ω₁² + 0.193 Ω², they are 0.324, 0.129 and 0.131.
+// 0.130. For one mode, with flap² = ω₁² + 1.193 Ω² and lag² = ω₁² + 0.193 Ω², they are 0.324, 0.129 and 0.130.
 TEST(TradeLimit, FindsWhereFrequenciesOfARotatingCantileverAreOnePercentOff) {
   const Folder folder;
   const Finished f =
