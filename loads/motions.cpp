@@ -90,7 +90,8 @@ std::unique_ptr<Motion> make_table(const Value& p, const MakeContext& context) {
     times.push_back(row.items()[0].number());
     positions.push_back(row.items()[1].number());
   }
-  return std::make_unique<Following<Spline>>(Spline(std::move(times), std::move(positions)));
+  return std::make_unique<Following<Spline>>(
+      Spline(std::move(times), std::move(positions), value(p, "start_rate"), value(p, "end_rate")));
 }
 
 ParameterSpec from_parameter() { return number("from", "rad", "coordinate at time 0").otherwise(0.0); }
@@ -122,10 +123,13 @@ void enroll(Enrollment& enrollment) {
                                          number("center", "rad", "coordinate about which it swings").otherwise(0.0),
                                          number("phase", "rad", "phase at time 0").otherwise(0.0)},
                           .make = &make_sine});
-  enrollment.add<Motion>({.id = "table",
-                          .summary = "Cubic spline through given points, at rest in the first and the last",
-                          .parameters = {table("table", {"s", "rad"}, "time and coordinate")},
-                          .make = &make_table});
+  enrollment.add<Motion>(
+      {.id = "table",
+       .summary = "Cubic spline through given points, at rest in the first and the last or at rates",
+       .parameters = {table("table", {"s", "rad"}, "time and coordinate"),
+                      number("start_rate", "rad/s", "rate in the first row and before").otherwise(0.0),
+                      number("end_rate", "rad/s", "rate in the last row and after").otherwise(0.0)},
+       .make = &make_table});
 }
 
 }  // namespace

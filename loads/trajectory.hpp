@@ -70,23 +70,28 @@ struct SineMotion {
   double end() const { return 0; }
 };
 
-/// Through given points: the cubic spline that is at rest in the first and the last, and stays there before and after.
+/// Through given points: the cubic spline with given rates in the first and the last, kept before and after; at rest
+/// where none are given.
 class Spline {
  public:
   /// Times [s] must increase; one point is a hold.
-  Spline(std::vector<double> times, std::vector<double> positions)
-      : times_(std::move(times)), positions_(std::move(positions)), curvature_(times_.size()) {
+  Spline(std::vector<double> times, std::vector<double> positions, double start_rate = 0, double end_rate = 0)
+      : times_(std::move(times)),
+        positions_(std::move(positions)),
+        start_rate_(start_rate),
+        end_rate_(end_rate),
+        curvature_(times_.size()) {
     const std::size_t n = times_.size();
     if (n < 2) return;
     // Continuity of the rate at each point, in the accelerations c there:
-    //   h₋ c₋ + 2 (h₋ + h₊) c + h₊ c₊ = 6 (slope₊ − slope₋),  with slope 0 and h 0 outside.
+    //   h₋ c₋ + 2 (h₋ + h₊) c + h₊ c₊ = 6 (slope₊ − slope₋),  outside with h 0 and the rate there for the slope.
     std::vector<double> diagonal(n);
     const auto h = [&](std::size_t i) { return times_[i + 1] - times_[i]; };
     const auto slope = [&](std::size_t i) { return (positions_[i + 1] - positions_[i]) / h(i); };
     for (std::size_t i = 0; i < n; ++i) {
       const bool first = i == 0, last = i == n - 1;
       diagonal[i] = 2 * ((first ? 0 : h(i - 1)) + (last ? 0 : h(i)));
-      curvature_[i] = 6 * ((last ? 0 : slope(i)) - (first ? 0 : slope(i - 1)));
+      curvature_[i] = 6 * ((last ? end_rate : slope(i)) - (first ? start_rate : slope(i - 1)));
       if (first) continue;
       const double factor = h(i - 1) / diagonal[i - 1];
       diagonal[i] -= factor * h(i - 1);
@@ -96,8 +101,8 @@ class Spline {
     for (std::size_t i = n - 1; i-- > 0;) curvature_[i] = (curvature_[i] - h(i) * curvature_[i + 1]) / diagonal[i];
   }
   MotionPoint operator()(double t) const noexcept {
-    if (!(t >= times_.front())) return {positions_.front(), 0, 0};
-    if (t >= times_.back()) return {positions_.back(), 0, 0};
+    if (!(t >= times_.front())) return {positions_.front() + start_rate_ * (t - times_.front()), start_rate_, 0};
+    if (t >= times_.back()) return {positions_.back() + end_rate_ * (t - times_.back()), end_rate_, 0};
     const auto i = static_cast<std::size_t>(std::upper_bound(times_.begin(), times_.end(), t) - times_.begin());
     const double h = times_[i] - times_[i - 1];
     const double a = (times_[i] - t) / h, b = (t - times_[i - 1]) / h;
@@ -110,7 +115,9 @@ class Spline {
   double end() const { return times_.size() < 2 ? 0 : times_.back(); }
 
  private:
-  std::vector<double> times_, positions_, curvature_;
+  std::vector<double> times_, positions_;
+  double start_rate_, end_rate_;
+  std::vector<double> curvature_;  ///< accelerations at the points
 };
 
 /// A motion of one coordinate. Jumps are those of the acceleration or of its derivative; `end` is when a motion that

@@ -203,6 +203,11 @@ class TreeBuilder {
 
   /// What a body's own formulation keeps; it has no options there.
   std::optional<Terms> terms_of(const Value& id) {
+    if (id.kind() == Value::Kind::text && id.text() == "auto") {
+      checker_.diagnostics().error(id.place(), "got 'auto', which is a choice for a whole scene; name a formulation");
+      good_ = false;
+      return {};
+    }
     Made<Formulation> made;
     const Value choice = Value::map({{"name", id}}, id.place());
     const auto value = check_plugin_map(choice, "name", {text("name", "")}, checker_, made);

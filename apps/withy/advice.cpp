@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "withy/core/simulation/instants.hpp"
+
 namespace withy::app {
 namespace {
 
@@ -113,6 +115,10 @@ Advisor::Advisor(const Engine& engine, const AdviseArguments& arguments)
       outputs_(engine.model(), arguments.outputs),
       candidates_(candidates_for(engine, arguments)),
       best_(infinite) {
+  if (has_switches(engine.model()))
+    throw InputError(engine.scene().file +
+                     ": a load switches at zeros of a function of the state, at times of their own in every model; "
+                     "runs that are measured against each other need common ones");
   const bool lengths =
       outputs_.has(Measure::slide) || outputs_.has(Measure::place) || outputs_.has(Measure::deflection);
   if (!accuracy_.share && !(accuracy_.length && lengths) && !(accuracy_.angle && outputs_.has(Measure::angle)))

@@ -78,7 +78,10 @@ Json measure(const Engine& engine, const std::string& state_file) {
 ExitStatus bench(const BenchArguments& arguments) {
   std::vector<std::string> formulations = arguments.formulations;
   if (formulations.empty()) formulations = {""};
-  if (formulations == std::vector<std::string>{"all"}) formulations = Plugins(arguments).registry().ids<Formulation>();
+  if (formulations == std::vector<std::string>{"all"}) {
+    formulations = Plugins(arguments).registry().ids<Formulation>();
+    std::erase(formulations, "auto");  // equations of others, chosen along a run
+  }
   std::vector<Json> results;
   SceneArguments one = arguments;
   for (const std::string& formulation : formulations) {

@@ -13,17 +13,12 @@
 #include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/progress.hpp"
 #include "withy/core/simulation/paired_run.hpp"
+#include "withy/core/simulation/validity_limits.hpp"
 
 namespace withy::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Limits of theory, section 5, for a truncation of linear kinematics; beyond them frequencies are 1 % wrong.
-double rate_limit(const Terms& terms, bool planar_modes) {
-  if (terms.truncation == Truncation::ruthless || !terms.products_of_speeds) return planar_modes ? 0.325 : 0.130;
-  return 0.129;
-}
 
 /// Modes in one direction alone: taken as the plane of rotation.
 bool one_direction(const BodyValidity& body) { return body.highest.size() == 1; }
@@ -98,6 +93,55 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
   return out;
 }
 
+/// The last formulation of a run that changes it; nothing where the run has one.
+const Rung* last_rung(const Engine& engine, const Evidence& evidence) {
+  return evidence.escalated != nullptr ? &engine.rungs()[evidence.escalated->stretches.back().rung] : nullptr;
+}
+
+const EquationsOfMotion& last_equations(const Engine& engine, const Evidence& evidence) {
+  const Rung* rung = last_rung(engine, evidence);
+  return rung != nullptr ? *rung->equations : engine.equations();
+}
+
+std::optional<Terms> last_terms(const Engine& engine, const Evidence& evidence) {
+  const Rung* rung = last_rung(engine, evidence);
+  return rung != nullptr ? std::optional(rung->terms) : std::nullopt;
+}
+
+Json stretches_json(const Engine& engine, const EscalatedRun& run) {
+  Json all = Json::array();
+  for (const Stretch& s : run.stretches) {
+    Json why = Json::array();
+    for (const Excess& e : s.excess)
+      why.push_back(
+          {{"body", e.body}, {"indicator", e.indicator}, {"value", e.value}, {"limit", e.limit}, {"time", e.time}});
+    all.push_back({{"formulation", engine.rungs()[s.rung].name},
+                   {"start", s.start},
+                   {"end", s.end},
+                   {"steps", s.steps},
+                   {"evaluations", s.evaluations},
+                   {"energy_drift", s.energy_drift},
+                   {"escalated_because", std::move(why)},
+                   {"energy_jump", s.energy_jump}});
+  }
+  return {{"list", std::move(all)}, {"discarded_evaluations", run.discarded_evaluations}};
+}
+
+std::vector<std::string> stretches_text(const Engine& engine, const EscalatedRun& run) {
+  std::vector<std::string> lines;
+  for (const Stretch& s : run.stretches) {
+    std::string text = fmt::format("{} from {:.4g} to {:.4g} s", engine.rungs()[s.rung].name, s.start, s.end);
+    if (!s.excess.empty()) {
+      const Excess& e = s.excess.front();
+      text += e.limit > 0 ? fmt::format("; left since at {:.4g} s {} of '{}' is {:.3g}, limit {:.3g}", e.time,
+                                        e.indicator, e.body, e.value, e.limit)
+                          : "; left since " + e.indicator;
+    }
+    lines.push_back(std::move(text));
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string StepLimit::cause() const {
@@ -142,7 +186,8 @@ std::string step_limit_text(const StepLimit& s) {
   return text;
 }
 
-ErrorEstimate estimate_error(const Engine& engine, const Beyond& beyond, const RunSummary& summary) {
+ErrorEstimate estimate_error(const Engine& engine, const EquationsOfMotion& used_equations, const Beyond& beyond,
+                             const RunSummary& summary) {
   const PairedTolerances coarse = paired_tolerances(summary);
   const auto integrator = make_integrator(engine.registry(), "dopri5",
                                           Value::map({{"rtol", Value(coarse.rtol)}, {"atol", Value(coarse.atol)}}));
@@ -154,35 +199,31 @@ ErrorEstimate estimate_error(const Engine& engine, const Beyond& beyond, const R
   options.most_evaluations = summary.steps.evaluations;
   options.interrupted = interrupted;
   const PairedRun run = run_paired(
-      engine.model(), engine.equations(), *beyond.equations, *integrator, engine.scene().initial, options,
+      engine.model(), used_equations, *beyond.equations, *integrator, engine.scene().initial, options,
       [&](const State& used, const State& up) {
-        add_distances(e.distances, {engine.model(), engine.equations(), used}, {*beyond.model, *beyond.equations, up});
+        add_distances(e.distances, {engine.model(), used_equations, used}, {*beyond.model, *beyond.equations, up});
       });
   e.cpu_seconds = run.cpu_seconds;
   e.distances.until = run.until;
   return e;
 }
 
-std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary) {
-  const Terms terms = scene.formulation->terms();
-  const bool second_order =
-      terms.strain != StrainOrder::linear && terms.truncation != Truncation::ruthless && terms.products_of_speeds;
+std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary, std::optional<Terms> used) {
+  const Terms terms = used.value_or(scene.formulation->terms());
   std::vector<Indicator> all;
   for (const BodyValidity& b : summary.validity.bodies) {
     const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(b.name))];
     const Terms own = node.terms.value_or(terms);
-    const bool own_second_order =
-        node.terms ? own.strain != StrainOrder::linear && own.truncation != Truncation::ruthless : second_order;
-    if (!own_second_order) {
+    if (!second_order(own)) {
       all.push_back({"rate of '" + b.name + "' over its fundamental frequency", b.rate_ratio,
                      rate_limit(own, one_direction(b)), "frequencies of vibration are 1 % wrong"});
-      all.push_back({"load of '" + b.name + "' over its buckling load", b.load.size(), 0.1,
+      all.push_back({"load of '" + b.name + "' over its buckling load", b.load.size(), load_limit,
                      "the second-order terms left out act"});
     }
     const auto d = summary.peak_deflection_ratio.find(b.name);
     if (d != summary.peak_deflection_ratio.end() && own.strain != StrainOrder::exact)
-      all.push_back(
-          {"tip deflection of '" + b.name + "' over its length", d->second, 0.1, "deflections are not small"});
+      all.push_back({"tip deflection of '" + b.name + "' over its length", d->second, deflection_limit,
+                     "deflections are not small"});
     for (const HighestMode& h : b.highest) {
       if (h.modes > 1)
         all.push_back({"energy of the highest " + h.family + " mode of '" + b.name + "'", h.share, 0.1,
@@ -203,9 +244,10 @@ Json certificate_json(const Engine& engine, const RunSummary& summary, const Evi
   Json c;
   c["program"] = "withy " WITHY_VERSION;
   c["formulation"] = {{"name", scene.formulation_name}, {"meaning", engine.formulation_summary()}};
+  if (evidence.escalated != nullptr) c["stretches"] = stretches_json(engine, *evidence.escalated);
   c["integrator"] = integrator_json(scene);
   c["output_interval"] = scene.output;
-  c["compiled"] = engine.equations().savings();
+  c["compiled"] = last_equations(engine, evidence).savings();
   c["energy_drift"] = summary.energy_drift;
   // Digits lost in solving for accelerations: no result is better than this, whatever the integrator's tolerance.
   const double condition = summary.conditioning.condition;
@@ -237,7 +279,7 @@ Json certificate_json(const Engine& engine, const RunSummary& summary, const Evi
   if (s.fewer) c["steps"]["fewer_modes"] = {{"without", s.fewer->mode}, {"fastest_mode", s.fewer->fastest}};
   if (!s.unlimited.empty()) c["steps"]["unlimited_integrators"] = s.unlimited;
   c["indicators"] = Json::array();
-  for (const Indicator& i : indicators(scene, summary))
+  for (const Indicator& i : indicators(scene, summary, last_terms(engine, evidence)))
     c["indicators"].push_back({{"what", i.text}, {"value", i.value}, {"limit", i.limit}, {"beyond", i.meaning}});
   return c;
 }
@@ -248,6 +290,9 @@ std::string certificate_text(const Engine& engine, const RunSummary& summary, co
     out += fmt::format("{:<23} {}\n", what, text);
   };
   line("modelled", engine.formulation_summary());
+  if (evidence.escalated != nullptr) {
+    for (const std::string& text : stretches_text(engine, *evidence.escalated)) line("", text);
+  }
   const NeglectedAcceleration& n = summary.validity.neglected;
   if (evidence.beyond != nullptr && n.samples > 0) {
     line("left out", fmt::format("{} of the accelerations in the mean, {} at the peaks, against {} ({} samples)",
@@ -256,7 +301,7 @@ std::string certificate_text(const Engine& engine, const RunSummary& summary, co
   if (evidence.estimate != nullptr && evidence.beyond != nullptr)
     line("error", error_text(*evidence.estimate, *evidence.beyond, engine));
   for (const BodyValidity& b : summary.validity.bodies) line(b.name, body_text(b, summary));
-  const auto all = indicators(engine.scene(), summary);
+  const auto all = indicators(engine.scene(), summary, last_terms(engine, evidence));
   if (!all.empty()) {
     const Indicator& first = all.front();
     line("binds", fmt::format("{}: {:.2g}, limit {:.3g}{}", first.text, first.value, first.limit,

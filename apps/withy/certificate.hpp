@@ -21,7 +21,9 @@ struct ErrorEstimate {
 };
 
 /// Estimates it for the time that the run went, with no more evaluations of the pair than the run had of its own.
-ErrorEstimate estimate_error(const Engine& engine, const Beyond& beyond, const RunSummary& summary);
+/// \param used the equations of the run, from its start to its end
+ErrorEstimate estimate_error(const Engine& engine, const EquationsOfMotion& used, const Beyond& beyond,
+                             const RunSummary& summary);
 
 /// How an indicator of validity stands against its limit (theory, section 5).
 struct Indicator {
@@ -32,7 +34,8 @@ struct Indicator {
   [[nodiscard]] double use() const { return value / limit; }
 };
 /// Those that matter to the scene's formulation, the one nearest to its limit (or furthest past it) first.
-std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary);
+/// \param used what the run kept in the end, where that is not what the scene's formulation says
+std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary, std::optional<Terms> used = {});
 
 /// What limited the steps of a run.
 struct StepLimit {
@@ -59,6 +62,7 @@ std::string step_limit_text(const StepLimit& s);
 struct Evidence {
   const Beyond* beyond = nullptr;
   const ErrorEstimate* estimate = nullptr;
+  const EscalatedRun* escalated = nullptr;
 };
 nlohmann::ordered_json certificate_json(const Engine& engine, const RunSummary& summary, const Evidence& evidence);
 /// The same in plain words, ending its last line.

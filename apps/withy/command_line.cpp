@@ -160,7 +160,7 @@ void add_commands(Commands& commands) {
                                                    "  withy run scenes/two-link-slew.yaml\n"
                                                    "  withy run scenes/two-link-slew.yaml --formulation ruthless "
                                                    "--set loads.slew.time_scale=1.2 --out results/fast\n"
-                                                   "  withy run scenes/two-link-slew.yaml --resume",
+                                                   "  withy run scenes/pendulum.yaml --checkpoint 10",
                                                    run, c);
   add_scene(*c, run_arguments);
   add_formulation(*c, run_arguments);
@@ -173,11 +173,11 @@ void add_commands(Commands& commands) {
       ->capture_default_str();
 
   c->add_option("--checkpoint", run_arguments.checkpoint,
-                "Wall time between checkpoints; 0: only where the run is interrupted")
+                "Wall time between checkpoints; 0: only where the run is interrupted; default: 60")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  c->add_flag("--resume", run_arguments.resume, "Go on from the checkpoint in the folder of the results");
+      ->check(CLI::NonNegativeNumber);
+  c->add_flag("--resume", run_arguments.resume,
+              "Go on from the checkpoint in the folder of the results: the same command as before, and this");
 
   auto& compare_arguments =
       commands.add<CompareArguments>("compare", "Simulate a scene in several formulations, side by side",
@@ -196,6 +196,20 @@ void add_commands(Commands& commands) {
   c->add_option("--out", compare_arguments.out, "Folder for results and pictures; default: nothing is kept")
       ->type_name("DIR");
 
+  auto& inverse_arguments = commands.add<InverseArguments>(
+      "inverse", "Efforts that hinges need to follow their motions, flexible bodies swinging along",
+      "  withy inverse scenes/spin-up.yaml\n"
+      "  withy inverse scenes/two-link-slew.yaml --motion scenes/motions/two-link-pick.csv --set loads={} "
+      "--out results/pick",
+      inverse, c);
+  add_scene(*c, inverse_arguments);
+  add_formulation(*c, inverse_arguments);
+  c->add_option("--motion", inverse_arguments.motion,
+                "CSV file with columns t[s] and hinge coordinates, in the place of the scene's motions")
+      ->type_name("FILE");
+  c->add_option("--out", inverse_arguments.out, "Folder of the results; default: results/<scene>-inverse")
+      ->type_name("DIR");
+
   auto& terms_arguments =
       commands.add<TermsArguments>("terms", "Measure the terms of the equations of motion along a run",
                                    "  withy terms scenes/two-link-slew.yaml\n"
@@ -211,7 +225,9 @@ void add_commands(Commands& commands) {
       "trade", "Weigh error against cost over formulations, modes, integrators and tolerances",
       "  withy trade scenes/screw.yaml --formulations ruthless,quadratic --modes 1,2\n"
       "  withy trade scenes/two-link-slew.yaml --set time.end=1 --modes 2 --tolerances 1e-4 "
-      "--over loads.slew.time_scale=0.5,1 --out results/trade",
+      "--over loads.slew.time_scale=0.5,1 --out results/trade\n"
+      "  withy trade scenes/rotating-blade.yaml --measure frequencies --limit 1% --over spin.axle=0:3.5 "
+      "--formulations ruthless,inconsistent,quadratic --modes 2",
       trade, c);
   add_scene(*c, trade_arguments);
   add_formulations(*c, trade_arguments.axes.formulations, "--formulations,--formulation",
@@ -234,6 +250,23 @@ void add_commands(Commands& commands) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1)
       ->allow_extra_args(false);
+  c->add_option("--limit", trade_arguments.limit,
+                "Find where along --over PATH=FROM:TO[:COUNT] each model's error passes this share, as 1%")
+      ->type_name("SHARE");
+  c->add_option("--measure", trade_arguments.measure, "With --limit: errors of runs, or of frequencies")
+      ->type_name("WHAT")
+      ->check(CLI::IsMember({"runs", "frequencies"}))
+      ->capture_default_str();
+  c->add_option("--count", trade_arguments.count, "Lowest modes whose frequencies are compared")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}))
+      ->capture_default_str();
+  c->add_option("--lock", trade_arguments.lock, "Of frequencies: hinges that are held")
+      ->type_name("HINGE,HINGE,...")
+      ->delimiter(',');
+  c->add_option("--spin", trade_arguments.spin, "Of frequencies: hinges held at a constant rate")
+      ->type_name("HINGE=RATE,...")
+      ->delimiter(',');
   c->add_option("--jobs", trade_arguments.jobs, "Points run at once; default: one a core")->type_name("N");
   c->add_option("--out", trade_arguments.out,
                 "Folder for table and picture, and for finished points: the same command continues")

@@ -2,6 +2,7 @@
 /// The commands of `withy`: what each is told and how it ends. What they print is described in docs/command-line.md.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,9 @@ struct RunArguments : SceneArguments {
   std::string out;  ///< folder of the results; empty: results/<scene>-<formulation>
   /// When the error against the next model up is estimated: auto (against `quadratic`), always, never.
   std::string estimate = "auto";
-  double checkpoint = 60;  ///< wall time between checkpoints [s]; 0: only where the run is interrupted
-  bool resume = false;     ///< go on from the checkpoint in the folder
+  /// Wall time between checkpoints [s]; 0: only where the run is interrupted; not given: 60.
+  std::optional<double> checkpoint;
+  bool resume = false;  ///< go on from the checkpoint in the folder
 };
 
 struct CompareArguments : SceneArguments {
@@ -42,6 +44,11 @@ struct CompareArguments : SceneArguments {
   std::string reference = "quadratic";  ///< formulation that the others' errors are measured against
   std::string over;                     ///< `path=value,value,…`: the comparison is made at each value; may be empty
   std::string out;                      ///< folder of the results; empty: none are kept
+};
+
+struct InverseArguments : SceneArguments {
+  std::string motion;  ///< file with hinge coordinates over time; empty: the scene's motions
+  std::string out;     ///< folder of the results; empty: results/<scene>-inverse
 };
 
 struct TermsArguments : SceneArguments {
@@ -55,13 +62,17 @@ struct TradeAxes {
   std::vector<int> modes = {1, 2, 3};        ///< of each family that a beam has
   std::vector<std::string> integrators = {"dopri5", "rosenbrock-w"};
   std::vector<double> tolerances = {1e-4, 1e-6};  ///< relative; absolute ones are 1e-2 of them
-  std::vector<std::string> over;                  ///< `path=value,value,…`
+  std::vector<std::string> over;  ///< `path=value,value,…`; where a limit is sought, one of them `path=from:to[:count]`
 };
 
 struct TradeArguments : SceneArguments {
   TradeAxes axes;
-  std::string out;       ///< folder of the results and of what is finished; empty: none are kept
-  std::size_t jobs = 0;  ///< threads; 0: one a core
+  std::string limit;             ///< relative error whose passing is sought along a range in `over`; empty: a trade
+  std::string measure = "runs";  ///< what that error is of: runs, frequencies
+  std::size_t count = 2;         ///< modes whose frequencies are compared
+  std::vector<std::string> lock, spin;  ///< for frequencies: as in ConfigurationArguments
+  std::string out;                      ///< folder of the results and of what is finished; empty: none are kept
+  std::size_t jobs = 0;                 ///< threads; 0: one a core
 };
 
 /// What is advised is the cheapest of these that holds the accuracy.
@@ -129,6 +140,7 @@ struct PluginsArguments : CommonArguments {
 
 ExitStatus run(const RunArguments& arguments);
 ExitStatus compare(const CompareArguments& arguments);
+ExitStatus inverse(const InverseArguments& arguments);
 ExitStatus terms(const TermsArguments& arguments);
 ExitStatus trade(const TradeArguments& arguments);
 ExitStatus advise(const AdviseArguments& arguments);

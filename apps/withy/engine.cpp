@@ -61,6 +61,22 @@ Engine::Engine(const SceneArguments& arguments)
     if (p.state == PluginRecord::State::refused) spdlog::debug("refused {}: {}", p.file.string(), p.reason);
   }
   for (const std::string& saving : equations_->savings()) spdlog::debug("compiled: {}", saving);
+  if (scene_.formulation_name == "auto") make_rungs();
+}
+
+void Engine::make_rungs() {
+  for (const char* id : {"ruthless", "quadratic", "exact"}) {
+    const auto* plugin = registry().find<Formulation>(id);
+    if (plugin == nullptr) throw InputError(std::string("formulation auto needs '") + id + "', which is not found");
+    Diagnostics diagnostics;
+    const auto formulation = plugin->make(Value::map({}), {registry(), diagnostics});
+    try {
+      rung_equations_.push_back(formulation->compile(scene_.model));
+    } catch (const std::invalid_argument&) {
+      continue;  // a body without exact kinematics: the ladder ends before it
+    }
+    rungs_.push_back({id, formulation->terms(), rung_equations_.back().get()});
+  }
 }
 
 std::string Engine::formulation_summary() const {
@@ -73,14 +89,36 @@ State Engine::state(const std::string& file) const {
   return as_input(file, [&] { return read_state(file, *scene_.model, scene_.initial); });
 }
 
-RunSummary Engine::simulate(const std::function<void(const State&)>& output, const SimulationExtras& extras) const {
+RunOptions Engine::run_options() const {
   RunOptions options;
   options.end = end_of_run(scene_);
-  watch_for_interrupt();
-  Progress progress(scene_.formulation_name, options.end);
   options.output = scene_.output;
   options.deflection_limit = scene_.deflection_limit;
   options.interrupted = interrupted;
+  options.events = scene_.events;
+  return options;
+}
+
+EscalatedRun Engine::simulate_escalating(const std::function<void(const State&, std::size_t)>& output) const {
+  for (const LoadNode& load : model().loads())
+    if (load.load->discrete() != nullptr)
+      throw InputError(scene_.file + ": /formulation: got 'auto', which changes the equations along a run; load '" +
+                       load.name + "' has discrete states, which do not go over: name a formulation");
+  const RunOptions options = run_options();
+  watch_for_interrupt();
+  Progress progress(scene_.formulation_name, options.end);
+  return withy::simulate_escalating(*scene_.model, rungs_, *scene_.integrator, scene_.initial, options,
+                                    [&](const State& state, std::size_t rung) {
+                                      progress.at(state.time);
+                                      output(state, rung);
+                                    });
+}
+
+RunSummary Engine::simulate(const std::function<void(const State&)>& output, const SimulationExtras& extras) const {
+  if (escalates()) return simulate_escalating([&](const State& state, std::size_t) { output(state); }).summary;
+  RunOptions options = run_options();
+  watch_for_interrupt();
+  Progress progress(scene_.formulation_name, options.end);
   options.beyond = extras.beyond;
   options.checkpoint = extras.checkpoint;
   options.resume = extras.resume;
@@ -95,7 +133,6 @@ RunSummary Engine::simulate(const std::function<void(const State&)>& output, con
       return true;
     };
   }
-  options.events = scene_.events;
   return withy::simulate(*scene_.model, *equations_, *scene_.integrator, scene_.initial, options,
                          [&](const State& state) {
                            progress.at(state.time);

@@ -10,6 +10,7 @@
 
 #include "withy/apps/withy/commands.hpp"
 #include "withy/core/dynamics/equations.hpp"
+#include "withy/core/simulation/escalation.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/plugins/host/plugin_host.hpp"
 #include "withy/scene/scene.hpp"
@@ -60,13 +61,28 @@ class Engine {
 
   /// Simulates from the scene's initial state to its end. Shows progress on standard error where that is a terminal;
   /// ends as interrupted at SIGINT.
+  /// Where the formulation is `auto`: as simulate_escalating() does, which has no extras.
   [[nodiscard]] RunSummary simulate(const std::function<void(const State&)>& output,
                                     const SimulationExtras& extras = {}) const;
 
+  /// Whether the formulation is `auto`, which a run chooses and changes. Where nothing runs, it is `quadratic`.
+  [[nodiscard]] bool escalates() const { return !rungs_.empty(); }
+  /// `ruthless`, `quadratic` and, where every flexible body offers it, `exact`.
+  [[nodiscard]] const std::vector<Rung>& rungs() const { return rungs_; }
+  /// The run of an engine that escalates, with the same progress and end at SIGINT.
+  /// \throws InputError where a load has discrete states.
+  [[nodiscard]] EscalatedRun simulate_escalating(
+      const std::function<void(const State&, std::size_t rung)>& output) const;
+
  private:
+  void make_rungs();
+  [[nodiscard]] RunOptions run_options() const;
+
   Plugins plugins_;
   Scene scene_;
   std::unique_ptr<EquationsOfMotion> equations_;
+  std::vector<std::unique_ptr<EquationsOfMotion>> rung_equations_;
+  std::vector<Rung> rungs_;
 };
 
 }  // namespace withy::app

@@ -11,47 +11,12 @@
 #include "withy/apps/withy/modes_report.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/progress.hpp"
-#include "withy/scene/units.hpp"
+#include "withy/apps/withy/variation.hpp"
 
 namespace withy::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr std::size_t most_values = 100000;
-
-/// `path=a:b:n`: n values from a to b, evenly.
-struct Sweep {
-  std::string path;
-  std::vector<double> values;
-  [[nodiscard]] bool none() const { return path.empty(); }
-  /// The hinge of `spin.hinge`; empty for a path of the scene.
-  [[nodiscard]] std::string spun() const { return path.starts_with("spin.") ? path.substr(5) : ""; }
-};
-
-Sweep read_sweep(const std::string& text) {
-  if (text.empty()) return {"", {0}};
-  const auto bad = [&](const std::string& why) {
-    return InputError("--sweep: got '" + text + "'; " + why +
-                      "need PATH=FROM:TO:COUNT, as spin.axle=0:12:49 or gravity.0=0:-9:31");
-  };
-  const std::size_t equals = text.find('=');
-  const std::size_t first = text.find(':', equals == std::string::npos ? 0 : equals);
-  const std::size_t second = first == std::string::npos ? first : text.find(':', first + 1);
-  if (equals == 0 || second == std::string::npos) throw bad("");
-  const auto from = plain_number(std::string_view(text).substr(equals + 1, first - equals - 1));
-  const auto to = plain_number(std::string_view(text).substr(first + 1, second - first - 1));
-  const auto count = plain_number(std::string_view(text).substr(second + 1));
-  if (!from || !to) throw bad("the ends of the range are plain numbers in SI units; ");
-  if (!count || *count != std::floor(*count) || *count < 2 || *count > most_values)
-    throw bad(fmt::format("the count is a whole number from 2 to {}; ", most_values));
-  Sweep sweep{text.substr(0, equals), {}};
-  const auto n = static_cast<std::size_t>(*count);
-  for (std::size_t k = 0; k < n; ++k) {
-    const double r = static_cast<double>(k) / static_cast<double>(n - 1);
-    sweep.values.push_back(k + 1 == n ? *to : *from + r * (*to - *from));
-  }
-  return sweep;
-}
 
 /// Modes of one configuration; `last` is the steady state of the value before, where there is one, and becomes this
 /// one's.
@@ -109,7 +74,7 @@ ModesOf modes_of(const ModesArguments& arguments, const std::string& formulation
 }  // namespace
 
 ExitStatus modes(const ModesArguments& arguments) {
-  const Sweep sweep = read_sweep(arguments.sweep);
+  const Sweep sweep = parse_sweep(arguments.sweep, "--sweep");
   std::vector<std::string> formulations = arguments.formulations;
   if (formulations.empty()) formulations.emplace_back();
   std::vector<ModesOf> runs;

@@ -23,8 +23,6 @@ double greatest_of(const ModesAt& at) {
   for (const Mode& m : at.modes) g = std::max({g, std::abs(m.eigenvalue), std::abs(m.partner)});
   return g;
 }
-bool unstable(const ModesAt& at, const Mode& m) { return !m.rigid && m.growth() > 1e-10 * greatest_of(at); }
-
 /// A growth without what rounding leaves of it.
 double shown_growth(const ModesAt& at, const Mode& m) {
   return std::abs(m.growth()) > 1e-10 * greatest_of(at) ? m.growth() : 0.0;
@@ -43,6 +41,8 @@ std::string component(const std::complex<double>& x) {
 }
 
 }  // namespace
+
+bool unstable(const ModesAt& at, const Mode& m) { return !m.rigid && m.growth() > 1e-10 * greatest_of(at); }
 
 std::string dominating(const ModesAt& at, const Mode& mode) {
   return at.names[static_cast<std::size_t>(mode.dominant)];

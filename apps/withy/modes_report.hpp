@@ -27,6 +27,8 @@ struct ModesOf {
 
 /// Name of the coordinate that dominates a mode, as "link1.bending_y[1]".
 std::string dominating(const ModesAt& at, const Mode& mode);
+/// Whether it grows, beyond what rounding leaves of the greatest eigenvalue.
+bool unstable(const ModesAt& at, const Mode& mode);
 /// Frequencies, damping, growth and shapes of one configuration.
 std::string modes_text(const ModesOf& run, std::size_t count);
 /// A row a value, a column a branch; unstable ones marked.

@@ -9,6 +9,7 @@
 #include "withy/apps/withy/beyond.hpp"
 #include "withy/apps/withy/progress.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_times.hpp"
 
 namespace withy::app {
@@ -87,8 +88,10 @@ Walk walk(const ProbedModel& model, const Integrator& integrator, const std::fun
   const Scene& scene = model.scene;
   const double end = end_of_run(scene);
   Walk w;
-  const auto stepper = integrator.start(*model.equations, scene.initial);
+  Clocks clocks(*scene.model);
   State sample = scene.initial;
+  clocks.begin(sample);
+  const auto stepper = integrator.start(*model.equations, sample);
   std::vector<double> rates(model.equations->size());
   Work work = model.equations->make_work();
   const Evaluation first = model.equations->derivatives(sample.time, sample.y, rates, work);
@@ -106,7 +109,7 @@ Walk walk(const ProbedModel& model, const Integrator& integrator, const std::fun
   const auto pause = [&] { w.seconds += thread_cpu_seconds() - began; };
   for (const double limit : landings(*scene.model, scene.initial.time, end)) {
     while (stepper->state().time < limit) {
-      const StepResult result = stepper->step(limit);
+      const StepResult result = stepper->step(std::min(limit, clocks.next()));
       if (result.outcome != StepResult::Outcome::ok ||
           stepper->statistics().determinant_sign != first.determinant_sign) {
         pause();
@@ -117,8 +120,9 @@ Walk walk(const ProbedModel& model, const Integrator& integrator, const std::fun
         return w;
       }
       const bool last = stepper->state().time >= end;
+      const bool instant = stepper->state().time >= clocks.next();
       const bool look = stepper->statistics().accepted % 64 == 0;
-      if (!times.due(stepper->state().time) && !last && !look) continue;
+      if (!times.due(stepper->state().time) && !last && !instant && !look) continue;
       pause();
       told();
       if (interrupted()) {
@@ -135,6 +139,12 @@ Walk walk(const ProbedModel& model, const Integrator& integrator, const std::fun
       if (!on) {
         w.end = Walk::End::cut;
         return w;
+      }
+      if (instant) {
+        sample = stepper->state();
+        clocks.renew(sample);
+        clocks.go_on_after(sample.time);
+        stepper->jump(sample);
       }
       began = thread_cpu_seconds();
     }

@@ -38,9 +38,9 @@ struct Walk {
   std::size_t steps = 0, evaluations = 0;
   double seconds = 0;  ///< CPU time of stepping alone
 };
-/// Steps from the scene's initial state to its end as a run does. `output` gets the state at each output and says
-/// whether to go on; `afford` is asked at the same times and says whether the cost so far may be spent.
-/// \throws std::invalid_argument where the integrator cannot treat the equations.
+/// Steps from the scene's initial state to its end as a run does of a scene without switching functions and events.
+/// `output` gets the state at each output and says whether to go on; `afford` is asked at the same times and says
+/// whether the cost so far may be spent. \throws std::invalid_argument where the integrator cannot treat the equations.
 Walk walk(const ProbedModel& model, const Integrator& integrator, const std::function<bool(const State&)>& output,
           const std::function<bool(const Walk&)>& afford = {});
 /// The point's integrator, its absolute tolerance a hundredth of the relative one.

@@ -21,7 +21,10 @@ struct CertifiedRun {
   RunSummary summary;
   std::optional<Beyond> beyond;
   std::optional<ErrorEstimate> estimate;
-  [[nodiscard]] Evidence evidence() const { return {beyond ? &*beyond : nullptr, estimate ? &*estimate : nullptr}; }
+  std::optional<EscalatedRun> escalated;  ///< of formulation `auto`
+  [[nodiscard]] Evidence evidence() const {
+    return {beyond ? &*beyond : nullptr, estimate ? &*estimate : nullptr, escalated ? &*escalated : nullptr};
+  }
 };
 /// The same for `withy run`: what is left out is measured, and its effect estimated after the run.
 CertifiedRun run_into(const std::filesystem::path& folder, const Engine& engine, const RunArguments& arguments);

@@ -28,6 +28,9 @@ void check_accuracy(const Engine& engine) {
 
 ExitStatus run(const RunArguments& arguments) {
   const Engine engine(arguments);
+  if (engine.escalates() && (arguments.resume || arguments.checkpoint))
+    throw InputError(std::string(arguments.resume ? "--resume" : "--checkpoint") +
+                     ": a run of formulation 'auto' keeps no checkpoints; leave it out, or name a formulation");
   check_accuracy(engine);
   std::filesystem::path folder = arguments.out;
   if (folder.empty()) {
@@ -40,7 +43,8 @@ ExitStatus run(const RunArguments& arguments) {
                        : run_table(engine, summary) + certificate_text(engine, summary, certified.evidence()) +
                              "\nresults in " + folder.string() + '\n');
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
-  if (summary.status == RunStatus::interrupted) complain("the same command with --resume goes on from there");
+  if (summary.status == RunStatus::interrupted && !engine.escalates())
+    complain("the same command with --resume goes on from there");
   return exit_status(summary.status);
 }
 

@@ -13,6 +13,7 @@
 #include "withy/apps/withy/svg_plot.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/apps/withy/trade_run.hpp"
+#include "withy/apps/withy/trade_threshold.hpp"
 
 namespace withy::app {
 namespace {
@@ -109,42 +110,56 @@ std::string csv_text(const std::vector<TradeResult>& results, const std::vector<
   return text;
 }
 
-/// Error over cost, both logarithmic; a colour a formulation, the front as a line.
+/// Error over cost, both logarithmic; a colour a formulation, the front as a line. A panel for each of the values gone
+/// over.
 std::string picture(const std::string& title, const std::vector<TradeResult>& results, const std::vector<bool>& front) {
   std::vector<std::string> legend;
-  std::map<std::string, std::size_t> curve_of;
-  Panel panel{"log10 CPU time [ms]", "log10 error [%]", {1e300, -1e300}, {}};
-  const auto place = [](const TradeResult& r) {
-    return std::pair(std::log10(1e3 * r.cpu_seconds), std::log10(std::max(100 * r.relative_error, 1e-12)));
-  };
-  std::vector<std::pair<double, double>> line;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    if (!results[i].completed()) continue;
-    const auto [made, is_new] = curve_of.emplace(results[i].point.formulation, legend.size());
-    if (is_new) {
-      legend.push_back(results[i].point.formulation);
-      panel.curves.emplace_back().points = true;
-    }
-    const auto [x, y] = place(results[i]);
-    panel.curves[made->second].x.push_back(x);
-    panel.curves[made->second].y.push_back(y);
-    panel.y_range = {std::min(panel.y_range.first, y), std::max(panel.y_range.second, y)};
-    if (front[i]) line.emplace_back(x, y);
-  }
-  if (panel.curves.empty()) panel.y_range = {0, 1};
-  std::sort(line.begin(), line.end());
+  std::map<std::string, std::size_t> pens;
+  for (const TradeResult& r :
+       results)  // those that failed too: a colour means the same in every study of the same list
+    if (pens.emplace(r.point.formulation, legend.size()).second) legend.push_back(r.point.formulation);
+  const std::size_t line = legend.size();
   legend.emplace_back("Pareto front");
-  panel.curves.emplace_back();
-  for (const auto& [x, y] : line) {
-    panel.curves.back().x.push_back(x);
-    panel.curves.back().y.push_back(y);
+  std::vector<std::string> overs;
+  std::vector<Panel> panels;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const TradeResult& r = results[i];
+    if (!r.completed()) continue;
+    const std::string over = over_text(r.point);
+    const auto at = std::find(overs.begin(), overs.end(), over);
+    const auto p = static_cast<std::size_t>(at - overs.begin());
+    if (at == overs.end()) {
+      overs.push_back(over);
+      panels.push_back(
+          {"log10 CPU time [ms]" + (over.empty() ? "" : ", " + over), "log10 error [%]", {1e300, -1e300}, {}});
+      panels.back().curves.resize(legend.size());
+      for (std::size_t c = 0; c < line; ++c) panels.back().curves[c].points = true;
+    }
+    const double x = std::log10(1e3 * r.cpu_seconds), y = std::log10(std::max(100 * r.relative_error, 1e-12));
+    const auto add = [&](Curve& curve) {
+      curve.x.push_back(x);
+      curve.y.push_back(y);
+    };
+    add(panels[p].curves[pens.at(r.point.formulation)]);
+    if (front[i]) add(panels[p].curves[line]);
+    panels[p].y_range = {std::min(panels[p].y_range.first, y), std::max(panels[p].y_range.second, y)};
   }
-  return svg_plot(title, legend, {panel});
+  for (Panel& panel : panels) {  // along the front error falls as cost rises
+    Curve& curve = panel.curves[line];
+    std::sort(curve.x.begin(), curve.x.end());
+    std::sort(curve.y.rbegin(), curve.y.rend());
+  }
+  return svg_plot(title, legend, panels);
 }
 
 }  // namespace
 
 ExitStatus trade(const TradeArguments& arguments) {
+  if (!arguments.limit.empty()) return trade_threshold(arguments);
+  if (arguments.measure != "runs" || !arguments.lock.empty() || !arguments.spin.empty())
+    throw InputError(
+        "--measure frequencies, --lock and --spin go with --limit; frequencies over a range are what "
+        "withy modes --sweep shows");
   TradeStudy study(arguments, trade_points(arguments.axes), {arguments.out, arguments.jobs});
   const bool whole = study.run();
   const auto results = study.results();
@@ -156,11 +171,13 @@ ExitStatus trade(const TradeArguments& arguments) {
     j["points"].push_back(result_json(results[i]));
     j["points"].back()["pareto"] = static_cast<bool>(front[i]);
   }
-  std::string text = arguments.json ? json_text(j)
-                                    : title + "\n\n" + table_text(results, front) +
-                                          "\n*: no other point is both more accurate and cheaper. Error "
-                                          "in % of the greatest way of a hinge or tip.\n" +
-                                          references_text(study.references()) + reasons_text(results);
+  std::string text =
+      arguments.json
+          ? json_text(j)
+          : title + "\n\n" + table_text(results, front) +
+                "\n*: no other point is both more accurate, as far as the reference can tell, and cheaper. Error "
+                "in % of the greatest way of a hinge or tip.\n" +
+                references_text(study.references()) + reasons_text(results);
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
     write_file(folder / "trade.json", json_text(j));

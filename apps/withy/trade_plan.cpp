@@ -20,17 +20,17 @@ int modes_of(const Value& beam, const char* strain) {
   return modes != nullptr ? static_cast<int>(modes->number()) : 0;
 }
 
-/// What an initial state says of a beam's modal coordinates or rates, for another number of modes.
-std::string resized(const std::vector<double>& values, const Value& beam, int modes) {
+/// What an initial state says of a body's modal coordinates or rates, for another number of modes.
+/// \param had modes of each strain up to now, in the order of the values.
+std::string resized(const std::vector<double>& values, const std::vector<int>& had, int modes) {
   std::string text = "[";
   std::size_t first = 0;
-  for (const char* strain : strains) {
-    const int had = modes_of(beam, strain);
-    for (int i = 0; had > 0 && i < modes; ++i) {
-      const double v = i < had ? values.at(first + static_cast<std::size_t>(i)) : 0;
+  for (const int n : had) {
+    for (int i = 0; n > 0 && i < modes; ++i) {
+      const double v = i < n ? values.at(first + static_cast<std::size_t>(i)) : 0;
       text += fmt::format("{}{}", text.size() > 1 ? ", " : "", v);
     }
-    first += static_cast<std::size_t>(had);
+    first += static_cast<std::size_t>(n);
   }
   return text + "]";
 }
@@ -71,6 +71,8 @@ std::vector<TradePoint> trade_points(const TradeAxes& axes) {
     if (m < 1 || m > 200) throw InputError(fmt::format("--modes: got {}; need 1 to 200", m));
   for (const double t : axes.tolerances)
     if (!(t > 0 && t <= 1)) throw InputError(fmt::format("--tolerances: got {:g}; need above 0, at most 1", t));
+  for (const std::string& f : axes.formulations)
+    if (f == "auto") throw InputError("--formulations: 'auto' is a choice along a run, not a model; leave it out");
   std::vector<TradePoint> points;
   for (const auto& over : overs) {
     for (const std::string& formulation : axes.formulations) {
@@ -99,29 +101,37 @@ SceneArguments arguments_at(const SceneArguments& base, const Scene& scene, cons
   const Value* initial = scene.source.find("initial");
   const Value* starts = initial != nullptr ? initial->find("bodies") : nullptr;
   for (const auto& [name, body] : bodies->members()) {
-    if (body.text_at("type") != "beam") continue;
-    for (const char* strain : strains) {
-      if (modes_of(body, strain) == 0) continue;
-      overrides.push_back(fmt::format("bodies.{}.{}.modes={}", name, strain, point.modes));
-      if (!point.family.empty() && std::string_view(strain).starts_with("bending"))
-        overrides.push_back(fmt::format("bodies.{}.{}.family={}", name, strain, point.family));
+    const std::string type = body.text_at("type");
+    const Slot* const slot = scene.model->layout().body(name);  // none of a beam in segments
+    std::vector<int> had;
+    if (type == "plate") {
+      had = {static_cast<int>(slot->speeds)};
+      overrides.push_back(fmt::format("bodies.{}.modes={}", name, point.modes));
+    } else if (type == "beam") {
+      for (const char* strain : strains) {
+        had.push_back(modes_of(body, strain));
+        if (had.back() == 0) continue;
+        overrides.push_back(fmt::format("bodies.{}.{}.modes={}", name, strain, point.modes));
+        if (!point.family.empty() && std::string_view(strain).starts_with("bending"))
+          overrides.push_back(fmt::format("bodies.{}.{}.family={}", name, strain, point.family));
+      }
+    } else {
+      continue;
     }
-    const Value* start = starts != nullptr ? starts->find(name) : nullptr;
+    // The initial states of segments have names of their own.
+    const Value* start = starts != nullptr && slot != nullptr ? starts->find(name) : nullptr;
     if (start == nullptr) continue;
-    const Layout& layout = scene.model->layout();
-    const Slot* const found = layout.body(name);
-    if (found == nullptr) continue;  // cut into segments, whose initial states have names of their own
-    const Slot& slot = *found;
     const auto values = [&](std::size_t first) {
       const auto begin = scene.initial.y.begin() + static_cast<std::ptrdiff_t>(first);
-      return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(slot.speeds));
+      return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(slot->speeds));
     };
     if (start->has("modes"))
       overrides.push_back(
-          fmt::format("initial.bodies.{}.modes={}", name, resized(values(slot.position), body, point.modes)));
+          fmt::format("initial.bodies.{}.modes={}", name, resized(values(slot->position), had, point.modes)));
     if (start->has("rates"))
-      overrides.push_back(fmt::format("initial.bodies.{}.rates={}", name,
-                                      resized(values(layout.positions + slot.speed), body, point.modes)));
+      overrides.push_back(
+          fmt::format("initial.bodies.{}.rates={}", name,
+                      resized(values(scene.model->layout().positions + slot->speed), had, point.modes)));
   }
   return a;
 }

@@ -26,6 +26,7 @@ struct TradeResult {
   double relative_error = 0;  ///< the greater of both, over the greatest way that a hinge or tip goes in the reference
   double cpu_seconds = 0;
   std::size_t steps = 0, evaluations = 0;
+  double reference_error = 0;  ///< of its reference, relative: errors below it cannot be told apart
   [[nodiscard]] bool completed() const { return status == "completed"; }
 };
 nlohmann::ordered_json result_json(const TradeResult& result);
@@ -49,10 +50,14 @@ class TradeStudy {
  public:
   TradeStudy(const SceneArguments& arguments, std::vector<TradePoint> points, TradeOptions options);
   ~TradeStudy();
+  /// One more point; it must not have more modes or a smaller tolerance than the others, on which the reference rests.
+  void add(const TradePoint& point);
   /// Runs what is not finished yet; false where the user interrupted. Results do not depend on the number of threads.
   bool run();
   /// Of the finished points, in their order.
   [[nodiscard]] std::vector<TradeResult> results() const;
+  /// Of that point; null where it is not among them or not finished.
+  [[nodiscard]] const TradeResult* result(const TradePoint& point) const;
   /// By the values gone over, joined with spaces.
   [[nodiscard]] const nlohmann::ordered_json& references() const;
   [[nodiscard]] const Engine& engine() const { return engine_; }
@@ -61,7 +66,7 @@ class TradeStudy {
   [[nodiscard]] TradeResult run_point(const TradePoint& point);
   [[nodiscard]] const TradeReference& reference_for(const TradePoint& point);
   [[nodiscard]] ComparedRun simulate(const TradePoint& point, double& cpu_seconds);
-  void find_finished();
+  void find_finished(std::size_t first);
   void keep(const TradeResult& result) const;
 
   struct Shared;
@@ -74,7 +79,7 @@ class TradeStudy {
   std::unique_ptr<Shared> shared_;
 };
 
-/// Whether no other completed point is both more accurate and cheaper.
+/// Whether no other completed point is both more accurate, as far as its reference can tell, and cheaper.
 std::vector<bool> pareto_front(const std::vector<TradeResult>& results);
 
 }  // namespace withy::app

@@ -1,10 +1,17 @@
 #include "withy/apps/withy/variation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "withy/apps/withy/engine.hpp"
+#include "withy/scene/units.hpp"
 
 namespace withy::app {
+namespace {
+constexpr std::size_t most_values = 100000;
+}  // namespace
 
 Variation parse_variation(const std::string& text) {
   if (text.empty()) return {"", {""}};
@@ -18,6 +25,35 @@ Variation parse_variation(const std::string& text) {
     begin = end + 1;
   }
   return v;
+}
+
+Sweep parse_sweep(const std::string& text, const std::string& option, std::optional<std::size_t> count) {
+  if (text.empty()) return {"", {0}};
+  const auto bad = [&](const std::string& why) {
+    return InputError(option + ": got '" + text + "'; " + why + "need PATH=FROM:TO" + (count ? "[:COUNT]" : ":COUNT") +
+                      ", as spin.axle=0:12:49 or gravity.0=0:-9:31");
+  };
+  const std::size_t equals = text.find('=');
+  const std::size_t first = text.find(':', equals == std::string::npos ? 0 : equals);
+  if (equals == 0 || equals == std::string::npos || first == std::string::npos) throw bad("");
+  const std::size_t second = text.find(':', first + 1);
+  if (second == std::string::npos && !count) throw bad("");
+  const std::size_t end = std::min(second, text.size());
+  const auto from = plain_number(std::string_view(text).substr(equals + 1, first - equals - 1));
+  const auto to = plain_number(std::string_view(text).substr(first + 1, end - first - 1));
+  if (!from || !to) throw bad("the ends of the range are plain numbers in SI units; ");
+  if (second != std::string::npos) {
+    const auto given = plain_number(std::string_view(text).substr(second + 1));
+    if (!given || *given != std::floor(*given) || *given < 2 || *given > most_values)
+      throw bad(fmt::format("the count is a whole number from 2 to {}; ", most_values));
+    count = static_cast<std::size_t>(*given);
+  }
+  Sweep sweep{text.substr(0, equals), {}};
+  for (std::size_t k = 0; k < *count; ++k) {
+    const double r = static_cast<double>(k) / static_cast<double>(*count - 1);
+    sweep.values.push_back(k + 1 == *count ? *to : *from + r * (*to - *from));
+  }
+  return sweep;
 }
 
 }  // namespace withy::app

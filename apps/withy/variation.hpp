@@ -1,7 +1,8 @@
 /// \file
-/// `--over path=value,value,…`: the values of a scene that a command goes through.
+/// The values of a scene that a command goes through: `--over path=value,value,…`, `--sweep path=from:to:count`.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,20 @@ struct Variation {
 
 /// An empty text gives no variation with one empty value. \throws InputError
 Variation parse_variation(const std::string& text);
+
+/// Numbers from the first to the last, evenly.
+struct Sweep {
+  std::string path;
+  std::vector<double> values;
+  [[nodiscard]] bool none() const { return path.empty(); }
+  /// The hinge of `spin.hinge`; empty for a path of the scene.
+  [[nodiscard]] std::string spun() const { return path.starts_with("spin.") ? path.substr(5) : ""; }
+};
+
+/// Reads `path=from:to:count`, or `path=from:to` where a count is given here. An empty text gives no sweep with the one
+/// value zero.
+/// \param option named in messages, as "--sweep".
+/// \throws InputError
+Sweep parse_sweep(const std::string& text, const std::string& option, std::optional<std::size_t> count = {});
 
 }  // namespace withy::app

@@ -321,6 +321,8 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
                         "' ended the run at t = " + brief(summary.final.time) + " s.";
     if (!summary.suspected_jumps.empty())
       summary.message += (summary.message.empty() ? "" : " ") + note_on_jumps(summary.suspected_jumps);
+    for (const std::string& remark : run.stepper().remarks())
+      summary.message += (summary.message.empty() ? "The integrator: " : " The integrator: ") + remark + ".";
   } else {
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end
     // Steps that collapse where M loses rank collapse because of it.

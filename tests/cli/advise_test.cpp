@@ -145,6 +145,35 @@ TEST(Advise, WritesWhatTheSceneDoesNotSayYet) {
   EXPECT_THAT(folder.read("new.yaml"), Not(HasSubstr("1e-9")));
 }
 
+const char* const turned_boom =
+    "format: withy/1\ntime: {end: 2}\nbodies:\n  hub: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}\n"
+    "  boom: {type: beam, length: 1, mass_per_length: 0.2, bending_y: {stiffness: 10, modes: 2}}\nhinges:\n"
+    "  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}\n"
+    "  root: {type: weld, parent: hub, child: boom}\nloads:\n";
+
+TEST(Advise, SampledControllersActInItsProbesAsInARun) {
+  const Folder folder;
+  folder.write("sampled.yaml", std::string(turned_boom) +
+                                   "  control: {type: pd-controller, law: constant, sample: 0.05, hinges: {axle: {to: "
+                                   "0.5, stiffness: 2, damping: 0.5}}}\n");
+  const Finished f = advise(folder, {"--write", "new.yaml", "--modes", "1,2", "--json"}, {"advise", "sampled.yaml"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json advice = json::parse(f.out).at("advice");
+  const json run = json::parse(withy(folder, {"run", "new.yaml", "--json", "--estimate", "never"}).out);
+  EXPECT_EQ(run.at("evaluations"), advice.at("evaluations"));
+  EXPECT_GT(run.at("final").at("hinges").at("axle").at("position").at(0).get<double>(), 0.1) << "it was turned";
+}
+
+TEST(Advise, LoadsThatSwitchByTheStateAreRefusedPlainly) {
+  const Folder folder;
+  folder.write("relay.yaml", std::string(turned_boom) +
+                                 "  jets: {type: hinge-relay, hinge: axle, effort: 0.5, on: 0.03, off: 0.01, "
+                                 "rate_time: 1}\n");
+  const Finished f = advise(folder, {}, {"advise", "relay.yaml"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("relay.yaml: a load switches at zeros of a function of the state"));
+}
+
 TEST(Advise, WritingAndSettingDoNotGoTogether) {
   const Folder folder;
   EXPECT_EQ(advise(folder, {"--modes", "1", "--accuracy", "20%", "--write", "x.yaml"}).status, 2);

@@ -74,9 +74,10 @@ void from_loads(Campaign& campaign) {
         }
       }
     }
-    campaign.row(fmt::format("a load gives {} from 0.5 s on, every integrator", what), "typed failure",
-                 "diverged at 0.5 s, load and coordinate named, last state kept; called ≤ 60 times past it",
-                 bad.empty() ? fmt::format("holds; at most {} calls", most) : bad, bad.empty() && most <= 60);
+    campaign.row(
+        fmt::format("a load gives {} from 0.5 s on, every integrator", what), "typed failure",
+        "diverged at 0.5 s, load and coordinate named, last state kept; called ≤ 160 times past it (20 retries of 8)",
+        bad.empty() ? fmt::format("holds; at most {} calls", most) : bad, bad.empty() && most <= 160);
   }
 }
 
@@ -125,7 +126,8 @@ void collapse(Campaign& campaign) {
     return Evaluation{};
   });
   for (const std::string& id : ids<Integrator>()) {
-    if (id == "rk4" || id == "rosenbrock-w") continue;  // equal steps; needs a linearly implicit solver
+    if (id == "rk4" || id == "gauss" || id == "generalized-alpha") continue;  // equal steps
+    if (id == "rosenbrock-w") continue;                                       // needs a linearly implicit solver
     std::string text;
     bool met = false;
     try {

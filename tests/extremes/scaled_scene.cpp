@@ -135,7 +135,7 @@ std::string scaled_text(const Scene& scene, Registry& registry, const Gauge& gau
 
 std::vector<double> state_factors(const Model& model, const Gauge& gauge, int derivatives) {
   const Layout& layout = model.layout();
-  std::vector<int> exponents(layout.positions + layout.speeds + 1);
+  std::vector<int> exponents(layout.size());  // discrete states are those of relays, which have no unit
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const Slot& slot = layout.hinges[h];
     std::size_t i = 0;

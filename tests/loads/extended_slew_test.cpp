@@ -18,9 +18,9 @@ double second_moment(double rho, double a, double b) { return rho * (b * b * b -
 /// quintic law is 10/√3 Δ/T². Outputs every 0.1 ms miss the peak's parabola by less than 1e-7.
 TEST(ExtendedSlew, efforts_are_those_of_one_rigid_body) {
   const LoadedScene scene(shipped("extended-slew.yaml"));
-  const double elbow = 0.0762 + 0.9144 + 0.1524, root = elbow + 0.0127, tip = root + 0.9144, payload = tip + 0.0508;
+  const double elbow = 0.0762 + 0.9144 + 0.0762, root = elbow + 0.0127, tip = root + 0.9144, payload = tip + 0.0508;
   const double outer = second_moment(0.669685, root, tip) + 2 * payload * payload + 0.01;
-  const double inner = second_moment(1.33937, 0.0762, 0.0762 + 0.9144) + 14 * std::pow(elbow - 0.0762, 2) + 0.03 + 0.01;
+  const double inner = second_moment(1.33937, 0.0762, 0.0762 + 0.9144) + 14 * elbow * elbow + 0.03 + 0.01;
   const double about_elbow = outer - elbow * (first_moment(0.669685, root, tip) + 2 * payload);
   const double peak = 10 / std::sqrt(3.0) * (pi / 3) / (3.8 * 3.8);
   const std::vector<const BoundLoad*> loads = [&] {

@@ -67,6 +67,25 @@ TEST(Spline, is_exact_for_a_cubic_at_rest_at_its_ends) {
   }
 }
 
+// Any cubic, given its rates at the ends; beyond them the rates stay.
+TEST(Spline, is_exact_for_a_cubic_with_its_rates_at_the_ends) {
+  const auto cubic = [](double t) { return 0.3 + t * (1.1 + t * (-0.7 + 0.4 * t)); };
+  const auto rate = [](double t) { return 1.1 + t * (-1.4 + 1.2 * t); };
+  const std::vector<double> times{-0.5, 0.1, 0.4, 1.3, 2.0};
+  std::vector<double> positions;
+  for (const double t : times) positions.push_back(cubic(t));
+  const Spline motion(times, positions, rate(-0.5), rate(2.0));
+  for (double t = -0.5; t < 2; t += 0.07) {
+    EXPECT_NEAR(motion(t).position, cubic(t), 1e-14);
+    EXPECT_NEAR(motion(t).rate, rate(t), 1e-13);
+    EXPECT_NEAR(motion(t).acceleration, -1.4 + 2.4 * t, 1e-12);
+  }
+  EXPECT_NEAR(motion(-1.5).position, cubic(-0.5) - rate(-0.5), 1e-14);
+  EXPECT_NEAR(motion(3).position, cubic(2) + rate(2), 1e-14);
+  EXPECT_EQ(motion(3).rate, rate(2));
+  EXPECT_EQ(motion(3).acceleration, 0);
+}
+
 TEST(Spline, goes_through_its_points_and_rests_outside) {
   const double times[] = {0.5, 1.0, 2.2, 3.0}, positions[] = {0.3, 1.0, -0.4, 0.2};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(spline(times[i]).position, positions[i], 1e-15);

@@ -17,16 +17,18 @@ class ShippedScenes : public SceneTest {
 
 TEST_F(ShippedScenes, AreReadAndCompile) {
   std::size_t scenes = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(WITHY_SOURCE_DIRECTORY "/scenes")) {
-    if (entry.path().extension() != ".yaml") continue;
-    ++scenes;
-    const std::string name = entry.path().stem();
-    const Scene scene = read("scenes/" + name + ".yaml");
-    EXPECT_GT(end_of_run(scene), 0) << name;
-    EXPECT_FALSE(scene.name.empty()) << name;
-    EXPECT_NE(scene.formulation->compile(scene.model), nullptr) << name;
+  for (const std::string folder : {"scenes", "scenes/gallery"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(WITHY_SOURCE_DIRECTORY "/" + folder)) {
+      if (entry.path().extension() != ".yaml") continue;
+      ++scenes;
+      const std::string name = entry.path().stem();
+      const Scene scene = read(folder + "/" + name + ".yaml");
+      EXPECT_GT(end_of_run(scene), 0) << name;
+      EXPECT_FALSE(scene.name.empty()) << name;
+      EXPECT_NE(scene.formulation->compile(scene.model), nullptr) << name;
+    }
   }
-  EXPECT_GE(scenes, 10U);
+  EXPECT_GE(scenes, 20U);
 }
 
 /// The expressions differ (reference scenes give no damping or loads), the masses and stiffnesses must not.

@@ -1,0 +1,26 @@
+/// \file
+/// Limits of validity (theory, section 5).
+#pragma once
+
+#include "withy/core/model/terms.hpp"
+
+namespace withy {
+
+/// Whether the second-order terms that motion and load bring to bear are in the equations.
+constexpr bool second_order(const Terms& terms) {
+  return terms.strain != StrainOrder::linear && terms.truncation != Truncation::ruthless && terms.products_of_speeds;
+}
+
+/// Rate of a body over its fundamental frequency beyond which frequencies of a truncation of linear kinematics are 1 %
+/// wrong. A body with modes in one direction alone is taken to bend in the plane of rotation.
+constexpr double rate_limit(const Terms& terms, bool one_direction) {
+  if (terms.truncation == Truncation::ruthless || !terms.products_of_speeds) return one_direction ? 0.325 : 0.130;
+  return 0.129;
+}
+
+/// Load over buckling load up to which second-order terms may be left out.
+inline constexpr double load_limit = 0.1;
+/// Tip deflection over length up to which deflections are small.
+inline constexpr double deflection_limit = 0.1;
+
+}  // namespace withy

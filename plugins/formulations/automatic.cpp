@@ -1,0 +1,17 @@
+/// \file
+/// The formulation that a run chooses and changes as its motion asks (core/simulation/escalation.hpp). Where nothing
+/// runs it is `quadratic`, which holds wherever the ladder begins.
+#include "formulation_plugin.hpp"
+
+namespace {
+
+void enroll(withy::Enrollment& enrollment) {
+  withy::enroll_formulation<withy::Terms{withy::StrainOrder::quadratic, withy::Truncation::none}>(
+      enrollment, "auto",
+      "The least of ruthless, quadratic and exact whose validity holds, changed along a run where it does not; "
+      "quadratic where nothing runs");
+}
+
+}  // namespace
+
+WITHY_PLUGIN(automatic, enroll);
