@@ -11,10 +11,8 @@ namespace {
 
 const Collocation& gauss_6() {
   static const Collocation method = [] {
-    const double half = std::sqrt(15.0) / 10;
-    Collocation c({0.5 - half, 0.5, 0.5 + half});
-    c.b << 5.0 / 18, 4.0 / 9, 5.0 / 18;
-    return c;
+    const long double half = std::sqrt(15.0L) / 10;
+    return Collocation({0.5L - half, 0.5L, 0.5L + half});
   }();
   return method;
 }
@@ -28,7 +26,8 @@ class GaussStepper final : public EqualSteps {
         sizes_(size()),
         tolerance_(Eigen::ArrayXd::Zero(size())),
         lost_(Eigen::ArrayXd::Zero(size())),
-        lost_next_(Eigen::ArrayXd::Zero(size())) {}
+        lost_next_(Eigen::ArrayXd::Zero(size())),
+        increment_(Eigen::VectorXd::Zero(size())) {}
 
   void restart() override {
     EqualSteps::restart();
@@ -72,7 +71,9 @@ class GaussStepper final : public EqualSteps {
     if (r.iterations > slow) known_ = false;
 
     // y + increment + what earlier sums lost; what this one loses.
-    tolerance_ = (h * (stages_.slopes() * gauss_6().b)).array() + lost_;
+    increment_.noalias() = stages_.slopes() * gauss_6().b;
+    increment_.noalias() += stages_.slopes() * gauss_6().b_rest;
+    tolerance_ = h * increment_.array() + lost_;
     next_ = y() + tolerance_;
     lost_next_ = tolerance_ - (next_ - y());
     normalize(next_);
@@ -100,6 +101,7 @@ class GaussStepper final : public EqualSteps {
   CollocationStages stages_;
   Sizes sizes_;
   Eigen::ArrayXd tolerance_, lost_, lost_next_;
+  Eigen::VectorXd increment_;
   bool known_ = false;  ///< the Jacobian
 };
 

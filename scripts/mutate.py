@@ -8,8 +8,8 @@
   scripts/mutate.py --write docs/mutation.md   # run none; the report's table goes between the document's marks
   scripts/mutate.py --check              # only that every fault still finds its place in the sources
 
-Each fault is applied to a copy of the last commit, in build/mutants, built as the release is but for the sweeps: those at
--O1, and not a second time for AVX2. The test programs that the list names for it are run first, then all others; the first that fails has killed it. Faults that do not
+Each fault is applied to a copy of the last commit, in build/mutants, built as the release is but for the sweeps, which are
+not compiled a second time for AVX2. The test programs that the list names for it are run first, then all others; the first that fails has killed it. Faults that do not
 compile count as none. Faults already in the report are not run again, so that a run that was stopped goes on.
 """
 import argparse
@@ -55,9 +55,7 @@ def prepare():
     archive = subprocess.run(["git", "archive", "HEAD"], cwd=root, stdout=subprocess.PIPE, check=True).stdout
     subprocess.run(["tar", "x", "-C", str(source)], input=archive, check=True)
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if command(["which", "ccache"]).returncode == 0 else []
-    # As the release, so that ccache has what is not changed; the sweeps, which take longest, once and cheaply.
-    sweeps = source / "core" / "CMakeLists.txt"
-    sweeps.write_text(sweeps.read_text().replace("-fno-tree-vectorize)", "-fno-tree-vectorize -O1)"))
+    # As the release, so that ccache has what is not changed; the sweeps for one instruction set alone.
     configured = command(["cmake", "-S", str(source), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                           "-DWITHY_BENCH=OFF", "-DWITHY_KNOWS_X86_64_V3=OFF",
                           "-DWITHY_TEST_ROOMS=bodies;loads;dynamics;analysis;simulation;integrators;plugins;reference",
@@ -128,7 +126,9 @@ def main():
         write_table(arguments.write, mutants, read_report())
         return 0
     prepare()
-    base = compile_tests(programs, arguments.jobs)
+    # No more than is run.
+    needed = {t for m in mutants if arguments.only in m[0] for t in m[4]} if arguments.named_only else set(programs)
+    base = compile_tests([p for p in programs if p in needed], arguments.jobs)
     if base.returncode != 0:
         sys.exit(base.stdout)
     done = {name: line[1] for name, line in read_report().items()}
