@@ -57,11 +57,25 @@ bool families_are_exchangeable(const Scene& scene) {
 }
 
 bool same_model(const TradePoint& a, const TradePoint& b) {
-  return a.formulation == b.formulation && a.family == b.family && a.modes == b.modes;
+  return a.formulation == b.formulation && a.family == b.family && a.modes == b.modes && a.bodies == b.bodies;
 }
 
 std::string unit_key(const TradePoint& p) {
-  return fmt::format("{} {} {} {}", p.formulation, p.family, p.modes, p.integrator);
+  return fmt::format("{} {} {} {}", p.formulation_text(), p.family, p.modes, p.integrator);
+}
+
+/// Names of the scene's bodies that have modes, in its order; a beam in segments is one.
+std::vector<std::string> flexible_bodies(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const auto& [name, body] : scene.source.at("bodies").members()) {
+    const std::string& of = name;
+    const auto is_part = [&](const BodyNode& b) {
+      return b.body->shape().modes() > 0 && (b.segment ? b.segment->whole : b.name) == of;
+    };
+    const auto& nodes = scene.model->bodies();
+    if (std::any_of(nodes.begin(), nodes.end(), is_part)) names.push_back(name);
+  }
+  return names;
 }
 
 bool flexible(const Model& model) {
@@ -172,6 +186,7 @@ void Advisor::find_reference() {
                    modal ? first_modes : 0,
                    "dop853",
                    std::clamp(1e-3 * accuracy_.share.value_or(1e-3), 1e-8, 1e-5),
+                   {},
                    {}};
   std::string trouble;
   std::optional<Reference> coarse = reference_at(point, trouble);
@@ -211,7 +226,7 @@ std::vector<ProbedModel*> Advisor::models_by_cost() {
   for (const std::string& formulation : candidates_.formulations) {
     for (const std::string& family : candidates_.families) {
       for (const int modes : candidates_.modes) {
-        ProbedModel& m = made({formulation, family, modes, "", 0, {}});
+        ProbedModel& m = made({formulation, family, modes, "", 0, {}, {}});
         // Explicit steps are as many as the fastest mode makes them.
         order.emplace_back(m.seconds * std::max(m.fastest, 1.0), &m);
       }
@@ -310,6 +325,14 @@ void Advisor::try_model(ProbedModel& model) {
   }
 }
 
+/// CPU time of another whole run [s], from which its unit cost may be seen to be less.
+double Advisor::time_again(const Probe& p) {
+  const Probe timed = probe(engine_, made(p.point), p.point, outputs_, *reference_, infinite, infinite);
+  spent_ += timed.walk.seconds;
+  note_unit_cost(timed);
+  return timed.walk.seconds;
+}
+
 /// The cheapest that passed; those that are nearly as cheap are timed again first, since time is noisy.
 void Advisor::choose() {
   choice_.reset();
@@ -317,15 +340,38 @@ void Advisor::choose() {
   for (const Probe& p : probes_)
     if (p.passed() && cost(p) <= 1.3 * best_) again.push_back(p);
   for (const Probe& p : again) {
-    for (int i = 0; i < 2 && !interrupted_; ++i) {
-      const Probe timed = probe(engine_, made(p.point), p.point, outputs_, *reference_, infinite, infinite);
-      spent_ += timed.walk.seconds;
-      note_unit_cost(timed);
-      if (timed.walk.seconds > 0.2) break;
-    }
+    for (int i = 0; i < 2 && !interrupted_; ++i)
+      if (time_again(p) > 0.2) break;
   }
   for (const Probe& p : probes_)
     if (p.passed() && (!choice_ || cost(p) < cost(*choice_))) choice_ = p;
+}
+
+/// Flexible bodies that need less than the rest: one after the other, the choice with that one `ruthless` too.
+void Advisor::simplify_bodies() {
+  if (!choice_ || choice_->point.formulation == "ruthless" || !allowed("ruthless")) return;
+  const std::vector<std::string> bodies = flexible_bodies(engine_.scene());
+  if (bodies.size() < 2) return;  // all of them were tried
+  for (const std::string& body : bodies) {
+    if (interrupted_ || choice_->point.bodies.size() + 1 == bodies.size()) return;
+    TradePoint point = choice_->point;
+    point.bodies.emplace_back(body, "ruthless");
+    ProbedModel& model = made(point);
+    if (model.refused()) continue;
+    const double least = best_;
+    const Probe mixed = run(model, point, 1, 4 * cost(*choice_));
+    for (int i = 0; i < 2 && mixed.passed() && cost(mixed) >= cost(*choice_); ++i) time_again(mixed);
+    if (mixed.passed() && cost(mixed) < cost(*choice_)) {
+      choice_ = mixed;
+    } else {
+      best_ = least;
+    }
+  }
+}
+
+bool Advisor::allowed(const std::string& formulation) const {
+  const auto& all = candidates_.formulations;
+  return std::find(all.begin(), all.end(), formulation) != all.end();
 }
 
 bool Advisor::search() {
@@ -336,6 +382,7 @@ bool Advisor::search() {
     try_model(*model);
   }
   choose();
+  simplify_bodies();
   return choice_.has_value();
 }
 
@@ -354,8 +401,12 @@ void Advisor::look_up() {
   if (!choice_ || !flexible(engine_.model())) return;
   std::vector<TradePoint> points;
   TradePoint up = choice_->point;
-  up.formulation = up.formulation == "quadratic" ? "exact" : "quadratic";
-  if (choice_->point.formulation != "exact") points.push_back(up);
+  if (!up.bodies.empty()) {
+    up.bodies.clear();
+  } else {
+    up.formulation = up.formulation == "quadratic" ? "exact" : "quadratic";
+  }
+  if (!choice_->point.bodies.empty() || choice_->point.formulation != "exact") points.push_back(up);
   TradePoint richer = choice_->point;
   ++richer.modes;
   if (choice_->point.modes > 0) points.push_back(richer);

@@ -59,7 +59,10 @@ class Advisor {
   [[nodiscard]] double exact_enough_tolerance() const;
   const Probe& run(ProbedModel& model, const TradePoint& point, double most_use, double most_seconds);
   void note_unit_cost(const Probe& probe);
+  double time_again(const Probe& p);
   void choose();
+  void simplify_bodies();
+  [[nodiscard]] bool allowed(const std::string& formulation) const;
   [[nodiscard]] double unit_cost(const TradePoint& point) const;
   ProbedModel& made(const TradePoint& point);
 

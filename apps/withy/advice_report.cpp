@@ -45,10 +45,8 @@ std::string distances_text(const MeasuredOutputs& outputs, const PerMeasure& d) 
 
 std::string milliseconds(double seconds) { return fmt::format("{:.3g} ms", 1e3 * seconds); }
 
-/// What the model does not know.
-std::string left_out(const ProbedModel& model) {
-  if (model.scene.model->layout().bodies.empty()) return "nothing: no body is flexible";
-  const Terms terms = model.scene.formulation->terms();
+/// What a formulation does not know.
+std::string left_out(const Terms& terms) {
   switch (terms.truncation) {
     case Truncation::ruthless:
       return "every product of an elastic coordinate or rate with the rigid motion: stiffening and softening by "
@@ -65,6 +63,17 @@ std::string left_out(const ProbedModel& model) {
     return "second-order kinematics: foreshortening, and with it stiffening and buckling by axial load";
   if (terms.strain == StrainOrder::quadratic) return "the third and higher orders of deflection";
   return "extension along beams and shear";
+}
+
+/// What the model does not know.
+std::string left_out(const ProbedModel& model) {
+  if (model.scene.model->layout().bodies.empty()) return "nothing: no body is flexible";
+  std::string text = left_out(model.scene.formulation->terms());
+  std::string bodies;
+  for (const auto& own : model.point.bodies) bodies += (bodies.empty() ? "; of " : ", ") + own.first;
+  if (bodies.empty()) return text;
+  constexpr Terms least{StrainOrder::linear, Truncation::ruthless};  // bodies have no other formulation of their own
+  return text + bodies + " " + left_out(least);
 }
 
 /// The best that the probes with a property did: cheapest that passed, else the least wrong of those that went
@@ -115,7 +124,10 @@ Json distances_json(const MeasuredOutputs& outputs, const PerMeasure& d) {
 }
 
 Json point_json(const TradePoint& p) {
+  Json bodies = Json::object();
+  for (const auto& [body, formulation] : p.bodies) bodies[body] = formulation;
   return {{"formulation", p.formulation},
+          {"bodies", std::move(bodies)},
           {"modes", p.modes > 0 ? Json(p.modes) : Json()},
           {"family", p.family.empty() ? Json() : Json(p.family)},
           {"integrator", p.integrator},
@@ -168,14 +180,22 @@ std::string advice_text(const Advice& advice) {
   for (const std::string& n : a.outputs().names()) names += (names.empty() ? "" : ", ") + n;
   out += fmt::format("{}: {}{} of {}\n\n", scene.name.empty() ? scene.file : scene.name, a.accuracy().text(),
                      a.accuracy().share ? " of the greatest way" : "", names);
-  line("advice",
-       fmt::format("{}, {}, {}", choice.point.formulation, modes_text(choice.point), integration_text(choice.point)));
+  line("advice", fmt::format("{}, {}, {}", choice.point.formulation_text(), modes_text(choice.point),
+                             integration_text(choice.point)));
   line("error", fmt::format("{} ({}); the reference itself is known to {}", use_text(a, choice.use),
                             distances_text(a.outputs(), choice.distances), use_text(a, reference.own_use())));
   line("cost", fmt::format("{} of CPU time: {} steps, {} evaluations", milliseconds(a.cost(choice)), choice.walk.steps,
                            choice.walk.evaluations));
   if (advice.steps.product > 0) line("steps", step_limit_text(advice.steps));
   const char* head = "why";
+  if (!choice.point.bodies.empty()) {
+    const Probe* p =
+        best_of(a, [&](const TradePoint& t) { return t.formulation == choice.point.formulation && t.bodies.empty(); });
+    if (p != nullptr) {
+      line(head, choice.point.formulation + " everywhere: " + fared(a, *p));
+      head = "";
+    }
+  }
   for (const std::string& f : a.candidates().formulations) {
     if (f == choice.point.formulation) continue;
     const Probe* p = best_of(a, [&](const TradePoint& t) { return t.formulation == f; });

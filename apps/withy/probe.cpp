@@ -48,8 +48,15 @@ std::string reason_of(const StepResult& result, const ProbedModel& model) {
 
 std::vector<std::string> overrides_at(const SceneArguments& base, const Scene& scene, const TradePoint& point) {
   std::vector<std::string> overrides = arguments_at(base, scene, point).options.overrides;
-  for (const auto& [name, body] : scene.source.at("bodies").members())
-    if (body.has("formulation")) overrides.push_back("bodies." + name + ".formulation=" + point.formulation);
+  for (const auto& [name, body] : scene.source.at("bodies").members()) {
+    const auto own = std::find_if(point.bodies.begin(), point.bodies.end(),
+                                  [&name = name](const auto& b) { return b.first == name; });
+    if (own != point.bodies.end()) {
+      overrides.push_back("bodies." + name + ".formulation=" + own->second);
+    } else if (body.has("formulation")) {
+      overrides.push_back("bodies." + name + ".formulation=" + point.formulation);
+    }
+  }
   return overrides;
 }
 

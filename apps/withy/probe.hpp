@@ -14,7 +14,7 @@
 
 namespace withy::app {
 
-/// A scene in one formulation throughout, with a number of modes of a family.
+/// A scene in one formulation, but for the bodies that the point names, with a number of modes of a family.
 struct ProbedModel {
   TradePoint point;  ///< its integrator and tolerance mean nothing
   Scene scene;

@@ -41,14 +41,24 @@ std::string TradePoint::key() const {
   std::string key =
       fmt::format("{}_{}_{}_{}_{:g}", formulation, modes, family.empty() ? "scene" : family, integrator, tolerance);
   for (const std::string& o : over) key += '_' + o;
+  for (const auto& [body, own] : bodies) key += '_' + body + '=' + own;
   for (char& c : key) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && std::string("._=+-").find(c) == std::string::npos) c = '~';
   }
   return key;
 }
 
+std::string TradePoint::formulation_text() const {
+  std::string text = formulation;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    text += (i == 0 ? " (" : ", ") + bodies[i].first;
+    if (i + 1 == bodies.size() || bodies[i + 1].second != bodies[i].second) text += ": " + bodies[i].second;
+  }
+  return bodies.empty() ? text : text + ')';
+}
+
 std::string TradePoint::text() const {
-  std::string text = fmt::format("{}, {} mode{}{}, {} at {:g}", formulation, modes, modes == 1 ? "" : "s",
+  std::string text = fmt::format("{}, {} mode{}{}, {} at {:g}", formulation_text(), modes, modes == 1 ? "" : "s",
                                  family.empty() ? "" : ' ' + family, integrator, tolerance);
   for (const std::string& o : over) text += ", " + o;
   return text;

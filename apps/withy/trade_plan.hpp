@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "withy/apps/withy/engine.hpp"
@@ -18,9 +19,13 @@ struct TradePoint {
   std::string integrator;
   double tolerance = 0;
   std::vector<std::string> over;  ///< `path=value`
+  /// Bodies whose formulation is another, with its name.
+  std::vector<std::pair<std::string, std::string>> bodies{};
 
   /// The same for the same point, and fit for a file's name.
   [[nodiscard]] std::string key() const;
+  /// "quadratic", "quadratic (boom, mast: ruthless)".
+  [[nodiscard]] std::string formulation_text() const;
   /// "quadratic, 2 modes, dopri5 at 1e-06".
   [[nodiscard]] std::string text() const;
 };

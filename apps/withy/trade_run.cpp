@@ -153,7 +153,7 @@ ComparedRun TradeStudy::simulate(const TradePoint& point, double& cpu_seconds) {
   // Short runs are timed again and again: the least time is nearest to what the processor needs.
   cpu_seconds = std::numeric_limits<double>::max();
   double spent = 0;
-  for (int i = 0; i < 30 && spent < 0.15; ++i) {
+  for (int i = 0; i < 30 && spent < 0.05; ++i) {
     run.outputs.clear();
     run.summary = withy::simulate(run.engine->model(), run.engine->equations(), *scene.integrator, scene.initial,
                                   options, [&](const State& s) { run.outputs.push_back(s); });

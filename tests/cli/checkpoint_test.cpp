@@ -73,8 +73,12 @@ TEST(Checkpoints, AKilledRunGoesOnFromTheCheckpointBeforeWhereTheNewestIsDamaged
   const Folder folder;
   ASSERT_EQ(withy(folder, with(command, {"--out", "whole"})).status, 0);
   const Arguments killed = with(command, {"--out", "out", "--checkpoint", "0.005"});
-  ASSERT_EQ(ended_by(SIGKILL, folder, killed).status, -SIGKILL);
   const auto newest = folder.path() / "out/checkpoint.cbor";
+  // A kill may fall between the moving of one generation and the writing of the next, when there is no newest.
+  for (int kill = 0; kill < 50 && !std::filesystem::exists(newest); ++kill) {
+    std::filesystem::remove_all(folder.path() / "out");
+    ASSERT_EQ(ended_by(SIGKILL, folder, killed).status, -SIGKILL);
+  }
   std::string bytes = folder.read("out/checkpoint.cbor");
   ASSERT_GT(bytes.size(), 200U);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x10);
