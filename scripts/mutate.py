@@ -3,6 +3,7 @@
 
   scripts/mutate.py                      # all faults of scripts/mutants.tsv, a table in build/mutants/report.tsv
   scripts/mutate.py --only coriolis      # those whose name has this in it
+  scripts/mutate.py --within loads,modes # those that the list gives to no other test programs
   scripts/mutate.py --named-only         # run the test programs that the list names and no others
   scripts/mutate.py --survivors          # run those again that survived
   scripts/mutate.py --write docs/mutation.md   # run none; the report's table goes between the document's marks
@@ -111,6 +112,7 @@ def read_report():
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="faults whose name has this in it")
+    parser.add_argument("--within", help="faults that the list gives to these test programs alone, as loads,modes")
     parser.add_argument("--check", action="store_true", help="only check that every fault finds its place")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--named-only", action="store_true", help="run only the test programs the list names")
@@ -119,6 +121,8 @@ def main():
     parser.add_argument("--limit", type=float, default=900, help="seconds a test program may take")
     arguments = parser.parse_args()
     mutants = read_mutants()
+    if arguments.within:
+        mutants = [m for m in mutants if set(m[4]) <= set(arguments.within.split(","))]
     if arguments.check:
         print(f"{len(mutants)} faults find their places")
         return 0
