@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include "beam_profile.hpp"
@@ -51,16 +52,12 @@ struct LinearFields {
 class Beam final : public Body, private Rod {
  public:
   Beam(const Material& material, std::vector<Strain> strains)
-      : length_(material.length),
-        mass_per_length_(material.mass_per_length.mean()),
+      : material_(material),
+        length_(material.length),
         strains_(std::move(strains)),
         quadrature_(material.length, wave_number(strains_), kinks(material, strains_)) {
     shape_.length = length_;
-    uniform_rod_ = material.mass_per_length.knots().empty();
-    for (const auto& [axis, inertia] : material.inertias) {
-      uniform_rod_ = uniform_rod_ && axis == Vector3::UnitX() && inertia.knots().empty();
-      twist_inertia_ += inertia.mean();
-    }
+    for (const auto& [axis, inertia] : material.inertias) bending_inertia_ |= axis != Vector3::UnitX();
     for (const Strain& s : strains_) {
       for (std::size_t i = 1; i <= s.functions->count(); ++i) {
         shape_.mode_names.push_back(std::string(s.name) + "[" + std::to_string(i) + "]");
@@ -73,7 +70,7 @@ class Beam final : public Body, private Rod {
     // Without modes it is a rigid body, to the last bit the one that a scene would write with ρL and ρL³/12.
     const bool rigid = n == 0 && material.mass_per_length.knots().empty();
     if (rigid) {
-      const double mass = mass_per_length_ * length_, central = mass * (length_ * length_) / 12;
+      const double mass = material.mass_per_length.mean() * length_, central = mass * (length_ * length_) / 12;
       const PointExpansion middle = PointExpansion::rigid(Vector3(length_ / 2, 0, 0), 0);
       shape_.particles.push_back({mass, middle});
       shape_.sections.push_back({Vector3(0, central, central).asDiagonal(), middle});
@@ -120,23 +117,33 @@ class Beam final : public Body, private Rod {
     return "root, tip, or a coordinate x from 0 to " + std::to_string(length_) + " m";
   }
   const Rod* rod() const override {
-    // The exact rod is inextensible, uniform but for its stiffness, without rotary inertia in bending, and clamped at x
-    // = 0. Shape functions that vanish there leave rounding, at most 1e-12 of a mode's size.
+    // The exact rod is inextensible, without rotary inertia in bending, and clamped at x = 0. Shape functions that
+    // vanish there leave rounding, at most 1e-12 of a mode's size.
     const LinearFields root = linear_fields(0);
     for (const Strain& s : strains_) {
       if (s.kind == BeamData::Strain::elongation) return nullptr;
     }
     const double moved = root.phi.cwiseAbs().sum() + length_ * root.psi.cwiseAbs().sum();
-    return uniform_rod_ && shape_.modes() > 0 && moved < 1e-9 * static_cast<double>(shape_.modes()) ? this : nullptr;
+    return !bending_inertia_ && shape_.modes() > 0 && moved < 1e-9 * static_cast<double>(shape_.modes()) ? this
+                                                                                                         : nullptr;
   }
 
  private:
   Eigen::Index modes() const override { return shape_.modes(); }
   double length() const override { return length_; }
   double wave_number() const override { return wave_number(strains_); }
+  std::vector<double> kinks() const override {
+    std::vector<double> x = kinks(material_, {});
+    std::sort(x.begin(), x.end());
+    x.erase(std::unique(x.begin(), x.end()), x.end());
+    std::erase_if(x, [this](double at) { return at <= 0 || at >= length_; });
+    return x;
+  }
   RodSection section(double x) const override {
     LinearFields f = linear_fields(x);
-    return {std::move(f.psi_slope), std::move(f.psi), std::move(f.phi), mass_per_length_, twist_inertia_};
+    double inertia = 0;
+    for (const auto& [axis, per_length] : material_.inertias) inertia += per_length(x);  // all about x
+    return {std::move(f.psi_slope), std::move(f.psi), std::move(f.phi), material_.mass_per_length(x), inertia};
   }
 
   static double wave_number(const std::vector<Strain>& strains) {
@@ -253,9 +260,9 @@ class Beam final : public Body, private Rod {
     return e;
   }
 
-  double length_, mass_per_length_;
-  double twist_inertia_ = 0;  ///< mean, where uniform_rod_ the value
-  bool uniform_rod_ = true;
+  Material material_;
+  double length_;
+  bool bending_inertia_ = false;
   std::vector<Strain> strains_;
   BeamQuadrature quadrature_;
   ModalShape shape_;

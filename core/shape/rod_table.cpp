@@ -5,11 +5,26 @@
 
 namespace withy {
 
-RodTable::RodTable(const Rod& given)
-    : rod(&given),
-      quadrature(given.length(),
-                 std::max<Eigen::Index>(1, std::lround(std::ceil(given.wave_number() * given.length() / 4.75))), order),
-      turn(1.0, 1, turn_order) {
+namespace {
+
+/// Equal panels between two kinks, no more than 4.75 wave-number lengths each.
+std::vector<double> panel_edges(const Rod& rod) {
+  std::vector<double> ends = rod.kinks();
+  ends.push_back(rod.length());
+  std::vector<double> edges{0};
+  for (const double end : ends) {
+    const double from = edges.back(), length = end - from;
+    const long panels = std::max(1L, std::lround(std::ceil(rod.wave_number() * length / 4.75)));
+    for (long p = 1; p < panels; ++p)
+      edges.push_back(from + length * static_cast<double>(p) / static_cast<double>(panels));
+    edges.push_back(end);
+  }
+  return edges;
+}
+
+}  // namespace
+
+RodTable::RodTable(const Rod& given) : rod(&given), quadrature(panel_edges(given), order), turn(1.0, 1, turn_order) {
   double before = 0;
   for (const double x : quadrature.nodes()) {
     sections.push_back(rod->section(x));

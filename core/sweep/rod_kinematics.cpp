@@ -42,6 +42,8 @@ RodIntegrals::RodIntegrals(const RodTable& table, const std::vector<double>& sta
   // By columns: the weights of one node in the integrals to all.
   running = packed(quadrature.running().data(), RodTable::order * RodTable::order);
   weights = packed(quadrature.weights().data(), RodTable::order);
+  for (std::size_t k = 0; k < nodes; k += RodTable::order)
+    scale.push_back(quadrature.weights()[k] / quadrature.weights()[0]);
   std::vector<double> root(nodes);
   for (std::size_t k = 0; k < nodes; ++k) {
     const double m = quadrature.weights()[k] * table.sections[k].mass_per_length;

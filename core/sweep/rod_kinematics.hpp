@@ -23,8 +23,9 @@ struct RodIntegrals {
   static constexpr int packs_per_panel = RodTable::order / static_cast<int>(lanes);
 
   int packs = 0;                            ///< nodes / 4; 0: no rod
-  std::vector<Pack> running;                ///< of a panel, element j·4 + k: what node j gives to the nodes of pack k
-  std::vector<Pack> weights;                ///< of a panel
+  std::vector<Pack> running;                ///< of the first panel, j·4 + k: what node j gives to the nodes of pack k
+  std::vector<Pack> weights;                ///< of the first panel
+  std::vector<double> scale;                ///< lengths of the panels over that of the first
   std::vector<std::vector<Pack>> stations;  ///< ∫₀ˣ to each station, weights of all nodes
   std::vector<Pack> root_mass;              ///< square roots of the nodes' masses
   double mass = 0;
@@ -37,13 +38,15 @@ struct RodIntegrals {
     constexpr int m = packs_per_panel;
     for (int function = 0; function < functions; ++function) {
       double before = 0;
-      for (int panel = 0; panel < packs; panel += m, f += m, y += m) {
+      const double* relative = scale.data();
+      for (int panel = 0; panel < packs; panel += m, f += m, y += m, ++relative) {
+        const Pack length = spread(*relative);
         Pack sums[m];
         for (Pack& s : sums) s = spread(before);
         const Pack* from = running.data();
         Pack total = spread(0.0);
         for (int k = 0; k < m; ++k) {
-          const Pack values = f[k];
+          const Pack values = f[k] * length;
           total += weights[static_cast<std::size_t>(k)] * values;
 #pragma GCC unroll 4
           for (int lane = 0; lane < 4;
