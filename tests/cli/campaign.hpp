@@ -4,6 +4,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +13,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace withy::test {
@@ -19,15 +22,17 @@ namespace withy::test {
 /// F; seeds that are there are not measured again. Remove F when the program has changed.
 class Campaign {
  public:
-  explicit Campaign(unsigned usual) {
+  /// \param name what a line of the file belongs to
+  Campaign(std::string name, unsigned usual, unsigned most = 1'000'000) : name_(std::move(name)) {
     const char* const wanted = std::getenv("WITHY_TEST_SEEDS");
     seeds_ = wanted != nullptr ? static_cast<unsigned>(std::atoi(wanted)) : usual;
+    seeds_ = std::min(seeds_, most);
     const char* const file = std::getenv("WITHY_TEST_FILE");
     file_ = file != nullptr ? file : "";
     std::ifstream in(file_);
     for (std::string line; !file_.empty() && std::getline(in, line);) {
       const auto j = nlohmann::json::parse(line, nullptr, false);  // the last line may be half
-      if (!j.is_discarded()) known_[j.at("seed").get<unsigned>()] = j;
+      if (!j.is_discarded() && j.value("campaign", "") == name_) known_[j.at("seed").get<unsigned>()] = j;
     }
     folder_ = std::filesystem::temp_directory_path() / ("withy-campaign-" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder_);
@@ -53,6 +58,7 @@ class Campaign {
       all.push_back(measure(seed, (folder_ / "scene.yaml").string()));
       nlohmann::json j = all.back();
       j["seed"] = seed;
+      j["campaign"] = name_;
       if (!file_.empty()) std::ofstream(file_, std::ios::app) << j.dump() << std::endl;
       std::printf("%s\n", j.dump().c_str());
       std::fflush(stdout);
@@ -61,6 +67,7 @@ class Campaign {
   }
 
  private:
+  std::string name_;
   unsigned seeds_ = 0;
   std::string file_;
   std::map<unsigned, nlohmann::json> known_;

@@ -76,7 +76,7 @@ double factor(double claimed, double truth) {
 }
 
 TEST(EstimateCampaign, errors_claimed_are_within_a_factor_of_three_of_the_true_ones) {
-  const Campaign campaign(6);
+  const Campaign campaign("estimate", 6);
   const std::vector<Claims> all = campaign.run<Claims>(claims_of);
   unsigned scenes = 0, good_scenes = 0;
   for (const char* formulation : {"ruthless", "linear", "consistent", "quadratic"}) {
