@@ -6,7 +6,7 @@
   scripts/mutate.py --within loads,modes # those that the list gives to no other test programs
   scripts/mutate.py --named-only         # run the test programs that the list names and no others
   scripts/mutate.py --survivors          # run those again that survived
-  scripts/mutate.py --write docs/mutation.md   # run none; the report's table goes between the document's marks
+  scripts/mutate.py --write FILE         # run none; the table of the report goes into this document, between its marks
   scripts/mutate.py --check              # only that every fault still finds its place in the sources
 
 Each fault is applied to a copy of the last commit, in build/mutants, built as the release is but for the sweeps, which are
