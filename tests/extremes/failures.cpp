@@ -46,11 +46,16 @@ Ended run(const Model& model, const EquationsOfMotion& equations, const Integrat
   return e;
 }
 
+/// An attempt of these asks for stages again and again, and some for a Jacobian by differences.
+bool iterates(const std::string& id) {
+  return id == "radau" || id == "gauss" || id == "generalized-alpha" || id == "cvode";
+}
+
 void from_loads(Campaign& campaign) {
   const double inf = std::numeric_limits<double>::infinity();
   for (const auto& [what, value] : {std::pair("NaN", std::nan("")), {"Inf", inf}, {"-Inf", -inf}}) {
     std::string bad;
-    std::size_t most = 0;
+    std::size_t most = 0, most_iterated = 0;
     for (const std::string& id : ids<Integrator>()) {
       for (const std::string formulation : {"quadratic", "consistent", "exact"}) {
         if (id == "rosenbrock-w" && formulation == "consistent") continue;  // has no solver there
@@ -64,7 +69,8 @@ void from_loads(Campaign& campaign) {
           equations = made.scene.formulation->compile(model);
           const Ended e = run(*model, *equations, *with_default_options(id), made.scene.initial);
           const RunSummary& s = e.summary;
-          most = std::max(most, calls);
+          std::size_t& greatest = iterates(id) ? most_iterated : most;
+          greatest = std::max(greatest, calls);
           if (s.status != RunStatus::diverged || !e.finite || std::abs(s.final.time - 0.5) > 2e-3 ||
               s.message.find("load 'broken' gives") == std::string::npos ||
               s.message.find("pivot.0") == std::string::npos || s.message.find("'sound'") != std::string::npos)
@@ -76,8 +82,10 @@ void from_loads(Campaign& campaign) {
     }
     campaign.row(
         fmt::format("a load gives {} from 0.5 s on, every integrator", what), "typed failure",
-        "diverged at 0.5 s, load and coordinate named, last state kept; called ≤ 160 times past it (20 retries of 8)",
-        bad.empty() ? fmt::format("holds; at most {} calls", most) : bad, bad.empty() && most <= 160);
+        "diverged at 0.5 s, load and coordinate named, last state kept; called ≤ 60 times past it, ≤ 160 where a step "
+        "iterates",
+        bad.empty() ? fmt::format("holds; at most {} calls, {} where a step iterates", most, most_iterated) : bad,
+        bad.empty() && most <= 60 && most_iterated <= 160);
   }
 }
 
