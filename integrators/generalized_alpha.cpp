@@ -64,7 +64,8 @@ class AlphaStepper final : public EqualSteps {
       a0_ = slope_.segment(np, n).matrix();
       begun_ = true;
     }
-    const Eigen::ArrayXd& sizes = sizes_.update(y(), h, slope_);
+    const auto ahead = [this, h]() -> const Eigen::ArrayXd& { return slope_ahead(h); };
+    const Eigen::ArrayXd& sizes = sizes_.update(y(), h, slope_, ahead);
     const auto rates = [this](double at, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) {
       return evaluate(at, values, slope);
     };

@@ -26,20 +26,13 @@ class RosenbrockWStepper final : public AdaptiveStepper {
   static constexpr double stability_limit = std::numeric_limits<double>::infinity();
 
   RosenbrockWStepper(const EquationsOfMotion& equations, const State& start, const StepControl& control)
-      : AdaptiveStepper(equations, start, control, 3), linear_(solver_of(equations)), factors_(linear_.make_factors()) {
+      : AdaptiveStepper(equations, start, control, 3),
+        linear_(solver_of(equations, "rosenbrock-w")),
+        factors_(linear_.make_factors()) {
     for (Eigen::ArrayXd* a : {&stage_, &slope_here_, &shift_, &k1_, &k2_, &k3_, &k4_}) a->setZero(size());
   }
 
  private:
-  static const LinearlyImplicit& solver_of(const EquationsOfMotion& equations) {
-    const LinearlyImplicit* linear = equations.linearly_implicit();
-    if (linear == nullptr)
-      throw std::invalid_argument(
-          "integrator 'rosenbrock-w' folds stiffness into a symmetric mass matrix; the strict formulations have none. "
-          "Use quadratic or ruthless, or an explicit integrator such as dopri5");
-    return *linear;
-  }
-
   Trial attempt(double h) override {
     const double t = state_.time;
     if (const Evaluation e = linear_.factorize(state_.y, h * gamma_ii, factors_); !e.ok()) return {e};

@@ -8,45 +8,12 @@
 #include <optional>
 #include <stdexcept>
 
-#include "random_scene.hpp"
+#include "random_case.hpp"
 #include "withy/core/dynamics/tree.hpp"
-#include "withy/plugins/host/static_plugins.hpp"
-#include "withy/scene/scene.hpp"
 #include "withy/tests/conformance/allocations.hpp"
 
 namespace withy::test {
 namespace {
-
-struct Case {
-  Registry registry;
-  Scene scene;
-  std::unique_ptr<EquationsOfMotion> equations;
-  State state;
-
-  Case(const std::string& text, const std::string& formulation) {
-    enroll_static_plugins(registry);
-    scene = parse_scene(text, "text", registry, {formulation, "", {}});
-    equations = scene.formulation->compile(scene.model);
-    state = scene.initial;
-  }
-  Case(unsigned seed, const SceneWish& wish, const std::string& formulation) {
-    enroll_static_plugins(registry);
-    RandomScene random(seed, wish);
-    scene = parse_scene(random.text(), "random", registry, {formulation, "", {}});
-    equations = scene.formulation->compile(scene.model);
-    state = random.state(*scene.model, scene.initial);
-  }
-  std::vector<double> derivatives(const State& s) const {
-    std::vector<double> y_dot(equations->size());
-    Work work = equations->make_work();
-    work.poison();
-    EXPECT_TRUE(equations->derivatives(s.time, s.y, y_dot, work).ok());
-    return y_dot;
-  }
-};
-
-const std::vector<std::string> formulations = {"ruthless", "inconsistent", "consistent", "quadratic",
-                                               "linear",   "exact",        "rate-linear"};
 
 class RandomTrees : public testing::TestWithParam<std::string> {
  protected:
@@ -137,58 +104,6 @@ TEST_P(RandomTrees, inverse_dynamics_and_mass_products_are_those_of_the_dense_eq
       EXPECT_NEAR(product[i], expected, tolerance() * scale) << "seed " << seed << ", row " << i;
       EXPECT_NEAR(efforts[i], expected - s.force[i], tolerance() * scale) << "seed " << seed << ", row " << i;
     }
-  }
-}
-
-/// W z = r with W = 1 − δ A: (M + δD + δ²K) z_u = M r_u − δ K r_q on the modes, z_q = r_q + δ z_u.
-TEST_P(RandomTrees, linearly_implicit_solutions_satisfy_their_equations) {
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    const SceneWish wish{.bodies = 2 + static_cast<int>(seed % 6), .planar = seed % 3 == 0, .any_root = seed % 2 == 0};
-    const Case c(seed, wish, GetParam());
-    const LinearlyImplicit* linear = c.equations->linearly_implicit();
-    if (linear == nullptr) {
-      EXPECT_TRUE(GetParam() == "consistent" || GetParam() == "inconsistent");
-      return;
-    }
-    const Layout& layout = c.equations->layout();
-    const DenseSystem s = c.equations->system(0, c.state.y);
-    const double delta = 0.03;
-    std::vector<double> r(c.equations->size());
-    for (std::size_t i = 0; i < r.size(); ++i) r[i] = std::sin(0.3 + 1.7 * static_cast<double>(i * seed));
-    std::vector<double> z = r;
-    Work factors = linear->make_factors();
-    factors.poison();
-    ASSERT_TRUE(linear->factorize(c.state.y, delta, factors).ok());
-    const std::size_t before = allocations();
-    linear->solve(z, factors);
-    EXPECT_EQ(allocations() - before, 0U);
-    std::vector<double> residual(s.size), scale(s.size, 1e-12);
-    const auto add = [&](std::size_t i, double term) {
-      residual[i] += term;
-      scale[i] += std::abs(term);
-    };
-    for (std::size_t i = 0; i < s.size; ++i) {
-      for (std::size_t j = 0; j < s.size; ++j)
-        add(i, s.mass[i * s.size + j] * (z[layout.positions + j] - r[layout.positions + j]));
-    }
-    std::size_t flexible = 0;
-    for (const BodyNode& body : c.scene.model->bodies()) {
-      const ModalShape& shape = body.body->shape();
-      if (shape.modes() == 0) continue;
-      const Slot& slot = layout.bodies[flexible++];
-      for (Eigen::Index i = 0; i < shape.modes(); ++i) {
-        const auto row = static_cast<std::size_t>(i);
-        EXPECT_NEAR(z[slot.position + row], r[slot.position + row] + delta * z[layout.positions + slot.speed + row],
-                    1e-12);
-        for (Eigen::Index j = 0; j < shape.modes(); ++j) {
-          const auto column = static_cast<std::size_t>(j);
-          add(slot.speed + row, delta * shape.damping(i, j) * z[layout.positions + slot.speed + column]);
-          add(slot.speed + row, delta * shape.stiffness(i, j) * z[slot.position + column]);
-        }
-      }
-    }
-    for (std::size_t i = 0; i < s.size; ++i)
-      EXPECT_LT(std::abs(residual[i]), tolerance() * scale[i]) << "seed " << seed << ", row " << layout.speed_names[i];
   }
 }
 

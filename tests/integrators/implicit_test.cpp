@@ -76,6 +76,9 @@ INSTANTIATE_TEST_SUITE_P(
         StiffOrder{"kpr", "gauss", 1, 0.125, 6}, StiffOrder{"kpr", "gauss", 1e3, 0.0625, 4},
         StiffOrder{"kpr", "gauss", 1e6, 0.03125, 4}, StiffOrder{"kpr", "rosenbrock-w", 1, 0.03125, 3},
         StiffOrder{"kpr", "rosenbrock-w", 1e3, 0.03125, 2}, StiffOrder{"kpr", "rosenbrock-w", 1e6, 0.0078125, 2},
+        StiffOrder{"prothero-robinson", "imex", 1, 0.25, 5}, StiffOrder{"prothero-robinson", "imex", 1e3, 0.125, 2},
+        StiffOrder{"prothero-robinson", "imex", 1e6, 0.0625, 2}, StiffOrder{"kpr", "imex", 1, 0.0625, 5},
+        StiffOrder{"kpr", "imex", 1e3, 0.0625, 2}, StiffOrder{"kpr", "imex", 1e6, 0.03125, 2},
         StiffOrder{"oscillator", "generalized-alpha", 1, 0.0625, 2},
         StiffOrder{"oscillator", "generalized-alpha", 1e3, 0.25, 2},
         StiffOrder{"oscillator", "generalized-alpha", 1e6, 0.5, 2}));
