@@ -7,6 +7,9 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
 
 #include "random_case.hpp"
 #include "withy/core/dynamics/tree.hpp"
@@ -133,6 +136,23 @@ TEST(InstructionSet, is_the_processors_unless_it_is_denied) {
     taken = taken || line.find("x86-64-v3") != std::string::npos;
   EXPECT_EQ(taken, !denied && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"));
 }
+
+#ifdef __SSE2__
+/// Denormal numbers count as zero within an evaluation; the host's rounding, traps and flags are none of ours.
+TEST_P(RandomTrees, evaluation_leaves_the_floating_point_state_as_it_was) {
+  Case c(3, {.bodies = 4}, GetParam());
+  std::vector<double> y_dot(c.equations->size());
+  Work work = c.equations->make_work();
+  const unsigned before = _mm_getcsr();
+  for (const unsigned state : {before & ~0x3fU, before | 0x8040U, (before & ~0x6000U) | 0x2000U}) {
+    _mm_setcsr(state);
+    c.equations->derivatives(0, c.state.y, y_dot, work);
+    const unsigned after = _mm_getcsr();
+    _mm_setcsr(before);
+    EXPECT_EQ(after, state);
+  }
+}
+#endif
 
 TEST(Exact, sweep_solves_the_dense_equations_at_large_deflections) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
