@@ -86,7 +86,7 @@ def first_failure(tests, jobs, limit):
             return f"{test} (hangs)"
         if run.returncode != 0:
             lines = [l for l in run.stdout.splitlines() if l.startswith("[  FAILED  ]")]
-            return f"{test}: {lines[0][13:].split(' (')[0]}" if lines else test
+            return f"{test}: {lines[0][13:].split(' (')[0].split(', where')[0]}" if lines else test
     return None
 
 
