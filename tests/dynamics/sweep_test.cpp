@@ -137,6 +137,32 @@ TEST(InstructionSet, is_the_processors_unless_it_is_denied) {
   EXPECT_EQ(taken, !denied && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"));
 }
 
+/// A body without mass or inertia at the end of a chain: its hinge has nothing to accelerate. With one part in 1e12 of
+/// its neighbour's it has.
+TEST(Singular, pivots_name_the_body_that_has_nothing_to_accelerate) {
+  for (const bool planar : {true, false}) {
+    for (const std::string& formulation : formulations) {
+      for (const double mass : {0.0, 1e-12}) {
+        const std::string scene =
+            "{format: withy/1, time: {end: 1}, bodies: {arm: {type: rigid, mass: 1, inertia: "
+            "[0.1, 0.1, 0.1, 0, 0, 0]}, bob: {type: rigid, mass: " +
+            std::to_string(mass * 1e12) +
+            "e-12, center_of_mass: [0.3, 0, 0]}}, hinges: " + "{pivot: {type: revolute, axis: [" +
+            (planar ? "0, 0, 1" : "0, 0.6, 0.8") +
+            "], parent: world, child: arm}, joint: {type: revolute, axis: [0, 0, 1], " + "parent: arm, child: bob}}}";
+        const Case c(scene, formulation);
+        std::vector<double> y_dot(c.equations->size());
+        Work work = c.equations->make_work();
+        const Evaluation e = c.equations->derivatives(0, c.state.y, y_dot, work);
+        EXPECT_EQ(e.ok(), mass > 0) << formulation << ' ' << mass;
+        if (mass > 0) continue;
+        EXPECT_EQ(e.outcome, Evaluation::Outcome::singular);
+        EXPECT_EQ(e.body, c.scene.model->body("bob")) << formulation;
+      }
+    }
+  }
+}
+
 #ifdef __SSE2__
 /// Denormal numbers count as zero within an evaluation; the host's rounding, traps and flags are none of ours.
 TEST_P(RandomTrees, evaluation_leaves_the_floating_point_state_as_it_was) {
