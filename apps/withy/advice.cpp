@@ -64,6 +64,11 @@ std::string unit_key(const TradePoint& p) {
   return fmt::format("{} {} {} {}", p.formulation_text(), p.family, p.modes, p.integrator);
 }
 
+bool has_plates(const Scene& scene) {
+  const auto& bodies = scene.source.at("bodies").members();
+  return std::any_of(bodies.begin(), bodies.end(), [](const auto& b) { return b.second.text_at("type") == "plate"; });
+}
+
 /// Names of the scene's bodies that have modes, in its order; a beam in segments is one.
 std::vector<std::string> flexible_bodies(const Scene& scene) {
   std::vector<std::string> names;
@@ -109,10 +114,8 @@ Candidates candidates_for(const Engine& engine, const AdviseArguments& arguments
     beams = true;
     if (kind != "torsion") polynomial_already = polynomial_already && family_of(strain) == polynomials;
   });
-  if (!beams) {
-    c.modes = {0};
-    c.families = {""};
-  }
+  if (!beams && !has_plates(engine.scene())) c.modes = {0};
+  if (!beams) c.families = {""};
   if (c.families.empty()) {
     c.families = {""};
     if (!polynomial_already && families_are_exchangeable(engine.scene())) c.families.emplace_back(polynomials);

@@ -107,6 +107,7 @@ SceneArguments arguments_at(const SceneArguments& base, const Scene& scene, cons
                                   1e-2 * point.tolerance));
   a.options.integrator.clear();
   a.options.formulation = point.formulation;
+  if (point.modes == 0) return a;  // those of the scene
   const Value* bodies = scene.source.find("bodies");
   const Value* initial = scene.source.find("initial");
   const Value* starts = initial != nullptr ? initial->find("bodies") : nullptr;

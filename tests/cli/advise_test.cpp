@@ -87,6 +87,19 @@ TEST(Advise, ABodyThatNeedsLessIsRuthlessAlone) {
   EXPECT_THAT(advice.at("scene_lines").get<std::string>(), HasSubstr("ruthless"));
 }
 
+/// A plate's modes are chosen as those of beams are; without any it would be another scene.
+TEST(Advise, PlatesKeepModes) {
+  const Folder folder;
+  const Finished f =
+      advise(folder, {"--accuracy", "5%", "--modes", "1,2", "--json"}, {"advise", "scenes/solar-panel.yaml"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json j = json::parse(f.out);
+  EXPECT_GE(j.at("advice").at("modes").get<int>(), 1);
+  EXPECT_GE(j.at("reference").at("modes").get<int>(), 2);
+  EXPECT_EQ(j.at("reference").at("formulation"), "quadratic") << "a plate has no exact kinematics";
+  EXPECT_THAT(j.at("advice").at("scene_lines").get<std::string>(), testing::ContainsRegex("modes: [1-9]"));
+}
+
 TEST(Advise, InconsistentIsNeverAdvised) {
   const Folder folder;
   const Finished f = advise(folder, {"--formulations", "inconsistent,quadratic"});
