@@ -86,6 +86,18 @@ TEST(Thruster, gives_its_impulse_between_its_switches_which_it_declares) {
   EXPECT_EQ(s.summary.steps.rejected, 0U);
 }
 
+/// It is fixed in its frame: burning all the time it does what a following force does.
+TEST(Thruster, turns_with_its_frame) {
+  LoadedScene jet(
+      free_body("  jet: {type: thruster, frame: bus.jet, thrust: 3, direction: [2, 0, 0], firings: [[0, 9]]}\n"));
+  LoadedScene push(
+      free_body("  push: {type: force, frame: bus.jet, following: true, law: constant, value: [3, 0, 0]}\n"));
+  const State a = jet.run().back(), b = push.run().back();
+  EXPECT_GT(spin(jet, a).z(), 9);
+  EXPECT_LT((velocity(jet, a) - velocity(push, b)).norm(), 1e-12);
+  EXPECT_LT((position(jet, a) - position(push, b)).norm(), 1e-12);
+}
+
 std::unique_ptr<Load> spring(std::vector<Value::Member> given) {
   Registry registry = load_registry();
   given.emplace_back("frame", Value(std::string("payload")));
