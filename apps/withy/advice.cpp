@@ -220,7 +220,7 @@ void Advisor::find_reference() {
         "no reference is exact enough: two runs that differ by a mode and a digit, the finer {}, are still {:.2g} of "
         "the "
         "accuracy apart. Ask for {:.2g} times that accuracy, a shorter time (--set time.end=…) or fewer outputs",
-        coarse->point.text(), coarse->own_use(), coarse->own_use() / most_reference_use);
+        coarse->point.text(), coarse->own_use(), std::ceil(10 * coarse->own_use() / most_reference_use) / 10);
   }
 }
 
