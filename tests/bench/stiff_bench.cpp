@@ -70,7 +70,7 @@ void compare(const Problem& problem, const std::vector<std::string>& methods) {
   for (const std::string& method : methods) {
     Outcome best;
     double best_error = 0, best_tolerance = 0;
-    for (double tolerance = 1e-2; tolerance > 2e-9; tolerance /= std::pow(10.0, 0.25)) {
+    for (double tolerance = 1e-1; tolerance > 2e-9; tolerance /= std::pow(10.0, 0.25)) {
       const Outcome o = run(
           problem, "{name: " + method + ", rtol: " + number(tolerance) + ", atol: " + number(tolerance / 10) + "}", 3);
       double error = 0;
