@@ -84,13 +84,20 @@ class Beam final : public Body, private Rod {
       const double mass = w * material.mass_per_length(x[k]);
       if (!rigid) shape_.particles.push_back({mass, e});
       modal_mass += mass * f.phi.colwise().squaredNorm().transpose();
+      shape_.stiffness += w * stiffness_of(f, x[k]);
+    }
+    const SectionQuadrature along(length_, wave_number(strains_), kinks(material, strains_));
+    for (std::size_t k = 0; k < along.nodes().size(); ++k) {
+      const double at = along.nodes()[k];
       Matrix3 inertia = Matrix3::Zero();
       for (const auto& [axis, per_length] : material.inertias) {
-        inertia += w * per_length(x[k]) * axis * axis.transpose();
+        inertia += along.weights()[k] * per_length(at) * axis * axis.transpose();
       }
-      if (!inertia.isZero(0)) shape_.sections.push_back({inertia, e});
+      if (inertia.isZero(0)) continue;
+      const LinearFields f = linear_fields(at);
+      shape_.sections.push_back({inertia, expansion(at, f, quadrature_.integral_to(at, gamma_slope_),
+                                                    quadrature_.integral_to(at, theta_slope_))});
       modal_mass += (f.psi.transpose() * inertia * f.psi).diagonal();
-      shape_.stiffness += w * stiffness_of(f, x[k]);
     }
     for (Eigen::Index i = 0; i < n; ++i) {
       shape_.damping(i, i) = 2 * material.damping_ratio * std::sqrt(shape_.stiffness(i, i) * modal_mass[i]);

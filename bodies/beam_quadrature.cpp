@@ -6,7 +6,8 @@
 namespace withy {
 namespace {
 
-std::vector<double> edges(double length, double wave_number, std::vector<double> kinks) {
+/// Panels that span at most `longest` of 1/wave_number.
+std::vector<double> edges(double length, double wave_number, std::vector<double> kinks, double longest) {
   kinks.push_back(0);
   kinks.push_back(length);
   std::sort(kinks.begin(), kinks.end());
@@ -14,16 +15,35 @@ std::vector<double> edges(double length, double wave_number, std::vector<double>
   std::vector<double> all{0};
   for (std::size_t i = 1; i < kinks.size(); ++i) {
     const double piece = kinks[i] - kinks[i - 1];
-    const int parts = std::max(1, static_cast<int>(std::ceil(wave_number * piece / 2.5)));
+    const int parts = std::max(1, static_cast<int>(std::ceil(wave_number * piece / longest)));
     for (int k = 1; k < parts; ++k) all.push_back(kinks[i - 1] + piece * k / parts);
     all.push_back(kinks[i]);
   }
   return all;
 }
 
+constexpr Eigen::Index most_nodes = 24;
+constexpr double longest_section_panel = 8;  ///< of 1/wave_number, where most_nodes leave 1e-17
+
+Eigen::Index section_nodes(const std::vector<double>& edges, double wave_number) {
+  double h = 0;
+  for (std::size_t i = 1; i < edges.size(); ++i) h = std::max(h, edges[i] - edges[i - 1]);
+  const auto logarithm = [&](double n) {  // of the error
+    return 2 * n * std::log(4 * wave_number * h) + 4 * std::lgamma(n + 1) - std::log(2 * n + 1) -
+           3 * std::lgamma(2 * n + 1);
+  };
+  Eigen::Index n = 4;
+  while (n < most_nodes && !(logarithm(static_cast<double>(n)) < std::log(1e-15))) n += 4;
+  return n;
+}
+
 }  // namespace
 
+SectionQuadrature::SectionQuadrature(double length, double wave_number, std::vector<double> kinks)
+    : PanelQuadrature(edges(length, wave_number, kinks, longest_section_panel),
+                      section_nodes(edges(length, wave_number, kinks, longest_section_panel), wave_number)) {}
+
 BeamQuadrature::BeamQuadrature(double length, double wave_number, std::vector<double> kinks)
-    : PanelQuadrature(edges(length, wave_number, std::move(kinks)), 20) {}
+    : PanelQuadrature(edges(length, wave_number, std::move(kinks), 2.5), 20) {}
 
 }  // namespace withy

@@ -16,4 +16,13 @@ class BeamQuadrature : public PanelQuadrature {
   BeamQuadrature(double length, double wave_number, std::vector<double> kinks = {});
 };
 
+/// For rotary inertia alone, whose sections are evaluated one after the other: as few nodes as integrate products of
+/// four functions of this wave number to 1e-15 of the length, by the error of Gauss's rule with n nodes on a length h,
+///   (4 k h)²ⁿ (n!)⁴ / ((2n + 1) ((2n)!)³)
+/// of it. In multiples of four, as the sweeps take four at a time.
+class SectionQuadrature : public PanelQuadrature {
+ public:
+  SectionQuadrature(double length, double wave_number, std::vector<double> kinks = {});
+};
+
 }  // namespace withy

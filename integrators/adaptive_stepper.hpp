@@ -10,11 +10,14 @@ namespace withy {
 
 class AdaptiveStepper : public OneStep {
  public:
+  /// \param caution by which estimates are multiplied: chosen so that a run over some vibrations, in which the errors
+  /// of steps add up, ends within ten times its tolerance
   AdaptiveStepper(const EquationsOfMotion& equations, const State& start, const StepControl& control,
-                  int error_order = 5)
+                  int error_order = 5, double caution = 1)
       : OneStep(equations, start),
         error_(Eigen::ArrayXd::Zero(size())),
         control_(control),
+        caution_(caution),
         error_root_(1.0 / error_order),
         error_power_(error_root_ - 0.75 * stabilization) {}
 
@@ -97,15 +100,15 @@ class AdaptiveStepper : public OneStep {
   /// The step to take where control wants `wanted` after an accepted step h.
   [[nodiscard]] virtual double favoured(double wanted, double /*h*/) const { return wanted; }
 
-  /// Greatest of |error_| / (atol + rtol max(|y|, |next_|)) over positions and speeds. The greatest, not the mean: a
-  /// coordinate's error does not hide behind the number of the others.
+  /// Greatest of caution |error_| / (atol + rtol max(|y|, |next_|)) over positions and speeds. The greatest, not the
+  /// mean: a coordinate's error does not hide behind the number of the others.
   [[nodiscard]] double error_ratio() const {
     const Eigen::Index n = size() - 1;
     const auto ratio =
         error_.head(n).abs() / (control_.atol + control_.rtol * y().head(n).abs().max(next_.head(n).abs()));
     if (n == 0) return 0;
     // A maximum may pass over NaN; a sum does not.
-    return std::isfinite(ratio.sum()) ? ratio.maxCoeff() : std::numeric_limits<double>::quiet_NaN();
+    return std::isfinite(ratio.sum()) ? caution_ * ratio.maxCoeff() : std::numeric_limits<double>::quiet_NaN();
   }
 
   Eigen::ArrayXd error_;  ///< estimated error of next_
@@ -126,7 +129,8 @@ class AdaptiveStepper : public OneStep {
 
   /// The first step after HNW I, II.4, with its bounds made free of the unit of time: h0, for which an explicit Euler
   /// step changes y by 1 %, tells how fast the slope changes; from that time τ follows the step whose error, of the
-  /// estimate's order, is about a hundredth of the tolerance.
+  /// estimate's order, is about a hundredth of the tolerance. Half of it: at the start from rest motion is even in
+  /// time, and estimates may miss a first step's error by a factor of a hundred.
   double first_step(double remaining) {
     const Eigen::Index n = size() - 1;
     if (n == 0) return remaining;
@@ -145,10 +149,11 @@ class AdaptiveStepper : public OneStep {
     const double longest = std::min(100 * h0, remaining);
     if (!(d2 > 0)) return longest;
     const double tau = std::max(d1 / d2, h0);
-    return std::min(tau * std::pow(0.01 / (d2 * tau * tau), error_root_), longest);
+    return 0.25 * std::min(tau * std::pow(0.01 / (d2 * tau * tau), error_root_), longest);
   }
 
   StepControl control_;
+  double caution_;
   double error_root_;    ///< 1 / order of the error estimate
   double error_power_;   ///< of the controller
   double proposal_ = 0;  ///< [s], the next step; 0: to be found

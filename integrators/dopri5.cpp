@@ -13,7 +13,7 @@ class Dopri5Stepper final : public AdaptiveStepper {
   static constexpr double stability_limit = 1.725;
 
   Dopri5Stepper(const EquationsOfMotion& equations, const State& start, const StepControl& control)
-      : AdaptiveStepper(equations, start, control) {
+      : AdaptiveStepper(equations, start, control, 5, 3) {
     for (Eigen::ArrayXd* a : {&stage_, &k2_, &k3_, &k4_, &k5_, &k6_, &c2_, &c3_, &c4_, &c5_}) a->setZero(size());
   }
 

@@ -48,6 +48,12 @@ class EqualSteps : public OneStep {
   virtual Attempt attempt(double h) = 0;
   /// Called after state_, slope_ and their predecessors are those of an accepted step h.
   virtual void accepted(double /*h*/) {}
+  /// The slope at the end of a step during which nothing moves; zero where it cannot be had.
+  const Eigen::ArrayXd& slope_ahead(double h) {
+    next_ = y();
+    if (!evaluate(state_.time + h, next_, next_slope_).ok() || !finite(next_slope_)) next_slope_.setZero();
+    return next_slope_;
+  }
   /// How often a step that fails is halved.
   [[nodiscard]] virtual int most_halvings() const { return 0; }
 
@@ -64,9 +70,11 @@ inline ParameterSpec step_parameter() {
 class Sizes {
  public:
   explicit Sizes(Eigen::Index size) : sizes_(Eigen::ArrayXd::Zero(size)) {}
-  template <class Values>
-  const Eigen::ArrayXd& update(const Values& y, double h, const Eigen::ArrayXd& slope) {
+  /// `ahead()` is the slope a step ahead of rest: asked for where all else is zero, until a load begins.
+  template <class Values, class Ahead>
+  const Eigen::ArrayXd& update(const Values& y, double h, const Eigen::ArrayXd& slope, Ahead&& ahead) {
     sizes_ = sizes_.max(y.abs()).max(std::abs(h) * slope.abs());
+    if (sizes_.head(sizes_.size() - 1).maxCoeff() == 0) sizes_ = std::abs(h) * ahead().abs();
     const double greatest = sizes_.head(sizes_.size() - 1).maxCoeff();
     sizes_ = sizes_.max(1e-6 * greatest + std::numeric_limits<double>::min());
     return sizes_;

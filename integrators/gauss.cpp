@@ -52,7 +52,8 @@ class GaussStepper final : public EqualSteps {
     const auto rates = [this](double at, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) {
       return evaluate(at, values, slope);
     };
-    tolerance_ = 4 * std::numeric_limits<double>::epsilon() * sizes_.update(y(), h, slope_);
+    const auto ahead = [this, h]() -> const Eigen::ArrayXd& { return slope_ahead(h); };
+    tolerance_ = 4 * std::numeric_limits<double>::epsilon() * sizes_.update(y(), h, slope_, ahead);
     CollocationStages::Result r;
     for (bool fresh = false;;) {
       if (!known_) {

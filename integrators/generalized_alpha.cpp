@@ -39,7 +39,7 @@ class AlphaStepper final : public EqualSteps {
         sizes_(size()),
         matrix_(Eigen::MatrixXd::Identity(jacobian_.speeds(), jacobian_.speeds())),
         lu_(matrix_) {
-    for (Eigen::ArrayXd* a : {&moving_, &rate_}) a->setZero(size());
+    for (Eigen::ArrayXd* a : {&moving_, &rate_, &lost_, &lost_next_}) a->setZero(size());
     for (Eigen::VectorXd* a : {&a0_, &a1_, &residual_}) a->setZero(jacobian_.speeds());
     moved_.setZero(jacobian_.positions());
   }
@@ -49,13 +49,14 @@ class AlphaStepper final : public EqualSteps {
     known_ = begun_ = false;
     factored_ = 0;
     sizes_.forget();
+    lost_.setZero();
   }
   [[nodiscard]] std::vector<std::string> remarks() const override { return jacobian_.remarks(); }
 
  private:
   static constexpr int most_iterations = 20;
   static constexpr int slow = 6;             ///< iterations that make a new Jacobian worth while
-  static constexpr double accuracy = 1e-12;  ///< of the iteration, relative to the sizes of positions and speeds
+  static constexpr double accuracy = 1e-13;  ///< of the iteration, relative to the sizes of positions and speeds
 
   Attempt attempt(double h) override {
     const Eigen::Index np = jacobian_.positions(), n = jacobian_.speeds();
@@ -64,7 +65,8 @@ class AlphaStepper final : public EqualSteps {
       a0_ = slope_.segment(np, n).matrix();
       begun_ = true;
     }
-    const Eigen::ArrayXd& sizes = sizes_.update(y(), h, slope_);
+    const auto ahead = [this, h]() -> const Eigen::ArrayXd& { return slope_ahead(h); };
+    const Eigen::ArrayXd& sizes = sizes_.update(y(), h, slope_, ahead);
     const auto rates = [this](double at, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) {
       return evaluate(at, values, slope);
     };
@@ -129,9 +131,12 @@ class AlphaStepper final : public EqualSteps {
       moving_.head(np) += h / 2 * rate_.head(np);
       if (const Evaluation e = position_rates(moving_); !e.ok()) return e;
     }
-    next_.head(np) = y().head(np) + h * rate_.head(np);
-    next_.segment(np, n) = y().segment(np, n) + (h * ((1 - gamma) * a0_ + gamma * a1_)).array();
-    next_.tail(size() - np - n) = y().tail(size() - np - n);
+    // What earlier sums lost is added, and what this one loses kept, as in `gauss`.
+    moving_ = lost_;
+    moving_.head(np) += h * rate_.head(np);
+    moving_.segment(np, n) += (h * ((1 - gamma) * a0_ + gamma * a1_)).array();
+    next_ = y() + moving_;
+    lost_next_ = moving_ - (next_ - y());
     normalize(next_);
     return {};
   }
@@ -151,6 +156,7 @@ class AlphaStepper final : public EqualSteps {
 
   void accepted(double h) override {
     a0_.swap(a1_);
+    lost_.swap(lost_next_);
     // Work by the trapezoidal rule, whose order is the method's.
     const auto last = static_cast<std::size_t>(size() - 1);
     state_.y[last] += h / 2 * (previous_slope_[size() - 1] + slope_[size() - 1]);
@@ -163,6 +169,7 @@ class AlphaStepper final : public EqualSteps {
     EqualSteps::remember(memory);
     jacobian_.remember(memory);
     sizes_.remember(memory);
+    memory(lost_);
     memory(a0_);
     memory(known_);
     memory(begun_);
@@ -178,7 +185,7 @@ class AlphaStepper final : public EqualSteps {
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   double factored_ = 0;                 ///< step of lu_ [s]
   bool known_ = false, begun_ = false;  ///< the Jacobian; a0_
-  Eigen::ArrayXd moving_, rate_;
+  Eigen::ArrayXd moving_, rate_, lost_, lost_next_;
   Eigen::VectorXd a0_, a1_, residual_, moved_;
 };
 

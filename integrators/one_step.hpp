@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/memory.hpp"
@@ -112,6 +113,15 @@ class OneStep : public Stepper {
     return e;
   }
 
+  /// The same with stiffness and damping implicit, see LinearlyImplicit.
+  Evaluation evaluate_implicit(const LinearlyImplicit& linear, double t, const Eigen::ArrayXd& values,
+                               const Eigen::ArrayXd& base, double delta, Eigen::ArrayXd& slope) const {
+    ++statistics_.evaluations;
+    const auto n = static_cast<std::size_t>(size_);
+    return linear.implicit_derivatives(std::min(t, latest_), {values.data(), n}, {base.data(), n}, delta,
+                                       {slope.data(), n}, work_);
+  }
+
   void normalize(Eigen::ArrayXd& values) { equations_.normalize({values.data(), static_cast<std::size_t>(size_)}); }
 
   /// Makes next_ and next_slope_ the state at t_new; the last evaluation was that of next_slope_.
@@ -131,6 +141,18 @@ class OneStep : public Stepper {
 
   /// Whether all are finite; vectorizes, unlike a search for the first that is not.
   static bool finite(const Eigen::ArrayXd& values) { return (values * 0.0).sum() == 0.0; }
+
+  /// What linearly implicit methods need of the equations.
+  /// \throws std::invalid_argument where they have none.
+  static const LinearlyImplicit& solver_of(const EquationsOfMotion& equations, const char* integrator) {
+    const LinearlyImplicit* linear = equations.linearly_implicit();
+    if (linear == nullptr)
+      throw std::invalid_argument(std::string("integrator '") + integrator +
+                                  "' folds stiffness into a symmetric mass matrix; the strict formulations have none. "
+                                  "Use quadratic or ruthless, "
+                                  "or another integrator: dopri5, or radau where equations are stiff");
+    return *linear;
+  }
 
   static StepResult failure(const Evaluation& e) {
     const bool singular = e.outcome == Evaluation::Outcome::singular;

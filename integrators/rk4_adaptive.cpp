@@ -13,7 +13,7 @@ class Rk4AdaptiveStepper final : public AdaptiveStepper {
   static constexpr double stability_limit = 4.828;
 
   Rk4AdaptiveStepper(const EquationsOfMotion& equations, const State& start, const StepControl& control)
-      : AdaptiveStepper(equations, start, control) {
+      : AdaptiveStepper(equations, start, control, 5, 4) {
     for (Eigen::ArrayXd* a :
          {&stage_, &k2_, &k3_, &k4_, &whole_, &middle_, &middle_slope_, &kept_middle_, &kept_middle_slope_})
       a->setZero(size());

@@ -27,6 +27,8 @@ source, build, report = work / "source", work / "source" / "build" / "release", 
 # In the order of their running time: what is quick may kill before what is thorough.
 programs = ["simulation", "formulations", "integrators", "plugins", "validity", "bodies", "loads", "reference", "modes",
             "dynamics", "analysis"]
+# Fails in the copy, whose sweeps know one instruction set.
+not_here = "InstructionSet.*"
 
 
 def read_mutants():
@@ -51,10 +53,12 @@ def command(arguments, **options):
     return subprocess.run(arguments, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
 
 
-def prepare():
+def prepare(mutants):
     source.mkdir(parents=True, exist_ok=True)
     archive = subprocess.run(["git", "archive", "HEAD"], cwd=root, stdout=subprocess.PIPE, check=True).stdout
     subprocess.run(["tar", "x", "-C", str(source)], input=archive, check=True)
+    for _, file, *_ in mutants:  # a fault left by a run that was stopped is younger than its source
+        (source / file).touch()
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if command(["which", "ccache"]).returncode == 0 else []
     # As the release, so that ccache has what is not changed; the sweeps for one instruction set alone.
     configured = command(["cmake", "-S", str(source), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
@@ -76,12 +80,13 @@ def first_failure(tests, jobs, limit):
         return ""
     for test in tests:
         try:
-            run = command([str(build / "bin" / f"test-{test}"), "--gtest_brief=1", "--gtest_fail_fast"], cwd=build, timeout=limit)
+            run = command([str(build / "bin" / f"test-{test}"), "--gtest_brief=1", "--gtest_fail_fast",
+                           f"--gtest_filter=-{not_here}"], cwd=build, timeout=limit)
         except subprocess.TimeoutExpired:
             return f"{test} (hangs)"
         if run.returncode != 0:
             lines = [l for l in run.stdout.splitlines() if l.startswith("[  FAILED  ]")]
-            return f"{test}: {lines[0][13:].split(' (')[0]}" if lines else test
+            return f"{test}: {lines[0][13:].split(' (')[0].split(', where')[0]}" if lines else test
     return None
 
 
@@ -129,12 +134,16 @@ def main():
     if arguments.write:
         write_table(arguments.write, mutants, read_report())
         return 0
-    prepare()
+    prepare(mutants)
     # No more than is run.
     needed = {t for m in mutants if arguments.only in m[0] for t in m[4]} if arguments.named_only else set(programs)
     base = compile_tests([p for p in programs if p in needed], arguments.jobs)
     if base.returncode != 0:
         sys.exit(base.stdout)
+    # A program that fails without a fault would kill every one of them.
+    healthy = first_failure([p for p in programs if p in needed], arguments.jobs, arguments.limit)
+    if healthy is not None:
+        sys.exit(f"the tests fail without any fault: {healthy}")
     done = {name: line[1] for name, line in read_report().items()}
     if arguments.survivors:
         done = {name: verdict for name, verdict in done.items() if verdict != "survived"}

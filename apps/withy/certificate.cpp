@@ -165,8 +165,8 @@ StepLimit step_limit(const Engine& engine, const RunSummary& summary) {
   const State& state = summary.final;
   s.fewer = best_slowing(engine.model(), engine.equations().system(state.time, state.y));
   // Those with error control, so that no step need be chosen. The first folds stiffness into a symmetric mass matrix.
-  for (const std::string id : {"rosenbrock-w", "radau"}) {
-    const bool able = id != "rosenbrock-w" || engine.equations().linearly_implicit() != nullptr;
+  for (const std::string id : {"imex", "radau"}) {
+    const bool able = id != "imex" || engine.equations().linearly_implicit() != nullptr;
     if (able && engine.registry().find<Integrator>(id) != nullptr) s.unlimited.push_back(id);
   }
   return s;

@@ -148,7 +148,7 @@ void add_advise(Commands& commands) {
        "same beams");
   axis("--modes", a.modes, "N,...", "Modes of each family of a beam to choose from; default: 1,2,3,4");
   axis("--integrators", a.integrators, "ID,...",
-       "Integrators to choose from, with a relative tolerance; default: dopri5,dop853,rosenbrock-w");
+       "Integrators to choose from, with a relative tolerance; default: dopri5,dop853,imex");
   axis("--tolerances", a.tolerances, "R,...", "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
   c->add_option("--write", a.write, "File for the scene with what is advised; comments are kept")->type_name("FILE");
 }
@@ -239,7 +239,7 @@ void add_commands(Commands& commands) {
       ->type_name("N,N,...")
       ->delimiter(',');
   c->add_option("--integrators", trade_arguments.axes.integrators,
-                "Integrators with a relative tolerance; default: dopri5,rosenbrock-w")
+                "Integrators with a relative tolerance; default: dopri5,imex")
       ->type_name("ID,ID,...")
       ->delimiter(',');
   c->add_option("--tolerances", trade_arguments.axes.tolerances, "Relative tolerances; default: 1e-4,1e-6")

@@ -60,7 +60,7 @@ struct TradeAxes {
   std::vector<std::string> formulations = {"ruthless", "linear", "consistent", "quadratic", "exact"};
   std::vector<std::string> families = {""};  ///< of bending; empty text: the scene's
   std::vector<int> modes = {1, 2, 3};        ///< of each family that a beam has
-  std::vector<std::string> integrators = {"dopri5", "rosenbrock-w"};
+  std::vector<std::string> integrators = {"dopri5", "imex"};
   std::vector<double> tolerances = {1e-4, 1e-6};  ///< relative; absolute ones are 1e-2 of them
   std::vector<std::string> over;  ///< `path=value,value,…`; where a limit is sought, one of them `path=from:to[:count]`
 };
@@ -82,7 +82,7 @@ struct AdviseArguments : SceneArguments {
   std::vector<std::string> formulations = {"ruthless", "linear", "consistent", "quadratic", "exact"};
   std::vector<std::string> families;  ///< of bending; empty: the scene's, and another where it means the same beams
   std::vector<int> modes = {1, 2, 3, 4};
-  std::vector<std::string> integrators = {"dopri5", "dop853", "rosenbrock-w"};
+  std::vector<std::string> integrators = {"dopri5", "dop853", "imex"};
   std::vector<double> tolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
   std::string write;  ///< file for the scene as advised; empty: none
 };

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace withy::app {
 namespace {
@@ -57,22 +58,39 @@ std::string stroke(const Pen& p) {
                      p.dashes);
 }
 
-/// From data to the picture, for one panel whose upper edge is at `top`.
+/// From data to the picture, for one panel whose upper edge is at `top`. Ends are logarithms on an axis in decades.
 struct Scale {
   double x0, x1, y0, y1, top, height;
-  [[nodiscard]] double x(double v) const { return left + (v - x0) / (x1 - x0) * (width - left - right); }
-  [[nodiscard]] double y(double v) const { return top + (y1 - v) / (y1 - y0) * height; }
+  bool log_x, log_y;
+  [[nodiscard]] double x(double v) const { return left + (place(v, log_x) - x0) / (x1 - x0) * (width - left - right); }
+  [[nodiscard]] double y(double v) const { return top + (y1 - place(v, log_y)) / (y1 - y0) * height; }
+  [[nodiscard]] std::vector<double> x_marks() const { return marks(x0, x1, log_x); }
+  [[nodiscard]] std::vector<double> y_marks() const { return marks(y0, y1, log_y); }
+  static double place(double v, bool log) { return log ? std::log10(v) : v; }
+
+ private:
+  static std::vector<double> marks(double low, double high, bool log) {
+    return log ? decade_marks(std::pow(10.0, low), std::pow(10.0, high)) : axis_marks(low, high);
+  }
 };
 
 Scale scale_of(const Panel& panel, double top) {
-  Scale s{0, 0, panel.y_range.first, panel.y_range.second, top, panel.height};
+  const auto y = [&](double v) { return Scale::place(v, panel.log_y); };
+  Scale s{0, 0, y(panel.y_range.first), y(panel.y_range.second), top, panel.height, panel.log_x, panel.log_y};
+  // An axis of values begins at 0, one in decades a little before the least.
+  if (panel.log_x) s.x0 = std::numeric_limits<double>::infinity(), s.x1 = -s.x0;
   for (const Curve& c : panel.curves) {
-    for (const double x : c.x) {
-      s.x0 = std::min(s.x0, x);
-      s.x1 = std::max(s.x1, x);
+    for (const double v : c.x) {
+      s.x0 = std::min(s.x0, Scale::place(v, panel.log_x));
+      s.x1 = std::max(s.x1, Scale::place(v, panel.log_x));
     }
   }
-  if (s.x1 <= s.x0) s.x1 = s.x0 + 1;
+  if (panel.log_x && s.x0 <= s.x1) {
+    const double margin = std::max(0.02, 0.04 * (s.x1 - s.x0));
+    s.x0 -= margin;
+    s.x1 += margin;
+  }
+  if (!(s.x1 > s.x0)) s.x0 = 0, s.x1 = 1;
   const double margin = s.y1 > s.y0 ? 0.06 * (s.y1 - s.y0) : std::max(1e-9, 0.06 * std::abs(s.y0));
   s.y0 -= margin;
   s.y1 += margin;
@@ -81,13 +99,13 @@ Scale scale_of(const Panel& panel, double top) {
 
 void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
   const double bottom = s.top + s.height;
-  for (const double v : axis_marks(s.y0, s.y1)) {
+  for (const double v : s.y_marks()) {
     fmt::format_to(std::back_inserter(out),
                    "<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#ddd\"/>\n"
                    "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:.6g}</text>\n",
                    left, width - right, s.y(v), s.y(v), left - 7, s.y(v) + 4.5, v);
   }
-  for (const double v : axis_marks(s.x0, s.x1)) {
+  for (const double v : s.x_marks()) {
     fmt::format_to(std::back_inserter(out),
                    "<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{}\" y2=\"{}\" stroke=\"#ddd\"/>\n"
                    "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.6g}</text>\n",
@@ -133,6 +151,19 @@ std::vector<double> axis_marks(double low, double high) {
     if (s * decade >= wanted * 0.99) step = s * decade;
   std::vector<double> marks;
   for (double k = std::ceil(low / step); k * step <= high; ++k) marks.push_back(k == 0 ? 0 : k * step);
+  return marks;
+}
+
+std::vector<double> decade_marks(double low, double high) {
+  const bool few = std::log10(high / low) < 3;
+  std::vector<double> marks;
+  for (double k = std::floor(std::log10(low)); k <= std::log10(high); ++k) {
+    for (const double part : {1.0, 2.0, 5.0}) {
+      if (part > 1 && !few) break;
+      const double mark = part * std::pow(10.0, k);
+      if (mark >= low && mark <= high) marks.push_back(mark);
+    }
+  }
   return marks;
 }
 

@@ -27,6 +27,7 @@ struct Panel {
   std::pair<double, double> y_range;  ///< least and greatest value shown; curves are cut there
   std::vector<Curve> curves;
   double height = 200;
+  bool log_x = false, log_y = false;  ///< in decades; values, and the range, above 0
 };
 
 /// A title, a legend with one entry a curve, and the panels below each other.
@@ -35,5 +36,8 @@ std::string svg_plot(const std::string& title, const std::vector<std::string>& l
 
 /// Round numbers inside [low, high], five or so, for the marks of an axis.
 std::vector<double> axis_marks(double low, double high);
+
+/// The same for an axis in decades: powers of ten in [low, high], and twice and five times them where these are few.
+std::vector<double> decade_marks(double low, double high);
 
 }  // namespace withy::app

@@ -164,13 +164,14 @@ std::string picture(const Engine& engine, const Ledger& ledger) {
   }
   std::vector<Panel> panels;
   for (std::size_t g = 0; g < ledger.groups.size(); ++g) {
-    const double top = std::log10(std::max(ledger.greatest_peak(g), 1e-300));
-    Panel panel{"time [s]", "log10 " + ledger.groups[g].name + " [N/sqrt(kg)]", {top - 6, top}, {}};
+    const double top = std::max(ledger.greatest_peak(g), 1e-300);
+    Panel panel{"time [s]", ledger.groups[g].name + " [N/sqrt(kg)]", {1e-6 * top, top}, {}};
+    panel.log_y = true;
     for (const std::size_t k : shown) {
       Curve curve;
       for (std::size_t i = 0; i < ledger.times.size(); ++i) {
         curve.x.push_back(ledger.times[i]);
-        curve.y.push_back(std::log10(std::max(ledger.sizes[g][k][i], 1e-300)));
+        curve.y.push_back(std::max(ledger.sizes[g][k][i], 1e-300));
       }
       panel.curves.push_back(std::move(curve));
     }

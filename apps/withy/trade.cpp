@@ -130,12 +130,12 @@ std::string picture(const std::string& title, const std::vector<TradeResult>& re
     const auto p = static_cast<std::size_t>(at - overs.begin());
     if (at == overs.end()) {
       overs.push_back(over);
-      panels.push_back(
-          {"log10 CPU time [ms]" + (over.empty() ? "" : ", " + over), "log10 error [%]", {1e300, -1e300}, {}});
+      panels.push_back({"CPU time [ms]" + (over.empty() ? "" : ", " + over), "error [%]", {1e300, 0}, {}});
+      panels.back().log_x = panels.back().log_y = true;
       panels.back().curves.resize(legend.size());
       for (std::size_t c = 0; c < line; ++c) panels.back().curves[c].points = true;
     }
-    const double x = std::log10(1e3 * r.cpu_seconds), y = std::log10(std::max(100 * r.relative_error, 1e-12));
+    const double x = 1e3 * r.cpu_seconds, y = std::max(100 * r.relative_error, 1e-12);
     const auto add = [&](Curve& curve) {
       curve.x.push_back(x);
       curve.y.push_back(y);

@@ -239,22 +239,23 @@ std::string picture(const std::string& title, const std::vector<Row>& rows, cons
     if (m == modes.size()) {
       modes.push_back(row.mode);
       panels.push_back({q.range.path + (row.mode.empty() ? "" : ", frequency of " + row.mode),
-                        "log10 error [%]",
-                        {std::log10(100 * q.limit) - 3, std::log10(100 * q.limit) + 2},
+                        "error [%]",
+                        {0.1 * q.limit, 1e4 * q.limit},
                         {}});
+      panels.back().log_y = true;
     }
     Curve curve;
     curve.pen = pen;
     for (std::size_t k = 0; k < row.errors.size() && std::isfinite(row.errors[k]); ++k) {
       curve.x.push_back(q.range.values[k]);
-      curve.y.push_back(std::log10(std::max(100 * row.errors[k], 1e-12)));
+      curve.y.push_back(std::max(100 * row.errors[k], 1e-12));
     }
     curve.ends_early = !curve.x.empty() && curve.x.size() < row.errors.size();
     panels[m].curves.push_back(std::move(curve));
   }
   for (Panel& panel : panels) {
     Curve limit{{q.range.values.front(), q.range.values.back()}, {}, false, false, legend.size()};
-    limit.y.assign(2, std::log10(100 * q.limit));
+    limit.y.assign(2, 100 * q.limit);
     panel.curves.push_back(limit);
   }
   legend.emplace_back("limit");

@@ -80,7 +80,7 @@ struct WorldPose {
 /// Linear systems with W = 1 − δ A, where A is what makes flexible trees stiff: the part of ∂ẏ/∂y that comes from modal
 /// stiffness and damping,
 ///   q' = u_q,   u' = −M⁻¹ (K q + D u_q),
-/// and nothing else. Linearly implicit integrators ask for it.
+/// and nothing else; and evaluations in which that part is implicit. Linearly implicit integrators ask for them.
 class LinearlyImplicit {
  public:
   virtual ~LinearlyImplicit() = default;
@@ -90,6 +90,14 @@ class LinearlyImplicit {
   virtual Evaluation factorize(std::span<const double> y, double delta, Work& factors) const noexcept = 0;
   /// Replaces r, laid out as y, by the solution of W z = r: two of an evaluation's three passes.
   virtual void solve(std::span<double> r, Work& factors) const noexcept = 0;
+  /// ẏ with stiffness and damping implicit, for the price of one evaluation: loads, velocity terms, N and M are those
+  /// at (t, y); the forces of stiffness and damping, and the speeds that move the positions, are those at
+  /// z = base + δ ẏ,
+  ///   ẋ = N(x) u_z,   (M + δ D + δ² K) u̇ = f(t, y) + K (q − q_base − δ u_base) + D (u_q − u_base),
+  /// f with the forces of stiffness and damping at y. The rate of the work element takes the speeds at z.
+  /// \param work of EquationsOfMotion::make_work
+  virtual Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base,
+                                          double delta, std::span<double> y_dot, Work& work) const noexcept = 0;
 };
 
 /// The exact ∂ẏ/∂y. Implicit integrators may ask for it.

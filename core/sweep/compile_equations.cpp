@@ -21,6 +21,24 @@ constexpr bool has_modal_solver = requires(const Sweep& s, double* a, std::byte*
   s.solve(a, 0.0, a, work);
 };
 
+/// While it lives denormal numbers count as zero: products of coordinates below 1e-154, as of vibrations that have died
+/// away, would each cost a hundred cycles. Then the processor's floating-point state is the host's again.
+class DenormalsAreZero {
+#ifdef __SSE2__
+ public:
+  DenormalsAreZero() : state_(__builtin_ia32_stmxcsr()) {
+    __builtin_ia32_ldmxcsr(state_ | flush_to_zero | denormals_are_zero);
+  }
+  ~DenormalsAreZero() { __builtin_ia32_ldmxcsr(state_); }
+  DenormalsAreZero(const DenormalsAreZero&) = delete;
+  DenormalsAreZero& operator=(const DenormalsAreZero&) = delete;
+
+ private:
+  static constexpr unsigned flush_to_zero = 0x8000, denormals_are_zero = 0x40;
+  unsigned state_;
+#endif
+};
+
 /// A sweep, its loads, and the reference for everything that is not hot.
 template <class Sweep>
 class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
@@ -84,6 +102,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     efforts_offset_ = memory.take<double>(layout().speeds);
     loads_offset_ = memory.take<std::byte>(loads_.work_size());
     rates_offset_ = memory.take<double>(model_->motions().empty() ? 0 : size());
+    implicit_offset_ = memory.take<double>(has_modal_solver<Sweep> ? layout().speeds : 0);
     at_rest_offset_ = memory.take<double>(terms.products_of_speeds ? 0 : layout().speeds);
     sweep_offset_ = memory.size();
     sweep::WorkLayout factors;
@@ -96,33 +115,36 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
 
   Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
                          Work& work) const noexcept override {
+    [[maybe_unused]] const DenormalsAreZero guard;
     const Layout& order = layout();
-    const auto positions = y.first(order.positions);
     const auto speeds = y.subspan(order.positions, order.speeds);
-    std::byte* memory = work.data();
-    const std::span<double> efforts(reinterpret_cast<double*>(memory + efforts_offset_), order.speeds);
-    for (double& e : efforts) e = 0;
-    loads_.add(t, y, efforts, memory + loads_offset_);
-    double* accelerations = y_dot.data() + order.positions;
-    const bool driven = !model_->motions().empty();
-    if (driven) model_->prescribe_accelerations(t, {accelerations, order.speeds});
+    const std::span<double> efforts = applied(t, y, y_dot, work);
     if (!terms_.products_of_speeds) add_damping(speeds, efforts);
-    const Evaluation evaluation = sweep_.accelerations(positions.data(), inertial(speeds, memory), efforts.data(),
-                                                       accelerations, memory + sweep_offset_);
+    const Evaluation evaluation = accelerations(y, efforts.data(), 0, y_dot, work);
     if (!evaluation.ok()) return evaluation;
     if (!terms_.products_of_speeds) add_damping(speeds, efforts, -1);
-    set_position_rates(y, y_dot);
-    double power = 0;
-    if (driven || !model_->loads().empty()) {
-      for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
-    }
-    for (const Damper& d : damped_) power -= speeds[d.i] * d.value * speeds[d.j];
-    for (std::size_t i = 0; i < order.discrete; ++i) y_dot[order.positions + order.speeds + i] = 0;
-    y_dot[order.positions + order.speeds + order.discrete] = power;
-    double total = power;
-    for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
-    if (!std::isfinite(total)) return {Evaluation::Outcome::nonfinite, first_nonfinite(accelerations)};
-    return evaluation;
+    return finish(y.first(order.positions), speeds, efforts, y_dot, evaluation);
+  }
+
+  Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base, double delta,
+                                  std::span<double> y_dot, Work& work) const noexcept override {
+    [[maybe_unused]] const DenormalsAreZero guard;
+    const Layout& order = layout();
+    const auto speeds = y.subspan(order.positions, order.speeds);
+    const std::span<double> efforts = applied(t, y, y_dot, work);
+    const double* u = base.data() + order.positions;
+    // The sweep takes stiffness and damping at y: here is the difference.
+    auto* forces = reinterpret_cast<double*>(work.data() + implicit_offset_);
+    std::copy(efforts.begin(), efforts.end(), forces);
+    for (const Spring& k : springs_) forces[k.i] += k.value * (y[k.position] - base[k.position] - delta * u[k.j]);
+    for (const Damper& d : damped_)
+      forces[d.i] -= d.value * (terms_.products_of_speeds ? u[d.j] - speeds[d.j] : u[d.j]);
+    const Evaluation evaluation = accelerations(y, forces, delta, y_dot, work);
+    if (!evaluation.ok()) return evaluation;
+    for (const Slot& slot : driven_) std::copy_n(forces + slot.speed, slot.speeds, efforts.data() + slot.speed);
+    double* implicit = forces;  // which nobody needs any more
+    for (std::size_t i = 0; i < order.speeds; ++i) implicit[i] = u[i] + delta * y_dot[order.positions + i];
+    return finish(y.first(order.positions), {implicit, order.speeds}, efforts, y_dot, evaluation);
   }
 
   void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
@@ -208,7 +230,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     return linearization_.get();
   }
   Evaluation position_rates(double, std::span<const double> y, std::span<double> y_dot, Work&) const noexcept override {
-    set_position_rates(y, y_dot);
+    set_position_rates(y.first(layout().positions), y.subspan(layout().positions, layout().speeds), y_dot);
     return {};
   }
   void normalize(std::span<double> y) const noexcept override {
@@ -229,15 +251,54 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   std::vector<std::string> savings() const override { return savings_; }
 
  private:
-  void set_position_rates(std::span<const double> y, std::span<double> y_dot) const noexcept {
+  /// The loads' efforts at (t, y), in the work memory; driven accelerations go into y_dot.
+  std::span<double> applied(double t, std::span<const double> y, std::span<double> y_dot, Work& work) const noexcept {
+    const std::span<double> efforts(reinterpret_cast<double*>(work.data() + efforts_offset_), layout().speeds);
+    for (double& e : efforts) e = 0;
+    loads_.add(t, y, efforts, work.data() + loads_offset_);
+    if (!model_->motions().empty())
+      model_->prescribe_accelerations(t, {y_dot.data() + layout().positions, layout().speeds});
+    return efforts;
+  }
+  /// The sweep, with M + δ D + δ² K where it can.
+  Evaluation accelerations(std::span<const double> y, double* efforts, double delta, std::span<double> y_dot,
+                           Work& work) const noexcept {
+    const double* speeds = inertial(y.subspan(layout().positions, layout().speeds), work.data());
+    double* result = y_dot.data() + layout().positions;
+    if constexpr (has_modal_solver<Sweep>) {
+      return sweep_.accelerations(y.data(), speeds, efforts, delta, result, work.data() + sweep_offset_);
+    } else {
+      return sweep_.accelerations(y.data(), speeds, efforts, result, work.data() + sweep_offset_);
+    }
+  }
+  /// All that an evaluation gives beside accelerations: position rates and power of these speeds, and whether all is
+  /// finite.
+  Evaluation finish(std::span<const double> positions, std::span<const double> speeds, std::span<const double> efforts,
+                    std::span<double> y_dot, const Evaluation& evaluation) const noexcept {
     const Layout& order = layout();
-    const auto speeds = y.subspan(order.positions, order.speeds);
+    set_position_rates(positions, speeds, y_dot);
+    const double* accelerations = y_dot.data() + order.positions;
+    double power = 0;
+    if (!model_->motions().empty() || !model_->loads().empty()) {
+      for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
+    }
+    for (const Damper& d : damped_) power -= speeds[d.i] * d.value * speeds[d.j];
+    for (std::size_t i = 0; i < order.discrete; ++i) y_dot[order.positions + order.speeds + i] = 0;
+    y_dot[order.positions + order.speeds + order.discrete] = power;
+    double total = power;
+    for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
+    if (!std::isfinite(total)) return {Evaluation::Outcome::nonfinite, first_nonfinite(accelerations)};
+    return evaluation;
+  }
+  void set_position_rates(std::span<const double> positions, std::span<const double> speeds,
+                          std::span<double> y_dot) const noexcept {
+    const Layout& order = layout();
     for (const Run& run : copies_) {
       for (std::size_t i = 0; i < run.count; ++i) y_dot[run.position + i] = speeds[run.speed + i];
     }
     for (const std::size_t h : general_) {
       const Slot& slot = order.hinges[h];
-      model_->hinges()[h].hinge->derivatives(y.subspan(slot.position, slot.positions),
+      model_->hinges()[h].hinge->derivatives(positions.subspan(slot.position, slot.positions),
                                              speeds.subspan(slot.speed, slot.speeds),
                                              y_dot.subspan(slot.position, slot.positions));
     }
@@ -306,8 +367,8 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
   std::vector<std::size_t> general_;  ///< hinges with derivatives of their own
   mutable std::once_flag linearized_;
   mutable std::unique_ptr<const StateJacobian> linearization_;  ///< made when it is first asked for
-  std::size_t efforts_offset_ = 0, loads_offset_ = 0, rates_offset_ = 0, at_rest_offset_ = 0, sweep_offset_ = 0,
-              factors_offset_ = 0;
+  std::size_t efforts_offset_ = 0, loads_offset_ = 0, rates_offset_ = 0, implicit_offset_ = 0, at_rest_offset_ = 0,
+              sweep_offset_ = 0, factors_offset_ = 0;
 };
 
 }  // namespace

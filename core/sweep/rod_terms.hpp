@@ -3,6 +3,7 @@
 #pragma once
 
 #include "withy/core/sweep/rod_kinematics.hpp"
+#include "withy/core/sweep/rotary_terms.hpp"
 #include "withy/core/sweep/station_motion.hpp"
 
 namespace withy::sweep {
@@ -34,35 +35,6 @@ inline void integrate(const RodKinematics<Planar>& rod, const RodWork& work, int
     add_products<N>(r, a, P, n, I, C, G, p, h);
   }
   I += Planar::Inertia{0, 0, 0, rod.integrals.mass, 0, rod.integrals.mass};
-}
-
-/// Rotary inertia J of four sections about their axes t: J t tᵀ acts on their angular velocity V.w + ω, whose
-/// derivative at zero A, q̈ is V.w × ω + b.
-template <int N>
-inline void add_rotary(const Pack& J, const PackVector& t, const PackVector& omega, const PackVector& b, const Pack* w,
-                       int stride, const Triple& spin, int modes, Spatial::Inertia& I, Spatial::Twist* C, double* G,
-                       Spatial::Twist& p, double* h) {
-  const int n = count<N>(modes);
-  const auto along = [&](const PackVector& u) { return t[0] * u[0] + t[1] * u[1] + t[2] * u[2]; };
-  const auto total = [](const PackVector& u) { return Triple(sum(u[0]), sum(u[1]), sum(u[2])); };
-  const auto times = [](const PackVector& u, const Pack& s) { return PackVector{u[0] * s, u[1] * s, u[2] * s}; };
-  const PackVector turning{spread(spin[0]), spread(spin[1]), spread(spin[2])};
-  const PackVector rate = turning + omega;
-  const Pack jerk = J * along(cross(turning, omega) + b), roll = J * along(rate);
-  const PackVector moment = times(t, jerk) + times(cross(rate, t), roll);
-  p.w += total(moment);
-  I.A += Block{{total(times(t, J * t[0])), total(times(t, J * t[1])), total(times(t, J * t[2]))}};
-  for (int i = 0; i < n; ++i) {
-    const auto partial = [&](int k) {
-      const Pack* at = w + 3 * k * stride;
-      return PackVector{at[0], at[stride], at[2 * stride]};
-    };
-    const PackVector wi = partial(i);
-    const Pack turn = J * along(wi);
-    C[i].w += total(times(t, turn));
-    h[i] += sum(wi[0] * moment[0] + wi[1] * moment[1] + wi[2] * moment[2]);
-    for (int j = 0; j <= i; ++j) G[i * n + j] += sum(turn * along(partial(j)));
-  }
 }
 
 template <int N>

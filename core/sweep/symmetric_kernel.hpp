@@ -117,10 +117,7 @@ inline void integrate_mass(const SymmetricNode<Space>& node, const SymmetricStat
     integrate<N>(node.rod, rod, n, q_dot, V, P, I, C, G, p, h);
   } else {
     integrate<N>(node.mass, n, q, q_dot, V, P, I, C, G, p, h);
-    if (!node.sections.empty()) {
-      auto* partial = at<typename Space::Twist>(s.work, node.work_C) + n;
-      collect_sections<Space, N>(node, q, q_dot, V, I, p, partial, C, G, h);
-    }
+    collect_sections<N>(node.rotary, n, q, q_dot, V, P, I, C, G, p, h);
   }
 }
 

@@ -77,11 +77,7 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
   } else {
     flavor = modes > 0 ? Flavor::full : Flavor::rigid;
     mass = MassTable<Space>(spec);
-    for (const Section& s : spec.sections) {
-      RotarySection<Space> section{Fields<Space>(s.at), s.inertia(2, 2), s.inertia};
-      const bool matters = Space::angular == 1 ? section.inertia_z != 0 : !s.inertia.isZero(0);
-      if (matters) sections.push_back(std::move(section));
-    }
+    rotary = RotaryTable<Space>(spec);
   }
 }
 
@@ -114,7 +110,7 @@ SymmetricSweep<Space>::SymmetricSweep(const Tree& tree, const std::vector<Terms>
     node.work = memory.template take<NodeWork<Space>>(1);
     node.work_stations = memory.template take<StationWork<Space>>(node.stations.size());
     node.work_J = memory.template take<Twist>(n * (node.stations.size() + 1));
-    node.work_C = memory.template take<Twist>(2 * n);  // and room for the partial velocities of sections
+    node.work_C = memory.template take<Twist>(n);
     node.work_G = memory.template take<double>(n * n);
     node.work_y = memory.template take<double>(n);
     node.work_h = memory.template take<double>(n);
@@ -174,9 +170,9 @@ std::vector<std::string> SymmetricSweep<Space>::savings(const Tree& tree) const 
       lines.push_back(name + std::to_string(tree.nodes[i].particles.size()) + " mass points became " +
                       std::to_string(node.mass.rank) + " generalized particles");
     }
-    if (!node.sections.empty())
-      lines.push_back(name + std::to_string(node.sections.size()) +
-                      " sections with rotary inertia are evaluated one by one");
+    if (node.rotary.packs > 0)
+      lines.push_back(name + std::to_string(node.rotary.sections) +
+                      " sections with rotary inertia are evaluated four at a time");
   }
   return lines;
 }
@@ -204,9 +200,9 @@ void SymmetricSweep<Space>::outward(const SymmetricState<Space>& state) const no
 
 template <class Space>
 Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const double* speeds, double* efforts,
-                                                double* result, std::byte* work) const noexcept {
+                                                double delta, double* result, std::byte* work) const noexcept {
   const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_,
-                                    0,         efforts};
+                                    delta,     efforts};
   const Evaluation evaluation = inward(state);
   if (evaluation.ok()) outward(state);
   return evaluation;

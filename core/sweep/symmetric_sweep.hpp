@@ -12,6 +12,7 @@
 #include "withy/core/sweep/joint_step.hpp"
 #include "withy/core/sweep/mass_table.hpp"
 #include "withy/core/sweep/rod_kinematics.hpp"
+#include "withy/core/sweep/rotary_table.hpp"
 #include "withy/core/sweep/station_motion.hpp"
 
 namespace withy::sweep {
@@ -28,14 +29,6 @@ struct SymmetricStation {
   bool has_children = false;
   std::size_t work_I = 0;                ///< where its children sum their articulated inertia
   std::vector<typename Space::Twist> J;  ///< at q = 0
-};
-
-/// Rotary inertia of a section.
-template <class Space>
-struct RotarySection {
-  Fields<Space> fields;
-  double inertia_z = 0;  ///< about the third axis, the plane's normal
-  Matrix3 inertia;
 };
 
 /// Constants of a node.
@@ -58,8 +51,8 @@ struct SymmetricNode {
   std::vector<double> stiffness, damping;  ///< n×n
   RigidPart<Space> base;                   ///< the rigid part; everything in a frozen node
   MassTable<Space> mass;
-  RodKinematics<Space> rod;  ///< in place of mass and sections where the kinematics is exact
-  std::vector<RotarySection<Space>> sections;
+  RodKinematics<Space> rod;  ///< in place of mass and rotary inertia where the kinematics is exact
+  RotaryTable<Space> rotary;
   std::vector<SymmetricStation<Space>> stations;
   // Frozen nodes: theory (3) at order zero.
   std::vector<Twist> C0;
@@ -90,8 +83,9 @@ class SymmetricSweep {
   /// What was computed once for all evaluations, a line each.
   [[nodiscard]] std::vector<std::string> savings(const Tree& tree) const;
   /// Accelerations of all speeds from positions, speeds and applied efforts. Those of driven speeds are given in
-  /// `result`; all efforts on them, the applied ones among them, are left in `efforts`.
-  Evaluation accelerations(const double* positions, const double* speeds, double* efforts, double* result,
+  /// `result`; all efforts on them, the applied ones among them, are left in `efforts`. With M + δ D + δ² K in the
+  /// place of M.
+  Evaluation accelerations(const double* positions, const double* speeds, double* efforts, double delta, double* result,
                            std::byte* work) const noexcept;
   /// M u̇ − f from positions, speeds and accelerations; with `inertial` alone, M u̇: speeds, weight and K q count as
   /// zero.

@@ -166,41 +166,6 @@ inline void collect_frozen_station(const StationWork<Space>& sw, const typename 
   }
 }
 
-/// Rotary inertia of sections.
-template <class Space, int N>
-inline void collect_sections(const SymmetricNode<Space>& node, const double* q, const double* q_dot,
-                             const typename Space::Twist& V, typename Space::Inertia& I, typename Space::Twist& p,
-                             typename Space::Twist* J, typename Space::Twist* C, double* G, double* h) {
-  const int n = count<N>(node.modes);
-  for (const RotarySection<Space>& section : node.sections) {
-    StationMotion<Space> m;
-    station_motion<Space, N>(section.fields, n, q, q_dot, m, J);
-    const typename Space::Twist VS = Space::to_child(m.frame, V) + m.rate;
-    const typename Space::Twist sigma = Space::cross(VS, m.rate) + m.bias;
-    if constexpr (Space::angular == 1) {
-      const double inertia = section.inertia_z, moment = inertia * sigma.w;
-      I.ww += inertia;
-      p.w += moment;
-      for (int i = 0; i < n; ++i) {
-        C[i].w += inertia * J[i].w;
-        h[i] += J[i].w * moment;
-        for (int j = 0; j <= i; ++j) G[i * n + j] += inertia * J[i].w * J[j].w;
-      }
-    } else {
-      const Block inertia = Spatial::block(section.inertia);
-      const Triple moment = inertia * sigma.w + cross(VS.w, inertia * VS.w);
-      I.A += turned(m.frame.R, inertia);
-      p.w += m.frame.R * moment;
-      for (int i = 0; i < n; ++i) {
-        const Triple IJ = inertia * J[i].w;
-        C[i].w += m.frame.R * IJ;
-        h[i] += dot(J[i].w, moment);
-        for (int j = 0; j <= i; ++j) G[i * n + j] += dot(IJ, J[j].w);
-      }
-    }
-  }
-}
-
 /// (3) seen from the hinge frame M where the modes move it: A_B = X (A_M − J q̈ − σ).
 template <class Space, int N>
 inline void move_to_root(const typename Space::Frame& root, const typename Space::Twist& sigma, int modes,

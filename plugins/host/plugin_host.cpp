@@ -76,7 +76,9 @@ void PluginHost::Catalogue::add_manifest(const fs::path& file, const std::string
   try {
     library.manifest = read_manifest(file);
     std::string exposed = exposed_directory;
-    if (exposed.empty()) exposed = exposure(fs::canonical(file));
+    // The directory is canonical: a file in it that is no link has no other directories above it.
+    if (exposed.empty())
+      exposed = fs::is_symlink(file) ? exposure(fs::canonical(file)) : exposure_in_safe_directory(file);
     if (!exposed.empty()) library.refusal = "the plugin " + file.string() + " is refused: " + exposed;
   } catch (const PluginError& e) {
     library.refusal = e.what();

@@ -12,4 +12,7 @@ namespace withy {
 /// `path` is canonical. \throws std::filesystem::filesystem_error
 std::string exposure(const std::filesystem::path& path);
 
+/// The same of a file, no symbolic link, in a directory that is not exposed: it remains to look at the file itself.
+std::string exposure_in_safe_directory(const std::filesystem::path& file);
+
 }  // namespace withy

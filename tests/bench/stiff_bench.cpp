@@ -70,15 +70,16 @@ void compare(const Problem& problem, const std::vector<std::string>& methods) {
   for (const std::string& method : methods) {
     Outcome best;
     double best_error = 0, best_tolerance = 0;
-    for (double tolerance = 1e-2; tolerance > 2e-9; tolerance /= std::sqrt(10.0)) {
+    for (double tolerance = 1e-2; tolerance > 2e-9; tolerance /= std::pow(10.0, 0.25)) {
       const Outcome o = run(
           problem, "{name: " + method + ", rtol: " + number(tolerance) + ", atol: " + number(tolerance / 10) + "}", 3);
       double error = 0;
       for (std::size_t i = 0; i < 3; ++i) error = std::hypot(error, o.tip[i] - reference.tip[i]);
       error /= problem.length;
-      if (!o.completed || error > 1e-4 || o.seconds >= best.seconds) continue;
-      best = o, best_error = error, best_tolerance = tolerance;
-      if (error < 1e-6) break;
+      if (o.completed && error <= 1e-4 && o.seconds < best.seconds)
+        best = o, best_error = error, best_tolerance = tolerance;
+      // Tighter tolerances cost more; a run that is right by chance at a loose one is none to judge by alone.
+      if (o.completed && (error < 1e-6 || o.seconds > 3 * best.seconds)) break;
     }
     if (first == 0) first = best.seconds;
     std::printf("%-38s %-14s rtol %.1e  error %.1e  %6zu steps %8zu evaluations %9.3f ms  %6.2f x\n",
@@ -93,7 +94,7 @@ void compare(const Problem& problem, const std::vector<std::string>& methods) {
 int main(int argc, char** argv) {
   const std::string wanted = argc > 1 ? argv[1] : "";
   const auto asked_for = [&](const Problem& p) { return p.title.find(wanted) != std::string::npos; };
-  const std::vector<std::string> methods = {"dopri5", "rosenbrock-w", "radau"};
+  const std::vector<std::string> methods = {"dopri5", "imex", "rosenbrock-w", "radau"};
   for (const int modes : {2, 4, 8}) {
     for (const bool stiff : {false, true}) {
       Problem arm{"arm, " + std::to_string(modes) + " modes a link" + (stiff ? ", 100 times as stiff" : ""),

@@ -33,12 +33,46 @@ TEST(Body, rigid_conforms) {
   expect_body_conforms(*body);
 }
 
+/// No mass has a principal moment above the sum of the others: ∫(y²+z²) + ∫(x²+z²) − ∫(x²+y²) = 2∫z² ≥ 0. A plate has
+/// the sum itself.
+TEST(Body, rigid_refuses_moments_that_no_distribution_of_mass_has) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const auto accepted = [&](std::vector<double> inertia) {
+    std::vector<Value> numbers;
+    for (const double i : inertia) numbers.emplace_back(i);
+    Diagnostics diagnostics;
+    const auto body =
+        make_plugin<Body>(registry, "rigid", {{"mass", Value(2.0)}, {"inertia", Value::list(numbers)}}, diagnostics);
+    return body != nullptr;
+  };
+  EXPECT_TRUE(accepted({1, 1, 2, 0, 0, 0}));
+  EXPECT_FALSE(accepted({1, 1, 2.001, 0, 0, 0}));
+  EXPECT_FALSE(accepted({3, 1, 1, 0, 0, 0}));
+  EXPECT_FALSE(accepted({1, 1, 1, 0, 0, -0.9})) << "principal moments 0.1, 1, 1.9";
+  EXPECT_TRUE(accepted({1, 1, 1, 0, 0, -0.4})) << "principal moments 0.6, 1, 1.4";
+}
+
 TEST(Body, beam_conforms) {
   Registry registry;
   enroll_static_plugins(registry);
   const auto body = beam(registry);
   ASSERT_NE(body, nullptr);
   expect_body_conforms(*body);
+}
+
+/// Each mode has the asked for part of its critical damping 2 √(K G), G with the rotary inertia that is all a torsion
+/// mode has.
+TEST(Beam, damping_is_the_asked_for_ratio_of_each_mode) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const auto body = beam(registry);
+  const ModalShape& shape = body->shape();
+  Eigen::VectorXd G = Eigen::VectorXd::Zero(shape.modes());
+  for (const Particle& p : shape.particles) G += p.mass * p.at.phi.colwise().squaredNorm().transpose();
+  for (const Section& s : shape.sections) G += (s.at.psi.transpose() * s.inertia * s.at.psi).diagonal();
+  for (Eigen::Index i = 0; i < shape.modes(); ++i)
+    EXPECT_NEAR(shape.damping(i, i) / (2 * std::sqrt(shape.stiffness(i, i) * G[i])), 0.01, 1e-14) << i;
 }
 
 /// r′ = R e_x with R′ = R κ̂: an inextensible rod without shear, to second order in q. The defect of the second-order

@@ -161,7 +161,14 @@ TEST(AdviseCampaign, what_is_advised_for_a_shipped_scene_holds_the_accuracy) {
                                            "driven-arm",
                                            "spin-up",
                                            "gallery/flexible-pendulum",
-                                           "gallery/manipulator"};
+                                           "gallery/manipulator",
+                                           "least-time-slew",
+                                           "gallery/spinning-beam",
+                                           "gallery/spinning-plate",
+                                           "solar-panel",
+                                           "spacecraft",
+                                           "gallery/long-chain",
+                                           "gallery/wind-turbine-blade"};
   const Campaign campaign("shipped", 1, static_cast<unsigned>(scenes.size()));
   const auto verdicts = campaign.run<Verdict>([&](unsigned number, const std::string&) {
     AdviseArguments arguments;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <sstream>
 
 #include "withy/apps/withy/allocations.hpp"
 #include "withy/apps/withy/svg_plot.hpp"
@@ -81,6 +82,25 @@ TEST(SvgPlot, AxisMarksAreRoundAndInside) {
       EXPECT_LE(m, 1.7 * scale);
     }
   }
+}
+
+TEST(SvgPlot, MarksInDecadesArePowersOfTenAndPartsWhereTheseAreFew) {
+  EXPECT_THAT(decade_marks(0.03, 4e3), testing::ElementsAre(0.1, 1, 10, 100, 1000));
+  EXPECT_THAT(decade_marks(0.9, 30), testing::ElementsAre(1, 2, 5, 10, 20));
+}
+
+TEST(SvgPlot, DecadesAreEquallyLong) {
+  Panel panel{"x", "y", {1, 100}, {Curve{{1, 10, 100}, {1, 10, 100}, false, false, {}}}};
+  panel.log_x = panel.log_y = true;
+  const std::string svg = svg_plot("t", {"c"}, {panel});
+  const std::size_t at = svg.find("points=\"") + 8;
+  std::istringstream points(svg.substr(at, svg.find('"', at) - at));
+  double x[3] = {}, y[3] = {};
+  char comma = 0;
+  for (int i = 0; i < 3; ++i) points >> x[i] >> comma >> y[i];
+  EXPECT_GT(x[1] - x[0], 100);
+  EXPECT_NEAR(x[1] - x[0], x[2] - x[1], 0.02);
+  EXPECT_NEAR(y[1] - y[0], y[2] - y[1], 0.02);
 }
 
 TEST(SvgPlot, TextIsEscaped) {

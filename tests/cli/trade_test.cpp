@@ -57,7 +57,7 @@ TEST(Trade, FailuresAreRowsWithTheirReason) {
       EXPECT_GT(p.at("relative_error"), 0.0);
       continue;
     }
-    if (p.at("integrator") == "rosenbrock-w") {
+    if (p.at("integrator") == "imex") {
       EXPECT_EQ(p.at("status"), "refused");
       ++refused;
     } else if (p.at("modes") == 2) {

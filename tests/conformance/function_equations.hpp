@@ -2,6 +2,7 @@
 /// Equations of motion given by functions: test problems for integrators and the run loop.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
@@ -12,8 +13,8 @@
 namespace withy {
 
 /// ẏ = f(t, y), y being positions, speeds and work. What is not given stands for a system of unit mass without
-/// energies, frames or deflections.
-class FunctionEquations : public EquationsOfMotion {
+/// energies, frames or deflections. To linearly implicit methods it offers the springs of `stiffness_`.
+class FunctionEquations : public EquationsOfMotion, public LinearlyImplicit {
  public:
   using Function = std::function<Evaluation(double t, std::span<const double> y, std::span<double> y_dot)>;
 
@@ -45,6 +46,31 @@ class FunctionEquations : public EquationsOfMotion {
   }
   void inverse_dynamics(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {}
   void mass_times(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {}
+  const LinearlyImplicit* linearly_implicit() const override { return this; }
+  Work make_factors() const override { return Work(sizeof(double)); }
+  Evaluation factorize(std::span<const double>, double delta, Work& factors) const noexcept override {
+    *reinterpret_cast<double*>(factors.data()) = delta;
+    return {};
+  }
+  void solve(std::span<double> r, Work& factors) const noexcept override {
+    const double delta = *reinterpret_cast<const double*>(factors.data());
+    for (std::size_t i = 0; i < stiffness_.size(); ++i) {
+      double& u = r[layout_.positions + i];
+      u = (u - delta * stiffness_[i] * r[i]) / (1 + delta * delta * stiffness_[i]);
+      r[i] += delta * u;
+    }
+  }
+  Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base, double delta,
+                                  std::span<double> y_dot, Work& work) const noexcept override {
+    const Evaluation evaluation = derivatives(t, y, y_dot, work);
+    for (std::size_t i = 0; i < stiffness_.size(); ++i) {
+      const double u = base[layout_.positions + i], k = stiffness_[i];
+      double& rate = y_dot[layout_.positions + i];
+      rate = (rate + k * (y[i] - base[i] - delta * u)) / (1 + delta * delta * k);
+      if (std::isfinite(y_dot[i])) y_dot[i] = u + delta * rate;
+    }
+    return evaluation;
+  }
   DenseSystem system(double t, std::span<const double> y) const override {
     if (system_) return system_(t, y);
     DenseSystem s{layout_.speeds, std::vector<double>(layout_.speeds * layout_.speeds),
@@ -61,6 +87,8 @@ class FunctionEquations : public EquationsOfMotion {
   std::function<DenseSystem(double, std::span<const double>)> system_;
   std::function<void(double, std::span<const double>, int, std::span<double>)> load_efforts_;
   std::function<Energies(std::span<const double>)> energies_;
+  /// k_i [1/s²]: the part of u̇_i that is −k_i x_i, where ẋ_i = u_i; of the first coordinates, the others have none.
+  std::vector<double> stiffness_;
 
  private:
   Function derivatives_;

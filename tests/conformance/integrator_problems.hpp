@@ -21,12 +21,14 @@ namespace withy {
 /// k² = A²/(2Ω²) (Nayfeh & Mook, Nonlinear Oscillations, section 2.1). Work: ∫ x² dt, which has no part in x.
 struct Duffing {
   static FunctionEquations equations() {
-    return {1, 1, [](double, std::span<const double> y, std::span<double> f) {
-              f[0] = y[1];
-              f[1] = -y[0] - y[0] * y[0] * y[0];
-              f[2] = y[0] * y[0];
-              return Evaluation{};
-            }};
+    FunctionEquations e(1, 1, [](double, std::span<const double> y, std::span<double> f) {
+      f[0] = y[1];
+      f[1] = -y[0] - y[0] * y[0] * y[0];
+      f[2] = y[0] * y[0];
+      return Evaluation{};
+    });
+    e.stiffness_ = {1};
+    return e;
   }
   static State start() { return {0, {1, 0, 0}}; }
   /// Greatest error of x and ẋ.
@@ -42,12 +44,14 @@ struct BangBang {
   static constexpr double first = 0.7, second = 1.9, end = 3.1;
   static double force(double t) { return t < first ? 1 : (t < second ? -1 : 1); }
   static FunctionEquations equations() {
-    return {1, 1, [](double t, std::span<const double> y, std::span<double> f) {
-              f[0] = y[1];
-              f[1] = -y[0] + force(t);
-              f[2] = 0;
-              return Evaluation{};
-            }};
+    FunctionEquations e(1, 1, [](double t, std::span<const double> y, std::span<double> f) {
+      f[0] = y[1];
+      f[1] = -y[0] + force(t);
+      f[2] = 0;
+      return Evaluation{};
+    });
+    e.stiffness_ = {1};
+    return e;
   }
   static State start() { return {0, {0, 0, 0}}; }
   /// Greatest error of x and ẋ at the end: rotation by the time passed about the force's equilibrium, three times.
@@ -100,14 +104,16 @@ struct Failing {
   double rate = 0;          ///< ẋ from then on
   double from = 0.5;        ///< [s]
   FunctionEquations equations() const {
-    return {1, 1, [*this](double t, std::span<const double> y, std::span<double> f) {
-              f[0] = y[1];
-              f[1] = -y[0];
-              f[2] = 0;
-              if (t < from) return Evaluation{};
-              f[0] = rate;
-              return evaluation;
-            }};
+    FunctionEquations e(1, 1, [*this](double t, std::span<const double> y, std::span<double> f) {
+      f[0] = y[1];
+      f[1] = -y[0];
+      f[2] = 0;
+      if (t < from) return Evaluation{};
+      f[0] = rate;
+      return evaluation;
+    });
+    e.stiffness_ = {1};
+    return e;
   }
 };
 

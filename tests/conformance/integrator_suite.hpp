@@ -129,12 +129,13 @@ TEST_P(IntegratorSuite, keeps_its_order_over_declared_jumps) {
 
 // x = cos ωt is damped or kept below the limit and grows above it, each by 1 %.
 TEST_P(IntegratorSuite, is_stable_up_to_its_limit_on_the_imaginary_axis) {
-  const FunctionEquations oscillator(1, 1, [](double, std::span<const double> y, std::span<double> f) {
+  FunctionEquations oscillator(1, 1, [](double, std::span<const double> y, std::span<double> f) {
     f[0] = y[1];
     f[1] = -y[0];
     f[2] = 0;
     return Evaluation{};
   });
+  oscillator.stiffness_ = {1};
   const auto amplitude = [&](double h) {
     const auto stepper = with_step(h)->start(oscillator, {0, {1, 0, 0}});
     drive(*stepper, 20'000 * h);
@@ -183,6 +184,20 @@ TEST_P(IntegratorSuite, ends_where_evaluations_fail_and_keeps_the_last_state) {
     stepper->interpolate(last.time - 0.01, y);  // inside the last step, or at its start
     EXPECT_NEAR(y[0], std::cos(last.time), 0.02);
   }
+}
+
+// At rest at the origin, and nothing moves it yet: nothing has a size that errors could be relative to.
+TEST_P(IntegratorSuite, starts_from_rest_under_a_force_that_begins_at_zero) {
+  FunctionEquations equations(1, 1, [](double t, std::span<const double> y, std::span<double> f) {
+    f[0] = y[1];
+    f[1] = -y[0] + std::sin(2 * t);
+    f[2] = 0;
+    return Evaluation{};
+  });
+  equations.stiffness_ = {1};
+  const auto stepper = with_step(0.01)->start(equations, {0, {0, 0, 0}});
+  ASSERT_EQ(drive(*stepper, 1).outcome, StepResult::Outcome::ok);
+  EXPECT_NEAR(stepper->state().y[0], (2 * std::sin(1.0) - std::sin(2.0)) / 3, 1e-4);
 }
 
 TEST_P(IntegratorSuite, steps_without_allocating) {
@@ -236,7 +251,7 @@ TEST_P(IntegratorSuite, jumps_to_another_state) {
 TEST_P(IntegratorSuite, leaves_discrete_states_alone_and_integrates_the_work_behind_them) {
   Layout layout = Duffing::equations().layout();
   layout.discrete = 3;
-  const FunctionEquations with(layout, [](double, std::span<const double> y, std::span<double> f) {
+  FunctionEquations with(layout, [](double, std::span<const double> y, std::span<double> f) {
     f[0] = y[1];
     f[1] = -y[0] - y[0] * y[0] * y[0] + 0.1 * (y[2] + y[3] + y[4]);
     f[2] = f[3] = f[4] = 0;
@@ -244,6 +259,7 @@ TEST_P(IntegratorSuite, leaves_discrete_states_alone_and_integrates_the_work_beh
     return Evaluation{};
   });
   const FunctionEquations without = Duffing::equations();
+  with.stiffness_ = without.stiffness_;
   const auto integrator = with_step(0.05);
   const auto a = integrator->start(with, {0, {1, 0, 4, -3, -1, 0}}), b = integrator->start(without, Duffing::start());
   ASSERT_EQ(drive(*a, 2).outcome, StepResult::Outcome::ok);

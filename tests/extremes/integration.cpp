@@ -6,30 +6,14 @@
 #include "campaign.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/tests/conformance/integrator_problems.hpp"
-#include "withy/tests/integrators/stiff_problems.hpp"
 
 namespace withy::extremes {
 namespace {
 
-/// ẍ = −x + s(t) as two equations in positions, whose linear part a linearly implicit method may solve with: half of it
-/// is given, since any matrix must do.
-StiffEquations switched() {
-  Eigen::Matrix2d linear;
-  linear << 0, 0, -0.5, 0;
-  return {linear, [](double t, std::span<const double> y, std::span<double> f) {
-            f[0] = y[1];
-            f[1] = -y[0] + BangBang::force(t);
-            f[2] = 0;
-            return Evaluation{};
-          }};
-}
-
 /// Error of BangBang with declared switches, with equal steps of the interval between two switches over `parts`.
 double error_over_switches(const std::string& id, int parts) {
-  const StiffEquations positions = switched();
-  const FunctionEquations oscillator = BangBang::equations();
-  const EquationsOfMotion& equations =
-      id == "rosenbrock-w" ? static_cast<const EquationsOfMotion&>(positions) : oscillator;
+  FunctionEquations equations = BangBang::equations();
+  equations.stiffness_ = {0.5};  // half of it: linearly implicit methods must do with any part
   State state = BangBang::start();
   for (const double limit : {BangBang::first, BangBang::second, BangBang::end}) {
     const auto stepper = integrator(equal_steps(id, (limit - state.time) / parts))->start(equations, state);

@@ -11,10 +11,9 @@ namespace withy {
 
 /// Equations in positions alone with a linear part Ω that linearly implicit methods may solve with: two of them, of
 /// which the second is idle where Ω is a number.
-class StiffEquations : public FunctionEquations, public LinearlyImplicit {
+class StiffEquations : public FunctionEquations {
  public:
   StiffEquations(const Eigen::Matrix2d& linear, Function f) : FunctionEquations(2, 0, std::move(f)), linear_(linear) {}
-  const LinearlyImplicit* linearly_implicit() const override { return this; }
   Work make_factors() const override { return Work(64); }
   Evaluation factorize(std::span<const double>, double delta, Work& factors) const noexcept override {
     const Eigen::Matrix2d inverse = (Eigen::Matrix2d::Identity() - delta * linear_).inverse();
@@ -25,6 +24,15 @@ class StiffEquations : public FunctionEquations, public LinearlyImplicit {
     const Eigen::Map<const Eigen::Matrix2d> inverse(reinterpret_cast<const double*>(factors.data()));
     const Eigen::Vector2d z = inverse * Eigen::Vector2d(r[0], r[1]);
     r[0] = z[0], r[1] = z[1];
+  }
+  // k = f(t, y) + Ω (base + δ k − y)
+  Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base, double delta,
+                                  std::span<double> y_dot, Work& work) const noexcept override {
+    const Evaluation evaluation = derivatives(t, y, y_dot, work);
+    const Eigen::Vector2d f(y_dot[0], y_dot[1]), off(base[0] - y[0], base[1] - y[1]);
+    const Eigen::Vector2d k = (Eigen::Matrix2d::Identity() - delta * linear_).inverse() * (f + linear_ * off);
+    y_dot[0] = k[0], y_dot[1] = k[1];
+    return evaluation;
   }
 
  private:

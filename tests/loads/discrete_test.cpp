@@ -231,7 +231,7 @@ events:
   back: {hinge: axle, of: rate, direction: down}
 )";
   for (const char* integrator : {"{name: dopri5, rtol: 1e-6, atol: 1e-8}", "{name: rk4, step: 0.01}", "dop853",
-                                 "rosenbrock-w", "rk4-adaptive"}) {
+                                 "rosenbrock-w", "imex", "rk4-adaptive"}) {
     test::LoadedScene s(text, {std::string("integrator=") + integrator});
     const std::vector<State> whole = s.run();
     const RunSummary uninterrupted = s.summary;
