@@ -22,6 +22,9 @@ function(withy_plugin name)
   endif()
   set_target_properties(withy-plugin-objects-${name} PROPERTIES
     POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  if(COMMAND withy_precompile AND NOT ARG_DIRECTORY)
+    withy_precompile(plugins withy-plugin-objects-${name})
+  endif()
 
   # The descriptor is all a library shows: nothing in it can take the place of what another library means.
   set(exports ${CMAKE_CURRENT_BINARY_DIR}/${name}.exports)

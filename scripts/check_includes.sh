@@ -20,6 +20,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["integrators"] = inner "|withy/integrators/.*|fmt/.*|(cvode|nvector|sunmatrix|sunlinsol)/.*"
     may["loads"] = inner "|withy/loads/.*|fmt/.*"
     may["fem"] = inner "|withy/fem/.*|withy/bodies/modal/.*|fmt/.*|Spectra/.*"
+    may["cmake"] = inner "|withy/(scene|plugins/host)/.*|fmt/.*|nlohmann/.*|gmock/.*|gtest/.*"
     may["apps"] = ".*"
     may["tests"] = ".*"
 

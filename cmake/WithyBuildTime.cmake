@@ -1,0 +1,80 @@
+# What keeps a build from nothing short; the one place that says which rooms are compiled otherwise than the rest.
+#
+# Sources that begin with the same headers get them precompiled, once for a group of targets with the same flags:
+#
+#   group      who                                                        headers
+#   core       core/ but the sweeps                                       precompiled/engine.hpp
+#   plugins    bodies, loads, integrators, modes, formulations, fem       precompiled/engine.hpp
+#   programs   scene, apps                                                precompiled/programs.hpp
+#   tests      tests but for extremes, benchmarks, zoo of bad plugins     precompiled/tests.hpp
+#
+# The tests' header also declares Eigen's decompositions and products as compiled elsewhere (eigen_instances.cpp), for a
+# source with one eigenvalue problem instantiates all that this calls: tests/bodies/body_test.cpp takes 13 s instead of
+# 29 s with both, a source without such, tests/scene/bad_scenes_test.cpp, 6 s instead of 10 s. Everything is optimized
+# alike: -O1 would take 2 to 7 % off the tests' compilation.
+#
+# The sweeps, the campaign at the extremes, the benchmarks and the zoo are compiled file by file: few sources with flags
+# of their own. A build with a cache of objects (ccache, which passes by sources with precompiled headers) goes without:
+# sources include all they need, and there a missing #include is an error.
+set(WITHY_PRECOMPILE_HEADERS "" CACHE STRING "ON or OFF; if empty, ON for g++ without a compiler launcher")
+set(precompile ${WITHY_PRECOMPILE_HEADERS})
+if(WITHY_PRECOMPILE_HEADERS STREQUAL "")
+  set(precompile OFF)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(precompile ON)
+  endif()
+endif()
+
+add_library(withy-precompiled INTERFACE)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # Warnings that follow the flow through inlined functions of the library: false ones (GCC bug 105651 and its like),
+  # which g++ 12 keeps to itself where it reads the headers as text. There they are errors as all others are.
+  target_compile_options(withy-precompiled INTERFACE -Wno-stringop-overflow -Wno-stringop-overread
+    -Wno-error=maybe-uninitialized -Wno-error=free-nonheap-object -Wno-error=dangling-pointer -Wno-error=nonnull
+    -Wno-error=invalid-pch)
+endif()
+
+# withy_precompile(GROUP TARGET...): these targets use the headers of the group. The core makes them for
+# itself; the other groups share those of an empty library with the same flags.
+function(withy_precompile group)
+  if(NOT precompile)
+    return()
+  endif()
+  foreach(target ${ARGN})
+    target_link_libraries(${target} PRIVATE withy-precompiled)
+    if(group STREQUAL "core")
+      target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled/engine.hpp)
+    else()
+      target_precompile_headers(${target} REUSE_FROM withy-precompiled-${group})
+    endif()
+    if(group STREQUAL "tests")
+      target_link_libraries(${target} PRIVATE withy-eigen-instances)
+    endif()
+  endforeach()
+endfunction()
+
+# withy_precompiled_group(GROUP HEADER LIBRARY...)
+function(withy_precompiled_group group header)
+  if(NOT precompile)
+    return()
+  endif()
+  set(empty ${PROJECT_BINARY_DIR}/precompiled_${group}.cpp)
+  file(CONFIGURE OUTPUT ${empty} CONTENT "" @ONLY)
+  add_library(withy-precompiled-${group} OBJECT ${empty})
+  target_link_libraries(withy-precompiled-${group} PRIVATE withy-core withy-options withy-precompiled ${ARGN})
+  target_precompile_headers(withy-precompiled-${group} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled/${header})
+endfunction()
+
+withy_precompiled_group(plugins engine.hpp)
+withy_precompiled_group(programs programs.hpp fmt::fmt nlohmann_json::nlohmann_json)
+if(WITHY_TESTS)
+  withy_precompiled_group(tests tests.hpp GTest::gmock)
+endif()
+if(TARGET withy-precompiled-tests)
+  # As programs are, not libraries: the headers are those of one kind of code.
+  set_target_properties(withy-precompiled-tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  target_compile_options(withy-precompiled-tests PRIVATE -fPIE)
+  # The decompositions and products that the tests' headers declare as compiled elsewhere.
+  add_library(withy-eigen-instances STATIC ${PROJECT_SOURCE_DIR}/cmake/precompiled/eigen_instances.cpp)
+  target_link_libraries(withy-eigen-instances PRIVATE withy-core withy-options)
+endif()

@@ -1,0 +1,2 @@
+#define WITHY_INSTANCE template
+#include "eigen_instances.hpp"

@@ -1,0 +1,60 @@
+/// \file
+/// What of Eigen is slow to instantiate and used in many sources: compiled once, in eigen_instances.cpp. See
+/// cmake/WithyBuildTime.cmake. Functions that Eigen means to be inlined are not among them.
+#pragma once
+
+#include <Eigen/Dense>
+
+// WITHY_INSTANCE is `extern template` where they are used and `template` where they are compiled.
+#ifndef WITHY_INSTANCE
+#define WITHY_INSTANCE extern template
+#endif
+
+namespace Eigen {
+namespace internal {
+
+using Pack = gebp_traits<double, double>;
+using ConstColumns = const_blas_data_mapper<double, Index, ColMajor>;
+using ConstRows = const_blas_data_mapper<double, Index, RowMajor>;
+using Columns = blas_data_mapper<double, Index, ColMajor, Unaligned, 1>;
+
+// Matrix times matrix.
+WITHY_INSTANCE struct gebp_kernel<double, double, Index, Columns, Pack::mr, Pack::nr, false, false>;
+WITHY_INSTANCE struct gemm_pack_lhs<double, Index, ConstColumns, Pack::mr, Pack::LhsProgress, Pack::LhsPacket4Packing,
+                                    ColMajor>;
+WITHY_INSTANCE struct gemm_pack_lhs<double, Index, ConstRows, Pack::mr, Pack::LhsProgress, Pack::LhsPacket4Packing,
+                                    RowMajor>;
+WITHY_INSTANCE struct gemm_pack_rhs<double, Index, ConstColumns, Pack::nr, ColMajor>;
+WITHY_INSTANCE struct gemm_pack_rhs<double, Index, ConstRows, Pack::nr, RowMajor>;
+
+// Matrix times vector.
+WITHY_INSTANCE struct general_matrix_vector_product<Index, double, ConstColumns, ColMajor, false, double, ConstRows,
+                                                    false>;
+WITHY_INSTANCE struct general_matrix_vector_product<Index, double, ConstColumns, ColMajor, false, double, ConstColumns,
+                                                    false>;
+WITHY_INSTANCE struct general_matrix_vector_product<Index, double, ConstRows, RowMajor, false, double, ConstColumns,
+                                                    false>;
+
+// Triangular systems with many right-hand sides.
+WITHY_INSTANCE struct triangular_solve_matrix<double, Index, OnTheLeft, Lower, false, ColMajor, ColMajor, 1>;
+WITHY_INSTANCE struct triangular_solve_matrix<double, Index, OnTheLeft, Upper, false, ColMajor, ColMajor, 1>;
+WITHY_INSTANCE struct triangular_solve_matrix<double, Index, OnTheLeft, UnitLower, false, ColMajor, ColMajor, 1>;
+WITHY_INSTANCE struct triangular_solve_matrix<double, Index, OnTheLeft, Upper, false, RowMajor, ColMajor, 1>;
+WITHY_INSTANCE struct triangular_solve_matrix<double, Index, OnTheRight, Upper, false, ColMajor, ColMajor, 1>;
+WITHY_INSTANCE struct triangular_solve_matrix<double, Index, OnTheRight, Upper, false, RowMajor, ColMajor, 1>;
+
+}  // namespace internal
+
+WITHY_INSTANCE SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd>::compute(const EigenBase<MatrixXd>&,
+                                                                                           int);
+WITHY_INSTANCE GeneralizedSelfAdjointEigenSolver<MatrixXd>& GeneralizedSelfAdjointEigenSolver<MatrixXd>::compute(
+    const MatrixXd&, const MatrixXd&, int);
+WITHY_INSTANCE LLT<MatrixXd, Lower>& LLT<MatrixXd, Lower>::compute(const EigenBase<MatrixXd>&);
+WITHY_INSTANCE void PartialPivLU<MatrixXd>::compute();
+WITHY_INSTANCE void FullPivLU<MatrixXd>::computeInPlace();
+WITHY_INSTANCE void HouseholderQR<MatrixXd>::computeInPlace();
+WITHY_INSTANCE void ColPivHouseholderQR<MatrixXd>::computeInPlace();
+WITHY_INSTANCE JacobiSVD<MatrixXd>& JacobiSVD<MatrixXd>::compute(const MatrixXd&, unsigned int);
+WITHY_INSTANCE EigenSolver<MatrixXd>& EigenSolver<MatrixXd>::compute(const EigenBase<MatrixXd>&, bool);
+
+}  // namespace Eigen
