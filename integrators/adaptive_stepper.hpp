@@ -13,11 +13,12 @@ class AdaptiveStepper : public OneStep {
   /// \param caution by which estimates are multiplied: chosen so that a run over some vibrations, in which the errors
   /// of steps add up, ends within ten times its tolerance
   AdaptiveStepper(const EquationsOfMotion& equations, const State& start, const StepControl& control,
-                  int error_order = 5, double caution = 1)
+                  int error_order = 5, double caution = 1, double safety = 0.9)
       : OneStep(equations, start),
         error_(Eigen::ArrayXd::Zero(size())),
         control_(control),
         caution_(caution),
+        safety_(safety),
         error_root_(1.0 / error_order),
         error_power_(error_root_ - 0.75 * stabilization) {}
 
@@ -54,12 +55,12 @@ class AdaptiveStepper : public OneStep {
       const double growth = std::pow(trial.error, error_power_);
       if (trial.error > 1) {
         ++statistics_.rejected;
-        wanted = h / std::min(greatest_reduction, growth / safety);
+        wanted = h / std::min(greatest_reduction, growth / safety_);
         rejected = true;
         accuracy_to_blame_ = std::min(accuracy_to_blame_ + 1, 10);
         continue;
       }
-      const double factor = growth / std::pow(error_before_, stabilization) / safety;
+      const double factor = growth / std::pow(error_before_, stabilization) / safety_;
       double next_step = h / std::clamp(factor, 1 / greatest_growth, greatest_reduction);
       if (rejected) next_step = std::min(next_step, h);
       next_step = favoured(next_step, h);
@@ -115,7 +116,6 @@ class AdaptiveStepper : public OneStep {
 
  private:
   static constexpr int most_failures = 20;
-  static constexpr double safety = 0.9;
   static constexpr double stabilization = 0.04;
   static constexpr double greatest_reduction = 5;
   static constexpr double greatest_growth = 10;
@@ -153,7 +153,7 @@ class AdaptiveStepper : public OneStep {
   }
 
   StepControl control_;
-  double caution_;
+  double caution_, safety_;
   double error_root_;    ///< 1 / order of the error estimate
   double error_power_;   ///< of the controller
   double proposal_ = 0;  ///< [s], the next step; 0: to be found

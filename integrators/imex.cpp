@@ -54,13 +54,17 @@ constexpr Row b_low = {0,
                        -0.14315725125850667,
                        0.18709280592364871};
 
+/// Where modes are not resolved the estimate goes up and down with them: 0.9 had a fifth of the spacecraft's steps
+/// rejected, 0.8 one in fifty.
+constexpr double safety = 0.8;
+
 class ImexStepper final : public AdaptiveStepper {
  public:
   static constexpr int order = 5;
   static constexpr double stability_limit = std::numeric_limits<double>::infinity();
 
   ImexStepper(const EquationsOfMotion& equations, const State& start, const StepControl& control)
-      : AdaptiveStepper(equations, start, control, 5, 6), linear_(solver_of(equations, "imex")) {
+      : AdaptiveStepper(equations, start, control, 5, 6, safety), linear_(solver_of(equations, "imex")) {
     for (Eigen::ArrayXd* a : {&stage_, &base_, &saved_.y, &saved_.slope, &older_.y, &older_.slope}) a->setZero(size());
     for (Eigen::ArrayXd& k : k_) k.setZero(size());
   }
