@@ -417,7 +417,8 @@ void Advisor::look_up() {
     if (interrupted_) return;
     const Probe p = probe(engine_, made(point), point, outputs_, *reference_, infinite, infinite);
     spent_ += p.walk.seconds;
-    note_unit_cost(p);
+    // What is chosen stays the cheapest by the costs it was chosen by.
+    if (std::isinf(unit_cost(point))) note_unit_cost(p);
     interrupted_ = interrupted_ || p.outcome == Probe::Outcome::interrupted;
     above_.push_back(p);
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "withy/core/shape/point_motion.hpp"
 #include "withy/core/sweep/mass_table.hpp"

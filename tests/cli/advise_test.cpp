@@ -43,15 +43,14 @@ TEST(Advise, PicksAModelWhoseErrorHoldsTheAccuracyAsCompareMeasuresIt) {
   }
 }
 
-// Unit costs are least CPU times seen, also in runs after the choice: what costs about the same may change places.
-TEST(Advise, NothingMuchCheaperAmongItsProbesPasses) {
+TEST(Advise, NothingCheaperAmongItsProbesPasses) {
   const Folder folder;
   const json j = json::parse(advise(folder, {"--accuracy", "0.5%", "--modes", "1,2", "--json"}).out);
   const double cost = j.at("advice").at("cost_seconds");
   for (const json& p : j.at("probes")) {
     EXPECT_NE(p.at("formulation"), "inconsistent");
     if (p.at("outcome") != "passed") continue;
-    EXPECT_GE(p.at("cost_seconds").get<double>(), 0.7 * cost);
+    EXPECT_GE(p.at("cost_seconds").get<double>(), 0.999 * cost);
   }
 }
 
