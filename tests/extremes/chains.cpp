@@ -142,13 +142,13 @@ struct OnSmallStack {
       if (!made.equations->derivatives(0, made.state.y, y_dot, work).ok()) throw std::runtime_error("not evaluated");
       const auto first = y_dot.begin() + static_cast<std::ptrdiff_t>(made.model->layout().positions);
       job.accelerations.assign(first, first + job.links);
-      double least = 1e9;
-      for (int k = 0; k < 5; ++k) {
-        const double began = cpu_seconds();
-        made.equations->derivatives(0, made.state.y, y_dot, work);
-        least = std::min(least, cpu_seconds() - began);
-      }
-      job.seconds = least;
+      // As many evaluations of short chains as make a burst; those of 1e5 links are long enough to be disturbed once
+      // each.
+      const int times = std::max(1, 1000 / job.links);
+      job.seconds = least_cpu_seconds({[&] {
+                      for (int k = 0; k < times; ++k) made.equations->derivatives(0, made.state.y, y_dot, work);
+                    }})[0] /
+                    times;
     } catch (const std::exception& e) {
       job.error = e.what();
     }

@@ -35,22 +35,17 @@ std::vector<double> angles(const std::string& formulation, double factor, double
   return x;
 }
 
-/// Median CPU time of an evaluation [ns] and the accelerations, two scenes in turn so that both see the same machine.
+/// CPU time of an evaluation of each [ns].
 std::pair<double, double> costs(const Made& a, const Made& b) {
-  const auto time = [](const Made& made) {
-    std::vector<double> y_dot(made.equations->size());
-    Work work = made.equations->make_work();
-    const double began = cpu_seconds();
-    for (int i = 0; i < 20000; ++i) made.equations->derivatives(0, made.scene.initial.y, y_dot, work);
-    return (cpu_seconds() - began) / 20000 * 1e9;
+  std::vector<double> y_dot(std::max(a.equations->size(), b.equations->size()));
+  Work work_a = a.equations->make_work(), work_b = b.equations->make_work();
+  const auto burst = [&](const Made& made, Work& work) {
+    return [&] {
+      for (int i = 0; i < 200; ++i) made.equations->derivatives(0, made.scene.initial.y, y_dot, work);
+    };
   };
-  std::vector<double> of_a, of_b;
-  for (int k = 0; k < 25; ++k) {
-    of_a.push_back(time(a));
-    of_b.push_back(time(b));
-  }
-  // The least: what the processor takes when nothing else is in the way.
-  return {*std::min_element(of_a.begin(), of_a.end()), *std::min_element(of_b.begin(), of_b.end())};
+  const std::vector<double> least = least_cpu_seconds({burst(a, work_a), burst(b, work_b)});
+  return {least[0] / 200 * 1e9, least[1] / 200 * 1e9};
 }
 
 /// A chain of six beams of no modes, or of rigid bodies with the mass that beams have: m = ρL, I = mL²/12 about the
