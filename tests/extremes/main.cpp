@@ -62,7 +62,6 @@ constexpr const char* usage =
 /// Gates that are missed, by the beginning of their row; docs/extremes.md says why.
 constexpr std::array known_misses{
     "Long conservative run: the same, as a method whose steps' sums are compensated",
-    "Error for tolerance: cvode",
 };
 
 bool known(const Row& row) {
