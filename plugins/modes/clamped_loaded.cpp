@@ -4,6 +4,7 @@
 /// about the beam's axis; in extension and shear the same with masses. They are orthogonal with respect to the mass of
 /// beam and tip body, so that one of them gives a loaded cantilever's first frequency exactly, where clamped-free
 /// functions need many.
+#include <algorithm>
 #include <stdexcept>
 
 #include "loaded_beam.hpp"
@@ -23,6 +24,30 @@ double rod_root(double inertia, std::size_t k) {
                              [&](double b) { return std::cos(b) - inertia * b * std::sin(b); });
 }
 
+/// sin βξ, at the tip by what moves the load there too, as loaded_beam.hpp has it in bending: of a heavy load φ(L) is
+/// next to nothing, but φ′(L) = ι β² φ(L) is not.
+class LoadedRod final : public ShapeFunctions {
+ public:
+  LoadedRod(double length, double inertia, std::vector<double> betas)
+      : length_(length), waves_(length, RodWaves::Root::clamped, betas) {
+    for (const double b : betas) {
+      const double p = inertia * b;
+      tips_.push_back((std::sin(b) + p * std::cos(b)) / (1 + p * p));
+    }
+  }
+  std::size_t count() const override { return waves_.count(); }
+  double wave_number() const override { return waves_.wave_number(); }
+  void evaluate(double x, std::span<double> phi, std::span<double> slope, std::span<double> curvature) const override {
+    waves_.evaluate(x, phi, slope, curvature);
+    if (x == length_) std::copy(tips_.begin(), tips_.end(), phi.begin());
+  }
+
+ private:
+  double length_;
+  RodWaves waves_;
+  std::vector<double> tips_;  ///< φ(L)
+};
+
 class ClampedLoaded final : public ModeFamily {
  public:
   ClampedLoaded(double mass, double inertia, double offset) : mass_(mass), inertia_(inertia), offset_(offset) {}
@@ -34,7 +59,7 @@ class ClampedLoaded final : public ModeFamily {
       check(ratio);
       std::vector<double> betas;
       for (std::size_t k = 1; k <= count; ++k) betas.push_back(rod_root(ratio, k));
-      return std::make_unique<RodWaves>(L, RodWaves::Root::clamped, std::move(betas));
+      return std::make_unique<LoadedRod>(L, ratio, std::move(betas));
     }
     const double mass = beam.inertia * L;
     const TipLoad tip = {mass_ / mass, offset_ / L, inertia_ / (mass * L * L)};

@@ -78,11 +78,11 @@ class SlowWave {
     const bool by_shear = std::abs(shear(3)) * (1 + std::abs(q) + r) > std::abs(moment(3)) * (1 + std::abs(q) + p);
     sigma_ = by_shear ? shear(2) / shear(3) : moment(2) / moment(3);
   }
-  /// φ, φ′, φ″ at ξ, for L = 1.
-  std::array<double, 3> operator()(double xi) const {
+  /// φ and its derivatives at ξ, for L = 1.
+  std::array<double, 4> operator()(double xi) const {
     const auto u = derivatives(beta_ * xi);
     return {scale_ * (u[2] - sigma_ * u[3]), scale_ * beta_ * (u[1] - sigma_ * u[2]),
-            scale_ * beta_ * beta_ * (u[0] - sigma_ * u[1])};
+            scale_ * beta_ * beta_ * (u[0] - sigma_ * u[1]), scale_ * beta_ * beta_ * beta_ * (u[3] - sigma_ * u[0])};
   }
   double beta() const { return beta_; }
   void scale(double factor) { scale_ *= factor; }
@@ -106,6 +106,25 @@ BeamWave fast_wave(const TipLoad& tip, double beta) {
     return clamped_wave(beta, (-(e + s + c) + q * (s + c - e) + p * (e - c + s)) / shear);
   }
   return clamped_wave(beta, (e + c - s - q * (e - c + s) - r * (s + c - e)) / moment);
+}
+
+/// φ and φ′ of a wave at the tip, from what the wave has there: d^i = φ⁽ⁱ⁾/sⁱ, s = max(β, 1), of which each is
+/// rounded in the last places of a wave of size one. A heavy body holds the tip: φ is the difference of numbers of size
+/// one, but the shear that moves the body is not, and gives φ to all its digits. So the tip's motion x is where four
+/// equations hold best, x = (d⁰, d¹) and P x = (−d³, d²), P the body's mass over that of the wave.
+std::array<double, 2> tip_motion(const TipLoad& tip, double beta, const std::array<double, 4>& d) {
+  const double s = std::max(beta, 1.0), b4 = beta * beta * beta * beta;
+  const double p = b4 * tip.mass / (s * s * s), q = b4 * tip.moment() / (s * s), r = b4 * tip.inertia() / s;
+  // Principal axes of P, (c, e) that of the greater value; the less without the difference that p r − q² is.
+  const double span = std::hypot(p - r, 2 * q), turn = q == 0 ? 0 : 2 * q / (std::abs(p - r) + span);
+  const double near = 1 / std::sqrt(1 + turn * turn), far = turn * near;
+  const double c = p >= r ? near : far, e = p >= r ? far : near;
+  const double most = 0.5 * (p + r + span);
+  const double least = most > 0 ? p * (b4 * tip.central_inertia / s) / most : 0;
+  const auto along = [&](double value, double x, double force) { return (x + value * force) / (1 + value * value); };
+  const double first = along(most, c * d[0] + e * d[1], e * d[2] - c * d[3]);
+  const double second = along(least, c * d[1] - e * d[0], c * d[2] + e * d[3]);
+  return {c * first - e * second, s * (e * first + c * second)};
 }
 
 /// ∫₀¹ φ² dξ, for a wave of this β.
@@ -135,8 +154,13 @@ class LoadedBeam final : public ShapeFunctions {
         SlowWave& wave = slow_.emplace_back(tip, beta);
         wave.scale(1 / (beta * beta));  // of size one near the tip
         wave.scale(1 / std::sqrt(norm(beta, [&](double xi) { return wave(xi)[0]; })));
+        tips_.push_back(tip_motion(tip, beta, wave(1)));
       } else {
-        waves.push_back(normalized(fast_wave(tip, beta)));
+        const BeamWave w = waves.emplace_back(normalized(fast_wave(tip, beta)));
+        const double sine = w.cosine * std::cos(beta) + w.sine * std::sin(beta);
+        const double cosine = w.sine * std::cos(beta) - w.cosine * std::sin(beta), root = w.root * std::exp(-beta);
+        tips_.push_back(tip_motion(
+            tip, beta, {sine + root + w.tip, cosine - root + w.tip, -sine + root + w.tip, -cosine - root + w.tip}));
       }
     }
     if (!waves.empty()) {
@@ -147,13 +171,18 @@ class LoadedBeam final : public ShapeFunctions {
   double wave_number() const override { return last_; }
   void evaluate(double x, std::span<double> phi, std::span<double> slope, std::span<double> curvature) const override {
     for (std::size_t k = 0; k < slow_.size(); ++k) {
-      const auto [value, first, second] = slow_[k](x / length_);
+      const auto [value, first, second, third] = slow_[k](x / length_);
       phi[k] = value;
       slope[k] = first / length_;
       curvature[k] = second / (length_ * length_);
     }
     const std::size_t n = slow_.size();
     if (fast_) fast_->evaluate(x, phi.subspan(n), slope.subspan(n), curvature.subspan(n));
+    if (x != length_) return;
+    for (std::size_t k = 0; k < count_; ++k) {
+      phi[k] = tips_[k][0];
+      slope[k] = tips_[k][1] / length_;
+    }
   }
 
  private:
@@ -170,6 +199,7 @@ class LoadedBeam final : public ShapeFunctions {
   double last_ = 0;
   std::vector<SlowWave> slow_;
   std::unique_ptr<BeamWaves> fast_;
+  std::vector<std::array<double, 2>> tips_;  ///< φ, dφ/dξ at the tip
 };
 
 }  // namespace

@@ -61,11 +61,7 @@ constexpr const char* usage =
 
 /// Gates that are missed, by the beginning of their row; docs/extremes.md says why.
 constexpr std::array known_misses{
-    "High modes: clamped-loaded, tip mass 1e+09 × beam",
     "Long conservative run: the same, as a method whose steps' sums are compensated",
-    "Error for tolerance: cvode",
-    "Units by powers of two: imported-boom",
-    "Units by powers of two: spinning-boom",
 };
 
 bool known(const Row& row) {

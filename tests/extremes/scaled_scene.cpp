@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "scaled_sid.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/units.hpp"
@@ -41,7 +43,11 @@ Json plain(const Value& value) {
 
 class Scaler {
  public:
-  Scaler(Registry& registry, const Gauge& gauge) : registry_(registry), gauge_(gauge) {}
+  Scaler(const Scene& scene, Registry& registry, const Gauge& gauge, const std::filesystem::path& folder)
+      : directory_(std::filesystem::path(scene.file).parent_path()),
+        registry_(registry),
+        gauge_(gauge),
+        folder_(folder) {}
 
   Json members(const Value& value, const std::vector<ParameterSpec>& specs) const {
     Json json = Json::object();
@@ -101,15 +107,28 @@ class Scaler {
         if (value.kind() == Value::Kind::number) return value.number() * gauge_.factor(spec.unit);
         if (value.kind() == Value::Kind::map)
           return members(value, registry_.find<ModeFamily>(value.text_at("name"))->parameters);
-        if (spec.key == "file") throw std::invalid_argument("a body takes its numbers from a file");
+        if (spec.key == "file") return file(value.text());
         return plain(value);
       default:
         return plain(value);
     }
   }
 
+  /// Name of a scaled copy of the file. It is written with 17 digits, which are every bit.
+  std::string file(const std::string& name) const {
+    const sid::Data data = scaled(sid::read(text_of(directory_ / name)), gauge_);
+    const std::filesystem::path copy = folder_ / std::filesystem::path(name).filename();
+    std::ofstream out(copy);
+    out << sid::write(data);
+    out.close();
+    if (!out) throw std::runtime_error("cannot write " + copy.string());
+    return copy;
+  }
+
+  std::filesystem::path directory_;  ///< of the scene, from which names of files start
   Registry& registry_;
   const Gauge& gauge_;
+  const std::filesystem::path& folder_;
 };
 
 }  // namespace
@@ -120,8 +139,9 @@ double Gauge::factor(const std::string& unit) const {
   return std::ldexp(1.0, dimension[0] * length + dimension[1] * mass + dimension[2] * time);
 }
 
-std::string scaled_text(const Scene& scene, Registry& registry, const Gauge& gauge) {
-  const Scaler scaler(registry, gauge);
+std::string scaled_text(const Scene& scene, Registry& registry, const Gauge& gauge,
+                        const std::filesystem::path& folder) {
+  const Scaler scaler(scene, registry, gauge, folder);
   Json json = scaler.members(scene.source, grammar::scene_members());
   json.erase("initial");
   json["formulation"] = plain(scene.source.at("formulation"));

@@ -2,6 +2,8 @@
 /// A scene in other units of mass, length and time: the same physics in other numbers.
 #pragma once
 
+#include <filesystem>
+
 #include "campaign.hpp"
 
 namespace withy::extremes {
@@ -16,8 +18,10 @@ struct Gauge {
 };
 
 /// Text of the scene in the units of the gauge, without its initial state: every number by the unit that its parameter
-/// declares. \throws std::invalid_argument where a body takes its numbers from a file.
-std::string scaled_text(const Scene& scene, Registry& registry, const Gauge& gauge);
+/// declares. Files of Standard Input Data from which bodies take their numbers are copied into `folder`, scaled, and
+/// named instead. \throws sid::FormatError where a body's file is of another kind.
+std::string scaled_text(const Scene& scene, Registry& registry, const Gauge& gauge,
+                        const std::filesystem::path& folder);
 /// Factors of the elements of y, times 2^(derivatives × −time) each. Modes of torsion are angles, others lengths.
 std::vector<double> state_factors(const Model& model, const Gauge& gauge, int derivatives = 0);
 

@@ -3,6 +3,7 @@
 /// between the scene's text and the last step of a run breaks that.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -23,6 +24,22 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
 }
+
+/// A folder that is there as long as this is.
+struct Folder {
+  std::filesystem::path path;
+  Folder() {
+    std::string name = std::filesystem::temp_directory_path() / "withy-extremes-XXXXXX";
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder can be made in " + name);
+    path = name;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+};
 
 /// States of a scene: its start, and moderate motions of all coordinates.
 std::vector<State> states_of(const Made& made) {
@@ -89,6 +106,7 @@ std::string differences(const Made& made, const Made& scaled, const Gauge& gauge
 
 void units(Campaign& campaign) {
   const std::size_t steps = campaign.quick() ? 20 : 1000;
+  const Folder folder;
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(WITHY_SCENES))
     if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
@@ -101,7 +119,7 @@ void units(Campaign& campaign) {
         const std::string file = std::string(WITHY_SCENES) + "/" + name + ".yaml";
         Made made(text_of(file), formulation, {}, file);
         const Gauge gauge;
-        const Made scaled(scaled_text(made.scene, made.registry, gauge), formulation);
+        const Made scaled(scaled_text(made.scene, made.registry, gauge, folder.path), formulation);
         const std::string d = differences(made, scaled, gauge, steps);
         if (!d.empty()) wrong += formulation + ": " + d;
         ++compared;
@@ -119,7 +137,7 @@ void units(Campaign& campaign) {
   // The campaign would see one: a scene whose hub takes lengths below 1e-3 for nothing, in units in which all are.
   Made made(scene_text("two-link-slew"));
   const Gauge small{0, -20, 0};
-  const std::string text = scaled_text(made.scene, made.registry, small);
+  const std::string text = scaled_text(made.scene, made.registry, small, folder.path);
   auto planted = nlohmann::ordered_json::parse(text);
   for (auto& x : planted["bodies"]["hub"]["frames"]["out"]["position"])
     if (std::abs(x.get<double>()) < 1e-3) x = 0.0;

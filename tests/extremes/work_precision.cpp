@@ -51,9 +51,18 @@ double slope_of(const std::vector<double>& tolerances, const std::vector<double>
 }  // namespace
 
 void work_precision(Campaign& campaign) {
-  const int last = campaign.quick() ? 5 : 11;
+  const int last = campaign.quick() ? 8 : 11;
+  std::vector<std::pair<std::string, std::string>> methods;  // ids, and what else is asked for
   for (const std::string& id : ids<Integrator>()) {
+    methods.emplace_back(id, "");
+    if (id == "cvode") methods.emplace_back(id, ", method: adams");
+  }
+  for (const auto& [id, more] : methods) {
     const bool asked = !with_tolerance(id, 1e-3).empty();
+    const auto options = [&, &id = id, &more = more](double tolerance) {
+      std::string text = with_tolerance(id, tolerance);
+      return text.insert(text.size() - 1, more);
+    };
     double least = 10, most = -10, ratio = 0;
     std::string off, back, refused, over;
     int compared = 0;
@@ -64,7 +73,7 @@ void work_precision(Campaign& campaign) {
                       {"bodies.arm.bending_y.modes=1", "initial.bodies.arm.modes=[0.01]", "bodies.bob.mass=0.1",
                        "bodies.bob.inertia=[0.001, 0.001, 0.001, 0, 0, 0]"});
       const auto reference = states(made, with_tolerance("dop853", 1e-14));
-      const int order = integrator(asked ? with_tolerance(id, 1e-3) : equal_steps(id, 0.1))->order();
+      const int order = integrator(asked ? options(1e-3) : equal_steps(id, 0.1))->order();
       std::vector<double> tolerances, errors;
       double greatest = 0;
       bool monotone = true;
@@ -73,8 +82,7 @@ void work_precision(Campaign& campaign) {
           const double tolerance = std::pow(10.0, -k);
           // Without error control: steps whose error, of the method's order, is the tolerance times the same number.
           const double step = 0.02 * std::pow(10.0, -(k - 3.0) / order);
-          const double e =
-              error_of(states(made, asked ? with_tolerance(id, tolerance) : equal_steps(id, step)), reference);
+          const double e = error_of(states(made, asked ? options(tolerance) : equal_steps(id, step)), reference);
           monotone = monotone && (errors.empty() || e < errors.back() || e < 1e-13);
           tolerances.push_back(tolerance);
           errors.push_back(e);
@@ -93,14 +101,14 @@ void work_precision(Campaign& campaign) {
       if (!monotone) back += " " + formulation;
       if (asked && !(greatest <= 10)) over += fmt::format("; {} {:.3g}", formulation, greatest);
     }
-    const std::string range = fmt::format("{}, {} formulations, {} 1e-3 … 1e-{}{}", id, compared,
+    const std::string range = fmt::format("{}{}, {} formulations, {} 1e-3 … 1e-{}{}", id, more, compared,
                                           asked ? "tolerance" : fmt::format("step to the order,"), last,
                                           refused.empty() ? "" : ", refused by " + refused);
     campaign.row(range + ": slope of log error", "dop853 at 1e-14", "1 ± 0.2, error falls each time",
                  fmt::format("{:.2f} to {:.2f}{}{}", least, most, off, back.empty() ? "" : "; not each time:" + back),
                  compared > 0 && off.empty() && back.empty());
     if (asked)
-      campaign.row(id + ": error over tolerance", "dop853 at 1e-14", "≤ 10",
+      campaign.row(id + more + ": error over tolerance", "dop853 at 1e-14", "≤ 10",
                    fmt::format("at most {:.3g}{}", ratio, over), compared > 0 && over.empty());
   }
 }
