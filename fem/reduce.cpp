@@ -175,9 +175,12 @@ class Reducer {
 
   /// Eigenvectors of the reduced body, of unit modal mass, their largest element positive.
   void take_modes(const Eigen::MatrixXd& V) {
-    const Eigen::MatrixXd K = V.transpose() * (m_.K * V), M = V.transpose() * (m_.M * V);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (K + K.transpose()),
-                                                                          0.5 * (M + M.transpose()));
+    const auto reduced = [&V](const SparseMatrix& whole) -> Eigen::MatrixXd {
+      const Eigen::MatrixXd A = V.transpose() * (whole * V);
+      return 0.5 * (A + A.transpose());
+    };
+    const Eigen::MatrixXd K = reduced(m_.K), M = reduced(m_.M);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(K, M);
     if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] > 0))
       throw InputError("the reduced body has no positive definite mass and stiffness");
     const Eigen::VectorXd omega = eigen.eigenvalues().cwiseSqrt();

@@ -14,37 +14,7 @@ namespace withy {
 /// Coefficients from the nodes c: a_ij = ∫₀^{c_i} l_j, b_j = ∫₀¹ l_j with Lagrange's polynomials l_j, and the
 /// transformation A⁻¹ T = T Λ, Λ = diag(γ, [[α, β], [−β, α]]). `A_rest` and `b_rest` are what doubles lose of A and b.
 struct Collocation {
-  explicit Collocation(const std::array<long double, 3>& nodes) {
-    for (int j = 0; j < 3; ++j) {
-      c[j] = static_cast<double>(nodes[static_cast<std::size_t>(j)]);
-      // l_j = (t − p)(t − q)/((c_j − p)(c_j − q)), integrated.
-      const long double p = nodes[static_cast<std::size_t>((j + 1) % 3)],
-                        q = nodes[static_cast<std::size_t>((j + 2) % 3)];
-      const long double at = nodes[static_cast<std::size_t>(j)];
-      const auto integral = [&](long double t) {
-        return t * (t * t / 3 - (p + q) * t / 2 + p * q) / ((at - p) * (at - q));
-      };
-      const auto split = [](long double exact, double& value, double& rest) {
-        value = static_cast<double>(exact);
-        rest = static_cast<double>(exact - value);
-      };
-      for (int i = 0; i < 3; ++i) split(integral(nodes[static_cast<std::size_t>(i)]), A(i, j), A_rest(i, j));
-      split(integral(1), b[j], b_rest[j]);
-    }
-    const Eigen::EigenSolver<Eigen::Matrix3d> eigen(A.inverse());
-    int real = 0;
-    for (int i = 1; i < 3; ++i) {
-      if (std::abs(eigen.eigenvalues()[i].imag()) < std::abs(eigen.eigenvalues()[real].imag())) real = i;
-    }
-    int pair = real == 0 ? 1 : 0;
-    gamma = eigen.eigenvalues()[real].real();
-    const std::complex<double> lambda = eigen.eigenvalues()[pair];
-    alpha = lambda.real();
-    beta = lambda.imag();
-    T << eigen.eigenvectors().col(real).real(), eigen.eigenvectors().col(pair).real(),
-        eigen.eigenvectors().col(pair).imag();
-    T_inverse = T.inverse();
-  }
+  explicit Collocation(const std::array<long double, 3>& nodes);
 
   Eigen::Vector3d c, b, b_rest;
   Eigen::Matrix3d A, A_rest, T, T_inverse;
@@ -54,16 +24,7 @@ struct Collocation {
 /// The stages Y_i = y + z_i, z_i = h Σ a_ij f(t + c_j h, Y_j), of one step.
 class CollocationStages {
  public:
-  CollocationStages(const Collocation& method, StepJacobian& jacobian)
-      : method_(method), jacobian_(jacobian), real_(jacobian), complex_(jacobian) {
-    const Eigen::Index m = jacobian.size();
-    for (Eigen::MatrixXd* a : {&z_, &before_, &w_, &right_, &residual_}) a->setZero(m, 3);
-    slopes_.setZero(jacobian.all(), 3);
-    stage_.setZero(jacobian.all());
-    slope_.setZero(jacobian.all());
-    real_part_.setZero(m);
-    complex_part_.setZero(m);
-  }
+  CollocationStages(const Collocation& method, StepJacobian& jacobian);
 
   enum class End { converged, slow, failed };
   struct Result {
@@ -74,36 +35,14 @@ class CollocationStages {
   };
 
   /// Factors for steps h; nothing where they are there.
-  void factorize(double h) {
-    if (h == factored_) return;
-    factored_ = h;
-    real_.factorize(method_.gamma / h);
-    complex_.factorize(std::complex<double>(method_.alpha, -method_.beta) / h);
-  }
+  void factorize(double h);
   /// The Jacobian is another.
   void refactorize() { factored_ = 0; }
 
   /// First guess: the last step's polynomial, extrapolated; zero where there is none.
-  void predict(double h) {
-    if (!(last_ > 0)) {
-      z_.setZero();
-      return;
-    }
-    // The polynomial through 0 and z_i at 0 and c_i of the last step, from its end on.
-    before_ = z_;
-    const Eigen::Vector3d end = weights_at(1);
-    for (int i = 0; i < 3; ++i) z_.col(i).noalias() = before_ * (weights_at(1 + method_.c[i] * h / last_) - end);
-  }
+  void predict(double h);
   /// z at fraction theta of the step is Σ weight_i z_i.
-  [[nodiscard]] Eigen::Vector3d weights_at(double theta) const {
-    Eigen::Vector3d weights;
-    for (int i = 0; i < 3; ++i) {
-      weights[i] = theta / method_.c[i];
-      for (int j = 0; j < 3; ++j)
-        if (j != i) weights[i] *= (theta - method_.c[j]) / (method_.c[i] - method_.c[j]);
-    }
-    return weights;
-  }
+  [[nodiscard]] Eigen::Vector3d weights_at(double theta) const;
 
   /// Iterates from the prediction until the change of the stages, times what is to come of it, is below 1 in the
   /// greatest |Δz_i| / tolerance_i. Factors for h must be there.
@@ -113,8 +52,11 @@ class CollocationStages {
     w_.noalias() = z_ * method_.T_inverse.transpose();
     double last_change = 0, factor = std::pow(std::max(contraction_, 1e-16), 0.8);
     for (r.iterations = 1; r.iterations <= most; ++r.iterations) {
-      const double change = iterate<false>(t, h, y, tolerance, evaluate, r.evaluation);
+      r.evaluation = evaluate_stages(t, h, y, evaluate);
       if (!r.evaluation.ok()) return r;
+      correct(h, false);
+      const double change = this->change(tolerance);
+      if (!std::isfinite(change)) return nonfinite(r);
       if (r.iterations > 1) {
         r.rate = change / last_change;
         factor = r.rate / (1 - r.rate);
@@ -140,8 +82,11 @@ class CollocationStages {
     Result r;
     double last_change = std::numeric_limits<double>::infinity();
     for (r.iterations = 1; r.iterations <= most; ++r.iterations) {
-      const double change = iterate<true>(t, h, y, tolerance, evaluate, r.evaluation);
+      r.evaluation = evaluate_stages(t, h, y, evaluate);
       if (!r.evaluation.ok()) return r;
+      correct(h, true);
+      const double change = this->change(tolerance);
+      if (!std::isfinite(change)) return nonfinite(r);
       if (change <= 1 || (change >= last_change && change < 1e4)) {
         r.end = End::converged;
         return r;
@@ -154,17 +99,8 @@ class CollocationStages {
   }
 
   void accept(double h) { last_ = h; }
-  void forget() {
-    last_ = 0;
-    contraction_ = 1;
-    factored_ = 0;
-  }
-  void remember(Memory& memory) {
-    memory(last_);
-    memory(contraction_);
-    for (Eigen::Index i = 0; i < z_.size(); ++i) memory(z_(i));
-    if (memory.reading()) factored_ = 0;
-  }
+  void forget();
+  void remember(Memory& memory);
 
   [[nodiscard]] const Eigen::MatrixXd& z() const { return z_; }
   /// f at the stages, the last iteration's.
@@ -172,54 +108,26 @@ class CollocationStages {
   ShiftedSystem<double>& real_system() { return real_; }
 
  private:
-  /// One simplified Newton iteration; its greatest |Δz_i| / tolerance_i. `from_residual`: of z − h A f, else of w.
-  template <bool from_residual, class Values, class Evaluate>
-  double iterate(double t, double h, const Values& y, const Eigen::ArrayXd& tolerance, Evaluate&& evaluate,
-                 Evaluation& evaluation) {
-    const Eigen::Index m = jacobian_.size();
+  static Result nonfinite(Result r) {
+    r.evaluation = {Evaluation::Outcome::nonfinite, -1};
+    return r;
+  }
+  /// The stages' slopes.
+  template <class Values, class Evaluate>
+  Evaluation evaluate_stages(double t, double h, const Values& y, Evaluate&& evaluate) {
     for (int i = 0; i < 3; ++i) {
       stage_ = y;
-      stage_.head(m) += z_.col(i).array();
-      evaluation = evaluate(t + method_.c[i] * h, stage_, slope_);
-      if (!evaluation.ok()) return 0;
+      stage_.head(jacobian_.size()) += z_.col(i).array();
+      const Evaluation evaluation = evaluate(t + method_.c[i] * h, stage_, slope_);
+      if (!evaluation.ok()) return evaluation;
       slopes_.col(i) = slope_.matrix();
     }
-    if constexpr (from_residual) {
-      residual_.noalias() = slopes_.topRows(m) * method_.A.transpose();
-      residual_.noalias() += slopes_.topRows(m) * method_.A_rest.transpose();
-      residual_ = h * residual_ - z_;
-      w_.noalias() = residual_ * method_.T_inverse.transpose();
-      right_.col(0) = method_.gamma / h * w_.col(0);
-      right_.col(1) = (method_.alpha * w_.col(1) + method_.beta * w_.col(2)) / h;
-      right_.col(2) = (method_.alpha * w_.col(2) - method_.beta * w_.col(1)) / h;
-    } else {
-      right_.noalias() = slopes_.topRows(m) * method_.T_inverse.transpose();
-      right_.col(0) -= method_.gamma / h * w_.col(0);
-      right_.col(1) -= (method_.alpha * w_.col(1) + method_.beta * w_.col(2)) / h;
-      right_.col(2) -= (method_.alpha * w_.col(2) - method_.beta * w_.col(1)) / h;
-    }
-    real_part_ = right_.col(0);
-    real_.solve(real_part_);
-    complex_part_.real() = right_.col(1);
-    complex_part_.imag() = right_.col(2);
-    complex_.solve(complex_part_);
-    right_.col(0) = real_part_;
-    right_.col(1) = complex_part_.real();
-    right_.col(2) = complex_part_.imag();
-    if constexpr (from_residual) {
-      z_.noalias() += right_ * method_.T.transpose();
-    } else {
-      w_ += right_;
-      z_.noalias() = w_ * method_.T.transpose();
-    }
-    double change = 0;
-    for (int i = 0; i < 3; ++i) {
-      slope_.head(m) = (right_ * method_.T.row(i).transpose()).array().abs() / tolerance.head(m);
-      if (!std::isfinite(slope_.head(m).sum())) evaluation = {Evaluation::Outcome::nonfinite, -1};
-      change = std::max(change, slope_.head(m).maxCoeff());
-    }
-    return change;
+    return {};
   }
+  /// One simplified Newton iteration with these slopes: of z − h A f where `from_residual`, else of w.
+  void correct(double h, bool from_residual);
+  /// Greatest |Δz_i| / tolerance_i of the last iteration; infinite where a stage is not finite.
+  double change(const Eigen::ArrayXd& tolerance);
 
   const Collocation& method_;
   StepJacobian& jacobian_;

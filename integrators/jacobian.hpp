@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <optional>
 #include <string>
@@ -153,5 +154,9 @@ class ShiftedSystem {
   Eigen::PartialPivLU<Matrix> lu_;
   Vector right_;
 };
+
+// Compiled once, in collocation.cpp.
+extern template class ShiftedSystem<double>;
+extern template class ShiftedSystem<std::complex<double>>;
 
 }  // namespace withy

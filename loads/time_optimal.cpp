@@ -98,7 +98,8 @@ class Family {
     const Eigen::Index n = target_.size();
     Times goal = Times::Zero(times.size());
     goal[times.size() - 1] = 1;
-    Vector costate = slopes(times, steps).transpose().colPivHouseholderQr().solve(goal);
+    const Eigen::MatrixXd adjoint = slopes(times, steps).transpose();
+    Vector costate = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(adjoint).solve(goal);
     struct Sample {
       Vector state;
       const Segment* segment;

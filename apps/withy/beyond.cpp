@@ -11,14 +11,14 @@ bool same(const Terms& a, const Terms& b) {
   return a.strain == b.strain && a.truncation == b.truncation && a.products_of_speeds == b.products_of_speeds;
 }
 
-bool flexible(const BodyNode& body) { return body.body->shape().modes() > 0; }
+bool has_modes(const BodyNode& body) { return body.body->shape().modes() > 0; }
 
 }  // namespace
 
 bool has_terms_throughout(const Scene& scene, Terms terms) {
   return same(scene.formulation->terms(), terms) &&
          std::all_of(scene.model->bodies().begin(), scene.model->bodies().end(),
-                     [&](const BodyNode& body) { return !flexible(body) || !body.terms || same(*body.terms, terms); });
+                     [&](const BodyNode& body) { return !has_modes(body) || !body.terms || same(*body.terms, terms); });
 }
 
 Beyond compile_throughout(const Engine& engine, const SceneArguments& arguments, const std::string& formulation) {
@@ -48,7 +48,7 @@ Beyond compile_throughout(const Engine& engine, const SceneArguments& arguments,
 std::optional<Beyond> next_model_up(const Engine& engine, const SceneArguments& arguments) {
   const Scene& scene = engine.scene();
   const auto& bodies = scene.model->bodies();
-  if (std::none_of(bodies.begin(), bodies.end(), flexible)) return {};
+  if (std::none_of(bodies.begin(), bodies.end(), has_modes)) return {};
   if (has_terms_throughout(scene, {StrainOrder::exact, Truncation::none})) return {};
   const bool quadratic = has_terms_throughout(scene, {StrainOrder::quadratic, Truncation::none});
   try {

@@ -12,7 +12,7 @@
 namespace withy::app {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr const char* format = "withy-checkpoint/1";

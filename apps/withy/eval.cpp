@@ -6,8 +6,9 @@
 
 namespace withy::app {
 
+using Json = nlohmann::ordered_json;
+
 ExitStatus eval(const StateArguments& arguments) {
-  using Json = nlohmann::ordered_json;
   const Engine engine(arguments);
   const EquationsOfMotion& equations = engine.equations();
   const Layout& layout = equations.layout();

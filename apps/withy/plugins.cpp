@@ -21,7 +21,6 @@ namespace withy::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using State = PluginRecord::State;
 
 /// What a plugin of any kind says of itself.
 struct Description {
@@ -53,7 +52,7 @@ std::vector<PluginRecord> load_wanted(const Plugins& plugins, const std::string&
     return name.empty() || r.id == name || r.kind + '/' + r.id == name;
   };
   for (const PluginRecord& r : plugins.host().plugins()) {
-    if (r.state != State::available || !wanted(r)) continue;
+    if (r.state != PluginRecord::State::available || !wanted(r)) continue;
     try {
       static_cast<void>(describe(plugins.registry(), r));
     } catch (const PluginError&) {
@@ -67,8 +66,8 @@ std::vector<PluginRecord> load_wanted(const Plugins& plugins, const std::string&
 
 Json record_json(const Plugins& plugins, const PluginRecord& r) {
   Json j{{"kind", r.kind}, {"id", r.id}, {"file", r.file.string()}, {"version", r.version}};
-  j["state"] = r.state == State::refused ? "refused" : "loaded";
-  if (r.state == State::refused) {
+  j["state"] = r.state == PluginRecord::State::refused ? "refused" : "loaded";
+  if (r.state == PluginRecord::State::refused) {
     j["reason"] = r.reason;
     return j;
   }
@@ -83,7 +82,7 @@ std::string list_text(const std::vector<PluginRecord>& records) {
   TextTable table({"<kind", "<id", "<version", "<library", "<what it is"});
   std::string refused;
   for (const PluginRecord& r : records) {
-    if (r.state == State::refused)
+    if (r.state == PluginRecord::State::refused)
       refused += (r.id.empty() ? "" : r.kind + '/' + r.id + ": ") + r.reason + '\n';
     else
       table.add({r.kind, r.id, r.version, r.file.filename().string(), r.summary});

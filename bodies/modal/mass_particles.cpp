@@ -21,7 +21,8 @@ MatrixXd elastic_coefficients(const MassIntegrals& m, const MatrixXd& rigid) {
     root.segment<3>(3 * k).setConstant(std::sqrt(m.phi_phi[m.pair(k, k)].trace()));
   }
   const Eigen::VectorXd scale = root.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * R * scale.asDiagonal());
+  const MatrixXd scaled = scale.asDiagonal() * R * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled);
   MatrixXd L(R.rows(), R.cols());
   Eigen::Index rank = 0;
   for (Eigen::Index i = R.rows() - 1; i >= 0 && eigen.eigenvalues()[i] > 1e-16; --i, ++rank) {

@@ -51,9 +51,15 @@ WITHY_INSTANCE GeneralizedSelfAdjointEigenSolver<MatrixXd>& GeneralizedSelfAdjoi
     const MatrixXd&, const MatrixXd&, int);
 WITHY_INSTANCE LLT<MatrixXd, Lower>& LLT<MatrixXd, Lower>::compute(const EigenBase<MatrixXd>&);
 WITHY_INSTANCE void PartialPivLU<MatrixXd>::compute();
+WITHY_INSTANCE void PartialPivLU<MatrixXcd>::compute();
 WITHY_INSTANCE void FullPivLU<MatrixXd>::computeInPlace();
 WITHY_INSTANCE void HouseholderQR<MatrixXd>::computeInPlace();
 WITHY_INSTANCE void ColPivHouseholderQR<MatrixXd>::computeInPlace();
+WITHY_INSTANCE void CompleteOrthogonalDecomposition<MatrixXd>::computeInPlace();
+WITHY_INSTANCE LDLT<MatrixXd, Lower>& LDLT<MatrixXd, Lower>::compute(const EigenBase<MatrixXd>&);
+WITHY_INSTANCE EigenSolver<Matrix3d>& EigenSolver<Matrix3d>::compute(const EigenBase<Matrix3d>&, bool);
+WITHY_INSTANCE SelfAdjointEigenSolver<Matrix3d>& SelfAdjointEigenSolver<Matrix3d>::compute(const EigenBase<Matrix3d>&,
+                                                                                           int);
 WITHY_INSTANCE JacobiSVD<MatrixXd>& JacobiSVD<MatrixXd>::compute(const MatrixXd&, unsigned int);
 WITHY_INSTANCE EigenSolver<MatrixXd>& EigenSolver<MatrixXd>::compute(const EigenBase<MatrixXd>&, bool);
 

@@ -12,5 +12,6 @@
 #include <string>
 #include <vector>
 
+#include "eigen_instances.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/entry.hpp"

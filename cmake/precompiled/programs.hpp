@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "eigen_instances.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/scene/scene.hpp"

@@ -43,7 +43,8 @@ struct Root {
 
 /// λ² of M λ² + K, where nothing depends on speeds: keeps pairs exact and zeros simple.
 std::vector<Root> roots_at_rest(const Scaled& s) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(-solve_mass(s.M, s.K));
+  const Eigen::MatrixXd A = -solve_mass(s.M, s.K);
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
   if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
   std::vector<Root> roots;
   for (Eigen::Index i = 0; i < s.M.rows(); ++i) {

@@ -141,7 +141,8 @@ Eigen::VectorXd accelerations(const TangentDynamics& dynamics, const State& stat
   const std::vector<Eigen::Index> free = free_speeds(held);
   if (free.empty()) return a;
   const Tangents t = dynamics.tangents(state.time, state.y, a);
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(t.mass(free, free));
+  const Eigen::MatrixXd M = t.mass(free, free);
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(M);
   if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular at this state");
   a(free) = -lu.solve(t.residual(free));
   return a;

@@ -103,7 +103,8 @@ std::vector<double> solve(const DenseSystem& given) {
   const Eigen::MatrixXd M = mass_matrix(system);
   const Eigen::VectorXd scale = M.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
   if (!scale.allFinite()) throw std::domain_error("the mass matrix has a zero on its diagonal");
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(scale.asDiagonal() * M * scale.asDiagonal());
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * M * scale.asDiagonal();
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(scaled);
   if (!lu.isInvertible()) throw std::domain_error("the mass matrix is singular");
   const Eigen::VectorXd f = Eigen::Map<const Eigen::VectorXd>(system.force.data(), n) +
                             Eigen::Map<const Eigen::VectorXd>(system.applied.data(), n);

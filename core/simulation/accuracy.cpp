@@ -136,7 +136,8 @@ std::vector<MasslessDirection> massless_directions(const Model& model, const Den
   const Scaled s = scaled_mass(system);
   if (s.free.empty() || !s.M.allFinite()) return found;
   const Eigen::MatrixXd K = stiffness_of_modes(model)(s.free, s.free);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (s.M + s.M.transpose()));
+  const Eigen::MatrixXd symmetric = 0.5 * (s.M + s.M.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
   for (Eigen::Index k = 0; k < solver.eigenvalues().size() && solver.eigenvalues()[k] < share; ++k) {
     const Eigen::VectorXd v = solver.eigenvectors().col(k);
     const std::vector<double> all = of_all(s, v, system.size);

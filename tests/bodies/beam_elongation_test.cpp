@@ -8,35 +8,28 @@
 
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/scene/scene.hpp"
+#include "withy/tests/bodies/beam_fixture.hpp"
 #include "withy/tests/conformance/body_suite.hpp"
 #include "withy/tests/conformance/plugins.hpp"
 
 namespace withy::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double L = 1.6, mass = 1.3;  ///< m, kg/m
 
-Value strain(double stiffness, int modes, const char* family = "orthogonal-polynomials", double rotary = 0) {
+Value along(double stiffness, int modes, const char* family = "orthogonal-polynomials", double rotary = 0) {
   Value v = Value::map(
       {{"stiffness", Value(stiffness)}, {"modes", Value(double(modes))}, {"family", Value(std::string(family))}});
   if (rotary > 0) v.set("rotary_inertia", Value(rotary));
   return v;
 }
 
-std::unique_ptr<Body> beam(std::vector<Value::Member> strains) {
+std::unique_ptr<Body> elastic_beam(std::vector<Value::Member> strains) {
   Registry registry;
   enroll_static_plugins(registry);
   strains.insert(strains.begin(), {{"length", Value(L)}, {"mass_per_length", Value(mass)}});
   return make_plugin<Body>(registry, "beam", std::move(strains));
-}
-
-Eigen::MatrixXd modal_mass(const Body& body) {
-  const Eigen::Index n = body.shape().modes();
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
-  for (const Particle& p : body.shape().particles) M += p.mass * p.at.phi.transpose() * p.at.phi;
-  for (const Section& s : body.shape().sections) M += s.at.psi.transpose() * s.inertia * s.at.psi;
-  return M;
 }
 
 /// Angular frequencies, rising.
@@ -50,8 +43,8 @@ Eigen::VectorXd frequencies(const Body& body) {
 TEST(BeamElongation, rods_have_their_frequencies) {
   for (const char* key : {"extension", "shear_y", "shear_z"}) {
     const double EA = 5e4;
-    const Eigen::VectorXd waves = frequencies(*beam({{key, strain(EA, 3, "clamped-free")}}));
-    const Eigen::VectorXd polynomials = frequencies(*beam({{key, strain(EA, 8)}}));
+    const Eigen::VectorXd waves = frequencies(*elastic_beam({{key, along(EA, 3, "clamped-free")}}));
+    const Eigen::VectorXd polynomials = frequencies(*elastic_beam({{key, along(EA, 8)}}));
     for (int k = 1; k <= 3; ++k) {
       const double exact = (2 * k - 1) * pi / 2 * std::sqrt(EA / mass) / L;
       EXPECT_NEAR(waves[k - 1] / exact, 1, 1e-12) << key;
@@ -63,11 +56,11 @@ TEST(BeamElongation, rods_have_their_frequencies) {
 /// A rod with a mass m at its tip: β tan β = μ L/m; clamped-loaded has its eigenfunctions.
 TEST(BeamElongation, clamped_loaded_rod_carries_a_mass) {
   const double EA = 5e4, tip = 0.7;
-  Value s = strain(EA, 1);
+  Value s = along(EA, 1);
   s.set("family",
         Value::map(
             {{"name", Value(std::string("clamped-loaded"))}, {"tip_mass", Value(tip)}, {"tip_offset", Value(0.0)}}));
-  const auto body = beam({{"extension", s}});
+  const auto body = elastic_beam({{"extension", s}});
   const double phi = body->station(std::string("tip"))->phi(0, 0);
   const double omega = std::sqrt(body->shape().stiffness(0, 0) / (modal_mass(*body)(0, 0) + tip * phi * phi));
   const double beta = omega * L * std::sqrt(mass / EA);
@@ -95,8 +88,8 @@ TEST(BeamElongation, timoshenko_cantilever_has_huangs_frequencies) {
   const std::array<std::array<double, 2>, 3> brackets = {{{3, 3.6}, {15, 22.1}, {35, 61}}};
   for (const char* across : {"y", "z"}) {
     const auto body =
-        beam({{std::string("bending_") + across, strain(EI, 10, "orthogonal-polynomials", r2 * mass * L * L)},
-              {std::string("shear_") + across, strain(EI / (s2 * L * L), 10)}});
+        elastic_beam({{std::string("bending_") + across, along(EI, 10, "orthogonal-polynomials", r2 * mass * L * L)},
+                      {std::string("shear_") + across, along(EI / (s2 * L * L), 10)}});
     const Eigen::VectorXd found = frequencies(*body);
     for (int k = 0; k < 3; ++k) {
       const auto [low, high] = brackets[static_cast<std::size_t>(k)];
@@ -111,7 +104,7 @@ TEST(BeamElongation, timoshenko_cantilever_has_huangs_frequencies) {
 /// F L³/3EI + F L/kGA.
 TEST(BeamElongation, shear_adds_to_the_static_deflection) {
   const double EI = 200, kGA = 900;
-  const auto body = beam({{"bending_y", strain(EI, 3)}, {"shear_y", strain(kGA, 3)}});
+  const auto body = elastic_beam({{"bending_y", along(EI, 3)}, {"shear_y", along(kGA, 3)}});
   const Eigen::VectorXd lift = body->station(std::string("tip"))->phi.row(1);
   EXPECT_NEAR(lift.dot(body->shape().stiffness.ldlt().solve(lift)), L * L * L / (3 * EI) + L / kGA, 1e-12);
 }
@@ -120,7 +113,7 @@ TEST(BeamElongation, shear_adds_to_the_static_deflection) {
 /// (J. A. Haringx, Philips Res. Rep. 3, 1948): what Γ's product of rotation and shear is for.
 TEST(BeamElongation, column_with_shear_buckles_as_haringx_says) {
   const double EI = 200, kGA = 900;
-  const auto body = beam({{"bending_y", strain(EI, 8)}, {"shear_y", strain(kGA, 8)}});
+  const auto body = elastic_beam({{"bending_y", along(EI, 8)}, {"shear_y", along(kGA, 8)}});
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(-body->station(std::string("tip"))->gamma[0],
                                                                         body->shape().stiffness);
   const double P = 1 / eigen.eigenvalues().maxCoeff();
@@ -130,17 +123,17 @@ TEST(BeamElongation, column_with_shear_buckles_as_haringx_says) {
 /// Γ and Θ against r′ = R (e_x + γ), R′ = R κ̂ integrated by small steps at ε q: what is left is of the third order, so
 /// that half the ε leaves an eighth.
 TEST(BeamElongation, second_order_is_that_of_the_kinematics) {
-  const auto body = beam({{"bending_y", strain(1, 2)},
-                          {"bending_z", strain(1, 2)},
-                          {"torsion",
-                           [] {
-                             Value v = strain(1, 2);
-                             v.set("inertia", Value(1.0));
-                             return v;
-                           }()},
-                          {"extension", strain(1, 2)},
-                          {"shear_y", strain(1, 2)},
-                          {"shear_z", strain(1, 2)}});
+  const auto body = elastic_beam({{"bending_y", along(1, 2)},
+                                  {"bending_z", along(1, 2)},
+                                  {"torsion",
+                                   [] {
+                                     Value v = along(1, 2);
+                                     v.set("inertia", Value(1.0));
+                                     return v;
+                                   }()},
+                                  {"extension", along(1, 2)},
+                                  {"shear_y", along(1, 2)},
+                                  {"shear_z", along(1, 2)}});
   const Eigen::Index n = body->shape().modes();
   ASSERT_EQ(n, 12);
   Eigen::VectorXd q(n);
@@ -177,15 +170,15 @@ TEST(BeamElongation, second_order_is_that_of_the_kinematics) {
 }
 
 TEST(BeamElongation, body_conforms) {
-  expect_body_conforms(*beam({{"bending_y", strain(200, 2, "clamped-free")},
-                              {"extension", strain(5e4, 2, "clamped-free")},
-                              {"shear_y", strain(900, 2, "clamped-free")},
-                              {"shear_z", strain(700, 1, "clamped-free")}}));
+  expect_body_conforms(*elastic_beam({{"bending_y", along(200, 2, "clamped-free")},
+                                      {"extension", along(5e4, 2, "clamped-free")},
+                                      {"shear_y", along(900, 2, "clamped-free")},
+                                      {"shear_z", along(700, 1, "clamped-free")}}));
 }
 
 TEST(BeamElongation, exact_kinematics_is_refused) {
-  EXPECT_EQ(beam({{"bending_y", strain(200, 2)}, {"extension", strain(5e4, 1)}})->rod(), nullptr);
-  EXPECT_NE(beam({{"bending_y", strain(200, 2)}})->rod(), nullptr);
+  EXPECT_EQ(elastic_beam({{"bending_y", along(200, 2)}, {"extension", along(5e4, 1)}})->rod(), nullptr);
+  EXPECT_NE(elastic_beam({{"bending_y", along(200, 2)}})->rod(), nullptr);
 }
 
 /// A pin says nothing of stretching.
@@ -195,7 +188,7 @@ TEST(BeamElongation, families_without_rods_are_refused) {
   Diagnostics diagnostics;
   EXPECT_EQ(make_plugin<Body>(
                 registry, "beam",
-                {{"length", Value(L)}, {"mass_per_length", Value(mass)}, {"shear_y", strain(1, 1, "pinned-free")}},
+                {{"length", Value(L)}, {"mass_per_length", Value(mass)}, {"shear_y", along(1, 1, "pinned-free")}},
                 diagnostics),
             nullptr);
   ASSERT_EQ(diagnostics.errors().size(), 1U);

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "withy/plugins/host/static_plugins.hpp"
+#include "withy/tests/bodies/beam_fixture.hpp"
 #include "withy/tests/conformance/body_suite.hpp"
 #include "withy/tests/conformance/plugins.hpp"
 
@@ -40,14 +41,6 @@ std::unique_ptr<Body> beam(const Section& s) {
   }
   return make_plugin<Body>(registry, "beam",
                            {{"length", Value(length)}, {"mass_per_length", s.mass}, {s.strain, strain}});
-}
-
-Eigen::MatrixXd modal_mass(const Body& body) {
-  const Eigen::Index n = body.shape().modes();
-  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n, n);
-  for (const Particle& p : body.shape().particles) G += p.mass * p.at.phi.transpose() * p.at.phi;
-  for (const withy::Section& s : body.shape().sections) G += s.at.psi.transpose() * s.inertia * s.at.psi;
-  return G;
 }
 
 /// ω² over EI₀/(m₀ L⁴), rising.

@@ -1,18 +1,12 @@
 #include <cmath>
 
 #include "withy/plugins/host/static_plugins.hpp"
+#include "withy/tests/bodies/beam_fixture.hpp"
 #include "withy/tests/conformance/body_suite.hpp"
 #include "withy/tests/conformance/plugins.hpp"
 
 namespace withy::test {
 namespace {
-
-Value strain(double stiffness, double modes, double inertia = 0) {
-  Value v = Value::map(
-      {{"stiffness", Value(stiffness)}, {"modes", Value(modes)}, {"family", Value(std::string("clamped-free"))}});
-  if (inertia > 0) v.set("inertia", Value(inertia));
-  return v;
-}
 
 /// 3 + 2 bending modes and 2 of twist, 1.3 m long.
 std::unique_ptr<Body> beam(Registry& registry) {

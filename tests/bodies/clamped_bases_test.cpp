@@ -15,6 +15,7 @@ struct Tip {
   const char* name;
   double mass, inertia, offset;  ///< for a beam of mass 1 and length 1
 };
+void PrintTo(const Tip& tip, std::ostream* out) { *out << tip.name; }
 
 /// From none to far heavier than the beam, with the centre of mass behind and before the tip.
 const Tip tips[] = {{"bare", 0, 0, 0},

@@ -10,7 +10,7 @@
 namespace withy::test {
 namespace {
 
-constexpr double length = 1.3, mass_per_length = 0.7, stiffness = 40;
+constexpr double span = 1.3, mass_per_length = 0.7, stiffness = 40;
 
 Value choice(const std::string& id, std::vector<Value::Member> options = {}) {
   if (options.empty()) return Value(id);
@@ -25,7 +25,7 @@ class Families : public testing::Test {
   std::unique_ptr<Body> beam(const Value& family, double modes, Diagnostics* diagnostics = nullptr) {
     const Value strain = Value::map({{"stiffness", Value(stiffness)}, {"modes", Value(modes)}, {"family", family}});
     const std::vector<Value::Member> p = {
-        {"length", Value(length)}, {"mass_per_length", Value(mass_per_length)}, {"bending_y", strain}};
+        {"length", Value(span)}, {"mass_per_length", Value(mass_per_length)}, {"bending_y", strain}};
     if (diagnostics != nullptr) return make_plugin<Body>(registry_, "beam", p, *diagnostics);
     return make_plugin<Body>(registry_, "beam", p);
   }
@@ -45,14 +45,14 @@ class Families : public testing::Test {
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
     for (const Particle& p : body->shape().particles) M += p.mass * deflection(p.at).transpose() * deflection(p.at);
     const PointExpansion tip = *body->station(std::string("tip"));
-    const double m = mass_per_length * length;
+    const double m = mass_per_length * span;
     const Eigen::RowVectorXd slope = tip.psi.row(2) - root.psi.row(2);
-    const Eigen::RowVectorXd center = deflection(tip) + tip_offset * length * slope;
+    const Eigen::RowVectorXd center = deflection(tip) + tip_offset * span * slope;
     M += tip_mass * m * center.transpose() * center;
-    M += tip_inertia * m * length * length * slope.transpose() * slope;
+    M += tip_inertia * m * span * span * slope.transpose() * slope;
     // The greatest 1/ω²: the lowest frequencies without loss to the highest.
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M, body->shape().stiffness);
-    return eigen.eigenvalues().reverse().cwiseInverse() * mass_per_length * std::pow(length, 4) / stiffness;
+    return eigen.eigenvalues().reverse().cwiseInverse() * mass_per_length * std::pow(span, 4) / stiffness;
   }
 
   /// Squared frequencies, over EI/(ρA L⁴), of the beam alone in a tree, at rest: M from the equations of motion, so
@@ -60,7 +60,7 @@ class Families : public testing::Test {
   Eigen::VectorXd in_tree(const std::string& hinge, const std::string& family, int modes,
                           const std::string& formulation) {
     const std::string text =
-        "format: withy/1\ntime: {end: 1}\nbodies:\n  b: {type: beam, length: " + std::to_string(length) +
+        "format: withy/1\ntime: {end: 1}\nbodies:\n  b: {type: beam, length: " + std::to_string(span) +
         ", mass_per_length: " + std::to_string(mass_per_length) +
         ", bending_y: {stiffness: " + std::to_string(stiffness) + ", modes: " + std::to_string(modes) +
         ", family: " + family + "}}\nhinges:\n  h: {parent: world, child: b, " + hinge + "}\n";
@@ -82,7 +82,7 @@ class Families : public testing::Test {
       of = K(keep, keep);
     }
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(of, used);
-    return eigen.eigenvalues() * mass_per_length * std::pow(length, 4) / stiffness;
+    return eigen.eigenvalues() * mass_per_length * std::pow(span, 4) / stiffness;
   }
 
   Registry registry_;
@@ -117,10 +117,10 @@ TEST_F(Families, complete_and_clamped_find_the_cantilever_s_frequencies) {
 /// above, and its extrapolation is the same frequency. Static modes and polynomials need few.
 TEST_F(Families, one_loaded_mode_is_worth_many_free_ones) {
   const double mass = 5, inertia = 0.8, offset = 0.2;
-  const double m = mass_per_length * length;
+  const double m = mass_per_length * span;
   const Value loaded = choice("clamped-loaded", {{"tip_mass", Value(mass * m)},
-                                                 {"tip_inertia", Value(inertia * m * length * length)},
-                                                 {"tip_offset", Value(offset * length)}});
+                                                 {"tip_inertia", Value(inertia * m * span * span)},
+                                                 {"tip_offset", Value(offset * span)}});
   // 1 + cosh β cos β − p (cosh β sin β − sinh β cos β) − 2q sinh β sin β − r (sinh β cos β + cosh β sin β)
   // + (pr − q²)(1 − cosh β cos β) = 0, by bisection between 0 and the bare beam's root.
   const auto characteristic = [&](double b) {

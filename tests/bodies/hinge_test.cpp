@@ -20,6 +20,7 @@ struct HingeCase {
   std::string id;
   std::vector<Value::Member> parameters;
 };
+void PrintTo(const HingeCase& hinge, std::ostream* out) { *out << hinge.id; }
 
 std::string case_name(const testing::TestParamInfo<HingeCase>& hinge) {
   return hinge.param.id + std::to_string(hinge.index);

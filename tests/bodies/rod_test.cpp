@@ -5,13 +5,14 @@
 
 #include "withy/core/dynamics/rod_motion.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
+#include "withy/tests/bodies/beam_fixture.hpp"
 #include "withy/tests/conformance/body_suite.hpp"
 #include "withy/tests/conformance/plugins.hpp"
 
 namespace withy::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Constant twist rate and curvatures: three modes whose strain is 1/m along x, y, z.
 class UniformRod final : public Rod {
@@ -29,15 +30,8 @@ class UniformRod final : public Rod {
   double length_;
 };
 
-Value strain(double stiffness, double modes, double inertia = 0) {
-  Value v = Value::map(
-      {{"stiffness", Value(stiffness)}, {"modes", Value(modes)}, {"family", Value(std::string("clamped-free"))}});
-  if (inertia > 0) v.set("inertia", Value(inertia));
-  return v;
-}
-
 /// Bending in two planes and twist, seven modes, 1.3 m long.
-std::unique_ptr<Body> beam() {
+std::unique_ptr<Body> rod_like_beam() {
   Registry registry;
   enroll_static_plugins(registry);
   return make_plugin<Body>(registry, "beam",
@@ -69,7 +63,7 @@ class ExactKinematics final : public StrainKinematics {
 };
 
 TEST(Rod, partial_velocities_and_biases_are_derivatives) {
-  const auto body = beam();
+  const auto body = rod_like_beam();
   ASSERT_NE(body->rod(), nullptr);
   expect_kinematics_conforms(ExactKinematics(*body->rod()));
 }
@@ -104,7 +98,7 @@ TEST(Rod, constant_strain_is_a_circle_or_a_helix) {
 /// differences of steps 2e-3 and 1e-3, extrapolated, leave 1e-11 of the fourth derivatives and rounding 1e-13/1e-3; the
 /// rod's quadrature leaves 1e-8 of the second order.
 TEST(Rod, second_order_expansion_is_that_of_the_beam_in_two_planes_with_twist) {
-  const auto body = beam();
+  const auto body = rod_like_beam();
   const RodTable table(*body->rod());
   const Eigen::Index n = 7;
   for (const double x : {0.31, 0.9, 1.3}) {

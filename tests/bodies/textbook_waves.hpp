@@ -59,6 +59,7 @@ struct Uniform {
   std::array<double, 3> blevins;       ///< its first three β
   std::array<bool, 3> root, tip;       ///< whether φ, φ′, φ″ vanish there
 };
+inline void PrintTo(const Uniform& family, std::ostream* out) { *out << family.id; }
 
 inline const Uniform uniform_families[] = {
     {"clamped-free",

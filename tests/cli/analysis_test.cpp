@@ -8,20 +8,13 @@
 #include <numbers>
 #include <sstream>
 
-#include "withy/tests/cli/process.hpp"
+#include "withy/tests/cli/json_result.hpp"
 
 namespace withy::test {
 namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-
-json result(const Folder& folder, const std::vector<std::string>& arguments) {
-  const Finished f = withy(folder, arguments);
-  EXPECT_EQ(f.status, 0) << f.err;
-  EXPECT_EQ(f.err, "");
-  return json::parse(f.out);
-}
 
 const std::string blade = "scenes/rotating-blade.yaml";
 

@@ -34,6 +34,7 @@ struct Claim {
   std::vector<std::string> scene;
   std::string formulation;
 };
+void PrintTo(const Claim& claim, std::ostream* out) { *out << claim.scene.at(0) << ' ' << claim.formulation; }
 
 class ErrorClaimed : public testing::TestWithParam<Claim> {};
 

@@ -12,6 +12,7 @@ struct Include {
   const char* file;
   const char* text;  ///< between `#include ` and the end of the line
 };
+void PrintTo(const Include& include, std::ostream* out) { *out << include.file << " including " << include.text; }
 
 Finished check(const Include& include) {
   const Folder folder;

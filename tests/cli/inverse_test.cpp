@@ -60,7 +60,8 @@ TEST(Inverse, OfAPendulumIsTheClosedForm) {
 }
 
 /// Of the driven arm, one mode a link: time and resolution of what follows.
-std::vector<std::string> arm(const std::string& command, const std::string& step, std::vector<std::string> more) {
+std::vector<std::string> command_of(const std::string& command, const std::string& step,
+                                    std::vector<std::string> more) {
   more.insert(more.begin(), {command, "scenes/driven-arm.yaml", "--set", "time.end=1", "--set", "time.output=" + step,
                              "--set", "bodies.link1.bending_y.modes=1", "--set", "bodies.link2.bending_y.modes=1"});
   return more;
@@ -74,10 +75,10 @@ struct RoundTrip {
 RoundTrip round_trip(const std::string& step) {
   const Folder folder;
   RoundTrip worst;
-  const Finished there = withy(folder, arm("run", step, {"--out", "forward", "--estimate", "never"}));
+  const Finished there = withy(folder, command_of("run", step, {"--out", "forward", "--estimate", "never"}));
   EXPECT_EQ(there.status, 0) << there.err;
-  const Finished f =
-      withy(folder, arm("inverse", step, {"--motion", "forward/results.csv", "--set", "loads={}", "--out", "back"}));
+  const Finished f = withy(
+      folder, command_of("inverse", step, {"--motion", "forward/results.csv", "--set", "loads={}", "--out", "back"}));
   EXPECT_EQ(f.status, 0) << f.err;
   if (f.status != 0) return worst;
   EXPECT_THAT(f.out, HasSubstr("elbow.0"));
@@ -111,9 +112,9 @@ TEST(Inverse, GivesBackTheTorquesThatMadeTheMotion) {
 
 TEST(Inverse, NeedsNothingBesideLoadsThatGiveTheMotionAlready) {
   const Folder folder;
-  const Finished there = withy(folder, arm("run", "0.004", {"--out", "forward", "--estimate", "never"}));
+  const Finished there = withy(folder, command_of("run", "0.004", {"--out", "forward", "--estimate", "never"}));
   ASSERT_EQ(there.status, 0) << there.err;
-  const Finished f = withy(folder, arm("inverse", "0.004", {"--motion", "forward/results.csv", "--json"}));
+  const Finished f = withy(folder, command_of("inverse", "0.004", {"--motion", "forward/results.csv", "--json"}));
   ASSERT_EQ(f.status, 0) << f.err;
   const json drives = json::parse(f.out).at("drives");
   ASSERT_EQ(drives.size(), 2U);

@@ -4,20 +4,13 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "withy/tests/cli/process.hpp"
+#include "withy/tests/cli/json_result.hpp"
 
 namespace withy::test {
 namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-
-json result(const Folder& folder, const std::vector<std::string>& arguments) {
-  const Finished f = withy(folder, arguments);
-  EXPECT_EQ(f.status, 0) << f.err;
-  EXPECT_EQ(f.err, "");
-  return json::parse(f.out);
-}
 
 TEST(Eval, GivesOneObjectWithConsistentShapes) {
   const Folder folder;

@@ -50,7 +50,7 @@ std::pair<double, double> costs(const Made& a, const Made& b) {
 
 /// A chain of six beams of no modes, or of rigid bodies with the mass that beams have: m = ρL, I = mL²/12 about the
 /// middle.
-std::string chain(bool beams) {
+std::string six_links(bool beams) {
   std::string bodies, hinges, states;
   for (int i = 0; i < 6; ++i) {
     const double m = 1.25 * 0.5;
@@ -93,7 +93,7 @@ void rigid_limit(Campaign& campaign) {
                  "exponent −1 ± 0.1 a decade", fmt::format("{}, exponents −{:.3f} to −{:.3f}", text, least, most),
                  std::abs(least - 1) <= 0.1 && std::abs(most - 1) <= 0.1);
   }
-  const Made beams(chain(true), "quadratic"), bodies(chain(false), "quadratic");
+  const Made beams(six_links(true), "quadratic"), bodies(six_links(false), "quadratic");
   const auto a = beams.accelerations(), b = bodies.accelerations();
   campaign.row("six beams of no modes against six rigid bodies", "the same numbers", "bitwise",
                a == b ? "bitwise" : fmt::format("{:.2g}", difference(a, b)), a == b);

@@ -12,14 +12,14 @@
 namespace withy::extremes {
 namespace {
 
-constexpr int modes = 4;
+constexpr int mode_count = 4;
 const double omega1 = 1.8751040687119611664 * 1.8751040687119611664;
 
 /// Squared frequencies of the spun cantilever in its own clamped-free modes, from the beam's equation and nothing of
 /// the engine's but φ: K + Ω² (S − M) in lag and K + Ω² S in flap, S_ij = ∫ ½(1 − x²) φᵢ′ φⱼ′ dx.
 Eigen::VectorXd stiffened(double spin, bool lag, bool stiffening) {
-  const auto f = test::family("clamped-free")->functions(test::bending_beam(), modes);
-  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(modes, modes), K = S;
+  const auto f = test::family("clamped-free")->functions(test::bending_beam(), mode_count);
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(mode_count, mode_count), K = S;
   using Gauss = boost::math::quadrature::gauss<double, 20>;
   for (int panel = 0; panel < 8; ++panel) {
     for (std::size_t k = 0; k < 10; ++k) {
@@ -27,7 +27,8 @@ Eigen::VectorXd stiffened(double spin, bool lag, bool stiffening) {
         const double x = (panel + 0.5 * (1 + side * Gauss::abscissa()[k])) / 8;
         const double w = 0.5 * Gauss::weights()[k] / 8;
         const test::FunctionValues v(*f, x);
-        const Eigen::Map<const Eigen::VectorXd> slope(v.slope.data(), modes), curvature(v.curvature.data(), modes);
+        const Eigen::Map<const Eigen::VectorXd> slope(v.slope.data(), mode_count),
+            curvature(v.curvature.data(), mode_count);
         S += w * 0.5 * (1 - x * x) * slope * slope.transpose();
         K += w * curvature * curvature.transpose();
       }
@@ -35,7 +36,7 @@ Eigen::VectorXd stiffened(double spin, bool lag, bool stiffening) {
   }
   Eigen::MatrixXd total = K;
   if (stiffening) total += spin * spin * S;
-  if (lag) total -= spin * spin * Eigen::MatrixXd::Identity(modes, modes);
+  if (lag) total -= spin * spin * Eigen::MatrixXd::Identity(mode_count, mode_count);
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(total, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
@@ -63,7 +64,7 @@ void spin(Campaign& campaign) {
                                            ? std::vector<double>{0, 1, 100}
                                            : std::vector<double>{0, 0.1, 0.5, 0.9, 1, 1.1, 2, 5, 10, 30, 100};
     for (const double ratio : ratios) {
-      test::AnalysedScene c(test::blade(modes, modes), formulation);
+      test::AnalysedScene c(test::blade(mode_count, mode_count), formulation);
       const double omega = ratio * omega1;
       c.spin("axle", omega);
       const std::vector<Mode> found = test::steady_modes(c, {"axle"});

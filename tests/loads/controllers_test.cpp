@@ -12,13 +12,7 @@ namespace withy {
 namespace {
 
 using std::numbers::pi;
-
-const std::string turntable = R"(format: withy/1
-time: {end: 2, output: 0.01}
-integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
-bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
-hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
-)";
+using test::turntable;
 
 // J ẍ = k (x_r − x) − c ẋ with J = 0.2, k = 5, c = 0.4: frequency 5 rad/s, damping ratio 0.2.
 TEST(PdController, steps_as_the_second_order_system_it_makes) {

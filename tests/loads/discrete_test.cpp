@@ -11,17 +11,10 @@
 namespace withy {
 namespace {
 
+using test::turntable;
 using testing::HasSubstr;
 
-// J = 0.2.
-const std::string turntable = R"(format: withy/1
-time: {end: 2, output: 0.05}
-integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
-bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
-hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
-)";
-
-std::unique_ptr<Load> load(const std::string& id, std::vector<Value::Member> given) {
+std::unique_ptr<Load> discrete_load(const std::string& id, std::vector<Value::Member> given) {
   Registry registry = load_registry();
   return make_plugin<Load>(registry, id, std::move(given));
 }
@@ -85,7 +78,8 @@ TEST(SampledController, approaches_the_continuous_one_as_its_period_shrinks) {
 TEST(SampledController, computed_torque_holds_the_efforts_of_its_samples) {
   test::LoadedScene s(turntable + R"(loads:
   control: {type: computed-torque, law: constant, sample: 0.1, bandwidth: 2, damping_ratio: 1, hinges: {axle: {to: 0.5}}}
-)");
+)",
+                      {"time.output=0.05"});
   const auto work = std::make_unique<Work>(s.equations->make_work());
   std::vector<double> before;
   for (const State& state : s.run()) {
@@ -107,12 +101,12 @@ TEST(SampledController, computed_torque_holds_the_efforts_of_its_samples) {
 TEST(SampledController, conforms_to_the_suite) {
   const test::LoadedScene s(sampled_feedback);
   test::expect_load_conforms(
-      *load("pd-controller", {{"law", Value(std::string("constant"))},
-                              {"time_scale", Value(1.0)},
-                              {"sample", Value(0.1)},
-                              {"hinges", Value::map({{"axle", Value::map({{"component", Value(0.0)},
-                                                                          {"stiffness", Value(5.0)},
-                                                                          {"damping", Value(1.0)}})}})}}),
+      *discrete_load("pd-controller", {{"law", Value(std::string("constant"))},
+                                       {"time_scale", Value(1.0)},
+                                       {"sample", Value(0.1)},
+                                       {"hinges", Value::map({{"axle", Value::map({{"component", Value(0.0)},
+                                                                                   {"stiffness", Value(5.0)},
+                                                                                   {"damping", Value(1.0)}})}})}}),
       *s.scene.model);
 }
 
@@ -156,13 +150,13 @@ initial: {hinges: {axle: {position: [0.5]}}}
 
 TEST(HingeRelay, conforms_to_the_suite) {
   const test::LoadedScene s(turntable);
-  test::expect_load_conforms(*load("hinge-relay", {{"hinge", Value(std::string("axle"))},
-                                                   {"component", Value(0.0)},
-                                                   {"effort", Value(1.0)},
-                                                   {"target", Value(0.0)},
-                                                   {"rate_time", Value(0.0)},
-                                                   {"on", Value(0.2)},
-                                                   {"off", Value(0.1)}}),
+  test::expect_load_conforms(*discrete_load("hinge-relay", {{"hinge", Value(std::string("axle"))},
+                                                            {"component", Value(0.0)},
+                                                            {"effort", Value(1.0)},
+                                                            {"target", Value(0.0)},
+                                                            {"rate_time", Value(0.0)},
+                                                            {"on", Value(0.2)},
+                                                            {"off", Value(0.1)}}),
                              *s.scene.model);
 }
 

@@ -10,7 +10,9 @@
 namespace withy {
 namespace {
 
-std::unique_ptr<Load> load(const char* id, std::vector<Value::Member> given) {
+using test::turntable;
+
+std::unique_ptr<Load> passive(const char* id, std::vector<Value::Member> given) {
   Registry registry = load_registry();
   given.emplace_back("hinge", Value(std::string("elbow")));
   return make_plugin<Load>(registry, id, std::move(given));
@@ -32,7 +34,7 @@ double effort(const Load& load, double x, double rate) {
 }
 
 TEST(HingeSpring, is_linear_in_displacement_and_rate) {
-  const auto spring = load(
+  const auto spring = passive(
       "hinge-spring",
       {{"stiffness", Value(30.0)}, {"damping", Value(0.5)}, {"free_position", Value(0.2)}, {"preload", Value(-1.0)}});
   EXPECT_DOUBLE_EQ(effort(*spring, 0.5, 2.0), -1.0 - 30 * 0.3 - 0.5 * 2);
@@ -40,7 +42,7 @@ TEST(HingeSpring, is_linear_in_displacement_and_rate) {
 }
 
 TEST(HingeFriction, saturates_against_the_motion) {
-  const auto friction = load("hinge-friction", {{"effort", Value(3.0)}, {"rate_scale", Value(0.01)}});
+  const auto friction = passive("hinge-friction", {{"effort", Value(3.0)}, {"rate_scale", Value(0.01)}});
   EXPECT_EQ(effort(*friction, 1, 0), 0);
   EXPECT_DOUBLE_EQ(effort(*friction, 1, 0.01), -3 * std::tanh(1));
   EXPECT_DOUBLE_EQ(effort(*friction, 1, 0.5), -3);
@@ -54,7 +56,7 @@ const std::vector<Value::Member> stops = {{"lower", Value(-1.0)},
                                           {"onset", Value(0.1)}};
 
 TEST(HingeLimit, pushes_back_from_beyond_either_stop_and_never_pulls) {
-  const auto limit = load("hinge-limit", stops);
+  const auto limit = passive("hinge-limit", stops);
   for (const double x : {-1.0, -0.3, 0.5}) EXPECT_EQ(effort(*limit, x, 3.0), 0) << x;
   EXPECT_NEAR(effort(*limit, 0.55, 0), -100 * 0.05 * 0.05 / 0.2, 1e-12);
   EXPECT_NEAR(effort(*limit, 0.8, 0), -100 * (0.3 - 0.05), 1e-12);
@@ -67,7 +69,7 @@ TEST(HingeLimit, pushes_back_from_beyond_either_stop_and_never_pulls) {
 
 // Slopes to the left and right of the points where the formula changes.
 TEST(HingeLimit, has_no_kink_in_the_coordinate) {
-  const auto limit = load("hinge-limit", stops);
+  const auto limit = passive("hinge-limit", stops);
   const double h = 1e-7;
   for (const double x : {0.5, 0.6, -1.0, -1.1}) {
     const double left = (effort(*limit, x, 0.5) - effort(*limit, x - h, 0.5)) / h;
@@ -78,17 +80,11 @@ TEST(HingeLimit, has_no_kink_in_the_coordinate) {
 
 TEST(PassiveLoads, conform) {
   const Model model = two_link_arm(2);
-  test::expect_load_conforms(*load("hinge-spring", {{"stiffness", Value(30.0)}, {"free_position", Value(0.2)}}), model);
-  test::expect_load_conforms(*load("hinge-friction", {{"effort", Value(3.0)}, {"rate_scale", Value(0.01)}}), model);
-  test::expect_load_conforms(*load("hinge-limit", {{"lower", Value(0.5)}, {"stiffness", Value(10.0)}}), model);
+  test::expect_load_conforms(*passive("hinge-spring", {{"stiffness", Value(30.0)}, {"free_position", Value(0.2)}}),
+                             model);
+  test::expect_load_conforms(*passive("hinge-friction", {{"effort", Value(3.0)}, {"rate_scale", Value(0.01)}}), model);
+  test::expect_load_conforms(*passive("hinge-limit", {{"lower", Value(0.5)}, {"stiffness", Value(10.0)}}), model);
 }
-
-const std::string turntable = R"(format: withy/1
-time: {end: 2, output: 0.01}
-integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
-bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
-hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
-)";
 
 // J ẍ + c ẋ + k (x − x₀) = p, J = 0.2: with k = 5, c = 0.4 the frequency is 5 rad/s, the damping ratio 0.2.
 TEST(HingeSpring, swings_as_the_damped_oscillator_it_is) {

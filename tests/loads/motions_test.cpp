@@ -64,6 +64,7 @@ struct SpinUp {
   bool inconsistent_diverges;
   double peak_time;  ///< in `consistent`
 };
+void PrintTo(const SpinUp& s, std::ostream* out) { *out << s.length << " m to " << s.rate << " rad/s"; }
 
 /// The table of theory section 6, from an independent brute-force program: tip deflections in the root frame, 6 modes.
 const SpinUp benchmark[] = {

@@ -49,6 +49,14 @@ struct LoadedScene {
   RunSummary summary;
 };
 
+/// A table of J = 0.2 kg m² that turns about the vertical; loads follow.
+inline const std::string turntable = R"(format: withy/1
+time: {end: 2, output: 0.01}
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+)";
+
 /// Text of a scene that comes along.
 inline std::string shipped(const std::string& name) {
   const std::string path = WITHY_SOURCE_DIRECTORY "/scenes/" + name;

@@ -22,7 +22,7 @@ std::unique_ptr<Load> slew(double time_scale) {
                             {"hinges", Value::map({{"shoulder", target(0, 60)}, {"elbow", target(135, 0)}})}});
 }
 
-std::vector<double> efforts(const Model& model, const BoundLoad& load, double t) {
+std::vector<double> slew_efforts(const Model& model, const BoundLoad& load, double t) {
   std::vector<double> y = model.reference_state().y, tau(model.layout().speeds), scratch(load.scratch(), NAN);
   load.add(t, std::span(y).first(model.layout().positions), std::span(y).subspan(model.layout().positions), tau,
            scratch);
@@ -33,7 +33,7 @@ std::vector<double> efforts(const Model& model, const BoundLoad& load, double t)
 std::vector<double> peaks(const Model& model, const BoundLoad& load) {
   std::vector<double> peak(model.layout().speeds);
   for (int i = 0; i <= 4000; ++i) {
-    const std::vector<double> tau = efforts(model, load, load.end() * i / 4000);
+    const std::vector<double> tau = slew_efforts(model, load, load.end() * i / 4000);
     for (std::size_t k = 0; k < tau.size(); ++k) peak[k] = std::max(peak[k], std::abs(tau[k]));
   }
   return peak;
@@ -59,7 +59,7 @@ TEST(RigidInverseDynamics, efforts_on_flexible_bodies_are_those_of_the_rigid_tre
   const auto a = slew(1.2)->bind(rigid), b = slew(1.2)->bind(flexible);
   ASSERT_EQ(flexible.layout().speeds, 6u);
   for (const double t : {0.3, 1.0, 2.9}) {
-    const std::vector<double> r = efforts(rigid, *a, t), f = efforts(flexible, *b, t);
+    const std::vector<double> r = slew_efforts(rigid, *a, t), f = slew_efforts(flexible, *b, t);
     const std::vector<double> expected = {r[0], 0, 0, r[1], 0, 0};
     // Inertias are summed in another order: a few units in the last place.
     for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(f[i], expected[i], 1e-13 * std::abs(r[0]));
@@ -73,7 +73,7 @@ TEST(RigidInverseDynamics, efforts_grow_with_the_square_of_the_time_scale) {
   EXPECT_EQ(fast->end(), 1.9);
   EXPECT_EQ(fast->discontinuities(), (std::vector<double>{0, 1.9}));
   for (const double t : {0.1, 0.7, 1.3}) {
-    const std::vector<double> f = efforts(model, *fast, t), s = efforts(model, *slow, 2 * t);
+    const std::vector<double> f = slew_efforts(model, *fast, t), s = slew_efforts(model, *slow, 2 * t);
     EXPECT_NEAR(f[0], 4 * s[0], 1e-12);
     EXPECT_NEAR(f[1], 4 * s[1], 1e-12);
   }
@@ -81,7 +81,7 @@ TEST(RigidInverseDynamics, efforts_grow_with_the_square_of_the_time_scale) {
 
 TEST(RigidInverseDynamics, after_the_end_nothing_is_left_without_gravity_and_the_weight_with_it) {
   const Model model = two_link_arm(0);
-  EXPECT_EQ(efforts(model, *slew(1)->bind(model), 3.8), (std::vector<double>{0, 0}));
+  EXPECT_EQ(slew_efforts(model, *slew(1)->bind(model), 3.8), (std::vector<double>{0, 0}));
   const Model heavy(model.bodies(), model.hinges(), {0, -9.81, 0});
   // Both links in a straight line at 60°: moments of the weights about shoulder and elbow.
   const double c = std::cos(pi / 3) * 9.81;
@@ -90,7 +90,7 @@ TEST(RigidInverseDynamics, after_the_end_nothing_is_left_without_gravity_and_the
   const double elbow = link2 * (0.0127 + 0.4572) + 2 * (0.0127 + 0.9144 + 0.0508);
   const double shoulder = link1 * (0.0762 + 0.4572) + 14 * (0.0762 + 0.9144 + 0.0762) + elbow + (link2 + 2) * elbow_at;
   for (const double t : {3.8, 100.0}) {
-    const std::vector<double> tau = efforts(heavy, *slew(1)->bind(heavy), t);
+    const std::vector<double> tau = slew_efforts(heavy, *slew(1)->bind(heavy), t);
     EXPECT_NEAR(tau[0], shoulder * c, 1e-12 * shoulder * c);
     EXPECT_NEAR(tau[1], elbow * c, 1e-12 * elbow * c);
   }
@@ -111,7 +111,7 @@ TEST(RigidInverseDynamics, adds_to_the_efforts_there_are_and_allocates_nothing) 
   const auto load = slew(1)->bind(model);
   const std::vector<double> y = model.reference_state().y;
   std::vector<double> tau(6, 10.0), scratch(load->scratch());
-  const std::vector<double> alone = efforts(model, *load, 0.4);
+  const std::vector<double> alone = slew_efforts(model, *load, 0.4);
   const std::size_t before = allocations();
   load->add(0.4, std::span(y).first(6), std::span(y).subspan(6, 6), tau, scratch);
   EXPECT_EQ(allocations(), before);

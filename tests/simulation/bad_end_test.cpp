@@ -11,7 +11,7 @@ using testing::Not;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-double spring(double, double q, double) { return -q; }
+double restoring(double, double q, double) { return -q; }
 
 /// Outputs increase in time, all of it is finite, and the last is the final state.
 void expect_results_kept(const Runner& run, const RunSummary& summary) {
@@ -54,7 +54,7 @@ TEST(BadEnd, a_load_that_is_not_finite_is_named_and_the_last_state_kept) {
     Model model = boom();
     model.add_load("sound", TestLoad([](double) { return 1.0; }));
     model.add_load("broken", TestLoad([from](double t) { return t < from ? 0.0 : nan; }));
-    const FunctionEquations equations = boom_equations(model, spring);
+    const FunctionEquations equations = boom_equations(model, restoring);
     for (const char* id : {"dopri5", "rk4-adaptive"}) {
       Runner run(until(1, 0.1), make_integrator(id, {}));
       const RunSummary summary = run(model, equations, boom_state(0, 0.1));
@@ -115,7 +115,7 @@ TEST(BadEnd, an_interruption_stops_between_two_steps) {
   int asked = 0;
   Runner run(until(100, 1));
   run.options.interrupted = [&] { return ++asked > 20; };
-  const RunSummary summary = run(model, boom_equations(model, spring), boom_state(0, 0.1));
+  const RunSummary summary = run(model, boom_equations(model, restoring), boom_state(0, 0.1));
   EXPECT_EQ(summary.status, RunStatus::interrupted);
   EXPECT_EQ(summary.steps.accepted, 20u);
   EXPECT_THAT(summary.message, HasSubstr("interrupted"));
@@ -124,7 +124,7 @@ TEST(BadEnd, an_interruption_stops_between_two_steps) {
 
 TEST(BadEnd, steps_and_wall_time_are_capped) {
   const Model model = boom();
-  const FunctionEquations equations = boom_equations(model, spring);
+  const FunctionEquations equations = boom_equations(model, restoring);
   Runner by_steps(until(1e9, 1e9));
   by_steps.options.most_steps = 30;
   RunSummary summary = by_steps(model, equations, boom_state(0, 0.1));
@@ -144,7 +144,7 @@ TEST(BadEnd, an_unstable_fixed_step_is_divergence) {
   const Model model = boom();
   Runner run(until(1e5, 1e3), make_integrator("rk4", {{"step", Value(3.0)}}));
   run.options.deflection_limit = std::numeric_limits<double>::infinity();
-  const RunSummary summary = run(model, boom_equations(model, spring), boom_state(0, 0.1));
+  const RunSummary summary = run(model, boom_equations(model, restoring), boom_state(0, 0.1));
   EXPECT_EQ(summary.status, RunStatus::diverged);
   expect_results_kept(run, summary);
 }
