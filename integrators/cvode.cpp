@@ -38,7 +38,7 @@ class CalibratedTolerance {
     atol = control.atol * (rtol / control.rtol);
     if (asked < least)
       remark = fmt::format(
-          "cvode: rtol {:.3g} asks for errors of {:.2g} a step, less than rounding leaves: {:.2g} is held, and the "
+          "rtol {:.3g} asks for errors of {:.2g} a step, less than rounding leaves: {:.2g} is held, and the "
           "run's "
           "error may be more than ten times its tolerance",
           control.rtol, asked, least);
@@ -317,10 +317,11 @@ std::vector<ParameterSpec> parameters() {
 }
 
 void enroll(Enrollment& enrollment) {
-  enrollment.add<Integrator>({.id = "cvode",
-                              .summary = "SUNDIALS CVODE: multistep methods of variable order, stiff or not, tolerance calibrated",
-                              .parameters = parameters(),
-                              .make = &make});
+  enrollment.add<Integrator>(
+      {.id = "cvode",
+       .summary = "SUNDIALS CVODE: multistep methods of variable order, stiff or not, tolerance calibrated",
+       .parameters = parameters(),
+       .make = &make});
 }
 
 }  // namespace
