@@ -38,8 +38,8 @@ class CalibratedTolerance {
     atol = control.atol * (rtol / control.rtol);
     if (asked < least)
       remark = fmt::format(
-          "cvode: rtol {:.3g} asks for errors of {:.2g} a step, less than rounding leaves: {:.2g} is held, and the "
-          "run's error may be more than ten times its tolerance",
+          "rtol {:.3g} asks for errors of {:.2g} a step, less than rounding leaves: {:.2g} is held, and the run's "
+          "error may be more than ten times its tolerance",
           control.rtol, asked, least);
   }
 
