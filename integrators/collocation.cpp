@@ -1,40 +1,70 @@
 #include "collocation.hpp"
 
+#include <array>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
 namespace withy {
 
 template class ShiftedSystem<double>;
 template class ShiftedSystem<std::complex<double>>;
 
-Collocation::Collocation(const std::array<long double, 3>& nodes) {
+namespace {
+
+/// More than the digits of two doubles: symplecticity, b_i a_ij + b_j a_ji = b_i b_j, fails by what coefficients lack,
+/// and the energy of undamped motion drifts by as much a step.
+using Quad = boost::multiprecision::cpp_bin_float_quad;
+
+Collocation from_nodes(const std::array<Quad, 3>& nodes) {
+  Collocation m;
   for (int j = 0; j < 3; ++j) {
-    c[j] = static_cast<double>(nodes[static_cast<std::size_t>(j)]);
+    const auto node = [&](int k) -> const Quad& { return nodes[static_cast<std::size_t>(k % 3)]; };
+    m.c[j] = static_cast<double>(node(j));
     // l_j = (t − p)(t − q)/((c_j − p)(c_j − q)), integrated.
-    const long double p = nodes[static_cast<std::size_t>((j + 1) % 3)],
-                      q = nodes[static_cast<std::size_t>((j + 2) % 3)];
-    const long double at = nodes[static_cast<std::size_t>(j)];
-    const auto integral = [&](long double t) {
+    const Quad &at = node(j), &p = node(j + 1), &q = node(j + 2);
+    const auto integral = [&](const Quad& t) -> Quad {
       return t * (t * t / 3 - (p + q) * t / 2 + p * q) / ((at - p) * (at - q));
     };
-    const auto split = [](long double exact, double& value, double& rest) {
+    const auto split = [](const Quad& exact, double& value, double& rest) {
       value = static_cast<double>(exact);
-      rest = static_cast<double>(exact - value);
+      rest = static_cast<double>(Quad(exact - value));
     };
-    for (int i = 0; i < 3; ++i) split(integral(nodes[static_cast<std::size_t>(i)]), A(i, j), A_rest(i, j));
-    split(integral(1), b[j], b_rest[j]);
+    for (int i = 0; i < 3; ++i) split(integral(node(i)), m.A(i, j), m.A_rest(i, j));
+    split(integral(1), m.b[j], m.b_rest[j]);
   }
-  const Eigen::EigenSolver<Eigen::Matrix3d> eigen(A.inverse());
+  const Eigen::Matrix3d inverse = m.A.inverse();
+  m.by_stages = inverse.transpose() * m.b;
+  const Eigen::EigenSolver<Eigen::Matrix3d> eigen(inverse);
   int real = 0;
   for (int i = 1; i < 3; ++i) {
     if (std::abs(eigen.eigenvalues()[i].imag()) < std::abs(eigen.eigenvalues()[real].imag())) real = i;
   }
-  int pair = real == 0 ? 1 : 0;
-  gamma = eigen.eigenvalues()[real].real();
+  const int pair = real == 0 ? 1 : 0;
+  m.gamma = eigen.eigenvalues()[real].real();
   const std::complex<double> lambda = eigen.eigenvalues()[pair];
-  alpha = lambda.real();
-  beta = lambda.imag();
-  T << eigen.eigenvectors().col(real).real(), eigen.eigenvectors().col(pair).real(),
+  m.alpha = lambda.real();
+  m.beta = lambda.imag();
+  m.T << eigen.eigenvectors().col(real).real(), eigen.eigenvectors().col(pair).real(),
       eigen.eigenvectors().col(pair).imag();
-  T_inverse = T.inverse();
+  m.T_inverse = m.T.inverse();
+  return m;
+}
+
+}  // namespace
+
+const Collocation& Collocation::gauss() {
+  static const Collocation method = [] {
+    const Quad half = sqrt(Quad(15)) / 10, middle = Quad(1) / 2;
+    return from_nodes({middle - half, middle, middle + half});
+  }();
+  return method;
+}
+
+const Collocation& Collocation::radau_iia() {
+  static const Collocation method = [] {
+    const Quad root = sqrt(Quad(6));
+    return from_nodes({(4 - root) / 10, (4 + root) / 10, 1});
+  }();
+  return method;
 }
 
 CollocationStages::CollocationStages(const Collocation& method, StepJacobian& jacobian)
@@ -91,19 +121,32 @@ void CollocationStages::remember(Memory& memory) {
 
 void CollocationStages::correct(double h, bool from_residual) {
   if (from_residual) {
+    before_ = z_;
     residual_.noalias() = slopes_.topRows(jacobian_.size()) * method_.A.transpose();
     residual_.noalias() += slopes_.topRows(jacobian_.size()) * method_.A_rest.transpose();
     residual_ = h * residual_ - z_;
-    w_.noalias() = residual_ * method_.T_inverse.transpose();
-    right_.col(0) = method_.gamma / h * w_.col(0);
-    right_.col(1) = (method_.alpha * w_.col(1) + method_.beta * w_.col(2)) / h;
-    right_.col(2) = (method_.alpha * w_.col(2) - method_.beta * w_.col(1)) / h;
+    solve_residual(h);
+    z_.noalias() += right_ * method_.T.transpose();
   } else {
     right_.noalias() = slopes_.topRows(jacobian_.size()) * method_.T_inverse.transpose();
     right_.col(0) -= method_.gamma / h * w_.col(0);
     right_.col(1) -= (method_.alpha * w_.col(1) + method_.beta * w_.col(2)) / h;
     right_.col(2) -= (method_.alpha * w_.col(2) - method_.beta * w_.col(1)) / h;
+    solve_transformed();
+    w_ += right_;
+    z_.noalias() = w_ * method_.T.transpose();
   }
+}
+
+void CollocationStages::solve_residual(double h) {
+  w_.noalias() = residual_ * method_.T_inverse.transpose();
+  right_.col(0) = method_.gamma / h * w_.col(0);
+  right_.col(1) = (method_.alpha * w_.col(1) + method_.beta * w_.col(2)) / h;
+  right_.col(2) = (method_.alpha * w_.col(2) - method_.beta * w_.col(1)) / h;
+  solve_transformed();
+}
+
+void CollocationStages::solve_transformed() {
   real_part_ = right_.col(0);
   real_.solve(real_part_);
   complex_part_.real() = right_.col(1);
@@ -112,12 +155,37 @@ void CollocationStages::correct(double h, bool from_residual) {
   right_.col(0) = real_part_;
   right_.col(1) = complex_part_.real();
   right_.col(2) = complex_part_.imag();
-  if (from_residual) {
-    z_.noalias() += right_ * method_.T.transpose();
-  } else {
-    w_ += right_;
-    z_.noalias() = w_ * method_.T.transpose();
+}
+
+void CollocationStages::end_of_step(double h, std::span<const double> y, const Eigen::ArrayXd& lost,
+                                    Eigen::ArrayXd& next, Eigen::ArrayXd& lost_next) {
+  // Σ weight_j f_j with both parts of the weights: one long double holds fewer digits than they have.
+  const auto sum = [this](Eigen::Index k, const auto& weights, const auto& rest) {
+    long double high = 0, low = 0;
+    for (int j = 0; j < 3; ++j) {
+      high += static_cast<long double>(weights[j]) * slopes_(k, j);
+      low += static_cast<long double>(rest[j]) * slopes_(k, j);
+    }
+    return high + low;
+  };
+  for (Eigen::Index k = 0; k < jacobian_.size(); ++k) {
+    const double here = y[static_cast<std::size_t>(k)];
+    for (int i = 0; i < 3; ++i) {
+      const double stage = here + before_(k, i);
+      residual_(k, i) = static_cast<double>((static_cast<long double>(here) - stage) + lost[k] +
+                                            h * sum(k, method_.A.row(i), method_.A_rest.row(i)));
+    }
   }
+  solve_residual(h);
+  w_.noalias() = right_ * method_.T.transpose();  // d
+  for (Eigen::Index k = 0; k < next.size(); ++k) {
+    const double here = y[static_cast<std::size_t>(k)];
+    long double increment = h * sum(k, method_.b, method_.b_rest) + lost[k];
+    if (k < jacobian_.size()) increment += (w_.row(k) - residual_.row(k)).dot(method_.by_stages);
+    next[k] = static_cast<double>(here + increment);
+    lost_next[k] = static_cast<double>((static_cast<long double>(here) - next[k]) + increment);
+  }
+  z_ = before_ + w_;
 }
 
 double CollocationStages::change(const Eigen::ArrayXd& tolerance) {

@@ -4,19 +4,23 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <array>
 #include <complex>
+#include <span>
 
 #include "jacobian.hpp"
 
 namespace withy {
 
 /// Coefficients from the nodes c: a_ij = ∫₀^{c_i} l_j, b_j = ∫₀¹ l_j with Lagrange's polynomials l_j, and the
-/// transformation A⁻¹ T = T Λ, Λ = diag(γ, [[α, β], [−β, α]]). `A_rest` and `b_rest` are what doubles lose of A and b.
+/// transformation A⁻¹ T = T Λ, Λ = diag(γ, [[α, β], [−β, α]]). `A_rest` and `b_rest` are what doubles lose of A and b,
+/// `by_stages` is A⁻ᵀ b.
 struct Collocation {
-  explicit Collocation(const std::array<long double, 3>& nodes);
+  /// Nodes at the zeros of Legendre's polynomial: order 6, symplectic.
+  static const Collocation& gauss();
+  /// Nodes (4 ∓ √6)/10 and 1: order 5, L-stable.
+  static const Collocation& radau_iia();
 
-  Eigen::Vector3d c, b, b_rest;
+  Eigen::Vector3d c, b, b_rest, by_stages;
   Eigen::Matrix3d A, A_rest, T, T_inverse;
   double gamma = 0, alpha = 0, beta = 0;
 };
@@ -98,6 +102,13 @@ class CollocationStages {
     return r;
   }
 
+  /// What stages that were iterated to rounding give at the end of the step: next + lost_next for y + lost, to more
+  /// digits than doubles have. The iteration comes to rest on the side it comes from, which adds up over many steps: so
+  /// what it leaves, r_i = y + lost + h Σ a_ij f_j − Y_i with stages Y_i as they were rounded, is taken in long
+  /// doubles, and d − h A J d = r adds h Σ b_i J d_i = bᵀ A⁻¹ (d − r).
+  void end_of_step(double h, std::span<const double> y, const Eigen::ArrayXd& lost, Eigen::ArrayXd& next,
+                   Eigen::ArrayXd& lost_next);
+
   void accept(double h) { last_ = h; }
   void forget();
   void remember(Memory& memory);
@@ -126,6 +137,10 @@ class CollocationStages {
   }
   /// One simplified Newton iteration with these slopes: of z − h A f where `from_residual`, else of w.
   void correct(double h, bool from_residual);
+  /// right_ to the solutions of both systems.
+  void solve_transformed();
+  /// right_: what takes residual_ away, in the coordinates of Λ.
+  void solve_residual(double h);
   /// Greatest |Δz_i| / tolerance_i of the last iteration; infinite where a stage is not finite.
   double change(const Eigen::ArrayXd& tolerance);
 

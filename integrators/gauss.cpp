@@ -9,25 +9,16 @@
 namespace withy {
 namespace {
 
-const Collocation& gauss_6() {
-  static const Collocation method = [] {
-    const long double half = std::sqrt(15.0L) / 10;
-    return Collocation({0.5L - half, 0.5L, 0.5L + half});
-  }();
-  return method;
-}
-
 class GaussStepper final : public EqualSteps {
  public:
   GaussStepper(const EquationsOfMotion& equations, const State& start, double step, StepJacobian::Source source)
       : EqualSteps(equations, start, step),
         jacobian_(equations, source),
-        stages_(gauss_6(), jacobian_),
+        stages_(Collocation::gauss(), jacobian_),
         sizes_(size()),
         tolerance_(Eigen::ArrayXd::Zero(size())),
         lost_(Eigen::ArrayXd::Zero(size())),
-        lost_next_(Eigen::ArrayXd::Zero(size())),
-        increment_(Eigen::VectorXd::Zero(size())) {}
+        lost_next_(Eigen::ArrayXd::Zero(size())) {}
 
   void restart() override {
     EqualSteps::restart();
@@ -71,12 +62,7 @@ class GaussStepper final : public EqualSteps {
     }
     if (r.iterations > slow) known_ = false;
 
-    // y + increment + what earlier sums lost; what this one loses.
-    increment_.noalias() = stages_.slopes() * gauss_6().b;
-    increment_.noalias() += stages_.slopes() * gauss_6().b_rest;
-    tolerance_ = h * increment_.array() + lost_;
-    next_ = y() + tolerance_;
-    lost_next_ = tolerance_ - (next_ - y());
+    stages_.end_of_step(h, state_.y, lost_, next_, lost_next_);
     normalize(next_);
     return {evaluate(t + h, next_, next_slope_)};
   }
@@ -102,7 +88,6 @@ class GaussStepper final : public EqualSteps {
   CollocationStages stages_;
   Sizes sizes_;
   Eigen::ArrayXd tolerance_, lost_, lost_next_;
-  Eigen::VectorXd increment_;
   bool known_ = false;  ///< the Jacobian
 };
 

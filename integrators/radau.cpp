@@ -9,11 +9,6 @@
 namespace withy {
 namespace {
 
-const Collocation& radau_iia() {
-  static const Collocation method({(4 - std::sqrt(6.0)) / 10, (4 + std::sqrt(6.0)) / 10, 1});
-  return method;
-}
-
 struct RadauOptions {
   StepControl control;
   StepJacobian::Source jacobian = StepJacobian::Source::differences;
@@ -35,7 +30,7 @@ class RadauStepper final : public AdaptiveStepper {
       : AdaptiveStepper(equations, start, raised(options.control), 4),
         options_(options),
         jacobian_(equations, options.jacobian),
-        stages_(radau_iia(), jacobian_),
+        stages_(Collocation::radau_iia(), jacobian_),
         tolerance_(Eigen::ArrayXd::Zero(size())),
         trial_(Eigen::ArrayXd::Zero(size())),
         filtered_(Eigen::VectorXd::Zero(jacobian_.size())),
@@ -89,7 +84,7 @@ class RadauStepper final : public AdaptiveStepper {
     const Eigen::MatrixXd& z = stages_.z();
     next_ = y();
     next_.head(m) += z.col(2).array();
-    next_[work] += h * stages_.slopes().row(work).dot(radau_iia().b);
+    next_[work] += h * stages_.slopes().row(work).dot(Collocation::radau_iia().b);
     normalize(next_);
     estimate(z, h, slope_);
     double ratio = error_ratio();
