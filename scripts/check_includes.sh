@@ -17,7 +17,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"
     may["plugins/host"] = inner "|withy/plugins/host/.*|fmt/.*|boost/.*|(sys/)?[a-z]+[.]h"
     may["bodies"] = inner "|withy/bodies/.*|fmt/.*|boost/math/.*"
-    may["integrators"] = inner "|withy/integrators/.*|fmt/.*|(cvode|nvector|sunmatrix|sunlinsol)/.*"
+    may["integrators"] = inner "|withy/integrators/.*|fmt/.*|boost/multiprecision/.*|(cvode|nvector|sunmatrix|sunlinsol)/.*"
     may["loads"] = inner "|withy/loads/.*|fmt/.*"
     may["fem"] = inner "|withy/fem/.*|withy/bodies/modal/.*|fmt/.*|Spectra/.*"
     may["cmake"] = inner "|withy/(scene|plugins/host)/.*|fmt/.*|nlohmann/.*|gmock/.*|gtest/.*"
