@@ -72,7 +72,7 @@ class SceneBuilder {
     scene_.integrator = choose<Integrator>("integrator", grammar::default_integrator, scene_.integrator_name);
     refuse("outputs", "outputs cannot be chosen in this version; leave them out");
 
-    Tree tree = build_tree(part("bodies"), part("hinges"), gravity_, checker_);
+    SceneTree tree = build_tree(part("bodies"), part("hinges"), gravity_, checker_);
     scene_.source.set("bodies", std::move(tree.bodies));
     scene_.source.set("hinges", std::move(tree.hinges));
     checker_.know(&tree.names);

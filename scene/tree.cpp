@@ -41,7 +41,7 @@ class TreeBuilder {
  public:
   explicit TreeBuilder(const Checker& checker) : checker_(checker) {}
 
-  Tree build(const Value& bodies, const Value& hinges, const Vector3& gravity) {
+  SceneTree build(const Value& bodies, const Value& hinges, const Vector3& gravity) {
     for (const auto& [name, value] : bodies.members()) add_body(name, value);
     for (const auto& [name, value] : hinges.members()) add_hinge(name, value);
     for (const Entry& entry : entries_) weld_segments(entry);
@@ -358,7 +358,7 @@ class TreeBuilder {
   }
 
   const Checker& checker_;
-  Tree tree_;
+  SceneTree tree_;
   std::vector<BodyNode> nodes_;
   std::vector<HingeNode> hinge_nodes_;
   std::vector<Link> links_;
@@ -372,7 +372,7 @@ class TreeBuilder {
 
 }  // namespace
 
-Tree build_tree(const Value& bodies, const Value& hinges, const Vector3& gravity, const Checker& checker) {
+SceneTree build_tree(const Value& bodies, const Value& hinges, const Vector3& gravity, const Checker& checker) {
   return TreeBuilder(checker).build(bodies, hinges, gravity);
 }
 

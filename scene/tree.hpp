@@ -10,7 +10,7 @@
 namespace withy {
 
 /// The tree of a scene.
-struct Tree {
+struct SceneTree {
   std::unique_ptr<Model> model;  ///< null after reported problems
   SceneNames names;              ///< of all bodies and hinges in the scene, right or wrong
   Value bodies;                  ///< checked
@@ -18,7 +18,7 @@ struct Tree {
 };
 
 /// Checks bodies and hinges, makes them, and puts them together. Null values stand for missing ones.
-Tree build_tree(const Value& bodies, const Value& hinges, const Vector3& gravity, const Checker& checker);
+SceneTree build_tree(const Value& bodies, const Value& hinges, const Vector3& gravity, const Checker& checker);
 
 /// Bytes of memory that the modes asked for in a body's checked value need, at most about: by far the greatest part of
 /// a model.

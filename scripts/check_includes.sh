@@ -11,7 +11,16 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     standard = "[a-z_0-9]+|time[.]h"
     inner = standard "|(unsupported/)?Eigen/.*|withy/core/.*"
 
-    may["core"] = inner "|boost/math/.*"
+    # Inside the core: each room sees those named before it, and what is named here alone.
+    engine = standard "|(unsupported/)?Eigen/.*|boost/math/.*"
+    rooms = split("spatial shape plugin model deformation tree sweep sweep/rod sweep/strict sweep/symmetric kinematics " \
+                  "reference tangents equations simulation analysis", core, " ")
+    seen = ""
+    for (i = 1; i <= rooms; ++i) {
+      seen = seen (i > 1 ? "|" : "") core[i]
+      may["core/" core[i]] = engine "|withy/core/(" seen ")/[^/]*"
+    }
+    may["core/sweep/symmetric"] = engine "|withy/core/(spatial|shape|plugin|model|deformation|tree|sweep|sweep/rod|sweep/symmetric)/[^/]*"
     may["scene"] = inner "|withy/scene/.*|yaml-cpp/.*|nlohmann/.*|fmt/.*|spdlog/.*"
     may["plugins/formulations"] = inner "|withy/plugins/formulations/.*|fmt/.*"
     may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"
@@ -33,6 +42,10 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
   }
   function room_of(file,   parts) {
     split(file, parts, "/")
+    if (parts[1] == "core") {
+      sub("/[^/]*$", "", file)
+      return file
+    }
     return parts[1] == "plugins" ? parts[1] "/" parts[2] : parts[1]
   }
   # A file of the same folder, and so of the same room.

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/dynamics/equations.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/tips.hpp"
 
 namespace withy::app {

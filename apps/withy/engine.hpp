@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "withy/apps/withy/commands.hpp"
-#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/escalation.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/plugins/host/plugin_host.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/analysis/tangent_dynamics.hpp"
+#include "withy/core/tangents/tangent_dynamics.hpp"
 
 namespace withy {
 

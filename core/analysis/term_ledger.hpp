@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "withy/core/dynamics/equations.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/equations.hpp"
 
 namespace withy {
 

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "withy/core/model/state.hpp"
-#include "withy/core/model/terms.hpp"
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/load.hpp"
 #include "withy/core/plugin/motion.hpp"
+#include "withy/core/plugin/state.hpp"
+#include "withy/core/plugin/terms.hpp"
 
 namespace withy {
 

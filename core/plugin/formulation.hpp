@@ -4,10 +4,12 @@
 
 #include <memory>
 
-#include "withy/core/dynamics/equations.hpp"
-#include "withy/core/model/model.hpp"
+#include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/terms.hpp"
 
 namespace withy {
+
+class Model;
 
 /// Turns a model into equations of motion.
 class Formulation {

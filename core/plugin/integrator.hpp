@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/plugin/equations.hpp"
 
 namespace withy {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/dynamics/equations.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/equations.hpp"
 
 namespace withy {
 

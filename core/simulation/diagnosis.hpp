@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "withy/core/dynamics/equations.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/equations.hpp"
 
 namespace withy {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/model/terms.hpp"
+#include "withy/core/plugin/terms.hpp"
 #include "withy/core/simulation/simulate.hpp"
 
 namespace withy {

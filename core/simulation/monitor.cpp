@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "withy/core/shape/point_motion.hpp"
+#include "withy/core/deformation/point_motion.hpp"
 
 namespace withy {
 

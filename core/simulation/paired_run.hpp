@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "withy/core/dynamics/equations.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/simulation/simulate.hpp"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/dynamics/equations.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/simulation/validity.hpp"
 

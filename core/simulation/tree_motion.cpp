@@ -54,7 +54,7 @@ TreeMotion::Relative TreeMotion::frame(std::size_t body, int index, const Pose& 
   return m;
 }
 
-// The formulas are those of outward, across and inward in core/dynamics/reference.cpp, with u̇ in the accelerations.
+// The formulas are those of outward, across and inward in core/reference/reference.cpp, with u̇ in the accelerations.
 void TreeMotion::update(std::span<const double> y, std::span<const double> u_dot) {
   y_ = y;
   u_dot_ = u_dot;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
 

@@ -2,7 +2,7 @@
 /// Limits of validity (theory, section 5).
 #pragma once
 
-#include "withy/core/model/terms.hpp"
+#include "withy/core/plugin/terms.hpp"
 
 namespace withy {
 

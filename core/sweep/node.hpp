@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "withy/core/dynamics/invariants.hpp"
-#include "withy/core/dynamics/tree.hpp"
 #include "withy/core/plugin/hinge.hpp"
-#include "withy/core/sweep/space.hpp"
+#include "withy/core/spatial/space.hpp"
+#include "withy/core/tree/invariants.hpp"
+#include "withy/core/tree/tree.hpp"
 
 namespace withy::sweep {
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "withy/core/dynamics/invariants.hpp"
 #include "withy/core/sweep/joint_step.hpp"
+#include "withy/core/tree/invariants.hpp"
 
 namespace withy {
 
@@ -24,7 +24,7 @@ class NewtonEuler final : public RigidInverseDynamics::Algorithm {
   using Twist = typename Space::Twist;
 
  public:
-  NewtonEuler(const Tree& tree, const Vector3& gravity) {
+  NewtonEuler(const NodeTree& tree, const Vector3& gravity) {
     for (const NodeSpec& spec : tree.nodes) {
       const NodeSpec at_hinge = rooted(in_strain_order(spec, StrainOrder::linear));
       Link link{JointData<Space>(spec), RigidPart<Space>(Invariants(spec, StrainOrder::linear).I0), spec.parent};
@@ -112,7 +112,7 @@ class NewtonEuler final : public RigidInverseDynamics::Algorithm {
 }  // namespace
 
 RigidInverseDynamics::RigidInverseDynamics(const Model& model) {
-  const Tree tree = compile_tree(model);
+  const NodeTree tree = compile_tree(model);
   if (tree.planar) {
     algorithm_ = std::make_shared<NewtonEuler<Planar>>(tree, model.gravity());
   } else {

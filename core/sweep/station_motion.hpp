@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "withy/core/shape/point_motion.hpp"
+#include "withy/core/deformation/point_motion.hpp"
 #include "withy/core/sweep/mass_table.hpp"
 #include "withy/core/sweep/node.hpp"
 

@@ -2,9 +2,9 @@
 /// What the formulation plugins of this folder share: a formulation is the choice of its terms.
 #pragma once
 
+#include "withy/core/equations/compile_equations.hpp"
 #include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/formulation.hpp"
-#include "withy/core/sweep/compile_equations.hpp"
 
 namespace withy {
 

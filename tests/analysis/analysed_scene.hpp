@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/analysis/tangent_dynamics.hpp"
+#include "withy/core/tangents/tangent_dynamics.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/scene/scene.hpp"
 #include "withy/tests/dynamics/random_scene.hpp"

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "withy/bodies/modal/sid_body.hpp"
-#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/plugin/equations.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/scene/scene.hpp"
 #include "withy/tests/conformance/body_suite.hpp"

@@ -1,7 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/plugin/equations.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/scene/scene.hpp"
 #include "withy/tests/conformance/body_suite.hpp"

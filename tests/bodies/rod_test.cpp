@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "withy/core/dynamics/rod_motion.hpp"
+#include "withy/core/deformation/rod_motion.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/tests/bodies/beam_fixture.hpp"
 #include "withy/tests/conformance/body_suite.hpp"

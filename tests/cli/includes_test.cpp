@@ -29,11 +29,18 @@ TEST_P(Forbidden, IsFoundWithFileAndLine) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Includes, Forbidden,
-                         testing::Values(Include{"core/a.hpp", "\"withy/scene/scene.hpp\""},
-                                         Include{"core/a.hpp", "\"withy/plugins/host/plugin_host.hpp\""},
-                                         Include{"core/a.hpp", "<nlohmann/json.hpp>"},
-                                         Include{"core/a.hpp", "<dlfcn.h>"}, Include{"core/a.hpp", "\"absent.hpp\""},
-                                         Include{"core/a.hpp", "\"../scene/scene.hpp\""},
+                         testing::Values(Include{"core/model/a.hpp", "\"withy/scene/scene.hpp\""},
+                                         Include{"core/model/a.hpp", "\"withy/plugins/host/plugin_host.hpp\""},
+                                         Include{"core/model/a.hpp", "<nlohmann/json.hpp>"},
+                                         Include{"core/model/a.hpp", "<dlfcn.h>"},
+                                         Include{"core/model/a.hpp", "\"absent.hpp\""},
+                                         Include{"core/model/a.hpp", "\"../scene/scene.hpp\""},
+                                         // Upward inside the core, and from one sweep to the other.
+                                         Include{"core/spatial/a.hpp", "\"withy/core/plugin/b.hpp\""},
+                                         Include{"core/plugin/a.hpp", "\"withy/core/model/model.hpp\""},
+                                         Include{"core/sweep/a.hpp", "\"withy/core/sweep/rod/b.hpp\""},
+                                         Include{"core/sweep/symmetric/a.hpp", "\"withy/core/sweep/strict/b.hpp\""},
+                                         Include{"core/simulation/a.hpp", "\"withy/core/analysis/b.hpp\""},
                                          Include{"scene/a.cpp", "\"withy/bodies/beam.hpp\""},
                                          Include{"bodies/a.cpp", "\"withy/plugins/modes/clamped_free.hpp\""},
                                          Include{"bodies/a.cpp", "<yaml-cpp/yaml.h>"},
@@ -58,13 +65,12 @@ TEST_P(Allowed, Passes) {
   EXPECT_EQ(f.status, 0) << f.out << f.err;
 }
 
-INSTANTIATE_TEST_SUITE_P(Includes, Allowed,
-                         testing::Values(Include{"core/a.hpp", "\"withy/core/b.hpp\""},
-                                         Include{"core/a.hpp", "<vector>"}, Include{"core/a.hpp", "\"a.hpp\""},
-                                         Include{"core/a.hpp", "<Eigen/Core>"},
-                                         Include{"scene/a.cpp", "<yaml-cpp/yaml.h>"},
-                                         Include{"apps/a.cpp", "<CLI/CLI.hpp>"},
-                                         Include{"plugins/host/a.cpp", "<boost/dll/shared_library.hpp>"}));
+INSTANTIATE_TEST_SUITE_P(
+    Includes, Allowed,
+    testing::Values(Include{"core/model/a.hpp", "\"withy/core/plugin/b.hpp\""}, Include{"core/model/a.hpp", "<vector>"},
+                    Include{"core/model/a.hpp", "\"a.hpp\""}, Include{"core/model/a.hpp", "<Eigen/Core>"},
+                    Include{"scene/a.cpp", "<yaml-cpp/yaml.h>"}, Include{"apps/a.cpp", "<CLI/CLI.hpp>"},
+                    Include{"plugins/host/a.cpp", "<boost/dll/shared_library.hpp>"}));
 
 TEST(Includes, TheProjectsOwnGoAllowedDirections) {
   const Folder folder;

@@ -7,9 +7,9 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "withy/core/deformation/point_motion.hpp"
 #include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/body.hpp"
-#include "withy/core/shape/point_motion.hpp"
 
 namespace withy::test {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/plugin/equations.hpp"
 
 namespace withy {
 

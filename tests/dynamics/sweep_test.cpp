@@ -12,7 +12,7 @@
 #endif
 
 #include "random_case.hpp"
-#include "withy/core/dynamics/tree.hpp"
+#include "withy/core/tree/tree.hpp"
 #include "withy/tests/conformance/allocations.hpp"
 
 namespace withy::test {

@@ -11,7 +11,7 @@
 
 #include "reduced_case.hpp"
 #include "withy/bodies/modal/sid_body.hpp"
-#include "withy/core/dynamics/equations.hpp"
+#include "withy/core/plugin/equations.hpp"
 #include "withy/fem/summary.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/scene/scene.hpp"

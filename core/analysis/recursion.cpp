@@ -1,8 +1,0 @@
-#include "withy/core/analysis/recursion_members.hpp"
-
-namespace withy::analysis {
-
-template class Recursion<double>;
-template class Recursion<Jet>;
-
-}  // namespace withy::analysis

@@ -1,0 +1,32 @@
+/// \file
+/// Efforts of a model's loads in one formulation.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "withy/core/kinematics/frame_paths.hpp"
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// All loads of a model: those on generalized speeds, and those at frames through the formulation's partial velocities.
+class AppliedLoads {
+ public:
+  /// `terms` hold for every body that has none of its own. The model must outlive the loads.
+  AppliedLoads(const Model& model, Terms terms);
+  /// Bytes of memory that `add` needs, aligned to 64.
+  [[nodiscard]] std::size_t work_size() const { return work_size_; }
+  /// Adds the efforts at time t [s], y as in State, of all loads or of one (index in Model::loads()).
+  void add(double t, std::span<const double> y, std::span<double> efforts, std::byte* work,
+           int only = -1) const noexcept;
+
+ private:
+  const Model& model_;
+  std::unique_ptr<const FramePaths> paths_;  ///< of the loads' frames, load after load; null: none acts at a frame
+  std::size_t frames_ = 0;
+  std::size_t scratch_offset_ = 0, motions_offset_ = 0, wrenches_offset_ = 0, paths_offset_ = 0, work_size_ = 0;
+};
+
+}  // namespace withy

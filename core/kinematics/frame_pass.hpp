@@ -1,0 +1,324 @@
+/// \file
+/// One pass over the links of FramePaths: their motion outward and the efforts of wrenches inward, in numbers or in
+/// duals. For frame_paths.cpp.
+#pragma once
+
+#include <unsupported/Eigen/AutoDiff>
+
+#include "withy/core/deformation/point_motion.hpp"
+#include "withy/core/kinematics/frame_paths.hpp"
+#include "withy/core/sweep/rod/rod_terms.hpp"
+
+namespace withy {
+namespace frame_pass {
+
+template <class S>
+using V3 = Eigen::Matrix<S, 3, 1>;
+template <class S>
+using M3 = Eigen::Matrix<S, 3, 3>;
+
+/// a + εb with ε² = 0: the first order in the elastic coordinates.
+using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
+
+inline Dual dual(double value, double derivative) {
+  Dual d(value);
+  d.derivatives()[0] = derivative;
+  return d;
+}
+
+/// What remains of an expansion to first order at ε = 1.
+inline double total(double x) { return x; }
+inline double total(const Dual& x) { return x.value() + x.derivatives()[0]; }
+
+/// The hinge's motion, found once for all scalars.
+struct HingeStep {
+  Matrix3 R;
+  Vector3 p, w, v;  ///< twist of M relative to F in M axes
+  Eigen::Matrix<double, 3, 6> angular, linear;
+};
+
+template <class S>
+struct LinkMotion {
+  M3<S> R_B, R_M;
+  V3<S> arm_F, arm_h, arm_M;  ///< from the parent's frame to F, from F to M, from this frame to M; world axes [m]
+  Vector3 p, w, v;            ///< of this frame; in numbers alone
+  V3<S> force, moment;        ///< gathered on the way inward: at this frame's origin, world axes
+};
+
+/// A section relative to its body, body axes.
+template <class S>
+struct SectionMotion {
+  V3<S> r;
+  M3<S> R, left;  ///< left Jacobian of the rotation
+  Vector3 r_rate, w_rate;
+};
+
+inline Vector3 component(const std::array<Eigen::MatrixXd, 3>& m, Eigen::Index i, Eigen::Index j) {
+  return {m[0](i, j), m[1](i, j), m[2](i, j)};
+}
+
+inline Vector3 vector(const Triple& t) { return {t[0], t[1], t[2]}; }
+
+constexpr int any_count = -1;  ///< of modes: not known when compiled
+
+}  // namespace frame_pass
+
+/// A rod with the stations that carry frames, and its place in the work memory.
+struct FramePaths::Rod {
+  sweep::RodKinematics<Spatial> kinematics;
+  std::size_t work = 0;
+};
+
+template <class S>
+class FramePaths::Pass {
+  using HingeStep = frame_pass::HingeStep;
+  using LinkMotion = frame_pass::LinkMotion<S>;
+  using SectionMotion = frame_pass::SectionMotion<S>;
+  using V3 = frame_pass::V3<S>;
+  using M3 = frame_pass::M3<S>;
+
+ public:
+  static std::size_t take(const FramePaths& paths, sweep::WorkLayout& memory) {
+    const std::size_t at = memory.take<LinkMotion>(paths.links_.size());
+    memory.take<SectionMotion>(paths.sections_.size());
+    memory.take<S>(paths.modes_);
+    memory.take<double>(paths.modes_);
+    return at;
+  }
+  Pass(const FramePaths& paths, std::byte* work, std::size_t offset) : paths_(paths), work_(work) {
+    sweep::WorkLayout memory;
+    links_ = sweep::at<LinkMotion>(work + offset, memory.take<LinkMotion>(paths.links_.size()));
+    sections_ = sweep::at<SectionMotion>(work + offset, memory.take<SectionMotion>(paths.sections_.size()));
+    q_ = sweep::at<S>(work + offset, memory.take<S>(paths.modes_));
+    q_dot_ = sweep::at<double>(work + offset, memory.take<double>(paths.modes_));
+    hinges_ = sweep::at<HingeStep>(work, paths.hinge_offset_);
+    partials_ = sweep::at<Spatial::Twist>(work, paths.partials_offset_);
+  }
+
+  /// Poses, and velocities where S is a number.
+  void outward(std::span<const double> positions, std::span<const double> speeds) {
+    for (std::size_t l = 0; l < paths_.links_.size(); ++l) {
+      const Link& link = paths_.links_[l];
+      deform(link, positions, speeds);
+      HingeStep& hinge = hinges_[l];
+      LinkMotion& m = links_[l];
+      if constexpr (std::is_same_v<S, double>) move(link, positions, speeds, hinge);
+      M3 R_F = link.F.pose.R.template cast<S>();
+      Vector3 p = link.F.pose.p, w = Vector3::Zero(), v = Vector3::Zero();
+      m.arm_F.setZero();
+      if (!link.at_world) {
+        const LinkMotion& parent = links_[link.F.link];
+        const SectionMotion& section = sections_[link.F.section];
+        R_F = parent.R_B * (section.R * R_F);
+        m.arm_F = parent.R_B * (section.r + section.R * link.F.pose.p.template cast<S>());
+        if constexpr (std::is_same_v<S, double>) carry(parent, section, link.F.pose, m.arm_F, p, w, v);
+      }
+      m.R_M = R_F * hinge.R.template cast<S>();
+      m.arm_h = R_F * hinge.p.template cast<S>();
+      const SectionMotion& root = sections_[link.M.section];
+      m.R_B = m.R_M * (root.R * link.M.pose.R.template cast<S>()).transpose();
+      const V3 offset = root.R * link.M.pose.p.template cast<S>();
+      m.arm_M = m.R_B * (root.r + offset);
+      if constexpr (std::is_same_v<S, double>) {
+        v += w.cross(m.arm_h) + m.R_M * hinge.v;
+        w += m.R_M * hinge.w;
+        m.w = w - m.R_B * root.w_rate;
+        m.v = v - m.w.cross(m.arm_M) - m.R_B * (root.r_rate + root.w_rate.cross(offset));
+        m.p = p + m.arm_h - m.arm_M;
+      }
+    }
+  }
+
+  [[nodiscard]] FrameMotion frame(const Place& at) const {
+    const LinkMotion& link = links_[at.link];
+    const SectionMotion& section = sections_[at.section];
+    FrameMotion f;
+    f.R = link.R_B * section.R * at.pose.R;
+    carry(link, section, at.pose, link.R_B * (section.r + section.R * at.pose.p), f.position, f.angular_velocity,
+          f.velocity);
+    return f;
+  }
+
+  void inward(std::span<const Wrench> wrenches, std::span<double> efforts) {
+    for (std::size_t l = 0; l < paths_.links_.size(); ++l) {
+      links_[l].force.setZero();
+      links_[l].moment.setZero();
+    }
+    for (std::size_t i = 0; i < wrenches.size(); ++i)
+      attach(paths_.frames_[i], wrenches[i].force.template cast<S>(), wrenches[i].moment.template cast<S>(), efforts);
+    for (std::size_t l = paths_.links_.size(); l-- > 0;) {
+      const Link& link = paths_.links_[l];
+      const LinkMotion& m = links_[l];
+      const HingeStep& hinge = hinges_[l];
+      const V3 force = m.force;
+      // The frame follows M: what its own modes move there, they move the frame the other way.
+      const V3 moment = m.moment - m.arm_M.cross(force);
+      const V3 in_body = m.R_B.transpose() * force;
+      const V3 offset = sections_[link.M.section].R * link.M.pose.p.template cast<S>();
+      const V3 about_section = m.R_B.transpose() * moment + offset.cross(in_body);
+      add_modal(link, link.M.section, in_body, about_section, -1, efforts);
+      const V3 f = m.R_M.transpose() * force, t = m.R_M.transpose() * moment;
+      for (std::size_t j = 0; j < link.slot.speeds; ++j) {
+        const auto k = static_cast<Eigen::Index>(j);
+        const V3 turn = hinge.angular.col(k).template cast<S>(), slide = hinge.linear.col(k).template cast<S>();
+        efforts[link.slot.speed + j] += frame_pass::total(S(turn.dot(t) + slide.dot(f)));
+      }
+      if (!link.at_world) attach(link.F, force, moment + m.arm_h.cross(force), efforts);
+    }
+  }
+
+ private:
+  /// q, q̇ as far as the truncation keeps them, and the sections' motion.
+  void deform(const Link& link, std::span<const double> positions, std::span<const double> speeds) {
+    S* q = q_ + link.mode;
+    double* q_dot = q_dot_ + link.mode;
+    const double kept = link.truncation == Truncation::ruthless ? 0.0 : 1.0;
+    for (Eigen::Index i = 0; i < link.modes; ++i) {
+      const double value = kept * positions[link.modal.position + static_cast<std::size_t>(i)];
+      if constexpr (std::is_same_v<S, double>) {
+        q[i] = value;
+      } else {
+        q[i] = frame_pass::dual(0, value);
+      }
+      q_dot[i] = kept * speeds[link.modal.speed + static_cast<std::size_t>(i)];
+    }
+    if constexpr (std::is_same_v<S, double>) {
+      if (link.rod != nullptr) {
+        const auto& rod = link.rod->kinematics;
+        const int n = static_cast<int>(link.modes);
+        const sweep::RodWork memory = sweep::rod_work_at(rod, n, sweep::at<Pack>(work_, link.rod->work));
+        sweep::rod_motion<frame_pass::any_count>(rod, n, q, q_dot, memory);
+        for (const std::size_t s : link.sections) {
+          const Section& section = paths_.sections_[s];
+          sweep::StationMotion<Spatial> motion;
+          sweep::rod_station_motion<frame_pass::any_count>(rod, section.station, memory, n, q, q_dot, motion,
+                                                           partials_ + section.partials);
+          SectionMotion& out = sections_[s];
+          for (int c = 0; c < 3; ++c) out.R.col(c) = frame_pass::vector(motion.frame.R.c[c]);
+          out.r = frame_pass::vector(motion.frame.p);
+          out.r_rate = out.R * frame_pass::vector(motion.rate.v);
+          out.w_rate = out.R * frame_pass::vector(motion.rate.w);
+        }
+        return;
+      }
+    }
+    for (const std::size_t s : link.sections) expand(link, paths_.sections_[s], q, q_dot, sections_[s]);
+  }
+
+  /// Theory (1), (2).
+  void expand(const Link& link, const Section& section, const S* q, const double* q_dot, SectionMotion& out) {
+    out.r = section.at.X.template cast<S>();
+    out.R.setIdentity();
+    out.left.setIdentity();
+    out.r_rate.setZero();
+    out.w_rate.setZero();
+    if (!section.moves) return;
+    V3 theta = V3::Zero();
+    Vector3 theta_rate = Vector3::Zero();
+    for (Eigen::Index i = 0; i < link.modes; ++i) {
+      V3 P = section.at.phi.col(i).template cast<S>(), T = section.at.psi.col(i).template cast<S>();
+      const V3 P_0 = P, T_0 = T;
+      if (link.order != StrainOrder::linear) {
+        for (Eigen::Index j = 0; j < link.modes; ++j) {
+          P += frame_pass::component(section.at.gamma, i, j).template cast<S>() * q[j];
+          T += frame_pass::component(section.at.theta, i, j).template cast<S>() * q[j];
+        }
+      }
+      out.r += (P_0 + P) * S(S(0.5) * q[i]);
+      theta += (T_0 + T) * S(S(0.5) * q[i]);
+      if constexpr (std::is_same_v<S, double>) {
+        out.r_rate += P * q_dot[i];
+        theta_rate += T * q_dot[i];
+      }
+    }
+    const detail::ExponentialCoefficients<S> k(S(theta.squaredNorm()));
+    const M3 t = skew<S>(theta);
+    const M3 tt = t * t;
+    out.left += t * k.b + tt * k.c;
+    out.R += t * k.a + tt * k.b;
+    if constexpr (std::is_same_v<S, double>) out.w_rate = out.left * theta_rate;
+  }
+
+  static void move(const Link& link, std::span<const double> positions, std::span<const double> speeds,
+                   HingeStep& step) {
+    HingeMotion motion;
+    const auto n = static_cast<Eigen::Index>(link.slot.speeds);
+    motion.H.resize(6, n);
+    const auto rates = speeds.subspan(link.slot.speed, link.slot.speeds);
+    link.hinge->hinge->motion(positions.subspan(link.slot.position, link.slot.positions), rates, motion);
+    step.R = motion.pose.R;
+    step.p = motion.pose.p;
+    step.angular.leftCols(n) = motion.H.topRows<3>();
+    step.linear.leftCols(n) = motion.H.bottomRows<3>();
+    step.w.setZero();
+    step.v.setZero();
+    for (Eigen::Index j = 0; j < n; ++j) {
+      step.w += step.angular.col(j) * rates[static_cast<std::size_t>(j)];
+      step.v += step.linear.col(j) * rates[static_cast<std::size_t>(j)];
+    }
+  }
+
+  /// Position and velocities of a frame at `pose` in a section, `arm` from the link's frame to it.
+  static void carry(const LinkMotion& link, const SectionMotion& section, const Pose& pose, const Vector3& arm,
+                    Vector3& p, Vector3& w, Vector3& v) {
+    p = link.p + arm;
+    w = link.w + link.R_B * section.w_rate;
+    v = link.v + link.w.cross(arm) + link.R_B * (section.r_rate + section.w_rate.cross(section.R * pose.p));
+  }
+
+  /// A wrench about the origin of a frame at `at`, on the link's modes and its frame.
+  void attach(const Place& at, const V3& force, const V3& moment, std::span<double> efforts) {
+    LinkMotion& m = links_[at.link];
+    const SectionMotion& section = sections_[at.section];
+    const V3 in_body = m.R_B.transpose() * force;
+    const V3 offset = section.R * at.pose.p.template cast<S>();
+    const V3 about_section = m.R_B.transpose() * moment + offset.cross(in_body);
+    add_modal(paths_.links_[at.link], at.section, in_body, about_section, 1, efforts);
+    m.force += force;
+    m.moment += m.R_B * (about_section + section.r.cross(in_body));
+  }
+
+  /// Efforts sign·(P_iᵀ f + W_iᵀ m) of a wrench at a section, body axes.
+  void add_modal(const Link& link, std::size_t index, const V3& force, const V3& moment, double sign,
+                 std::span<double> efforts) {
+    const Section& section = paths_.sections_[index];
+    if (!section.moves) return;
+    const SectionMotion& motion = sections_[index];
+    double* e = efforts.data() + link.modal.speed;
+    if constexpr (std::is_same_v<S, double>) {
+      if (link.rod != nullptr) {
+        const Vector3 f = motion.R.transpose() * force, t = motion.R.transpose() * moment;
+        const Spatial::Twist* J = partials_ + section.partials;
+        for (Eigen::Index i = 0; i < link.modes; ++i)
+          e[i] += sign * (frame_pass::vector(J[i].w).dot(t) + frame_pass::vector(J[i].v).dot(f));
+        return;
+      }
+    }
+    const V3 turning = motion.left.transpose() * moment;
+    const S* q = q_ + link.mode;
+    const auto along = [&](const Vector3& P, const Vector3& T) {
+      return S(P.template cast<S>().dot(force) + T.template cast<S>().dot(turning));
+    };
+    for (Eigen::Index i = 0; i < link.modes; ++i) {
+      S effort = along(section.at.phi.col(i), section.at.psi.col(i));
+      if (link.order != StrainOrder::linear) {
+        for (Eigen::Index j = 0; j < link.modes; ++j)
+          effort +=
+              along(frame_pass::component(section.at.gamma, i, j), frame_pass::component(section.at.theta, i, j)) *
+              q[j];
+      }
+      e[i] += sign * frame_pass::total(effort);
+    }
+  }
+
+  const FramePaths& paths_;
+  std::byte* work_;
+  LinkMotion* links_;
+  SectionMotion* sections_;
+  S* q_;
+  double* q_dot_;
+  HingeStep* hinges_;
+  Spatial::Twist* partials_;
+};
+
+}  // namespace withy

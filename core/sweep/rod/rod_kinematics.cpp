@@ -1,0 +1,151 @@
+#include "withy/core/sweep/rod/rod_kinematics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace withy::sweep {
+namespace {
+
+/// Coordinates of a node's stations along its rod.
+std::vector<double> station_coordinates(const NodeSpec& spec) {
+  std::vector<double> x;
+  const Pose in_rod = spec.rod_frame.inverse();
+  for (const StationSpec& s : spec.stations)
+    x.push_back(std::clamp((in_rod.p + in_rod.R * s.at.X).x(), 0.0, spec.rod->length()));
+  return x;
+}
+
+std::vector<Pack> packed(const double* values, std::size_t count) {
+  std::vector<Pack> packs(count / lanes);
+  for (std::size_t i = 0; i < count; ++i) set_lane(packs[i / lanes], i % lanes, values[i]);
+  return packs;
+}
+
+/// First order of a section at x, the rod's frame given in the node's.
+template <class Space>
+RodStation<Space> rod_station(const Pose& frame, double x, const RodSection& section) {
+  RodStation<Space> station;
+  station.X = Space::position(frame.p + x * frame.R.col(0));
+  for (Eigen::Index i = 0; i < section.rotation.cols(); ++i) {
+    station.first.push_back(Space::Twist::of(Space::angle(frame.R * section.rotation.col(i)),
+                                             Space::position(frame.R * section.deflection.col(i))));
+  }
+  return station;
+}
+
+}  // namespace
+
+RodIntegrals::RodIntegrals(const RodTable& table, const std::vector<double>& station_x) {
+  const PanelQuadrature& quadrature = table.quadrature;
+  const std::size_t nodes = quadrature.nodes().size();
+  packs = static_cast<int>(nodes / lanes);
+  // By columns: the weights of one node in the integrals to all.
+  running = packed(quadrature.running().data(), RodTable::order * RodTable::order);
+  weights = packed(quadrature.weights().data(), RodTable::order);
+  for (std::size_t k = 0; k < nodes; k += RodTable::order)
+    scale.push_back(quadrature.weights()[k] / quadrature.weights()[0]);
+  std::vector<double> root(nodes);
+  for (std::size_t k = 0; k < nodes; ++k) {
+    const double m = quadrature.weights()[k] * table.sections[k].mass_per_length;
+    root[k] = std::sqrt(m);
+    mass += m;
+  }
+  root_mass = packed(root.data(), nodes);
+  for (const double x : station_x) stations.push_back(packed(quadrature.weights_to(x).data(), nodes));
+}
+
+RodKinematics<Planar>::RodKinematics(const NodeSpec& spec) {
+  const RodTable table(*spec.rod);
+  const std::vector<double> x = station_coordinates(spec);
+  integrals = RodIntegrals(table, x);
+  const Pose& frame = spec.rod_frame;
+  heading = std::atan2(frame.R(1, 0), frame.R(0, 0));
+  const std::size_t n = spec.modes;
+  X.resize(static_cast<std::size_t>(integrals.packs) * 2);
+  first.resize(static_cast<std::size_t>(integrals.packs) * n * 3);
+  for (std::size_t k = 0; k < table.sections.size(); ++k) {
+    const RodStation<Planar> node = rod_station<Planar>(frame, table.quadrature.nodes()[k], table.sections[k]);
+    for (int c = 0; c < 2; ++c) set_lane(X[(k / lanes) * 2 + static_cast<std::size_t>(c)], k % lanes, node.X[c]);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (int c = 0; c < 3; ++c)
+        set_lane(first[((k / lanes) * n + i) * 3 + static_cast<std::size_t>(c)], k % lanes, node.first[i][c]);
+    }
+  }
+  for (const double at : x) stations.push_back(rod_station<Planar>(frame, at, spec.rod->section(at)));
+}
+
+RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
+  const RodTable table(*spec.rod);
+  const std::vector<double> x = station_coordinates(spec);
+  integrals = RodIntegrals(table, x);
+  const Pose& frame = spec.rod_frame;
+  const Matrix3& R = frame.R;
+  direction = Spatial::position(R.col(0));
+  const std::size_t n = spec.modes;
+  const std::vector<double>& nodes = table.quadrature.nodes();
+  X.resize(static_cast<std::size_t>(integrals.packs) * 3);
+  first.resize(static_cast<std::size_t>(integrals.packs) * n * 12);
+  std::vector<double> section_inertia(nodes.size());
+  bool rotary = false;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const RodSection& section = table.sections[k];
+    const Vector3 place = frame.p + nodes[k] * R.col(0);
+    for (std::size_t c = 0; c < 3; ++c)
+      set_lane(X[(k / lanes) * 3 + c], k % lanes, place[static_cast<Eigen::Index>(c)]);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto mode = static_cast<Eigen::Index>(i);
+      const Vector3 psi = section.rotation.col(mode);
+      Matrix3X fields(3, 4);
+      fields << section.strain.col(mode), psi, psi.cross(Vector3::UnitX()), section.deflection.col(mode);
+      fields = R * fields;
+      for (std::size_t c = 0; c < 12; ++c) set_lane(first[((k / lanes) * n + i) * 12 + c], k % lanes, fields.data()[c]);
+    }
+    section_inertia[k] = table.quadrature.weights()[k] * section.inertia_per_length;
+    rotary = rotary || section_inertia[k] > 0;
+  }
+  if (rotary) inertia = packed(section_inertia.data(), nodes.size());
+  for (const double at : x) stations.push_back(rod_station<Spatial>(frame, at, spec.rod->section(at)));
+
+  // Turns: from node to node, then from the node before each station to it.
+  first_station = nodes.size();
+  std::vector<std::pair<double, double>> intervals;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    intervals.emplace_back(k > 0 ? nodes[k - 1] : 0.0, nodes[k]);
+    after.push_back(static_cast<int>(k) - 1);
+  }
+  for (const double at : x) {
+    const auto before = std::lower_bound(nodes.begin(), nodes.end(), at) - nodes.begin();
+    after.push_back(static_cast<int>(before) - 1);
+    intervals.emplace_back(before > 0 ? nodes[static_cast<std::size_t>(before - 1)] : 0.0, at);
+  }
+  while (after.size() % lanes != 0) after.push_back(-1);
+  step.assign(after.size() / lanes * n * 9, spread(0.0));
+  for (std::size_t s = 0; s < intervals.size(); ++s) {
+    const auto [from, to] = intervals[s];
+    const double h = to - from;
+    if (!(h > 0)) continue;
+    // Moments B_m = ∫ ((s − s_m)/h)ᵐ κ ds: a₁ = 12 B₁, a₂ = −15 B₀ + 180 B₂; ∫κ itself from the rotations.
+    Matrix3X B0 = Matrix3X::Zero(3, static_cast<Eigen::Index>(n)), B1 = B0, B2 = B0;
+    const Eigen::MatrixXd strains = table.strains_between(from, to);
+    for (std::size_t j = 0; j < table.turn.nodes().size(); ++j) {
+      const Matrix3X kappa = h * table.turn.weights()[j] * R * strains.middleRows<3>(3 * static_cast<Eigen::Index>(j));
+      const double u = table.turn.nodes()[j] - 0.5;
+      B0 += kappa;
+      B1 += u * kappa;
+      B2 += u * u * kappa;
+    }
+    const Matrix3X turn = R * (spec.rod->section(to).rotation - spec.rod->section(from).rotation);
+    const Matrix3X a1 = 12 * B1, a2 = 180 * B2 - 15 * B0;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        Pack* moment = step.data() + ((s / lanes) * n + i) * 9 + c;
+        const auto row = static_cast<Eigen::Index>(c), column = static_cast<Eigen::Index>(i);
+        set_lane(moment[0], s % lanes, turn(row, column));
+        set_lane(moment[3], s % lanes, a1(row, column));
+        set_lane(moment[6], s % lanes, a2(row, column));
+      }
+    }
+  }
+}
+
+}  // namespace withy::sweep

@@ -1,0 +1,270 @@
+/// \file
+/// Exact kinematics of a rod in the sweeps: constants, in the axes of its node, and its sections at one state, four
+/// quadrature nodes a Pack.
+///
+/// With u_i = R κ_i, ω = Σ w_i q̇_i and t = R e_x along the axis, integrals from the clamped root give
+///   r′ = t,   w_i′ = u_i,   P_i′ = w_i × t,   b′ = ω × Σ u_i q̇_i,   a′ = b × t + ω × (ω × t):
+/// position, partial velocities, and what remains of the accelerations at q̈ = 0. In a plane R is the turn by
+/// Σ ψ_i q_i, w_i = ψ_i and b = 0. What r, w_i, P_i are to first order, X + Φ q, ψ_i, Φ_i, is tabulated; the rest is
+/// integrated, as RodTable says.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "withy/core/deformation/rod_table.hpp"
+#include "withy/core/sweep/mass_table.hpp"
+#include "withy/core/sweep/rod/rod_rotation.hpp"
+
+namespace withy::sweep {
+
+/// Integrals along a rod, of functions stored one after the other, each `packs` packs of values at the nodes.
+struct RodIntegrals {
+  static constexpr int packs_per_panel = RodTable::order / static_cast<int>(lanes);
+
+  int packs = 0;                            ///< nodes / 4; 0: no rod
+  std::vector<Pack> running;                ///< of the first panel, j·4 + k: what node j gives to the nodes of pack k
+  std::vector<Pack> weights;                ///< of the first panel
+  std::vector<double> scale;                ///< lengths of the panels over that of the first
+  std::vector<std::vector<Pack>> stations;  ///< ∫₀ˣ to each station, weights of all nodes
+  std::vector<Pack> root_mass;              ///< square roots of the nodes' masses
+  double mass = 0;
+
+  RodIntegrals() = default;
+  RodIntegrals(const RodTable& table, const std::vector<double>& station_x);
+
+  /// y = ∫₀ˣ f at the nodes.
+  void integrate(const Pack* f, Pack* y, int functions) const {
+    constexpr int m = packs_per_panel;
+    for (int function = 0; function < functions; ++function) {
+      double before = 0;
+      const double* relative = scale.data();
+      for (int panel = 0; panel < packs; panel += m, f += m, y += m, ++relative) {
+        const Pack length = spread(*relative);
+        Pack sums[m];
+        for (Pack& s : sums) s = spread(before);
+        const Pack* from = running.data();
+        Pack total = spread(0.0);
+        for (int k = 0; k < m; ++k) {
+          const Pack values = f[k] * length;
+          total += weights[static_cast<std::size_t>(k)] * values;
+#pragma GCC unroll 4
+          for (int lane = 0; lane < 4;
+               ++lane, from += m) {  // known to the compiler, which otherwise goes through memory
+            const Pack value = spread(values[lane]);
+#pragma GCC unroll 4
+            for (int i = 0; i < m; ++i) sums[i] += from[i] * value;
+          }
+        }
+        before += sum(total);
+        for (int i = 0; i < m; ++i) y[i] = sums[i];
+      }
+    }
+  }
+  /// ∫₀ˣ f to a station.
+  [[nodiscard]] double to(std::size_t station, const Pack* f) const {
+    const std::vector<Pack>& w = stations[station];
+    Pack total = spread(0.0);
+    for (std::size_t k = 0; k < w.size(); ++k) total += w[k] * f[k];
+    return sum(total);
+  }
+};
+
+template <class Space>
+struct RodKinematics;
+
+/// What a station needs beside `RodIntegrals::to`: place and first order of its section.
+template <class Space>
+struct RodStation {
+  typename Space::Position X = Space::Position::zero();  ///< undeformed
+  std::vector<typename Space::Twist> first;              ///< (ψ_i; Φ_i)
+};
+
+template <>
+struct RodKinematics<Planar> {
+  RodIntegrals integrals;
+  double heading = 0;       ///< angle of the undeformed rod
+  std::vector<Pack> X;      ///< undeformed place of node pack k: element 2k
+  std::vector<Pack> first;  ///< ψ_i, Φ_i at node pack k: element (k·n + i)·3
+  std::vector<RodStation<Planar>> stations;
+
+  RodKinematics() = default;
+  explicit RodKinematics(const NodeSpec& spec);
+
+  // Functions and where they stand: t or r, then P_i, then a.
+  static constexpr int P = 2;
+  static constexpr int a(int n) { return P + 2 * n; }
+  static constexpr int functions(int n) { return a(n) + 2; }
+};
+
+template <>
+struct RodKinematics<Spatial> {
+  RodIntegrals integrals;
+  Triple direction = Triple::zero();  ///< of the undeformed rod
+  std::vector<Pack> X;                ///< undeformed place of node pack k: element 3k
+  std::vector<Pack> first;            ///< κ_i, ψ_i, Φ_i′, Φ_i at node pack k: element (k·n + i)·12
+  std::vector<Pack> step;             ///< nine moments (see magnus) for each i of four turns: element (s·n + i)·9
+  std::vector<int> after;             ///< for each turn the turn before it, −1: the root; those to nodes come first
+  std::vector<Pack> inertia;          ///< of the nodes' sections about their axis; empty where they have none
+  std::size_t first_station = 0;      ///< turn to the first station
+  std::vector<RodStation<Spatial>> stations;
+
+  RodKinematics() = default;
+  explicit RodKinematics(const NodeSpec& spec);
+
+  // Functions and where they stand: t or r, then u_i or w_i, P_i, b, a. Slopes keep t at `axis` as well.
+  static constexpr int w = 3;
+  static constexpr int P(int n) { return w + 3 * n; }
+  static constexpr int b(int n) { return P(n) + 3 * n; }
+  static constexpr int a(int n) { return b(n) + 3; }
+  static constexpr int axis(int n) { return a(n) + 3; }
+  static constexpr int functions(int n) { return axis(n) + 3; }
+};
+
+/// A rod at one state, in the work memory.
+struct RodWork {
+  Pack* slope;     ///< functions(n)·packs: integrands at the nodes, without what is tabulated
+  Pack* value;     ///< r, w_i, P_i, b, a there
+  Pack* rotation;  ///< in space: quaternions w, x, y, z, one a turn
+};
+
+/// Packs of work memory that a rod needs.
+template <class Space>
+std::size_t rod_work(const RodKinematics<Space>& rod, int modes) {
+  const int values = 2 * RodKinematics<Space>::functions(modes) * rod.integrals.packs;
+  std::size_t turns = 0;
+  if constexpr (Space::angular == 3) turns = rod.after.size();
+  return static_cast<std::size_t>(values) + turns;
+}
+
+template <class Space>
+RodWork rod_work_at(const RodKinematics<Space>& rod, int modes, Pack* memory) {
+  const int values = RodKinematics<Space>::functions(modes) * rod.integrals.packs;
+  return {memory, memory + values, memory + 2 * values};
+}
+
+/// Fills the work memory at q, q̇.
+template <int N>
+[[gnu::noinline]] inline void rod_motion(const RodKinematics<Planar>& rod, int modes, const double* q,
+                                         const double* q_dot, const RodWork& work) {
+  using Rod = RodKinematics<Planar>;
+  const int n = count<N>(modes), packs = rod.integrals.packs;
+  const double dx = std::cos(rod.heading), dy = std::sin(rod.heading);
+  for (int k = 0; k < packs; ++k) {
+    const Pack* first = rod.first.data() + k * n * 3;
+    Pack angle = spread(0.0), rate = angle;
+    for (int i = 0; i < n; ++i) {
+      angle += first[i * 3] * spread(q[i]);
+      rate += first[i * 3] * spread(q_dot[i]);
+    }
+    Pack sine, cosine;
+    sine_cosine(angle + spread(rod.heading), sine, cosine);
+    Pack* f = work.slope + k;
+    f[0] = cosine - spread(dx) + angle * spread(dy);
+    f[packs] = sine - spread(dy) - angle * spread(dx);
+    const Pack across_x = spread(dy) - sine, across_y = cosine - spread(dx);
+    for (int i = 0; i < n; ++i) {
+      f[(Rod::P + 2 * i) * packs] = first[i * 3] * across_x;
+      f[(Rod::P + 2 * i + 1) * packs] = first[i * 3] * across_y;
+    }
+    const Pack inward = -rate * rate;
+    f[Rod::a(n) * packs] = inward * cosine;
+    f[(Rod::a(n) + 1) * packs] = inward * sine;
+  }
+  rod.integrals.integrate(work.slope, work.value, Rod::functions(n));
+  for (int k = 0; k < packs; ++k) {
+    const Pack* first = rod.first.data() + k * n * 3;
+    Pack* y = work.value + k;
+    for (int c = 0; c < 2; ++c) {
+      Pack r = rod.X[static_cast<std::size_t>(k * 2 + c)];
+      for (int i = 0; i < n; ++i) {
+        const Pack& phi = first[i * 3 + 1 + c];
+        r += phi * spread(q[i]);
+        y[(Rod::P + 2 * i + c) * packs] += phi;
+      }
+      y[c * packs] += r;
+    }
+  }
+}
+
+template <int N>
+[[gnu::noinline]] inline void rod_motion(const RodKinematics<Spatial>& rod, int modes, const double* q,
+                                         const double* q_dot, const RodWork& work) {
+  using Rod = RodKinematics<Spatial>;
+  const int n = count<N>(modes), packs = rod.integrals.packs;
+  const auto get = [&](const Pack* at, int function) {
+    return PackVector{at[function * packs], at[(function + 1) * packs], at[(function + 2) * packs]};
+  };
+  const auto put = [&](Pack* at, int function, const PackVector& v) {
+    for (int c = 0; c < 3; ++c) at[(function + c) * packs] = v[c];
+  };
+  // Turns from node to node and to the stations, four at a time, then one after the other.
+  const std::size_t turns = rod.after.size();
+  const Pack* moments = rod.step.data();
+  for (std::size_t s = 0; s < turns; s += lanes) {
+    PackVector m0 = PackVector::zero(), m1 = m0, m2 = m0;
+    for (int i = 0; i < n; ++i, moments += 9) {
+      const Pack qi = spread(q[i]);
+      for (int c = 0; c < 3; ++c) {
+        m0[c] += moments[c] * qi;
+        m1[c] += moments[3 + c] * qi;
+        m2[c] += moments[6 + c] * qi;
+      }
+    }
+    transpose(exponential(magnus(m0, m1, m2)), work.rotation + s);  // the last may hold turns by nothing
+  }
+  for (std::size_t s = 0; s < turns; ++s) {
+    if (rod.after[s] >= 0) work.rotation[s] = product(work.rotation[rod.after[s]], work.rotation[s]);
+  }
+  const PackVector direction{spread(rod.direction[0]), spread(rod.direction[1]), spread(rod.direction[2])};
+  for (int k = 0; k < packs; ++k) {
+    const PackMatrix R = rotation(untransposed(work.rotation + 4 * k));
+    Pack* f = work.slope + k;
+    const PackVector t = R * direction;
+    put(f, Rod::axis(n), t);
+    PackVector stretch = t - direction;
+    const Pack* first = rod.first.data() + k * n * 12;
+    for (int i = 0; i < n; ++i, first += 12) {
+      const PackVector kappa{first[0], first[1], first[2]};
+      put(f, Rod::w + 3 * i, R * kappa - kappa);
+      for (int c = 0; c < 3; ++c) stretch[c] -= first[6 + c] * spread(q[i]);
+    }
+    put(f, 0, stretch);
+  }
+  rod.integrals.integrate(work.slope, work.value, Rod::P(n));
+  for (int k = 0; k < packs; ++k) {
+    Pack* f = work.slope + k;
+    Pack* y = work.value + k;
+    const PackVector t = get(f, Rod::axis(n));
+    PackVector omega = PackVector::zero(), rate = omega;
+    const Pack* first = rod.first.data() + k * n * 12;
+    for (int i = 0; i < n; ++i, first += 12) {
+      const PackVector u = get(f, Rod::w + 3 * i);
+      PackVector w = get(y, Rod::w + 3 * i);
+      for (int c = 0; c < 3; ++c) {
+        w[c] += first[3 + c];
+        omega[c] += w[c] * spread(q_dot[i]);
+        rate[c] += (u[c] + first[c]) * spread(q_dot[i]);
+        y[c * packs] += first[9 + c] * spread(q[i]);
+      }
+      put(y, Rod::w + 3 * i, w);
+      put(f, Rod::P(n) + 3 * i, cross(w, t) - PackVector{first[6], first[7], first[8]});
+    }
+    for (int c = 0; c < 3; ++c) y[c * packs] += rod.X[static_cast<std::size_t>(3 * k + c)];
+    put(f, Rod::b(n), cross(omega, rate));
+    put(f, Rod::a(n), cross(omega, cross(omega, t)));
+  }
+  rod.integrals.integrate(work.slope + Rod::P(n) * packs, work.value + Rod::P(n) * packs, 3 * n + 3);
+  for (int k = 0; k < packs; ++k) {
+    Pack* f = work.slope + k;
+    Pack* y = work.value + k;
+    put(f, Rod::a(n), get(f, Rod::a(n)) + cross(get(y, Rod::b(n)), get(f, Rod::axis(n))));
+    const Pack* first = rod.first.data() + k * n * 12;
+    for (int i = 0; i < n; ++i, first += 12) {
+      for (int c = 0; c < 3; ++c) y[(Rod::P(n) + 3 * i + c) * packs] += first[9 + c];
+    }
+  }
+  rod.integrals.integrate(work.slope + Rod::a(n) * packs, work.value + Rod::a(n) * packs, 3);
+}
+
+}  // namespace withy::sweep

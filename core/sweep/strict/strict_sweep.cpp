@@ -1,0 +1,132 @@
+#include "withy/core/sweep/strict/strict_sweep.hpp"
+
+#include "withy/core/sweep/strict/strict_kernel.hpp"
+#include "withy/core/sweep/with_modes.hpp"
+
+namespace withy::sweep {
+namespace {
+
+/// J_i of a section at q = 0 and ∂J_i/∂q_k, in section axes: with θ̂ the section's rotation to first order,
+/// (1 − θ̂)(Φ + Γq) and (1 − ½θ̂)(Ψ + Θq).
+template <class Space>
+StrictStation<Space> strict_station_of(const StationSpec& spec) {
+  const PointExpansion& e = spec.at;
+  StrictStation<Space> s;
+  s.X = Space::position(e.X);
+  const Eigen::Index n = e.phi.cols();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Vector6 J;
+    J << e.psi.col(i), e.phi.col(i);
+    s.J.push_back(Space::Twist::of(J));
+  }
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Vector3 turn = e.psi.col(k);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Vector3 psi = e.psi.col(i), phi = e.phi.col(i);
+      Vector6 J;
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        J[c] = e.theta[static_cast<std::size_t>(c)](i, k);
+        J[3 + c] = e.gamma[static_cast<std::size_t>(c)](i, k);
+      }
+      J.head<3>() -= 0.5 * turn.cross(psi);
+      J.tail<3>() -= turn.cross(phi);
+      s.J1.push_back(Space::Twist::of(J));
+    }
+  }
+  return s;
+}
+
+}  // namespace
+
+template <class Space>
+StrictNode<Space>::StrictNode(const NodeSpec& given, Terms terms)
+    : body(given.body),
+      parent(given.parent),
+      parent_station(given.parent_station),
+      modes(static_cast<int>(given.modes)),
+      joint(given),
+      frozen(terms.truncation == Truncation::ruthless),
+      mode_position(given.mode_position),
+      mode_speed(given.mode_speed) {
+  const Invariants invariants(given, terms.strain);
+  I0 = RigidPart<Space>(invariants.I0);
+  for (const RigidInertia& I : invariants.I1) I1.push_back(Variation<Space>::of(I));
+  for (const RigidInertia& I : invariants.I2) I2.push_back(Variation<Space>::of(I));
+  for (int i = 0; i < modes; ++i) {
+    C0.push_back(Space::Twist::of(invariants.C0.col(i)));
+    for (int j = 0; j < modes; ++j) {
+      C1.push_back(Space::Twist::of(invariants.C1[static_cast<std::size_t>(i)].col(j)));
+      G0.push_back(invariants.G0(i, j));
+      stiffness.push_back(given.stiffness(i, j));
+      damping.push_back(given.damping(i, j));
+    }
+  }
+  for (const StationSpec& s : rooted(in_strain_order(given, terms.strain)).stations) {
+    stations.push_back(strict_station_of<Space>(s));
+  }
+}
+
+template <class Space>
+StrictSweep<Space>::StrictSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity) {
+  WorkLayout memory;
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) nodes_.emplace_back(tree.nodes[i], terms[i]);
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    const NodeSpec& spec = tree.nodes[i];
+    if (spec.parent < 0) continue;
+    nodes_[static_cast<std::size_t>(spec.parent)].leaf = false;
+    if (spec.parent_station < 0) continue;
+    const NodeSpec& parent = tree.nodes[static_cast<std::size_t>(spec.parent)];
+    nodes_[static_cast<std::size_t>(spec.parent)].stations[static_cast<std::size_t>(spec.parent_station)].has_children =
+        true;
+    // Rooting turned the section's axes with the frame.
+    if (parent.root_station >= 0) {
+      nodes_[i].joint.F = Space::make(Pose{parent.M.R.transpose(), Vector3::Zero()} * spec.F);
+    }
+  }
+  for (StrictNode<Space>& node : nodes_) {
+    const auto n = static_cast<std::size_t>(node.modes);
+    node.work = memory.template take<StrictNodeWork<Space>>(1);
+    node.work_stations = memory.template take<StrictStationWork<Space>>(node.stations.size());
+    node.work_vectors = memory.template take<typename Space::Twist>(5 * n);
+    node.work_scalars = memory.template take<double>(n * n + 2 * n);
+  }
+  work_size_ = memory.size();
+  const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
+  world_acceleration_ = Space::Twist::of(Space::angle(Vector3::Zero()), Space::position(-g));
+  for (StrictNode<Space>& node : nodes_) node.joint.pose_matters = node.parent >= 0 || !g.isZero(0);
+}
+
+template <class Space>
+std::vector<std::string> StrictSweep<Space>::savings(const NodeTree& tree) const {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (nodes_[i].modes > 0)
+      lines.push_back("'" + tree.nodes[i].name + "': mass integrals and their first derivatives, computed once");
+  }
+  return lines;
+}
+
+template <class Space>
+Evaluation StrictSweep<Space>::accelerations(const double* positions, const double* speeds, double* efforts,
+                                             double* result, std::byte* work) const noexcept {
+  const StrictState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_};
+  for (const StrictNode<Space>& node : nodes_) {
+    with_modes(node.modes, [&](auto n) { strict_outward<Space, decltype(n)::value>(node, state); });
+  }
+  int sign = 1;
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    int of_node = 0;
+    with_modes(nodes_[i].modes, [&](auto n) { of_node = strict_inward<Space, decltype(n)::value>(nodes_[i], state); });
+    if (of_node == 0) return {Evaluation::Outcome::singular, nodes_[i].body};
+    sign *= of_node;
+  }
+  for (const StrictNode<Space>& node : nodes_) {
+    with_modes(node.modes, [&](auto n) { strict_acceleration<Space, decltype(n)::value>(node, state); });
+  }
+  return {Evaluation::Outcome::ok, -1, sign};
+}
+
+template class StrictSweep<Spatial>;
+template class StrictSweep<Planar>;
+
+}  // namespace withy::sweep

@@ -1,0 +1,255 @@
+#include "withy/core/sweep/symmetric/symmetric_sweep.hpp"
+
+#include <map>
+
+#include "withy/core/sweep/symmetric/symmetric_inverse.hpp"
+#include "withy/core/sweep/symmetric/symmetric_kernel.hpp"
+#include "withy/core/sweep/with_modes.hpp"
+
+namespace withy::sweep {
+namespace {
+
+std::vector<double> row_major(const Eigen::MatrixXd& m) {
+  std::vector<double> a;
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    for (Eigen::Index j = 0; j < m.cols(); ++j) a.push_back(m(i, j));
+  }
+  return a;
+}
+
+/// Calls action(n, flavor), both std::integral_constant; see with_modes.
+template <class Space, class Action>
+inline void with_flavor(const SymmetricNode<Space>& node, Action&& action) {
+  with_modes(node.modes, [&](auto n) {
+    if constexpr (n.value == 0) {
+      action(n, std::integral_constant<Flavor, Flavor::rigid>{});
+    } else if (node.flavor == Flavor::frozen) {
+      action(n, std::integral_constant<Flavor, Flavor::frozen>{});
+    } else if (node.flavor == Flavor::exact) {
+      action(n, std::integral_constant<Flavor, Flavor::exact>{});
+    } else {
+      action(n, std::integral_constant<Flavor, Flavor::full>{});
+    }
+  });
+}
+
+}  // namespace
+
+template <class Space>
+SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
+    : body(given.body),
+      parent(given.parent),
+      parent_station(given.parent_station),
+      modes(static_cast<int>(given.modes)),
+      mode_position(given.mode_position),
+      mode_speed(given.mode_speed),
+      joint(given),
+      stiffness(row_major(given.stiffness)),
+      damping(row_major(given.damping)) {
+  const bool frozen = terms.truncation == Truncation::ruthless && given.modes > 0;
+  NodeSpec spec = in_strain_order(given, terms.strain);
+  if (frozen) spec = rooted(std::move(spec));
+  root_station = spec.root_station;
+  M = Space::make(spec.M);
+  base = RigidPart<Space>(spec.base);
+  for (const StationSpec& s : spec.stations) {
+    SymmetricStation<Space> station;
+    station.fields = Fields<Space>(s.at);
+    station.J = station.fields.first;
+    if (!frozen) {
+      station.carried = RigidPart<Space>(s.carried);
+      station.loaded = !s.carried.empty();
+    }
+    stations.push_back(std::move(station));
+  }
+  if (frozen) {
+    flavor = Flavor::frozen;
+    const Invariants invariants(given, terms.strain);
+    base = RigidPart<Space>(invariants.I0);
+    G0 = row_major(invariants.G0);
+    for (int i = 0; i < modes; ++i) {
+      C0.push_back(Space::Twist::of(invariants.C0.col(i)));
+      I1.push_back(Variation<Space>::of(invariants.I1[static_cast<std::size_t>(i)]));
+    }
+  } else if (terms.strain == StrainOrder::exact && modes > 0) {
+    rod = RodKinematics<Space>(spec);
+    flavor = rod.integrals.packs > 0 ? Flavor::exact : Flavor::full;
+  } else {
+    flavor = modes > 0 ? Flavor::full : Flavor::rigid;
+    mass = MassTable<Space>(spec);
+    rotary = RotaryTable<Space>(spec);
+  }
+}
+
+template <class Space>
+SymmetricSweep<Space>::SymmetricSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity) {
+  WorkLayout memory;
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) nodes_.emplace_back(tree.nodes[i], terms[i]);
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    SymmetricNode<Space>& node = nodes_[i];
+    const NodeSpec& spec = tree.nodes[i];
+    if (spec.parent < 0) continue;
+    SymmetricNode<Space>& parent = nodes_[static_cast<std::size_t>(spec.parent)];
+    const NodeSpec& parent_spec = tree.nodes[static_cast<std::size_t>(spec.parent)];
+    parent.leaf = false;
+    if (spec.parent_station < 0) {
+      parent.has_children = true;
+    } else {
+      SymmetricStation<Space>& station = parent.stations[static_cast<std::size_t>(spec.parent_station)];
+      station.loaded = station.has_children = true;
+      // Rooting turned the section's axes with the frame.
+      if (parent.flavor == Flavor::frozen && parent_spec.root_station >= 0) {
+        node.joint.F = Space::make(Pose{parent_spec.M.R.transpose(), Vector3::Zero()} * spec.F);
+      }
+    }
+  }
+  place_sums(memory);
+  for (SymmetricNode<Space>& node : nodes_) {
+    using Twist = typename Space::Twist;
+    const auto n = static_cast<std::size_t>(node.modes);
+    node.work = memory.template take<NodeWork<Space>>(1);
+    node.work_stations = memory.template take<StationWork<Space>>(node.stations.size());
+    node.work_J = memory.template take<Twist>(n * (node.stations.size() + 1));
+    node.work_C = memory.template take<Twist>(n);
+    node.work_G = memory.template take<double>(n * n);
+    node.work_y = memory.template take<double>(n);
+    node.work_h = memory.template take<double>(n);
+    node.work_rod = memory.template take<Pack>(rod_work(node.rod, node.modes));
+    node.work_P = memory.template take<Pack>(n * Space::linear);
+    if (node.joint.driven) node.work_driven = memory.template take<DrivenWork<Space>>(1);
+    if (node.root_station >= 0) node.work_root = memory.template take<RootWork<Space>>(1);
+    if (!single(node.joint.kind) && node.joint.kind != Joint::fixed)
+      node.work_elimination = memory.template take<JointElimination<Space>>(1);
+    if (node.flavor == Flavor::frozen && node.leaf) precompute(node);
+  }
+  work_size_ = memory.size();
+  const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
+  world_acceleration_ = Space::Twist::of(Space::angle(Vector3::Zero()), Space::position(-g));
+  for (SymmetricNode<Space>& node : nodes_) node.joint.pose_matters = node.parent >= 0 || !g.isZero(0);
+}
+
+template <class Space>
+void SymmetricSweep<Space>::place_sums(WorkLayout& memory) {
+  std::vector<std::size_t> vacant;
+  std::map<std::pair<int, int>, std::size_t> sums;  // of node and station
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    SymmetricNode<Space>& node = nodes_[i];
+    // Its own have been read when it writes to the next.
+    for (int k = -1; k < static_cast<int>(node.stations.size()); ++k) {
+      const auto own = sums.find({static_cast<int>(i), k});
+      if (own == sums.end()) continue;
+      (k < 0 ? node.work_I : node.stations[static_cast<std::size_t>(k)].work_I) = own->second;
+      vacant.push_back(own->second);
+      sums.erase(own);
+    }
+    if (node.parent < 0) continue;
+    const auto [outer, first] = sums.try_emplace({node.parent, node.parent_station});
+    if (first) {
+      if (vacant.empty()) vacant.push_back(memory.template take<typename Space::Inertia>(1));
+      outer->second = vacant.back();
+      vacant.pop_back();
+    }
+    node.begins = first;
+    node.begins_frozen =
+        first && node.parent_station >= 0 && nodes_[static_cast<std::size_t>(node.parent)].flavor == Flavor::frozen;
+    node.work_outer_I = outer->second;
+  }
+}
+
+template <class Space>
+std::vector<std::string> SymmetricSweep<Space>::savings(const NodeTree& tree) const {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const SymmetricNode<Space>& node = nodes_[i];
+    const std::string name = "'" + tree.nodes[i].name + "': ";
+    if (!node.factor.empty()) {
+      lines.push_back(name + "its modes are eliminated once for all evaluations: nothing hangs on it");
+    } else if (node.flavor == Flavor::frozen) {
+      lines.push_back(name + "mass integrals are those of the undeformed body, computed once");
+    } else if (node.mass.packs > 0) {
+      lines.push_back(name + std::to_string(tree.nodes[i].particles.size()) + " mass points became " +
+                      std::to_string(node.mass.rank) + " generalized particles");
+    }
+    if (node.rotary.packs > 0)
+      lines.push_back(name + std::to_string(node.rotary.sections) +
+                      " sections with rotary inertia are evaluated four at a time");
+  }
+  return lines;
+}
+
+template <class Space>
+Evaluation SymmetricSweep<Space>::inward(const SymmetricState<Space>& state) const noexcept {
+  for (const SymmetricNode<Space>& node : nodes_) {
+    with_flavor(node, [&](auto n, auto flavor) { outward_motion<Space, n.value, flavor.value>(node, state); });
+  }
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    const SymmetricNode<Space>& node = nodes_[i];
+    bool good = true;
+    with_flavor(node, [&](auto n, auto flavor) { good = inward_inertia<Space, n.value, flavor.value>(node, state); });
+    if (!good) return {Evaluation::Outcome::singular, node.body};
+  }
+  return {};
+}
+
+template <class Space>
+void SymmetricSweep<Space>::outward(const SymmetricState<Space>& state) const noexcept {
+  for (const SymmetricNode<Space>& node : nodes_) {
+    with_flavor(node, [&](auto n, auto flavor) { outward_acceleration<Space, n.value, flavor.value>(node, state); });
+  }
+}
+
+template <class Space>
+Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const double* speeds, double* efforts,
+                                                double delta, double* result, std::byte* work) const noexcept {
+  const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_,
+                                    delta,     efforts};
+  const Evaluation evaluation = inward(state);
+  if (evaluation.ok()) outward(state);
+  return evaluation;
+}
+
+template <class Space>
+Evaluation SymmetricSweep<Space>::factorize(const double* positions, const double* at_rest, double delta,
+                                            std::byte* work) const noexcept {
+  return inward({positions, at_rest, at_rest, nullptr, work, nodes_.data(), &world_acceleration_, delta});
+}
+
+template <class Space>
+void SymmetricSweep<Space>::solve(const double* forces, double delta, double* result, std::byte* work) const noexcept {
+  const typename Space::Twist still = Space::Twist::zero();
+  const SymmetricState<Space> state{nullptr, nullptr, forces, result, work, nodes_.data(), &still, delta};
+  for (const SymmetricNode<Space>& node : nodes_) {
+    at<NodeWork<Space>>(work, node.work)->p = still;
+    auto* stations = at<StationWork<Space>>(work, node.work_stations);
+    for (std::size_t k = 0; k < node.stations.size(); ++k) stations[k].p = still;
+  }
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    with_flavor(nodes_[i], [&](auto n, auto flavor) { inward_force<Space, n.value, flavor.value>(nodes_[i], state); });
+  }
+  outward(state);
+}
+
+template <class Space>
+void SymmetricSweep<Space>::inverse(const double* positions, const double* speeds, const double* accelerations,
+                                    bool inertial, double* efforts, std::byte* work) const noexcept {
+  const typename Space::Twist still = Space::Twist::zero();
+  const SymmetricState<Space> state{
+      positions, speeds, accelerations, efforts, work, nodes_.data(), inertial ? &still : &world_acceleration_};
+  for (const SymmetricNode<Space>& node : nodes_) {
+    with_flavor(node, [&](auto n, auto flavor) {
+      outward_motion<Space, n.value, flavor.value>(node, state);
+      given_acceleration<Space, n.value, flavor.value>(node, state);
+    });
+  }
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    const SymmetricNode<Space>& node = nodes_[i];
+    with_flavor(node, [&](auto n, auto flavor) {
+      inward_effort<Space, n.value, flavor.value>(node, state, inertial ? 0.0 : 1.0);
+    });
+  }
+}
+
+template class SymmetricSweep<Spatial>;
+template class SymmetricSweep<Planar>;
+
+}  // namespace withy::sweep

@@ -1,0 +1,114 @@
+/// \file
+/// Forward dynamics where the mass matrix is symmetric – ruthless nodes and nodes without truncation – in time
+/// proportional to the number of bodies: the articulated-body recursion (Featherstone 1983) with a body's modal
+/// coordinates eliminated together with its hinge (Jain & Rodriguez 1992).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/terms.hpp"
+#include "withy/core/sweep/joint_step.hpp"
+#include "withy/core/sweep/mass_table.hpp"
+#include "withy/core/sweep/rod/rod_kinematics.hpp"
+#include "withy/core/sweep/rod/rotary_table.hpp"
+#include "withy/core/sweep/station_motion.hpp"
+
+namespace withy::sweep {
+
+/// What of a node the compiler knows: rigid; ruthless; its modes without truncation, of expanded or exact kinematics.
+enum class Flavor { rigid, frozen, full, exact };
+
+/// A station in a symmetric sweep.
+template <class Space>
+struct SymmetricStation {
+  Fields<Space> fields;
+  RigidPart<Space> carried;  ///< rigid bodies it carries; nothing in a frozen node
+  bool loaded = false;       ///< it carries mass or children
+  bool has_children = false;
+  std::size_t work_I = 0;                ///< where its children sum their articulated inertia
+  std::vector<typename Space::Twist> J;  ///< at q = 0
+};
+
+/// Constants of a node.
+template <class Space>
+struct SymmetricNode {
+  using Twist = typename Space::Twist;
+
+  int body = 0, parent = -1, parent_station = -1, root_station = -1, modes = 0;
+  /// Frozen is ruthless: integrals at q = 0, velocity terms at q̇ = 0; sections parallel to the node's frame.
+  Flavor flavor = Flavor::rigid;
+  bool leaf = true;              ///< nothing hangs on it
+  bool has_children = false;     ///< on its frame, not on a station
+  bool begins = false;           ///< it is the first to write the sum of inertias of what it hangs on
+  bool begins_frozen = false;    ///< and of the velocity wrench, of a station that carries nothing else
+  std::size_t work_I = 0;        ///< where its children sum their articulated inertia
+  std::size_t work_outer_I = 0;  ///< the same of what it hangs on
+  std::size_t mode_position = 0, mode_speed = 0;
+  JointData<Space> joint;
+  typename Space::Frame M;                 ///< hinge frame in the root station's section
+  std::vector<double> stiffness, damping;  ///< n×n
+  RigidPart<Space> base;                   ///< the rigid part; everything in a frozen node
+  MassTable<Space> mass;
+  RodKinematics<Space> rod;  ///< in place of mass and rotary inertia where the kinematics is exact
+  RotaryTable<Space> rotary;
+  std::vector<SymmetricStation<Space>> stations;
+  // Frozen nodes: theory (3) at order zero.
+  std::vector<Twist> C0;
+  std::vector<double> G0;
+  std::vector<Variation<Space>> I1;  ///< h_k = −½ Vᵀ I1_k V
+  // Frozen leaves: the eliminated modal block, once for ever.
+  std::vector<double> factor;       ///< of G0, see factorize
+  std::vector<Twist> Y0;            ///< L⁻¹ C0ᵀ, n twists
+  typename Space::Inertia reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
+  // Work memory.
+  std::size_t work = 0, work_J = 0, work_h = 0, work_C = 0, work_G = 0, work_y = 0, work_P = 0, work_stations = 0;
+  std::size_t work_rod = 0, work_root = 0, work_elimination = 0, work_driven = 0;
+
+  SymmetricNode(const NodeSpec& spec, Terms terms);
+};
+
+template <class Space>
+struct SymmetricState;
+
+/// The sweep over all nodes.
+template <class Space>
+class SymmetricSweep {
+ public:
+  /// `terms` of each node.
+  SymmetricSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity);
+  /// Bytes of work memory.
+  [[nodiscard]] std::size_t work_size() const { return work_size_; }
+  /// What was computed once for all evaluations, a line each.
+  [[nodiscard]] std::vector<std::string> savings(const NodeTree& tree) const;
+  /// Accelerations of all speeds from positions, speeds and applied efforts. Those of driven speeds are given in
+  /// `result`; all efforts on them, the applied ones among them, are left in `efforts`. With M + δ D + δ² K in the
+  /// place of M.
+  Evaluation accelerations(const double* positions, const double* speeds, double* efforts, double delta, double* result,
+                           std::byte* work) const noexcept;
+  /// M u̇ − f from positions, speeds and accelerations; with `inertial` alone, M u̇: speeds, weight and K q count as
+  /// zero.
+  void inverse(const double* positions, const double* speeds, const double* accelerations, bool inertial,
+               double* efforts, std::byte* work) const noexcept;
+  /// Leaves in `work` the factors of M + δ D + δ² K; `at_rest` are zeros, one for each speed.
+  Evaluation factorize(const double* positions, const double* at_rest, double delta, std::byte* work) const noexcept;
+  /// Solves (M + δ D + δ² K) result = forces with these factors.
+  void solve(const double* forces, double delta, double* result, std::byte* work) const noexcept;
+
+ private:
+  /// Gives each sum of articulated inertias its place: one for each that is alive at a time on the way inward, so that
+  /// a chain needs one, which stays in the nearest cache.
+  void place_sums(WorkLayout& memory);
+  Evaluation inward(const SymmetricState<Space>& state) const noexcept;
+  void outward(const SymmetricState<Space>& state) const noexcept;
+
+  std::vector<SymmetricNode<Space>> nodes_;
+  typename Space::Twist world_acceleration_;  ///< −g: weight as an acceleration of the world
+  std::size_t work_size_ = 0;
+};
+
+extern template class SymmetricSweep<Spatial>;
+extern template class SymmetricSweep<Planar>;
+
+}  // namespace withy::sweep

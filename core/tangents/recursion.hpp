@@ -1,0 +1,113 @@
+/// \file
+/// Inverse dynamics of a tree in any scalar: the recursive Newton–Euler algorithm (Luh, Walker & Paul 1980) with modal
+/// coordinates, for the derivatives of analyses. It allocates. Vectors are in world axes.
+///
+/// Outward, with V, A the velocity and acceleration of frames: the root section of each body from its hinge, the body
+/// frame from that section, then every particle. Inward, with the wrench (f, n) that a body needs, at the frame's
+/// origin: the residual of the modes Σ Pᵀ f + Wᵀ n, that of the hinge Hᵀ (n, f), the rest to the parent.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "withy/core/deformation/rod_motion.hpp"
+#include "withy/core/model/model.hpp"
+
+namespace withy::analysis {
+
+/// a + εb with ε² = 0, in numbers T.
+template <class T>
+using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<T, 1, 1>>;
+
+/// A hinge at one state: HingeMotion, its rates and their derivatives.
+template <class S>
+struct HingeState {
+  Eigen::Matrix<S, 3, 3> R;
+  Eigen::Matrix<S, 3, 1> p;
+  Eigen::Matrix<S, 6, Eigen::Dynamic> H;
+  Eigen::Matrix<S, 6, 1> bias;
+  Eigen::Matrix<S, Eigen::Dynamic, 1> rates, accelerations;
+};
+
+/// A body at one state. `rod` is its exact kinematics or null.
+template <class S>
+struct BodyState {
+  StrainOrder order = StrainOrder::quadratic;
+  const RodTable* rod = nullptr;
+  Eigen::Matrix<S, Eigen::Dynamic, 1> q, q_dot, q_ddot;
+};
+
+/// A frame's axes, position, angular velocity and velocity, as FrameMotion.
+template <class S>
+struct FrameState {
+  Eigen::Matrix<S, 3, 3> R;
+  Eigen::Matrix<S, 3, 1> p, w, v;
+};
+
+/// A wrench of a load and where it acts.
+template <class S>
+struct AppliedWrench {
+  FrameIndex at;
+  Eigen::Matrix<S, 3, 1> moment, force;
+};
+
+/// The recursion of one state. Members are defined in recursion_members.hpp and instantiated in files of their own:
+/// numbers that carry derivatives take a compiler long.
+template <class S>
+class Recursion {
+ public:
+  using V3 = Eigen::Matrix<S, 3, 1>;
+  using M3 = Eigen::Matrix<S, 3, 3>;
+  using VX = Eigen::Matrix<S, Eigen::Dynamic, 1>;
+
+  /// One state a hinge and a body, in the model's order.
+  Recursion(const Model& model, std::vector<HingeState<S>> hinges, std::vector<BodyState<S>> bodies);
+  ~Recursion();
+
+  /// Σ m Jᵀ (a − g) + Σ J_ωᵀ (I α + ω × I ω): the efforts that the accelerations need beside those of stiffness and
+  /// damping, less what the wrenches give.
+  [[nodiscard]] VX efforts(const std::vector<AppliedWrench<S>>& wrenches) const;
+  [[nodiscard]] FrameState<S> frame_state(FrameIndex at) const;
+  /// Position of a frame of a body in the world, and the displacement r − X of its section in the body frame.
+  [[nodiscard]] std::pair<V3, V3> frame_position(int body, int frame) const;
+
+ private:
+  static constexpr bool truncating = !std::is_same_v<S, double> && !std::is_same_v<S, Jet>;
+
+  struct Frame {
+    M3 R = M3::Identity();
+    V3 p = V3::Zero(), w = V3::Zero(), v = V3::Zero(), alpha = V3::Zero(), a = V3::Zero();
+  };
+  /// What a body needs to move as it does, at its frame's origin, and on its modes.
+  struct Load {
+    V3 force = V3::Zero(), moment = V3::Zero();
+    VX modes;
+  };
+
+  /// The frame that moves as `m` in B.
+  static Frame outward(const Frame& B, const PointMotionOf<S>& m, const VX& q_ddot);
+  /// The body frame whose frame M moves as `m` in it.
+  static Frame inward(const Frame& M, const PointMotionOf<S>& m, const VX& q_ddot);
+  static Frame across(const Frame& F, const HingeState<S>& h);
+  [[nodiscard]] PointMotionOf<S> section(std::size_t b, const PointExpansion& e) const;
+  [[nodiscard]] PointMotionOf<S> relative(int body, int frame, const Pose& offset) const;
+  void add_particle(Load& load, const Frame& B, const PointMotionOf<S>& m, double mass, const VX& q_ddot) const;
+  void add_section(Load& load, const Frame& B, const PointMotionOf<S>& m, const Matrix3& inertia,
+                   const VX& q_ddot) const;
+  [[nodiscard]] Load own_load(std::size_t b) const;
+
+  const Model& model_;
+  std::vector<HingeState<S>> hinges_;
+  std::vector<BodyState<S>> states_;
+  std::vector<std::optional<RodMotionOf<std::conditional_t<truncating, double, S>>>> rods_;
+  std::vector<PointMotionOf<S>> parent_, child_;  ///< of each hinge: F in the parent, M in the child
+  std::vector<Frame> hinge_frames_, frames_;      ///< M of each hinge, B of each body
+};
+
+extern template class Recursion<double>;
+extern template class Recursion<Jet>;
+extern template class Recursion<Dual<double>>;
+extern template class Recursion<Dual<Jet>>;
+
+}  // namespace withy::analysis

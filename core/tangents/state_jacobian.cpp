@@ -1,0 +1,102 @@
+#include "withy/core/tangents/state_jacobian.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+#include "withy/core/plugin/central_difference.hpp"
+
+namespace withy {
+namespace {
+
+/// N(x) of a hinge, its pseudo-inverse, and ∂(N u)/∂x.
+struct Coordinates {
+  Eigen::MatrixXd rates, inverse, drift;
+};
+
+Coordinates coordinates_of(const Hinge& hinge, std::span<const double> x, std::span<const double> u) {
+  const auto count = static_cast<Eigen::Index>(x.size()), speeds = static_cast<Eigen::Index>(u.size());
+  const auto rate = [&](std::span<const double> at, std::span<const double> of) {
+    Eigen::VectorXd x_dot(count);
+    hinge.derivatives(at, of, {x_dot.data(), x.size()});
+    return x_dot;
+  };
+  Coordinates c{Eigen::MatrixXd(count, speeds), {}, Eigen::MatrixXd(count, count)};
+  std::vector<double> unit(u.size(), 0.0);
+  for (Eigen::Index k = 0; k < speeds; ++k) {
+    unit[static_cast<std::size_t>(k)] = 1;
+    c.rates.col(k) = rate(x, unit);
+    unit[static_cast<std::size_t>(k)] = 0;
+  }
+  c.inverse = c.rates.completeOrthogonalDecomposition().pseudoInverse();
+  for (Eigen::Index j = 0; j < count; ++j) {
+    // Exact for quaternions, in which N is linear.
+    c.drift.col(j) = central_difference(
+        [&](double h) {
+          std::vector<double> moved(x.begin(), x.end());
+          moved[static_cast<std::size_t>(j)] += h;
+          return rate(moved, u);
+        },
+        0.02);
+  }
+  return c;
+}
+
+}  // namespace
+
+Evaluation StateJacobian::jacobian(double t, std::span<const double> y, std::span<const double> y_dot,
+                                   std::span<double> jacobian) const {
+  const Model& model = dynamics_.model();
+  const Layout& layout = model.layout();
+  const auto positions = static_cast<Eigen::Index>(layout.positions), n = static_cast<Eigen::Index>(layout.speeds);
+  const Tangents tangents = dynamics_.tangents(t, y, Eigen::Map<const Eigen::VectorXd>(y_dot.data() + positions, n));
+
+  // Rows and columns of the prescribed speeds become those of the identity, so that their u̇ has no derivatives.
+  Eigen::MatrixXd M = tangents.mass, by_position = tangents.by_position, by_speed = tangents.by_speed;
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    if (!model.driven(h)) continue;
+    const auto first = static_cast<Eigen::Index>(layout.hinges[h].speed),
+               count = static_cast<Eigen::Index>(layout.hinges[h].speeds);
+    M.middleRows(first, count).setZero();
+    M.middleCols(first, count).setZero();
+    M.block(first, first, count, count).setIdentity();
+    by_position.middleRows(first, count).setZero();
+    by_speed.middleRows(first, count).setZero();
+  }
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(M);
+  const Eigen::MatrixXd by_displacement = -lu.solve(by_position);
+
+  Eigen::Map<Eigen::MatrixXd> J(jacobian.data(), positions + n, positions + n);
+  J.setZero();
+  J.bottomRightCorner(n, n) = -lu.solve(by_speed);
+  const auto identity = [&](const Slot& slot) {
+    for (std::size_t i = 0; i < slot.positions; ++i) {
+      const auto x = static_cast<Eigen::Index>(slot.position + i), u = static_cast<Eigen::Index>(slot.speed + i);
+      J(x, positions + u) = 1;
+      J.col(x).tail(n) = by_displacement.col(u);
+    }
+  };
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    const Slot& slot = layout.hinges[h];
+    if (slot.speeds == 0) continue;
+    if (slot.positions == 1 && slot.speeds == 1) {
+      identity(slot);
+      continue;
+    }
+    const auto x = static_cast<Eigen::Index>(slot.position), u = static_cast<Eigen::Index>(slot.speed);
+    const auto count = static_cast<Eigen::Index>(slot.positions), speeds = static_cast<Eigen::Index>(slot.speeds);
+    const Coordinates c = coordinates_of(*model.hinges()[h].hinge, y.subspan(slot.position, slot.positions),
+                                         y.subspan(layout.positions + slot.speed, slot.speeds));
+    J.block(x, x, count, count) = c.drift;
+    J.block(x, positions + u, count, speeds) = c.rates;
+    J.block(positions, x, n, count) = by_displacement.middleCols(u, speeds) * c.inverse;
+  }
+  for (const Slot& slot : layout.bodies) identity(slot);
+  if (!J.allFinite()) return {Evaluation::Outcome::singular, -1};
+  return {};
+}
+
+std::vector<std::string> StateJacobian::differenced(double t, std::span<const double> y) const {
+  return dynamics_.tangents(t, y, dynamics_.steady_accelerations(t)).differenced;
+}
+
+}  // namespace withy

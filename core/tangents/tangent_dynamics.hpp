@@ -1,0 +1,81 @@
+/// \file
+/// The equations of motion as a residual with its exact derivatives: what linearization, equilibria and modes rest on.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "withy/core/deformation/rod_table.hpp"
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// The residual r(δ, u, a) = M a − f − τ at one state, τ the efforts of the loads, with its derivatives. Displacements
+/// δ have one number a speed: x changes as if the speeds were δ for a unit of time, so that a rotation is displaced by
+/// the rotation vector whose rate its speeds are. Shapes: speeds, speeds × speeds.
+struct Tangents {
+  Eigen::VectorXd residual;     ///< [N m, N]
+  Eigen::MatrixXd mass;         ///< ∂r/∂a = M
+  Eigen::MatrixXd by_position;  ///< ∂r/∂δ: tangent stiffness, with weight, spin, acceleration and loads
+  Eigen::MatrixXd by_speed;     ///< ∂r/∂u: damping and gyroscopic terms
+  /// C of δ̇ = δu + C δ: zero but where speeds are no derivatives of coordinates (angular velocities).
+  Eigen::MatrixXd drift;
+  /// Loads whose derivatives are numerical: without BoundLoad::add_derivatives, or wrenches that depend on their
+  /// frame's motion, with respect to that motion.
+  std::vector<std::string> differenced;
+};
+
+/// Position of a frame with its derivatives.
+struct FrameTangent {
+  Vector3 position = Vector3::Zero();    ///< in the world [m]
+  Matrix3X by_position;                  ///< 3 × speeds, with respect to δ
+  Vector3 deflection = Vector3::Zero();  ///< r − X of the frame's section, body axes [m]
+  Matrix3X deflection_by_position;       ///< 3 × speeds
+};
+
+/// A model in one formulation. Derivatives are exact to rounding: the recursive Newton–Euler algorithm in numbers that
+/// carry derivatives, an algorithm independent of sweeps and of ReferenceDynamics; the strict truncation, itself a
+/// derivative (theory (3)), takes them nested. Exceptions: loads and hinges of others that do not differentiate
+/// themselves. Const functions allocate.
+class TangentDynamics {
+ public:
+  /// `terms` are the formulation's.
+  /// \throws std::invalid_argument where a body's kinematics is to be exact and it offers none.
+  TangentDynamics(std::shared_ptr<const Model> model, Terms terms);
+
+  [[nodiscard]] const Model& model() const { return *model_; }
+  /// The accelerations of steady motion: those that prescribed motions have at t, all others zero.
+  [[nodiscard]] Eigen::VectorXd steady_accelerations(double t) const;
+  /// r at time t, y as in State, a one number a speed.
+  [[nodiscard]] Eigen::VectorXd residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
+  [[nodiscard]] Tangents tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
+  /// In the formulation's strain kinematics without truncation, as results show them.
+  [[nodiscard]] FrameTangent frame(std::span<const double> y, int body, int frame) const;
+  /// Moves y by δ (a quaternion to first order, then scaled to unit length).
+  void displace(std::span<double> y, const Eigen::VectorXd& delta) const;
+
+ private:
+  struct Seeds;
+  template <class T>
+  struct Builder;
+  template <class T>
+  [[nodiscard]] Eigen::Matrix<T, Eigen::Dynamic, 1> efforts(double t, std::span<const double> y,
+                                                            const Eigen::VectorXd& a, Seeds seeds,
+                                                            std::vector<bool>* differenced = nullptr) const;
+  void add_loads(double t, std::span<const double> y, Tangents& tangents) const;
+  [[nodiscard]] Eigen::VectorXd load_efforts(double t, std::span<const double> y) const;
+  [[nodiscard]] Eigen::VectorXd elastic(std::span<const double> y) const;
+  [[nodiscard]] Eigen::MatrixXd drift(std::span<const double> y) const;
+
+  std::shared_ptr<const Model> model_;
+  std::vector<Terms> terms_;                           ///< of each body
+  std::vector<const Slot*> slots_;                     ///< of each body's modes; null where it has none
+  std::vector<std::shared_ptr<const RodTable>> rods_;  ///< of each body; null where its kinematics is an expansion
+  bool strict_ = false;
+  bool products_of_speeds_ = true;
+};
+
+}  // namespace withy

@@ -1,0 +1,24 @@
+/// \file
+/// The steps of compile_tree.
+#pragma once
+
+#include <optional>
+
+#include "withy/core/tree/tree.hpp"
+
+namespace withy::compilation {
+
+inline Pose at(const Vector3& p) { return {Matrix3::Identity(), p}; }
+inline Pose turned(const Matrix3& R) { return {R, Vector3::Zero()}; }
+
+/// The model's bodies as nodes, rigid neighbours merged.
+NodeTree merge(const Model& model);
+/// The normal of the plane in which everything moves, world axes; nothing where there is none.
+std::optional<Vector3> plane_normal(const NodeTree& tree);
+/// A rotation whose third column is z and whose first is as near to the x axis as can be.
+Matrix3 basis_near_x(const Vector3& z);
+/// Turns the hinge frames so that a revolute axis is the third axis and a prismatic axis the first; in a plane the
+/// third axis is the normal. The node's frame becomes the hinge frame M where the hinge holds the node's frame.
+void align(NodeTree& tree);
+
+}  // namespace withy::compilation
