@@ -21,8 +21,8 @@
 #include "beam_profile.hpp"
 #include "beam_quadrature.hpp"
 #include "withy/core/plugin/body.hpp"
-#include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -353,7 +353,7 @@ class Reader {
   bool good_ = true;
 };
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) { return Reader(p, context).make(); }
+std::unique_ptr<Body> make_beam(const Value& p, const MakeContext& context) { return Reader(p, context).make(); }
 
 std::vector<ParameterSpec> strain_parameters(const char* stiffness, const char* unit = "N m^2") {
   return {number("stiffness", unit, stiffness).above(0).or_table("m"),
@@ -361,7 +361,9 @@ std::vector<ParameterSpec> strain_parameters(const char* stiffness, const char* 
           text("family", "assumed-mode family").naming(ParameterSpec::Refers::mode_family).otherwise("clamped-free")};
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_beam(Enrollment& enrollment) {
   std::vector<ParameterSpec> torsion = strain_parameters("torsional stiffness GJ");
   torsion.push_back(number("inertia", "kg m", "polar inertia per length, rho I_p").above(0).or_table("m"));
   const auto bending = [](const char* stiffness, const char* inertia) {
@@ -396,10 +398,7 @@ void enroll(Enrollment& enrollment) {
                           .least(1)
                           .most(1000)
                           .otherwise(1)},
-       .make = &make});
+       .make = &make_beam});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(beam, withy::enroll);

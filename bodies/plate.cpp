@@ -19,8 +19,8 @@
 #include "beam_quadrature.hpp"
 #include "equal_particles.hpp"
 #include "withy/core/plugin/body.hpp"
-#include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -256,7 +256,7 @@ class Plate final : public Body {
   ModalShape shape_;
 };
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Body> make_plate(const Value& p, const MakeContext& context) {
   const Sheet sheet{p.number_at("length"),    p.number_at("width"),         p.number_at("mass_per_area"),
                     p.number_at("stiffness"), p.number_at("poisson_ratio"), p.number_at("damping_ratio")};
   const auto functions = [&](const char* family, const char* count, double length) {
@@ -282,7 +282,9 @@ std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
   return std::make_unique<Plate>(sheet, modes, std::move(along), std::move(across));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_plate(Enrollment& enrollment) {
   enrollment.add<Body>(
       {.id = "plate",
        .summary = "Thin rectangular plate in the x-y plane, clamped along x = 0, bending along z",
@@ -302,10 +304,7 @@ void enroll(Enrollment& enrollment) {
                           .most(12)
                           .otherwise(4.0),
                       number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0)},
-       .make = &make});
+       .make = &make_plate});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(plate, withy::enroll);

@@ -12,9 +12,9 @@
 # with one eigenvalue problem instantiates all that this calls: core/simulation/diagnosis.cpp takes 10 s instead of 24 s.
 # That asks for arguments that are matrices: a decomposition of an expression is instantiated anew.
 #
-# Programs and tests are compiled twelve sources at a time: they instantiate the same, apps took 292 s of CPU time and
-# take 150 s, tests/cli 231 s and 76 s. Core and plugins share too little: core/analysis takes longer as one source.
-# Names in unnamed namespaces must then differ within a folder. Everything is optimized alike: -O1 would take 2 to 7 %
+# All but the core is compiled twelve sources at a time: a room's sources instantiate the same, apps took 292 s of CPU
+# time and take 150 s, tests/cli 231 s and 76 s. The core's share too little: core/analysis takes longer as one source.
+# Names in unnamed namespaces must then differ within a room. Everything is optimized alike: -O1 would take 2 to 7 %
 # off the tests' compilation.
 #
 # The sweeps, the benchmarks and the zoo are compiled file by file: few sources with flags of their own. A build with a
@@ -58,7 +58,7 @@ function(withy_precompile group)
     else()
       target_precompile_headers(${target} REUSE_FROM withy-precompiled-${group})
     endif()
-    if(group MATCHES "programs|tests")
+    if(NOT group STREQUAL "core")
       set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
     endif()
     target_link_libraries(${target} PRIVATE withy-eigen-instances)

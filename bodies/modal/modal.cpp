@@ -8,14 +8,14 @@
 #include <iterator>
 
 #include "sid_body.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
 
 constexpr std::uintmax_t most_bytes = std::uintmax_t{256} << 20;
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Body> make_modal(const Value& p, const MakeContext& context) {
   const Value& named = p.at("file");
   const auto fault = [&](const std::string& why) -> std::unique_ptr<Body> {
     context.diagnostics.error(named.place(), fmt::format("got '{}'; {}", named.text(), why));
@@ -43,7 +43,9 @@ std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
   }
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_modal(Enrollment& enrollment) {
   enrollment.add<Body>(
       {.id = "modal",
        .summary = "Flexible body from a file of Standard Input Data (SID), as finite-element programs write it",
@@ -53,10 +55,7 @@ void enroll(Enrollment& enrollment) {
                              "modal damping, as a fraction of critical, in the place of the file's")
                           .least(0)
                           .optional()},
-       .make = &make});
+       .make = &make_modal});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(modal, withy::enroll);
