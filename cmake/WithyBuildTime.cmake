@@ -17,9 +17,9 @@
 # Names in unnamed namespaces must then differ within a room. Everything is optimized alike: -O1 would take 2 to 7 %
 # off the tests' compilation.
 #
-# The sweeps, the benchmarks and the zoo are compiled file by file: few sources with flags of their own. A build with a
-# cache of objects (ccache, which passes by sources with precompiled headers) goes without: sources include all they
-# need, and there a missing #include is an error.
+# The sweeps are compiled without precompiled headers, which two sets of flags would need twice; benchmarks and the zoo
+# file by file. A build with a cache of objects (ccache, which passes by sources with precompiled headers) goes without:
+# sources include all they need, and there a missing #include is an error.
 set(WITHY_PRECOMPILE_HEADERS "" CACHE STRING "ON or OFF; if empty, ON for g++ without a compiler launcher")
 set(precompile ${WITHY_PRECOMPILE_HEADERS})
 if(WITHY_PRECOMPILE_HEADERS STREQUAL "")
@@ -45,6 +45,13 @@ if(precompile)
   target_compile_features(withy-eigen-instances PRIVATE cxx_std_20)
 endif()
 
+# withy_unite(TARGET): compiles its sources twelve at a time.
+function(withy_unite target)
+  if(precompile)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+  endif()
+endfunction()
+
 # withy_precompile(GROUP TARGET...): these targets use the headers of the group. The core makes them for
 # itself; the other groups share those of an empty library with the same flags.
 function(withy_precompile group)
@@ -59,7 +66,7 @@ function(withy_precompile group)
       target_precompile_headers(${target} REUSE_FROM withy-precompiled-${group})
     endif()
     if(NOT group STREQUAL "core")
-      set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+      withy_unite(${target})
     endif()
     target_link_libraries(${target} PRIVATE withy-eigen-instances)
   endforeach()
