@@ -6,7 +6,8 @@
 namespace withy {
 
 void enroll_automatic(Enrollment& enrollment) {
-  enroll_terms<Terms{StrainOrder::quadratic, Truncation::none}>(
+  constexpr Terms kept = {StrainOrder::quadratic, Truncation::none};
+  enroll_terms<kept, aside<kept>>(
       enrollment, "auto",
       "The least of ruthless, quadratic and exact whose validity holds, changed along a run where it does not; "
       "quadratic where nothing runs");

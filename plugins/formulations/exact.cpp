@@ -5,7 +5,8 @@
 namespace withy {
 
 void enroll_exact(Enrollment& enrollment) {
-  enroll_terms<Terms{StrainOrder::exact, Truncation::none}>(
+  constexpr Terms kept = {StrainOrder::exact, Truncation::none};
+  enroll_terms<kept, rung<kept>>(
       enrollment, "exact",
       "Inextensible rods whose strains are modal, kinematics not expanded: large deflections, conserves energy and "
       "momentum");

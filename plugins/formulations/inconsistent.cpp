@@ -6,8 +6,9 @@
 namespace withy {
 
 void enroll_inconsistent(Enrollment& enrollment) {
-  enroll_terms<Terms{StrainOrder::linear, Truncation::strict}>(
-      enrollment, "inconsistent", "First order in the elastic coordinates, from linear strain-displacement relations");
+  constexpr Terms kept = {StrainOrder::linear, Truncation::strict};
+  enroll_terms<kept, aside<kept>>(enrollment, "inconsistent",
+                                  "First order in the elastic coordinates, from linear strain-displacement relations");
 }
 
 }  // namespace withy

@@ -5,7 +5,8 @@
 namespace withy {
 
 void enroll_quadratic(Enrollment& enrollment) {
-  enroll_terms<Terms{StrainOrder::quadratic, Truncation::none}>(
+  constexpr Terms kept = {StrainOrder::quadratic, Truncation::none};
+  enroll_terms<kept, rung<kept>>(
       enrollment, "quadratic",
       "Second-order kinematics, nothing truncated: symmetric positive definite, conserves energy and momentum");
 }

@@ -6,8 +6,9 @@
 namespace withy {
 
 void enroll_rate_linear(Enrollment& enrollment) {
-  enroll_terms<Terms{StrainOrder::quadratic, Truncation::none, false}>(
-      enrollment, "rate-linear", "Second-order kinematics without Coriolis, centrifugal and gyroscopic terms");
+  constexpr Terms kept = {StrainOrder::quadratic, Truncation::none, false};
+  enroll_terms<kept, aside<kept>>(enrollment, "rate-linear",
+                                  "Second-order kinematics without Coriolis, centrifugal and gyroscopic terms");
 }
 
 }  // namespace withy

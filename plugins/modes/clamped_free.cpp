@@ -26,7 +26,7 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
 }  // namespace clamped_free
 
 void enroll_clamped_free(Enrollment& enrollment) {
-  enroll_family<&clamped_free::bending, &clamped_free::torsion>(
+  enroll_family<&clamped_free::bending, &clamped_free::torsion, 200, true>(
       enrollment, "clamped-free", "Eigenfunctions of the uniform beam clamped at the root and free at the tip");
 }
 

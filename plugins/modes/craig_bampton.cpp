@@ -68,7 +68,7 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
 }  // namespace craig_bampton
 
 void enroll_craig_bampton(Enrollment& enrollment) {
-  enroll_family<&craig_bampton::bending, &craig_bampton::torsion>(
+  enroll_family<&craig_bampton::bending, &craig_bampton::torsion, 200, true>(
       enrollment, "craig-bampton",
       "Static deflection, slope and twist of the tip, and the modes of the beam with its tip fixed");
 }

@@ -89,7 +89,7 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
 }  // namespace orthogonal_polynomials
 
 void enroll_orthogonal_polynomials(Enrollment& enrollment) {
-  enroll_family<&orthogonal_polynomials::bending, &orthogonal_polynomials::torsion, 100>(
+  enroll_family<&orthogonal_polynomials::bending, &orthogonal_polynomials::torsion, 100, true>(
       enrollment, "orthogonal-polynomials", "Polynomials orthogonal over the length, clamped at the root");
 }
 
