@@ -2,19 +2,19 @@
 /// Checkpoints of runs on disk: in the results folder, two generations, each with a checksum.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 
 #include "withy/core/simulation/simulate.hpp"
+#include "withy/results/recorder.hpp"
 
 namespace [[gnu::visibility("default")]] withy {
 
 /// A checkpoint of a run, with what belongs to it in its folder.
 struct StoredRun {
   Checkpoint checkpoint;
-  std::uintmax_t table_bytes = 0;  ///< length of results.csv then
-  std::string remark = {};         ///< once read: why it is not the newest checkpoint, or empty
+  RecordMark table;         ///< how far results.csv was
+  std::string remark = {};  ///< once read: why it is not the newest checkpoint, or empty
 };
 
 /// The checkpoints of one run, in a folder: `checkpoint.cbor`, and the one before as `checkpoint.previous.cbor`.

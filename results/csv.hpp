@@ -2,6 +2,7 @@
 /// Tables as text: comma-separated values.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 namespace [[gnu::visibility("default")]] withy {
 
 /// One line of a CSV file, its end included: shortest numbers that read back the same; nothing where one is not finite.
-std::string csv_line(const std::vector<double>& numbers);
+std::string csv_line(std::span<const double> numbers);
 /// The head of a CSV file: `name[unit],…`.
 std::string csv_head(const std::vector<Column>& columns);
 

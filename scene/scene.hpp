@@ -14,6 +14,7 @@
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/scene/scene_values.hpp"
+#include "withy/scene/sources.hpp"
 
 namespace withy {
 
@@ -28,7 +29,10 @@ struct SceneOptions {
 struct Scene {
   std::string name;
   std::string file;
-  Value source;  ///< checked values, SI units, defaults filled in
+  Value source;                       ///< checked values, SI units, defaults filled in
+  std::string sha256;                 ///< of the text as it was read
+  std::vector<std::string> settings;  ///< `path=value` of the command line, in their order
+  SceneSources sources;               ///< files and plugins that it is made from
   std::shared_ptr<const Model> model;
   std::string formulation_name;
   std::shared_ptr<const Formulation> formulation;
