@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 struct BuildIdentity {
   std::string version;      ///< "0.1.0"
@@ -18,4 +18,4 @@ const BuildIdentity& build_identity();
 /// empty where it cannot be read, or the file is none, as "built in".
 std::string library_identity(const std::string& file);
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

@@ -8,7 +8,7 @@
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/results/recorder.hpp"
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// A checkpoint of a run, with what belongs to it in its folder.
 struct StoredRun {
@@ -33,4 +33,4 @@ class CheckpointFiles {
   std::string run_;  ///< fingerprint
 };
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

@@ -8,7 +8,7 @@
 #include "withy/results/recorder.hpp"
 #include "withy/scene/sha256.hpp"
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// Every row has reached the system before the next begins: a run that is killed leaves whole lines.
 class CsvRecorder final : public Recorder {
@@ -34,4 +34,4 @@ class CsvRecorder final : public Recorder {
   OutputFile file_;
 };
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// Files `KEY.json` in a folder, each with the fingerprint of what it comes from and a checksum.
 class KeptResults {
@@ -24,4 +24,4 @@ class KeptResults {
   std::string fingerprint_;
 };
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

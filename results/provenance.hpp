@@ -9,7 +9,7 @@
 #include "withy/results/build_identity.hpp"
 #include "withy/scene/scene.hpp"
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 struct Provenance {
   std::string scene;                  ///< the scene's file
@@ -37,4 +37,4 @@ nlohmann::ordered_json stored_provenance(const Provenance& provenance);
 /// \throws ResultsError where it is none.
 Provenance provenance_of_json(const nlohmann::ordered_json& stored);
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

@@ -9,7 +9,7 @@
 
 #include "withy/core/model/columns.hpp"
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// How far a table has come: what a checkpoint keeps of it.
 struct RecordMark {
@@ -55,4 +55,4 @@ class MemoryRecorder final : public Recorder {
   std::vector<std::vector<double>> rows_;
 };
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

@@ -9,7 +9,7 @@
 
 #include "withy/results/provenance.hpp"
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// Another process writes the folder.
 class FolderBusy : public std::runtime_error {
@@ -57,4 +57,4 @@ class ResultsFolder {
 /// where that is no good name for a folder "-set-1a2b3c4d".
 std::string folder_suffix(const std::vector<std::string>& settings);
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// Takes bytes piece by piece. A copy goes on by itself.
 class Sha256 {
@@ -29,4 +29,4 @@ class Sha256 {
 /// Of one text: 64 hexadecimal digits.
 std::string sha256(std::string_view bytes);
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy
