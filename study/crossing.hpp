@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-namespace withy::app {
+namespace withy::study {
 
 /// Where an error passes a limit.
 struct Crossing {
@@ -26,4 +26,4 @@ struct Crossing {
 Crossing find_crossing(const std::function<double(double)>& error, const std::vector<double>& values, double limit,
                        double accuracy);
 
-}  // namespace withy::app
+}  // namespace withy::study

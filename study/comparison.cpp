@@ -12,7 +12,7 @@
 #include "withy/apps/withy/run_report.hpp"
 #include "withy/apps/withy/svg_plot.hpp"
 
-namespace withy::app {
+namespace withy::study {
 namespace {
 
 double greatest(const std::map<std::string, double>& values) {
@@ -135,4 +135,4 @@ std::string picture(const std::string& title, const std::vector<const ComparedRu
   return svg_plot(title, legend, panels);
 }
 
-}  // namespace withy::app
+}  // namespace withy::study

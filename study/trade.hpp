@@ -14,7 +14,7 @@
 #include "withy/apps/withy/comparison.hpp"
 #include "withy/apps/withy/trade_plan.hpp"
 
-namespace withy::app {
+namespace withy::study {
 
 /// What one point gave. Errors are greatest distances from the reference over the outputs.
 struct TradeResult {
@@ -82,4 +82,4 @@ class TradeStudy {
 /// Whether no other completed point is both more accurate, as far as its reference can tell, and cheaper.
 std::vector<bool> pareto_front(const std::vector<TradeResult>& results);
 
-}  // namespace withy::app
+}  // namespace withy::study

@@ -9,7 +9,7 @@
 
 #include "withy/apps/withy/engine.hpp"
 
-namespace withy::app {
+namespace withy::study {
 
 /// One run of a comparison, with every output it gave.
 struct ComparedRun {
@@ -44,4 +44,4 @@ void add_distances(Distances& d, const Moment& a, const Moment& b);
 /// completed; one that diverged leaves the frame.
 std::string picture(const std::string& title, const std::vector<const ComparedRun*>& runs);
 
-}  // namespace withy::app
+}  // namespace withy::study

@@ -12,7 +12,7 @@
 #include "withy/apps/withy/modes_report.hpp"
 #include "withy/apps/withy/trade_plan.hpp"
 
-namespace withy::app {
+namespace withy::study {
 
 /// Frequencies of models of one scene against a reference: `exact` where every flexible body offers it, else
 /// `quadratic`, with one mode more than any model. A mode bears the name of a coordinate: it is the one of whose
@@ -52,4 +52,4 @@ class FrequencyStudy {
   std::vector<std::string> names_;
 };
 
-}  // namespace withy::app
+}  // namespace withy::study

@@ -10,7 +10,7 @@
 
 #include "withy/apps/withy/analysis.hpp"
 
-namespace withy::app {
+namespace withy::study {
 namespace {
 
 /// Share of a speed in Σ |δ_i|² M_ii.
@@ -113,4 +113,4 @@ nlohmann::ordered_json FrequencyStudy::reference_json() {
   return {{"formulation", reference_.formulation}, {"modes", reference_.modes}, {"relative_error", own}};
 }
 
-}  // namespace withy::app
+}  // namespace withy::study

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace withy::app {
+namespace withy::study {
 
 Crossing find_crossing(const std::function<double(double)>& error, const std::vector<double>& values, double limit,
                        double accuracy) {
@@ -40,4 +40,4 @@ Crossing find_crossing(const std::function<double(double)>& error, const std::ve
   return {};
 }
 
-}  // namespace withy::app
+}  // namespace withy::study

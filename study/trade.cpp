@@ -19,7 +19,7 @@
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/progress.hpp"
 
-namespace withy::app {
+namespace withy::study {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -302,4 +302,4 @@ std::vector<bool> pareto_front(const std::vector<TradeResult>& results) {
   return front;
 }
 
-}  // namespace withy::app
+}  // namespace withy::study
