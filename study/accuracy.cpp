@@ -49,15 +49,28 @@ Accuracy Accuracy::parse(const std::string& text) {
   return a;
 }
 
+Distances scales(const Outputs& outputs, const Distances& ways) {
+  const PerMeasure greatest = outputs.per_measure(ways);
+  Distances scales;
+  for (const Output& o : outputs.list()) scales.push_back(greatest.at(static_cast<std::size_t>(o.measure)));
+  return scales;
+}
+
+double relative_error(const Outputs& outputs, const Distances& distances, const Distances& ways) {
+  const Distances scale = scales(outputs, ways);
+  double most = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i)
+    if (scale[i] > 0) most = std::max(most, distances[i] / scale[i]);
+  return most;
+}
+
 Distances Accuracy::limits(const Outputs& outputs, const Distances& ways) const {
-  const PerMeasure scales = outputs.per_measure(ways);
+  const Distances scale = scales(outputs, ways);
   Distances limits(ways.size(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    const Measure measure = outputs.list()[i].measure;
-    const std::optional<double>& distance = measure == Measure::angle ? angle : length;
+    const std::optional<double>& distance = outputs.list()[i].measure == Measure::angle ? angle : length;
     if (distance) limits[i] = *distance;
-    if (share)
-      limits[i] = std::min(limits[i], std::max(*share * scales.at(static_cast<std::size_t>(measure)), least_distance));
+    if (share) limits[i] = std::min(limits[i], std::max(*share * scale[i], least_distance));
   }
   return limits;
 }

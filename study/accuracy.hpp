@@ -9,6 +9,11 @@
 
 namespace withy::study {
 
+/// What a relative error of each output is a share of: the greatest way of the outputs of its measure [rad, m].
+Distances scales(const Outputs& outputs, const Distances& ways);
+/// The greatest error over its scale; what does not move has none.
+double relative_error(const Outputs& outputs, const Distances& distances, const Distances& ways);
+
 /// A share of the greatest way, or a distance, or one of each.
 struct Accuracy {
   std::optional<double> share;   ///< of the greatest way of a measure's outputs

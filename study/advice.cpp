@@ -83,10 +83,13 @@ class Search {
 void Search::find_yardstick() {
   const bool modal = candidates_.modes.back() > 0;
   ReferenceGoal goal;
-  goal.first = {"",       reference_family(candidates_),
-                modal ? 2 : 0, "dop853",
+  goal.first = {"",
+                reference_family(candidates_),
+                modal ? 2 : 0,
+                "dop853",
                 std::clamp(1e-3 * accuracy_.share.value_or(1e-3), 1e-8, 1e-5),
-                {},       {}};
+                {},
+                {}};
   goal.levels = policy::reference_levels;
   goal.tightest = policy::tightest;
   goal.enough = [&](const Reference& r) {
@@ -95,9 +98,8 @@ void Search::find_yardstick() {
     const bool rich = !modal || r.point.modes >= candidates_.modes.back() || use < policy::most_poor_reference_use;
     return use <= policy::most_reference_use && rich;
   };
-  const ReferenceFound found =
-      find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); }, evaluator_.registry(),
-                     evaluator_.outputs(), goal, evaluator_.control());
+  const ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); },
+                                              evaluator_.registry(), evaluator_.outputs(), goal, evaluator_.control());
   evaluator_.spend(found.cpu_seconds);
   advice_.interrupted = found.interrupted;
   if (found.reference)
@@ -218,7 +220,8 @@ void Search::choose() {
 /// Flexible bodies that need less than the rest: one after the other, the choice with that one `ruthless` too.
 void Search::simplify_bodies() {
   std::optional<Probe>& choice = advice_.choice;
-  if (!choice || choice->point.formulation == "ruthless" || !contains(candidates_.formulations, std::string("ruthless")))
+  if (!choice || choice->point.formulation == "ruthless" ||
+      !contains(candidates_.formulations, std::string("ruthless")))
     return;
   const std::vector<std::string> bodies = flexible_bodies(evaluator_.base().scene);
   if (bodies.size() < 2) return;  // all of them were tried
@@ -270,8 +273,11 @@ void finish(Search& search, Evaluator& evaluator, Advice& advice) {
     advice.confirmed = confirm(evaluator, advice.choice->point);
     if (advice.confirmed.status == RunStatus::completed || search.stopped()) break;
     const std::string key = advice.choice->point.key();
-    for (Probe& p : advice.probes)
-      if (p.point.key() == key) p.outcome = Probe::Outcome::stopped, p.reason = advice.confirmed.message;
+    for (Probe& p : advice.probes) {
+      if (p.point.key() != key) continue;
+      p.outcome = Probe::Outcome::stopped;
+      p.reason = advice.confirmed.message;
+    }
     search.choose();
   }
   for (Probe& p : advice.probes) p.cost = evaluator.cost(p);

@@ -1,47 +1,41 @@
 /// \file
-/// Several runs of one scene, seen together: how far they are apart, and a picture of them.
+/// Several runs of one scene, seen together: how far they are apart.
 #pragma once
 
-#include <map>
-#include <memory>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "withy/apps/withy/engine.hpp"
+#include "withy/study/measures.hpp"
+#include "withy/study/run.hpp"
 
 namespace withy::study {
 
 /// One run of a comparison, with every output it gave.
 struct ComparedRun {
-  std::unique_ptr<Engine> engine;
+  Prepared prepared;
   RunSummary summary;
   std::vector<State> outputs;
-  [[nodiscard]] const std::string& formulation() const { return engine->scene().formulation_name; }
+  [[nodiscard]] const std::string& formulation() const { return prepared.scene.formulation_name; }
 };
 
-/// Greatest distances between two runs over the outputs both have.
-struct Distances {
-  /// Of each hinge that moves: difference of coordinates [rad, m]; of orientations the angle [rad] between them, of a
-  /// free hinge the greater of that and the distance [m].
-  std::map<std::string, double> hinges;
-  std::map<std::string, double> tips;  ///< of each frame named "tip": distance in the world [m]
-  double until = 0;                    ///< time [s] of the last output both have
-  [[nodiscard]] double greatest_hinge() const;
-  [[nodiscard]] double greatest_tip() const;
+/// The runs of a scene in several formulations.
+struct Comparison {
+  std::vector<ComparedRun> runs;
+  std::size_t listed = 0;     ///< runs beyond these were made for reference only
+  std::size_t reference = 0;  ///< index; past the end where the user interrupted before it was run
+  [[nodiscard]] bool interrupted() const { return runs.back().summary.status == RunStatus::interrupted; }
+  [[nodiscard]] bool has_reference() const { return reference < runs.size(); }
+  /// Greatest distances of a run from the reference, over the outputs both have.
+  [[nodiscard]] NamedDistances distances(const ComparedRun& run) const;
 };
-Distances distances(const ComparedRun& run, const ComparedRun& reference);
 
-/// A state of a model.
-struct Moment {
-  const Model& model;
-  const EquationsOfMotion& equations;
-  const State& state;
-};
-/// Adds the distances at one time of models with the same hinges and tips, whatever their modes.
-void add_distances(Distances& d, const Moment& a, const Moment& b);
+/// Simulates a scene, every output handed on.
+using Simulator = std::function<RunSummary(const Prepared&, const std::function<void(const State&)>& output)>;
 
-/// Tip deflections and the coordinates of one-coordinate hinges over time, as SVG. The axes fit the runs that were
-/// completed; one that diverged leaves the frame.
-std::string picture(const std::string& title, const std::vector<const ComparedRun*>& runs);
+/// Runs the formulations, and the reference where it is not among them.
+/// \throws SceneError, InputError, PluginError
+Comparison compare(const SceneValues& values, Registry& registry, const std::vector<std::string>& formulations,
+                   const std::string& reference, const Simulator& simulator);
 
 }  // namespace withy::study

@@ -1,4 +1,4 @@
-#include "withy/apps/withy/trade_limit.hpp"
+#include "withy/study/crossing.hpp"
 
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>

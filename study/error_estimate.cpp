@@ -17,9 +17,9 @@ ErrorEstimate estimate_error(const Scene& scene, const EquationsOfMotion& used, 
   const Outputs outputs = Outputs::all(*scene.model);
   const OutputReader ours(outputs, *scene.model, used), theirs(outputs, *beyond.model, *beyond.equations);
   Distances greatest = outputs.none();
-  const PairedRun run = run_paired(
-      *scene.model, used, *beyond.equations, *integrator, scene.initial, options,
-      [&](const State& a, const State& b) { outputs.raise(ours.read(a.y), theirs.read(b.y), greatest); });
+  const PairedRun run =
+      run_paired(*scene.model, used, *beyond.equations, *integrator, scene.initial, options,
+                 [&](const State& a, const State& b) { outputs.raise(ours.read(a.y), theirs.read(b.y), greatest); });
   return {beyond.formulation, named(outputs, greatest, run.until), summary.final.time, run.cpu_seconds};
 }
 

@@ -16,10 +16,10 @@ struct LinearModel {
   std::vector<std::string> inputs;   ///< efforts on speeds [N m, N]
   std::vector<std::string> outputs;  ///< coordinates, rates, deflections and places of tips [rad, m, s]
   std::vector<double> output_values;
-  Eigen::MatrixXd A, B, C;                                       ///< D is zero
-  std::vector<std::pair<std::string, double>> accelerations;     ///< of the free speeds at the state
-  bool equilibrium = false;                                      ///< nothing that is free moves or begins to
-  std::string derivatives;                                       ///< how they were found
+  Eigen::MatrixXd A, B, C;                                    ///< D is zero
+  std::vector<std::pair<std::string, double>> accelerations;  ///< of the free speeds at the state
+  bool equilibrium = false;                                   ///< nothing that is free moves or begins to
+  std::string derivatives;                                    ///< how they were found
 };
 
 /// What goes in and comes out.
@@ -28,8 +28,8 @@ struct Ports {
   std::vector<std::string> outputs;  ///< names or their beginnings up to a dot; empty: every output
 };
 
-/// \throws InputError where there is no such input or output; std::domain_error where the mass matrix of what is free is
-/// singular.
+/// \throws InputError where there is no such input or output; std::domain_error where the mass matrix of what is free
+/// is singular.
 LinearModel linear_model(const Configuration& configuration, const Ports& ports);
 
 }  // namespace withy::study

@@ -129,8 +129,8 @@ std::string Point::text() const {
 }
 
 bool Point::same_model(const Point& other) const {
-  return formulation == other.formulation && family == other.family && modes == other.modes &&
-         bodies == other.bodies && over == other.over;
+  return formulation == other.formulation && family == other.family && modes == other.modes && bodies == other.bodies &&
+         over == other.over;
 }
 
 double absolute_tolerance(double relative) {

@@ -65,7 +65,7 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
   for (int level = 0; coarse && level < goal.levels; ++level) {
     Point point = coarse->point;
     if (point.modes > 0) ++point.modes;
-    point.tolerance = std::max(0.1 * point.tolerance, std::min(goal.tightest, goal.first.tolerance));
+    point.tolerance = std::max(0.1 * point.tolerance, goal.tightest);
     std::optional<Reference> fine = search.at(point);
     if (!fine) break;
     fine->own = distances(outputs, fine->readings, coarse->readings).first;

@@ -97,8 +97,8 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
       result.summary.status != RunStatus::interrupted)
     estimate = estimate_error(prepared.scene, *used, *beyond, result.summary, registry, settings.control.interrupted);
   result.certificate = certify(
-      prepared,
-      {&result.summary, beyond ? &*beyond : nullptr, escalated ? &*escalated : nullptr, std::move(estimate)}, registry);
+      prepared, {&result.summary, beyond ? &*beyond : nullptr, escalated ? &*escalated : nullptr, std::move(estimate)},
+      registry);
   return result;
 }
 

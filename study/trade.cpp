@@ -1,62 +1,17 @@
-#include "withy/apps/withy/trade_run.hpp"
-
-#include <fmt/format.h>
-#include <unistd.h>
+#include "withy/study/trade.hpp"
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <cmath>
-#include <fstream>
-#include <iterator>
+#include <exception>
 #include <limits>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "withy/apps/withy/beyond.hpp"
-#include "withy/apps/withy/json_text.hpp"
-#include "withy/apps/withy/output.hpp"
-#include "withy/apps/withy/progress.hpp"
+#include "withy/study/accuracy.hpp"
+#include "withy/study/input_error.hpp"
 
 namespace withy::study {
 namespace {
-
-using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-TradeResult result_of(const Json& j, const TradePoint& point) {
-  return {point,
-          j.at("status"),
-          j.at("message"),
-          j.at("hinge_error"),
-          j.at("tip_error"),
-          j.at("relative_error"),
-          j.at("cpu_seconds"),
-          j.at("steps"),
-          j.at("evaluations"),
-          j.at("reference").at("relative_error")};
-}
-
-/// Greatest distance of hinges and tips from where they start.
-Distances ways(const ComparedRun& run) {
-  Distances d;
-  const Moment start{run.engine->model(), run.engine->equations(), run.outputs.front()};
-  for (const State& s : run.outputs) add_distances(d, {start.model, start.equations, s}, start);
-  return d;
-}
-
-double relative(const Distances& d, double hinge_way, double tip_way) {
-  return std::max(hinge_way > 0 ? d.greatest_hinge() / hinge_way : 0, tip_way > 0 ? d.greatest_tip() / tip_way : 0);
-}
-
-/// On standard error, without ending the line.
-void show(const std::string& text) { static_cast<void>(std::fputs(text.c_str(), stderr)); }
 
 std::string joined(const std::vector<std::string>& parts) {
   std::string text;
@@ -64,218 +19,182 @@ std::string joined(const std::vector<std::string>& parts) {
   return text;
 }
 
-}  // namespace
-
-/// What threads share.
-struct TradeStudy::Shared {
-  std::mutex making;  ///< scenes are read and plugins loaded by one thread at a time
-  std::mutex keeping;
-  std::map<std::string, TradeReference> references;
-  Json told = Json::object();
+/// A run with the least CPU time it was seen to take.
+struct TimedRun {
+  RunSummary summary;
+  Readings readings;
+  double cpu_seconds = std::numeric_limits<double>::max();
 };
 
-Json result_json(const TradeResult& r) {
-  return {{"formulation", r.point.formulation},
-          {"modes", r.point.modes},
-          {"family", r.point.family.empty() ? Json() : Json(r.point.family)},
-          {"integrator", r.point.integrator},
-          {"tolerance", r.point.tolerance},
-          {"over", r.point.over},
-          {"status", r.status},
-          {"message", r.message},
-          {"hinge_error", r.hinge_error},
-          {"tip_error", r.tip_error},
-          {"relative_error", r.relative_error},
-          {"cpu_seconds", r.cpu_seconds},
-          {"steps", r.steps},
-          {"evaluations", r.evaluations}};
-}
-
-TradeStudy::TradeStudy(const SceneArguments& arguments, std::vector<TradePoint> points, TradeOptions options)
-    : arguments_(arguments),
-      engine_(arguments),
-      points_(std::move(points)),
-      options_(std::move(options)),
-      finished_(points_.size()),
-      shared_(std::make_unique<Shared>()) {
-  int modes = 0;
-  double tolerance = 1;
-  for (const TradePoint& p : points_) {
-    modes = std::max(modes, p.modes);
-    tolerance = std::min(tolerance, p.tolerance);
-  }
-  fingerprint_ = fingerprint_of(
-      fmt::format("{} {} {:g} {}", text_of(arguments.scene), modes, tolerance, joined(arguments.options.overrides)));
-  find_finished(0);
-}
-
-TradeStudy::~TradeStudy() = default;
-
-const Json& TradeStudy::references() const { return shared_->told; }
-
-void TradeStudy::add(const TradePoint& point) {
-  points_.push_back(point);
-  finished_.emplace_back();
-  find_finished(points_.size() - 1);
-}
-
-void TradeStudy::find_finished(std::size_t first) {
-  if (options_.folder.empty()) return;
-  std::filesystem::create_directories(options_.folder / "points");
-  for (std::size_t i = first; i < points_.size(); ++i) {
-    const Json j = Json::parse(text_of(options_.folder / "points" / (points_[i].key() + ".json")), nullptr, false);
-    if (j.is_discarded() || j.value("fingerprint", "") != fingerprint_) continue;
-    finished_[i] = result_of(j, points_[i]);
-    shared_->told[joined(points_[i].over)] = j.at("reference");
-  }
-}
-
-void TradeStudy::keep(const TradeResult& result) const {
-  if (options_.folder.empty()) return;
-  Json j = result_json(result);
-  j["fingerprint"] = fingerprint_;
-  j["reference"] = shared_->told.at(joined(result.point.over));
-  write_file(options_.folder / "points" / (result.point.key() + ".json"), json_text(j));
-}
-
-ComparedRun TradeStudy::simulate(const TradePoint& point, double& cpu_seconds) {
-  ComparedRun run;
-  {
-    const std::lock_guard lock(shared_->making);
-    run.engine = std::make_unique<Engine>(arguments_at(arguments_, engine_.scene(), point));
-  }
-  const Scene& scene = run.engine->scene();
-  RunOptions options;
-  options.end = end_of_run(scene);
-  options.output = scene.output;
-  options.deflection_limit = scene.deflection_limit;
-  options.interrupted = interrupted;
-  // Short runs are timed again and again: the least time is nearest to what the processor needs.
-  cpu_seconds = std::numeric_limits<double>::max();
+/// Short runs are timed again and again: the least time is nearest to what the processor needs.
+TimedRun timed_run(const Prepared& model, const Outputs& outputs, const Control& control) {
+  constexpr int most_runs = 30;
+  constexpr double long_enough = 0.05;  // s
+  RunOptions options = run_options(model.scene);
+  options.events.clear();
+  options.interrupted = control.interrupted;
+  TimedRun run;
+  std::vector<State> states;
   double spent = 0;
-  for (int i = 0; i < 30 && spent < 0.05; ++i) {
-    run.outputs.clear();
-    run.summary = withy::simulate(run.engine->model(), run.engine->equations(), *scene.integrator, scene.initial,
-                                  options, [&](const State& s) { run.outputs.push_back(s); });
-    cpu_seconds = std::min(cpu_seconds, run.summary.cpu_seconds);
+  for (int i = 0; i < most_runs && spent < long_enough; ++i) {
+    states.clear();
+    run.summary = withy::simulate(model.model(), *model.equations, *model.scene.integrator, model.scene.initial,
+                                  options, [&](const State& s) { states.push_back(s); });
+    run.cpu_seconds = std::min(run.cpu_seconds, run.summary.cpu_seconds);
     spent += run.summary.cpu_seconds;
+  }
+  const OutputReader reader(outputs, model.model(), *model.equations);
+  for (const State& s : states) {
+    run.readings.times.push_back(s.time);
+    run.readings.values.push_back(reader.read(s.y));
   }
   return run;
 }
 
-const TradeReference& TradeStudy::reference_for(const TradePoint& point) {
-  const std::string key = joined(point.over);
-  const auto found = shared_->references.find(key);
-  if (found != shared_->references.end()) return found->second;
-  TradeReference r;
-  int modes = 0;
-  double tolerance = 1e-6;
-  for (const TradePoint& p : points_) {
-    modes = std::max(modes, p.modes);
-    tolerance = std::min(tolerance, p.tolerance);
-  }
-  r.point = {"exact", "", modes + 1, "dopri5", 0.1 * tolerance, point.over};
-  double cpu = 0;
-  try {
-    r.run = simulate(r.point, cpu);
-  } catch (const InputError&) {
-    r.point.formulation = "quadratic";
-    r.run = simulate(r.point, cpu);
-  }
-  if (r.run.summary.status == RunStatus::interrupted) throw InputError("interrupted");
-  if (r.run.summary.status != RunStatus::completed)
-    throw InputError("the reference (" + r.point.text() + ") does not reach the end: " + r.run.summary.message);
-  TradePoint coarser = r.point;
-  --coarser.modes;
-  coarser.tolerance *= 10;
-  const Distances own = distances(simulate(coarser, cpu), r.run), way = ways(r.run);
-  r.hinge_way = way.greatest_hinge();
-  r.tip_way = way.greatest_tip();
-  r.hinge_error = own.greatest_hinge();
-  r.tip_error = own.greatest_tip();
-  r.relative_error = relative(own, r.hinge_way, r.tip_way);
-  shared_->told[key] = {
-      {"formulation", r.point.formulation}, {"modes", r.point.modes},   {"integrator", r.point.integrator},
-      {"tolerance", r.point.tolerance},     {"hinge_way", r.hinge_way}, {"tip_way", r.tip_way},
-      {"hinge_error", r.hinge_error},       {"tip_error", r.tip_error}, {"relative_error", r.relative_error}};
-  return shared_->references.emplace(key, std::move(r)).first->second;
+}  // namespace
+
+/// A reference with the readings that runs are measured against.
+struct TradeStudy::Known {
+  Reference reference;
+  double relative_error = 0;
+};
+
+/// What threads share while they work.
+struct TradeStudy::Pool {
+  std::vector<std::size_t> open;  ///< points that are not finished
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;  ///< for all that follows, results and the store
+  std::size_t done = 0;
+  std::exception_ptr failure;
+};
+
+TradeStudy::TradeStudy(const Prepared& base, Registry& registry, std::vector<Point> points, TradeOptions options)
+    : base_(base),
+      registry_(registry),
+      points_(std::move(points)),
+      options_(std::move(options)),
+      outputs_(base.model()),
+      finished_(points_.size()) {
+  for (std::size_t i = 0; i < points_.size(); ++i) look_up(i);
 }
 
-TradeResult TradeStudy::run_point(const TradePoint& point) {
+TradeStudy::~TradeStudy() = default;
+
+void TradeStudy::add(const Point& point) {
+  points_.push_back(point);
+  finished_.emplace_back();
+  look_up(points_.size() - 1);
+}
+
+void TradeStudy::look_up(std::size_t index) {
+  if (options_.store == nullptr) return;
+  const auto kept = options_.store->find(points_[index]);
+  if (!kept) return;
+  finished_[index] = kept->result;
+  told_[joined(points_[index].over)] = kept->reference;
+}
+
+void TradeStudy::find_reference_for(const Point& point) {
+  const std::string key = joined(point.over);
+  if (known_.contains(key)) return;
+  ReferenceGoal goal;
+  goal.first = {"", "", 0, "dop853", 1e-6, point.over};
+  for (const Point& p : points_) {
+    goal.first.modes = std::max(goal.first.modes, p.modes);
+    goal.first.tolerance = std::min(goal.first.tolerance, p.tolerance);
+  }
+  goal.tightest = 0.1 * goal.first.tolerance;
+  std::vector<std::unique_ptr<ModelAt>> models;
+  const auto model = [&](const Point& p) -> const ModelAt& {
+    models.push_back(std::make_unique<ModelAt>(model_at(base_, registry_, p)));
+    return *models.back();
+  };
+  ReferenceFound found = find_reference(model, registry_, outputs_, goal, options_.control);
+  if (found.interrupted) return;
+  if (!found.reference) throw InputError("no reference to measure against: " + found.trouble);
+  const Reference& r = *found.reference;
+  const double relative = relative_error(outputs_, r.own, r.ways);
+  const NamedDistances ways = named(outputs_, r.ways, 0), own = named(outputs_, r.own, 0);
+  told_[key] = {r.point, ways.greatest_hinge(), ways.greatest_tip(), own.greatest_hinge(), own.greatest_tip(),
+                relative};
+  known_.emplace(key, Known{std::move(*found.reference), relative});
+}
+
+TradeResult TradeStudy::run_point(const Point& point) const {
   TradeResult result;
   result.point = point;
+  const auto refused = [&](const std::exception& e) {
+    result.status = "refused";
+    result.message = e.what();
+  };
   try {
-    const ComparedRun run = simulate(point, result.cpu_seconds);
+    const Prepared model = prepare(values_at(base_.values, base_.scene, point), registry_);
+    const TimedRun run = timed_run(model, outputs_, options_.control);
     result.status = name(run.summary.status);
     result.message = run.summary.message;
     result.steps = run.summary.steps.accepted;
     result.evaluations = run.summary.steps.evaluations;
-    const TradeReference& reference = shared_->references.at(joined(point.over));
-    const Distances d = distances(run, reference.run);
-    result.hinge_error = d.greatest_hinge();
-    result.tip_error = d.greatest_tip();
-    result.relative_error = relative(d, reference.hinge_way, reference.tip_way);
-    result.reference_error = reference.relative_error;
-  } catch (const PluginError&) {
-    throw;
-  } catch (const std::runtime_error& e) {  // InputError, SceneError: no such model
-    result.status = "refused";
-    result.message = e.what();
+    result.cpu_seconds = run.cpu_seconds;
+    const Known& known = known_.at(joined(point.over));
+    const auto [distance, until] = distances(outputs_, run.readings, known.reference.readings);
+    const NamedDistances by_name = named(outputs_, distance, until);
+    result.hinge_error = by_name.greatest_hinge();
+    result.tip_error = by_name.greatest_tip();
+    result.relative_error = relative_error(outputs_, distance, known.reference.ways);
+    result.reference_error = known.relative_error;
+  } catch (const SceneError& e) {
+    refused(e);
+  } catch (const InputError& e) {
+    refused(e);
   } catch (const std::invalid_argument& e) {
-    result.status = "refused";
-    result.message = e.what();
+    refused(e);
   }
   return result;
 }
 
-bool TradeStudy::run() {
-  watch_for_interrupt();
-  std::vector<std::size_t> open;
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    if (!finished_[i]) open.push_back(i);
-  // References first: threads then only read them.
-  for (const std::size_t i : open) {
-    if (interrupted()) return false;
-    static_cast<void>(reference_for(points_[i]));
-  }
-  std::atomic<std::size_t> next{0};
-  std::size_t done = 0;
-  const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  const auto began = Clock::now();
-  std::exception_ptr failure;
-  const auto work = [&] {
-    for (std::size_t k = next++; k < open.size() && !interrupted(); k = next++) {
-      try {
-        const TradeResult result = run_point(points_[open[k]]);
-        if (result.status == name(RunStatus::interrupted)) return;
-        const std::lock_guard lock(shared_->keeping);
-        keep(result);
-        finished_[open[k]] = result;
-        ++done;
-        if (!terminal) continue;
-        const double passed = std::chrono::duration<double>(Clock::now() - began).count();
-        show(fmt::format("\r\033[Ktrade: {} of {} points, about {:.0f} s left", points_.size() - open.size() + done,
-                         points_.size(), passed / static_cast<double>(done) * static_cast<double>(open.size() - done)));
-      } catch (...) {
-        const std::lock_guard lock(shared_->keeping);
-        failure = std::current_exception();
-        next = open.size();
-      }
+void TradeStudy::work(Pool& pool) {
+  for (std::size_t k = pool.next++; k < pool.open.size() && !options_.control.stop(); k = pool.next++) {
+    try {
+      const Point& point = points_[pool.open[k]];
+      const TradeResult result = run_point(point);
+      if (result.status == name(RunStatus::interrupted)) return;
+      const std::lock_guard lock(pool.mutex);
+      if (options_.store != nullptr) options_.store->keep({result, told_.at(joined(point.over))});
+      finished_[pool.open[k]] = result;
+      ++pool.done;
+      options_.control.tell(static_cast<double>(points_.size() - pool.open.size() + pool.done),
+                            static_cast<double>(points_.size()));
+    } catch (...) {
+      const std::lock_guard lock(pool.mutex);
+      pool.failure = std::current_exception();
+      pool.next = pool.open.size();
     }
-  };
-  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t jobs = std::min(options_.jobs > 0 ? options_.jobs : cores, std::max<std::size_t>(open.size(), 1));
-  {
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 1; i < jobs; ++i) threads.emplace_back(work);
-    work();
   }
-  if (terminal && done > 0) show("\r\033[K");
-  if (failure) std::rethrow_exception(failure);
-  return !interrupted();
 }
 
-const TradeResult* TradeStudy::result(const TradePoint& point) const {
+bool TradeStudy::run() {
+  Pool pool;
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (!finished_[i]) pool.open.push_back(i);
+  // References first: threads then only read them.
+  for (const std::size_t i : pool.open) {
+    if (options_.control.stop()) return false;
+    find_reference_for(points_[i]);
+  }
+  if (options_.control.stop()) return false;
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t most = std::max<std::size_t>(pool.open.size(), 1);
+  const std::size_t jobs = std::min(options_.jobs > 0 ? options_.jobs : cores, most);
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 1; i < jobs; ++i) threads.emplace_back([&] { work(pool); });
+    work(pool);
+  }
+  if (pool.failure) std::rethrow_exception(pool.failure);
+  return !options_.control.stop();
+}
+
+const TradeResult* TradeStudy::result(const Point& point) const {
   const std::string key = point.key();
   for (std::size_t i = 0; i < points_.size(); ++i)
     if (finished_[i] && points_[i].key() == key) return &*finished_[i];

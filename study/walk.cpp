@@ -23,8 +23,7 @@ double seconds_per_evaluation(const Prepared& model) {
   for (int batch = 0; batch < 5; ++batch) {
     constexpr int count = 40;
     const double began = thread_cpu_seconds();
-    for (int i = 0; i < count; ++i)
-      static_cast<void>(equations.derivatives(initial.time, initial.y, rates, work));
+    for (int i = 0; i < count; ++i) static_cast<void>(equations.derivatives(initial.time, initial.y, rates, work));
     least = std::min(least, (thread_cpu_seconds() - began) / count);
   }
   return least;
@@ -82,8 +81,9 @@ class Walker {
       const bool turned = stepper_->statistics().determinant_sign != sign_;
       if (result.outcome != StepResult::Outcome::ok || turned) {
         walk_.seconds += thread_cpu_seconds() - began;
-        walk_.reason = result.outcome != StepResult::Outcome::ok ? reason_of(result, model_)
-                                                                 : "the determinant of the mass matrix changed its sign";
+        walk_.reason = result.outcome != StepResult::Outcome::ok
+                           ? reason_of(result, model_)
+                           : "the determinant of the mass matrix changed its sign";
         ended(Walk::End::stopped);
         return false;
       }
@@ -153,6 +153,33 @@ class Walker {
   Walk walk_;
 };
 
+/// With loads that switch by the state: `simulate`, which finds the zeros of their functions.
+Walk walk_as_a_run(const Prepared& model, const Integrator& integrator, const WalkObserver& observer) {
+  bool on = true, interrupted = false;
+  RunOptions options = run_options(model.scene);
+  options.events.clear();
+  options.interrupted = [&] {
+    interrupted = interrupted || (observer.interrupted && observer.interrupted());
+    return !on || interrupted;
+  };
+  const double began = thread_cpu_seconds();
+  const auto output = [&](const State& state) {
+    Walk so_far;
+    so_far.time = state.time;
+    so_far.seconds = thread_cpu_seconds() - began;
+    on = on && (!observer.afford || observer.afford(so_far)) && observer.output(state);
+  };
+  const RunSummary s =
+      withy::simulate(model.model(), *model.equations, integrator, model.scene.initial, options, output);
+  Walk w{Walk::End::reached, s.message, s.final.time, s.steps.accepted, s.steps.evaluations, s.cpu_seconds};
+  if (s.status == RunStatus::interrupted) {
+    w.end = on ? Walk::End::interrupted : Walk::End::cut;
+  } else if (s.status != RunStatus::completed) {
+    w.end = Walk::End::stopped;
+  }
+  return w;
+}
+
 }  // namespace
 
 ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
@@ -177,7 +204,8 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
 }
 
 Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserver& observer) {
-  return Walker(model, integrator, observer).walk();
+  return has_switches(model.model()) ? walk_as_a_run(model, integrator, observer)
+                                     : Walker(model, integrator, observer).walk();
 }
 
 std::pair<Distances, double> distances(const Outputs& outputs, const Readings& a, const Readings& b) {

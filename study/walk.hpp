@@ -44,7 +44,7 @@ struct WalkObserver {
   std::function<bool()> interrupted;
 };
 
-/// Steps from the scene's initial state to its end as a run does of a scene without switching functions and events.
+/// Steps from the scene's initial state to its end as a run does, without looking for events or measuring on the way.
 /// \throws std::invalid_argument where the integrator cannot treat the equations.
 Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserver& observer);
 
