@@ -23,7 +23,7 @@ ModesAt modes_at(const Configuration& c, bool as_is) {
   at.model = c.prepared().scene.model;
   State state = c.state();
   if (!as_is) {
-    at.steady = SteadyFound{find_steady_state(c.dynamics(), c.state(), c.held()), c.held_names(), {}, {}};
+    at.steady = SteadyFound{find_steady_state(c.dynamics(), c.state(), c.held()), c.held(), {}, {}};
     at.problem = no_steady_state(c, at.steady->steady);
     if (!at.steady->steady.converged) return at;
     state = at.steady->steady.state;

@@ -28,7 +28,7 @@ using StartState = std::function<State(const Prepared&)>;
 /// A steady state that was looked for.
 struct SteadyFound {
   SteadyState steady;
-  std::vector<std::string> held;  ///< names of the held speeds
+  Held held;
   /// Whether it stays as the hinges turn; not known where no modes were found about it.
   std::optional<bool> stays;
   std::string derivatives;  ///< how they were found; the same

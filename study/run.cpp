@@ -1,5 +1,7 @@
 #include "withy/study/run.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "withy/core/simulation/instants.hpp"
@@ -84,12 +86,12 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
   if (prepared.escalates()) {
     escalated = run_escalating(prepared, settings);
     result.summary = escalated->summary;
-    beyond = beyond_last(prepared, *escalated, registry);
+    if (settings.look_beyond) beyond = beyond_last(prepared, *escalated, registry);
     // A run that changed its formulation on the way has no estimate.
     const Stretch& last = escalated->stretches.back();
     used = last.start > prepared.scene.initial.time ? nullptr : prepared.rungs[last.rung].equations;
   } else {
-    beyond = next_model_up(prepared, registry);
+    if (settings.look_beyond) beyond = next_model_up(prepared, registry);
     result.summary = run_plainly(prepared, settings, beyond ? beyond->equations.get() : nullptr);
   }
   std::optional<ErrorEstimate> estimate;
@@ -100,6 +102,11 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
       prepared, {&result.summary, beyond ? &*beyond : nullptr, escalated ? &*escalated : nullptr, std::move(estimate)},
       registry);
   return result;
+}
+
+std::string outcome_text(const RunSummary& summary) {
+  if (summary.status == RunStatus::completed) return "completed";
+  return fmt::format("{} at {:.4g} s", name(summary.status), summary.final.time);
 }
 
 RunSummary simulate(const Prepared& prepared, const std::function<void(const State&)>& output, const Control& control) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <string>
 
 #include "withy/study/certificate.hpp"
 #include "withy/study/control.hpp"
@@ -19,6 +19,8 @@ enum class Estimate {
 
 struct RunSettings {
   Estimate estimate = Estimate::automatic;
+  /// Whether accelerations are compared with the next model up along the run; without it there is no estimate either.
+  bool look_beyond = true;
   /// Receives every output, with the rung that a run of `auto` is in, else 0; may be empty.
   std::function<void(const State&, std::size_t rung)> output;
   double checkpoint_seconds = 0;                      ///< wall time between checkpoints; 0: only where interrupted
@@ -37,6 +39,9 @@ struct CertifiedRun {
 /// \throws InputError where `auto` meets a load with discrete states, or is to be put down or resumed; SceneError where
 /// the scene has no end.
 CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings = {});
+
+/// "completed", or "diverged at 0.0523 s".
+std::string outcome_text(const RunSummary& summary);
 
 /// The run alone, with no more than its outputs.
 RunSummary simulate(const Prepared& prepared, const std::function<void(const State&)>& output,

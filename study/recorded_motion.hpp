@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/model/model.hpp"
+#include "withy/scene/scene.hpp"
 
-namespace withy::app {
+namespace withy::study {
 
 /// Coordinates of hinges at the same times.
 struct RecordedMotion {
@@ -22,9 +22,9 @@ struct RecordedMotion {
 /// InputError with file and line.
 RecordedMotion read_recorded_motion(const std::filesystem::path& file, const Model& model);
 
-/// `path=value` texts with which a scene's motions are these, through the rows by cubic splines, and it ends with the
-/// last. Rates in the first row, and what lies a step beyond the last, are those of the cubic through the four rows
-/// next to it: accelerations are right to second order in the step up to the ends.
-std::vector<std::string> motion_overrides(const RecordedMotion& motion);
+/// The scene with these motions in the place of its own, through the rows by cubic splines; it ends with the last row.
+/// Rates in the first row, and what lies a step beyond the last, are those of the cubic through the four rows next to
+/// it: accelerations are right to second order in the step up to the ends.
+SceneValues led_by(SceneValues values, const RecordedMotion& motion);
 
-}  // namespace withy::app
+}  // namespace withy::study
