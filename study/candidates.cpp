@@ -69,6 +69,15 @@ void check(const Axes& axes, Registry& registry) {
 
 }  // namespace
 
+Axes usual_axes() {
+  return {{"ruthless", "linear", "consistent", "quadratic", "exact"},
+          {},
+          {1, 2, 3, 4},
+          {"dopri5", "dop853", "imex"},
+          {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
+          {}};
+}
+
 Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes c) {
   check(c, registry);
   const Scene& scene = prepared.scene;

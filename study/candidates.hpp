@@ -15,6 +15,9 @@ namespace withy::study {
 /// fewer before more (0 where no body has a number of them), tolerances loosest first.
 using Candidates = Axes;
 
+/// What is chosen from where nothing else is asked.
+Axes usual_axes();
+
 /// The axes without what means nothing for the scene, families of bending added where they mean the same beams.
 /// \param asked no families: the scene's, and another where it means the same beams
 /// \throws InputError where a value cannot be, or is `inconsistent`.

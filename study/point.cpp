@@ -150,7 +150,6 @@ void check_axes(const Axes& axes) {
 }
 
 std::vector<Point> points_of(const Axes& axes) {
-  check_axes(axes);
   std::vector<std::vector<std::string>> overs{{}};
   for (const Variation& v : axes.over) {
     std::vector<std::vector<std::string>> longer;

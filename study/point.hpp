@@ -44,14 +44,15 @@ struct Variation {
 struct Axes {
   std::vector<std::string> formulations;
   std::vector<std::string> families;  ///< of bending; empty text: the scene's
-  std::vector<int> modes;             ///< of each family that a body has
+  std::vector<int> modes;             ///< of each family that a body has; 0: those of the scene
   std::vector<std::string> integrators;
   std::vector<double> tolerances;  ///< relative
   std::vector<Variation> over;
 };
-/// \throws InputError where a number of modes or a tolerance cannot be, or a formulation is `auto`.
+/// For axes that a user gives. \throws InputError where a number of modes or a tolerance cannot be, or a formulation is
+/// `auto`.
 void check_axes(const Axes& axes);
-/// The product of the axes, formulations varying slowest. \throws InputError as check_axes.
+/// The product of the axes, formulations varying slowest.
 std::vector<Point> points_of(const Axes& axes);
 
 /// A value at a path of the scene.

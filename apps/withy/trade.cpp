@@ -86,6 +86,7 @@ std::string references_text(const study::TradeStudy& study) {
 study::Axes axes_of(const TradeAxes& asked) {
   study::Axes axes{asked.formulations, asked.families, asked.modes, asked.integrators, asked.tolerances, {}};
   for (const std::string& over : asked.over) axes.over.push_back(parse_variation(over));
+  study::check_axes(axes);
   return axes;
 }
 

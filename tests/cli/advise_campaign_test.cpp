@@ -35,7 +35,8 @@ double least_seconds(Evaluator& evaluator, const Point& point) {
   double least = 1e300;
   for (int i = 0; i < 5; ++i)
     least = std::min(
-        least, walk(*evaluator.model(point).prepared, *integrator, {[](const State&) { return true; }, {}, {}}).seconds);
+        least,
+        walk(*evaluator.model(point).prepared, *integrator, {[](const State&) { return true; }, {}, {}}).seconds);
   return least;
 }
 
@@ -78,7 +79,8 @@ class Costs {
   std::map<std::string, double> units_;
 };
 
-/// Every candidate that holds the accuracy, cut where it fails or costs more than the cheapest so far; the choice first.
+/// Every candidate that holds the accuracy, cut where it fails or costs more than the cheapest so far; the choice
+/// first.
 std::vector<Probe> search_all(Evaluator& evaluator, const Candidates& all, const Point& choice, const Yardstick& truth,
                               Costs& costs, double& best) {
   std::vector<Probe> passed{evaluator.run(choice, truth)};
@@ -97,7 +99,7 @@ Verdict judge(const std::string& scene, const std::string& accuracy_text) {
   const Prepared prepared = prepare(SceneValues::read(scene), plugins());
   const Outputs outputs(prepared.model());
   const Accuracy accuracy = Accuracy::parse(accuracy_text);
-  const Candidates all = candidates_for(prepared, plugins(), advised_axes());
+  const Candidates all = candidates_for(prepared, plugins(), usual_axes());
   Evaluator evaluator(prepared, plugins(), outputs, {});
   const Advice advice = advise(evaluator, all, accuracy);
   Verdict v;

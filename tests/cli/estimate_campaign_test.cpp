@@ -39,7 +39,7 @@ std::vector<State> exact_outputs(const Prepared& scene, const EquationsOfMotion&
   options.deflection_limit = 1e3;
   std::vector<State> outputs;
   const RunSummary summary = withy::simulate(scene.model(), equations, *integrator, scene.scene.initial, options,
-                                      [&](const State& s) { outputs.push_back(s); });
+                                             [&](const State& s) { outputs.push_back(s); });
   return summary.status == RunStatus::completed ? outputs : std::vector<State>();
 }
 
