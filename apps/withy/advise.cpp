@@ -33,9 +33,7 @@ ExitStatus advise(const AdviseArguments& arguments) {
   const Engine engine(arguments);
   const study::Accuracy accuracy = study::Accuracy::parse(arguments.accuracy);
   const study::Outputs outputs(engine.model(), arguments.outputs);
-  const study::Candidates candidates = study::candidates_for(
-      engine.prepared(), engine.registry(),
-      {arguments.formulations, arguments.families, arguments.modes, arguments.integrators, arguments.tolerances, {}});
+  const study::Candidates candidates = study::candidates_for(engine.prepared(), engine.registry(), arguments.axes);
   study::Evaluator evaluator(engine.prepared(), engine.registry(), outputs, study_control("advise"));
   const study::Advice advice = study::advise(evaluator, candidates, accuracy);
   const AdviceQuestion question{engine.prepared(), outputs, accuracy};
