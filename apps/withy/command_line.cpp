@@ -141,15 +141,16 @@ void add_advise(Commands& commands) {
       ->capture_default_str();
   axis("--outputs,--output", a.outputs, "NAME,...",
        "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection; default: all free hinges and tips");
-  axis("--formulations,--formulation", a.formulations, "ID,...",
+  axis("--formulations,--formulation", a.axes.formulations, "ID,...",
        "Formulations to choose from; default: ruthless,linear,consistent,quadratic,exact");
-  axis("--families,--family", a.families, "ID,...",
+  axis("--families,--family", a.axes.families, "ID,...",
        "Mode families of bending to choose from; default: the scene's, and orthogonal-polynomials where they are the "
        "same beams");
-  axis("--modes", a.modes, "N,...", "Modes of each family of a beam to choose from; default: 1,2,3,4");
-  axis("--integrators", a.integrators, "ID,...",
+  axis("--modes", a.axes.modes, "N,...", "Modes of each family of a beam to choose from; default: 1,2,3,4");
+  axis("--integrators", a.axes.integrators, "ID,...",
        "Integrators to choose from, with a relative tolerance; default: dopri5,dop853,imex");
-  axis("--tolerances", a.tolerances, "R,...", "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
+  axis("--tolerances", a.axes.tolerances, "R,...",
+       "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
   c->add_option("--write", a.write, "File for the scene with what is advised; comments are kept")->type_name("FILE");
 }
 

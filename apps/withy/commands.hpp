@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "withy/scene/scene.hpp"
+#include "withy/study/candidates.hpp"
 
 namespace withy::app {
 
@@ -78,13 +79,9 @@ struct TradeArguments : SceneArguments {
 /// What is advised is the cheapest of these that holds the accuracy.
 struct AdviseArguments : SceneArguments {
   std::string accuracy = "1%";
-  std::vector<std::string> outputs;  ///< that errors are measured on; empty: hinges and tips
-  std::vector<std::string> formulations = {"ruthless", "linear", "consistent", "quadratic", "exact"};
-  std::vector<std::string> families;  ///< of bending; empty: the scene's, and another where it means the same beams
-  std::vector<int> modes = {1, 2, 3, 4};
-  std::vector<std::string> integrators = {"dopri5", "dop853", "imex"};
-  std::vector<double> tolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
-  std::string write;  ///< file for the scene as advised; empty: none
+  std::vector<std::string> outputs;        ///< that errors are measured on; empty: hinges and tips
+  study::Axes axes = study::usual_axes();  ///< families empty: the scene's, and another where it means the same beams
+  std::string write;                       ///< file for the scene as advised; empty: none
 };
 
 /// Commands that look at one state of a scene.

@@ -1,12 +1,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "withy/apps/withy/certificate_text.hpp"
 #include "withy/apps/withy/commands.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/run_report.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/results/certificate_json.hpp"
 #include "withy/results/json_text.hpp"
 
 namespace withy::app {
@@ -28,7 +30,7 @@ void check_accuracy(const Engine& engine) {
 
 ExitStatus run(const RunArguments& arguments) {
   const Engine engine(arguments);
-  if (engine.escalates() && (arguments.resume || arguments.checkpoint))
+  if (engine.prepared().escalates() && (arguments.resume || arguments.checkpoint))
     throw InputError(std::string(arguments.resume ? "--resume" : "--checkpoint") +
                      ": a run of formulation 'auto' keeps no checkpoints; leave it out, or name a formulation");
   check_accuracy(engine);
@@ -37,13 +39,14 @@ ExitStatus run(const RunArguments& arguments) {
     folder = std::filesystem::path("results") /
              (std::filesystem::path(arguments.scene).stem().string() + '-' + engine.scene().formulation_name);
   }
-  const CertifiedRun certified = run_into(folder, engine, arguments);
+  const study::CertifiedRun certified = run_into(folder, engine, arguments);
   const RunSummary& summary = certified.summary;
-  print(arguments.json ? json_text(run_json(engine, summary, certified.evidence()))
-                       : run_table(engine, summary) + certificate_text(engine, summary, certified.evidence()) +
-                             "\nresults in " + folder.string() + '\n');
+  print(arguments.json
+            ? json_text(run_json(engine.scene(), summary, certified.certificate))
+            : run_table(engine.prepared(), summary) + certificate_text(engine.model(), summary, certified.certificate) +
+                  "\nresults in " + folder.string() + '\n');
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
-  if (summary.status == RunStatus::interrupted && !engine.escalates())
+  if (summary.status == RunStatus::interrupted && !engine.prepared().escalates())
     complain("the same command with --resume goes on from there");
   return exit_status(summary.status);
 }
