@@ -55,18 +55,28 @@ std::vector<std::string> present(const std::filesystem::path& folder, const std:
   return there;
 }
 
+bool same_result(const Json& kept, const Json& now) {
+  return !kept.is_null() && kept.value("command", "") == now.at("command") &&
+         kept.value("subject", "") == now.at("subject");
+}
+
+std::vector<std::string> united(std::vector<std::string> names, const std::vector<std::string>& more) {
+  for (const std::string& name : more)
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  return names;
+}
+
 /// Why the folder cannot be taken for this result, whose record is `now`; empty where it can.
 std::string refusal(const std::filesystem::path& folder, const Json& kept, const Json& now,
                     const std::vector<std::string>& content) {
   constexpr const char* advice = "give another folder, or --force to replace it";
   const std::vector<std::string> there = present(folder, kept.is_null() ? content : content_of(kept));
-  if (there.empty()) return {};
+  if (there.empty() || same_result(kept, now)) return {};
   if (kept.is_null())
     return fmt::format("{} holds {}, and nothing says of what result: {}", folder.string(), there.front(), advice);
   const std::string command = kept.value("command", "");
   if (command != now.at("command"))
     return fmt::format("{} holds a result of withy {}: {}", folder.string(), command, advice);
-  if (kept.value("subject", "") == now.at("subject")) return {};
   const std::string scene = kept.value("scene", "");
   if (scene != now.at("scene"))
     return fmt::format("{} holds the result of another scene, {}: {}", folder.string(), scene, advice);
@@ -101,11 +111,17 @@ ResultsFolder::ResultsFolder(std::filesystem::path path, const std::string& comm
     if (use == FolderUse::begin)
       if (const std::string why = refusal(path_, kept, now, content); !why.empty()) throw ResultsError(why);
     changed_ = change(kept, provenance);
-    if (use == FolderUse::go_on && !changed_.empty()) return;
+    if (use == FolderUse::go_on && !changed_.empty()) return;  // the caller will not go on
+    std::vector<std::string> old = content;
+    if (use != FolderUse::go_on && !same_result(kept, now)) {
+      const std::vector<std::string> other = content_of(kept);
+      old.insert(old.end(), other.begin(), other.end());
+    } else {
+      now["content"] = united(content_of(kept), content);
+    }
     if (use != FolderUse::go_on) {
-      for (const auto& names : {content_of(kept), content})
-        for (const std::string& name : names)
-          if (is_inside(name)) std::filesystem::remove_all(path_ / name);
+      for (const std::string& name : old)
+        if (is_inside(name)) std::filesystem::remove_all(path_ / name);
     }
     write(json_text(now));
   } catch (...) {
