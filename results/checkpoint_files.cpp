@@ -89,6 +89,8 @@ StoredRun CheckpointFiles::read() const {
           std::move(remark)};
 }
 
+bool CheckpointFiles::exist() const { return std::filesystem::exists(newest_) || std::filesystem::exists(previous_); }
+
 void CheckpointFiles::remove() const {
   std::filesystem::remove(newest_);
   std::filesystem::remove(previous_);

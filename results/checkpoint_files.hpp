@@ -26,6 +26,8 @@ class CheckpointFiles {
   void write(const StoredRun& run) const;
   /// The newest undamaged checkpoint. \throws ResultsError where there is none, or it is another run's.
   [[nodiscard]] StoredRun read() const;
+  /// Whether there is any.
+  [[nodiscard]] bool exist() const;
   void remove() const;
 
  private:
