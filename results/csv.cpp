@@ -7,7 +7,7 @@
 
 namespace withy {
 
-std::string csv_line(const std::vector<double>& numbers) {
+std::string csv_line(std::span<const double> numbers) {
   std::string line;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (i > 0) line += ',';

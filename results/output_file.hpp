@@ -7,7 +7,7 @@
 #include <memory>
 #include <string_view>
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// A text file written from its beginning; each write reaches the system before the next, so that a run that is killed
 /// leaves whole lines.
@@ -37,4 +37,4 @@ void write_file(const std::filesystem::path& path, std::string_view text);
 /// The same, made to last through a loss of power.
 void write_lasting_file(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

@@ -24,7 +24,9 @@ constexpr double driven_tolerance = 1e-6;
 class SceneBuilder {
  public:
   SceneBuilder(const Document& document, Registry& registry, Diagnostics& diagnostics)
-      : document_(document), diagnostics_(diagnostics), checker_(document, registry, diagnostics) {}
+      : document_(document), diagnostics_(diagnostics), checker_(document, registry, diagnostics) {
+    checker_.note(&scene_.sources);
+  }
 
   /// Complete only if no problem was reported.
   Scene build() {
@@ -42,6 +44,7 @@ class SceneBuilder {
     SceneTree tree = build_tree(part("bodies"), part("hinges"), gravity_, checker_);
     scene_.source.set("bodies", std::move(tree.bodies));
     scene_.source.set("hinges", std::move(tree.hinges));
+    scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);
     add_motions(tree.model.get());
     add_loads(tree.model.get());
@@ -257,6 +260,8 @@ Scene make_scene(const SceneValues& values, Registry& registry) {
   Scene scene = SceneBuilder(values.document(), registry, diagnostics).build();
   if (!diagnostics.ok()) throw SceneError(values.file(), diagnostics.errors(), values.origins());
   scene.file = values.file();
+  scene.sha256 = values.sha256();
+  scene.settings = values.settings();
   return scene;
 }
 
