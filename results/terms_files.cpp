@@ -19,6 +19,12 @@ Json terms_json(const Scene& scene, const RunSummary& summary, const study::Term
     for (std::size_t k = 0; k < terms_of_motion; ++k)
       group[std::string(name(static_cast<Term>(k)))] = {{"rms", ledger.rms(g, k)}, {"peak", ledger.peak(g, k)}};
   }
+  j["left_out"] = {{"of", ledger.richest}, {"by", Json::object()}};
+  for (const study::LeftOutBy& by : ledger.left_out) {
+    Json& groups = j["left_out"]["by"][by.formulation];
+    for (std::size_t g = 0; g < ledger.groups.size(); ++g)
+      groups[ledger.groups[g].name] = {{"rms", by.rms(g)}, {"peak", by.peak(g)}};
+  }
   return j;
 }
 

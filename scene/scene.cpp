@@ -42,6 +42,7 @@ class SceneBuilder {
     SceneTree tree = build_tree(part("bodies"), part("hinges"), gravity_, checker_);
     scene_.source.set("bodies", std::move(tree.bodies));
     scene_.source.set("hinges", std::move(tree.hinges));
+    scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);
     add_motions(tree.model.get());
     add_loads(tree.model.get());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/study/input_error.hpp"
 
@@ -217,18 +218,18 @@ void Search::choose() {
   if (const Probe* p = cheapest(evaluator_, advice_.probes)) advice_.choice = *p;
 }
 
-/// Flexible bodies that need less than the rest: one after the other, the choice with that one `ruthless` too.
+/// Flexible bodies that need less than the rest: one after the other, the choice with that one in the lowest
+/// rung too.
 void Search::simplify_bodies() {
   std::optional<Probe>& choice = advice_.choice;
-  if (!choice || choice->point.formulation == "ruthless" ||
-      !contains(candidates_.formulations, std::string("ruthless")))
-    return;
+  const std::string least = formulation_rungs(evaluator_.registry()).front().id;
+  if (!choice || choice->point.formulation == least || !contains(candidates_.formulations, least)) return;
   const std::vector<std::string> bodies = flexible_bodies(evaluator_.base().scene);
   if (bodies.size() < 2) return;  // all of them were tried
   for (const std::string& body : bodies) {
     if (stopped() || choice->point.bodies.size() + 1 == bodies.size()) return;
     Point point = choice->point;
-    point.bodies.emplace_back(body, "ruthless");
+    point.bodies.emplace_back(body, least);
     if (evaluator_.model(point).refused()) continue;
     const Probe mixed = run(point, {1, policy::model_allowance * evaluator_.cost(*choice)});
     if (!mixed.passed()) continue;
@@ -242,9 +243,10 @@ void Search::look_up() {
   if (!flexible(evaluator_.base().model())) return;
   const Point& choice = advice_.choice->point;
   std::vector<Point> points;
-  if (!choice.bodies.empty() || choice.formulation != "exact") {
+  const std::optional<std::string> above = next_rung(evaluator_.registry(), choice.formulation);
+  if (!choice.bodies.empty() || above) {
     points.push_back(choice);
-    if (choice.bodies.empty()) points.back().formulation = choice.formulation == "quadratic" ? "exact" : "quadratic";
+    if (choice.bodies.empty()) points.back().formulation = *above;
     points.back().bodies.clear();
   }
   if (choice.modes > 0) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "withy/core/plugin/formulation_ladder.hpp"
+#include "withy/core/plugin/mode_family.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -10,37 +12,30 @@ namespace {
 
 /// A basis that is complete for any clamped beam, whatever it carries.
 constexpr const char* polynomials = "orthogonal-polynomials";
+/// What stands for all formulations where no body is flexible: the one of scenes that name none.
+constexpr const char* plain_formulation = "quadratic";
 
-/// Calls with each strain of each beam that has modes: body's map, strain's map.
+/// Whether a family describes any bending of a beam that is clamped at the root and free at the tip.
+bool spans_cantilevers(const Value& family, Registry& registry) {
+  Diagnostics diagnostics;
+  const auto made = make_mode_family(family, {registry, diagnostics});
+  return made != nullptr && made->spans_cantilevers();
+}
+
+/// Calls with every number of modes in bending that is not zero.
 template <class Function>
-void for_each_strain(const Scene& scene, Function&& function) {
-  for (const auto& [name, body] : scene.source.at("bodies").members()) {
-    if (body.text_at("type") != "beam") continue;
-    for (const char* strain : {"bending_y", "bending_z", "torsion"}) {
-      const Value* s = body.find(strain);
-      const Value* modes = s != nullptr ? s->find("modes") : nullptr;
-      if (modes != nullptr && modes->number() > 0) function(body, *s, std::string(strain));
-    }
-  }
+void for_each_bending(const Scene& scene, Function&& function) {
+  for (const BodyModes& body : scene.modes)
+    for (const ModeCount& count : body.counts)
+      if (count.modes > 0 && !count.family_path.empty()) function(count);
 }
 
-std::string family_of(const Value& strain) {
-  const Value* family = strain.find("family");
-  if (family == nullptr) return {};
-  return family->kind() == Value::Kind::text ? family->text() : family->text_at("name");
-}
-
-/// Whether another basis of clamped beams means the same beams: all are clamped at the root and free at the tip, their
-/// damping is not that of single modes, and no modal coordinate has a value at the start.
-bool families_are_exchangeable(const Scene& scene) {
+/// Whether another basis of clamped beams means the same beams: all are clamped at the root and free at the tip, no
+/// damping is that of single modes, and no modal coordinate has a value at the start.
+bool families_are_exchangeable(const Scene& scene, Registry& registry) {
   bool fit = true;
-  for_each_strain(scene, [&](const Value& body, const Value& strain, const std::string& kind) {
-    const std::string family = family_of(strain);
-    const Value* damping = body.find("damping_ratio");
-    fit = fit && (kind == "torsion" || family == "clamped-free" || family == "clamped-loaded" ||
-                  family == "craig-bampton" || family == polynomials);
-    fit = fit && (damping == nullptr || damping->number() == 0);
-  });
+  for_each_bending(scene, [&](const ModeCount& count) { fit = fit && spans_cantilevers(count.family, registry); });
+  for (const BodyNode& body : scene.model->bodies()) fit = fit && body.body->shape().damping.isZero(0);
   const Layout& layout = scene.model->layout();
   for (const Slot& body : layout.bodies) {
     for (std::size_t i = 0; i < body.positions; ++i) fit = fit && scene.initial.y[body.position + i] == 0;
@@ -49,19 +44,12 @@ bool families_are_exchangeable(const Scene& scene) {
   return fit;
 }
 
-bool has_plates(const Scene& scene) {
-  const auto& bodies = scene.source.at("bodies").members();
-  return std::any_of(bodies.begin(), bodies.end(), [](const auto& b) { return b.second.text_at("type") == "plate"; });
-}
-
 void check(const Axes& axes, Registry& registry) {
   check_axes(axes);
   for (const std::string& f : axes.formulations) {
-    if (f == "inconsistent")
-      throw InputError(
-          "formulations: 'inconsistent' is never advised: it has the cost of consistent without its terms. "
-          "See withy trade for its error");
-    if (registry.find<Formulation>(f) == nullptr) throw InputError("no formulation '" + f + "'");
+    if (!make_formulation(registry, f)->standing().studied)
+      throw InputError("formulations: '" + f +
+                       "' is never advised: it is there to be compared. See withy trade for its error");
   }
   for (const std::string& i : axes.integrators)
     if (registry.find<Integrator>(i) == nullptr) throw InputError("no integrator '" + i + "'");
@@ -69,29 +57,23 @@ void check(const Axes& axes, Registry& registry) {
 
 }  // namespace
 
-Axes usual_axes() {
-  return {{"ruthless", "linear", "consistent", "quadratic", "exact"},
-          {},
-          {1, 2, 3, 4},
-          {"dopri5", "dop853", "imex"},
-          {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
-          {}};
-}
+Axes usual_axes() { return {{}, {}, {1, 2, 3, 4}, {"dopri5", "dop853", "imex"}, {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, {}}; }
 
 Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes c) {
+  if (c.formulations.empty()) c.formulations = studied_formulations(registry);
   check(c, registry);
   const Scene& scene = prepared.scene;
-  if (!flexible(prepared.model())) c.formulations = {"quadratic"};  // all are the same without a flexible body
-  bool beams = false, polynomial_already = true;
-  for_each_strain(scene, [&](const Value&, const Value& strain, const std::string& kind) {
-    beams = true;
-    if (kind != "torsion") polynomial_already = polynomial_already && family_of(strain) == polynomials;
+  if (!flexible(prepared.model())) c.formulations = {plain_formulation};  // without modes all are the same
+  bool bending = false, polynomial_already = true;
+  for_each_bending(scene, [&](const ModeCount& count) {
+    bending = true;
+    polynomial_already = polynomial_already && count.family_id() == polynomials;
   });
-  if (!beams && !has_plates(scene)) c.modes = {0};
-  if (!beams) c.families = {""};
+  if (scene.modes.empty()) c.modes = {0};
+  if (!bending) c.families = {""};
   if (c.families.empty()) {
     c.families = {""};
-    if (!polynomial_already && families_are_exchangeable(scene)) c.families.emplace_back(polynomials);
+    if (!polynomial_already && families_are_exchangeable(scene, registry)) c.families.emplace_back(polynomials);
   }
   std::sort(c.tolerances.begin(), c.tolerances.end(), std::greater<>());
   std::sort(c.modes.begin(), c.modes.end());

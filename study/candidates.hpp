@@ -15,7 +15,7 @@ namespace withy::study {
 /// fewer before more (0 where no body has a number of them), tolerances loosest first.
 using Candidates = Axes;
 
-/// What is chosen from where nothing else is asked.
+/// What is chosen from where nothing else is asked; no formulations: those that take part in studies.
 Axes usual_axes();
 
 /// The axes without what means nothing for the scene, families of bending added where they mean the same beams.

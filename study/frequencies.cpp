@@ -36,13 +36,14 @@ FrequencyStudy::FrequencyStudy(const Prepared& base, Registry& registry, Frequen
   for (const Point& p : question_.points) reference_.modes = std::max(reference_.modes, p.modes);
   ++reference_.modes;
   const double value = question_.sweep.values.at(1);
-  for (const std::string formulation : reference_formulations) {
+  const std::vector<std::string> formulations = reference_formulations(registry);
+  for (const std::string& formulation : formulations) {
     reference_.formulation = formulation;
     try {
       static_cast<void>(reference_at(value));
       break;
     } catch (const InputError&) {
-      if (formulation == reference_formulations.back()) throw;
+      if (formulation == formulations.back()) throw;
     }
   }
   const ModesAt& first = reference_at(value);

@@ -3,25 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
+#include <numeric>
 #include <string_view>
 
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
 namespace {
-
-/// In the order of a beam's coordinates.
-constexpr std::array<const char*, 6> strains = {"bending_y", "bending_z", "torsion", "extension", "shear_y", "shear_z"};
-
-/// Modes that a beam of the scene has in a strain; 0 where it has none.
-int modes_of(const Value& beam, const char* strain) {
-  const Value* s = beam.find(strain);
-  const Value* modes = s != nullptr ? s->find("modes") : nullptr;
-  return modes != nullptr ? static_cast<int>(modes->number()) : 0;
-}
 
 /// What an initial state says of a body's modal coordinates or rates, for another number of modes.
 /// \param had modes of each strain up to now, in the order of the values.
@@ -36,25 +26,16 @@ Value resized(std::span<const double> values, const std::vector<int>& had, int m
   return Value::list(std::move(items));
 }
 
-/// Gives a body the point's modes and family. \returns the modes that it had, in the order of its coordinates; none
-/// where the number is not to be chosen
-std::vector<int> change_modes(std::vector<Change>& changes, const std::string& name, const Value& body,
-                              const Slot* slot, const Point& point) {
-  const std::string type = body.text_at("type");
-  const Value modes(static_cast<double>(point.modes));
-  if (type == "plate") {
-    changes.push_back({"bodies." + name + ".modes", modes});
-    return {static_cast<int>(slot->speeds)};
-  }
-  if (type != "beam") return {};
+/// Gives a body the point's modes and family. \returns the modes that it had, in the order of its coordinates
+std::vector<int> change_modes(std::vector<Change>& changes, const BodyModes& body, const Point& point) {
   std::vector<int> had;
-  for (const char* strain : strains) {
-    had.push_back(modes_of(body, strain));
-    if (had.back() == 0) continue;
-    const std::string path = fmt::format("bodies.{}.{}", name, strain);
-    changes.push_back({path + ".modes", modes});
-    if (!point.family.empty() && std::string_view(strain).starts_with("bending"))
-      changes.push_back({path + ".family", Value(point.family)});
+  for (const ModeCount& count : body.counts) {
+    had.push_back(static_cast<int>(count.modes));
+    if (count.modes == 0) continue;
+    const std::string path = "bodies." + body.body + '.';
+    changes.push_back({path + count.path, Value(static_cast<double>(point.modes))});
+    if (!point.family.empty() && !count.family_path.empty())
+      changes.push_back({path + count.family_path, Value(point.family)});
   }
   return had;
 }
@@ -66,6 +47,9 @@ void change_start(std::vector<Change>& changes, const Scene& scene, const std::s
   const Value* starts = initial != nullptr ? initial->find("bodies") : nullptr;
   const Value* start = starts != nullptr ? starts->find(name) : nullptr;
   if (start == nullptr) return;
+  if (std::accumulate(had.begin(), had.end(), std::size_t{0}) != slot.speeds)
+    throw InputError("body '" + name +
+                     "' has other modes than its plugin says: its initial state cannot be carried over");
   const std::string path = "initial.bodies." + name;
   const std::span<const double> y = scene.initial.y;
   if (start->has("modes"))
@@ -180,13 +164,14 @@ std::vector<Change> changes_at(const Scene& scene, const Point& point) {
     changes.push_back({"integrator", Value::map({{"name", Value(point.integrator)},
                                                  {"rtol", Value(point.tolerance)},
                                                  {"atol", Value(absolute_tolerance(point.tolerance))}})});
+  for (const BodyModes& body : scene.modes) {
+    if (point.modes == 0) continue;
+    const std::vector<int> had = change_modes(changes, body, point);
+    // The initial states of segments have names of their own.
+    if (const Slot* const slot = scene.model->layout().body(body.body))
+      change_start(changes, scene, body.body, *slot, had, point.modes);
+  }
   for (const auto& [name, body] : scene.source.at("bodies").members()) {
-    const Slot* const slot = scene.model->layout().body(name);  // none of a beam in segments
-    if (point.modes > 0) {
-      const std::vector<int> had = change_modes(changes, name, body, slot, point);
-      // The initial states of segments have names of their own.
-      if (!had.empty() && slot != nullptr) change_start(changes, scene, name, *slot, had, point.modes);
-    }
     const std::string& of = name;
     const auto own =
         std::find_if(point.bodies.begin(), point.bodies.end(), [&](const auto& b) { return b.first == of; });

@@ -3,26 +3,30 @@
 #include <algorithm>
 
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
 namespace {
 
-bool same(const Terms& a, const Terms& b) {
-  return a.strain == b.strain && a.truncation == b.truncation && a.products_of_speeds == b.products_of_speeds;
-}
-
 bool has_modes(const BodyNode& body) { return body.body->shape().modes() > 0; }
 
+/// Of the scene's formulation and those of single bodies.
+int least_rank(const Scene& scene) {
+  int rank = scene.formulation->standing().rank;
+  for (const BodyNode& body : scene.model->bodies())
+    if (has_modes(body) && body.terms) rank = std::min(rank, rank_of(*body.terms));
+  return rank;
+}
+
 void make_rungs(Prepared& prepared, Registry& registry) {
-  for (const char* id : {"ruthless", "quadratic", "exact"}) {
-    const auto formulation = make_formulation(registry, id);
+  for (const RankedFormulation& rung : formulation_rungs(registry)) {
     try {
-      prepared.rung_equations.push_back(formulation->compile(prepared.scene.model));
+      prepared.rung_equations.push_back(rung.formulation->compile(prepared.scene.model));
     } catch (const std::invalid_argument&) {
       continue;  // a body without exact kinematics: the ladder ends before it
     }
-    prepared.rungs.push_back({id, formulation->terms(), prepared.rung_equations.back().get()});
+    prepared.rungs.push_back({rung.id, rung.formulation->terms(), prepared.rung_equations.back().get()});
   }
 }
 
@@ -72,12 +76,6 @@ std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std:
   return make_integrator(registry, id, Value::map({{"rtol", Value(tolerance)}, {"atol", Value(1e-2 * tolerance)}}));
 }
 
-bool has_terms_throughout(const Scene& scene, Terms terms) {
-  return same(scene.formulation->terms(), terms) &&
-         std::all_of(scene.model->bodies().begin(), scene.model->bodies().end(),
-                     [&](const BodyNode& body) { return !has_modes(body) || !body.terms || same(*body.terms, terms); });
-}
-
 Beyond compile_throughout(const Prepared& prepared, Registry& registry, const std::string& formulation) {
   const Scene& scene = prepared.scene;
   SceneValues values = prepared.values;
@@ -88,21 +86,33 @@ Beyond compile_throughout(const Prepared& prepared, Registry& registry, const st
     values.body_formulation(name, formulation, "every body in one formulation");
     own = true;
   }
-  if (!own) return {formulation, scene.model, make_formulation(registry, formulation)->compile(scene.model)};
+  if (!own) return {formulation, scene.model, make_formulation(registry, formulation)->compile(scene.model), false};
   const Scene all = make_scene(values.choose_formulation(formulation, "every body in one formulation"), registry);
-  return {formulation, all.model, all.formulation->compile(all.model)};
+  return {formulation, all.model, all.formulation->compile(all.model), false};
 }
 
 std::optional<Beyond> next_model_up(const Prepared& prepared, Registry& registry) {
-  const Scene& scene = prepared.scene;
-  if (!flexible(*scene.model)) return {};
-  if (has_terms_throughout(scene, {StrainOrder::exact, Truncation::none})) return {};
-  const bool quadratic = has_terms_throughout(scene, {StrainOrder::quadratic, Truncation::none});
-  try {
-    return compile_throughout(prepared, registry, quadratic ? "exact" : "quadratic");
-  } catch (const std::invalid_argument&) {
-    return {};  // a body without exact kinematics
+  if (!flexible(prepared.model())) return {};
+  const int rank = least_rank(prepared.scene);
+  const std::vector<RankedFormulation> rungs = formulation_rungs(registry);
+  for (const RankedFormulation& rung : rungs) {
+    if (rung.standing.rank <= rank) continue;
+    try {
+      Beyond beyond = compile_throughout(prepared, registry, rung.id);
+      beyond.highest = rung.id == rungs.back().id;
+      return beyond;
+    } catch (const std::invalid_argument&) {
+      continue;  // a body without exact kinematics
+    }
   }
+  return {};
+}
+
+std::optional<std::string> next_rung(Registry& registry, const std::string& formulation) {
+  const int rank = make_formulation(registry, formulation)->standing().rank;
+  for (const RankedFormulation& rung : formulation_rungs(registry))
+    if (rung.standing.rank > rank) return rung.id;
+  return {};
 }
 
 bool flexible(const Model& model) { return std::any_of(model.bodies().begin(), model.bodies().end(), has_modes); }

@@ -44,12 +44,13 @@ std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std:
 /// One with this relative tolerance, the absolute one a hundredth of it. \throws InputError
 std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std::string& id, double tolerance);
 
-/// Equations of a scene's model that neglect less than its own formulation: `quadratic` for all that neglect more, and
-/// `exact` for `quadratic` where every flexible body offers it.
+/// Equations of a scene's model that neglect less than its own formulation and those of single bodies: in the least
+/// rung of `auto` above them that every flexible body offers.
 struct Beyond {
   std::string formulation;
   std::shared_ptr<const Model> model;  ///< the scene's, or the same without formulations of single bodies
   std::shared_ptr<const EquationsOfMotion> equations;
+  bool highest = false;  ///< no rung is above it
 };
 /// The scene's model with every body in one formulation.
 /// \throws std::invalid_argument where a body cannot be; InputError where there is no such formulation.
@@ -57,8 +58,9 @@ Beyond compile_throughout(const Prepared& prepared, Registry& registry, const st
 /// Nothing where no body is flexible or there is no model up.
 std::optional<Beyond> next_model_up(const Prepared& prepared, Registry& registry);
 
-/// Whether the scene and each of its bodies is in the formulation with these terms.
-bool has_terms_throughout(const Scene& scene, Terms terms);
+/// The least rung of `auto` above a formulation; nothing where there is none. \throws InputError
+std::optional<std::string> next_rung(Registry& registry, const std::string& formulation);
+
 /// Whether any body has modes.
 bool flexible(const Model& model);
 

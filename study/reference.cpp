@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "withy/core/plugin/formulation_ladder.hpp"
+
 namespace withy::study {
 namespace {
 
@@ -15,7 +17,7 @@ class Search {
 
   /// The coarsest level, in the richest formulation that comes to the end.
   std::optional<Reference> begin(Point point) {
-    for (const char* formulation : reference_formulations) {
+    for (const std::string& formulation : reference_formulations(registry_)) {
       point.formulation = formulation;
       if (auto reference = at(point)) return reference;
       if (found.interrupted) break;
@@ -56,6 +58,13 @@ class Search {
 };
 
 }  // namespace
+
+std::vector<std::string> reference_formulations(Registry& registry) {
+  std::vector<std::string> ids;
+  for (const RankedFormulation& rung : formulation_rungs(registry))
+    if (rung.formulation->terms().truncation == Truncation::none) ids.insert(ids.begin(), rung.id);
+  return ids;
+}
 
 ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
                               const Outputs& outputs, const ReferenceGoal& goal, const Control& control) {

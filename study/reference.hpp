@@ -2,7 +2,6 @@
 /// The run that errors are measured against, and how well it is known: the one search of every study.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,8 +12,9 @@
 
 namespace withy::study {
 
-/// What errors are measured against, richest first: the first that every body of a scene can be in.
-inline constexpr std::array<const char*, 2> reference_formulations = {"exact", "quadratic"};
+/// What errors are measured against, richest first: the rungs of `auto` that truncate nothing. The first that every
+/// body of a scene can be in is taken.
+std::vector<std::string> reference_formulations(Registry& registry);
 
 /// A run whose outputs are the truth, and how true they are.
 struct Reference {

@@ -69,11 +69,13 @@ RunSummary run_plainly(const Prepared& prepared, const RunSettings& settings, co
 std::optional<Beyond> beyond_last(const Prepared& prepared, const EscalatedRun& run, Registry& registry) {
   const std::size_t last = run.stretches.back().rung;
   if (last + 1 >= prepared.rungs.size() || !flexible(prepared.model())) return {};
-  return compile_throughout(prepared, registry, prepared.rungs[last + 1].name);
+  Beyond beyond = compile_throughout(prepared, registry, prepared.rungs[last + 1].name);
+  beyond.highest = last + 2 == prepared.rungs.size();
+  return beyond;
 }
 
 bool wanted(Estimate estimate, const Beyond& beyond) {
-  return estimate == Estimate::always || (estimate == Estimate::automatic && beyond.formulation == "quadratic");
+  return estimate == Estimate::always || (estimate == Estimate::automatic && !beyond.highest);
 }
 
 }  // namespace

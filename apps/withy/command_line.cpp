@@ -142,7 +142,7 @@ void add_advise(Commands& commands) {
   axis("--outputs,--output", a.outputs, "NAME,...",
        "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection; default: all free hinges and tips");
   axis("--formulations,--formulation", a.axes.formulations, "ID,...",
-       "Formulations to choose from; default: ruthless,linear,consistent,quadratic,exact");
+       "Formulations to choose from; default: all that take part in studies, plugins' too");
   axis("--families,--family", a.axes.families, "ID,...",
        "Mode families of bending to choose from; default: the scene's, and orthogonal-polynomials where they are the "
        "same beams");
@@ -232,7 +232,7 @@ void add_commands(Commands& commands) {
       trade, c);
   add_scene(*c, trade_arguments);
   add_formulations(*c, trade_arguments.axes.formulations, "--formulations,--formulation",
-                   "Formulations; default: ruthless,linear,consistent,quadratic,exact");
+                   "Formulations; default: all that take part in studies, plugins' too");
   c->add_option("--families,--family", trade_arguments.axes.families, "Mode families of bending; default: the scene's")
       ->type_name("ID,ID,...")
       ->delimiter(',');

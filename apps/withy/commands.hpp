@@ -58,7 +58,7 @@ struct TermsArguments : SceneArguments {
 
 /// Values of each axis; their product is the study.
 struct TradeAxes {
-  std::vector<std::string> formulations = {"ruthless", "linear", "consistent", "quadratic", "exact"};
+  std::vector<std::string> formulations;     ///< empty: those that take part in studies
   std::vector<std::string> families = {""};  ///< of bending; empty text: the scene's
   std::vector<int> modes = {1, 2, 3};        ///< of each family that a beam has
   std::vector<std::string> integrators = {"dopri5", "imex"};

@@ -42,6 +42,25 @@ std::string table_text(const study::TermSizes& ledger) {
   return out + " N/sqrt(kg).\n";
 }
 
+std::string left_out_text(const study::TermSizes& ledger) {
+  if (ledger.left_out.empty()) return {};
+  std::vector<std::string> head = {"<formulation"};
+  for (const CoordinateGroup& g : ledger.groups) {
+    head.push_back(g.name + "\nrms %");
+    head.push_back(g.name + "\npeak %");
+  }
+  TextTable table(head);
+  for (const study::LeftOutBy& by : ledger.left_out) {
+    std::vector<std::string> row = {by.formulation};
+    for (std::size_t g = 0; g < ledger.groups.size(); ++g) {
+      row.push_back(cell(by.rms(g), ledger.greatest_rms(g)));
+      row.push_back(cell(by.peak(g), ledger.greatest_peak(g)));
+    }
+    table.add(std::move(row));
+  }
+  return "\nLeft out by each formulation of what " + ledger.richest + " keeps, in the same per cent:\n\n" + table.str();
+}
+
 }  // namespace
 
 ExitStatus terms(const TermsArguments& arguments) {
@@ -53,9 +72,10 @@ ExitStatus terms(const TermsArguments& arguments) {
   const study::TermSizes& sizes = study.sizes();
   const nlohmann::ordered_json j = terms_json(scene, summary, sizes);
   const std::string title = engine.prepared().title();
-  std::string text = arguments.json ? json_text(j)
-                                    : fmt::format("{} ({}, {} outputs, {})\n\n{}", title, scene.formulation_name,
-                                                  sizes.times.size(), study::outcome_text(summary), table_text(sizes));
+  std::string text =
+      arguments.json ? json_text(j)
+                     : fmt::format("{} ({}, {} outputs, {})\n\n{}", title, scene.formulation_name, sizes.times.size(),
+                                   study::outcome_text(summary), table_text(sizes) + left_out_text(sizes));
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
     std::filesystem::create_directories(folder);

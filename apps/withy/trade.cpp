@@ -11,6 +11,7 @@
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/apps/withy/trade_axes.hpp"
+#include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/trade_files.hpp"
@@ -83,9 +84,10 @@ std::string references_text(const study::TradeStudy& study) {
 
 }  // namespace
 
-study::Axes axes_of(const TradeAxes& asked) {
+study::Axes axes_of(const TradeAxes& asked, Registry& registry) {
   study::Axes axes{asked.formulations, asked.families, asked.modes, asked.integrators, asked.tolerances, {}};
   for (const std::string& over : asked.over) axes.over.push_back(parse_variation(over));
+  if (axes.formulations.empty()) axes.formulations = studied_formulations(registry);
   study::check_axes(axes);
   return axes;
 }
@@ -96,8 +98,8 @@ ExitStatus trade(const TradeArguments& arguments) {
     throw InputError(
         "--measure frequencies, --lock and --spin go with --limit; frequencies over a range are what "
         "withy modes --sweep shows");
-  const std::vector<study::Point> points = study::points_of(axes_of(arguments.axes));
   const Engine engine(arguments);
+  const std::vector<study::Point> points = study::points_of(axes_of(arguments.axes, engine.registry()));
   std::optional<TradeFolder> store;
   if (!arguments.out.empty()) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points));
   study::TradeStudy study(engine.prepared(), engine.registry(), points,

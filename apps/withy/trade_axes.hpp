@@ -8,7 +8,7 @@
 namespace withy::app {
 
 /// \throws InputError
-study::Axes axes_of(const TradeAxes& asked);
+study::Axes axes_of(const TradeAxes& asked, Registry& registry);
 
 /// Where along a range of a scene's value each model ceases to hold an accuracy.
 /// \throws InputError, SceneError, PluginError

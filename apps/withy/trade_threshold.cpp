@@ -24,7 +24,7 @@ constexpr std::size_t scanned = 9;  ///< values of the range that are looked at 
 struct Question {
   study::Sweep range;
   double limit = 0;
-  std::vector<study::Point> points;
+  TradeAxes axes;  ///< without the range
 };
 
 Question read_question(const TradeArguments& arguments) {
@@ -51,7 +51,7 @@ Question read_question(const TradeArguments& arguments) {
                      "' holds a hinge at a rate, which is for --measure frequencies; "
                      "give a path of the scene, as motions.spin.rate");
   }
-  q.points = study::points_of(axes_of(axes));
+  q.axes = std::move(axes);
   return q;
 }
 
@@ -78,15 +78,16 @@ std::string table_text(const std::vector<study::Threshold>& rows, const study::S
 
 std::optional<study::Thresholds> found(const TradeArguments& arguments, const Question& q) {
   const Engine engine(arguments);
+  const std::vector<study::Point> points = study::points_of(axes_of(q.axes, engine.registry()));
   const study::Control control = study_control("trade");
   if (arguments.measure == "frequencies") {
     const study::Holding holding = holding_of(engine.model(), arguments.lock, arguments.spin);
     return study::thresholds_of_frequencies(engine.prepared(), engine.registry(),
-                                            {q.points, q.range, holding, arguments.count}, q.limit, control);
+                                            {points, q.range, holding, arguments.count}, q.limit, control);
   }
   std::optional<TradeFolder> store;
-  if (!arguments.out.empty()) store.emplace(arguments.out, trade_fingerprint(engine.scene(), q.points));
-  return study::thresholds_of_runs(engine.prepared(), engine.registry(), q.points, q.range, q.limit,
+  if (!arguments.out.empty()) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points));
+  return study::thresholds_of_runs(engine.prepared(), engine.registry(), points, q.range, q.limit,
                                    {arguments.jobs, store ? &*store : nullptr, control});
 }
 
