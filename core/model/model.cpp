@@ -13,12 +13,6 @@ const Slot* find_slot(const std::vector<Slot>& slots, std::string_view name) {
   return it == slots.end() ? nullptr : &*it;
 }
 
-template <class Node>
-int find_index(const std::vector<Node>& nodes, std::string_view name) {
-  const auto it = std::find_if(nodes.begin(), nodes.end(), [&](const Node& n) { return n.name == name; });
-  return it == nodes.end() ? -1 : static_cast<int>(it - nodes.begin());
-}
-
 /// The undeformed body: its mass at q = 0, no modes.
 class RigidifiedBody final : public Body {
  public:
@@ -54,12 +48,39 @@ void check_content(const BodyNode& node) {
   }
 }
 
+/// Hinges that hang on the world, parents before children. In their own order where that allows it: what comes before
+/// its parent waits for the next round. `inboard`: the hinge of each body.
+std::vector<std::size_t> parents_first(const std::vector<HingeNode>& hinges, const std::vector<int>& inboard) {
+  constexpr std::size_t unknown = static_cast<std::size_t>(-1);
+  std::vector<std::vector<std::size_t>> children(hinges.size() + 1);  // of each hinge; of the world last
+  for (std::size_t h = 0; h < hinges.size(); ++h) {
+    const int parent = hinges[h].parent;
+    children[parent < 0 ? hinges.size() : static_cast<std::size_t>(inboard[static_cast<std::size_t>(parent)])]
+        .push_back(h);
+  }
+  std::vector<std::size_t> round(hinges.size(), unknown), order = children.back();
+  for (const std::size_t h : order) round[h] = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::size_t parent = order[i];
+    for (const std::size_t h : children[parent]) {
+      round[h] = round[parent] + (h < parent ? 1 : 0);
+      order.push_back(h);
+    }
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return std::pair(round[a], a) < std::pair(round[b], b); });
+  return order;
+}
+
 }  // namespace
 
 const Slot* Layout::hinge(std::string_view name) const { return find_slot(hinges, name); }
 const Slot* Layout::body(std::string_view name) const { return find_slot(bodies, name); }
 
-int BodyNode::frame(std::string_view frame_name) const { return find_index(frames, frame_name); }
+int BodyNode::frame(std::string_view frame_name) const {
+  const auto it = std::find_if(frames.begin(), frames.end(), [&](const Frame& f) { return f.name == frame_name; });
+  return it == frames.end() ? -1 : static_cast<int>(it - frames.begin());
+}
 
 Model::Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector3 gravity) : gravity_(gravity) {
   const std::size_t n = bodies.size();
@@ -77,20 +98,10 @@ Model::Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector
   for (std::size_t b = 0; b < n; ++b) {
     if (inboard[b] < 0) throw std::invalid_argument("body '" + bodies[b].name + "' is the child of no hinge");
   }
-  // Parents before children, otherwise in the order the hinges are given: as soon as the parent is placed.
   std::vector<int> place(n, -1);
-  std::vector<std::size_t> order;
-  for (bool progress = true; progress && order.size() < n;) {
-    progress = false;
-    for (std::size_t h = 0; h < n; ++h) {
-      const auto child = static_cast<std::size_t>(hinges[h].child);
-      const int parent = hinges[h].parent;
-      if (place[child] >= 0 || (parent >= 0 && place[static_cast<std::size_t>(parent)] < 0)) continue;
-      place[child] = static_cast<int>(order.size());
-      order.push_back(h);
-      progress = true;
-    }
-  }
+  const std::vector<std::size_t> order = parents_first(hinges, inboard);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    place[static_cast<std::size_t>(hinges[order[i]].child)] = static_cast<int>(i);
   if (order.size() < n) {
     std::string names;
     for (const HingeNode& h : hinges) {
@@ -111,8 +122,11 @@ Model::Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector
 void Model::lay_out() {
   std::size_t x = 0;
   std::size_t u = 0;
+  layout_.modes_of.assign(bodies_.size(), -1);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const HingeNode& h = hinges_[b];
+    body_of_.emplace(bodies_[b].name, static_cast<int>(b));
+    hinge_of_.emplace(h.name, static_cast<int>(b));
     layout_.hinges.push_back({h.name, x, h.hinge->coordinates(), u, h.hinge->speeds()});
     x += h.hinge->coordinates();
     u += h.hinge->speeds();
@@ -120,6 +134,7 @@ void Model::lay_out() {
     const ModalShape& shape = bodies_[b].body->shape();
     const std::size_t modes = shape.mode_names.size();
     if (modes == 0) continue;
+    layout_.modes_of[b] = static_cast<int>(layout_.bodies.size());
     layout_.bodies.push_back({bodies_[b].name, x, modes, u, modes});
     x += modes;
     u += modes;
@@ -129,8 +144,14 @@ void Model::lay_out() {
   layout_.speeds = u;
 }
 
-int Model::body(std::string_view name) const { return find_index(bodies_, name); }
-int Model::hinge(std::string_view name) const { return find_index(hinges_, name); }
+int Model::body(std::string_view name) const {
+  const auto found = body_of_.find(name);
+  return found == body_of_.end() ? -1 : found->second;
+}
+int Model::hinge(std::string_view name) const {
+  const auto found = hinge_of_.find(name);
+  return found == hinge_of_.end() ? -1 : found->second;
+}
 
 std::vector<int> Model::segments(std::string_view name) const {
   if (const int index = body(name); index >= 0) return {index};
