@@ -122,6 +122,7 @@ RunSummary Engine::simulate(const std::function<void(const State&)>& output, con
   options.beyond = extras.beyond;
   options.checkpoint = extras.checkpoint;
   options.resume = extras.resume;
+  options.seen = extras.seen;
   using Clock = std::chrono::steady_clock;
   const std::chrono::duration<double> interval(extras.checkpoint_seconds);
   Clock::time_point last = Clock::now();

@@ -42,6 +42,7 @@ struct SimulationExtras {
   double checkpoint_seconds = 0;                      ///< wall time between checkpoints; 0: none but at SIGINT
   std::function<void(const Checkpoint&)> checkpoint;  ///< takes them; may be empty
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: at the scene's initial state
+  Observation* seen = nullptr;                        ///< brought to each output's state; may be null
 };
 
 class Engine {

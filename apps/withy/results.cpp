@@ -1,5 +1,6 @@
 #include "withy/apps/withy/results.hpp"
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/output.hpp"
@@ -34,7 +35,10 @@ class ResultsFile {
   }
   /// Tips and energies are those of the formulation that the run is in.
   void write(const State& state, std::size_t rung) { write(csv_line(columns_[rung].row(state))); }
-  /// Makes what was written last. \returns its length
+  /// The same where `seen()` is at that state; of a run that has one formulation.
+  void write_seen(const State& state) { write(csv_line(columns_.front().row_of_seen(state))); }
+  [[nodiscard]] Observation& seen() { return columns_.front().seen(); }
+  /// Makes what was written last through a loss of power. \returns its length
   std::uintmax_t sync() {
     csv_.sync();
     return bytes_;
@@ -57,9 +61,17 @@ class ResultsFile {
   void write(const std::string& text) {
     csv_.write(text);
     bytes_ += text.size();
+    // For whoever watches a long run: a call of the system for every row costs more than the row.
+    const Clock::time_point now = Clock::now();
+    if (now - flushed_ < std::chrono::milliseconds(200)) return;
+    csv_.flush();
+    flushed_ = now;
   }
 
+  using Clock = std::chrono::steady_clock;
+
   std::uintmax_t bytes_;
+  Clock::time_point flushed_ = Clock::now();
   OutputFile csv_;
   std::vector<ResultColumns> columns_;
 };
@@ -82,7 +94,12 @@ CertifiedRun simulate_to_csv(const std::filesystem::path& folder, const Engine& 
       extras.checkpoint_seconds = continuation.interval;
       extras.checkpoint = [&](const Checkpoint& checkpoint) { continuation.files->write({checkpoint, csv.sync()}); };
     }
-    run.summary = engine.simulate([&](const State& state) { write(state, 0); }, extras);
+    extras.seen = &csv.seen();
+    const auto write_seen = [&](const State& state) {
+      csv.write_seen(state);
+      if (also) also(state);
+    };
+    run.summary = engine.simulate(write_seen, extras);
   }
   csv.close();
   return run;
