@@ -126,7 +126,8 @@ class StateReader {
     std::vector<std::string> names;
     for (const Slot& s : model_.layout().bodies) names.push_back(s.name);
     for (const auto& [name, member] : value.members()) {
-      const Slot* slot = model_.layout().body(name);
+      const int index = model_.body(name);
+      const Slot* slot = index < 0 ? nullptr : model_.layout().modes(static_cast<std::size_t>(index));
       if (slot == nullptr) {
         const std::size_t segments = model_.segments(name).size();
         key_error(member,
