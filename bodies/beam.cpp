@@ -23,6 +23,7 @@
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/segments.hpp"
 
 namespace withy {
 namespace {
@@ -353,49 +354,57 @@ class Reader {
   bool good_ = true;
 };
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) { return Reader(p, context).make(); }
-
 std::vector<ParameterSpec> strain_parameters(const char* stiffness, const char* unit = "N m^2") {
   return {number("stiffness", unit, stiffness).above(0).or_table("m"),
-          integer("modes", "number of assumed modes").least(0).most(1000).otherwise(2),
+          integer("modes", "number of assumed modes").least(0).most(1000).otherwise(2).as(ParameterSpec::Role::modes),
           text("family", "assumed-mode family").naming(ParameterSpec::Refers::mode_family).otherwise("clamped-free")};
 }
 
-void enroll(Enrollment& enrollment) {
+std::vector<ParameterSpec> parameters() {
   std::vector<ParameterSpec> torsion = strain_parameters("torsional stiffness GJ");
   torsion.push_back(number("inertia", "kg m", "polar inertia per length, rho I_p").above(0).or_table("m"));
   const auto bending = [](const char* stiffness, const char* inertia) {
     std::vector<ParameterSpec> specs = strain_parameters(stiffness);
+    specs.back().role = ParameterSpec::Role::bending_family;
     specs.push_back(number("rotary_inertia", "kg m", inertia).least(0).or_table("m").optional());
     return specs;
   };
+  return {
+      number("length", "m", "length, undeformed").above(0),
+      number("mass_per_length", "kg/m", "mass per length").above(0).or_table("m"),
+      map("bending_y", bending("EI_z, for deflection along y", "rotary inertia of the sections per length, rho I_z"),
+          "bending with deflection along y")
+          .optional(),
+      map("bending_z", bending("EI_y, for deflection along z", "rotary inertia of the sections per length, rho I_y"),
+          "bending with deflection along z")
+          .optional(),
+      map("torsion", torsion, "twist about x").optional(),
+      map("extension", strain_parameters("axial stiffness EA", "N"), "extension along x").optional(),
+      map("shear_y", strain_parameters("shear stiffness k G A along y", "N"),
+          "shear, deflection along y beside that of bending_y")
+          .optional(),
+      map("shear_z", strain_parameters("shear stiffness k G A along z", "N"),
+          "shear, deflection along z beside that of bending_z")
+          .optional(),
+      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0),
+      integer("segments", "number of beams, welded one behind the other, it is cut into; modes are of each")
+          .least(1)
+          .most(1000)
+          .otherwise(1)};
+}
+
+std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+  auto whole = Reader(p, context).make();
+  if (whole == nullptr) return nullptr;
+  return in_segments(std::move(whole), p, parameters(),
+                     [&](const Value& segment) { return Reader(segment, context).make(); });
+}
+
+void enroll(Enrollment& enrollment) {
   enrollment.add<Body>(
       {.id = "beam",
        .summary = "Slender beam along x, bending in two planes and twisting, if wanted with extension and shear",
-       .parameters = {number("length", "m", "length, undeformed").above(0),
-                      number("mass_per_length", "kg/m", "mass per length").above(0).or_table("m"),
-                      map("bending_y",
-                          bending("EI_z, for deflection along y", "rotary inertia of the sections per length, rho I_z"),
-                          "bending with deflection along y")
-                          .optional(),
-                      map("bending_z",
-                          bending("EI_y, for deflection along z", "rotary inertia of the sections per length, rho I_y"),
-                          "bending with deflection along z")
-                          .optional(),
-                      map("torsion", torsion, "twist about x").optional(),
-                      map("extension", strain_parameters("axial stiffness EA", "N"), "extension along x").optional(),
-                      map("shear_y", strain_parameters("shear stiffness k G A along y", "N"),
-                          "shear, deflection along y beside that of bending_y")
-                          .optional(),
-                      map("shear_z", strain_parameters("shear stiffness k G A along z", "N"),
-                          "shear, deflection along z beside that of bending_z")
-                          .optional(),
-                      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0),
-                      integer("segments",
-                              "number of beams, welded one behind the other, it is cut into; modes are of each")
-                          .least(1)
-                          .most(1000)
-                          .otherwise(1)},
+       .parameters = parameters(),
        .make = &make});
 }
 

@@ -2,13 +2,10 @@
 /// The immutable tree of bodies, hinges and loads. Threads share it.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -119,20 +116,16 @@ class Model {
   void add_motion(std::string name, const std::string& hinge, std::shared_ptr<const Motion> motion);
 
  private:
-  struct NameHash {
-    using is_transparent = void;
-    std::size_t operator()(std::string_view name) const { return std::hash<std::string_view>()(name); }
-  };
-  using NameIndex = std::unordered_map<std::string, int, NameHash, std::equal_to<>>;
   void lay_out();
 
   std::vector<BodyNode> bodies_;
   std::vector<HingeNode> hinges_;
   std::vector<LoadNode> loads_;
   std::vector<MotionNode> motions_;
-  NameIndex body_of_, hinge_of_;
   Vector3 gravity_;
   Layout layout_;
+  std::vector<int> bodies_by_name_, hinges_by_name_;  ///< indices in the order of names
+  std::vector<bool> driven_;                          ///< by hinge
 };
 
 }  // namespace withy
