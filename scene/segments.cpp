@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "withy/core/simulation/elastic_modes.hpp"
+
 namespace withy {
 namespace {
 
@@ -92,10 +94,13 @@ Value segment_of(const Value& body, const std::vector<ParameterSpec>& specs, std
 
 std::unique_ptr<Body> damped_as(const ModalShape& whole, std::unique_ptr<Body> segment) {
   std::map<std::string, double> times;  // sqrt(τ) by strain
-  for (Eigen::Index i = 0; i < whole.modes(); ++i) {
-    const double k = whole.stiffness(i, i);
-    times.emplace(strain_of(whole.mode_names[static_cast<std::size_t>(i)]),
-                  k > 0 ? std::sqrt(whole.damping(i, i) / k) : 0.0);
+  for (const ModeGroup& group : mode_groups(whole)) {
+    const ElasticModes modes = elastic_modes(whole, group.coordinates);
+    if (modes.vectors.cols() == 0) continue;
+    // Of the lowest mode: vᵀ D v = 2 ζ ω, vᵀ K v = ω².
+    const Eigen::VectorXd v = modes.vectors.col(0);
+    const double damping = v.dot(whole.damping(group.coordinates, group.coordinates) * v);
+    times.emplace(group.name, std::sqrt(std::max(0.0, damping)) / modes.frequencies[0]);
   }
   ModalShape shape = segment->shape();
   Eigen::VectorXd scale(shape.modes());

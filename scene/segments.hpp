@@ -18,8 +18,8 @@ std::size_t segments_of(const Value& body, const std::vector<ParameterSpec>& spe
 Value segment_of(const Value& body, const std::vector<ParameterSpec>& specs, std::size_t k, std::size_t n);
 
 /// The segment with damping in proportion to its stiffness, D = τ K, such that the whole is damped as `whole` says.
-/// Every strain, as "bending_y", has its own τ = D₁₁/K₁₁ from its first mode on the whole: 2 ζ/ω₁ where that has the
-/// damping ratio ζ, so that whole modes of frequency ω have ζ ω/ω₁. Modal damping of the segment's own modes would
+/// Every strain, as "bending_y", has its own τ = vᵀDv/vᵀKv with the lowest mode v of the whole: 2 ζ/ω₁ where that has
+/// the damping ratio ζ, so that whole modes of frequency ω have ζ ω/ω₁. Modal damping of the segment's own modes would
 /// leave next to nothing: they are about n² as fast as those of the whole.
 std::unique_ptr<Body> damped_as(const ModalShape& whole, std::unique_ptr<Body> segment);
 
