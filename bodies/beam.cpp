@@ -24,6 +24,7 @@
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/segments.hpp"
 
 namespace withy {
 namespace {
@@ -360,19 +361,18 @@ class Reader {
   bool good_ = true;
 };
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) { return Reader(p, context).make(); }
-
 std::vector<ParameterSpec> strain_parameters(const char* stiffness, const char* unit = "N m^2") {
   return {number("stiffness", unit, stiffness).above(0).or_table("m"),
-          integer("modes", "number of assumed modes").least(0).most(1000).otherwise(2),
+          integer("modes", "number of assumed modes").least(0).most(1000).otherwise(2).as(ParameterSpec::Role::modes),
           text("family", "assumed-mode family").naming(ParameterSpec::Refers::mode_family).otherwise("clamped-free")};
 }
 
-void enroll(Enrollment& enrollment) {
+std::vector<ParameterSpec> parameters() {
   std::vector<ParameterSpec> torsion = strain_parameters("torsional stiffness GJ");
   torsion.push_back(number("inertia", "kg m", "polar inertia per length, rho I_p").above(0).or_table("m"));
   const auto bending = [](const char* stiffness, const char* inertia) {
     std::vector<ParameterSpec> specs = strain_parameters(stiffness);
+    specs.back().role = ParameterSpec::Role::bending_family;
     specs.push_back(number("rotary_inertia", "kg m", inertia).least(0).or_table("m").optional());
     return specs;
   };
@@ -398,10 +398,21 @@ void enroll(Enrollment& enrollment) {
           .most(1000)
           .otherwise(1)};
   for (ParameterSpec& spec : damping_parameters()) specs.push_back(std::move(spec));
+  return specs;
+}
+
+std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+  auto whole = Reader(p, context).make();
+  if (whole == nullptr) return nullptr;
+  return in_segments(std::move(whole), p, parameters(),
+                     [&](const Value& segment) { return Reader(segment, context).make(); });
+}
+
+void enroll(Enrollment& enrollment) {
   enrollment.add<Body>(
       {.id = "beam",
        .summary = "Slender beam along x, bending in two planes and twisting, if wanted with extension and shear",
-       .parameters = std::move(specs),
+       .parameters = parameters(),
        .make = &make});
 }
 

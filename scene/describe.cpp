@@ -37,6 +37,8 @@ const char* referent(ParameterSpec::Refers what) {
       return "frame";
     case mode_family:
       return "mode family";
+    case motion:
+      return "motion";
     case nothing:
       break;
   }
@@ -58,6 +60,9 @@ std::string expectation(const ParameterSpec& spec) {
       if (!spec.unit.empty()) return "a name, or a number" + range(spec) + bracketed(spec.unit);
       if (spec.refers == ParameterSpec::Refers::mode_family) {
         return "the name of a mode family, or a map with its name and options";
+      }
+      if (spec.refers == ParameterSpec::Refers::motion) {
+        return "the type of a motion, or a map with its type and options";
       }
       if (spec.refers != ParameterSpec::Refers::nothing) return fmt::format("the name of a {}", referent(spec.refers));
       return "text";

@@ -28,5 +28,7 @@ std::vector<ParameterSpec> motion_members();
 ParameterSpec choice_name(std::string_view kind, std::string_view otherwise);
 /// The name of a mode family beside the plugin's own options.
 ParameterSpec family_name();
+/// The type of a motion beside the plugin's own options.
+ParameterSpec motion_type();
 
 }  // namespace withy::grammar

@@ -70,6 +70,7 @@ class SchemaWriter {
          {{"quantity", {{"type", "string"}, {"pattern", quantity_pattern}, {"description", "a number with its unit"}}},
           {"numbers", {{"type", "array"}, {"items", number_or_quantity({{"type", "number"}})}}},
           {"mode-family", mode_family()},
+          {"motion", motion()},
           {"name", {{"type", "string"}, {"pattern", name_pattern}}}}}};
   }
 
@@ -88,6 +89,7 @@ class SchemaWriter {
   static Json word(const ParameterSpec& spec) {
     if (!spec.unit.empty()) return {{"type", {"string", "number"}}};
     if (spec.refers == ParameterSpec::Refers::mode_family) return reference("mode-family");
+    if (spec.refers == ParameterSpec::Refers::motion) return reference("motion");
     Json json = {{"type", "string"}};
     if (!spec.choices.empty()) json["enum"] = spec.choices;
     return json;
@@ -195,6 +197,12 @@ class SchemaWriter {
     Json list = alternatives<ModeFamily>("name", {grammar::family_name()});
     list.push_back({{"type", "string"}, {"enum", registry_.ids<ModeFamily>()}});
     return {{"description", "mode-family plugin, by name or with options"}, {"anyOf", list}};
+  }
+
+  Json motion() {
+    Json list = alternatives<Motion>("type", {grammar::motion_type()});
+    list.push_back({{"type", "string"}, {"enum", registry_.ids<Motion>()}});
+    return {{"description", "motion plugin, by type or with options"}, {"anyOf", list}};
   }
 
   static Json state() {

@@ -5,8 +5,10 @@
 
 namespace {
 
+constexpr withy::Terms kept = {withy::StrainOrder::quadratic, withy::Truncation::none};
+
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::Terms{withy::StrainOrder::quadratic, withy::Truncation::none}>(
+  withy::enroll_formulation<kept, withy::aside<kept>>(
       enrollment, "auto",
       "The least of ruthless, quadratic and exact whose validity holds, changed along a run where it does not; "
       "quadratic where nothing runs");

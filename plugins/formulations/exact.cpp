@@ -4,8 +4,10 @@
 
 namespace {
 
+constexpr withy::Terms kept = {withy::StrainOrder::exact, withy::Truncation::none};
+
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::Terms{withy::StrainOrder::exact, withy::Truncation::none}>(
+  withy::enroll_formulation<kept, withy::rung<kept>>(
       enrollment, "exact",
       "Inextensible rods whose strains are modal, kinematics not expanded: large deflections, conserves energy and "
       "momentum");

@@ -8,24 +8,32 @@
 
 namespace withy {
 
-/// A formulation whose sweeps are the core's.
+/// A rung of `auto`.
 template <Terms kept>
+inline constexpr Standing rung{.rank = rank_of(kept), .rung = true, .studied = true};
+/// Left out of studies that do not name it.
+template <Terms kept>
+inline constexpr Standing aside{.rank = rank_of(kept), .rung = false, .studied = false};
+
+/// A formulation whose sweeps are the core's.
+template <Terms kept, Standing place>
 class SweptFormulation final : public Formulation {
  public:
   Terms terms() const override { return kept; }
+  Standing standing() const override { return place; }
   std::unique_ptr<EquationsOfMotion> compile(std::shared_ptr<const Model> model) const override {
     return compile_equations(std::move(model), kept);
   }
 };
 
-template <Terms kept>
+template <Terms kept, Standing place = Standing{.rank = rank_of(kept)}>
 void enroll_formulation(Enrollment& enrollment, const char* id, const char* summary) {
   enrollment.add<Formulation>(
       {.id = id,
        .summary = summary,
        .parameters = {},
        .make = [](const Value& /*parameters*/, const MakeContext& /*context*/) -> std::unique_ptr<Formulation> {
-         return std::make_unique<SweptFormulation<kept>>();
+         return std::make_unique<SweptFormulation<kept, place>>();
        }});
 }
 

@@ -5,8 +5,10 @@
 
 namespace {
 
+constexpr withy::Terms kept = {withy::StrainOrder::linear, withy::Truncation::strict};
+
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::Terms{withy::StrainOrder::linear, withy::Truncation::strict}>(
+  withy::enroll_formulation<kept, withy::aside<kept>>(
       enrollment, "inconsistent", "First order in the elastic coordinates, from linear strain-displacement relations");
 }
 

@@ -4,8 +4,10 @@
 
 namespace {
 
+constexpr withy::Terms kept = {withy::StrainOrder::quadratic, withy::Truncation::none};
+
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::Terms{withy::StrainOrder::quadratic, withy::Truncation::none}>(
+  withy::enroll_formulation<kept, withy::rung<kept>>(
       enrollment, "quadratic",
       "Second-order kinematics, nothing truncated: symmetric positive definite, conserves energy and momentum");
 }

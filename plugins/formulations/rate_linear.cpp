@@ -5,8 +5,10 @@
 
 namespace {
 
+constexpr withy::Terms kept = {withy::StrainOrder::quadratic, withy::Truncation::none, false};
+
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::Terms{withy::StrainOrder::quadratic, withy::Truncation::none, false}>(
+  withy::enroll_formulation<kept, withy::aside<kept>>(
       enrollment, "rate-linear", "Second-order kinematics without Coriolis, centrifugal and gyroscopic terms");
 }
 

@@ -5,9 +5,11 @@
 
 namespace {
 
+constexpr withy::Terms kept = {withy::StrainOrder::linear, withy::Truncation::ruthless};
+
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::Terms{withy::StrainOrder::linear, withy::Truncation::ruthless}>(
-      enrollment, "ruthless", "Elastic terms dropped but for q̈, -Kq and -Dq̇ (order zero)");
+  withy::enroll_formulation<kept, withy::rung<kept>>(enrollment, "ruthless",
+                                                     "Elastic terms dropped but for q̈, -Kq and -Dq̇ (order zero)");
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
-#include "withy/scene/segments.hpp"
+#include "withy/core/plugin/segments.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
-
-#include "withy/core/simulation/elastic_modes.hpp"
 
 namespace withy {
 namespace {
@@ -74,14 +73,22 @@ class DampedSegment final : public Body {
   ModalShape shape_;
 };
 
-}  // namespace
+/// A body with its pieces.
+class SegmentedBody final : public Body {
+ public:
+  SegmentedBody(std::unique_ptr<Body> whole, std::vector<std::shared_ptr<const Body>> segments)
+      : whole_(std::move(whole)), segments_(std::move(segments)) {}
+  const ModalShape& shape() const override { return whole_->shape(); }
+  std::optional<PointExpansion> station(const StationName& name) const override { return whole_->station(name); }
+  std::string stations() const override { return whole_->stations(); }
+  const Rod* rod() const override { return whole_->rod(); }
+  std::vector<std::string> remarks() const override { return whole_->remarks(); }
+  std::span<const std::shared_ptr<const Body>> segments() const override { return segments_; }
 
-std::size_t segments_of(const Value& body, const std::vector<ParameterSpec>& specs) {
-  const Value* segments = body.find("segments");
-  const ParameterSpec* spec = spec_of(specs, "segments");
-  if (segments == nullptr || spec == nullptr || spec->kind != ParameterSpec::Kind::integer) return 1;
-  return spec_of(specs, "length") == nullptr ? 1 : body.count_at("segments");
-}
+ private:
+  std::unique_ptr<Body> whole_;
+  std::vector<std::shared_ptr<const Body>> segments_;
+};
 
 Value segment_of(const Value& body, const std::vector<ParameterSpec>& specs, std::size_t k, std::size_t n) {
   const double length = body.number_at("length");
@@ -92,22 +99,53 @@ Value segment_of(const Value& body, const std::vector<ParameterSpec>& specs, std
   return value;
 }
 
-std::unique_ptr<Body> damped_as(const ModalShape& whole, std::unique_ptr<Body> segment) {
-  std::map<std::string, double> times;  // sqrt(τ) by strain
-  for (const ModeGroup& group : mode_groups(whole)) {
-    const ElasticModes modes = elastic_modes(whole, group.coordinates);
-    if (modes.vectors.cols() == 0) continue;
-    // Of the lowest mode: vᵀ D v = 2 ζ ω, vᵀ K v = ω².
-    const Eigen::VectorXd v = modes.vectors.col(0);
-    const double damping = v.dot(whole.damping(group.coordinates, group.coordinates) * v);
-    times.emplace(group.name, std::sqrt(std::max(0.0, damping)) / modes.frequencies[0]);
+/// τ of damping τ K by strain, as the lowest mode v of each has it: vᵀ D v / vᵀ K v, 2 ζ/ω where that has the ratio ζ.
+std::map<std::string, double> time_constants(const ModalShape& whole) {
+  std::map<std::string, std::vector<Eigen::Index>> strains;
+  for (Eigen::Index i = 0; i < whole.modes(); ++i)
+    strains[strain_of(whole.mode_names[static_cast<std::size_t>(i)])].push_back(i);
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(whole.modes(), whole.modes());
+  for (const Particle& p : whole.particles) G += p.mass * p.at.phi.transpose() * p.at.phi;
+  for (const Section& s : whole.sections) G += s.at.psi.transpose() * s.inertia * s.at.psi;
+  std::map<std::string, double> times;
+  for (const auto& [strain, at] : strains) {
+    const Eigen::MatrixXd K = whole.stiffness(at, at);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, G(at, at));
+    // Motions without strain come first and are not damped.
+    Eigen::Index lowest = 0;
+    while (lowest + 1 < K.rows() && solver.eigenvalues()[lowest] <= 1e-10 * solver.eigenvalues()[K.rows() - 1])
+      ++lowest;
+    const Eigen::VectorXd v = solver.eigenvectors().col(lowest);
+    const double stiffness = v.dot(K * v);
+    times[strain] = stiffness > 0 ? std::max(0.0, v.dot(whole.damping(at, at) * v)) / stiffness : 0.0;
   }
+  return times;
+}
+
+std::unique_ptr<Body> damped_as(const ModalShape& whole, std::unique_ptr<Body> segment) {
+  const std::map<std::string, double> times = time_constants(whole);
   ModalShape shape = segment->shape();
   Eigen::VectorXd scale(shape.modes());
   for (Eigen::Index i = 0; i < shape.modes(); ++i)
-    scale[i] = times[strain_of(shape.mode_names[static_cast<std::size_t>(i)])];
+    scale[i] = std::sqrt(times.at(strain_of(shape.mode_names[static_cast<std::size_t>(i)])));
   shape.damping = scale.asDiagonal() * shape.stiffness * scale.asDiagonal();
   return std::make_unique<DampedSegment>(std::move(segment), std::move(shape));
+}
+
+}  // namespace
+
+std::unique_ptr<Body> in_segments(std::unique_ptr<Body> whole, const Value& value,
+                                  const std::vector<ParameterSpec>& specs,
+                                  const std::function<std::unique_ptr<Body>(const Value& segment)>& make) {
+  const std::size_t n = value.count_at("segments");
+  if (n == 1) return whole;
+  std::vector<std::shared_ptr<const Body>> segments;
+  for (std::size_t k = 0; k < n; ++k) {
+    auto segment = make(segment_of(value, specs, k, n));
+    if (segment == nullptr) return nullptr;
+    segments.push_back(damped_as(whole->shape(), std::move(segment)));
+  }
+  return std::make_unique<SegmentedBody>(std::move(whole), std::move(segments));
 }
 
 }  // namespace withy
