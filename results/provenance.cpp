@@ -25,7 +25,10 @@ Json plugins_json(const Provenance& p, bool builds) {
   Json all = Json::array();
   for (std::size_t i = 0; i < p.sources.plugins.size(); ++i) {
     const PluginUsed& used = p.sources.plugins[i];
-    all.push_back({{"id", used.kind + '/' + used.id}, {"version", used.version}, {"file", used.file}});
+    const auto version = p.versions.find(used.file);
+    all.push_back({{"id", used.kind + '/' + used.id},
+                   {"version", version == p.versions.end() ? "" : version->second},
+                   {"file", used.file}});
     if (builds) all.back()["build"] = p.plugin_builds[i];
   }
   return all;
@@ -52,8 +55,8 @@ std::string Provenance::fingerprint() const {
   return sha256(compact(j));
 }
 
-Provenance provenance_of(const Scene& scene) {
-  Provenance p{scene.file, scene.sha256, scene.settings, {}, scene.sources, {}, build_identity()};
+Provenance provenance_of(const Scene& scene, std::map<std::string, std::string> versions) {
+  Provenance p{scene.file, scene.sha256, scene.settings, {}, scene.sources, {}, std::move(versions), build_identity()};
   p.values = sha256(compact(value_json(scene.source)));
   // Many plugins may be of one library.
   std::string file, build;
@@ -108,7 +111,8 @@ Provenance provenance_of_json(const Json& j) {
     for (const Json& used : j.at("plugins")) {
       const std::string id = used.at("id");
       const std::size_t slash = std::min(id.find('/'), id.size() - 1);
-      p.sources.plugins.push_back({id.substr(0, slash), id.substr(slash + 1), used.at("version"), used.at("file")});
+      p.sources.plugins.push_back({id.substr(0, slash), id.substr(slash + 1), used.at("file")});
+      p.versions[used.at("file")] = used.at("version");
       p.plugin_builds.push_back(used.at("build"));
     }
     const Json& program = j.at("program");

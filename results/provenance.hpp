@@ -2,6 +2,7 @@
 /// What a result comes from: scene, files, plugins, program; and the fingerprint of all of it.
 #pragma once
 
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -17,7 +18,8 @@ struct Provenance {
   std::vector<std::string> settings;  ///< of the command line, `path=value`
   std::string values;                 ///< SHA-256 of the checked values, defaults and settings included
   SceneSources sources;
-  std::vector<std::string> plugin_builds;  ///< of each of sources.plugins: build id or SHA-256 of its library
+  std::vector<std::string> plugin_builds;         ///< of each of sources.plugins: build id or SHA-256 of its library
+  std::map<std::string, std::string> versions{};  ///< of plugin libraries, by their files; may be empty
   BuildIdentity program;
 
   /// Of the values and the content of the files: the same result is meant, whoever computes it.
@@ -25,7 +27,8 @@ struct Provenance {
   /// Of everything that decides on the bits of a result. Names of scene and files are not part of it.
   [[nodiscard]] std::string fingerprint() const;
 };
-Provenance provenance_of(const Scene& scene);
+/// \param versions of plugin libraries by their files, as a host of plugins knows them
+Provenance provenance_of(const Scene& scene, std::map<std::string, std::string> versions = {});
 
 /// What differs, in words: "the values of the scene, the file 'boom.SID_FEM', the program"; empty where nothing does.
 std::string differences(const Provenance& kept, const Provenance& now);

@@ -10,7 +10,6 @@
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
-#include "withy/scene/sha256.hpp"
 #include "withy/scene/units.hpp"
 
 namespace withy {
@@ -25,15 +24,6 @@ bool in_range(double x, const ParameterSpec& spec) {
 }
 
 }  // namespace
-
-MakeContext Checker::make_context() const {
-  MakeContext context{registry_, diagnostics_, document_.directory};
-  if (sources_ != nullptr)
-    context.note_file = [to = sources_](const std::string& file, std::string_view bytes) {
-      to->add(FileUsed{file, sha256(bytes)});
-    };
-  return context;
-}
 
 void Checker::key_error(const std::string& path, std::string message) const {
   diagnostics_.error(document_.key_place(path), std::move(message));

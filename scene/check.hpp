@@ -45,7 +45,7 @@ class Checker {
 
   /// From now on references are compared with these names; before, any name is taken.
   void know(const SceneNames* names) { names_ = names; }
-  /// From now on plugins that are found and files that are read are noted there.
+  /// From now on plugins that are found are noted there.
   void note(SceneSources* sources) { sources_ = sources; }
 
   /// The value in SI units with defaults filled in; nothing where it, or anything in it, is wrong.
@@ -62,7 +62,7 @@ class Checker {
   Registry& registry() const { return registry_; }
   Diagnostics& diagnostics() const { return diagnostics_; }
   /// For what the document's values are made into.
-  MakeContext make_context() const;
+  MakeContext make_context() const { return {registry_, diagnostics_, document_.directory}; }
   /// suggestion() where it is cheap or among the first: of a thousand wrong names nobody reads what each may have
   /// meant, and among thousands of candidates it takes long to say.
   std::string suggest(std::string_view name, const std::vector<std::string>& candidates) const;
@@ -75,7 +75,7 @@ class Checker {
     if (id.kind() == Value::Kind::text && is_plugin_id(id.text())) {
       if (const Plugin<Interface>* found = registry_.find<Interface>(id.text())) {
         if (sources_ != nullptr)
-          sources_->add(PluginUsed{std::string(kind_name<Interface>()), found->id, found->version, found->origin});
+          sources_->add(PluginUsed{std::string(kind_name<Interface>()), found->id, found->origin});
         return found;
       }
     }

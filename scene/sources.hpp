@@ -16,8 +16,7 @@ struct FileUsed {
 /// A plugin that a scene names, or has by default.
 struct PluginUsed {
   std::string kind, id;
-  std::string version;  ///< of its library
-  std::string file;     ///< the library; "built in" where there is none
+  std::string file;  ///< its library; "built in" where there is none
 };
 
 /// Each once, sorted.

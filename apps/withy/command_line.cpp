@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "withy/apps/withy/output.hpp"
-#include "withy/scene/describe.hpp"
 #include "withy/scene/names.hpp"
 
 namespace withy::app {
@@ -50,8 +49,9 @@ ExitStatus unknown(const std::string& name) {
     names.emplace_back(command->name);
     all += (all.empty() ? "" : ", ") + names.back();
   }
-  complain(in_quotes(name) + " is no command" + suggestion(name, names) + "; there are " + all +
-           "; withy --help says what they do");
+  const std::string guess = nearest(name, names);
+  complain(in_quotes(name) + " is no command" + (guess.empty() ? "" : "; did you mean '" + guess + "'?") +
+           "\nCommands: " + all + "; withy --help says what they do");
   return ExitStatus::bad_input;
 }
 

@@ -64,8 +64,9 @@ std::vector<std::string> content_of(const CompareArguments& arguments, const stu
 }
 
 /// The comparison at one value of what is gone over; at the scene's own where `path` is empty.
-Group group_at(const CompareArguments& arguments, Registry& registry, const std::string& path,
+Group group_at(const CompareArguments& arguments, const Plugins& plugins, const std::string& path,
                const std::string& value) {
+  Registry& registry = plugins.registry();
   Group group{value, arguments.out.empty() ? "" : fs::path(arguments.out) / below(path, value), {}};
   SceneValues values = read_values(arguments);
   if (!path.empty()) values.set_text(path + '=' + value);
@@ -76,7 +77,7 @@ Group group_at(const CompareArguments& arguments, Registry& registry, const std:
     settings.look_beyond = false;
     settings.control = run_control(formulation);
     settings.output = [&](const State& state, std::size_t) { output(state); };
-    return record_run(group.folder / formulation, prepared, registry, provenance_of(prepared.scene), settings)
+    return record_run(group.folder / formulation, prepared, registry, provenance_of(prepared.scene, plugins), settings)
         .run.summary;
   };
   group.comparison = study::compare(values, registry, arguments.formulations, arguments.reference, simulator);
@@ -175,11 +176,12 @@ ExitStatus compare(const CompareArguments& arguments) {
       arguments.over.empty() ? study::Variation{"", {""}} : parse_variation(arguments.over);
   const std::string label = label_of(variation.path);
   const Plugins plugins(arguments);
-  const auto folder = take_folder(arguments, "compare", make_scene(read_values(arguments), plugins.registry()),
-                                  content_of(arguments, variation));
+  const auto folder =
+      take_folder(arguments, "compare", provenance_of(make_scene(read_values(arguments), plugins.registry()), plugins),
+                  content_of(arguments, variation));
   std::vector<Group> groups;
   for (const std::string& value : variation.values) {
-    groups.push_back(group_at(arguments, plugins.registry(), variation.path, value));
+    groups.push_back(group_at(arguments, plugins, variation.path, value));
     if (!groups.back().folder.empty()) write_picture(groups.back(), label);
     if (groups.back().comparison.interrupted()) break;
   }

@@ -48,12 +48,13 @@ ExitStatus inverse(const InverseArguments& given) {
   const std::filesystem::path folder = arguments.out;
   std::vector<std::string> content = run_content();
   content.emplace_back("inverse.svg");
-  const auto taken = take_folder(arguments, "inverse", led.scene, content);
+  const Provenance provenance = provenance_of(led.scene, engine.plugins());
+  const auto taken = take_folder(arguments, "inverse", provenance, content);
   study::RunSettings settings;
   settings.look_beyond = false;
   settings.control = run_control(led.scene.formulation_name);
   settings.output = [&](const State& state, std::size_t) { study.enter(state); };
-  const RunSummary summary = record_run(folder, led, engine.registry(), provenance_of(led.scene), settings).run.summary;
+  const RunSummary summary = record_run(folder, led, engine.registry(), provenance, settings).run.summary;
   const Scene& scene = led.scene;
   const std::string title = led.title() + ": inverse dynamics";
   write_file(folder / "inverse.svg", inverse_picture(title, study));

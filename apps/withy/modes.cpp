@@ -80,7 +80,8 @@ bool complain_of(const std::vector<study::ModesOf>& runs, const study::Sweep& sw
 ExitStatus modes(const ModesArguments& arguments) {
   const study::Sweep sweep = parse_sweep(arguments.sweep, "--sweep");
   const Engine engine(arguments);
-  const auto folder = take_folder(arguments, "modes", engine.scene(), {"modes.json", "modes.csv", "modes.svg"});
+  const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
+                                  {"modes.json", "modes.csv", "modes.svg"});
   const std::vector<study::ModesOf> runs = runs_of(engine, arguments, sweep);
   if (interrupted()) return ExitStatus::interrupted;
   Json j;

@@ -5,10 +5,16 @@
 namespace withy::app {
 
 std::unique_ptr<ResultsFolder> take_folder(const OutputArguments& arguments, const std::string& command,
-                                           const Scene& scene, const std::vector<std::string>& content) {
+                                           const Provenance& provenance, const std::vector<std::string>& content) {
   if (arguments.out.empty()) return nullptr;
-  return std::make_unique<ResultsFolder>(arguments.out, command, provenance_of(scene), content,
+  return std::make_unique<ResultsFolder>(arguments.out, command, provenance, content,
                                          arguments.force ? FolderUse::replace : FolderUse::begin);
+}
+
+Provenance provenance_of(const Scene& scene, const Plugins& plugins) {
+  std::map<std::string, std::string> versions;
+  for (const PluginRecord& record : plugins.host().plugins()) versions[record.file.string()] = record.version;
+  return withy::provenance_of(scene, std::move(versions));
 }
 
 std::string default_folder(const SceneArguments& arguments, const std::string& what) {

@@ -4,8 +4,7 @@
 
 #include <memory>
 
-#include "withy/apps/withy/command.hpp"
-#include "withy/core/simulation/simulate.hpp"
+#include "withy/apps/withy/engine.hpp"
 #include "withy/results/results_folder.hpp"
 
 namespace withy::app {
@@ -14,7 +13,10 @@ namespace withy::app {
 /// \param content of the folder, as ResultsFolder has it
 /// \throws ResultsError, FolderBusy, std::system_error
 std::unique_ptr<ResultsFolder> take_folder(const OutputArguments& arguments, const std::string& command,
-                                           const Scene& scene, const std::vector<std::string>& content);
+                                           const Provenance& provenance, const std::vector<std::string>& content);
+
+/// What results of the scene come from.
+Provenance provenance_of(const Scene& scene, const Plugins& plugins);
 
 /// `results/<scene>-<what>`, with what `--integrator` and `--set` say behind it.
 std::string default_folder(const SceneArguments& arguments, const std::string& what);

@@ -66,12 +66,12 @@ RecordedRun lasting_run(const Engine& engine, const RunArguments& arguments, con
 }
 
 RecordedRun recorded(const Engine& engine, const RunArguments& arguments) {
-  const Provenance provenance = provenance_of(engine.scene());
+  const Provenance provenance = provenance_of(engine.scene(), engine.plugins());
   study::RunSettings settings;
   settings.estimate = estimate_of(arguments.estimate);
   settings.control = run_control(engine.scene().formulation_name);
   if (!engine.prepared().escalates()) return lasting_run(engine, arguments, provenance, settings);
-  const auto taken = take_folder(arguments, "run", engine.scene(), run_content());
+  const auto taken = take_folder(arguments, "run", provenance, run_content());
   return record_run(arguments.out, engine.prepared(), engine.registry(), provenance, settings);
 }
 

@@ -11,6 +11,7 @@
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/terms_files.hpp"
+#include "withy/study/run.hpp"
 
 namespace withy::app {
 namespace {
@@ -67,7 +68,8 @@ std::string left_out_text(const study::TermSizes& ledger) {
 ExitStatus terms(const TermsArguments& arguments) {
   const Engine engine(arguments);
   const Scene& scene = engine.scene();
-  const auto taken = take_folder(arguments, "terms", scene, {"terms.csv", "terms.svg", "terms.json"});
+  const auto taken =
+      take_folder(arguments, "terms", provenance_of(scene, engine.plugins()), {"terms.csv", "terms.svg", "terms.json"});
   study::TermStudy study(engine.prepared(), engine.registry());
   const RunSummary summary = study::simulate(
       engine.prepared(), [&](const State& state) { study.enter(state); }, run_control(scene.formulation_name));

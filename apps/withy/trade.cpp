@@ -105,7 +105,8 @@ ExitStatus trade(const TradeArguments& arguments) {
   const Engine engine(arguments);
   const std::vector<study::Point> points = study::points_of(axes_of(arguments.axes, engine.registry()));
   std::optional<TradeFolder> store;
-  const auto taken = take_folder(arguments, "trade", engine.scene(), {"trade.json", "trade.csv", "trade.svg"});
+  const auto taken = take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()),
+                                 {"trade.json", "trade.csv", "trade.svg"});
   if (taken) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points, engine.registry()));
   study::TradeStudy study(engine.prepared(), engine.registry(), points,
                           {arguments.jobs, store ? &*store : nullptr, study_control("trade")});

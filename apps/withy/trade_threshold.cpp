@@ -86,7 +86,7 @@ std::optional<study::Thresholds> found(const Engine& engine, const TradeArgument
                                             {points, q.range, holding, arguments.count}, q.limit, control);
   }
   std::optional<TradeFolder> store;
-  if (!arguments.out.empty()) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points));
+  if (!arguments.out.empty()) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points, engine.registry()));
   return study::thresholds_of_runs(engine.prepared(), engine.registry(), points, q.range, q.limit,
                                    {arguments.jobs, store ? &*store : nullptr, control});
 }
@@ -112,7 +112,8 @@ ExitStatus trade_threshold(const TradeArguments& arguments) {
   const Question q = read_question(arguments);
   const bool frequencies = arguments.measure == "frequencies";
   const Engine engine(arguments);
-  const auto taken = take_folder(arguments, "trade", engine.scene(), {"limit.json", "limit.csv", "limit.svg"});
+  const auto taken = take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()),
+                                 {"limit.json", "limit.csv", "limit.svg"});
   const auto thresholds = found(engine, arguments, q);
   if (!thresholds) return ExitStatus::interrupted;
   const ThresholdLabels labels{arguments.axes.families.size() > 1 || !arguments.axes.families.front().empty(),

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "sid_body.hpp"
+#include "withy/core/plugin/file_notes.hpp"
 #include "withy/core/plugin/registry.hpp"
 
 namespace withy {
@@ -30,7 +31,7 @@ std::unique_ptr<Body> make_modal(const Value& p, const MakeContext& context) {
   std::ifstream stream(file, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(stream)), {});
   if (!stream) return fault(fmt::format("'{}' cannot be read", file.string()));
-  if (context.note_file) context.note_file(named.text(), text);
+  FileNotes::add(named.text(), text);
   SidBodyOptions options;
   if (p.has("root")) options.root = p.text_at("root");
   if (BodyDamping::given(p)) options.damping = BodyDamping::read(p);

@@ -43,7 +43,7 @@ std::map<std::string, std::string> Enrollment::summaries() const {
   return summaries;
 }
 
-void Registry::admit(Enrollment enrollment, const std::string& origin, const std::string& version) {
+void Registry::admit(Enrollment enrollment, const std::string& origin) {
   const std::lock_guard lock(*mutex_);
   const auto each = [&](auto&& action) {
     std::apply([&](auto&... kind) { (action(kind), ...); }, enrollment.plugins_);
@@ -54,7 +54,6 @@ void Registry::admit(Enrollment enrollment, const std::string& origin, const std
   each([&]<class Interface>(std::vector<Plugin<Interface>>& plugins) {
     for (Plugin<Interface>& plugin : plugins) {
       plugin.origin = origin;
-      plugin.version = version;
       std::string id = plugin.id;
       std::get<Map<Interface>>(maps_).emplace(std::move(id), std::move(plugin));
     }

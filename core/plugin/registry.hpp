@@ -32,8 +32,6 @@ struct MakeContext {
   Registry& registry;
   Diagnostics& diagnostics;
   std::string directory = {};  ///< where relative file names start: the scene's; empty: the working directory
-  /// Told of each file that is read, by its name as given, with what was read; may be empty. Results depend on it.
-  std::function<void(const std::string& file, std::string_view bytes)> note_file = {};
 };
 
 /// A plugin: its id (`[a-z0-9-]{1,64}`), what it is for, the parameters it takes, and its factory. `make` returns null
@@ -45,7 +43,6 @@ struct Plugin {
   std::vector<ParameterSpec> parameters;
   std::unique_ptr<Interface> (*make)(const Value& parameters, const MakeContext& context) = nullptr;
   std::string origin = "built in";  ///< file it was loaded from
-  std::string version = {};         ///< of that file
 };
 
 /// The kinds of plugins, with their names in manifests and messages.
@@ -121,7 +118,7 @@ class Registry {
  public:
   /// Admits all plugins of a library, or none.
   /// \throws std::invalid_argument where an id is malformed, taken (both origins are named) or a factory is null.
-  void admit(Enrollment enrollment, const std::string& origin, const std::string& version = {});
+  void admit(Enrollment enrollment, const std::string& origin);
 
   /// The plugin of a kind with this id; null where there is none. It may load a library: see set_loader.
   /// \throws PluginError where there is one whose library is refused.

@@ -127,7 +127,7 @@ void PluginHost::Catalogue::load(Registry& registry, Library& library) {
   try {
     Enrollment enrollment = load_library(library.file.parent_path(), library.manifest);
     auto summaries = enrollment.summaries();
-    registry.admit(std::move(enrollment), library.library().string(), library.manifest.version);
+    registry.admit(std::move(enrollment), library.library().string());
     library.summaries = std::move(summaries);
     library.loaded = true;
   } catch (const PluginError& e) {
