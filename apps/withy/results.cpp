@@ -1,5 +1,6 @@
 #include "withy/apps/withy/results.hpp"
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -27,7 +28,10 @@ class ResultsFile {
   }
   /// Tips and energies are those of the formulation that the run is in.
   void write(const State& state, std::size_t rung) { write(csv_line(columns_[rung].row(state))); }
-  /// Makes what was written last. \returns its length
+  /// The same where `seen()` is at that state; of a run that has one formulation.
+  void write_seen(const State& state) { write(csv_line(columns_.front().row_of_seen(state))); }
+  [[nodiscard]] Observation& seen() { return columns_.front().seen(); }
+  /// Makes what was written last through a loss of power. \returns its length
   std::uintmax_t sync() {
     csv_.sync();
     return bytes_;
@@ -50,9 +54,17 @@ class ResultsFile {
   void write(const std::string& text) {
     csv_.write(text);
     bytes_ += text.size();
+    // For whoever watches a long run: a call of the system for every row costs more than the row.
+    const Clock::time_point now = Clock::now();
+    if (now - flushed_ < std::chrono::milliseconds(200)) return;
+    csv_.flush();
+    flushed_ = now;
   }
 
+  using Clock = std::chrono::steady_clock;
+
   std::uintmax_t bytes_;
+  Clock::time_point flushed_ = Clock::now();
   OutputFile csv_;
   std::vector<ResultColumns> columns_;
 };
@@ -70,8 +82,10 @@ RunSummary simulate_into(const std::filesystem::path& folder, const study::Prepa
   study::RunSettings settings;
   settings.look_beyond = false;
   settings.control = run_control(prepared.scene.formulation_name);
+  const bool one = !prepared.escalates();
+  if (one) settings.seen = &csv.seen();
   settings.output = [&](const State& state, std::size_t rung) {
-    csv.write(state, rung);
+    one ? csv.write_seen(state) : csv.write(state, rung);
     if (also) also(state);
   };
   const study::CertifiedRun run = study::run(prepared, registry, settings);
@@ -95,6 +109,8 @@ study::CertifiedRun run_into(const std::filesystem::path& folder, const Engine& 
   settings.control = run_control(engine.scene().formulation_name);
   settings.output = [&](const State& state, std::size_t rung) { csv.write(state, rung); };
   if (!engine.prepared().escalates()) {
+    settings.seen = &csv.seen();
+    settings.output = [&](const State& state, std::size_t) { csv.write_seen(state); };
     settings.checkpoint_seconds = arguments.checkpoint.value_or(60);
     settings.checkpoint = [&](const Checkpoint& checkpoint) { files.write({checkpoint, csv.sync()}); };
     settings.resume = from ? &from->checkpoint : nullptr;
