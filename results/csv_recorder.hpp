@@ -2,6 +2,7 @@
 /// A table as a file of comma-separated values, written row by row.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 
 #include "withy/results/output_file.hpp"
@@ -10,7 +11,8 @@
 
 namespace withy {
 
-/// Every row has reached the system before the next begins: a run that is killed leaves whole lines.
+/// Rows reach the system some at a time, never a part of one: a run that is killed leaves whole lines. None waits
+/// longer than a fifth of a second for the next: who watches a long run sees it.
 class CsvRecorder final : public Recorder {
  public:
   /// A file from its beginning, in the place of any other.
@@ -32,6 +34,7 @@ class CsvRecorder final : public Recorder {
   std::uint64_t hashed_ = 0;  ///< bytes that hash_ has seen
   Sha256 hash_;
   OutputFile file_;
+  std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace withy

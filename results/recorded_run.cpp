@@ -18,8 +18,14 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
                           Registry& registry, const Provenance& provenance, study::RunSettings settings) {
   std::filesystem::remove(folder / summary_name);
   RunTable table(prepared, csv);
-  settings.output = [&table, also = settings.output](const State& state, std::size_t rung) {
-    table.add(state, rung);
+  const bool seen = !prepared.escalates();
+  if (seen) settings.seen = &table.seen();
+  settings.output = [&table, seen, also = settings.output](const State& state, std::size_t rung) {
+    if (seen) {
+      table.add_seen(state);
+    } else {
+      table.add(state, rung);
+    }
     if (also) also(state, rung);
   };
   RecordedRun recorded;

@@ -21,6 +21,10 @@ class RunTable {
   /// Both must outlive it. Begins the recorder's table.
   RunTable(const study::Prepared& prepared, Recorder& recorder);
   void add(const State& state, std::size_t rung) { recorder_.row(columns_[rung].row(state)); }
+  /// The same of the first formulation, where `seen()` is at that state.
+  void add_seen(const State& state) { recorder_.row(columns_.front().row_of_seen(state)); }
+  /// For RunSettings::seen: a row then costs no pass of its own.
+  [[nodiscard]] Observation& seen() { return columns_.front().seen(); }
 
  private:
   Recorder& recorder_;

@@ -8,7 +8,7 @@ namespace withy::study {
 namespace {
 
 Readings read(const Outputs& outputs, const ComparedRun& run) {
-  const OutputReader reader(outputs, run.prepared.model(), *run.prepared.equations);
+  OutputReader reader(outputs, run.prepared.model(), *run.prepared.equations);
   Readings readings;
   for (const State& s : run.outputs) {
     readings.times.push_back(s.time);

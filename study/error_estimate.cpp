@@ -15,7 +15,7 @@ ErrorEstimate estimate_error(const Scene& scene, const EquationsOfMotion& used, 
   options.most_evaluations = summary.steps.evaluations;
   options.interrupted = interrupted;
   const Outputs outputs = Outputs::all(*scene.model);
-  const OutputReader ours(outputs, *scene.model, used), theirs(outputs, *beyond.model, *beyond.equations);
+  OutputReader ours(outputs, *scene.model, used), theirs(outputs, *beyond.model, *beyond.equations);
   Distances greatest = outputs.none();
   const PairedRun run =
       run_paired(*scene.model, used, *beyond.equations, *integrator, scene.initial, options,

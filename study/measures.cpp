@@ -148,17 +148,18 @@ PerMeasure Outputs::per_measure(const Distances& distances) const {
 }
 
 OutputReader::OutputReader(const Outputs& outputs, const Model& model, const EquationsOfMotion& equations)
-    : outputs_(outputs), model_(model), equations_(equations), tips_(tips(model)) {}
+    : outputs_(outputs), model_(model), seen_(equations.make_observation()), tips_(tips(model)) {}
 
-std::vector<double> OutputReader::read(std::span<const double> y) const {
+std::vector<double> OutputReader::read(std::span<const double> y) {
   std::vector<double> values;
   values.reserve(outputs_.size());
+  seen_->observe(y);
   for (const Output& o : outputs_.list()) {
     if (o.measure == Measure::place) {
-      const auto p = equations_.frame_pose(y, tips_[o.index].tip.body, tips_[o.index].tip.frame).position;
+      const auto p = seen_->frame_pose(tips_[o.index].tip.body, tips_[o.index].tip.frame).position;
       values.insert(values.end(), p.begin(), p.end());
     } else if (o.measure == Measure::deflection) {
-      const auto d = deflection(equations_, y, tips_[o.index]);
+      const auto d = deflection(*seen_, tips_[o.index]);
       values.insert(values.end(), d.begin(), d.end());
     } else {
       const auto x = y.subspan(model_.layout().hinges[o.index].position + o.coordinate, numbers_of(o.shape));

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -83,12 +84,12 @@ class OutputReader {
  public:
   OutputReader(const Outputs& outputs, const Model& model, const EquationsOfMotion& equations);
   /// The numbers of all outputs at y, as in State.
-  [[nodiscard]] std::vector<double> read(std::span<const double> y) const;
+  [[nodiscard]] std::vector<double> read(std::span<const double> y);
 
  private:
   const Outputs& outputs_;
   const Model& model_;
-  const EquationsOfMotion& equations_;
+  std::unique_ptr<Observation> seen_;
   std::vector<Tip> tips_;
 };
 

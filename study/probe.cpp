@@ -76,7 +76,7 @@ Probe Evaluator::run(const Point& point, const Yardstick& yardstick, const Allow
   }
   p.distances = outputs_.none();
   const Readings& truth = yardstick.reference.readings;
-  const OutputReader reader(outputs_, at.prepared->model(), *at.prepared->equations);
+  OutputReader reader(outputs_, at.prepared->model(), *at.prepared->equations);
   std::size_t next = 0;
   bool afforded = true;
   const auto measure = [&](const State& s) {

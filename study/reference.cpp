@@ -32,7 +32,7 @@ class Search {
       return {};
     }
     Reference r{point, {}, outputs_.none(), {}, {}};
-    const OutputReader reader(outputs_, model.prepared->model(), *model.prepared->equations);
+    OutputReader reader(outputs_, model.prepared->model(), *model.prepared->equations);
     const auto keep = [&](const State& s) {
       r.readings.times.push_back(s.time);
       r.readings.values.push_back(reader.read(s.y));

@@ -57,6 +57,7 @@ RunSummary run_plainly(const Prepared& prepared, const RunSettings& settings, co
   options.beyond = beyond;
   options.checkpoint = settings.checkpoint;
   options.resume = settings.resume;
+  options.seen = settings.seen;
   if (settings.checkpoint_seconds > 0) options.put_down = Timer(settings.checkpoint_seconds);
   return withy::simulate(*scene.model, *prepared.equations, *scene.integrator, scene.initial, options,
                          [&](const State& state) {

@@ -23,9 +23,12 @@ struct RunSettings {
   bool look_beyond = true;
   /// Receives every output, with the rung that a run of `auto` is in, else 0; may be empty.
   std::function<void(const State&, std::size_t rung)> output;
+  /// Brought to the state of each output before it is given; of a run that has one formulation. May be null.
+  Observation* seen = nullptr;
   double checkpoint_seconds = 0;                      ///< wall time between checkpoints; 0: only where interrupted
   std::function<void(const Checkpoint&)> checkpoint;  ///< takes them; may be empty
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: at the scene's initial state
+  Observation* seen = nullptr;                        ///< RunOptions::seen; not for `auto`
   Control control;
 };
 

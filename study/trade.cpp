@@ -43,7 +43,7 @@ TimedRun timed_run(const Prepared& model, const Outputs& outputs, const Control&
     run.cpu_seconds = std::min(run.cpu_seconds, run.summary.cpu_seconds);
     spent += run.summary.cpu_seconds;
   }
-  const OutputReader reader(outputs, model.model(), *model.equations);
+  OutputReader reader(outputs, model.model(), *model.equations);
   for (const State& s : states) {
     run.readings.times.push_back(s.time);
     run.readings.values.push_back(reader.read(s.y));

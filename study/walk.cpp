@@ -6,8 +6,7 @@
 #include <span>
 
 #include "withy/core/simulation/diagnosis.hpp"
-#include "withy/core/simulation/instants.hpp"
-#include "withy/core/simulation/run_times.hpp"
+#include "withy/core/simulation/stepping.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -43,142 +42,71 @@ std::string reason_of(const StepResult& result, const Prepared& model) {
   }
 }
 
-/// One walk under way.
-class Walker {
+/// Watches a walk: gives outputs, counts what stepping costs, and ends it.
+class Watch final : public SteppingObserver {
  public:
-  Walker(const Prepared& model, const Integrator& integrator, const WalkObserver& observer)
-      : model_(model),
-        observer_(observer),
-        end_(end_of_run(model.scene)),
-        clocks_(model.model()),
-        sample_(started(clocks_, model.scene.initial)),
-        stepper_(integrator.start(*model.equations, sample_)),
-        times_(model.scene.initial.time, model.scene.output, end_) {}
+  /// \param sign of the mass matrix's determinant at the start
+  Watch(const WalkObserver& observer, int sign) : observer_(observer), sign_(sign), began_(thread_cpu_seconds()) {}
 
-  Walk walk() {
-    std::vector<double> rates(model_.equations->size());
-    Work work = model_.equations->make_work();
-    sign_ = model_.equations->derivatives(sample_.time, sample_.y, rates, work).determinant_sign;
-    if (!observer_.output(sample_)) return ended(Walk::End::cut);
-    for (const double limit : landings(model_.model(), model_.scene.initial.time, end_)) {
-      if (!walk_to(limit)) return walk_;
-      stepper_->restart();
-    }
-    return ended(Walk::End::reached);
+  bool output(const State& state) override {
+    pause();
+    walk.time = state.time;
+    const bool on = may_go_on() && seen(observer_.output(state));
+    began_ = thread_cpu_seconds();
+    return on;
   }
+
+  bool after_step(const Stepper& stepper, bool) override {
+    constexpr std::size_t steps_between_looks = 64;
+    if (stepper.statistics().determinant_sign != sign_) {
+      walk.end = Walk::End::stopped;
+      walk.reason = "the determinant of the mass matrix changed its sign";
+      return false;
+    }
+    if (stepper.statistics().accepted % steps_between_looks != 0) return true;
+    pause();
+    walk.time = stepper.state().time;
+    const bool on = may_go_on();
+    began_ = thread_cpu_seconds();
+    return on;
+  }
+
+  /// What is known when stepping has ended.
+  void finish(const Stepping& loop, const SteppingEnd& ended, const Prepared& model) {
+    pause();
+    walk.time = loop.state().time;
+    walk.steps = loop.stepper().statistics().accepted;
+    walk.evaluations = loop.stepper().statistics().evaluations;
+    if (ended.cause == SteppingEnd::Cause::reached) static_cast<void>(seen(observer_.output(loop.state())));
+    if (ended.cause == SteppingEnd::Cause::failed) stop(reason_of(ended.step, model));
+    if (ended.cause == SteppingEnd::Cause::crowded)
+      stop("loads switch again and again without time between the instants");
+  }
+
+  Walk walk;
 
  private:
-  static State started(Clocks& clocks, State state) {
-    clocks.begin(state);
-    return state;
+  void pause() { walk.seconds += thread_cpu_seconds() - began_; }
+  void stop(std::string why) {
+    walk.end = Walk::End::stopped;
+    walk.reason = std::move(why);
   }
-
-  /// False where the walk has ended before.
-  bool walk_to(double limit) {
-    double began = thread_cpu_seconds();
-    while (stepper_->state().time < limit) {
-      const StepResult result = stepper_->step(std::min(limit, clocks_.next()));
-      const bool turned = stepper_->statistics().determinant_sign != sign_;
-      if (result.outcome != StepResult::Outcome::ok || turned) {
-        walk_.seconds += thread_cpu_seconds() - began;
-        walk_.reason = result.outcome != StepResult::Outcome::ok
-                           ? reason_of(result, model_)
-                           : "the determinant of the mass matrix changed its sign";
-        ended(Walk::End::stopped);
-        return false;
-      }
-      if (!worth_a_look()) continue;
-      walk_.seconds += thread_cpu_seconds() - began;
-      if (!look()) return false;
-      began = thread_cpu_seconds();
-    }
-    walk_.seconds += thread_cpu_seconds() - began;
-    return true;
-  }
-
-  [[nodiscard]] bool worth_a_look() const {
-    constexpr std::size_t steps_between_looks = 64;
-    const double t = stepper_->state().time;
-    return times_.due(t) || t >= end_ || t >= clocks_.next() ||
-           stepper_->statistics().accepted % steps_between_looks == 0;
-  }
-
-  /// Gives the outputs that are due and renews discrete states. False where the walk has ended.
-  bool look() {
+  bool may_go_on() {
     if (observer_.interrupted && observer_.interrupted()) {
-      ended(Walk::End::interrupted);
+      walk.end = Walk::End::interrupted;
       return false;
     }
-    tell();
-    bool on = !observer_.afford || observer_.afford(walk_);
-    for (; on && times_.due(stepper_->state().time); times_.pass()) {
-      sample_.time = times_.next();
-      stepper_->interpolate(sample_.time, sample_.y);
-      on = observer_.output(sample_);
-    }
-    if (on && stepper_->state().time >= end_) on = observer_.output(stepper_->state());
-    if (!on) {
-      ended(Walk::End::cut);
-      return false;
-    }
-    if (stepper_->state().time >= clocks_.next()) {
-      sample_ = stepper_->state();
-      clocks_.renew(sample_);
-      clocks_.go_on_after(sample_.time);
-      stepper_->jump(sample_);
-    }
-    return true;
+    return !observer_.afford || seen(observer_.afford(walk));
+  }
+  bool seen(bool on) {
+    if (!on) walk.end = Walk::End::cut;
+    return on;
   }
 
-  void tell() {
-    walk_.time = stepper_->state().time;
-    walk_.steps = stepper_->statistics().accepted;
-    walk_.evaluations = stepper_->statistics().evaluations;
-  }
-
-  const Walk& ended(Walk::End end) {
-    tell();
-    walk_.end = end;
-    return walk_;
-  }
-
-  const Prepared& model_;
   const WalkObserver& observer_;
-  double end_;
-  Clocks clocks_;
-  State sample_;
-  std::unique_ptr<Stepper> stepper_;
-  OutputTimes times_;
-  int sign_ = 1;
-  Walk walk_;
+  int sign_;
+  double began_;
 };
-
-/// With loads that switch by the state: `simulate`, which finds the zeros of their functions.
-Walk walk_as_a_run(const Prepared& model, const Integrator& integrator, const WalkObserver& observer) {
-  bool on = true, interrupted = false;
-  RunOptions options = run_options(model.scene);
-  options.events.clear();
-  options.interrupted = [&] {
-    interrupted = interrupted || (observer.interrupted && observer.interrupted());
-    return !on || interrupted;
-  };
-  const double began = thread_cpu_seconds();
-  const auto output = [&](const State& state) {
-    Walk so_far;
-    so_far.time = state.time;
-    so_far.seconds = thread_cpu_seconds() - began;
-    on = on && (!observer.afford || observer.afford(so_far)) && observer.output(state);
-  };
-  const RunSummary s =
-      withy::simulate(model.model(), *model.equations, integrator, model.scene.initial, options, output);
-  Walk w{Walk::End::reached, s.message, s.final.time, s.steps.accepted, s.steps.evaluations, s.cpu_seconds};
-  if (s.status == RunStatus::interrupted) {
-    w.end = on ? Walk::End::interrupted : Walk::End::cut;
-  } else if (s.status != RunStatus::completed) {
-    w.end = Walk::End::stopped;
-  }
-  return w;
-}
 
 }  // namespace
 
@@ -204,8 +132,14 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
 }
 
 Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserver& observer) {
-  return has_switches(model.model()) ? walk_as_a_run(model, integrator, observer)
-                                     : Walker(model, integrator, observer).walk();
+  const EquationsOfMotion& equations = *model.equations;
+  const State start = begun(model.model(), model.scene.initial);
+  Stepping loop(model.model(), integrator.start(equations, start), {end_of_run(model.scene), model.scene.output});
+  std::vector<double> rates(equations.size());
+  Work work = equations.make_work();
+  Watch watch(observer, equations.derivatives(start.time, start.y, rates, work).determinant_sign);
+  if (watch.output(start)) watch.finish(loop, loop.run(watch), model);
+  return watch.walk;
 }
 
 std::pair<Distances, double> distances(const Outputs& outputs, const Readings& a, const Readings& b) {

@@ -30,9 +30,9 @@ std::string run_table(const study::Prepared& prepared, const RunSummary& summary
   };
   out += fmt::format("{} ({}, {})\n\n", prepared.title(), scene.formulation_name, scene.integrator_name);
   line("outcome", study::outcome_text(summary));
-  for (const HingeNode& hinge : model.hinges()) {
-    const auto columns = coordinate_columns(hinge);
-    const Slot& slot = *model.layout().hinge(hinge.name);
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const auto columns = coordinate_columns(model.hinges()[h]);
+    const Slot& slot = model.layout().hinges[h];
     for (std::size_t i = 0; i < columns.size(); ++i)
       line("final " + columns[i].name, readable(summary.final.y[slot.position + i], columns[i].unit));
   }

@@ -11,6 +11,7 @@
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/terms_files.hpp"
+#include "withy/study/run.hpp"
 
 namespace withy::app {
 namespace {

@@ -51,7 +51,7 @@ Yardstick truth_of(Evaluator& evaluator, const Yardstick& known) {
   r.readings = {};
   const ModelAt& model = evaluator.model(r.point);
   EXPECT_FALSE(model.refused()) << model.refusal;
-  const OutputReader reader(evaluator.outputs(), model.prepared->model(), *model.prepared->equations);
+  OutputReader reader(evaluator.outputs(), model.prepared->model(), *model.prepared->equations);
   const auto keep = [&](const State& s) {
     r.readings.times.push_back(s.time);
     r.readings.values.push_back(reader.read(s.y));

@@ -58,8 +58,8 @@ Claims claims_of(unsigned seed, const std::string& scene) {
     const std::vector<State> up = exact_outputs(prepared, *beyond->equations, e.distances.until);
     if (used.empty() || used.size() != up.size()) continue;  // singular or diverged: no truth
     const Outputs outputs = Outputs::all(prepared.model());
-    const OutputReader ours(outputs, prepared.model(), *prepared.equations);
-    const OutputReader theirs(outputs, *beyond->model, *beyond->equations);
+    OutputReader ours(outputs, prepared.model(), *prepared.equations);
+    OutputReader theirs(outputs, *beyond->model, *beyond->equations);
     Distances greatest = outputs.none();
     for (std::size_t i = 0; i < used.size(); ++i) outputs.raise(ours.read(used[i].y), theirs.read(up[i].y), greatest);
     const NamedDistances truth = named(outputs, greatest, e.distances.until);

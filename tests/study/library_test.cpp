@@ -65,7 +65,7 @@ TEST(StudyPrepare, SaysWhichFormulationCannotTreatAModel) {
 TEST(Measures, OneDistanceServesNamesAndMeasures) {
   const Prepared prepared = prepare(scene("beam-on-base"), plugins());
   const Outputs outputs = Outputs::all(prepared.model());
-  const OutputReader reader(outputs, prepared.model(), *prepared.equations);
+  OutputReader reader(outputs, prepared.model(), *prepared.equations);
   State turned = prepared.scene.initial;
   const Slot& base = prepared.model().layout().hinges.front();
   ASSERT_EQ(base.positions, 7U) << "a free hinge";
@@ -88,7 +88,7 @@ TEST(Measures, OneDistanceServesNamesAndMeasures) {
 TEST(Measures, WhatIsNoNumberIsInfinitelyFar) {
   const Prepared prepared = prepare(scene("pendulum"), plugins());
   const Outputs outputs(prepared.model());
-  const OutputReader reader(outputs, prepared.model(), *prepared.equations);
+  OutputReader reader(outputs, prepared.model(), *prepared.equations);
   State lost = prepared.scene.initial;
   lost.y[0] = std::nan("");
   Distances greatest = outputs.none();
