@@ -7,7 +7,7 @@
 
 namespace withy {
 
-std::string csv_line(const std::vector<double>& numbers) {
+std::string csv_line(std::span<const double> numbers) {
   constexpr std::size_t longest = 26;  // "-1.2345678901234567e-308" and what separates it
   std::string line(numbers.size() * longest + 1, '\0');
   char* end = line.data();

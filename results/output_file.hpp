@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// A text file written from its beginning. What is written reaches the system some writes at a time, never a part of
 /// one, so that a run that is killed leaves whole lines.
@@ -45,4 +45,4 @@ void write_file(const std::filesystem::path& path, std::string_view text);
 /// The same, made to last through a loss of power.
 void write_lasting_file(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

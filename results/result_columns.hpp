@@ -12,7 +12,7 @@
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/tips.hpp"
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// What `results.csv` holds: time, hinge and modal coordinates and their rates, deflections and world positions of the
 /// tips, energies, work and momenta.
@@ -42,4 +42,4 @@ class ResultColumns {
   std::vector<double> efforts_, row_;
 };
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

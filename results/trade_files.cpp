@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "withy/results/json_text.hpp"
-#include "withy/results/output_file.hpp"
+#include "withy/core/plugin/mode_family.hpp"
+#include "withy/results/provenance.hpp"
 #include "withy/results/svg_plot.hpp"
+#include "withy/scene/sha256.hpp"
 
 namespace withy {
 
@@ -117,21 +116,11 @@ std::string trade_picture(const std::string& title, const std::vector<study::Tra
   return svg_plot(title, legend, panels);
 }
 
-TradeFolder::TradeFolder(const std::filesystem::path& folder, std::string fingerprint)
-    : folder_(folder / "points"), fingerprint_(std::move(fingerprint)) {
-  std::filesystem::create_directories(folder_);
-}
+namespace {
 
-std::filesystem::path TradeFolder::file_of(const study::Point& point) const {
-  return folder_ / (point.key() + ".json");
-}
-
-std::optional<study::PointStore::Kept> TradeFolder::find(const study::Point& point) {
-  std::ifstream in(file_of(point), std::ios::binary);
-  const Json j = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}), nullptr, false);
-  if (j.is_discarded() || !j.is_object() || j.value("fingerprint", "") != fingerprint_) return {};
+study::PointStore::Kept kept_of(const Json& j, const study::Point& point) {
   const Json& r = j.at("reference");
-  Kept kept;
+  study::PointStore::Kept kept;
   kept.reference = {{r.at("formulation"), "", r.at("modes"), r.at("integrator"), r.at("tolerance"), point.over},
                     r.at("hinge_way"),
                     r.at("tip_way"),
@@ -151,21 +140,42 @@ std::optional<study::PointStore::Kept> TradeFolder::find(const study::Point& poi
   return kept;
 }
 
-void TradeFolder::keep(const Kept& kept) {
-  Json j = trade_result_json(kept.result);
-  j["fingerprint"] = fingerprint_;
-  j["reference"] = trade_reference_json(kept.reference);
-  write_file(file_of(kept.result.point), json_text(j));
+}  // namespace
+
+std::optional<study::PointStore::Kept> TradeFolder::find(const study::Point& point) {
+  const std::optional<Json> kept = points_.find(point.key());
+  if (!kept) return {};
+  try {
+    return kept_of(*kept, point);
+  } catch (const Json::exception&) {
+    return {};  // no result of this version: it is computed anew
+  }
 }
 
-std::string trade_fingerprint(const Scene& scene, const std::vector<study::Point>& points) {
+void TradeFolder::keep(const Kept& kept) {
+  Json j = trade_result_json(kept.result);
+  j["reference"] = trade_reference_json(kept.reference);
+  points_.keep(kept.result.point.key(), j);
+}
+
+std::string trade_fingerprint(const Scene& scene, const std::vector<study::Point>& points, Registry& registry) {
   int modes = 0;
   double tolerance = 1;
+  std::map<std::string, std::string> builds;
+  const auto build_of = [&]<class Interface>(const std::string& id) {
+    const Plugin<Interface>* plugin = id.empty() ? nullptr : registry.find<Interface>(id);
+    if (plugin != nullptr) builds[std::string(kind_name<Interface>()) + '/' + id] = library_identity(plugin->origin);
+  };
   for (const study::Point& p : points) {
     modes = std::max(modes, p.modes);
     tolerance = std::min(tolerance, p.tolerance);
+    build_of.operator()<Formulation>(p.formulation);
+    build_of.operator()<ModeFamily>(p.family);
+    build_of.operator()<Integrator>(p.integrator);
   }
-  return fingerprint_of(fmt::format("{} {} {:g} {}", value_json(scene.source).dump(), modes, tolerance, WITHY_VERSION));
+  for (const char* reference : {"exact", "quadratic"}) build_of.operator()<Formulation>(reference);
+  build_of.operator()<Integrator>("dopri5");
+  return sha256(Json::array({provenance_of(scene).fingerprint(), modes, tolerance, builds}).dump());
 }
 
 }  // namespace withy

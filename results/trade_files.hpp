@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/results/kept_results.hpp"
 #include "withy/study/trade.hpp"
 
 namespace withy {
@@ -29,20 +30,18 @@ std::string trade_picture(const std::string& title, const std::vector<study::Tra
 /// Finished points in a folder, a file each.
 class TradeFolder : public study::PointStore {
  public:
-  /// Makes `folder`/points where it is not there.
+  /// \param folder its `points` is made with the first
   /// \param fingerprint of all that points have in common: those of another study are not found
-  TradeFolder(const std::filesystem::path& folder, std::string fingerprint);
+  TradeFolder(const std::filesystem::path& folder, const std::string& fingerprint)
+      : points_(folder / "points", fingerprint) {}
   std::optional<Kept> find(const study::Point& point) override;
   void keep(const Kept& kept) override;
 
  private:
-  [[nodiscard]] std::filesystem::path file_of(const study::Point& point) const;
-
-  std::filesystem::path folder_;
-  std::string fingerprint_;
+  KeptResults points_;
 };
 
-/// Of a study: the scene's values and what the points ask of a reference.
-std::string trade_fingerprint(const Scene& scene, const std::vector<study::Point>& points);
+/// Of a study: the scene, what the points ask of a reference, and the builds of the plugins that they name.
+std::string trade_fingerprint(const Scene& scene, const std::vector<study::Point>& points, Registry& registry);
 
 }  // namespace withy

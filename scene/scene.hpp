@@ -15,6 +15,7 @@
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/scene/scene_values.hpp"
+#include "withy/scene/sources.hpp"
 
 namespace withy {
 
@@ -35,8 +36,11 @@ struct BodyModes {
 struct Scene {
   std::string name;
   std::string file;
-  Value source;                  ///< checked values, SI units, defaults filled in
-  std::vector<BodyModes> modes;  ///< of the bodies that have such numbers, in the order of the file
+  Value source;                       ///< checked values, SI units, defaults filled in
+  std::string sha256;                 ///< of the text as it was read
+  std::vector<std::string> settings;  ///< `path=value` of the command line, in their order
+  SceneSources sources;               ///< files and plugins that it is made from
+  std::vector<BodyModes> modes;       ///< of the bodies that have such numbers, in the order of the file
   std::shared_ptr<const Model> model;
   std::string formulation_name;
   std::shared_ptr<const Formulation> formulation;

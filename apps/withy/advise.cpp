@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/advice_text.hpp"
@@ -12,6 +13,14 @@
 namespace withy::app {
 namespace {
 
+/// What is advised is the cheapest of these that holds the accuracy.
+struct AdviseArguments : SceneArguments {
+  std::string accuracy = "1%";
+  std::vector<std::string> outputs;        ///< that errors are measured on; empty: hinges and tips
+  study::Axes axes = study::usual_axes();  ///< families empty: the scene's, and another where it means the same beams
+  std::string write;                       ///< file for the scene as advised; empty: none
+};
+
 void write_scene(const AdviseArguments& arguments, Registry& registry, const std::vector<std::string>& changes) {
   const std::string text = edited(read_bytes(arguments.scene), changes);
   // Read as it will be read: an edit that went wrong leaves no file.
@@ -24,8 +33,6 @@ std::vector<std::string> texts_of(const std::vector<study::Change>& changes) {
   for (const study::Change& change : changes) texts.push_back(change.text());
   return texts;
 }
-
-}  // namespace
 
 ExitStatus advise(const AdviseArguments& arguments) {
   if (!arguments.write.empty() && !arguments.options.overrides.empty())
@@ -53,5 +60,41 @@ ExitStatus advise(const AdviseArguments& arguments) {
   print(text);
   return ExitStatus::done;
 }
+
+std::function<ExitStatus()> add_advise(CLI::App& c) {
+  const auto arguments = std::make_shared<AdviseArguments>();
+  AdviseArguments& a = *arguments;
+  add_scene(c, a);
+  const auto axis = [&](const char* name, auto& values, const char* type, const char* meaning) {
+    c.add_option(name, values, meaning)->type_name(type)->delimiter(',');
+  };
+  c.add_option(
+       "--accuracy", a.accuracy,
+       "Greatest error of the outputs: a share of the greatest way of any of them, a length, an angle, or several")
+      ->type_name("A,...")
+      ->capture_default_str();
+  axis("--outputs,--output", a.outputs, "NAME,...",
+       "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection; default: all free hinges and tips");
+  axis("--formulations,--formulation", a.axes.formulations, "ID,...",
+       "Formulations to choose from; default: all that take part in studies, plugins' too");
+  axis("--families,--family", a.axes.families, "ID,...",
+       "Mode families of bending to choose from; default: the scene's, and orthogonal-polynomials where they are the "
+       "same beams");
+  axis("--modes", a.axes.modes, "N,...", "Modes of each family of a beam to choose from; default: 1,2,3,4");
+  axis("--integrators", a.axes.integrators, "ID,...",
+       "Integrators to choose from, with a relative tolerance; default: dopri5,dop853,imex");
+  axis("--tolerances", a.axes.tolerances, "R,...",
+       "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
+  c.add_option("--write", a.write, "File for the scene with what is advised; comments are kept")->type_name("FILE");
+  return [arguments] { return advise(*arguments); };
+}
+
+}  // namespace
+
+const Command advise_command = {
+    "advise", "Find the cheapest model and integration that hold an accuracy",
+    "  withy advise scenes/pendulum.yaml --accuracy 1%\n"
+    "  withy advise scenes/two-link-slew.yaml --set time.end=0.5 --accuracy 1mm,0.1deg --output payload.tip,elbow",
+    &add_advise};
 
 }  // namespace withy::app

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -18,10 +19,17 @@
 #include "withy/results/comparison_picture.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/recorded_run.hpp"
 #include "withy/study/comparison.hpp"
 
 namespace withy::app {
 namespace {
+
+struct CompareArguments : SceneArguments, OutputArguments {
+  std::vector<std::string> formulations = {"ruthless", "inconsistent", "consistent", "quadratic"};
+  std::string reference = "quadratic";  ///< formulation that the others' errors are measured against
+  std::string over;                     ///< `path=value,value,…`: the comparison is made at each value; may be empty
+};
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
@@ -33,21 +41,44 @@ struct Group {
   study::Comparison comparison;
 };
 
-/// The comparison at one value of what is gone over; at the scene's own where `path` is empty.
-Group group_at(const CompareArguments& arguments, Registry& registry, const std::string& path,
-               const std::string& value) {
-  Group group{value, arguments.out, {}};
-  SceneValues values = read_values(arguments);
-  if (!path.empty()) {
-    values.set_text(path + '=' + value);
-    std::string name = label_of(path) + '=' + value;
-    std::replace(name.begin(), name.end(), '/', '_');
-    if (!arguments.out.empty()) group.folder /= name;
+/// The folder of one value in that of the results.
+std::string below(const std::string& path, const std::string& value) {
+  if (path.empty()) return {};
+  std::string name = label_of(path) + '=' + value;
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
+
+/// What the comparison leaves in its folder.
+std::vector<std::string> content_of(const CompareArguments& arguments, const study::Variation& variation) {
+  std::vector<std::string> names = {"compare.json"};
+  for (const std::string& value : variation.values) {
+    const fs::path folder = below(variation.path, value);
+    names.push_back((folder / "compare.svg").string());
+    std::vector<std::string> formulations = arguments.formulations;
+    formulations.push_back(arguments.reference);
+    for (const std::string& formulation : formulations)
+      for (const std::string& name : run_content()) names.push_back((folder / formulation / name).string());
   }
+  return names;
+}
+
+/// The comparison at one value of what is gone over; at the scene's own where `path` is empty.
+Group group_at(const CompareArguments& arguments, const Plugins& plugins, const std::string& path,
+               const std::string& value) {
+  Registry& registry = plugins.registry();
+  Group group{value, arguments.out.empty() ? "" : fs::path(arguments.out) / below(path, value), {}};
+  SceneValues values = read_values(arguments);
+  if (!path.empty()) values.set_text(path + '=' + value);
   const auto simulator = [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
     const std::string& formulation = prepared.scene.formulation_name;
-    if (!group.folder.empty()) return simulate_into(group.folder / formulation, prepared, registry, output);
-    return study::simulate(prepared, output, run_control(formulation));
+    if (group.folder.empty()) return study::simulate(prepared, output, run_control(formulation));
+    study::RunSettings settings;
+    settings.look_beyond = false;
+    settings.control = run_control(formulation);
+    settings.output = [&](const State& state, std::size_t) { output(state); };
+    return record_run(group.folder / formulation, prepared, registry, provenance_of(prepared.scene, plugins), settings)
+        .run.summary;
   };
   group.comparison = study::compare(values, registry, arguments.formulations, arguments.reference, simulator);
   return group;
@@ -140,16 +171,17 @@ std::string table_text(const std::vector<Group>& groups, const CompareArguments&
       first.prepared.title(), first.prepared.scene.integrator_name, table.str(), arguments.reference, reasons);
 }
 
-}  // namespace
-
 ExitStatus compare(const CompareArguments& arguments) {
   const study::Variation variation =
       arguments.over.empty() ? study::Variation{"", {""}} : parse_variation(arguments.over);
   const std::string label = label_of(variation.path);
   const Plugins plugins(arguments);
+  const auto folder =
+      take_folder(arguments, "compare", provenance_of(make_scene(read_values(arguments), plugins.registry()), plugins),
+                  content_of(arguments, variation));
   std::vector<Group> groups;
   for (const std::string& value : variation.values) {
-    groups.push_back(group_at(arguments, plugins.registry(), variation.path, value));
+    groups.push_back(group_at(arguments, plugins, variation.path, value));
     if (!groups.back().folder.empty()) write_picture(groups.back(), label);
     if (groups.back().comparison.interrupted()) break;
   }
@@ -168,5 +200,27 @@ ExitStatus compare(const CompareArguments& arguments) {
   print(text);
   return groups.back().comparison.interrupted() ? ExitStatus::interrupted : ExitStatus::done;
 }
+
+std::function<ExitStatus()> add_compare(CLI::App& c) {
+  const auto arguments = std::make_shared<CompareArguments>();
+  CompareArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulations(c, a.formulations, "--formulations,--formulation",
+                   "Formulations; default: ruthless,inconsistent,consistent,quadratic");
+  c.add_option("--reference", a.reference, "Formulation the errors are measured against")
+      ->type_name("ID")
+      ->capture_default_str();
+  c.add_option("--over", a.over, "Compare at each of these values of the scene")->type_name("PATH=VALUE,VALUE,...");
+  add_output(c, a, "Folder for results and pictures; default: nothing is kept");
+  return [arguments] { return compare(*arguments); };
+}
+
+}  // namespace
+
+const Command compare_command = {"compare", "Simulate a scene in several formulations, side by side",
+                                 "  withy compare scenes/two-link-slew.yaml\n"
+                                 "  withy compare scenes/two-link-slew.yaml --formulations ruthless,quadratic "
+                                 "--over loads.slew.time_scale=1.0,1.2 --out results/comparison",
+                                 &add_compare};
 
 }  // namespace withy::app

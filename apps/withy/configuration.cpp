@@ -1,5 +1,6 @@
 #include "withy/apps/withy/configuration.hpp"
 
+#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "withy/scene/units.hpp"
@@ -30,6 +31,17 @@ study::Holding holding_of(const Model& model, const std::vector<std::string>& lo
 
 study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments) {
   return {engine.prepared(), engine.state(arguments.state), holding_of(engine.model(), arguments.lock, arguments.spin)};
+}
+
+void add_configuration(CLI::App& command, ConfigurationArguments& a) {
+  command.add_option("--at,--state", a.state, "State file (JSON or YAML); default: the scene's initial state")
+      ->type_name("FILE");
+  command.add_option("--lock", a.lock, "Hinges that are held, at the state's coordinates and rates")
+      ->type_name("HINGE,HINGE,...")
+      ->delimiter(',');
+  command.add_option("--spin", a.spin, "Hinges held at a constant rate, in rad/s, m/s or with a unit")
+      ->type_name("HINGE=RATE,...")
+      ->delimiter(',');
 }
 
 }  // namespace withy::app

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/command.hpp"
 #include "withy/plugins/host/plugin_host.hpp"
 #include "withy/study/control.hpp"
 #include "withy/study/input_error.hpp"

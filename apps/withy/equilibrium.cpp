@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -14,6 +15,10 @@
 
 namespace withy::app {
 namespace {
+
+struct EquilibriumArguments : ConfigurationArguments {
+  std::string out;  ///< file for the state; empty: none
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -36,8 +41,6 @@ TextTable hinge_table(const study::Configuration& c, const SteadyState& steady) 
   }
   return table;
 }
-
-}  // namespace
 
 ExitStatus equilibrium(const EquilibriumArguments& arguments) {
   const Engine engine(arguments);
@@ -91,5 +94,23 @@ ExitStatus equilibrium(const EquilibriumArguments& arguments) {
   complain(problem);
   return ExitStatus::stopped;
 }
+
+std::function<ExitStatus()> add_equilibrium(CLI::App& c) {
+  const auto arguments = std::make_shared<EquilibriumArguments>();
+  EquilibriumArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulation(c, a);
+  add_configuration(c, a);
+  c.add_option("--out", a.out, "File for the state, as --at, --state and `initial` read it")->type_name("FILE");
+  return [arguments] { return equilibrium(*arguments); };
+}
+
+}  // namespace
+
+const Command equilibrium_command = {
+    "equilibrium", "Find the state that stays as it is: at rest, or spinning steadily",
+    "  withy equilibrium scenes/rotating-blade.yaml --spin axle=6\n"
+    "  withy equilibrium scenes/two-link-slew.yaml --lock shoulder,elbow --set gravity.1=-9.81 --out bent.json",
+    &add_equilibrium};
 
 }  // namespace withy::app

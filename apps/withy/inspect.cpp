@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/core/simulation/accuracy.hpp"
@@ -252,13 +253,25 @@ std::string inspect_text(const Engine& engine, const Json& j) {
   return out;
 }
 
-}  // namespace
-
 ExitStatus inspect(const StateArguments& arguments) {
   const Engine engine(arguments);
   const Json j = inspect_json(engine, engine.state(arguments.state));
   print(arguments.json ? json_text(j) : inspect_text(engine, j));
   return ExitStatus::done;
 }
+
+std::function<ExitStatus()> add_inspect(CLI::App& c) {
+  const auto arguments = std::make_shared<StateArguments>();
+  StateArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulation(c, a);
+  add_state(c, a);
+  return [arguments] { return inspect(*arguments); };
+}
+
+}  // namespace
+
+const Command inspect_command = {"inspect", "Show what a scene is made of and what its compilation saved",
+                                 "  withy inspect scenes/two-link-slew.yaml", &add_inspect};
 
 }  // namespace withy::app

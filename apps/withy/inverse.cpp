@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -10,10 +11,15 @@
 #include "withy/results/inverse_files.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/recorded_run.hpp"
 #include "withy/study/recorded_motion.hpp"
 
 namespace withy::app {
 namespace {
+
+struct InverseArguments : SceneArguments, OutputArguments {
+  std::string motion;  ///< file with hinge coordinates over time; empty: the scene's motions
+};
 
 std::string table_text(const study::InverseStudy& study) {
   TextTable table(
@@ -33,17 +39,22 @@ study::Prepared led_scene(const Engine& engine, const std::string& file) {
   return study::prepare(study::led_by(engine.prepared().values, motion), engine.registry());
 }
 
-}  // namespace
-
-ExitStatus inverse(const InverseArguments& arguments) {
+ExitStatus inverse(const InverseArguments& given) {
+  InverseArguments arguments = given;
   const Engine engine(arguments);
   const study::Prepared led = led_scene(engine, arguments.motion);
   study::InverseStudy study(led);
-  std::filesystem::path folder = arguments.out;
-  if (folder.empty())
-    folder = std::filesystem::path("results") / (std::filesystem::path(arguments.scene).stem().string() + "-inverse");
-  const RunSummary summary =
-      simulate_into(folder, led, engine.registry(), [&](const State& state) { study.enter(state); });
+  if (arguments.out.empty()) arguments.out = default_folder(arguments, "inverse");
+  const std::filesystem::path folder = arguments.out;
+  std::vector<std::string> content = run_content();
+  content.emplace_back("inverse.svg");
+  const Provenance provenance = provenance_of(led.scene, engine.plugins());
+  const auto taken = take_folder(arguments, "inverse", provenance, content);
+  study::RunSettings settings;
+  settings.look_beyond = false;
+  settings.control = run_control(led.scene.formulation_name);
+  settings.output = [&](const State& state, std::size_t) { study.enter(state); };
+  const RunSummary summary = record_run(folder, led, engine.registry(), provenance, settings).run.summary;
   const Scene& scene = led.scene;
   const std::string title = led.title() + ": inverse dynamics";
   write_file(folder / "inverse.svg", inverse_picture(title, study));
@@ -63,5 +74,26 @@ ExitStatus inverse(const InverseArguments& arguments) {
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
   return exit_status(summary.status);
 }
+
+std::function<ExitStatus()> add_inverse(CLI::App& c) {
+  const auto arguments = std::make_shared<InverseArguments>();
+  InverseArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulation(c, a);
+  c.add_option("--motion", a.motion,
+               "CSV file with columns t[s] and hinge coordinates, in the place of the scene's motions")
+      ->type_name("FILE");
+  add_output(c, a, "Folder of the results; default: results/<scene>-inverse");
+  return [arguments] { return inverse(*arguments); };
+}
+
+}  // namespace
+
+const Command inverse_command = {
+    "inverse", "Efforts that hinges need to follow their motions, flexible bodies swinging along",
+    "  withy inverse scenes/spin-up.yaml\n"
+    "  withy inverse scenes/two-link-slew.yaml --motion scenes/motions/two-link-pick.csv --set loads={} "
+    "--out results/pick",
+    &add_inverse};
 
 }  // namespace withy::app

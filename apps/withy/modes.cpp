@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -7,6 +8,7 @@
 #include "withy/apps/withy/modes_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/progress.hpp"
+#include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/variation.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/modes_files.hpp"
@@ -15,11 +17,17 @@
 namespace withy::app {
 namespace {
 
+struct ModesArguments : ConfigurationArguments, OutputArguments {
+  std::vector<std::string> formulations;  ///< empty: the scene's
+  std::string sweep;      ///< `path=a:b:n`, a path of the scene or `spin.hinge`; empty: one configuration
+  std::size_t count = 6;  ///< modes that are shown
+  bool as_is = false;     ///< about the state as it is given, steady or not
+};
+
 using Json = nlohmann::ordered_json;
 
 /// One run a formulation.
-std::vector<study::ModesOf> runs_of(const ModesArguments& arguments, const study::Sweep& sweep) {
-  const Engine engine(arguments);
+std::vector<study::ModesOf> runs_of(const Engine& engine, const ModesArguments& arguments, const study::Sweep& sweep) {
   const study::Holding holding = holding_of(engine.model(), arguments.lock, arguments.spin);
   const auto start = [&](const study::Prepared& prepared) { return read_state(prepared, arguments.state); };
   std::vector<std::string> formulations = arguments.formulations;
@@ -49,7 +57,6 @@ std::string run_text(const study::ModesOf& run, const ModesArguments& arguments,
 void write_files(const std::vector<study::ModesOf>& runs, const Json& j, const ModesArguments& arguments,
                  const study::Sweep& sweep) {
   const std::filesystem::path folder(arguments.out);
-  std::filesystem::create_directories(folder);
   write_file(folder / "modes.json", json_text(j));
   write_file(folder / "modes.csv", modes_csv(runs, sweep.none() ? "value" : sweep.path));
   if (!sweep.none())
@@ -70,11 +77,12 @@ bool complain_of(const std::vector<study::ModesOf>& runs, const study::Sweep& sw
   return failed;
 }
 
-}  // namespace
-
 ExitStatus modes(const ModesArguments& arguments) {
   const study::Sweep sweep = parse_sweep(arguments.sweep, "--sweep");
-  const std::vector<study::ModesOf> runs = runs_of(arguments, sweep);
+  const Engine engine(arguments);
+  const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
+                                  {"modes.json", "modes.csv", "modes.svg"});
+  const std::vector<study::ModesOf> runs = runs_of(engine, arguments, sweep);
   if (interrupted()) return ExitStatus::interrupted;
   Json j;
   j["scene"] = arguments.scene;
@@ -90,5 +98,32 @@ ExitStatus modes(const ModesArguments& arguments) {
   }
   return complain_of(runs, sweep) ? ExitStatus::stopped : ExitStatus::done;
 }
+
+std::function<ExitStatus()> add_modes(CLI::App& c) {
+  const auto arguments = std::make_shared<ModesArguments>();
+  ModesArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulations(c, a.formulations, "--formulations,--formulation", "Formulations; default: the scene's");
+  add_configuration(c, a);
+  c.add_option("--sweep", a.sweep, "Any number of the scene, or spin.HINGE, over a range")
+      ->type_name("PATH=FROM:TO:COUNT");
+  c.add_option("--count", a.count, "Modes that are shown (files hold all)")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100000}))
+      ->capture_default_str();
+  c.add_flag("--as-is", a.as_is, "About the state as it is given, without finding the steady one");
+  add_output(c, a, "Folder for modes.csv, modes.json and, of a sweep, modes.svg");
+  return [arguments] { return modes(*arguments); };
+}
+
+}  // namespace
+
+const Command modes_command = {
+    "modes", "Frequencies, damping and shapes of small motions; over a sweep, if wanted",
+    "  withy modes scenes/two-link-slew.yaml --lock shoulder,elbow\n"
+    "  withy modes scenes/rotating-blade.yaml --spin axle=6 --count 4\n"
+    "  withy modes scenes/rotating-blade.yaml --formulations ruthless,inconsistent,consistent --sweep "
+    "spin.axle=0:6:13 --count 4 --out results/campbell",
+    &add_modes};
 
 }  // namespace withy::app

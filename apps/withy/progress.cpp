@@ -21,6 +21,11 @@ void watch_for_interrupt() {
   action.sa_handler = remember_interrupt;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
+  // A batch system's way to end a job, and the end of a terminal, if nohup has not said that it is to be ignored.
+  for (const int signal : {SIGTERM, SIGHUP}) {
+    struct sigaction before = {};
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
 }
 
 bool interrupted() { return interrupt_seen != 0; }

@@ -7,9 +7,9 @@
 
 namespace withy::app {
 
-/// From now on SIGINT is remembered instead of ending the program; a second one ends it.
+/// From now on SIGINT, SIGTERM and SIGHUP are remembered instead of ending the program; a second one ends it.
 void watch_for_interrupt();
-/// Whether SIGINT has come.
+/// Whether one of them has come.
 bool interrupted();
 
 /// One line on standard error, renewed in place ten times a second and erased at the end; nothing where standard error

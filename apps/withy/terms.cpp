@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -10,9 +11,12 @@
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/terms_files.hpp"
+#include "withy/study/run.hpp"
 
 namespace withy::app {
 namespace {
+
+struct TermsArguments : SceneArguments, OutputArguments {};
 
 std::string cell(double value, double greatest) {
   if (!(greatest > 0) || value < 1e-12 * greatest) return "-";
@@ -61,11 +65,11 @@ std::string left_out_text(const study::TermSizes& ledger) {
   return "\nLeft out by each formulation of what " + ledger.richest + " keeps, in the same per cent:\n\n" + table.str();
 }
 
-}  // namespace
-
 ExitStatus terms(const TermsArguments& arguments) {
   const Engine engine(arguments);
   const Scene& scene = engine.scene();
+  const auto taken =
+      take_folder(arguments, "terms", provenance_of(scene, engine.plugins()), {"terms.csv", "terms.svg", "terms.json"});
   study::TermStudy study(engine.prepared(), engine.registry());
   const RunSummary summary = study::simulate(
       engine.prepared(), [&](const State& state) { study.enter(state); }, run_control(scene.formulation_name));
@@ -78,7 +82,6 @@ ExitStatus terms(const TermsArguments& arguments) {
                                    study::outcome_text(summary), table_text(sizes) + left_out_text(sizes));
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
-    std::filesystem::create_directories(folder);
     write_file(folder / "terms.csv", terms_csv(sizes));
     write_file(folder / "terms.svg", terms_picture(title + ": terms along a run of " + scene.formulation_name, sizes));
     write_file(folder / "terms.json", json_text(j));
@@ -88,5 +91,22 @@ ExitStatus terms(const TermsArguments& arguments) {
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
   return exit_status(summary.status);
 }
+
+std::function<ExitStatus()> add_terms(CLI::App& c) {
+  const auto arguments = std::make_shared<TermsArguments>();
+  TermsArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulation(c, a);
+  add_output(c, a, "Folder for table, series and picture; default: nothing is kept");
+  return [arguments] { return terms(*arguments); };
+}
+
+}  // namespace
+
+const Command terms_command = {"terms", "Measure the terms of the equations of motion along a run",
+                               "  withy terms scenes/two-link-slew.yaml\n"
+                               "  withy terms scenes/two-link-slew.yaml --formulation ruthless "
+                               "--set loads.slew.time_scale=1.2 --out results/terms",
+                               &add_terms};
 
 }  // namespace withy::app

@@ -1,14 +1,16 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/apps/withy/trade_axes.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
@@ -92,6 +94,8 @@ study::Axes axes_of(const TradeAxes& asked, Registry& registry) {
   return axes;
 }
 
+namespace {
+
 ExitStatus trade(const TradeArguments& arguments) {
   if (!arguments.limit.empty()) return trade_threshold(arguments);
   if (arguments.measure != "runs" || !arguments.lock.empty() || !arguments.spin.empty())
@@ -101,7 +105,9 @@ ExitStatus trade(const TradeArguments& arguments) {
   const Engine engine(arguments);
   const std::vector<study::Point> points = study::points_of(axes_of(arguments.axes, engine.registry()));
   std::optional<TradeFolder> store;
-  if (!arguments.out.empty()) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points));
+  const auto taken = take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()),
+                                 {"trade.json", "trade.csv", "trade.svg"});
+  if (taken) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points, engine.registry()));
   study::TradeStudy study(engine.prepared(), engine.registry(), points,
                           {arguments.jobs, store ? &*store : nullptr, study_control("trade")});
   const bool whole = study.run();
@@ -126,5 +132,59 @@ ExitStatus trade(const TradeArguments& arguments) {
   print(text);
   return whole ? ExitStatus::done : ExitStatus::interrupted;
 }
+
+std::function<ExitStatus()> add_trade(CLI::App& c) {
+  const auto arguments = std::make_shared<TradeArguments>();
+  TradeArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulations(c, a.axes.formulations, "--formulations,--formulation",
+                   "Formulations; default: all that take part in studies, plugins' too");
+  c.add_option("--families,--family", a.axes.families, "Mode families of bending; default: the scene's")
+      ->type_name("ID,ID,...")
+      ->delimiter(',');
+  c.add_option("--modes", a.axes.modes, "Modes of each family of a beam; default: 1,2,3")
+      ->type_name("N,N,...")
+      ->delimiter(',');
+  c.add_option("--integrators", a.axes.integrators, "Integrators with a relative tolerance; default: dopri5,imex")
+      ->type_name("ID,ID,...")
+      ->delimiter(',');
+  c.add_option("--tolerances", a.axes.tolerances, "Relative tolerances; default: 1e-4,1e-6")
+      ->type_name("R,R,...")
+      ->delimiter(',');
+  c.add_option("--over", a.axes.over, "Trade at each of these values of the scene; repeatable")
+      ->type_name("PATH=VALUE,VALUE,...")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->expected(1)
+      ->allow_extra_args(false);
+  c.add_option("--limit", a.limit,
+               "Find where along --over PATH=FROM:TO[:COUNT] each model's error passes this share, as 1%")
+      ->type_name("SHARE");
+  c.add_option("--measure", a.measure, "With --limit: errors of runs, or of frequencies")
+      ->type_name("WHAT")
+      ->check(CLI::IsMember({"runs", "frequencies"}))
+      ->capture_default_str();
+  c.add_option("--count", a.count, "Lowest modes whose frequencies are compared")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}))
+      ->capture_default_str();
+  c.add_option("--lock", a.lock, "Of frequencies: hinges that are held")->type_name("HINGE,HINGE,...")->delimiter(',');
+  c.add_option("--spin", a.spin, "Of frequencies: hinges held at a constant rate")
+      ->type_name("HINGE=RATE,...")
+      ->delimiter(',');
+  c.add_option("--jobs", a.jobs, "Points run at once; default: one a core")->type_name("N");
+  add_output(c, a, "Folder for table and picture, and for finished points: the same command continues");
+  return [arguments] { return trade(*arguments); };
+}
+
+}  // namespace
+
+const Command trade_command = {
+    "trade", "Weigh error against cost over formulations, modes, integrators and tolerances",
+    "  withy trade scenes/screw.yaml --formulations ruthless,quadratic --modes 1,2\n"
+    "  withy trade scenes/two-link-slew.yaml --set time.end=1 --modes 2 --tolerances 1e-4 "
+    "--over loads.slew.time_scale=0.5,1 --out results/trade\n"
+    "  withy trade scenes/rotating-blade.yaml --measure frequencies --limit 1% --over spin.axle=0:3.5 "
+    "--formulations ruthless,inconsistent,quadratic --modes 2",
+    &add_trade};
 
 }  // namespace withy::app

@@ -7,6 +7,7 @@
 #include "withy/apps/withy/configuration.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/apps/withy/trade_axes.hpp"
 #include "withy/results/json_text.hpp"
@@ -76,8 +77,7 @@ std::string table_text(const std::vector<study::Threshold>& rows, const study::S
   return table.str();
 }
 
-std::optional<study::Thresholds> found(const TradeArguments& arguments, const Question& q) {
-  const Engine engine(arguments);
+std::optional<study::Thresholds> found(const Engine& engine, const TradeArguments& arguments, const Question& q) {
   const std::vector<study::Point> points = study::points_of(axes_of(q.axes, engine.registry()));
   const study::Control control = study_control("trade");
   if (arguments.measure == "frequencies") {
@@ -86,7 +86,7 @@ std::optional<study::Thresholds> found(const TradeArguments& arguments, const Qu
                                             {points, q.range, holding, arguments.count}, q.limit, control);
   }
   std::optional<TradeFolder> store;
-  if (!arguments.out.empty()) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points));
+  if (!arguments.out.empty()) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points, engine.registry()));
   return study::thresholds_of_runs(engine.prepared(), engine.registry(), points, q.range, q.limit,
                                    {arguments.jobs, store ? &*store : nullptr, control});
 }
@@ -111,7 +111,10 @@ nlohmann::ordered_json thresholds_json(const TradeArguments& arguments, const Qu
 ExitStatus trade_threshold(const TradeArguments& arguments) {
   const Question q = read_question(arguments);
   const bool frequencies = arguments.measure == "frequencies";
-  const auto thresholds = found(arguments, q);
+  const Engine engine(arguments);
+  const auto taken = take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()),
+                                 {"limit.json", "limit.csv", "limit.svg"});
+  const auto thresholds = found(engine, arguments, q);
   if (!thresholds) return ExitStatus::interrupted;
   const ThresholdLabels labels{arguments.axes.families.size() > 1 || !arguments.axes.families.front().empty(),
                                arguments.axes.over.size() > 1, frequencies};
@@ -120,7 +123,6 @@ ExitStatus trade_threshold(const TradeArguments& arguments) {
                                         frequencies ? "frequencies" : "hinges or tips", 100 * q.limit);
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
-    std::filesystem::create_directories(folder);
     write_file(folder / "limit.json", json_text(j));
     write_file(folder / "limit.csv", threshold_csv(thresholds->rows, q.range, labels));
     write_file(folder / "limit.svg", threshold_picture(title, thresholds->rows, q.range, q.limit));

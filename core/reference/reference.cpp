@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <optional>
 #include <stdexcept>
-#include <unsupported/Eigen/AutoDiff>
 
 #include "withy/core/deformation/rod_motion.hpp"
 
@@ -22,7 +21,7 @@ template <class S>
 using MX = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// a + εb with ε² = 0.
-using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
+using Dual = DualNumber<double, 1>;
 
 /// Motion of a frame in the world, world axes: pose, velocities, their Jacobians over all generalized speeds, and the
 /// accelerations that remain with u̇ = 0.

@@ -18,7 +18,7 @@ namespace withy::analysis {
 
 /// a + εb with ε² = 0, in numbers T.
 template <class T>
-using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<T, 1, 1>>;
+using Dual = DualNumber<T, 1>;
 
 /// A hinge at one state: HingeMotion, its rates and their derivatives.
 template <class S>

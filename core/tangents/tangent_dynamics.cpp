@@ -47,8 +47,8 @@ struct TangentDynamics::Builder {
   [[nodiscard]] T seeded(double value, std::size_t direction) const {
     T x(value);
     if constexpr (std::is_same_v<T, Jet>) {
-      if (const std::size_t i = direction - seeds.first; direction >= seeds.first && i < 8)
-        x.derivatives()[static_cast<Eigen::Index>(i)] = 1;
+      if (const std::size_t i = direction - seeds.first; direction >= seeds.first && i < jet_directions)
+        x.derivatives()[i] = 1;
     }
     return x;
   }
@@ -82,8 +82,7 @@ struct TangentDynamics::Builder {
     for (std::size_t k = 0; k < n; ++k) {
       if (const std::size_t i = slot.speed + k - seeds.first; slot.speed + k >= seeds.first && i < 8) {
         const auto set = [&](auto& target, const auto& derivative) {
-          for (Eigen::Index e = 0; e < target.size(); ++e)
-            target(e).derivatives()[static_cast<Eigen::Index>(i)] = derivative(e);
+          for (Eigen::Index e = 0; e < target.size(); ++e) target(e).derivatives()[i] = derivative(e);
         };
         const auto column = m.H.col(static_cast<Eigen::Index>(k));
         set(s.R, Matrix3(m.pose.R * skew<double>(Vector3(column.template head<3>()))));
@@ -106,7 +105,7 @@ struct TangentDynamics::Builder {
         hinge.motion(x, unit, along);
         hinge.motion(x, sum, both);
         const Vector6 derivative = both.bias - m.bias - along.bias;
-        for (Eigen::Index e = 0; e < 6; ++e) s.bias[e].derivatives()[static_cast<Eigen::Index>(i)] = derivative[e];
+        for (Eigen::Index e = 0; e < 6; ++e) s.bias[e].derivatives()[i] = derivative[e];
       }
     }
   }
@@ -266,7 +265,7 @@ Eigen::VectorXd TangentDynamics::differentiate(double t, std::span<const double>
     const Eigen::Index count = std::min<Eigen::Index>(8, columns.cols() - first);
     for (Eigen::Index i = 0; i < n; ++i) {
       values[i] = r[i].value();
-      columns.block(i, first, 1, count) = r[i].derivatives().head(count).transpose();
+      columns.block(i, first, 1, count) = derivatives_of(r[i]).head(count).transpose();
     }
   }
   return values + elastic(y) - load_efforts(t, y);
@@ -428,9 +427,9 @@ FrameTangent TangentDynamics::frame(std::span<const double> y, int body, int fra
     const Eigen::Index count = std::min<Eigen::Index>(8, n - first);
     for (Eigen::Index i = 0; i < 3; ++i) {
       result.position[i] = p[i].value();
-      result.by_position.block(i, first, 1, count) = p[i].derivatives().head(count).transpose();
+      result.by_position.block(i, first, 1, count) = derivatives_of(p[i]).head(count).transpose();
       result.deflection[i] = d[i].value();
-      result.deflection_by_position.block(i, first, 1, count) = d[i].derivatives().head(count).transpose();
+      result.deflection_by_position.block(i, first, 1, count) = derivatives_of(d[i]).head(count).transpose();
     }
   }
   return result;
