@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "sid_body.hpp"
+#include "withy/core/plugin/file_notes.hpp"
 #include "withy/core/plugin/registry.hpp"
 
 namespace withy {
@@ -30,9 +31,10 @@ std::unique_ptr<Body> make_modal(const Value& p, const MakeContext& context) {
   std::ifstream stream(file, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(stream)), {});
   if (!stream) return fault(fmt::format("'{}' cannot be read", file.string()));
+  FileNotes::add(named.text(), text);
   SidBodyOptions options;
   if (p.has("root")) options.root = p.text_at("root");
-  if (p.has("damping_ratio")) options.damping_ratio = p.number_at("damping_ratio");
+  if (BodyDamping::given(p)) options.damping = BodyDamping::read(p);
   try {
     SidReport report;
     return body_of(sid::read(text), options, report);
@@ -46,15 +48,15 @@ std::unique_ptr<Body> make_modal(const Value& p, const MakeContext& context) {
 }  // namespace
 
 void enroll_modal(Enrollment& enrollment) {
+  std::vector<ParameterSpec> specs = {
+      text("file", "file of Standard Input Data; a relative name starts at the scene's directory"),
+      text("root", "node that is the root; without it, the frame the file refers to").optional()};
+  // Given, they take the place of the file's damping.
+  for (ParameterSpec& spec : damping_parameters(false)) specs.push_back(std::move(spec));
   enrollment.add<Body>(
       {.id = "modal",
        .summary = "Flexible body from a file of Standard Input Data (SID), as finite-element programs write it",
-       .parameters = {text("file", "file of Standard Input Data; a relative name starts at the scene's directory"),
-                      text("root", "node that is the root; without it, the frame the file refers to").optional(),
-                      number("damping_ratio", "1",
-                             "modal damping, as a fraction of critical, in the place of the file's")
-                          .least(0)
-                          .optional()},
+       .parameters = std::move(specs),
        .make = &make_modal});
 }
 
