@@ -158,7 +158,6 @@ void ResultsFolder::write(const std::string& text) const {
     if (count < 0 && errno != EINTR) fail();
     if (count > 0) done += static_cast<std::size_t>(count);
   }
-  if (::fsync(file_) != 0) fail();
 }
 
 std::string folder_suffix(const std::vector<std::string>& settings) {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "withy/apps/withy/certificate_text.hpp"
-#include "withy/apps/withy/scene_edit.hpp"
+#include "withy/results/scene_edit.hpp"
 
 namespace withy::app {
 namespace {
