@@ -3,7 +3,9 @@
 include(CMakePackageConfigHelpers)
 
 # Programs are in bin; libraries beside each other.
-set(CMAKE_BUILD_RPATH_USE_ORIGIN ON)
+# The build tree is laid out as it is installed, and libraries are found alike. CMake's own paths for a build tree end in
+# an empty one, which is the working folder: libraries would be looked for, and taken, there.
+set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 file(RELATIVE_PATH to_libraries /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
 set(CMAKE_INSTALL_RPATH "$ORIGIN/${to_libraries}")
 

@@ -88,6 +88,8 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
   Json c;
   c["program"] = "withy " WITHY_VERSION;
   c["formulation"] = {{"name", certificate.formulation}, {"meaning", certificate.meaning}};
+  for (const study::OwnFormulation& own : certificate.own)
+    c["formulation"]["bodies"][own.body] = {{"name", own.formulation}, {"meaning", own.meaning}};
   if (!certificate.stretches.empty()) c["stretches"] = stretches_json(certificate);
   c["integrator"] = value_json(scene.source.at("integrator"));
   c["output_interval"] = scene.output;

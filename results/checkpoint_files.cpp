@@ -41,7 +41,9 @@ Content read_content(const std::filesystem::path& file) {
     return {"is damaged", {}};
   const Bytes& packed = content->get_binary();
   if (checksum(packed) != sum->get<std::uint32_t>()) return {"is damaged: its checksum does not fit", {}};
-  return {"", Json::from_cbor(packed)};
+  Json inner = Json::from_cbor(packed, true, false);
+  if (!inner.is_object()) return {"is damaged", {}};
+  return {"", std::move(inner)};
 }
 
 }  // namespace

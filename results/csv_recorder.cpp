@@ -1,5 +1,6 @@
 #include "withy/results/csv_recorder.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 
@@ -9,7 +10,7 @@
 namespace withy {
 namespace {
 
-constexpr const char* advice = "; run without --resume to begin anew";
+constexpr const char* remedy = "; run without --resume to begin anew";
 
 /// Adds the bytes from `first` to `last` of a file; false where there are fewer.
 bool add_bytes(Sha256& hash, const std::filesystem::path& path, std::uint64_t first, std::uint64_t last) {
@@ -29,10 +30,10 @@ bool add_bytes(Sha256& hash, const std::filesystem::path& path, std::uint64_t fi
 std::filesystem::path cut(std::filesystem::path path, const RecordMark& mark) {
   std::error_code none;
   const std::uintmax_t size = std::filesystem::file_size(path, none);
-  if (none || size < mark.bytes) throw ResultsError(path.string() + " is shorter than at its checkpoint" + advice);
+  if (none || size < mark.bytes) throw ResultsError(path.string() + " is shorter than at its checkpoint" + remedy);
   Sha256 hash;
   if (!add_bytes(hash, path, 0, mark.bytes) || hash.digest() != mark.sha256)
-    throw ResultsError(path.string() + " is not what it was at its checkpoint" + advice);
+    throw ResultsError(path.string() + " is not what it was at its checkpoint" + remedy);
   std::filesystem::resize_file(path, mark.bytes);
   return path;
 }
@@ -50,7 +51,7 @@ void CsvRecorder::begin(const std::vector<Column>& columns) {
   std::ifstream in(path_, std::ios::binary);
   std::string kept(head.size(), '\0');
   in.read(kept.data(), static_cast<std::streamsize>(kept.size()));
-  if (!in || kept != head) throw ResultsError(path_.string() + " has other columns" + advice);
+  if (!in || kept != head) throw ResultsError(path_.string() + " has other columns" + remedy);
 }
 
 void CsvRecorder::row(std::span<const double> numbers) {

@@ -43,13 +43,13 @@ void list(std::string& text, const std::string& what) { text += (text.empty() ? 
 }  // namespace
 
 std::string Provenance::subject() const {
-  Json j{values};
+  Json j = Json::array({values});
   for (const FileUsed& f : sources.files) j.push_back(f.sha256);
   return sha256(compact(j));
 }
 
 std::string Provenance::fingerprint() const {
-  Json j{subject(), program.version, program.description, program.build};
+  Json j = Json::array({subject(), program.version, program.description, program.build});
   for (std::size_t i = 0; i < plugin_builds.size(); ++i)
     j.push_back({sources.plugins[i].kind, sources.plugins[i].id, plugin_builds[i]});
   return sha256(compact(j));

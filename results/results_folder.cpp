@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* format = "withy-result/1";
+constexpr const char* format_of_record = "withy-result/1";
 constexpr const char* name_of_record = "result.json";
 constexpr std::size_t longest_suffix = 100;
 
@@ -30,7 +30,7 @@ Json read_record(const std::filesystem::path& folder) {
   std::ifstream in(folder / name_of_record, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   Json j = Json::parse(text, nullptr, false);
-  return j.is_object() && j.value("format", "") == format ? j : Json();
+  return j.is_object() && j.value("format", "") == format_of_record ? j : Json();
 }
 
 std::vector<std::string> content_of(const Json& record) {
@@ -103,13 +103,16 @@ ResultsFolder::ResultsFolder(std::filesystem::path path, const std::string& comm
   try {
     const Json kept = read_record(path_);
     Json now = stored_provenance(provenance);
-    now["format"] = format;
+    now["format"] = format_of_record;
     now["command"] = command;
     now["subject"] = provenance.subject();
     now["content"] = content;
     now["process"] = ::getpid();
     if (use == FolderUse::begin)
-      if (const std::string why = refusal(path_, kept, now, content); !why.empty()) throw ResultsError(why);
+      if (const std::string why = refusal(path_, kept, now, content); !why.empty()) {
+        if (std::filesystem::is_empty(path_ / name_of_record)) std::filesystem::remove(path_ / name_of_record);
+        throw ResultsError(why);
+      }
     changed_ = change(kept, provenance);
     if (use == FolderUse::go_on && !changed_.empty()) return;  // the caller will not go on
     std::vector<std::string> old = content;
@@ -155,7 +158,6 @@ void ResultsFolder::write(const std::string& text) const {
     if (count < 0 && errno != EINTR) fail();
     if (count > 0) done += static_cast<std::size_t>(count);
   }
-  if (::fsync(file_) != 0) fail();
 }
 
 std::string folder_suffix(const std::vector<std::string>& settings) {

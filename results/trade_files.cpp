@@ -118,7 +118,7 @@ std::string trade_picture(const std::string& title, const std::vector<study::Tra
 
 namespace {
 
-study::PointStore::Kept read(const Json& j, const study::Point& point) {
+study::PointStore::Kept kept_of(const Json& j, const study::Point& point) {
   const Json& r = j.at("reference");
   study::PointStore::Kept kept;
   kept.reference = {{r.at("formulation"), "", r.at("modes"), r.at("integrator"), r.at("tolerance"), point.over},
@@ -146,7 +146,7 @@ std::optional<study::PointStore::Kept> TradeFolder::find(const study::Point& poi
   const std::optional<Json> kept = points_.find(point.key());
   if (!kept) return {};
   try {
-    return read(*kept, point);
+    return kept_of(*kept, point);
   } catch (const Json::exception&) {
     return {};  // no result of this version: it is computed anew
   }
@@ -175,7 +175,7 @@ std::string trade_fingerprint(const Scene& scene, const std::vector<study::Point
   }
   for (const char* reference : {"exact", "quadratic"}) build_of.operator()<Formulation>(reference);
   build_of.operator()<Integrator>("dopri5");
-  return sha256(Json{provenance_of(scene).fingerprint(), modes, tolerance, builds}.dump());
+  return sha256(Json::array({provenance_of(scene).fingerprint(), modes, tolerance, builds}).dump());
 }
 
 }  // namespace withy

@@ -30,10 +30,10 @@ void read_part(Accuracy& a, const std::string& part, const std::string& whole) {
     if (!value && (value = read_quantity(part, "rad").value)) kind = &a.angle;
   }
   if (!value)
-    throw InputError("accuracy: got '" + part + "'; need a share as 1%, a length as 2mm or an angle as 0.1deg");
-  if (*kind) throw InputError("accuracy: '" + whole + "' says the same twice");
+    throw OptionError("accuracy", "got '" + part + "'; need a share as 1%, a length as 2mm or an angle as 0.1deg");
+  if (*kind) throw OptionError("accuracy", "'" + whole + "' says the same twice");
   if (!(*value > 0) || (kind == &a.share && *value > 1))
-    throw InputError(fmt::format("accuracy: got '{}'; need above 0{}", part, kind == &a.share ? ", at most 1" : ""));
+    throw OptionError("accuracy", fmt::format("got '{}'; need above 0{}", part, kind == &a.share ? ", at most 1" : ""));
   *kind = value;
 }
 
@@ -78,8 +78,8 @@ Distances Accuracy::limits(const Outputs& outputs, const Distances& ways) const 
 void Accuracy::require_something_of(const Outputs& outputs) const {
   const bool lengths = outputs.has(Measure::slide) || outputs.has(Measure::place) || outputs.has(Measure::deflection);
   if (share || (length && lengths) || (angle && outputs.has(Measure::angle))) return;
-  throw InputError("accuracy: '" + text() + "' asks nothing of the outputs, which are " +
-                   std::string(lengths ? "lengths" : "angles"));
+  throw OptionError("accuracy", "'" + text() + "' asks nothing of the outputs, which are " +
+                                    std::string(lengths ? "lengths" : "angles"));
 }
 
 std::string Accuracy::text() const {

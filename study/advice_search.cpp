@@ -225,7 +225,10 @@ void Search::look_up() {
   }
   for (const Point& point : points) {
     if (stopped()) return;
-    advice_.above.push_back(evaluator_.run(point, yardstick()));
+    Probe p = evaluator_.run(point, yardstick());
+    // A model that does not come to the end is nothing to go up to.
+    if (p.outcome != Probe::Outcome::stopped && p.outcome != Probe::Outcome::refused)
+      advice_.above.push_back(std::move(p));
   }
 }
 

@@ -48,8 +48,8 @@ void check(const Axes& axes, Registry& registry) {
   check_axes(axes);
   for (const std::string& f : axes.formulations) {
     if (!make_formulation(registry, f)->standing().studied)
-      throw InputError("formulations: '" + f +
-                       "' is never advised: it is there to be compared. See withy trade for its error");
+      throw OptionError("formulations",
+                        "'" + f + "' is never advised: it is there to be compared. See withy trade for its error");
   }
   for (const std::string& i : axes.integrators)
     if (registry.find<Integrator>(i) == nullptr) throw InputError("no integrator '" + i + "'");

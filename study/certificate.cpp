@@ -4,9 +4,26 @@
 #include <limits>
 
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/study/candidates.hpp"
 
 namespace withy::study {
 namespace {
+
+std::string meaning_of(const std::string& formulation, Registry& registry) {
+  const auto* plugin = registry.find<Formulation>(formulation);
+  return plugin != nullptr ? plugin->summary : std::string();
+}
+
+/// Flexible bodies in another formulation than the scene's.
+std::vector<OwnFormulation> own_formulations(const Scene& scene, Registry& registry) {
+  std::vector<OwnFormulation> all;
+  for (const std::string& name : flexible_bodies(scene)) {
+    const Value* own = scene.source.at("bodies").at(name).find("formulation");
+    if (own == nullptr || own->kind() != Value::Kind::text || own->text() == scene.formulation_name) continue;
+    all.push_back({name, own->text(), meaning_of(own->text(), registry)});
+  }
+  return all;
+}
 
 void add_stretches(Certificate& c, const Prepared& prepared, const EscalatedRun& run) {
   for (const Stretch& s : run.stretches) c.stretches.push_back({prepared.rungs[s.rung].name, s});
@@ -20,7 +37,8 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   const RunSummary& summary = *evidence.summary;
   Certificate c;
   c.formulation = scene.formulation_name;
-  if (const auto* plugin = registry.find<Formulation>(scene.formulation_name)) c.meaning = plugin->summary;
+  c.meaning = meaning_of(scene.formulation_name, registry);
+  c.own = own_formulations(scene, registry);
   const Rung* last = nullptr;  // what a run that changes its formulation ended in
   if (evidence.escalated != nullptr) {
     last = &prepared.rungs[evidence.escalated->stretches.back().rung];

@@ -18,9 +18,17 @@ struct NamedStretch {
   Stretch stretch;
 };
 
+/// A body in a formulation of its own.
+struct OwnFormulation {
+  std::string body;
+  std::string formulation;
+  std::string meaning;  ///< in a sentence
+};
+
 struct Certificate {
   std::string formulation;                ///< of the scene
   std::string meaning;                    ///< the formulation in a sentence
+  std::vector<OwnFormulation> own;        ///< bodies whose formulation is another; the scene's does not hold for them
   std::vector<NamedStretch> stretches;    ///< of formulation `auto`; else empty
   std::size_t discarded_evaluations = 0;  ///< the same
   std::vector<std::string> compiled;      ///< what the compiled equations save

@@ -14,7 +14,7 @@ namespace {
 std::size_t one_speed(const Model& model, const std::string& name, const std::string& what) {
   const std::vector<std::size_t> speeds = speeds_of(model, name, what);
   if (speeds.size() == 1) return speeds[0];
-  throw InputError(fmt::format("{}: hinge '{}' has {} rates; name one, as {}.0", what, name, speeds.size(), name));
+  throw OptionError(what, fmt::format("hinge '{}' has {} rates; name one, as {}.0", name, speeds.size(), name));
 }
 
 /// The hinge that a speed belongs to.
@@ -58,8 +58,8 @@ std::vector<std::string> Configuration::held_names() const {
 void Configuration::spin(const Spin& spin) {
   const std::size_t speed = one_speed(prepared_.model(), spin.name, "spin");
   if (prepared_.model().driven(hinge_of(layout(), speed)))
-    throw InputError(fmt::format("spin: a motion of the scene drives '{}' already", spin.name));
-  if (!std::isfinite(spin.rate)) throw InputError("spin: rate of '" + spin.name + "': need a finite number");
+    throw OptionError("spin", fmt::format("a motion of the scene drives '{}' already", spin.name));
+  if (!std::isfinite(spin.rate)) throw OptionError("spin", "rate of '" + spin.name + "': need a finite number");
   held_[speed] = true;
   state_.y[layout().positions + speed] = spin.rate;
 }
@@ -81,7 +81,7 @@ std::vector<std::size_t> speeds_of(const Model& model, const std::string& name, 
   std::vector<std::size_t> speeds;
   if (const Slot* slot = layout.hinge(name)) {
     for (std::size_t i = 0; i < slot->speeds; ++i) speeds.push_back(slot->speed + i);
-    if (speeds.empty()) throw InputError(fmt::format("{}: hinge '{}' has no rates", what, name));
+    if (speeds.empty()) throw OptionError(what, fmt::format("hinge '{}' has no rates", name));
     return speeds;
   }
   for (const std::size_t s : hinge_speeds(layout)) {
@@ -91,7 +91,7 @@ std::vector<std::size_t> speeds_of(const Model& model, const std::string& name, 
   for (const Slot& slot : layout.hinges) {
     if (slot.speeds > 0) known += (known.empty() ? "" : ", ") + slot.name;
   }
-  throw InputError(fmt::format("{}: no hinge '{}'; known: {}", what, name, known));
+  throw OptionError(what, fmt::format("no hinge '{}'; known: {}", name, known));
 }
 
 std::vector<std::size_t> hinge_speeds(const Layout& layout) {

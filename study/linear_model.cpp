@@ -64,7 +64,7 @@ std::vector<LinearOutput> chosen_outputs(std::vector<LinearOutput> all, const st
     if (chosen.size() > before) continue;
     std::string known;
     for (const LinearOutput& o : all) known += (known.empty() ? "" : ", ") + o.name;
-    throw InputError("outputs: no '" + name + "'; known: " + known);
+    throw OptionError("outputs", "no '" + name + "'; known: " + known);
   }
   return chosen;
 }
@@ -80,7 +80,7 @@ std::vector<std::size_t> chosen_inputs(const Configuration& c, const std::vector
       for (const std::size_t s : speeds_of(c.prepared().model(), name, "inputs")) inputs.push_back(s);
     }
     for (const std::size_t s : inputs) {
-      if (c.held()[s]) throw InputError("inputs: " + c.layout().speed_names[s] + " is held: no effort moves it");
+      if (c.held()[s]) throw OptionError("inputs", c.layout().speed_names[s] + " is held: no effort moves it");
     }
   }
   std::erase_if(inputs, [&](std::size_t s) { return c.held()[s]; });

@@ -91,7 +91,7 @@ void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const 
     if (name == tip_name(tips[i], true) && tips[i].flexible) add_tip(tips[i], i, true);
   }
   if (outputs_.size() == before)
-    throw InputError("outputs: got '" + name + "'; need one of: " + known_names(model, tips));
+    throw OptionError("outputs", "got '" + name + "'; need one of: " + known_names(model, tips));
 }
 
 void Outputs::add(Output output) {

@@ -126,11 +126,11 @@ double absolute_tolerance(double relative) {
 
 void check_axes(const Axes& axes) {
   for (const int m : axes.modes)
-    if (m < 1 || m > 200) throw InputError(fmt::format("modes: got {}; need 1 to 200", m));
+    if (m < 1 || m > 200) throw OptionError("modes", fmt::format("got {}; need 1 to 200", m));
   for (const double t : axes.tolerances)
-    if (!(t > 0 && t <= 1)) throw InputError(fmt::format("tolerances: got {:g}; need above 0, at most 1", t));
+    if (!(t > 0 && t <= 1)) throw OptionError("tolerances", fmt::format("got {:g}; need above 0, at most 1", t));
   for (const std::string& f : axes.formulations)
-    if (f == "auto") throw InputError("formulations: 'auto' is a choice along a run, not a model; leave it out");
+    if (f == "auto") throw OptionError("formulations", "'auto' is a choice along a run, not a model; leave it out");
 }
 
 std::vector<Point> points_of(const Axes& axes) {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "withy/apps/withy/certificate_text.hpp"
-#include "withy/apps/withy/scene_edit.hpp"
+#include "withy/results/scene_edit.hpp"
 
 namespace withy::app {
 namespace {
@@ -162,12 +162,9 @@ std::string advice_text(const AdviceReport& report) {
               fmt::format("{}: {:.2g}, limit {:.3g}{}", first.text, first.value, first.limit,
                           first.use() > 1 ? "; beyond it " + first.meaning + ", which the error above has in it" : ""));
   }
-  for (const study::Probe& p : a.above) {
-    const bool fails = p.outcome == study::Probe::Outcome::stopped || p.outcome == study::Probe::Outcome::refused;
+  for (const study::Probe& p : a.above)
     lines.add("next up",
-              fails ? p.point.text() + ": " + p.reason
-                    : fmt::format("{}: {} off, {}", p.point.text(), use_text(accuracy, p.use), milliseconds(p.cost)));
-  }
+              fmt::format("{}: {} off, {}", p.point.text(), use_text(accuracy, p.use), milliseconds(p.cost)));
   lines.add("measured", fmt::format("{} probes, {:.2g} s of CPU time, against {}", a.probes.size(), a.cpu_seconds,
                                     a.yardstick->reference.point.text()));
   std::string names;

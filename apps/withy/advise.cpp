@@ -4,9 +4,9 @@
 #include "withy/apps/withy/advice_text.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
-#include "withy/apps/withy/scene_edit.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/scene_edit.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/study/left_out.hpp"
 

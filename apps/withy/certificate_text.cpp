@@ -89,6 +89,11 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
     out += fmt::format("{:<23} {}\n", what, text);
   };
   line("modelled", certificate.meaning);
+  for (const study::OwnFormulation& own : certificate.own)
+    line("", fmt::format("but '{}' in {}: {}", own.body, own.formulation, own.meaning));
+  if (!certificate.own.empty())
+    line("",
+         "a mix conserves no more than each of its formulations does, and may be further off than any of them alone");
   for (const std::string& text : stretches_text(certificate)) line("", text);
   const NeglectedAcceleration& n = certificate.neglected;
   if (!certificate.against.empty() && n.samples > 0) {

@@ -11,12 +11,12 @@ namespace {
 study::Spin read_spin(const Model& model, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
-    throw InputError("--spin: got '" + text + "'; need HINGE=RATE, as axle=6 or axle='60 rev/min'");
+    throw study::OptionError("spin", "got '" + text + "'; need HINGE=RATE, as axle=6 or axle='60 rev/min'");
   const std::string name = text.substr(0, equals), value = text.substr(equals + 1);
-  const bool angular = study::rate_is_angular(model, name, "--spin");
+  const bool angular = study::rate_is_angular(model, name, "spin");
   if (const std::optional<double> rate = plain_number(value)) return {name, *rate};
   const QuantityReading quantity = read_quantity(value, angular ? "rad/s" : "m/s");
-  if (!quantity.value) throw InputError("--spin: rate of '" + name + "': " + quantity.problem);
+  if (!quantity.value) throw study::OptionError("spin", "rate of '" + name + "': " + quantity.problem);
   return {name, *quantity.value};
 }
 

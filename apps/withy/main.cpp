@@ -34,6 +34,8 @@ int main(int argc, char** argv) {
     status = run_program(argc, argv);
   } catch (const withy::SceneError& e) {
     status = fail(ExitStatus::bad_input, e.what());
+  } catch (const withy::study::OptionError& e) {
+    status = fail(ExitStatus::bad_input, std::string("--") + e.what());
   } catch (const withy::app::InputError& e) {
     status = fail(ExitStatus::bad_input, e.what());
   } catch (const withy::ResultsError& e) {

@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/certificate_text.hpp"
@@ -15,6 +14,7 @@
 #include "withy/results/json_text.hpp"
 #include "withy/results/recorded_run.hpp"
 #include "withy/results/results_error.hpp"
+#include "withy/scene/units.hpp"
 
 namespace withy::app {
 namespace {
@@ -83,11 +83,11 @@ ExitStatus run(const RunArguments& given) {
                      ": a run of formulation 'auto' keeps no checkpoints; leave it out, or name a formulation");
   check_accuracy(engine);
   if (arguments.out.empty()) arguments.out = default_folder(arguments, engine.scene().formulation_name);
-  const RecordedRun run = recorded(engine, arguments);
-  const RunSummary& summary = run.run.summary;
+  const RecordedRun ended = recorded(engine, arguments);
+  const RunSummary& summary = ended.run.summary;
   print(arguments.json
-            ? json_text(run.json)
-            : run_table(engine.prepared(), summary) + certificate_text(engine.model(), summary, run.run.certificate) +
+            ? json_text(ended.json)
+            : run_table(engine.prepared(), summary) + certificate_text(engine.model(), summary, ended.run.certificate) +
                   "\nresults in " + arguments.out + '\n');
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
   if (summary.status == RunStatus::interrupted && !engine.prepared().escalates())
@@ -110,7 +110,12 @@ std::function<ExitStatus()> add_run(CLI::App& c) {
   c.add_option("--checkpoint", a.checkpoint,
                "Wall time between checkpoints; 0: only where the run is interrupted; default: 60")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, std::numeric_limits<double>::max(), "NONNEGATIVE"));
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            const auto seconds = plain_number(text);
+            return seconds && *seconds >= 0 ? std::string() : "need a number of seconds, 0 or more";
+          },
+          ""));
   c.add_flag("--resume", a.resume,
              "Go on from the checkpoint in the folder of the results: the same command as before, and this");
   return [arguments] { return run(*arguments); };

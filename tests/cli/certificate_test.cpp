@@ -129,6 +129,17 @@ TEST(Certificate, OfABodyFormulationLooksAtWhatTheBodyLeavesOut) {
       run_json({"scenes/two-link-slew.yaml", "--set", "bodies.link2.formulation=ruthless"}).at("certificate");
   EXPECT_EQ(c.at("neglected_acceleration").at("against"), "quadratic");
   EXPECT_GT(c.at("estimated_error").at("tips").at("payload.tip").get<double>(), 1e-3);
+  EXPECT_EQ(c.at("formulation").at("bodies").at("link2").at("name"), "ruthless");
+  EXPECT_FALSE(c.at("formulation").at("bodies").contains("link1"));
+}
+
+TEST(Certificate, SaysOfAMixWhichBodiesTheFormulationDoesNotHoldFor) {
+  const Folder folder;
+  const std::string out = withy(folder, {"run", "scenes/two-link-slew.yaml", "--set", "time.end=0.1", "--set",
+                                         "bodies.link1.formulation=ruthless"})
+                              .out;
+  EXPECT_THAT(out, HasSubstr("but 'link1' in ruthless: "));
+  EXPECT_THAT(out, HasSubstr("a mix conserves no more"));
 }
 
 }  // namespace

@@ -103,8 +103,10 @@ TEST(Trade, ContinuesWithWhatIsMissing) {
   EXPECT_TRUE(std::filesystem::exists(folder.path() / missing));
   EXPECT_EQ(std::filesystem::last_write_time(kept), time) << "what is finished is not run again";
   EXPECT_EQ(without_times(first), without_times(second));
-  // A scene that has changed is another study.
-  static_cast<void>(trade(folder, {"--set", "gravity=[0, -1, 0]"}));
+  // A scene that has changed is another study: it takes the folder when it is told to, and nothing of what is there.
+  EXPECT_EQ(trade(folder, {"--set", "gravity=[0, -1, 0]"}).status, 2);
+  EXPECT_EQ(std::filesystem::last_write_time(kept), time);
+  EXPECT_EQ(trade(folder, {"--set", "gravity=[0, -1, 0]", "--force"}).status, 0);
   EXPECT_NE(std::filesystem::last_write_time(kept), time);
 }
 

@@ -5,6 +5,7 @@
 
 #include "withy/study/advice.hpp"
 #include "withy/study/comparison.hpp"
+#include "withy/study/input_error.hpp"
 #include "withy/study/linear_model.hpp"
 #include "withy/study/run.hpp"
 #include "withy/study/threshold.hpp"

@@ -1,22 +1,22 @@
-#include "withy/apps/withy/scene_edit.hpp"
+#include "withy/results/scene_edit.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/engine.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/scene/document.hpp"
+#include "withy/study/input_error.hpp"
 
-namespace withy::app {
+namespace withy {
 namespace {
 
 Document read(const std::string& text, const std::string& what) {
   Document document;
   Diagnostics diagnostics;
   if (!read_document(text, {}, document, diagnostics))
-    throw InputError(what + ": " + diagnostics.errors().front().message);
+    throw study::InputError(what + ": " + diagnostics.errors().front().message);
   return document;
 }
 
@@ -95,7 +95,7 @@ class Edit {
     bool in_braces = json_;
     std::string path;
     for (std::size_t i = 0; i < keys_.size(); ++i) {
-      if (at->kind() == Value::Kind::list) throw InputError("--write: " + path + " is a list");
+      if (at->kind() == Value::Kind::list) throw study::InputError("--write: " + path + " is a list");
       in_braces = in_braces || (i > 0 && text_[offset(text_, at->place())] == '{');
       const Value* next = at->find(keys_[i]);
       if (next == nullptr) return inserted(*at, i);
@@ -189,4 +189,4 @@ std::string scene_lines(const std::vector<std::string>& overrides) {
   return out;
 }
 
-}  // namespace withy::app
+}  // namespace withy
