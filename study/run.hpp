@@ -28,7 +28,6 @@ struct RunSettings {
   double checkpoint_seconds = 0;                      ///< wall time between checkpoints; 0: only where interrupted
   std::function<void(const Checkpoint&)> checkpoint;  ///< takes them; may be empty
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: at the scene's initial state
-  Observation* seen = nullptr;                        ///< RunOptions::seen; not for `auto`
   Control control;
 };
 
