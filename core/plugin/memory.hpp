@@ -1,5 +1,5 @@
 /// \file
-/// Saving and restoring what a part of a run remembers, in one list of numbers.
+/// Putting down and taking up again what a part of a run remembers, in one list of numbers.
 #pragma once
 
 #include <Eigen/Core>
@@ -59,7 +59,7 @@ class Memory {
     rest_ = rest_.subspan(1);
     return value;
   }
-  [[noreturn]] static void fail() { throw std::invalid_argument("the checkpoint was not made by such a run"); }
+  [[noreturn]] static void fail() { throw std::invalid_argument("what was put down is not of what takes it up"); }
 
   bool reading_ = false;
   std::span<const double> rest_;
