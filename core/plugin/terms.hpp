@@ -13,9 +13,10 @@ enum class StrainOrder {
 
 /// How elastic coordinates enter the equations.
 enum class Truncation {
-  ruthless,  ///< order 0: inertia, velocity terms and loads at q = 0, q̇ = 0
-  strict,    ///< order 1: linear in (q, q̇, q̈)
-  none       ///< all terms
+  ruthless,   ///< order 0: inertia, velocity terms and loads at q = 0, q̇ = 0
+  strict,     ///< order 1 of the equations: linear in (q, q̇, q̈)
+  symmetric,  ///< order 1 of the kinetic energy: M linear in q, all equations from it by Lagrange's
+  none        ///< all terms
 };
 
 struct Terms {

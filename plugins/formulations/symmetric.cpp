@@ -1,0 +1,16 @@
+/// \file
+/// First order of the kinetic energy, from nonlinear strain-displacement relations (theory, "The symmetric first order").
+#include "formulation_plugin.hpp"
+
+namespace {
+
+void enroll(withy::Enrollment& enrollment) {
+  withy::enroll_formulation<withy::Terms{withy::StrainOrder::quadratic, withy::Truncation::symmetric}>(
+      enrollment, "symmetric",
+      "Kinetic energy to first order in the elastic coordinates, from nonlinear strain-displacement relations, and all "
+      "equations from it");
+}
+
+}  // namespace
+
+WITHY_PLUGIN(symmetric, enroll);
