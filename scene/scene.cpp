@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
-#include "withy/scene/overrides.hpp"
 #include "withy/scene/state.hpp"
 #include "withy/scene/tree.hpp"
 
@@ -21,37 +19,6 @@ namespace {
 constexpr double most_outputs = 1e8;
 // What integration may have left between a driven hinge and its motion, for states that a run has written.
 constexpr double driven_tolerance = 1e-6;
-
-std::string report(const std::string& file, const std::vector<Diagnostic>& problems,
-                   const std::vector<std::string>& origins) {
-  std::string text;
-  for (const Diagnostic& d : problems) {
-    if (!text.empty()) text += '\n';
-    const int line = d.place.line;
-    if (line < 0 && static_cast<std::size_t>(-line) <= origins.size()) {
-      text += origins[static_cast<std::size_t>(-line) - 1];
-    } else if (line > 0) {
-      text += fmt::format("{}:{}:{}", file, line, d.place.column);
-    } else {
-      text += file;
-    }
-    text += ": ";
-    if (!d.place.path.empty()) text += d.place.path + ": ";
-    text += d.message;
-  }
-  return text;
-}
-
-/// In the order of the file, what the command line brought first; each problem once.
-std::vector<Diagnostic> sorted(std::vector<Diagnostic> problems) {
-  const auto key = [](const Diagnostic& d) { return std::pair(d.place.line, d.place.column); };
-  std::stable_sort(problems.begin(), problems.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  const auto same = [&](const Diagnostic& a, const Diagnostic& b) {
-    return key(a) == key(b) && a.place.path == b.place.path && a.message == b.message;
-  };
-  problems.erase(std::unique(problems.begin(), problems.end(), same), problems.end());
-  return problems;
-}
 
 /// Checks one document and makes the scene of it.
 class SceneBuilder {
@@ -284,19 +251,20 @@ class SceneBuilder {
 
 }  // namespace
 
-SceneError::SceneError(std::string file, std::vector<Diagnostic> problems, const std::vector<std::string>& origins)
-    : std::runtime_error(report(file, sorted(problems), origins)), problems_(sorted(std::move(problems))) {}
+Scene make_scene(const SceneValues& values, Registry& registry) {
+  Diagnostics diagnostics = values.problems();
+  Scene scene = SceneBuilder(values.document(), registry, diagnostics).build();
+  if (!diagnostics.ok()) throw SceneError(values.file(), diagnostics.errors(), values.origins());
+  scene.file = values.file();
+  return scene;
+}
 
 Scene parse_scene(std::string_view text, const std::string& file, Registry& registry, const SceneOptions& options) {
-  Diagnostics diagnostics;
-  Document document;
-  document.directory = std::filesystem::path(file).parent_path().string();
-  if (!read_document(text, {}, document, diagnostics)) throw SceneError(file, diagnostics.errors());
-  const std::vector<std::string> origins = apply_options(document, options, diagnostics);
-  Scene scene = SceneBuilder(document, registry, diagnostics).build();
-  if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors(), origins);
-  scene.file = file;
-  return scene;
+  return make_scene(SceneValues::parse(text, file).apply(options), registry);
+}
+
+Scene read_scene(const std::string& file, Registry& registry, const SceneOptions& options) {
+  return make_scene(SceneValues::read(file).apply(options), registry);
 }
 
 double end_of_run(const Scene& scene) {
@@ -304,10 +272,6 @@ double end_of_run(const Scene& scene) {
   const Place& time = scene.source.at("time").place();
   throw SceneError(scene.file, {{{time.line, time.column, "/time/end"},
                                  "missing, and no load or motion has an end of its own; need finite >= 0 [s]"}});
-}
-
-Scene read_scene(const std::string& file, Registry& registry, const SceneOptions& options) {
-  return parse_scene(read_bytes(file), file, registry, options);
 }
 
 }  // namespace withy

@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,21 +13,9 @@
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/simulation/simulate.hpp"
+#include "withy/scene/scene_values.hpp"
 
 namespace withy {
-
-/// Thrown for bad input. what() is the whole report, one problem a line, each as
-/// `arm.yaml:66:14: /bodies/boom/bending_y/stiffness: got nan; need finite > 0 [N m^2]`.
-class SceneError : public std::runtime_error {
- public:
-  /// `origins` describe places that are not in the file: those with line −1−k stand in origins[k].
-  SceneError(std::string file, std::vector<Diagnostic> problems, const std::vector<std::string>& origins = {});
-  /// In the order of the file.
-  [[nodiscard]] const std::vector<Diagnostic>& problems() const { return problems_; }
-
- private:
-  std::vector<Diagnostic> problems_;
-};
 
 /// What the command line asks for beyond the file; empty: what the file says.
 struct SceneOptions {
@@ -54,7 +41,10 @@ struct Scene {
   State initial;
 };
 
-/// Reads a scene file (YAML or JSON). Loads only the plugins it names.
+/// Checks the values of a scene and makes it. Loads only the plugins it names.
+/// \throws SceneError with every problem found. \throws PluginError where a library it names is refused.
+Scene make_scene(const SceneValues& values, Registry& registry);
+/// Reads a scene file (YAML or JSON) and makes it. Loads only the plugins it names.
 /// \throws SceneError with every problem found. \throws std::system_error where the file cannot be read.
 /// \throws PluginError where a library it names is refused.
 Scene read_scene(const std::string& file, Registry& registry, const SceneOptions& options = {});

@@ -183,6 +183,29 @@ State read_state(const std::string& file, const Model& model, const State& start
   return parse_state(read_bytes(file), file, model, start);
 }
 
+Value state_value(const Model& model, const State& state) {
+  const Layout& layout = model.layout();
+  const auto part = [&](std::size_t first, std::size_t count) {
+    Value list = Value::list({});
+    for (std::size_t i = first; i < first + count; ++i) list.items().emplace_back(state.y[i]);
+    return list;
+  };
+  Value hinges = Value::map({}), bodies = Value::map({});
+  for (const Slot& s : layout.hinges) {
+    if (s.positions == 0) continue;
+    hinges.members().emplace_back(s.name, Value::map({{"position", part(s.position, s.positions)},
+                                                      {"rate", part(layout.positions + s.speed, s.speeds)}}));
+  }
+  for (const Slot& s : layout.bodies) {
+    bodies.members().emplace_back(s.name, Value::map({{"modes", part(s.position, s.positions)},
+                                                      {"rates", part(layout.positions + s.speed, s.speeds)}}));
+  }
+  return Value::map({{"time", Value(state.time)},
+                     {"hinges", std::move(hinges)},
+                     {"bodies", std::move(bodies)},
+                     {"work", Value(state.y.back())}});
+}
+
 std::string write_state(const Model& model, const State& state) {
   const Layout& layout = model.layout();
   const auto part = [&](std::size_t first, std::size_t count) {

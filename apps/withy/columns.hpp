@@ -1,26 +1,16 @@
 /// \file
-/// Names and units of what a state holds, and the numbers a result table shows of it.
+/// The numbers that a result table shows of a state, with their names and units.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "withy/core/model/columns.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/tips.hpp"
 
 namespace withy::app {
-
-struct Column {
-  std::string name;
-  std::string unit;  ///< SI; empty for modal coordinates
-};
-
-/// Coordinates of a hinge: `shoulder` [rad] where there is one, `base.qw` [1] … `base.z` [m] for quaternions and
-/// positions, `joint.0` [rad], `joint.1` [m] … for other hinges of several coordinates.
-std::vector<Column> coordinate_columns(const HingeNode& hinge);
-/// Their rates: `shoulder.rate` [rad/s], `base.wx` [rad/s] … `base.vz` [m/s], `joint.rate.0` [rad/s] ….
-std::vector<Column> rate_columns(const HingeNode& hinge);
 
 /// What `results.csv` holds: time, hinge and modal coordinates and their rates, deflections and world positions of the
 /// tips, energies, work and momenta.

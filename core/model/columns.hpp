@@ -1,0 +1,24 @@
+/// \file
+/// Names and units of the coordinates and rates of a hinge, as result tables show them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// One number of a table.
+struct Column {
+  std::string name;
+  std::string unit;  ///< SI; empty for modal coordinates
+};
+
+/// Coordinates of a hinge: `shoulder` [rad] where there is one, `base.qw` [1] … `base.z` [m] for quaternions and
+/// positions, `joint.0` [rad], `joint.1` [m] … for other hinges of several coordinates.
+std::vector<Column> coordinate_columns(const HingeNode& hinge);
+/// Their rates: `shoulder.rate` [rad/s], `base.wx` [rad/s] … `base.vz` [m/s], `joint.rate.0` [rad/s] ….
+std::vector<Column> rate_columns(const HingeNode& hinge);
+
+}  // namespace withy

@@ -1,0 +1,240 @@
+#include "withy/scene/scene_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+
+#include "withy/scene/describe.hpp"
+#include "withy/scene/names.hpp"
+#include "withy/scene/scene.hpp"
+
+namespace withy {
+namespace {
+
+/// `formulation: quadratic` means `formulation: {name: quadratic}`.
+void lengthen_choice(Value& root, const std::string& key) {
+  const Value* given = root.find(key);
+  if (given == nullptr || given->kind() != Value::Kind::text) return;
+  Value name = *given;
+  Place place = given->place();
+  name.set_place({place.line, place.column, place.path + "/name"});
+  root.set(key, Value::map({{"name", std::move(name)}}, std::move(place)));
+}
+
+void lengthen_choices(Value& root) {
+  if (root.kind() != Value::Kind::map) return;
+  lengthen_choice(root, "formulation");
+  lengthen_choice(root, "integrator");
+}
+
+/// True where members are things with names of the user's: an operation changes them but makes no new ones.
+bool holds_user_names(const std::vector<std::string>& path, std::size_t depth) {
+  if (depth == 1) return path[0] == "bodies" || path[0] == "hinges" || path[0] == "loads" || path[0] == "motions";
+  return depth == 3 && path[0] == "bodies" && path[2] == "frames";
+}
+
+/// The keys of "bodies.hub.mass"; none where one is empty or too long.
+std::vector<std::string> split(std::string_view path) {
+  std::vector<std::string> keys;
+  for (std::size_t start = 0; start <= path.size();) {
+    const std::size_t stop = std::min(path.find('.', start), path.size());
+    keys.emplace_back(path.substr(start, stop - start));
+    start = stop + 1;
+    if (keys.back().empty() || keys.back().size() > DocumentLimits::key_bytes) return {};
+  }
+  return keys;
+}
+
+std::string joined(const std::vector<std::string>& keys) {
+  std::string path;
+  for (const std::string& key : keys) path += "/" + key;
+  return path;
+}
+
+std::optional<std::size_t> index_of(const std::string& key, std::size_t count) {
+  std::size_t index = 0;
+  const auto [end, problem] = std::from_chars(key.data(), key.data() + key.size(), index);
+  if (problem != std::errc() || end != key.data() + key.size() || index >= count) return {};
+  return index;
+}
+
+/// What is wrong with a path; empty where it is right.
+std::string path_problem(const std::vector<std::string>& keys) {
+  if (keys.empty()) return "need a path of keys with dots between them, as time.end=2";
+  return keys.size() > static_cast<std::size_t>(DocumentLimits::depth) ? "the path is too long" : "";
+}
+
+}  // namespace
+
+SceneValues SceneValues::read(const std::string& file) { return parse(read_bytes(file), file); }
+
+SceneValues SceneValues::parse(std::string_view text, const std::string& name) {
+  SceneValues values;
+  values.file_ = name;
+  values.document_.directory = std::filesystem::path(name).parent_path().string();
+  if (!read_document(text, {}, values.document_, values.diagnostics_))
+    throw SceneError(name, values.diagnostics_.errors());
+  lengthen_choices(values.document_.root);
+  return values;
+}
+
+int SceneValues::add_origin(std::string origin) {
+  origins_.push_back(std::move(origin));
+  return -static_cast<int>(origins_.size());
+}
+
+/// The value a path leads to, made where it is missing; null after reporting.
+Value* SceneValues::target(const std::vector<std::string>& keys, int line) {
+  const auto error = [&](const std::string& path, std::string message) {
+    diagnostics_.error({line, 0, path}, std::move(message));
+  };
+  Value* at = &document_.root;
+  std::string path;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const std::string& key = keys[i];
+    if (at->kind() == Value::Kind::null) *at = Value::map({}, {line, 0, path});
+    if (at->kind() == Value::Kind::list) {
+      const auto index = index_of(key, at->items().size());
+      if (!index) {
+        error(path,
+              fmt::format("got index {}; need 0 to {}", in_quotes(key), static_cast<long>(at->items().size()) - 1));
+        return nullptr;
+      }
+      at = &at->items()[*index];
+      path += "/" + key;
+      continue;
+    }
+    if (at->kind() != Value::Kind::map) {
+      error(path, fmt::format("got {}; need a map or list to find {} in", shown(*at), in_quotes(key)));
+      return nullptr;
+    }
+    if (!at->has(key)) {
+      if (holds_user_names(keys, i)) {
+        error(path, fmt::format("no {} here to change{}", in_quotes(key), suggestion(key, keys_of(*at))));
+        return nullptr;
+      }
+      at->set(key, Value());
+      document_.keys[path + "/" + key] = {line, 0, path + "/" + key};
+    }
+    path += "/" + key;
+    at = &std::find_if(at->members().begin(), at->members().end(), [&](const auto& m) {
+            return m.first == key;
+          })->second;
+  }
+  return at;
+}
+
+/// Puts the document read in the place of what is at the path.
+void SceneValues::put(const std::vector<std::string>& keys, Document read, int line) {
+  if (document_.root.kind() != Value::Kind::map) return;  // make_scene says what the scene has to be
+  Value* at = target(keys, line);
+  if (at == nullptr) return;
+  const std::string path = joined(keys);
+  const bool holds_keys = !at->members().empty() || !at->items().empty();
+  *at = std::move(read.root);
+  if (holds_keys) std::erase_if(document_.keys, [&](const auto& entry) { return entry.first.starts_with(path + "/"); });
+  document_.keys.merge(read.keys);
+  document_.keys[path] = {line, 0, path};
+  lengthen_choices(document_.root);  // the short form may have been given again
+}
+
+SceneValues& SceneValues::set(std::string_view path, Value value, const std::string& origin) {
+  const int line = add_origin(origin);
+  const std::vector<std::string> keys = split(path);
+  if (const std::string problem = path_problem(keys); !problem.empty()) {
+    diagnostics_.error({line, 0, ""}, problem);
+  } else {
+    put(keys, {placed(std::move(value), {line, 0, joined(keys)}), {}, {}}, line);
+  }
+  return *this;
+}
+
+SceneValues& SceneValues::set_text(const std::string& text, std::string origin) {
+  const int line = add_origin(origin.empty() ? fmt::format("--set '{}'", text) : std::move(origin));
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    diagnostics_.error({line, 0, ""}, "need path=value, as time.end=2");
+    return *this;
+  }
+  const std::vector<std::string> keys = split(std::string_view(text).substr(0, equals));
+  if (const std::string problem = path_problem(keys); !problem.empty()) {
+    diagnostics_.error({line, 0, ""}, problem);
+    return *this;
+  }
+  Document read;
+  if (read_document(std::string_view(text).substr(equals + 1), {line, joined(keys)}, read, diagnostics_))
+    put(keys, std::move(read), line);
+  return *this;
+}
+
+void SceneValues::put_choice(const char* key, Value choice, const std::string& origin) {
+  const int line = add_origin(origin);
+  put({key}, {placed(std::move(choice), {line, 0, std::string("/") + key}), {}, {}}, line);
+}
+
+void SceneValues::choose(const char* key, const std::string& id, const std::string& origin) {
+  const Value* given = document_.root.find(key);
+  const Value* name = given == nullptr ? nullptr : given->find("name");
+  if (name != nullptr && name->kind() == Value::Kind::text && name->text() == id) {
+    origins_.push_back(origin);
+    return;
+  }
+  put_choice(key, Value::map({{"name", Value(id)}}), origin);
+}
+
+SceneValues& SceneValues::choose_formulation(const std::string& id, const std::string& origin) {
+  choose("formulation", id, origin);
+  return *this;
+}
+SceneValues& SceneValues::choose_integrator(const std::string& id, const std::string& origin) {
+  choose("integrator", id, origin);
+  return *this;
+}
+SceneValues& SceneValues::choose_formulation(Value choice, const std::string& origin) {
+  put_choice("formulation", std::move(choice), origin);
+  return *this;
+}
+SceneValues& SceneValues::choose_integrator(Value choice, const std::string& origin) {
+  put_choice("integrator", std::move(choice), origin);
+  return *this;
+}
+
+SceneValues& SceneValues::body_formulation(const std::string& body, const std::string& id, const std::string& origin) {
+  return set("bodies." + body + ".formulation", Value(id), origin);
+}
+
+SceneValues& SceneValues::initial(const Model& model, const State& state, const std::string& origin) {
+  return set("initial", state_value(model, state), origin);
+}
+
+SceneValues& SceneValues::motions(Value motions, const std::string& origin) {
+  return set("motions", std::move(motions), origin);
+}
+
+SceneValues& SceneValues::apply(const SceneOptions& options) {
+  if (!options.formulation.empty())
+    choose_formulation(options.formulation, fmt::format("--formulation '{}'", options.formulation));
+  if (!options.integrator.empty())
+    choose_integrator(options.integrator, fmt::format("--integrator '{}'", options.integrator));
+  for (const std::string& text : options.overrides) set_text(text);
+  return *this;
+}
+
+const Value* SceneValues::find(std::string_view path) const {
+  const std::vector<std::string> keys = split(path);
+  const Value* at = keys.empty() ? nullptr : &document_.root;
+  for (std::size_t i = 0; i < keys.size() && at != nullptr; ++i) {
+    if (at->kind() == Value::Kind::list) {
+      const auto index = index_of(keys[i], at->items().size());
+      at = index ? &at->items()[*index] : nullptr;
+    } else {
+      at = at->find(keys[i]);
+    }
+  }
+  return at;
+}
+
+}  // namespace withy

@@ -1,0 +1,80 @@
+/// \file
+/// A scene as a value: what its file says, with the places it says it at, and the operations that vary it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "withy/scene/document.hpp"
+#include "withy/scene/scene_error.hpp"
+
+namespace withy {
+
+class Model;
+struct SceneOptions;
+struct State;
+
+/// The values of a scene before they are checked against plugins. A copy is a scene of its own; the arm's costs some
+/// tens of microseconds. Operations throw nothing: what they find wrong is kept and reported by make_scene together
+/// with every other problem, in the same words as if the file said it. Each takes an `origin`, which stands in
+/// messages where a file's line would, as "--set 'time.end=2'" or "variation 3".
+class SceneValues {
+ public:
+  /// Reads a file (YAML or JSON). \throws SceneError where it is no such text; std::system_error where it cannot be
+  /// read.
+  static SceneValues read(const std::string& file);
+  /// The same from text. `name` stands for the file in messages; relative names of other files begin at its folder.
+  static SceneValues parse(std::string_view text, const std::string& name);
+
+  /// Puts a value at a path of keys with dots between them, as "bodies.link1.length" or "gravity.1", and makes the maps
+  /// on the way that are missing. Bodies, hinges, loads, motions and frames have to be there.
+  SceneValues& set(std::string_view path, Value value, const std::string& origin);
+  /// The same from "path=value" with the value as in a file. \param origin empty: "--set '<text>'".
+  SceneValues& set_text(const std::string& text, std::string origin = {});
+
+  /// Chooses by a plugin's id; options in the file stay where they are that plugin's.
+  SceneValues& choose_formulation(const std::string& id, const std::string& origin);
+  SceneValues& choose_integrator(const std::string& id, const std::string& origin);
+  /// Chooses with options alone, those of the file are dropped: a map as the file has it under `formulation` or
+  /// `integrator`, its id under `name`.
+  SceneValues& choose_formulation(Value choice, const std::string& origin);
+  SceneValues& choose_integrator(Value choice, const std::string& origin);
+  /// Gives a body a formulation of its own.
+  SceneValues& body_formulation(const std::string& body, const std::string& id, const std::string& origin);
+  /// Starts from a state of a model with the same coordinates, to the last bit.
+  SceneValues& initial(const Model& model, const State& state, const std::string& origin);
+  /// Replaces all prescribed motions by a map as the file has it under `motions`.
+  SceneValues& motions(Value motions, const std::string& origin);
+  /// What a command line asks for beyond the file: formulation, integrator, then every `--set`.
+  SceneValues& apply(const SceneOptions& options);
+
+  /// Everything as it was written and set, without defaults. `formulation` and `integrator` are in their long form.
+  [[nodiscard]] const Value& root() const { return document_.root; }
+  /// The value at a path as in set(); null where there is none.
+  [[nodiscard]] const Value* find(std::string_view path) const;
+  [[nodiscard]] const std::string& file() const { return file_; }
+  /// Of every operation, in their order. Values that operation k brought have the line −1−k in their place.
+  [[nodiscard]] const std::vector<std::string>& origins() const { return origins_; }
+  [[nodiscard]] const Document& document() const { return document_; }
+  /// What reading and operations have found wrong so far.
+  [[nodiscard]] const Diagnostics& problems() const { return diagnostics_; }
+
+ private:
+  SceneValues() = default;
+  int add_origin(std::string origin);
+  Value* target(const std::vector<std::string>& keys, int line);
+  void put(const std::vector<std::string>& keys, Document read, int line);
+  void put_choice(const char* key, Value choice, const std::string& origin);
+  void choose(const char* key, const std::string& id, const std::string& origin);
+
+  std::string file_;
+  Document document_;
+  std::vector<std::string> origins_;
+  Diagnostics diagnostics_;
+};
+
+/// A state as the values of `initial`: hinges, bodies, time and work, to the last bit.
+Value state_value(const Model& model, const State& state);
+
+}  // namespace withy
