@@ -73,8 +73,8 @@ inline void with_outer(const FirstOrderNode<Space>& node, const FirstOrderState<
 
 namespace weight {
 
-inline Planar::Position cross(double turn, const Planar::Position& a) { return {-turn * a.y, turn * a.x}; }
-inline Triple cross(const Triple& turn, const Triple& a) { return withy::cross(turn, a); }
+inline Planar::Position turned(double turn, const Planar::Position& a) { return {-turn * a.y, turn * a.x}; }
+inline Triple turned(const Triple& turn, const Triple& a) { return withy::cross(turn, a); }
 inline double moment(const Planar::Position& a, const Planar::Position& b) { return a.x * b.y - a.y * b.x; }
 inline Triple moment(const Triple& a, const Triple& b) { return withy::cross(a, b); }
 inline double scalar(const Planar::Position& a, const Planar::Position& b) { return a.x * b.x + a.y * b.y; }
@@ -141,9 +141,9 @@ inline void outward(const FirstOrderNode<Space>& node, const FirstOrderState<Spa
     const auto &turn = angle(bend.first), &turn2 = angle(bend.second);
     auto& g = stations[k].g;
     g[0] = w.g[0];
-    const auto once = cross(turn, w.g[0]);
+    const auto once = turned(turn, w.g[0]);
     g[1] = w.g[1] + once * -1.0;
-    g[2] = w.g[2] + cross(turn, w.g[1]) * -1.0 + cross(turn2, w.g[0]) * -1.0 + cross(turn, once) * 0.5;
+    g[2] = w.g[2] + turned(turn, w.g[1]) * -1.0 + turned(turn2, w.g[0]) * -1.0 + turned(turn, once) * 0.5;
     stations[k].s = {Space::Position::zero(), Space::Position::zero(), Space::Position::zero()};
   }
 }
@@ -170,19 +170,19 @@ inline void inward(const FirstOrderNode<Space>& node, const FirstOrderState<Spac
     const auto &turn = angle(bend.first), &turn2 = angle(bend.second);
     const Taylor<Space>& S = stations[i].s;
     const double mass = station.carried;
-    const auto once = cross(turn, S[0]);
+    const auto once = turned(turn, S[0]);
     for (int k = 0; k < modes; ++k) {
       const auto& first = station.fields.first[static_cast<std::size_t>(k)];
       const auto slope = Bend<Space>::slope(station.fields, n, q, k);
-      const auto unit = cross(angle(first), S[0]);
+      const auto unit = turned(angle(first), S[0]);
       const Position d0 = place(first) * mass + unit;
-      const Position d1 = place(slope) * mass + cross(angle(first), S[1]) + cross(angle(slope), S[0]) +
-                          (cross(angle(first), once) + cross(turn, unit)) * 0.5;
+      const Position d1 = place(slope) * mass + turned(angle(first), S[1]) + turned(angle(slope), S[0]) +
+                          (turned(angle(first), once) + turned(turn, unit)) * 0.5;
       efforts[node.mode_speed + static_cast<std::size_t>(k)] += scalar(d0, g01) + scalar(d1, w.g[0]);
     }
     w.s[0] += station.fields.X * mass + S[0];
     w.s[1] += place(bend.first) * mass + S[1] + once;
-    w.s[2] += place(bend.second) * mass + S[2] + cross(turn, S[1]) + cross(turn2, S[0]) + cross(turn, once) * 0.5;
+    w.s[2] += place(bend.second) * mass + S[2] + turned(turn, S[1]) + turned(turn2, S[0]) + turned(turn, once) * 0.5;
   }
   const auto torque = moment(w.s[0], g01 + w.g[2]) + moment(w.s[1], g01) + moment(w.s[2], w.g[0]);
   const typename Space::Twist F = Space::Twist::of(torque, (g01 + w.g[2]) * node.mass);
