@@ -6,10 +6,11 @@
 #include "withy/apps/withy/advice_report.hpp"
 #include "withy/apps/withy/beyond.hpp"
 #include "withy/apps/withy/commands.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/progress.hpp"
 #include "withy/apps/withy/scene_edit.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
 #include "withy/scene/document.hpp"
 
 namespace withy::app {

@@ -7,8 +7,8 @@
 #include "withy/apps/withy/allocations.hpp"
 #include "withy/apps/withy/commands.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/results/json_text.hpp"
 
 namespace withy::app {
 namespace {

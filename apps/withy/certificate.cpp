@@ -9,11 +9,11 @@
 #include <numbers>
 #include <string>
 
-#include "withy/apps/withy/columns.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/progress.hpp"
+#include "withy/core/model/columns.hpp"
 #include "withy/core/simulation/paired_run.hpp"
 #include "withy/core/simulation/validity_limits.hpp"
+#include "withy/results/json_text.hpp"
 
 namespace withy::app {
 namespace {
@@ -245,7 +245,7 @@ Json certificate_json(const Engine& engine, const RunSummary& summary, const Evi
   c["program"] = "withy " WITHY_VERSION;
   c["formulation"] = {{"name", scene.formulation_name}, {"meaning", engine.formulation_summary()}};
   if (evidence.escalated != nullptr) c["stretches"] = stretches_json(engine, *evidence.escalated);
-  c["integrator"] = integrator_json(scene);
+  c["integrator"] = value_json(scene.source.at("integrator"));
   c["output_interval"] = scene.output;
   c["compiled"] = last_equations(engine, evidence).savings();
   c["energy_drift"] = summary.energy_drift;

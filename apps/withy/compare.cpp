@@ -8,15 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "withy/apps/withy/columns.hpp"
 #include "withy/apps/withy/commands.hpp"
 #include "withy/apps/withy/comparison.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/run_report.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/apps/withy/variation.hpp"
+#include "withy/core/model/columns.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
 
 namespace withy::app {
 namespace {

@@ -8,9 +8,10 @@
 #include <numbers>
 #include <optional>
 
-#include "withy/apps/withy/columns.hpp"
 #include "withy/apps/withy/run_report.hpp"
-#include "withy/apps/withy/svg_plot.hpp"
+#include "withy/core/model/columns.hpp"
+#include "withy/core/simulation/tips.hpp"
+#include "withy/results/svg_plot.hpp"
 
 namespace withy::app {
 namespace {

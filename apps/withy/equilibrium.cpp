@@ -4,11 +4,12 @@
 #include <numbers>
 
 #include "withy/apps/withy/analysis.hpp"
-#include "withy/apps/withy/columns.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/text_table.hpp"
+#include "withy/core/model/columns.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
 
 namespace withy::app {
 namespace {

@@ -7,11 +7,12 @@
 
 #include "withy/apps/withy/commands.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/bodies/modal/sid_body.hpp"
 #include "withy/fem/reduce.hpp"
 #include "withy/fem/summary.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
 
 namespace withy::app {
 namespace {

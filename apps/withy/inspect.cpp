@@ -9,10 +9,10 @@
 
 #include "withy/apps/withy/commands.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/results/json_text.hpp"
 
 namespace withy::app {
 namespace {
@@ -107,7 +107,7 @@ Json inspect_json(const Engine& engine, const State& state) {
   j["scene"] = scene.file;
   j["name"] = scene.name;
   j["formulation"] = {{"name", scene.formulation_name}, {"meaning", engine.formulation_summary()}};
-  j["integrator"] = integrator_json(scene);
+  j["integrator"] = value_json(scene.source.at("integrator"));
   j["bodies"] = bodies_json(scene);
   j["loads"] = Json::array();
   for (const LoadNode& load : engine.model().loads())

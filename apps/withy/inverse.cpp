@@ -6,14 +6,15 @@
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/commands.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/recorded_motion.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/run_report.hpp"
-#include "withy/apps/withy/svg_plot.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/svg_plot.hpp"
 
 namespace withy::app {
 namespace {

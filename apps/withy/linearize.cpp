@@ -5,11 +5,10 @@
 #include <optional>
 
 #include "withy/apps/withy/analysis.hpp"
-#include "withy/apps/withy/columns.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/core/analysis/modes.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/results/json_text.hpp"
 
 namespace withy::app {
 namespace {

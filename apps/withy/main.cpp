@@ -7,6 +7,7 @@
 #include "withy/apps/withy/command_line.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/results/results_error.hpp"
 
 namespace {
 
@@ -34,6 +35,8 @@ int main(int argc, char** argv) {
   } catch (const withy::SceneError& e) {
     status = fail(ExitStatus::bad_input, e.what());
   } catch (const withy::app::InputError& e) {
+    status = fail(ExitStatus::bad_input, e.what());
+  } catch (const withy::ResultsError& e) {
     status = fail(ExitStatus::bad_input, e.what());
   } catch (const std::bad_alloc&) {
     status = fail(ExitStatus::environment, "not enough memory");

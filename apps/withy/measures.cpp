@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "withy/apps/withy/columns.hpp"
 #include "withy/apps/withy/engine.hpp"
+#include "withy/core/model/columns.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/scene/units.hpp"
 

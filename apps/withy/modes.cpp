@@ -7,11 +7,12 @@
 #include <stdexcept>
 
 #include "withy/apps/withy/analysis.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/modes_report.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/progress.hpp"
 #include "withy/apps/withy/variation.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
 
 namespace withy::app {
 namespace {

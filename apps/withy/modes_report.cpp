@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "withy/apps/withy/svg_plot.hpp"
 #include "withy/apps/withy/text_table.hpp"
+#include "withy/results/svg_plot.hpp"
 
 namespace withy::app {
 namespace {

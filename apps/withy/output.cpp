@@ -1,11 +1,8 @@
 #include "withy/apps/withy/output.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cerrno>
+#include <cstdio>
 #include <system_error>
-#include <utility>
 
 namespace withy::app {
 
@@ -22,48 +19,6 @@ void complain(std::string_view text) noexcept {
   // Where standard error cannot be written there is nobody left to tell: the exit status says it.
   static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
   if (!text.empty() && text.back() != '\n') static_cast<void>(std::fputc('\n', stderr));
-}
-
-OutputFile::OutputFile(std::filesystem::path path, bool append)
-    : path_(std::move(path)), file_(std::fopen(path_.c_str(), append ? "ae" : "we")) {
-  if (!file_) fail();
-}
-
-void OutputFile::write(std::string_view text) {
-  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() || std::fflush(file_.get()) != 0) fail();
-}
-
-void OutputFile::sync() {
-  if (::fsync(::fileno(file_.get())) != 0) fail();
-}
-
-void OutputFile::close() {
-  if (std::fclose(file_.release()) != 0) fail();
-}
-
-void OutputFile::fail() const { throw std::system_error(errno, std::generic_category(), path_.string()); }
-
-void write_file(const std::filesystem::path& path, std::string_view text) {
-  std::filesystem::path part = path;
-  part += ".part";
-  OutputFile file(part);
-  file.write(text);
-  file.close();
-  std::filesystem::rename(part, path);
-}
-
-void write_lasting_file(const std::filesystem::path& path, std::string_view text) {
-  std::filesystem::path part = path;
-  part += ".part";
-  OutputFile file(part);
-  file.write(text);
-  file.sync();
-  file.close();
-  std::filesystem::rename(part, path);
-  const int folder = ::open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = folder >= 0 && ::fsync(folder) == 0;
-  if (folder >= 0) ::close(folder);
-  if (!synced) throw std::system_error(errno, std::generic_category(), path.parent_path().string());
 }
 
 }  // namespace withy::app

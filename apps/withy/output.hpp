@@ -1,10 +1,7 @@
 /// \file
-/// Output of which every byte is known to have been written: a full disk is an error, never a shorter file.
+/// What the program prints: every byte is known to have left it, or the program fails.
 #pragma once
 
-#include <cstdio>
-#include <filesystem>
-#include <memory>
 #include <string_view>
 
 namespace withy::app {
@@ -15,33 +12,5 @@ void print(std::string_view text);
 void finish_printing();
 /// Writes to standard error, ending the text's last line if it does not end itself.
 void complain(std::string_view text) noexcept;
-
-/// A text file written from its beginning; each write reaches the system before the next, so that a run that is killed
-/// leaves whole lines.
-class OutputFile {
- public:
-  /// \throws std::system_error naming the file, as do the other functions.
-  /// \param append after what is there, or in its place
-  explicit OutputFile(std::filesystem::path path, bool append = false);
-  void write(std::string_view text);
-  /// Makes what was written last through a loss of power.
-  void sync();
-  /// To be called once, last: closing may report what writing could not.
-  void close();
-
- private:
-  struct Closer {
-    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-  };
-  [[noreturn]] void fail() const;
-
-  std::filesystem::path path_;
-  std::unique_ptr<std::FILE, Closer> file_;
-};
-
-/// Writes a file whole or not at all: under another name first, then renamed. \throws std::system_error
-void write_file(const std::filesystem::path& path, std::string_view text);
-/// The same, made to last through a loss of power.
-void write_lasting_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace withy::app

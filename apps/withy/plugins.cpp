@@ -8,7 +8,6 @@
 
 #include "withy/apps/withy/commands.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/core/plugin/body.hpp"
@@ -16,6 +15,7 @@
 #include "withy/core/plugin/load.hpp"
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/core/plugin/motion.hpp"
+#include "withy/results/json_text.hpp"
 
 namespace withy::app {
 namespace {

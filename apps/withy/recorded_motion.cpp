@@ -9,8 +9,8 @@
 #include <optional>
 #include <sstream>
 
-#include "withy/apps/withy/columns.hpp"
 #include "withy/apps/withy/engine.hpp"
+#include "withy/core/model/columns.hpp"
 #include "withy/scene/units.hpp"
 
 namespace withy::app {

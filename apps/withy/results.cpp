@@ -2,12 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/checkpoint.hpp"
-#include "withy/apps/withy/columns.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/run_report.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/results/checkpoint_files.hpp"
+#include "withy/results/csv.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/result_columns.hpp"
 
 namespace withy::app {
 
@@ -96,10 +98,11 @@ RunSummary simulate_into(const std::filesystem::path& folder, const Engine& engi
 }
 
 CertifiedRun run_into(const std::filesystem::path& folder, const Engine& engine, const RunArguments& arguments) {
-  const CheckpointFiles files(folder, engine.scene());
+  const CheckpointFiles files(folder, fingerprint_of(value_json(engine.scene().source).dump() + WITHY_VERSION));
   Continuation continuation{&files, arguments.checkpoint.value_or(60), {}};
   if (arguments.resume) {
     continuation.from = files.read();
+    if (!continuation.from->remark.empty()) complain(continuation.from->remark);
   } else {
     files.remove();  // those of a run before
   }

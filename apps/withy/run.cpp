@@ -2,12 +2,12 @@
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/commands.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/run_report.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/results/json_text.hpp"
 
 namespace withy::app {
 namespace {

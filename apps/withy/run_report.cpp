@@ -7,82 +7,18 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "withy/apps/withy/columns.hpp"
-#include "withy/apps/withy/json_text.hpp"
+#include "withy/core/model/columns.hpp"
+#include "withy/results/run_json.hpp"
 
 namespace withy::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json tip_peaks(const RunSummary& summary) {
-  Json peaks = Json::object();
-  for (const auto& [body, d] : summary.peak_deflection) peaks[body] = {{"y", d[1]}, {"z", d[2]}};
-  return peaks;
-}
-
-/// Peaks on the rates of a hinge.
-Json peaks_of(const Slot& hinge, const std::vector<double>& peaks) {
-  Json efforts = Json::array();
-  for (std::size_t i = 0; i < hinge.speeds; ++i) efforts.push_back(peaks.at(hinge.speed + i));
-  return efforts;
-}
-
-Json effort_peaks(const Model& model, const RunSummary& summary) {
-  Json peaks = Json::object();
-  for (const Slot& hinge : model.layout().hinges) {
-    if (hinge.speeds > 0) peaks[hinge.name] = peaks_of(hinge, summary.peak_effort);
-  }
-  return peaks;
-}
-
-Json motion_effort_peaks(const Model& model, const RunSummary& summary) {
-  Json peaks = Json::object();
-  for (const MotionNode& motion : model.motions()) {
-    const Slot& hinge = model.layout().hinges[static_cast<std::size_t>(motion.hinge)];
-    peaks[hinge.name] = peaks_of(hinge, summary.peak_motion_effort);
-  }
-  return peaks;
-}
-
-Json events_json(const RunSummary& summary) {
-  Json events = Json::array();
-  for (const EventTime& e : summary.events)
-    events.push_back({{"name", e.name}, {"time", e.time}, {"direction", e.direction > 0 ? "up" : "down"}});
-  return events;
-}
-
-/// The condition of M; null where it was not looked at.
-Json condition_json(const Conditioning& c) { return c.condition > 0 ? Json(c.condition) : Json(); }
 
 std::string name_of_sign(int sign) { return sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"); }
 
 }  // namespace
 
-Json state_json(const Model& model, const State& state) { return Json::parse(write_state(model, state)); }
-
-Json run_json(const Engine& engine, const RunSummary& summary, const Evidence& evidence) {
-  const Scene& scene = engine.scene();
-  Json j;
-  j["scene"] = scene.file;
-  j["name"] = scene.name;
-  j["formulation"] = scene.formulation_name;
-  j["integrator"] = scene.integrator_name;
-  j["status"] = name(summary.status);
-  j["message"] = summary.message;
-  j["t_end"] = summary.final.time;
-  j["final"] = state_json(*scene.model, summary.final);
-  j["peaks"] = {{"tip_deflection", tip_peaks(summary)}, {"effort", effort_peaks(*scene.model, summary)}};
-  if (!scene.model->motions().empty()) j["peaks"]["motion_effort"] = motion_effort_peaks(*scene.model, summary);
-  j["energy_drift"] = summary.energy_drift;
-  j["steps"] = summary.steps.accepted;
-  j["rejected_steps"] = summary.steps.rejected;
-  j["evaluations"] = summary.steps.evaluations;
-  j["cpu_seconds"] = summary.cpu_seconds;
-  j["suspected_jumps"] = summary.suspected_jumps;
-  if (!scene.events.empty()) j["events"] = events_json(summary);
-  j["condition"] = condition_json(summary.conditioning);
-  j["determinant_sign"] = summary.conditioning.determinant_sign;
+nlohmann::ordered_json run_json(const Engine& engine, const RunSummary& summary, const Evidence& evidence) {
+  nlohmann::ordered_json j = withy::run_json(engine.scene(), summary);
   j["certificate"] = certificate_json(engine, summary, evidence);
   return j;
 }

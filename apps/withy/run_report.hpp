@@ -11,13 +11,10 @@
 
 namespace withy::app {
 
-/// The content of run.json; see docs/command-line.md.
+/// The content of run.json, certificate included; see docs/command-line.md.
 nlohmann::ordered_json run_json(const Engine& engine, const RunSummary& summary, const Evidence& evidence = {});
 
-/// A state as JSON, in the form that `initial` and --state read.
-nlohmann::ordered_json state_json(const Model& model, const State& state);
-
-/// The same for people: outcome, final hinge coordinates, peaks, cost; ends with a line break.
+/// A run for people: outcome, final hinge coordinates, peaks, cost; ends with a line break.
 std::string run_table(const Engine& engine, const RunSummary& summary);
 
 /// "completed", or "diverged at 0.0523 s".

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/json_text.hpp"
+#include "withy/results/json_text.hpp"
 #include "withy/scene/document.hpp"
 
 namespace withy::app {

@@ -6,14 +6,14 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/columns.hpp"
 #include "withy/apps/withy/commands.hpp"
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/output.hpp"
-#include "withy/apps/withy/svg_plot.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/apps/withy/trade_run.hpp"
 #include "withy/apps/withy/trade_threshold.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/svg_plot.hpp"
 
 namespace withy::app {
 namespace {

@@ -15,9 +15,9 @@
 #include <thread>
 
 #include "withy/apps/withy/beyond.hpp"
-#include "withy/apps/withy/json_text.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/progress.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
 
 namespace withy::app {
 namespace {

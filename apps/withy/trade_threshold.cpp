@@ -8,15 +8,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/json_text.hpp"
 #include "withy/apps/withy/measures.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/progress.hpp"
-#include "withy/apps/withy/svg_plot.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/apps/withy/trade_frequencies.hpp"
 #include "withy/apps/withy/trade_limit.hpp"
 #include "withy/apps/withy/trade_run.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/svg_plot.hpp"
 
 namespace withy::app {
 namespace {

@@ -93,15 +93,21 @@ void clear_zeros(std::vector<Root>& roots, Eigen::Index free_directions) {
   }
 }
 
-Mode mode_of(const Root& first, const Complex& partner, const Scaled& s, const std::vector<Eigen::Index>& free,
+Mode mode_of(const Root& first, const Root& partner, const Scaled& s, const std::vector<Eigen::Index>& free,
              const Tangents& t) {
   Mode mode;
   mode.eigenvalue = first.value;
-  mode.partner = partner;
-  mode.rigid = first.value == 0.0 && partner == 0.0;
-  mode.shape = Eigen::VectorXcd::Zero(t.mass.rows());
-  mode.shape(free) = s.scale.cast<Complex>().cwiseProduct(first.shape);
-  mode.shape.cwiseAbs2().cwiseProduct(t.mass.diagonal().cwiseAbs()).maxCoeff(&mode.dominant);
+  mode.partner = partner.value;
+  mode.rigid = first.value == 0.0 && partner.value == 0.0;
+  const auto displacements = [&](const Root& root) {
+    Eigen::VectorXcd shape = Eigen::VectorXcd::Zero(t.mass.rows());
+    shape(free) = s.scale.cast<Complex>().cwiseProduct(root.shape);
+    return shape;
+  };
+  const Eigen::VectorXd masses = t.mass.diagonal().cwiseAbs();
+  mode.shape = displacements(first);
+  mode.shape.cwiseAbs2().cwiseProduct(masses).maxCoeff(&mode.dominant);
+  displacements(partner).cwiseAbs2().cwiseProduct(masses).maxCoeff(&mode.partner_dominant);
   if (mode.shape[mode.dominant] != 0.0) mode.shape /= Complex(mode.shape[mode.dominant]);
   return mode;
 }
@@ -128,7 +134,7 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
   std::vector<Mode> modes;
   std::vector<const Root*> real;
   for (const Root& r : roots) {
-    if (r.value.imag() > 0) modes.push_back(mode_of(r, std::conj(r.value), s, free, tangents));
+    if (r.value.imag() > 0) modes.push_back(mode_of(r, {std::conj(r.value), r.shape}, s, free, tangents));
     if (r.value.imag() == 0) real.push_back(&r);
   }
   // Real eigenvalues belong together whose shapes are alike. The greatest first, so that zeros are left for each other.
@@ -146,7 +152,7 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
     const Root* second = *other;
     real.erase(other);
     if (second->value.real() > first->value.real()) std::swap(first, second);
-    modes.push_back(mode_of(*first, second->value, s, free, tangents));
+    modes.push_back(mode_of(*first, *second, s, free, tangents));
   }
   std::stable_sort(modes.begin(), modes.end(),
                    [](const Mode& a, const Mode& b) { return a.squared_frequency() < b.squared_frequency(); });
@@ -208,6 +214,16 @@ FirstOrderForm first_order_form(const Tangents& tangents, const Held& held) {
   const Eigen::MatrixXd by_effort = scale * solve_mass(s.M, Eigen::MatrixXd(scale));
   for (Eigen::Index j = 0; j < m; ++j) form.B.col(free[static_cast<std::size_t>(j)]).tail(m) = by_effort.col(j);
   return form;
+}
+
+Eigen::VectorXd balancing_units(const Eigen::MatrixXd& A, const Eigen::VectorXd& masses) {
+  const Eigen::Index m = masses.size();
+  Eigen::VectorXd units(2 * m);
+  const Eigen::VectorXd root = masses.cwiseMax(1e-300).cwiseSqrt();
+  const double stiffest =
+      (root.asDiagonal() * A.bottomLeftCorner(m, m) * root.cwiseInverse().asDiagonal()).cwiseAbs().maxCoeff();
+  units << root, root / std::sqrt(std::max(1.0, stiffest));
+  return units;
 }
 
 }  // namespace withy

@@ -18,7 +18,9 @@ struct Mode {
   /// Displacements δ, one a speed, zero where held; the component that dominates is 1. Dimensions of the coordinates.
   Eigen::VectorXcd shape;
   Eigen::Index dominant = 0;  ///< speed with the greatest |δ_i|² M_ii
-  bool rigid = false;         ///< zero but for rounding: a motion that nothing holds back
+  /// The same for a partner that is real: its motion has a shape of its own.
+  Eigen::Index partner_dominant = 0;
+  bool rigid = false;  ///< zero but for rounding: a motion that nothing holds back
 
   /// λ₁ λ₂ [1/s²]: the squared frequency; negative where the pair is real and of two signs. It passes smoothly through
   /// zero where a mode buckles.
@@ -58,5 +60,8 @@ struct FirstOrderForm {
 
 /// \throws std::domain_error as natural_modes.
 FirstOrderForm first_order_form(const Tangents& tangents, const Held& held);
+
+/// Units of z in which inertias are one and both halves of A are alike: eigenvalues are then found as well as can be.
+Eigen::VectorXd balancing_units(const Eigen::MatrixXd& A, const Eigen::VectorXd& masses);
 
 }  // namespace withy

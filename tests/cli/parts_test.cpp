@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "withy/apps/withy/allocations.hpp"
-#include "withy/apps/withy/svg_plot.hpp"
+#include "withy/results/svg_plot.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/apps/withy/trade_limit.hpp"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "campaign.hpp"
-#include "withy/apps/withy/svg_plot.hpp"
+#include "withy/results/svg_plot.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/core/simulation/tips.hpp"
@@ -96,14 +96,14 @@ std::string courses(const std::string& pictures) {
   std::string table =
       "| family | formulation | κ at the start | greatest κ | least eigenvalue of the symmetric part | run "
       "|\n|---|---|---|---|---|---|\n";
-  std::vector<app::Panel> determinants;
+  std::vector<Panel> determinants;
   for (const Family& family : families) {
-    std::vector<app::Panel> panels;
-    app::Panel determinant{"", "det M, " + family.name, {-0.5, 2}, {}, 150};
+    std::vector<Panel> panels;
+    Panel determinant{"", "det M, " + family.name, {-0.5, 2}, {}, 150};
     for (const std::string& formulation : formulations) {
       const Course c = course(arm(family, formulation));
       const bool early = c.summary.status != RunStatus::completed;
-      app::Panel panel{"", formulation, {-7, 1}, {}, 110};
+      Panel panel{"", formulation, {-7, 1}, {}, 110};
       for (const auto& values : c.singular) panel.curves.push_back({c.time, values, early, false, {}});
       panels.push_back(std::move(panel));
       determinant.curves.push_back({c.time, c.determinant, early, false, {}});
@@ -113,12 +113,12 @@ std::string courses(const std::string& pictures) {
     }
     panels.back().x_label = "t [s]";
     write(pictures + "/singular-values-" + family.name + ".svg",
-          app::svg_plot("Singular values of M (log₁₀), " + family.name + " modes", {"1", "2", "3", "4", "5", "6"},
+          svg_plot("Singular values of M (log₁₀), " + family.name + " modes", {"1", "2", "3", "4", "5", "6"},
                         panels));
     determinants.push_back(std::move(determinant));
   }
   determinants.back().x_label = "t [s]";
-  write(pictures + "/determinant.svg", app::svg_plot("det M over det M at the start", formulations, determinants));
+  write(pictures + "/determinant.svg", svg_plot("det M over det M at the start", formulations, determinants));
   return table;
 }
 

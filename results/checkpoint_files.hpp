@@ -6,25 +6,25 @@
 #include <filesystem>
 #include <string>
 
-#include "withy/apps/withy/engine.hpp"
+#include "withy/core/simulation/simulate.hpp"
 
-namespace withy::app {
+namespace [[gnu::visibility("default")]] withy {
 
-/// A run that was put down, with what belongs to it in its folder.
+/// A checkpoint of a run, with what belongs to it in its folder.
 struct StoredRun {
   Checkpoint checkpoint;
   std::uintmax_t table_bytes = 0;  ///< length of results.csv then
+  std::string remark = {};         ///< once read: why it is not the newest checkpoint, or empty
 };
 
 /// The checkpoints of one run, in a folder: `checkpoint.cbor`, and the one before as `checkpoint.previous.cbor`.
 class CheckpointFiles {
  public:
-  /// A checkpoint belongs to the scene as checked, with formulation, integrator and overrides, and to this version.
-  CheckpointFiles(std::filesystem::path folder, const Scene& scene);
+  /// \param fingerprint of the run: checkpoints of another one are refused
+  CheckpointFiles(std::filesystem::path folder, std::string fingerprint);
   /// Writes the next generation: whole or not at all, and lasting. \throws std::system_error
   void write(const StoredRun& run) const;
-  /// The newest undamaged checkpoint; where that is not the newest, standard error says what is wrong with the other.
-  /// \throws InputError where there is none, or it is another run's.
+  /// The newest undamaged checkpoint. \throws ResultsError where there is none, or it is another run's.
   [[nodiscard]] StoredRun read() const;
   void remove() const;
 
@@ -33,4 +33,4 @@ class CheckpointFiles {
   std::string run_;  ///< fingerprint
 };
 
-}  // namespace withy::app
+}  // namespace gnu::visibility("default")]]withy

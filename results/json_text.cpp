@@ -1,11 +1,11 @@
-#include "withy/apps/withy/json_text.hpp"
+#include "withy/results/json_text.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-namespace withy::app {
+namespace withy {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -83,19 +83,10 @@ Json parameter_json(const ParameterSpec& p) {
   return j;
 }
 
-Json integrator_json(const Scene& scene) {
-  Json j{{"name", scene.integrator_name}};
-  const Value* options = scene.source.find("integrator");
-  if (options == nullptr || options->kind() != Value::Kind::map) return j;
-  for (const auto& [key, member] : options->members())
-    if (key != "name") j[key] = value_json(member);
-  return j;
-}
-
 std::string fingerprint_of(const std::string& text) {
   std::uint64_t h = 14695981039346656037U;
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211U;
   return fmt::format("{:016x}", h);
 }
 
-}  // namespace withy::app
+}  // namespace withy

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "withy/core/plugin/parameters.hpp"
-#include "withy/scene/scene.hpp"
+#include "withy/core/plugin/value.hpp"
 
-namespace withy::app {
+namespace [[gnu::visibility("default")]] withy {
 
 /// The text of a result, indented, ending its line. Numbers that are not finite become null.
 std::string json_text(const nlohmann::ordered_json& json);
@@ -17,10 +17,8 @@ std::string plain_text(const nlohmann::ordered_json& value);
 nlohmann::ordered_json value_json(const Value& value);
 /// A plugin's option: key, kind, unit, meaning, whether required, default, limits, choices, members.
 nlohmann::ordered_json parameter_json(const ParameterSpec& parameter);
-/// The integrator of a scene with its options, as {"name": "dopri5", "rtol": 1e-6, …}.
-nlohmann::ordered_json integrator_json(const Scene& scene);
 
 /// FNV-1a of a text, as hexadecimal digits: the same on every machine.
 std::string fingerprint_of(const std::string& text);
 
-}  // namespace withy::app
+}  // namespace gnu::visibility("default")]]withy

@@ -1,4 +1,4 @@
-#include "withy/apps/withy/checkpoint.hpp"
+#include "withy/results/checkpoint_files.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/json_text.hpp"
-#include "withy/apps/withy/output.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/results_error.hpp"
 
-namespace withy::app {
+namespace withy {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -46,10 +46,10 @@ Content read_content(const std::filesystem::path& file) {
 
 }  // namespace
 
-CheckpointFiles::CheckpointFiles(std::filesystem::path folder, const Scene& scene)
+CheckpointFiles::CheckpointFiles(std::filesystem::path folder, std::string fingerprint)
     : newest_(folder / "checkpoint.cbor"),
       previous_(folder / "checkpoint.previous.cbor"),
-      run_(fingerprint_of(value_json(scene.source).dump() + WITHY_VERSION)) {}
+      run_(std::move(fingerprint)) {}
 
 void CheckpointFiles::write(const StoredRun& run) const {
   // CBOR keeps every bit of a double, infinities included.
@@ -67,21 +67,22 @@ void CheckpointFiles::write(const StoredRun& run) const {
 
 StoredRun CheckpointFiles::read() const {
   Content content = read_content(newest_);
+  std::string remark;
   if (!content.fault.empty()) {
     const std::string first = fmt::format("{} {}", newest_.string(), content.fault);
     content = read_content(previous_);
     if (!content.fault.empty())
-      throw InputError(
+      throw ResultsError(
           fmt::format("{}, and {} {}; there is nothing to resume", first, previous_.string(), content.fault));
-    complain(fmt::format("{}; going on from the checkpoint before", first));
+    remark = fmt::format("{}; going on from the checkpoint before", first);
   }
   const Json& j = content.json;
   if (j.at("run") != run_)
-    throw InputError(
+    throw ResultsError(
         fmt::format("{} belongs to another scene, formulation, integrator or version; run without --resume "
                     "to begin anew",
                     newest_.string()));
-  return {{{j.at("time"), j.at("y")}, j.at("stepper"), j.at("watches")}, j.at("table_bytes")};
+  return {{{j.at("time"), j.at("y")}, j.at("stepper"), j.at("watches")}, j.at("table_bytes"), std::move(remark)};
 }
 
 void CheckpointFiles::remove() const {
@@ -89,4 +90,4 @@ void CheckpointFiles::remove() const {
   std::filesystem::remove(previous_);
 }
 
-}  // namespace withy::app
+}  // namespace withy

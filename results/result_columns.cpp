@@ -1,4 +1,4 @@
-#include "withy/apps/withy/columns.hpp"
+#include "withy/results/result_columns.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "withy/core/model/hinge_rates.hpp"
 
-namespace withy::app {
+namespace withy {
 namespace {
 
 void add(std::vector<Column>& columns, const std::string& name, std::initializer_list<const char*> suffixes,
@@ -90,22 +90,4 @@ std::vector<double> ResultColumns::row(const State& state) const {
   return row;
 }
 
-std::string csv_line(const std::vector<double>& numbers) {
-  std::string line;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (i > 0) line += ',';
-    if (std::isfinite(numbers[i])) fmt::format_to(std::back_inserter(line), "{}", numbers[i]);
-  }
-  return line + '\n';
-}
-
-std::string csv_head(const std::vector<Column>& columns) {
-  std::string line;
-  for (const Column& c : columns) {
-    if (!line.empty()) line += ',';
-    line += c.unit.empty() ? c.name : c.name + '[' + c.unit + ']';
-  }
-  return line + '\n';
-}
-
-}  // namespace withy::app
+}  // namespace withy

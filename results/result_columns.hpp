@@ -10,7 +10,7 @@
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/tips.hpp"
 
-namespace withy::app {
+namespace [[gnu::visibility("default")]] withy {
 
 /// What `results.csv` holds: time, hinge and modal coordinates and their rates, deflections and world positions of the
 /// tips, energies, work and momenta.
@@ -29,9 +29,4 @@ class ResultColumns {
   std::vector<Column> columns_;
 };
 
-/// One line of a CSV file, its end included: shortest numbers that read back the same; nothing where one is not finite.
-std::string csv_line(const std::vector<double>& numbers);
-/// The head of a CSV file: `name[unit],…`.
-std::string csv_head(const std::vector<Column>& columns);
-
-}  // namespace withy::app
+}  // namespace gnu::visibility("default")]]withy

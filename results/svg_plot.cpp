@@ -1,4 +1,4 @@
-#include "withy/apps/withy/svg_plot.hpp"
+#include "withy/results/svg_plot.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <iterator>
 #include <limits>
 
-namespace withy::app {
+namespace withy {
 namespace {
 
 constexpr double width = 860;
@@ -208,4 +208,4 @@ std::string svg_plot(const std::string& title, const std::vector<std::string>& l
   return out + "</svg>\n";
 }
 
-}  // namespace withy::app
+}  // namespace withy

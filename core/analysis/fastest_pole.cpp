@@ -1,0 +1,162 @@
+#include "withy/core/analysis/fastest_pole.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "withy/core/analysis/modes.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+
+namespace withy {
+namespace {
+
+using Complex = std::complex<double>;
+/// An inertia that is a smaller share than this of what the coordinate has alone is called little.
+constexpr double little = 0.2;
+
+/// A part of the derivatives that can be named.
+struct Part {
+  std::string name;
+  Eigen::MatrixXd by_position, by_speed;
+};
+
+/// Stiffness and damping of bodies, and what loads that differentiate themselves give; the rest last.
+std::vector<Part> parts_of(const Model& model, const State& state, const Tangents& tangents) {
+  const Layout& layout = model.layout();
+  const auto n = static_cast<Eigen::Index>(layout.speeds);
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(n, n);
+  std::vector<Part> parts;
+  Part rest{"inertia and weight", tangents.by_position, tangents.by_speed};
+  const auto take = [&](Part part) {
+    rest.by_position -= part.by_position;
+    rest.by_speed -= part.by_speed;
+    parts.push_back(std::move(part));
+  };
+  for (const BodyNode& body : model.bodies()) {
+    const Slot* slot = layout.body(body.name);
+    if (slot == nullptr) continue;
+    const ModalShape& shape = body.body->shape();
+    const auto at = static_cast<Eigen::Index>(slot->speed);
+    Part part{"'" + body.name + "'", none, none};
+    part.by_position.block(at, at, shape.modes(), shape.modes()) = shape.stiffness;
+    part.by_speed.block(at, at, shape.modes(), shape.modes()) = shape.damping;
+    take(std::move(part));
+  }
+  const std::span<const double> y(state.y);
+  for (const LoadNode& node : model.loads()) {
+    Part part{"load '" + node.name + "'", none, none};
+    if (!node.load->add_derivatives(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds),
+                                    part.by_position, part.by_speed))
+      continue;
+    // Efforts stand on the other side of the equation.
+    part.by_position = -part.by_position;
+    part.by_speed = -part.by_speed;
+    take(std::move(part));
+  }
+  if (!tangents.differenced.empty()) rest.name += " and loads";
+  parts.push_back(std::move(rest));
+  return parts;
+}
+
+/// Null vector of Q, to which Q is close, by inverse iteration.
+Eigen::VectorXcd null_vector(const Eigen::MatrixXcd& Q) {
+  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(Q);
+  Eigen::VectorXcd v = Eigen::VectorXcd::Ones(Q.rows());
+  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] += 0.1 * std::sin(static_cast<double>(i + 1));
+  for (int k = 0; k < 3; ++k) {
+    v = lu.solve(v).eval();
+    if (!v.allFinite()) throw std::domain_error("the fastest motion was not found");
+    v.normalize();
+  }
+  return v;
+}
+
+struct Cause {
+  std::string name;
+  Eigen::Index at = 0;  ///< the free displacement on which it acts most
+};
+
+/// What the greatest part of the motion's forces is.
+Cause cause_of(const std::vector<Part>& parts, const std::vector<Eigen::Index>& free, Complex pole,
+               const Eigen::VectorXcd& left, const Eigen::VectorXcd& right, Complex inertial) {
+  double greatest = 0;
+  Cause cause;
+  const auto weigh = [&](const Eigen::MatrixXd& part, Complex factor, const std::string& name) {
+    const Eigen::VectorXcd works = left.conjugate().cwiseProduct(factor * (part(free, free).cast<Complex>() * right));
+    const double share = (-works.sum() / inertial).real();
+    if (share <= greatest) return;
+    greatest = share;
+    cause.name = name;
+    works.cwiseAbs().maxCoeff(&cause.at);
+  };
+  for (const Part& part : parts) {
+    weigh(part.by_position, 1.0, "stiffness of " + part.name);
+    weigh(part.by_speed, pole, "damping of " + part.name);
+  }
+  return cause;
+}
+
+}  // namespace
+
+Held driven_speeds(const Model& model) {
+  const Layout& layout = model.layout();
+  Held held(layout.speeds, false);
+  for (const MotionNode& motion : model.motions()) {
+    const Slot& slot = layout.hinges[static_cast<std::size_t>(motion.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) held[slot.speed + i] = true;
+  }
+  return held;
+}
+
+FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, const Held& held) {
+  FastestPole result;
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  if (free.empty()) return result;
+  const Tangents t = dynamics.tangents(state.time, state.y, accelerations(dynamics, state, held));
+  const Eigen::MatrixXd A = first_order_form(t, held).A;
+  const auto m = static_cast<Eigen::Index>(free.size());
+  const Eigen::VectorXd masses = t.mass.diagonal()(free).cwiseAbs();
+  const Eigen::VectorXd units = balancing_units(A, masses);
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(units.asDiagonal() * A * units.cwiseInverse().asDiagonal(), false);
+  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+  for (const Complex& pole : solver.eigenvalues()) {
+    if (pole.imag() >= 0 && std::abs(pole) > std::abs(result.value)) result.value = pole;
+  }
+  if (result.value == 0.0) return result;
+
+  // (M λ + G)(λ − C) δ + K δ = 0 with a λ that rounding may not make exact.
+  const Complex pole = result.value * (1 + 1e-10);
+  const Eigen::VectorXd scale = units.head(m).cwiseInverse();
+  const auto of_free = [&](const Eigen::MatrixXd& x) -> Eigen::MatrixXcd { return x(free, free).cast<Complex>(); };
+  const Eigen::MatrixXcd turn = pole * Eigen::MatrixXcd::Identity(m, m) - of_free(t.drift);
+  const Eigen::MatrixXcd Q = scale.cast<Complex>().asDiagonal() *
+                             ((pole * of_free(t.mass) + of_free(t.by_speed)) * turn + of_free(t.by_position)) *
+                             scale.cast<Complex>().asDiagonal() / std::norm(pole);
+  const Eigen::VectorXcd right = scale.cast<Complex>().cwiseProduct(null_vector(Q)),
+                         left = scale.cast<Complex>().cwiseProduct(null_vector(Q.adjoint()));
+  const Complex inertia = left.dot(of_free(t.mass) * right);
+  const Cause cause = cause_of(parts_of(dynamics.model(), state, t), free, result.value, left, right,
+                               result.value * result.value * inertia);
+  result.cause = cause.name;
+  result.speed = static_cast<std::size_t>(free[static_cast<std::size_t>(cause.at)]);
+  result.alone = masses[cause.at];
+  result.inertia = std::abs(inertia) / (std::abs(left[cause.at]) * std::abs(right[cause.at]));
+  return result;
+}
+
+std::string describe(const FastestPole& pole, const Layout& layout) {
+  if (pole.value == 0.0) return {};
+  std::string text = brief(pole.value.real());
+  if (pole.value.imag() != 0) text += " ± " + brief(pole.value.imag()) + "i";
+  text += "/s: ";
+  if (!pole.cause.empty()) text += pole.cause + " on ";
+  text += layout.speed_names[pole.speed];
+  if (pole.inertia < little * pole.alone)
+    text += ", behind which there is little inertia (" + brief(pole.inertia) + " where the others stay " +
+            brief(pole.alone) + ")";
+  return text;
+}
+
+}  // namespace withy

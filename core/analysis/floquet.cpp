@@ -1,0 +1,213 @@
+#include "withy/core/analysis/floquet.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "withy/core/analysis/modes.hpp"
+
+namespace withy {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double full_turn = 2 * std::numbers::pi;
+constexpr int fewest_steps = 64, most_steps = 8192;
+/// Instants of a period at which eigenfunctions are looked at.
+constexpr int instants = 64;
+
+Eigen::MatrixXd commutator(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return a * b - b * a; }
+
+/// z(t + h) = e^Ω z(t) to order six, from A at the three points of Gauss.
+Eigen::MatrixXd step_matrix(const PeriodicMatrix& A, double t, double h) {
+  const double apart = h * std::sqrt(15.0) / 10;
+  const Eigen::MatrixXd before = A.at(t + h / 2 - apart), middle = A.at(t + h / 2), after = A.at(t + h / 2 + apart);
+  const Eigen::MatrixXd a1 = h * middle, a2 = std::sqrt(15.0) / 3 * h * (after - before),
+                        a3 = 10.0 / 3 * h * (after - 2 * middle + before);
+  const Eigen::MatrixXd c1 = commutator(a1, a2), c2 = -1.0 / 60 * commutator(a1, 2 * a3 + c1);
+  const Eigen::MatrixXd omega = a1 + a3 / 12 + 1.0 / 240 * commutator(-20 * a1 - a3 + c1, a2 + c2);
+  return omega.exp();
+}
+
+struct Multipliers {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;
+};
+
+Multipliers multipliers(const Eigen::MatrixXd& product, const Eigen::VectorXd& units) {
+  if (!product.allFinite()) throw std::domain_error("the motion grows beyond all bounds within a turn");
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(product);
+  if (solver.info() != Eigen::Success) throw std::domain_error("the multipliers were not found");
+  return {solver.eigenvalues(), units.cwiseInverse().cast<Complex>().asDiagonal() * solver.eigenvectors()};
+}
+
+/// What is seen of the eigenfunctions over a turn: displacements at `instants` equal intervals, and mean frequencies.
+struct Seen {
+  std::vector<Eigen::MatrixXcd> displacements;  ///< of p(t): a column a mode
+  Eigen::VectorXd frequency;  ///< [rad/s] mean of Im (δᴴ W δ̇)/(δᴴ W δ): of all harmonics, by share
+};
+
+Seen look(const PeriodicMatrix& A, const Multipliers& m, const Eigen::VectorXcd& exponents,
+          const Eigen::VectorXd& masses, int steps) {
+  const Eigen::Index n = masses.size(), count = exponents.size();
+  const double h = A.period() / steps;
+  const Eigen::VectorXcd back = (-h * exponents).array().exp();
+  Eigen::MatrixXcd x = m.vectors;
+  Seen seen;
+  Eigen::VectorXd turned = Eigen::VectorXd::Zero(count), size = turned;
+  const Eigen::VectorXcd weights = masses.cast<Complex>();
+  for (int k = 0; k < steps; ++k) {
+    const Eigen::MatrixXcd rates = (A.at(k * h) * x).topRows(n), at = x.topRows(n);
+    for (Eigen::Index c = 0; c < count; ++c) {
+      const Eigen::VectorXcd weighted = weights.cwiseProduct(at.col(c));
+      turned[c] += weighted.dot(rates.col(c)).imag();
+      size[c] += weighted.dot(at.col(c)).real();
+    }
+    if (k % (steps / instants) == 0) seen.displacements.push_back(at);
+    x = step_matrix(A, k * h, h) * x * back.asDiagonal();
+  }
+  seen.frequency = turned.cwiseQuotient(size.cwiseMax(1e-300));
+  return seen;
+}
+
+/// Harmonics of one eigenfunction, and from them the frequency that is seen and the shape.
+void read_harmonics(const Seen& seen, Eigen::Index column, const Eigen::VectorXd& masses, double turn_rate,
+                    CharacteristicMode& mode) {
+  struct Harmonic {
+    double share;
+    double frequency;
+    Eigen::VectorXcd shape;
+  };
+  std::vector<Harmonic> found;
+  double total = 0;
+  for (int n = 0; n < instants; ++n) {
+    Eigen::VectorXcd c = Eigen::VectorXcd::Zero(masses.size());
+    for (int k = 0; k < instants; ++k)
+      c += std::polar(1.0 / instants, -full_turn * n * k / instants) *
+           seen.displacements[static_cast<std::size_t>(k)].col(column);
+    const double share = (c.cwiseAbs2().array() * masses.array()).sum();
+    total += share;
+    // Samples tell a harmonic but for multiples of their number: it is the one nearest to the mean frequency.
+    const double low = mode.exponent.imag() + n * turn_rate, round = instants * turn_rate;
+    found.push_back({share, low + round * std::round((seen.frequency[column] - low) / round), std::move(c)});
+  }
+  // Of equal ones that with the greater frequency, so that rounding decides nothing.
+  std::stable_sort(found.begin(), found.end(), [&](const Harmonic& a, const Harmonic& b) {
+    if (std::abs(a.share - b.share) > 1e-6 * total) return a.share > b.share;
+    return a.frequency > b.frequency;
+  });
+  mode.exponent.imag(found[0].frequency);
+  mode.share = total > 0 ? found[0].share / total : 1.0;
+  for (const Harmonic& f : found) {
+    if (total > 0 && f.share >= 0.01 * total) mode.lines.emplace_back(f.frequency, f.share / total);
+  }
+  mode.shape = found[0].shape;
+  mode.shape.cwiseAbs2().cwiseProduct(masses).maxCoeff(&mode.dominant);
+  if (mode.shape[mode.dominant] != 0.0) mode.shape /= Complex(mode.shape[mode.dominant]);
+}
+
+void conjugate(CharacteristicMode& mode) {
+  mode.multiplier = std::conj(mode.multiplier);
+  mode.exponent = std::conj(mode.exponent);
+  mode.shape = mode.shape.conjugate().eval();
+  for (auto& [frequency, share] : mode.lines) frequency = -frequency;
+}
+
+}  // namespace
+
+PeriodicMatrix::PeriodicMatrix(const std::vector<Eigen::MatrixXd>& samples, double period) : period_(period) {
+  const auto count = static_cast<int>(samples.size());
+  const Eigen::Index rows = samples[0].rows(), columns = samples[0].cols();
+  double greatest = 0;
+  for (const Eigen::MatrixXd& s : samples) greatest = std::max(greatest, s.size() > 0 ? s.cwiseAbs().maxCoeff() : 0.0);
+  mean_ = Eigen::MatrixXd::Zero(rows, columns);
+  for (const Eigen::MatrixXd& s : samples) mean_ += s / count;
+  for (int n = 1; 2 * n < count; ++n) {
+    Eigen::MatrixXcd c = Eigen::MatrixXcd::Zero(rows, columns);
+    for (int k = 0; k < count; ++k)
+      c += std::polar(2.0 / count, -full_turn * n * k / count) * samples[static_cast<std::size_t>(k)].cast<Complex>();
+    const double size = greatest > 0 ? c.cwiseAbs().maxCoeff() / greatest : 0.0;
+    change_ = std::max(change_, size);
+    if (3 * n > count) tail_ = std::max(tail_, size);
+    if (size > 1e-16) harmonics_.emplace_back(n, std::move(c));
+  }
+}
+
+Eigen::MatrixXd PeriodicMatrix::at(double t) const {
+  Eigen::MatrixXd a = mean_;
+  for (const auto& [n, c] : harmonics_) {
+    const double angle = full_turn * n * t / period_;
+    a += std::cos(angle) * c.real() - std::sin(angle) * c.imag();
+  }
+  return a;
+}
+
+Eigen::MatrixXd monodromy(const PeriodicMatrix& A, int steps) {
+  Eigen::MatrixXd product = Eigen::MatrixXd::Identity(A.rows(), A.rows());
+  const double h = A.period() / steps;
+  for (int k = 0; k < steps; ++k) product = step_matrix(A, k * h, h) * product;
+  return product;
+}
+
+FloquetAnalysis floquet(const PeriodicMatrix& A, const Eigen::VectorXd& masses) {
+  FloquetAnalysis result;
+  result.period = A.period();
+  if (masses.size() == 0) return result;
+  const Eigen::VectorXd units = balancing_units(A.mean(), masses);
+  const auto in_units = [&](int steps) -> Eigen::MatrixXd {
+    return units.asDiagonal() * monodromy(A, steps) * units.cwiseInverse().asDiagonal();
+  };
+  int steps = fewest_steps;
+  Eigen::MatrixXd product = in_units(steps);
+  double changed = 1, before = 2;
+  // Where halving the step brings nothing more, rounding is all that is left.
+  while (changed > 1e-11 && steps < most_steps && !(changed < 1e-7 && changed > 0.5 * before)) {
+    steps *= 2;
+    Eigen::MatrixXd finer = in_units(steps);
+    before = changed;
+    changed = (finer - product).cwiseAbs().maxCoeff() / finer.cwiseAbs().maxCoeff();
+    product = std::move(finer);
+  }
+  result.steps = steps;
+  const Multipliers m = multipliers(product, units);
+  const double greatest = std::max(1.0, m.values.cwiseAbs().maxCoeff());
+  // What a double multiplier without two eigenvectors, as of a motion that nothing holds back, is found to.
+  result.resolution = std::max(changed, 1e-7) / A.period();
+
+  const Eigen::Index count = m.values.size();
+  Eigen::VectorXcd exponents(count);
+  for (Eigen::Index i = 0; i < count; ++i) exponents[i] = std::log(m.values[i] + 1e-300) / A.period();
+  const Seen seen = look(A, m, exponents, masses, steps);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    CharacteristicMode mode;
+    mode.multiplier = m.values[i];
+    mode.exponent = exponents[i];
+    mode.resolved = std::abs(m.values[i]) > 1e-9 * greatest;
+    if (m.values[i].imag() < 0) continue;  // the conjugate says the same
+    if (mode.resolved) read_harmonics(seen, i, masses, full_turn / A.period(), mode);
+    if (mode.exponent.imag() < 0) conjugate(mode);
+    result.modes.push_back(std::move(mode));
+  }
+  std::stable_sort(
+      result.modes.begin(), result.modes.end(),
+      [](const CharacteristicMode& a, const CharacteristicMode& b) { return a.exponent.real() > b.exponent.real(); });
+  return result;
+}
+
+TurningForm turning_form(const TangentDynamics& dynamics, const State& start, const Held& held,
+                         const Turning& turning) {
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  for (Eigen::Index count = 15;; count = 2 * count + 1) {
+    Turn turn = find_turn(dynamics, start, held, turning, count);
+    std::vector<Eigen::MatrixXd> samples;
+    for (const Tangents& t : turn.points) samples.push_back(first_order_form(t, held).A);
+    PeriodicMatrix A(samples, turning.period);
+    if (A.tail() > 1e-11 && count < 127) continue;
+    Eigen::VectorXd masses = turn.points[0].mass.diagonal()(free).cwiseAbs();
+    return {std::move(A), std::move(masses), std::move(turn)};
+  }
+}
+
+}  // namespace withy

@@ -1,0 +1,320 @@
+#include "withy/core/analysis/turn.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+
+#include "withy/core/analysis/modes.hpp"
+#include "withy/core/model/hinge_rates.hpp"
+
+namespace withy {
+namespace {
+
+constexpr double full_turn = 2 * std::numbers::pi;
+/// Prime, so that no harmonic below it hides.
+constexpr Eigen::Index compared_angles = 11;
+/// A share of terms that cancel which counts as rounding, and the least displacement [rad, m] it is taken of.
+constexpr double balanced_share = 1e-9, least_displacement = 1e-3;
+
+/// The rate of a motion that is constant for as long as can be seen; nothing where it is not.
+std::optional<double> constant_rate(const Motion& motion, double t) {
+  const double rate = motion.at(t).rate;
+  const double span = std::max(1.0, rate != 0 ? full_turn / std::abs(rate) : 0.0);
+  for (int k = 0; k <= 64; ++k) {
+    const MotionPoint point = motion.at(t + span * k / 64);
+    if (std::abs(point.rate - rate) > 1e-12 * std::abs(rate) || std::abs(point.acceleration) > 1e-12 * std::abs(rate))
+      return {};
+  }
+  return rate;
+}
+
+/// The least whole number n ≤ 24 with n·ratio whole too; 0 where there is none.
+int common_multiple(double ratio) {
+  for (int n = 1; n <= 24; ++n) {
+    if (std::abs(n * ratio - std::round(n * ratio)) <= 1e-9 * std::max(1.0, n * ratio)) return n;
+  }
+  return 0;
+}
+
+/// Adds a rate to the common period of those before.
+void add_rate(Turning& turning, double rate, bool angular, const std::string& name) {
+  if (rate == 0 || !turning.problem.empty()) return;
+  if (!angular) {
+    turning.problem = "'" + name + "' moves along a line and does not come back";
+    return;
+  }
+  const double own = full_turn / std::abs(rate);
+  if (turning.period == 0) {
+    turning.period = own;
+  } else if (const int n = common_multiple(turning.period / own); n > 0) {
+    turning.period *= n;
+  } else {
+    turning.problem = "the hinges turn at rates without a common period ('" + name + "')";
+  }
+}
+
+/// Of a model at a state, with the free speeds' rows in the scale in which their own inertias are one.
+struct Balance {
+  Eigen::VectorXd residual;  ///< of the free speeds
+  double terms = 0;          ///< size of what cancels in it
+};
+
+Balance balance_of(const Tangents& t, const State& state, const Layout& layout, const std::vector<Eigen::Index>& free) {
+  Eigen::VectorXd scale = t.mass.diagonal().cwiseAbs().cwiseSqrt();
+  double position = least_displacement * scale(free).maxCoeff();
+  for (const Slot& slot : layout.bodies) {
+    for (std::size_t i = 0; i < slot.speeds; ++i)
+      position =
+          std::max(position, std::abs(state.y[slot.position + i]) * scale[static_cast<Eigen::Index>(slot.speed + i)]);
+  }
+  for (Eigen::Index i = 0; i < scale.size(); ++i) scale[i] = scale[i] > 0 ? 1 / scale[i] : 1.0;
+  Balance b;
+  const Eigen::VectorXd all = scale.cwiseProduct(t.residual);
+  b.residual = all(free);
+  const Eigen::MatrixXd K = scale.asDiagonal() * t.by_position * scale.asDiagonal();
+  b.terms = all.cwiseAbs().maxCoeff() + K.cwiseAbs().maxCoeff() * position;
+  return b;
+}
+
+/// d/dt at `count` equal intervals of a period, of the trigonometric polynomial through the values there (count odd).
+Eigen::MatrixXd differentiation(Eigen::Index count, double period) {
+  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const auto apart = static_cast<double>(i - j);
+      if (i != j)
+        D(i, j) = ((i - j) % 2 == 0 ? 1 : -1) / std::sin(std::numbers::pi * apart / static_cast<double>(count)) *
+                  std::numbers::pi / period;
+    }
+  }
+  return D;
+}
+
+/// Collocation at all instants at once: unknowns are the free coordinates there, instant after instant.
+class Collocation {
+ public:
+  Collocation(const TangentDynamics& dynamics, const State& start, const Held& held, const Turning& turning,
+              Eigen::Index count)
+      : dynamics_(dynamics),
+        layout_(dynamics.model().layout()),
+        free_(free_speeds(held)),
+        m_(static_cast<Eigen::Index>(free_.size())),
+        count_(count),
+        D_(differentiation(count, turning.period)),
+        D2_(D_ * D_) {
+    turn_.period = turning.period;
+    turn_.constant = false;
+    for (Eigen::Index k = 0; k < count; ++k)
+      base_.push_back(carried(dynamics.model(), turning, start,
+                              turning.period * static_cast<double>(k) / static_cast<double>(count)));
+    locate_coordinates();
+  }
+
+  Turn solve() {
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(m_, count_);
+    for (; turn_.iterations < 30; ++turn_.iterations) {
+      linearize(moved);
+      const Eigen::MatrixXd step = newton_step();
+      if (!step.allFinite()) break;
+      moved += step;
+      const Eigen::VectorXd masses = turn_.points[0].mass.diagonal()(free_).cwiseAbs().cwiseSqrt();
+      const double size = std::max((masses.asDiagonal() * (moved.colwise() + at_start())).cwiseAbs().maxCoeff(),
+                                   least_displacement * masses.maxCoeff());
+      if ((masses.asDiagonal() * step).cwiseAbs().maxCoeff() <= 1e-10 * size) {
+        linearize(moved);
+        return std::move(turn_);
+      }
+    }
+    throw std::domain_error("no periodic motion was found: Newton's method did not converge");
+  }
+
+ private:
+  /// The free coordinates must be those whose rates are the speeds.
+  void locate_coordinates() {
+    std::vector<Eigen::Index> position(layout_.speeds, -1);
+    for (std::size_t h = 0; h < layout_.hinges.size(); ++h) {
+      const Slot& slot = layout_.hinges[h];
+      const std::vector<HingeRate> rates = hinge_rates(*dynamics_.model().hinges()[h].hinge);
+      for (std::size_t i = 0; i < slot.speeds; ++i) {
+        if (rates[i].coordinate)
+          position[slot.speed + i] = static_cast<Eigen::Index>(slot.position + *rates[i].coordinate);
+      }
+    }
+    for (const Slot& slot : layout_.bodies) {
+      for (std::size_t i = 0; i < slot.speeds; ++i)
+        position[slot.speed + i] = static_cast<Eigen::Index>(slot.position + i);
+    }
+    for (const Eigen::Index s : free_) {
+      const auto at = static_cast<std::size_t>(s);
+      if (position[at] < 0)
+        throw std::domain_error("no periodic motion is sought where the rotation of a free hinge is a quaternion ('" +
+                                layout_.speed_names[at] + "'): lock it, or take a hinge with angles");
+      if (base_[0].y[layout_.positions + at] != 0)
+        throw std::domain_error("the free coordinates are not balanced over a turn, and '" + layout_.speed_names[at] +
+                                "', which is free, turns: hold its rate (--spin)");
+      positions_.push_back(position[at]);
+    }
+  }
+  [[nodiscard]] Eigen::VectorXd at_start() const {
+    Eigen::VectorXd x(m_);
+    for (Eigen::Index i = 0; i < m_; ++i)
+      x[i] = base_[0].y[static_cast<std::size_t>(positions_[static_cast<std::size_t>(i)])];
+    return x;
+  }
+  void linearize(const Eigen::MatrixXd& moved) {
+    const Eigen::MatrixXd rates = moved * D_.transpose(), accelerations = moved * D2_.transpose();
+    turn_.states = base_;
+    turn_.points.clear();
+    for (Eigen::Index k = 0; k < count_; ++k) {
+      State& state = turn_.states[static_cast<std::size_t>(k)];
+      Eigen::VectorXd a = dynamics_.steady_accelerations(state.time);
+      for (Eigen::Index i = 0; i < m_; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        state.y[static_cast<std::size_t>(positions_[at])] += moved(i, k);
+        state.y[layout_.positions + static_cast<std::size_t>(free_[at])] += rates(i, k);
+        a[free_[at]] = accelerations(i, k);
+      }
+      turn_.points.push_back(dynamics_.tangents(state.time, state.y, a));
+    }
+  }
+  /// K δ + G Dδ + M D²δ = −r at every instant.
+  [[nodiscard]] Eigen::MatrixXd newton_step() const {
+    Eigen::MatrixXd J(m_ * count_, m_ * count_);
+    Eigen::VectorXd right(m_ * count_);
+    for (Eigen::Index k = 0; k < count_; ++k) {
+      const Tangents& t = turn_.points[static_cast<std::size_t>(k)];
+      const Eigen::MatrixXd M = t.mass(free_, free_), G = t.by_speed(free_, free_);
+      for (Eigen::Index l = 0; l < count_; ++l) J.block(m_ * k, m_ * l, m_, m_) = D2_(k, l) * M + D_(k, l) * G;
+      J.block(m_ * k, m_ * k, m_, m_) += t.by_position(free_, free_);
+      right.segment(m_ * k, m_) = -t.residual(free_);
+    }
+    const Eigen::VectorXd step = Eigen::PartialPivLU<Eigen::MatrixXd>(J).solve(right);
+    return step.reshaped(m_, count_);
+  }
+
+  const TangentDynamics& dynamics_;
+  const Layout& layout_;
+  std::vector<Eigen::Index> free_;
+  Eigen::Index m_, count_;
+  Eigen::MatrixXd D_, D2_;
+  std::vector<State> base_;
+  std::vector<Eigen::Index> positions_;  ///< of the free speeds' coordinates
+  Turn turn_;
+};
+
+/// A in coordinates scaled to unit inertia, rates by the scale that makes both halves alike.
+Eigen::MatrixXd scaled_form(const Tangents& t, const Held& held, const std::vector<Eigen::Index>& free) {
+  Eigen::MatrixXd A = first_order_form(t, held).A;
+  const auto m = static_cast<Eigen::Index>(free.size());
+  Eigen::VectorXd scale(2 * m);
+  scale << t.mass.diagonal()(free).cwiseAbs().cwiseSqrt(), t.mass.diagonal()(free).cwiseAbs().cwiseSqrt();
+  A = scale.asDiagonal() * A * scale.cwiseInverse().asDiagonal();
+  const double unit = std::sqrt(std::max(1.0, A.bottomLeftCorner(m, m).cwiseAbs().maxCoeff()));
+  A.topRightCorner(m, m) *= unit;
+  A.bottomLeftCorner(m, m) /= unit;
+  return A;
+}
+
+}  // namespace
+
+Turning turning(const Model& model, const State& state, double period) {
+  Turning result;
+  const Layout& layout = model.layout();
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    const Slot& slot = layout.hinges[h];
+    if (model.driven(h)) continue;
+    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
+    for (std::size_t i = 0; i < slot.speeds; ++i) {
+      const double rate = state.y[layout.positions + slot.speed + i];
+      if (rate == 0) continue;
+      result.speeds.push_back(slot.speed + i);
+      if (!rates[i].coordinate)
+        result.problem = "'" + slot.name + "' turns with an angular velocity, and its coordinates are a quaternion";
+      add_rate(result, rate, rates[i].angular, slot.name);
+    }
+  }
+  for (const MotionNode& node : model.motions()) {
+    if (node.motion->locks() || period > 0) continue;
+    const auto h = static_cast<std::size_t>(node.hinge);
+    if (const std::optional<double> rate = constant_rate(*node.motion, state.time)) {
+      add_rate(result, *rate, hinge_rates(*model.hinges()[h].hinge)[0].angular, layout.hinges[h].name);
+    } else if (result.problem.empty()) {
+      result.problem = "motion '" + node.name + "' does not turn at a constant rate: give the period";
+    }
+  }
+  if (period > 0) {
+    if (result.period > 0 && std::abs(std::remainder(period, result.period)) > 1e-9 * period)
+      result.problem = "the hinges do not come back after the period given";
+    result.period = period;
+  }
+  if (!result.problem.empty()) result.period = 0;
+  return result;
+}
+
+State carried(const Model& model, const Turning& turning, const State& start, double after) {
+  State state = start;
+  state.time += after;
+  const Layout& layout = model.layout();
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    const Slot& slot = layout.hinges[h];
+    for (std::size_t i = 0; i < slot.speeds; ++i) {
+      const std::size_t s = slot.speed + i;
+      if (std::find(turning.speeds.begin(), turning.speeds.end(), s) == turning.speeds.end()) continue;
+      const std::size_t x = *hinge_rates(*model.hinges()[h].hinge)[i].coordinate;
+      state.y[slot.position + x] += after * start.y[layout.positions + s];
+    }
+  }
+  model.prescribe(state);
+  return state;
+}
+
+TurnCheck check_turn(const TangentDynamics& dynamics, const State& steady, const Held& held, double period) {
+  TurnCheck check;
+  check.turning = turning(dynamics.model(), steady, period);
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  if (check.turning.period == 0 || free.empty()) return check;
+  Eigen::MatrixXd first;
+  Balance start;
+  double greatest = 0;
+  for (Eigen::Index k = 0; k < compared_angles; ++k) {
+    const State state = carried(dynamics.model(), check.turning, steady,
+                                check.turning.period * static_cast<double>(k) / static_cast<double>(compared_angles));
+    const Tangents t = dynamics.tangents(state.time, state.y, dynamics.steady_accelerations(state.time));
+    const Balance b = balance_of(t, state, dynamics.model().layout(), free);
+    const Eigen::MatrixXd A = scaled_form(t, held, free);
+    if (k == 0) {
+      first = A;
+      start = b;
+    }
+    greatest = std::max(greatest, A.cwiseAbs().maxCoeff());
+    check.change = std::max(check.change, (A - first).cwiseAbs().maxCoeff());
+    const double left = (b.residual - start.residual).cwiseAbs().maxCoeff();
+    if (left > balanced_share * std::max(b.terms, start.terms)) check.steady = false;
+  }
+  if (greatest > 0) check.change /= greatest;
+  return check;
+}
+
+Turn find_turn(const TangentDynamics& dynamics, const State& start, const Held& held, const Turning& turning,
+               Eigen::Index count) {
+  Turn turn;
+  turn.period = turning.period;
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    turn.states.push_back(carried(dynamics.model(), turning, start,
+                                  turning.period * static_cast<double>(k) / static_cast<double>(count)));
+    const State& state = turn.states.back();
+    turn.points.push_back(dynamics.tangents(state.time, state.y, dynamics.steady_accelerations(state.time)));
+    if (free.empty()) continue;
+    const Balance b = balance_of(turn.points.back(), state, dynamics.model().layout(), free);
+    if (b.residual.cwiseAbs().maxCoeff() > balanced_share * b.terms)
+      return Collocation(dynamics, start, held, turning, count).solve();
+  }
+  return turn;
+}
+
+}  // namespace withy

@@ -1,0 +1,61 @@
+/// \file
+/// Steady motions that repeat: hinges turn at constant rates or as motions drive them, and the linearization turns with
+/// them. What a frozen angle cannot tell is told by a whole turn.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/core/analysis/steady_state.hpp"
+
+namespace withy {
+
+/// How the hinges of a model move about a state, and how long it takes them to come back.
+struct Turning {
+  /// Rates of hinges that do not vanish, of those that no motion drives: their coordinates grow with them.
+  std::vector<std::size_t> speeds;
+  double period = 0;    ///< [s]; 0: nothing moves, or `problem` says why there is none
+  std::string problem;  ///< empty where there is a period or nothing moves
+};
+
+/// Rates in ratios of whole numbers up to 24 have a common period. \param period [s] known to the caller, as where
+/// motions or loads repeat in time; 0: found from the rates alone.
+Turning turning(const Model& model, const State& state, double period = 0);
+
+/// `start` carried on for `after` seconds: hinges turn with their rates or as motions drive them, all else is as it
+/// was.
+State carried(const Model& model, const Turning& turning, const State& start, double after);
+
+/// What changes over one turn, from eleven angles.
+struct TurnCheck {
+  Turning turning;
+  /// Greatest change of an element of A (FirstOrderForm), of the greatest element, coordinates scaled to unit inertia.
+  double change = 0;
+  bool steady = true;  ///< the free coordinates stay balanced at every angle
+
+  /// Whether the linearization is periodic and not constant. Meaningless where the turning has a problem.
+  [[nodiscard]] bool periodic() const { return turning.period > 0 && (change > 1e-8 || !steady); }
+};
+
+/// Compares the linearization at eleven angles of a turn, the free coordinates as in `steady`.
+/// \throws std::domain_error where the mass matrix of the free speeds is singular.
+TurnCheck check_turn(const TangentDynamics& dynamics, const State& steady, const Held& held, double period = 0);
+
+/// A periodic motion at equal intervals of its period, with its linearization there.
+struct Turn {
+  double period = 0;             ///< [s]
+  std::vector<State> states;     ///< an odd count; the first at the start
+  std::vector<Tangents> points;  ///< the derivatives there, at the accelerations of the motion
+  bool constant = true;          ///< the free coordinates do not move
+  int iterations = 0;            ///< of Newton's method
+};
+
+/// The motion of period `turning.period` that the free coordinates follow: constant where that balances them at every
+/// angle; else the trigonometric polynomial through `count` (odd) instants that satisfies the equations of motion there
+/// (collocation), by Newton's method with the exact derivatives from `start` on.
+/// \throws std::domain_error with the reason where there is none: nothing converges, a free hinge turns, or free
+/// rotations are quaternions.
+Turn find_turn(const TangentDynamics& dynamics, const State& start, const Held& held, const Turning& turning,
+               Eigen::Index count);
+
+}  // namespace withy

@@ -1,0 +1,54 @@
+#include "withy/results/output_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace withy {
+
+OutputFile::OutputFile(std::filesystem::path path, bool append)
+    : path_(std::move(path)), file_(std::fopen(path_.c_str(), append ? "ae" : "we")) {
+  if (!file_) fail();
+}
+
+void OutputFile::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() || std::fflush(file_.get()) != 0) fail();
+}
+
+void OutputFile::sync() {
+  if (::fsync(::fileno(file_.get())) != 0) fail();
+}
+
+void OutputFile::close() {
+  if (std::fclose(file_.release()) != 0) fail();
+}
+
+void OutputFile::fail() const { throw std::system_error(errno, std::generic_category(), path_.string()); }
+
+void write_file(const std::filesystem::path& path, std::string_view text) {
+  std::filesystem::path part = path;
+  part += ".part";
+  OutputFile file(part);
+  file.write(text);
+  file.close();
+  std::filesystem::rename(part, path);
+}
+
+void write_lasting_file(const std::filesystem::path& path, std::string_view text) {
+  std::filesystem::path part = path;
+  part += ".part";
+  OutputFile file(part);
+  file.write(text);
+  file.sync();
+  file.close();
+  std::filesystem::rename(part, path);
+  const int folder = ::open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool synced = folder >= 0 && ::fsync(folder) == 0;
+  if (folder >= 0) ::close(folder);
+  if (!synced) throw std::system_error(errno, std::generic_category(), path.parent_path().string());
+}
+
+}  // namespace withy

@@ -1,0 +1,99 @@
+/// \file
+/// The fastest pole of all that acts, and what makes it.
+#include "withy/core/analysis/fastest_pole.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "blade.hpp"
+
+namespace withy::test {
+namespace {
+
+/// Two links whose joints have no inertia of their own, and a servo that is stiff.
+const char* const servo_arm = R"(format: withy/1
+gravity: [0, 0, -9.81]
+time: {end: 1}
+bodies:
+  upper:
+    {type: beam, length: 1, mass_per_length: 2, bending_y: {stiffness: 800, modes: 2, family: craig-bampton},
+     bending_z: {stiffness: 800, modes: 2, family: craig-bampton}, damping_ratio: 0.01}
+  motor: {type: rigid, mass: 4, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+hinges:
+  shoulder: {type: revolute, axis: [0, 1, 0], parent: world, child: upper}
+  wrist: {type: weld, parent: upper.tip, child: motor}
+loads:
+  servo: {type: hinge-spring, hinge: shoulder, stiffness: 4000, damping: 300}
+)";
+
+double greatest_of_jacobian(const AnalysedScene& c) {
+  const auto n = static_cast<Eigen::Index>(c.layout().positions + c.layout().speeds);
+  std::vector<double> rates(c.equations->size());
+  Work work = c.equations->make_work();
+  EXPECT_TRUE(c.equations->derivatives(c.state.time, c.state.y, rates, work).ok());
+  Eigen::MatrixXd J(n, n);
+  EXPECT_TRUE(c.equations->linearization()
+                  ->jacobian(c.state.time, c.state.y, rates, {J.data(), static_cast<std::size_t>(J.size())})
+                  .ok());
+  return J.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+TEST(FastestPole, is_the_greatest_eigenvalue_of_the_jacobian) {
+  for (const std::string& formulation : all_formulations) {
+    AnalysedScene c(servo_arm, formulation);
+    const FastestPole pole = fastest_pole(*c.dynamics, c.state, driven_speeds(*c.scene.model));
+    EXPECT_NEAR(std::abs(pole.value) / greatest_of_jacobian(c), 1, 1e-6) << formulation;
+  }
+}
+
+/// A hinge that only the bending of a light beam follows: the servo's damping works against little inertia.
+TEST(FastestPole, of_a_servo_without_inertia_behind_it_says_so) {
+  AnalysedScene c(servo_arm, "quadratic");
+  const FastestPole pole = fastest_pole(*c.dynamics, c.state, driven_speeds(*c.scene.model));
+  EXPECT_LT(pole.value.real(), -1e3);
+  EXPECT_EQ(c.layout().speed_names[pole.speed], "shoulder.0");
+  EXPECT_EQ(pole.cause, "damping of load 'servo'");
+  EXPECT_LT(pole.inertia, 0.05 * pole.alone);
+  EXPECT_NEAR(-300 / pole.inertia / pole.value.real(), 1, 0.1) << "c/J of what moves";
+  EXPECT_NE(describe(pole, c.layout()).find("little inertia"), std::string::npos);
+}
+
+/// One coordinate: −c/J and ±√(k/J) in closed form.
+TEST(FastestPole, of_a_disk_is_in_closed_form) {
+  const auto disk = [](const std::string& spring) {
+    return AnalysedScene(
+        "format: withy/1\ntime: {end: 1}\n"
+        "bodies: {disk: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}\n"
+        "hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: disk}}\n"
+        "loads: {spring: {type: hinge-spring, hinge: axle, " +
+            spring + "}}\n",
+        "quadratic");
+  };
+  AnalysedScene stiff = disk("stiffness: 800, damping: 0");
+  const FastestPole a = fastest_pole(*stiff.dynamics, stiff.state, Held(1, false));
+  EXPECT_NEAR(a.value.imag(), 20, 1e-9);
+  EXPECT_EQ(a.cause, "stiffness of load 'spring'");
+  EXPECT_NEAR(a.inertia, 2, 1e-9);
+  EXPECT_EQ(describe(a, stiff.layout()).find("inertia"), std::string::npos);
+  AnalysedScene damped = disk("stiffness: 0, damping: 40");
+  const FastestPole b = fastest_pole(*damped.dynamics, damped.state, Held(1, false));
+  EXPECT_NEAR(b.value.real(), -20, 1e-9);
+  EXPECT_EQ(b.value.imag(), 0);
+  EXPECT_EQ(b.cause, "damping of load 'spring'");
+  EXPECT_EQ(fastest_pole(*damped.dynamics, damped.state, Held(1, true)).value, 0.0) << "nothing is free";
+}
+
+/// Without loads it is the fastest vibration that the modes have.
+TEST(FastestPole, of_a_free_structure_is_its_highest_mode) {
+  AnalysedScene c(blade(2, 3), "quadratic");
+  const Held held = hold(c, {"axle"});
+  const FastestPole pole = fastest_pole(*c.dynamics, c.state, held);
+  EXPECT_NEAR(std::abs(pole.value), 61.697, 0.01) << "third bending mode of a cantilever of unit properties";
+  EXPECT_EQ(pole.cause, "stiffness of 'blade'");
+  EXPECT_EQ(c.layout().speed_names[pole.speed], "blade.bending_z[3]");
+}
+
+}  // namespace
+}  // namespace withy::test
