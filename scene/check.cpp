@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
@@ -98,10 +100,23 @@ std::optional<Value> Checker::mode_family(const Value& value) const {
   return checked;
 }
 
+std::optional<Value> Checker::formulation(const Value& value) const {
+  const bool short_form = value.kind() == Value::Kind::text;
+  Made<Formulation> made;
+  auto checked =
+      check_plugin_map(grammar::named_formulation(value), "name", {grammar::formulation_name()}, *this, made);
+  if (checked && short_form) return value;
+  return checked;
+}
+
 std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec) const {
   if (spec.refers == ParameterSpec::Refers::mode_family &&
       (value.kind() == Value::Kind::text || value.kind() == Value::Kind::map)) {
     return mode_family(value);
+  }
+  if (spec.refers == ParameterSpec::Refers::formulation &&
+      (value.kind() == Value::Kind::text || value.kind() == Value::Kind::map)) {
+    return formulation(value);
   }
   if (!spec.unit.empty() &&
       (value.kind() == Value::Kind::number || (value.kind() == Value::Kind::text && looks_like_number(value.text())))) {
@@ -116,6 +131,10 @@ std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec
     const std::string guess = nearest(value.text(), spec.choices);
     got(value, spec, guess.empty() ? "" : fmt::format("did you mean '{}'?", guess));
     return {};
+  }
+  if (spec.refers == ParameterSpec::Refers::strain_kinematics) {
+    if (plugin<StrainKinematics>(value) == nullptr) return {};
+    return value;
   }
   if (!refers(value.place(), value.text(), spec.refers)) return {};
   return value;

@@ -61,7 +61,9 @@ std::vector<ParameterSpec> body_members() {
   return {text("type", "body plugin"),
           named("frames", frame, "frames for hinges and loads, each fixed to the section at a station")
               .otherwise(Value::map({})),
-          text("formulation", "formulation plugin for this body alone").optional()};
+          text("formulation", "formulation for this body alone")
+              .naming(ParameterSpec::Refers::formulation)
+              .optional()};
 }
 
 std::vector<ParameterSpec> hinge_members() {
@@ -82,5 +84,23 @@ ParameterSpec choice_name(std::string_view kind, std::string_view otherwise) {
 }
 
 ParameterSpec family_name() { return text("name", "mode-family plugin"); }
+ParameterSpec formulation_name() { return text("name", "formulation plugin"); }
+
+Value named_formulation(const Value& given) {
+  Place place = given.place();
+  const Place of_name{place.line, place.column, place.path + "/name"};
+  if (given.kind() == Value::Kind::text) {
+    Value name = given;
+    name.set_place(of_name);
+    return Value::map({{"name", std::move(name)}}, std::move(place));
+  }
+  if (given.kind() != Value::Kind::map || given.find("name") != nullptr ||
+      (given.find("kinematics") == nullptr && given.find("truncation") == nullptr))
+    return given;
+  Value general(std::string("general"), of_name);
+  Value named = given;
+  named.set("name", std::move(general));
+  return named;
+}
 
 }  // namespace withy::grammar

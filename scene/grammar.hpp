@@ -28,5 +28,9 @@ std::vector<ParameterSpec> motion_members();
 ParameterSpec choice_name(std::string_view kind, std::string_view otherwise);
 /// The name of a mode family beside the plugin's own options.
 ParameterSpec family_name();
+ParameterSpec formulation_name();
+/// A formulation in its long form, with its name: `quadratic` and `{kinematics: …, truncation: …}` are short forms, the
+/// second of the formulation `general`.
+Value named_formulation(const Value& given);
 
 }  // namespace withy::grammar

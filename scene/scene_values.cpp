@@ -8,13 +8,14 @@
 #include <optional>
 
 #include "withy/scene/describe.hpp"
+#include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/scene.hpp"
 
 namespace withy {
 namespace {
 
-/// `formulation: quadratic` means `formulation: {name: quadratic}`.
+/// `integrator: dopri5` means `integrator: {name: dopri5}`.
 void lengthen_choice(Value& root, const std::string& key) {
   const Value* given = root.find(key);
   if (given == nullptr || given->kind() != Value::Kind::text) return;
@@ -26,7 +27,7 @@ void lengthen_choice(Value& root, const std::string& key) {
 
 void lengthen_choices(Value& root) {
   if (root.kind() != Value::Kind::map) return;
-  lengthen_choice(root, "formulation");
+  if (const Value* given = root.find("formulation")) root.set("formulation", grammar::named_formulation(*given));
   lengthen_choice(root, "integrator");
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "withy/core/plugin/strain_kinematics.hpp"
+#include "withy/core/deformation/point_kinematics.hpp"
 #include "withy/core/plugin/terms.hpp"
 #include "withy/core/shape/modal_shape.hpp"
 
@@ -181,7 +181,7 @@ PointMotionOf<S> offset_motion(const PointMotionOf<S>& section, const Pose& offs
 }
 
 /// Strain kinematics given by expansions: `linear` or `quadratic`.
-class PolynomialKinematics final : public StrainKinematics {
+class PolynomialKinematics final : public PointKinematics {
  public:
   PolynomialKinematics(std::vector<PointExpansion> points, StrainOrder order, Eigen::Index modes)
       : points_(std::move(points)), order_(order), modes_(modes) {}

@@ -23,7 +23,7 @@ constexpr bool has_modal_solver = requires(const Sweep& s, double* a, std::byte*
   s.solve(a, 0.0, a, work);
 };
 
-/// Whether the derivatives of a sweep's equations are known.
+/// Whether the derivatives of a sweep's equations are known better than by differences of the sweep, which cost less.
 template <class Sweep>
 constexpr bool has_tangents = true;
 template <class Space>
@@ -383,6 +383,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
 }  // namespace
 
 std::unique_ptr<EquationsOfMotion> compile_equations(std::shared_ptr<const Model> model, Terms terms) {
+  model = Model::in_kinematics(std::move(model), terms);
   NodeTree tree = compile_tree(*model);
   std::vector<Terms> node_terms;
   // The body that is truncated so and not ruthlessly, of each truncation.

@@ -2,12 +2,14 @@
 /// The interface of bodies.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "withy/core/plugin/rod.hpp"
+#include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/core/shape/modal_shape.hpp"
 
 namespace withy {
@@ -28,6 +30,12 @@ class Body {
   [[nodiscard]] virtual std::string stations() const = 0;
   /// The body as a rod of exact kinematics; null where it cannot be one. It lives as long as the body.
   [[nodiscard]] virtual const Rod* rod() const { return nullptr; }
+  /// The same body with its second-order maps made by `kinematics` from its linear fields; it has a station at every
+  /// coordinate along x where this one has one. Null where the body has not the fields, as it is not slender or reads
+  /// its maps from data.
+  [[nodiscard]] virtual std::shared_ptr<const Body> expanded(const StrainKinematics& /*kinematics*/) const {
+    return nullptr;
+  }
   /// What a user should know of the body beyond its numbers, such as what its data lack: each a sentence.
   [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
 };

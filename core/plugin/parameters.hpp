@@ -29,7 +29,7 @@ struct ParameterSpec {
     named,    ///< any number of named maps, each with `members`; the names refer as `refers` says
   };
   /// What a name must be the name of; the reader reports dangling names.
-  enum class Refers { nothing, body, hinge, frame, mode_family };
+  enum class Refers { nothing, body, hinge, frame, mode_family, strain_kinematics, formulation };
 
   Kind kind = Kind::number;
   std::string key;

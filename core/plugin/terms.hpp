@@ -2,7 +2,11 @@
 /// What a formulation keeps: a strain kinematics times a truncation (theory, section 2).
 #pragma once
 
+#include <memory>
+
 namespace withy {
+
+class StrainKinematics;
 
 /// Which terms of the expansion r = X + Φq + ½qᵀΓq, θ = Ψq + ½qᵀΘq a strain kinematics keeps.
 enum class StrainOrder {
@@ -25,6 +29,9 @@ struct Terms {
   /// Whether inertia forces that are products of speeds are kept, Coriolis and centrifugal ones among them. All bodies
   /// of a model do or none does, so that only the terms of the whole formulation say it; without truncation alone.
   bool products_of_speeds = true;
+  /// What makes the second-order maps Γ, Θ of every body anew; null: they are the bodies' own, the complete ones.
+  /// Model::in_kinematics.
+  std::shared_ptr<const StrainKinematics> kinematics = nullptr;
 };
 
 }  // namespace withy

@@ -6,7 +6,7 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::Terms{withy::StrainOrder::quadratic, withy::Truncation::strict}>(
+  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::strict>(
       enrollment, "consistent", "First order in the elastic coordinates, from nonlinear strain-displacement relations");
 }
 

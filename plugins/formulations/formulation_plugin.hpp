@@ -9,23 +9,27 @@
 namespace withy {
 
 /// A formulation whose sweeps are the core's.
-template <Terms kept>
 class SweptFormulation final : public Formulation {
  public:
-  Terms terms() const override { return kept; }
+  explicit SweptFormulation(Terms kept) : kept_(std::move(kept)) {}
+  Terms terms() const override { return kept_; }
   std::unique_ptr<EquationsOfMotion> compile(std::shared_ptr<const Model> model) const override {
-    return compile_equations(std::move(model), kept);
+    return compile_equations(std::move(model), kept_);
   }
+
+ private:
+  Terms kept_;
 };
 
-template <Terms kept>
+/// A name for a choice of terms, without options.
+template <StrainOrder strain, Truncation truncation, bool products_of_speeds = true>
 void enroll_formulation(Enrollment& enrollment, const char* id, const char* summary) {
   enrollment.add<Formulation>(
       {.id = id,
        .summary = summary,
        .parameters = {},
        .make = [](const Value& /*parameters*/, const MakeContext& /*context*/) -> std::unique_ptr<Formulation> {
-         return std::make_unique<SweptFormulation<kept>>();
+         return std::make_unique<SweptFormulation>(Terms{strain, truncation, products_of_speeds});
        }});
 }
 

@@ -5,7 +5,7 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::Terms{withy::StrainOrder::linear, withy::Truncation::none}>(
+  withy::enroll_formulation<withy::StrainOrder::linear, withy::Truncation::none>(
       enrollment, "linear",
       "Linear kinematics, nothing truncated: the floating-frame model of most engines, for comparison");
 }

@@ -14,7 +14,8 @@
 namespace withy::test {
 
 inline const std::vector<std::string> all_formulations = {"ruthless", "inconsistent", "consistent", "quadratic",
-                                                          "linear",   "exact",        "rate-linear"};
+                                                          "linear",   "exact",        "rate-linear", "symmetric",
+                                                          "symmetric-linear"};
 
 struct AnalysedScene {
   Registry registry;

@@ -62,7 +62,7 @@ TEST_P(Formulations, without_modes_are_bitwise_the_same_rigid_body) {
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, Formulations,
                          testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact",
-                                         "rate-linear", "auto"));
+                                         "rate-linear", "auto", "symmetric", "symmetric-linear"));
 
 struct Neglect {
   const char* formulation;
@@ -70,7 +70,8 @@ struct Neglect {
 };
 
 /// The forces of a formulation differ from those without truncation by terms of the order it drops: ruthless drops the
-/// first, inconsistent drops first-order terms too (those of second-order kinematics), consistent only the second.
+/// first, inconsistent drops first-order terms too (those of second-order kinematics), consistent only the second. Of
+/// the symmetric forms the same holds, whose first-order terms in q̇ are complete.
 /// Exact kinematics differ from quadratic ones in P at second order, and first-order terms are the same: the strict
 /// truncation of `exact` is `consistent`.
 TEST(Truncation, neglected_terms_have_the_order_the_name_says) {
@@ -82,7 +83,8 @@ TEST(Truncation, neglected_terms_have_the_order_the_name_says) {
   const auto quadratic = make_plugin<Formulation>(registry, "quadratic");
   const auto exact = make_plugin<Formulation>(registry, "exact");
   for (const Neglect& n : {Neglect{"ruthless", 1}, Neglect{"inconsistent", 1}, Neglect{"linear", 1},
-                           Neglect{"consistent", 2}, Neglect{"exact", 2}}) {
+                           Neglect{"consistent", 2}, Neglect{"exact", 2},
+                           Neglect{"symmetric", 2}, Neglect{"symmetric-linear", 1}}) {
     const auto formulation = make_plugin<Formulation>(registry, n.formulation);
     EXPECT_NEAR(order_of_difference(*formulation, *quadratic, s.model, state), n.order, 0.1) << n.formulation;
   }
