@@ -231,7 +231,7 @@ Eigen::VectorXd TangentDynamics::first_order_efforts(double t, std::span<const d
   const auto ruthless = [&](std::size_t b) { return terms_[b].truncation == Truncation::ruthless; };
   const Recursion<double> shown(*model_, build.hinges(), build.bodies(ruthless));
   std::vector<reference::PlacedWrench> placed;
-  for (const AppliedWrench<double>& w : wrenches(t, shown, nullptr)) placed.push_back({w.at, {w.force, w.moment}});
+  for (const AppliedWrench<double>& w : wrenches(t, shown, nullptr)) placed.push_back({w.at, {w.moment, w.force}});
   const reference::FirstOrderSystem s = reference::first_order_system(*model_, terms_, y, placed);
   return s.M * a - s.f - s.applied;
 }

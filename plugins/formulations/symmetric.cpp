@@ -1,5 +1,5 @@
 /// \file
-/// First order of the kinetic energy, from nonlinear strain-displacement relations (theory, "The symmetric first order").
+/// First order of the kinetic energy, from nonlinear strain-displacement relations.
 #include "formulation_plugin.hpp"
 
 namespace {
