@@ -9,9 +9,10 @@
 ///   θ₂ = ½ ∫₀ˣ θ₁ × θ₁′ dσ                    →  Θ_ij = ½ ∫₀ˣ (ψ_i × ψ_j′ + ψ_j × ψ_i′) dσ
 ///   r₂ = ∫₀ˣ θ₂ × e_x + ½ θ₁ × (θ₁ × e_x) + θ₁ × γ dσ
 ///     →  Γ_ij = ∫₀ˣ Θ_ij × e_x + ½ (ψ_i × (ψ_j × e_x) + ψ_j × (ψ_i × e_x)) + ψ_i × γ_j + ψ_j × γ_i dσ
-/// for the complete second order; another strain kinematics gives other slopes (StrainKinematics). Along x this is the foreshortening −½∫(v′² + w′²) of Padilla & von Flotow, across it the coupling of bending and
-/// twist. The sections' inertia is ρI_p about x, and in bending ρI where a scene gives it (Rayleigh's beam). Mass,
-/// stiffness and inertias may vary along the beam; the assumed modes are then Ritz functions, K and M their integrals.
+/// for the complete second order; another strain kinematics gives other slopes (StrainKinematics). Along x this is the
+/// foreshortening −½∫(v′² + w′²) of Padilla & von Flotow, across it the coupling of bending and twist. The sections'
+/// inertia is ρI_p about x, and in bending ρI where a scene gives it (Rayleigh's beam). Mass, stiffness and inertias
+/// may vary along the beam; the assumed modes are then Ritz functions, K and M their integrals.
 #include <fmt/format.h>
 
 #include <Eigen/QR>
@@ -23,6 +24,7 @@
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/segments.hpp"
 
 namespace withy {
 namespace {
@@ -243,8 +245,7 @@ class Beam final : public Body, private Rod {
       const LinearFields& f = fields[static_cast<std::size_t>(k)];
       each_pair([&](Eigen::Index i, Eigen::Index j, Eigen::Index column) {
         const Vector3 theta = theta_at_nodes_.block<1, 3>(k, column).transpose();
-        gamma_slope_.block<1, 3>(k, column) =
-            kinematics.displacement_slope(f.field(i), f.field(j), theta).transpose();
+        gamma_slope_.block<1, 3>(k, column) = kinematics.displacement_slope(f.field(i), f.field(j), theta).transpose();
       });
     }
     gamma_at_nodes_ = quadrature_.running_integral(gamma_slope_);
@@ -354,49 +355,57 @@ class Reader {
   bool good_ = true;
 };
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) { return Reader(p, context).make(); }
-
 std::vector<ParameterSpec> strain_parameters(const char* stiffness, const char* unit = "N m^2") {
   return {number("stiffness", unit, stiffness).above(0).or_table("m"),
-          integer("modes", "number of assumed modes").least(0).most(1000).otherwise(2),
+          integer("modes", "number of assumed modes").least(0).most(1000).otherwise(2).as(ParameterSpec::Role::modes),
           text("family", "assumed-mode family").naming(ParameterSpec::Refers::mode_family).otherwise("clamped-free")};
 }
 
-void enroll(Enrollment& enrollment) {
+std::vector<ParameterSpec> parameters() {
   std::vector<ParameterSpec> torsion = strain_parameters("torsional stiffness GJ");
   torsion.push_back(number("inertia", "kg m", "polar inertia per length, rho I_p").above(0).or_table("m"));
   const auto bending = [](const char* stiffness, const char* inertia) {
     std::vector<ParameterSpec> specs = strain_parameters(stiffness);
+    specs.back().role = ParameterSpec::Role::bending_family;
     specs.push_back(number("rotary_inertia", "kg m", inertia).least(0).or_table("m").optional());
     return specs;
   };
+  return {
+      number("length", "m", "length, undeformed").above(0),
+      number("mass_per_length", "kg/m", "mass per length").above(0).or_table("m"),
+      map("bending_y", bending("EI_z, for deflection along y", "rotary inertia of the sections per length, rho I_z"),
+          "bending with deflection along y")
+          .optional(),
+      map("bending_z", bending("EI_y, for deflection along z", "rotary inertia of the sections per length, rho I_y"),
+          "bending with deflection along z")
+          .optional(),
+      map("torsion", torsion, "twist about x").optional(),
+      map("extension", strain_parameters("axial stiffness EA", "N"), "extension along x").optional(),
+      map("shear_y", strain_parameters("shear stiffness k G A along y", "N"),
+          "shear, deflection along y beside that of bending_y")
+          .optional(),
+      map("shear_z", strain_parameters("shear stiffness k G A along z", "N"),
+          "shear, deflection along z beside that of bending_z")
+          .optional(),
+      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0),
+      integer("segments", "number of beams, welded one behind the other, it is cut into; modes are of each")
+          .least(1)
+          .most(1000)
+          .otherwise(1)};
+}
+
+std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+  auto whole = Reader(p, context).make();
+  if (whole == nullptr) return nullptr;
+  return in_segments(std::move(whole), p, parameters(),
+                     [&](const Value& segment) { return Reader(segment, context).make(); });
+}
+
+void enroll(Enrollment& enrollment) {
   enrollment.add<Body>(
       {.id = "beam",
        .summary = "Slender beam along x, bending in two planes and twisting, if wanted with extension and shear",
-       .parameters = {number("length", "m", "length, undeformed").above(0),
-                      number("mass_per_length", "kg/m", "mass per length").above(0).or_table("m"),
-                      map("bending_y",
-                          bending("EI_z, for deflection along y", "rotary inertia of the sections per length, rho I_z"),
-                          "bending with deflection along y")
-                          .optional(),
-                      map("bending_z",
-                          bending("EI_y, for deflection along z", "rotary inertia of the sections per length, rho I_y"),
-                          "bending with deflection along z")
-                          .optional(),
-                      map("torsion", torsion, "twist about x").optional(),
-                      map("extension", strain_parameters("axial stiffness EA", "N"), "extension along x").optional(),
-                      map("shear_y", strain_parameters("shear stiffness k G A along y", "N"),
-                          "shear, deflection along y beside that of bending_y")
-                          .optional(),
-                      map("shear_z", strain_parameters("shear stiffness k G A along z", "N"),
-                          "shear, deflection along z beside that of bending_z")
-                          .optional(),
-                      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0),
-                      integer("segments",
-                              "number of beams, welded one behind the other, it is cut into; modes are of each")
-                          .least(1)
-                          .most(1000)
-                          .otherwise(1)},
+       .parameters = parameters(),
        .make = &make});
 }
 

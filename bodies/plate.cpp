@@ -291,7 +291,11 @@ void enroll(Enrollment& enrollment) {
                       number("mass_per_area", "kg/m^2", "mass per area").above(0),
                       number("stiffness", "N m", "bending stiffness D = E h^3 / (12 (1 - nu^2))").above(0),
                       number("poisson_ratio", "1", "Poisson's ratio nu").above(-1).most(0.5).otherwise(0.3),
-                      integer("modes", "number of modes, the lowest").least(0).most(12).otherwise(3.0),
+                      integer("modes", "number of modes, the lowest")
+                          .least(0)
+                          .most(12)
+                          .otherwise(3.0)
+                          .as(ParameterSpec::Role::modes),
                       integer("functions_along", "number of clamped-free functions of x that modes are made of")
                           .least(1)
                           .most(12)

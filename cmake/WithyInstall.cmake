@@ -17,6 +17,12 @@ function(withy_install_library target)
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
+# withy_host_library(TARGET EXPORT_NAME name): installs a shared library that hosts link: all its names are visible.
+function(withy_host_library target)
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
+  withy_install_library(${target} ${ARGN})
+endfunction()
+
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/withy)
 install(EXPORT withy NAMESPACE withy:: DESTINATION ${package} COMPONENT development)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/withy-config.cmake.in

@@ -29,8 +29,10 @@ inline std::vector<ParameterSpec> trajectory_parameters(std::vector<std::string>
       table("table", {"s", "rad"}, "time and coordinate, at rest in the first and last row (table)").optional(),
       number("center", "rad", "coordinate about which it swings, 0 where left out (sine)").optional(),
       number("amplitude", "rad", "greatest distance from the centre (sine)").optional(),
-      number("phase", "rad", "phase at time 0, 0 where left out (sine)").optional()};
+      number("phase", "rad", "phase at time 0, 0 where left out (sine)").optional(),
+      text("motion", "motion plugin with its options (motion)").naming(ParameterSpec::Refers::motion).optional()};
   hinge.insert(hinge.end(), own.begin(), own.end());
+  laws.emplace_back("motion");
   return {text("law", "trajectory of the hinges").one_of(std::move(laws)).otherwise("quintic"),
           number("duration", "s", "duration before scaling (quintic, bang-bang)").above(0).optional(),
           number("period", "s", "period before scaling (sine)").above(0).optional(),
@@ -58,8 +60,12 @@ class TrajectoryReader {
       if (law_ != "table") refuse(given, {"table"});
       if (law_ != "sine") refuse(given, {"center", "amplitude", "phase"});
       if (law_ == "table" && !given.has("table")) lacks(given, "'table'");
+      if (law_ != "motion") refuse(given, {"motion"});
       if (law_ == "sine" && !given.has("amplitude")) lacks(given, "'amplitude'");
-      if (good_) followed.push_back({hinge, trajectory(given), &given});
+      if (law_ == "motion" && !given.has("motion")) lacks(given, "'motion'");
+      if (!good_) continue;
+      auto read = law_ == "motion" ? of_plugin(given.at("motion")) : trajectory(given);
+      if (read) followed.push_back({hinge, std::move(*read), &given});
     }
     if (p_.at("hinges").members().empty()) error(p_.at("hinges"), "names no hinge; need at least one to move");
     if (!good_) return {};
@@ -79,7 +85,20 @@ class TrajectoryReader {
     good_ = false;
   }
 
-  Trajectory trajectory(const Value& given) const {
+  /// A motion plugin of the scene's choice; nothing after a reported error.
+  std::optional<Trajectory> of_plugin(const Value& given) {
+    const std::string& type = given.text_at("type");
+    const auto* plugin = context_.registry.find<Motion>(type);
+    std::shared_ptr<const Motion> motion = plugin != nullptr ? plugin->make(given, context_) : nullptr;
+    if (motion == nullptr) {
+      good_ = false;
+      return {};
+    }
+    if (motion->locks()) error(given, "'" + type + "' holds a hinge where it is; it is no trajectory to follow");
+    return PluginMotion{std::move(motion), scale_};
+  }
+
+  std::optional<Trajectory> trajectory(const Value& given) const {
     const auto value = [&](std::string_view key) {
       const Value* v = given.find(key);
       return v == nullptr ? 0.0 : v->number();

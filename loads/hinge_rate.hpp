@@ -33,9 +33,9 @@ inline std::vector<ParameterSpec> rate_parameters(std::vector<ParameterSpec> own
 inline RateName rate_name(const Value& p) { return {p.text_at("hinge"), p.count_at("component")}; }
 
 inline const Slot& hinge_slot(const Model& model, const std::string& hinge) {
-  const Slot* slot = model.layout().hinge(hinge);
-  if (slot == nullptr) throw std::invalid_argument("there is no hinge '" + hinge + "'");
-  return *slot;
+  const int index = model.hinge(hinge);
+  if (index < 0) throw std::invalid_argument("there is no hinge '" + hinge + "'");
+  return model.layout().hinges[static_cast<std::size_t>(index)];
 }
 
 /// The hinge of that name, which must have one coordinate.

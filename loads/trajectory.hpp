@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 #include <variant>
@@ -120,9 +121,25 @@ class Spline {
   std::vector<double> curvature_;  ///< accelerations at the points
 };
 
+/// A motion that a plugin brings, its time running faster by a factor. It must not be one that locks.
+struct PluginMotion {
+  std::shared_ptr<const Motion> motion;
+  double time_scale = 1;
+  MotionPoint operator()(double t) const noexcept {
+    const MotionPoint p = motion->at(time_scale * t);
+    return {p.position, time_scale * p.rate, time_scale * time_scale * p.acceleration};
+  }
+  std::vector<double> jumps() const {
+    std::vector<double> times = motion->discontinuities();
+    for (double& t : times) t /= time_scale;
+    return times;
+  }
+  double end() const { return motion->end() / time_scale; }
+};
+
 /// A motion of one coordinate. Jumps are those of the acceleration or of its derivative; `end` is when a motion that
 /// ends has come to rest, else 0.
-using Trajectory = std::variant<Hold, Quintic, BangBang, SineMotion, Spline>;
+using Trajectory = std::variant<Hold, Quintic, BangBang, SineMotion, Spline, PluginMotion>;
 
 inline MotionPoint at(const Trajectory& trajectory, double t) noexcept {
   return std::visit([t](const auto& motion) { return motion(t); }, trajectory);

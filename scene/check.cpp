@@ -7,6 +7,7 @@
 
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/motion.hpp"
 #include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
@@ -40,6 +41,13 @@ void Checker::unknown_plugin(const Value& id, const std::string& kind, const std
   diagnostics_.error(id.place(), fmt::format("no {} plugin {}{}; available: {}", kind, shown(id),
                                              guess.empty() ? "" : fmt::format("; did you mean '{}'?", guess),
                                              ids.empty() ? "none" : listed(ids)));
+}
+
+std::string Checker::suggest(std::string_view name, const std::vector<std::string>& candidates) const {
+  constexpr std::size_t many = 50;
+  constexpr int most = 100;
+  if (candidates.size() > many && suggested_++ >= most) return {};
+  return suggestion(name, candidates);
 }
 
 bool Checker::is_map(const Value& value, const std::string& expected) const {
@@ -81,13 +89,10 @@ bool Checker::refers(const Place& place, const std::string& name, ParameterSpec:
   using enum ParameterSpec::Refers;
   if (what == nothing) return true;
   if (names_ == nullptr) return true;
-  std::vector<std::string> known = what == body ? names_->bodies : names_->hinges;
-  if (what == frame) {
-    if (!names_->frames_complete) return true;
-    known.assign(names_->frames.begin(), names_->frames.end());
-  }
-  if (std::find(known.begin(), known.end(), name) != known.end()) return true;
-  diagnostics_.error(place, fmt::format("no {} {}{}", referent(what), in_quotes(name), suggestion(name, known)));
+  if (what == frame && !names_->frames_complete) return true;
+  const NameList& known = what == body ? names_->bodies : what == hinge ? names_->hinges : names_->frames;
+  if (known.has(name)) return true;
+  diagnostics_.error(place, fmt::format("no {} {}{}", referent(what), in_quotes(name), suggest(name, known.names())));
   return false;
 }
 
@@ -109,6 +114,13 @@ std::optional<Value> Checker::formulation(const Value& value) const {
   return checked;
 }
 
+std::optional<Value> Checker::motion(const Value& value) const {
+  const bool short_form = value.kind() == Value::Kind::text;
+  Made<Motion> made;
+  return check_plugin_map(short_form ? Value::map({{"type", value}}, value.place()) : value, "type",
+                          {grammar::motion_type()}, *this, made);
+}
+
 std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec) const {
   if (spec.refers == ParameterSpec::Refers::mode_family &&
       (value.kind() == Value::Kind::text || value.kind() == Value::Kind::map)) {
@@ -117,6 +129,10 @@ std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec
   if (spec.refers == ParameterSpec::Refers::formulation &&
       (value.kind() == Value::Kind::text || value.kind() == Value::Kind::map)) {
     return formulation(value);
+  }
+  if (spec.refers == ParameterSpec::Refers::motion &&
+      (value.kind() == Value::Kind::text || value.kind() == Value::Kind::map)) {
+    return motion(value);
   }
   if (!spec.unit.empty() &&
       (value.kind() == Value::Kind::number || (value.kind() == Value::Kind::text && looks_like_number(value.text())))) {

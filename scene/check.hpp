@@ -4,8 +4,8 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "withy/core/plugin/registry.hpp"
@@ -14,12 +14,26 @@
 
 namespace withy {
 
+/// Names, in the order they came and quick to find.
+class NameList {
+ public:
+  void add(std::string name) {
+    if (known_.insert(name).second) names_.push_back(std::move(name));
+  }
+  [[nodiscard]] bool has(const std::string& name) const { return known_.contains(name); }
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  std::vector<std::string> names_;
+  std::unordered_set<std::string> known_;
+};
+
 /// The names of a scene that other values may refer to.
 struct SceneNames {
-  std::vector<std::string> bodies;
-  std::vector<std::string> hinges;
-  std::set<std::string> frames;  ///< "body" and "body.frame"
-  bool frames_complete = true;   ///< false where a body could not be made: any frame name is taken then
+  NameList bodies;
+  NameList hinges;
+  NameList frames;              ///< "body" and "body.frame"
+  bool frames_complete = true;  ///< false where a body could not be made: any frame name is taken then
 };
 
 /// Checks values of one document; every problem goes to the diagnostics.
@@ -33,7 +47,8 @@ class Checker {
 
   /// The value in SI units with defaults filled in; nothing where it, or anything in it, is wrong.
   /// A text specification that has a unit takes a name or a number in that unit; one that refers to a mode family takes
-  /// its name or a map of its `name` and options.
+  /// its name or a map of its `name` and options, one that refers to a motion the same with `type`, which becomes a
+  /// map.
   std::optional<Value> check(const Value& value, const ParameterSpec& spec) const;
   /// The same for a map with these members. Members that are right are in `partial`, if given, whatever the others are.
   std::optional<Value> check_members(const Value& value, const std::vector<ParameterSpec>& members,
@@ -45,6 +60,9 @@ class Checker {
   Diagnostics& diagnostics() const { return diagnostics_; }
   /// For what the document's values are made into.
   MakeContext make_context() const { return {registry_, diagnostics_, document_.directory}; }
+  /// suggestion() where it is cheap or among the first: of a thousand wrong names nobody reads what each may have
+  /// meant, and among thousands of candidates it takes long to say.
+  std::string suggest(std::string_view name, const std::vector<std::string>& candidates) const;
   /// Reports a problem with a key rather than with its value.
   void key_error(const std::string& path, std::string message) const;
 
@@ -63,6 +81,7 @@ class Checker {
   std::optional<Value> text(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> mode_family(const Value& value) const;
   std::optional<Value> formulation(const Value& value) const;
+  std::optional<Value> motion(const Value& value) const;
   std::optional<Value> row(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> table(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> named(const Value& value, const ParameterSpec& spec) const;
@@ -74,6 +93,7 @@ class Checker {
   Registry& registry_;
   Diagnostics& diagnostics_;
   const SceneNames* names_ = nullptr;
+  mutable int suggested_ = 0;  ///< among many candidates
 };
 
 }  // namespace withy

@@ -41,6 +41,8 @@ const char* referent(ParameterSpec::Refers what) {
       return "strain kinematics";
     case formulation:
       return "formulation";
+    case motion:
+      return "motion";
     case nothing:
       break;
   }
@@ -65,6 +67,9 @@ std::string expectation(const ParameterSpec& spec) {
       }
       if (spec.refers == ParameterSpec::Refers::formulation) {
         return "the name of a formulation, or a map with its kinematics and truncation";
+      }
+      if (spec.refers == ParameterSpec::Refers::motion) {
+        return "the type of a motion, or a map with its type and options";
       }
       if (spec.refers != ParameterSpec::Refers::nothing) return fmt::format("the name of a {}", referent(spec.refers));
       return "text";

@@ -61,9 +61,7 @@ std::vector<ParameterSpec> body_members() {
   return {text("type", "body plugin"),
           named("frames", frame, "frames for hinges and loads, each fixed to the section at a station")
               .otherwise(Value::map({})),
-          text("formulation", "formulation for this body alone")
-              .naming(ParameterSpec::Refers::formulation)
-              .optional()};
+          text("formulation", "formulation for this body alone").naming(ParameterSpec::Refers::formulation).optional()};
 }
 
 std::vector<ParameterSpec> hinge_members() {
@@ -76,12 +74,14 @@ std::vector<ParameterSpec> hinge_members() {
 std::vector<ParameterSpec> load_members() { return {text("type", "load plugin")}; }
 
 std::vector<ParameterSpec> motion_members() {
-  return {text("type", "motion plugin"), text("hinge", "hinge that it moves").naming(ParameterSpec::Refers::hinge)};
+  return {motion_type(), text("hinge", "hinge that it moves").naming(ParameterSpec::Refers::hinge)};
 }
 
 ParameterSpec choice_name(std::string_view kind, std::string_view otherwise) {
   return text("name", std::string(kind) + " plugin").otherwise(std::string(otherwise).c_str());
 }
+
+ParameterSpec motion_type() { return text("type", "motion plugin"); }
 
 ParameterSpec family_name() { return text("name", "mode-family plugin"); }
 ParameterSpec formulation_name() { return text("name", "formulation plugin"); }

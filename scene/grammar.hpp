@@ -32,5 +32,7 @@ ParameterSpec formulation_name();
 /// A formulation in its long form, with its name: `quadratic` and `{kinematics: …, truncation: …}` are short forms, the
 /// second of the formulation `general`.
 Value named_formulation(const Value& given);
+/// The type of a motion beside the plugin's own options.
+ParameterSpec motion_type();
 
 }  // namespace withy::grammar

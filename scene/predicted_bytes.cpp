@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "withy/core/plugin/mode_parameters.hpp"
 #include "withy/scene/tree.hpp"
 
 namespace withy {
@@ -7,7 +8,7 @@ namespace {
 
 /// What makes a body large.
 struct Extent {
-  double modes = 0;     ///< sum of the whole numbers named "modes"
+  double modes = 0;     ///< sum over its numbers of modes
   double greatest = 0;  ///< of them
   double rows = 0;      ///< of all tables
   double segments = 1;  ///< it is cut into
@@ -20,10 +21,6 @@ void measure(const Value& value, Extent& extent) {
     extent.rows += static_cast<double>(value.items().size());
   }
   for (const auto& [key, member] : value.members()) {
-    if (key == "modes" && member.kind() == Value::Kind::number) {
-      extent.modes += member.number();
-      extent.greatest = std::max(extent.greatest, member.number());
-    }
     if (key == "segments" && member.kind() == Value::Kind::number) extent.segments = member.number();
     measure(member, extent);
   }
@@ -31,9 +28,13 @@ void measure(const Value& value, Extent& extent) {
 
 }  // namespace
 
-double predicted_bytes(const Value& body) {
+double predicted_bytes(const Value& body, const std::vector<ParameterSpec>& specs) {
   Extent extent;
   measure(body, extent);
+  for (const ModeCount& count : mode_counts(body, specs)) {
+    extent.modes += static_cast<double>(count.modes);
+    extent.greatest = std::max(extent.greatest, static_cast<double>(count.modes));
+  }
   const double n = extent.modes;
   // Shape functions up to number m need about 25 m points of quadrature (20 for each 2.5 rad of phase), and 20 between
   // the rows of a table; a point keeps Φ, Ψ and Γ, Θ; a body four times that: particles, sections, and running

@@ -158,13 +158,14 @@ class SceneBuilder {
     for (const auto& [name, given] : scene_.source.at("events").members()) {
       const std::string path = "/events/" + name;
       const std::string& hinge = given.text_at("hinge");
-      const Slot* slot = model.layout().hinge(hinge);
-      if (slot == nullptr) {
-        checker_.key_error(path + "/hinge", fmt::format("no hinge {}{}", in_quotes(hinge), suggestion(hinge, names)));
+      const int number = model.hinge(hinge);
+      if (number < 0) {
+        checker_.key_error(path + "/hinge",
+                           fmt::format("no hinge {}{}", in_quotes(hinge), checker_.suggest(hinge, names)));
         continue;
       }
-      const std::vector<HingeRate> rates =
-          hinge_rates(*model.hinges()[static_cast<std::size_t>(model.hinge(hinge))].hinge);
+      const Slot* slot = &model.layout().hinges[static_cast<std::size_t>(number)];
+      const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[static_cast<std::size_t>(number)].hinge);
       const std::size_t component = given.count_at("component");
       if (component >= rates.size()) {
         checker_.key_error(path, fmt::format("hinge '{}' has {} rates; there is no component {} (they count from 0)",

@@ -72,6 +72,7 @@ class SchemaWriter {
           {"numbers", {{"type", "array"}, {"items", number_or_quantity({{"type", "number"}})}}},
           {"mode-family", mode_family()},
           {"formulation", own_formulation()},
+          {"motion", motion()},
           {"name", {{"type", "string"}, {"pattern", name_pattern}}}}}};
   }
 
@@ -91,6 +92,7 @@ class SchemaWriter {
     if (!spec.unit.empty()) return {{"type", {"string", "number"}}};
     if (spec.refers == ParameterSpec::Refers::mode_family) return reference("mode-family");
     if (spec.refers == ParameterSpec::Refers::formulation) return reference("formulation");
+    if (spec.refers == ParameterSpec::Refers::motion) return reference("motion");
     Json json = {{"type", "string"}};
     if (spec.refers == ParameterSpec::Refers::strain_kinematics) json["enum"] = registry_.ids<StrainKinematics>();
     if (!spec.choices.empty()) json["enum"] = spec.choices;
@@ -211,6 +213,12 @@ class SchemaWriter {
   /// Requires the plugin's name beside its options; kinematics and truncation say theirs (grammar::named_formulation).
   static void require_name(Json& json) {
     if (!json["properties"].contains("truncation")) json["required"].push_back("name");
+  }
+
+  Json motion() {
+    Json list = alternatives<Motion>("type", {grammar::motion_type()});
+    list.push_back({{"type", "string"}, {"enum", registry_.ids<Motion>()}});
+    return {{"description", "motion plugin, by type or with options"}, {"anyOf", list}};
   }
 
   static Json state() {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <unordered_map>
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/scene/names.hpp"
@@ -103,7 +104,7 @@ class StateReader {
     for (const auto& [name, member] : value.members()) {
       const int index = model_.hinge(name);
       if (index < 0) {
-        key_error(member, fmt::format("no hinge {}{}", in_quotes(name), suggestion(name, names)));
+        key_error(member, fmt::format("no hinge {}{}", in_quotes(name), checker_.suggest(name, names)));
         continue;
       }
       if (!map_with(member, {"position", "rate"})) continue;
@@ -124,16 +125,21 @@ class StateReader {
       return;
     }
     std::vector<std::string> names;
-    for (const Slot& s : model_.layout().bodies) names.push_back(s.name);
+    std::unordered_map<std::string_view, const Slot*> slots;
+    for (const Slot& s : model_.layout().bodies) {
+      names.push_back(s.name);
+      slots.emplace(s.name, &s);
+    }
     for (const auto& [name, member] : value.members()) {
-      const Slot* slot = model_.layout().body(name);
+      const auto found = slots.find(name);
+      const Slot* slot = found == slots.end() ? nullptr : found->second;
       if (slot == nullptr) {
         const std::size_t segments = model_.segments(name).size();
-        key_error(member,
-                  segments > 1
-                      ? fmt::format("body '{0}' is in segments; name each, '{0}.1' to '{0}.{1}'", name, segments)
-                  : segments > 0 ? fmt::format("body '{}' is rigid: it has no modes", name)
-                                 : fmt::format("no flexible body {}{}", in_quotes(name), suggestion(name, names)));
+        key_error(
+            member,
+            segments > 1   ? fmt::format("body '{0}' is in segments; name each, '{0}.1' to '{0}.{1}'", name, segments)
+            : segments > 0 ? fmt::format("body '{}' is rigid: it has no modes", name)
+                           : fmt::format("no flexible body {}{}", in_quotes(name), checker_.suggest(name, names)));
         continue;
       }
       if (!map_with(member, {"modes", "rates"})) continue;

@@ -11,7 +11,6 @@
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
-#include "withy/scene/segments.hpp"
 #include "withy/scene/state.hpp"
 #include "withy/scene/topology.hpp"
 
@@ -45,12 +44,12 @@ class TreeBuilder {
     for (const auto& [name, value] : bodies.members()) add_body(name, value);
     for (const auto& [name, value] : hinges.members()) add_hinge(name, value);
     for (const Entry& entry : entries_) weld_segments(entry);
-    good_ = check_topology(tree_.names.bodies, links_, checker_) && good_;
+    good_ = check_topology(tree_.names.bodies.names(), links_, checker_) && good_;
     tree_.bodies = Value::map(std::move(body_values_), bodies.place());
     tree_.hinges = Value::map(std::move(hinge_values_), hinges.place());
     for (const BodyNode& node : nodes_) {
-      tree_.names.frames.insert(node.name);
-      for (const Frame& f : node.frames) tree_.names.frames.insert(node.name + "." + f.name);
+      tree_.names.frames.add(node.name);
+      for (const Frame& f : node.frames) tree_.names.frames.add(node.name + "." + f.name);
     }
     tree_.names.frames_complete = good_;
     if (!good_) return std::move(tree_);
@@ -98,7 +97,7 @@ class TreeBuilder {
     check_name(name, given);
     index_.emplace(name, static_cast<int>(entries_.size()));
     entries_.push_back({name, static_cast<int>(nodes_.size()), 1, -1, given.place()});
-    tree_.names.bodies.push_back(name);
+    tree_.names.bodies.add(name);
     BodyNode& node = nodes_.emplace_back();
     node.name = name;
     Made<Body> made;
@@ -109,7 +108,7 @@ class TreeBuilder {
       return;
     }
     const double before = bytes_;
-    bytes_ += predicted_bytes(*value);
+    bytes_ += predicted_bytes(*value, made.plugin->parameters);
     if (bytes_ > most_bytes) {
       if (before <= most_bytes) {
         key_error(value->place().path, fmt::format("its modes bring the model to about {:.1f} GiB of memory; need at "
@@ -126,8 +125,8 @@ class TreeBuilder {
     }
     if (!check_shape(*made.object, made.plugin->id, *value)) return;
     node.body = std::move(made.object);
-    if (const std::size_t n = segments_of(*value, made.plugin->parameters); n > 1) {
-      add_segments(*made.plugin, *value, n);
+    if (node.body->segments().size() > 1) {
+      add_segments(made.plugin->id, *value);
     } else {
       add_ends(node, *value);
       if (node.body != nullptr) add_frames(value->at("frames"), *node.body);
@@ -143,28 +142,28 @@ class TreeBuilder {
   }
 
   /// Replaces the last node, the whole body, by its segments.
-  void add_segments(const Plugin<Body>& plugin, const Value& value, std::size_t n) {
+  void add_segments(const std::string& plugin, const Value& value) {
     const BodyNode whole = std::move(nodes_.back());
+    const auto segments = whole.body->segments();
     nodes_.pop_back();
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; k < segments.size(); ++k) {
       BodyNode& node = nodes_.emplace_back();
       node.name = fmt::format("{}.{}", whole.name, k + 1);
       node.terms = whole.terms;
-      node.segment = Segment{whole.name, k, n};
-      auto segment = make_object(plugin, segment_of(value, plugin.parameters, k, n), checker_);
-      if (segment == nullptr || !check_shape(*segment, plugin.id, value)) {
+      node.segment = Segment{whole.name, k, segments.size()};
+      if (segments[k] == nullptr || !check_shape(*segments[k], plugin, value)) {
         good_ = false;
         return;
       }
-      node.body = damped_as(whole.body->shape(), std::move(segment));
+      node.body = segments[k];
       add_ends(node, value);
       if (node.body == nullptr) return;
       if (node.frame("tip") < 0) {
-        key_error(value.place().path + "/segments", "got a body without a tip; only one with a tip can be cut");
+        key_error(value.place().path, fmt::format("body plugin '{}' made a segment without a tip", plugin));
         return;
       }
     }
-    entries_.back().count = static_cast<int>(n);
+    entries_.back().count = static_cast<int>(segments.size());
     add_frames(value.at("frames"), *whole.body);
   }
 
@@ -193,10 +192,10 @@ class TreeBuilder {
   void add_names_of_wholes() {
     for (const Entry& entry : entries_) {
       if (entry.count == 1) continue;
-      tree_.names.frames.insert(entry.name);
+      tree_.names.frames.add(entry.name);
       for (int i = entry.first; i < entry.first + entry.count; ++i) {
         for (const Frame& f : nodes_[static_cast<std::size_t>(i)].frames)
-          tree_.names.frames.insert(entry.name + "." + f.name);
+          tree_.names.frames.add(entry.name + "." + f.name);
       }
     }
   }
@@ -279,7 +278,7 @@ class TreeBuilder {
   int find_body(const Value& end, const FrameName& at) {
     const auto it = index_.find(at.body);
     if (it != index_.end()) return it->second;
-    error(end, fmt::format("no body {}{}", in_quotes(at.body), suggestion(at.body, tree_.names.bodies)));
+    error(end, fmt::format("no body {}{}", in_quotes(at.body), checker_.suggest(at.body, tree_.names.bodies.names())));
     return -2;
   }
 
@@ -304,13 +303,13 @@ class TreeBuilder {
       node(last).frames.push_back({name, *section, {}});
       return {last, static_cast<int>(node(last).frames.size()) - 1};
     }
-    error(end, fmt::format("body '{}' has no frame {}{}", entry.name, in_quotes(name), suggestion(name, known)));
+    error(end, fmt::format("body '{}' has no frame {}{}", entry.name, in_quotes(name), checker_.suggest(name, known)));
     return {};
   }
 
   void add_hinge(const std::string& name, const Value& given) {
     check_name(name, given);
-    tree_.names.hinges.push_back(name);
+    tree_.names.hinges.add(name);
     Link& link = links_.emplace_back();
     link.name = name;
     Made<Hinge> made;

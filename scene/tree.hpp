@@ -22,6 +22,6 @@ SceneTree build_tree(const Value& bodies, const Value& hinges, const Vector3& gr
 
 /// Bytes of memory that the modes asked for in a body's checked value need, at most about: by far the greatest part of
 /// a model.
-double predicted_bytes(const Value& body);
+double predicted_bytes(const Value& body, const std::vector<ParameterSpec>& specs);
 
 }  // namespace withy

@@ -14,8 +14,8 @@
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/load.hpp"
 #include "withy/core/plugin/mode_family.hpp"
-#include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/core/plugin/motion.hpp"
+#include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/results/json_text.hpp"
 
 namespace withy::app {

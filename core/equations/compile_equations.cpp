@@ -396,8 +396,7 @@ std::unique_ptr<EquationsOfMotion> compile_equations(std::shared_ptr<const Model
   const std::string* strict = of.at(static_cast<std::size_t>(Truncation::strict));
   const std::string* symmetric = of.at(static_cast<std::size_t>(Truncation::symmetric));
   const std::string* full = of.at(static_cast<std::size_t>(Truncation::none));
-  if (!terms.products_of_speeds &&
-      (strict != nullptr || symmetric != nullptr || terms.truncation != Truncation::none))
+  if (!terms.products_of_speeds && (strict != nullptr || symmetric != nullptr || terms.truncation != Truncation::none))
     throw std::invalid_argument("products of speeds can be dropped only where nothing is truncated");
   const auto refuse = [](const std::string* a, const char* how, const std::string* b, const char* other) {
     if (a == nullptr || b == nullptr) return;

@@ -1,6 +1,7 @@
 #include "withy/core/model/model.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 
 #include "withy/core/model/validate.hpp"
@@ -11,6 +12,25 @@ namespace {
 const Slot* find_slot(const std::vector<Slot>& slots, std::string_view name) {
   const auto it = std::find_if(slots.begin(), slots.end(), [&](const Slot& s) { return s.name == name; });
   return it == slots.end() ? nullptr : &*it;
+}
+
+/// The indices of nodes in the order of their names.
+template <class Node>
+std::vector<int> by_name(const std::vector<Node>& nodes) {
+  std::vector<int> order(nodes.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto name = [&](int i) -> const std::string& { return nodes[static_cast<std::size_t>(i)].name; };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return name(a) < name(b); });
+  return order;
+}
+
+/// Index of the first node with a name; −1 where there is none.
+template <class Node>
+int find_sorted(const std::vector<Node>& nodes, const std::vector<int>& order, std::string_view name) {
+  const auto of = [&](int i) -> const std::string& { return nodes[static_cast<std::size_t>(i)].name; };
+  const auto it =
+      std::lower_bound(order.begin(), order.end(), name, [&](int i, std::string_view n) { return of(i) < n; });
+  return it == order.end() || of(*it) != name ? -1 : *it;
 }
 
 template <class Node>
@@ -54,6 +74,45 @@ void check_content(const BodyNode& node) {
   }
 }
 
+/// The hinges parents before children, otherwise in the order they are given: passes go through that order again and
+/// again, and place each hinge as soon as its parent is placed. What hangs on no world is left out.
+std::vector<std::size_t> placed(const std::vector<HingeNode>& hinges, const std::vector<int>& inboard) {
+  const std::size_t n = hinges.size();
+  constexpr int never = -1;
+  std::vector<int> pass(n, never);
+  std::vector<std::vector<std::size_t>> at_pass;
+  std::vector<std::size_t> above;
+  std::vector<bool> seen(n, false);
+  for (std::size_t start = 0; start < n; ++start) {
+    // Inwards to a hinge whose pass is known, or to one that was seen: then it never comes to the world.
+    above.clear();
+    std::size_t h = start;
+    while (!seen[h]) {
+      seen[h] = true;
+      above.push_back(h);
+      if (hinges[h].parent < 0) break;
+      h = static_cast<std::size_t>(inboard[static_cast<std::size_t>(hinges[h].parent)]);
+    }
+    for (; !above.empty(); above.pop_back()) {
+      const std::size_t at = above.back();
+      if (hinges[at].parent < 0) {
+        pass[at] = 0;
+        continue;
+      }
+      const auto parent = static_cast<std::size_t>(inboard[static_cast<std::size_t>(hinges[at].parent)]);
+      if (pass[parent] != never) pass[at] = pass[parent] + (parent < at ? 0 : 1);
+    }
+  }
+  for (std::size_t h = 0; h < n; ++h) {
+    if (pass[h] == never) continue;
+    at_pass.resize(std::max(at_pass.size(), static_cast<std::size_t>(pass[h]) + 1));
+    at_pass[static_cast<std::size_t>(pass[h])].push_back(h);
+  }
+  std::vector<std::size_t> order;
+  for (const auto& hinges_of_pass : at_pass) order.insert(order.end(), hinges_of_pass.begin(), hinges_of_pass.end());
+  return order;
+}
+
 }  // namespace
 
 const Slot* Layout::hinge(std::string_view name) const { return find_slot(hinges, name); }
@@ -77,29 +136,22 @@ Model::Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector
   for (std::size_t b = 0; b < n; ++b) {
     if (inboard[b] < 0) throw std::invalid_argument("body '" + bodies[b].name + "' is the child of no hinge");
   }
-  // Parents before children, otherwise in the order the hinges are given: as soon as the parent is placed.
-  std::vector<int> place(n, -1);
-  std::vector<std::size_t> order;
-  for (bool progress = true; progress && order.size() < n;) {
-    progress = false;
-    for (std::size_t h = 0; h < n; ++h) {
-      const auto child = static_cast<std::size_t>(hinges[h].child);
-      const int parent = hinges[h].parent;
-      if (place[child] >= 0 || (parent >= 0 && place[static_cast<std::size_t>(parent)] < 0)) continue;
-      place[child] = static_cast<int>(order.size());
-      order.push_back(h);
-      progress = true;
-    }
-  }
+  const std::vector<std::size_t> order = placed(hinges, inboard);
   if (order.size() < n) {
     std::string names;
-    for (const HingeNode& h : hinges) {
-      if (place[static_cast<std::size_t>(h.child)] < 0) names += (names.empty() ? "'" : ", '") + h.name + "'";
+    std::vector<bool> has_place(n, false);
+    for (const std::size_t h : order) has_place[h] = true;
+    for (std::size_t h = 0; h < n; ++h) {
+      if (!has_place[h]) names += (names.empty() ? "'" : ", '") + hinges[h].name + "'";
     }
     throw std::invalid_argument("the hinges " + names + " make a cycle that does not hang on the world");
   }
+  std::vector<int> place(n, -1);
+  bodies_.reserve(n);
+  hinges_.reserve(n);
   for (const std::size_t h : order) {
     HingeNode hinge = std::move(hinges[h]);
+    place[static_cast<std::size_t>(hinge.child)] = static_cast<int>(bodies_.size());
     bodies_.push_back(std::move(bodies[static_cast<std::size_t>(hinge.child)]));
     hinge.child = static_cast<int>(bodies_.size()) - 1;
     if (hinge.parent >= 0) hinge.parent = place[static_cast<std::size_t>(hinge.parent)];
@@ -127,10 +179,13 @@ void Model::lay_out() {
   }
   layout_.positions = x;
   layout_.speeds = u;
+  bodies_by_name_ = by_name(bodies_);
+  hinges_by_name_ = by_name(hinges_);
+  driven_.assign(hinges_.size(), false);
 }
 
-int Model::body(std::string_view name) const { return find_index(bodies_, name); }
-int Model::hinge(std::string_view name) const { return find_index(hinges_, name); }
+int Model::body(std::string_view name) const { return find_sorted(bodies_, bodies_by_name_, name); }
+int Model::hinge(std::string_view name) const { return find_sorted(hinges_, hinges_by_name_, name); }
 
 std::vector<int> Model::segments(std::string_view name) const {
   if (const int index = body(name); index >= 0) return {index};
@@ -203,10 +258,7 @@ Model Model::rigidified() const {
   return Model(std::move(bodies), hinges_, gravity_);
 }
 
-bool Model::driven(std::size_t hinge) const {
-  return std::any_of(motions_.begin(), motions_.end(),
-                     [&](const MotionNode& m) { return static_cast<std::size_t>(m.hinge) == hinge; });
-}
+bool Model::driven(std::size_t hinge) const { return driven_[hinge]; }
 
 void Model::prescribe(State& state) const {
   for (const MotionNode& node : motions_) {
@@ -236,10 +288,12 @@ void Model::add_motion(std::string name, const std::string& hinge_name, std::sha
   if (!motion->locks() && (slot.positions != 1 || slot.speeds != 1))
     throw std::invalid_argument("hinge '" + hinge_name + "' has " + std::to_string(slot.speeds) +
                                 " rates; a motion moves hinges with one coordinate, and 'locked' holds any");
-  for (const MotionNode& other : motions_) {
-    if (other.hinge == index)
-      throw std::invalid_argument("hinge '" + hinge_name + "' is driven by motion '" + other.name + "' already");
+  if (driven(static_cast<std::size_t>(index))) {
+    const auto other =
+        std::find_if(motions_.begin(), motions_.end(), [&](const MotionNode& m) { return m.hinge == index; });
+    throw std::invalid_argument("hinge '" + hinge_name + "' is driven by motion '" + other->name + "' already");
   }
+  driven_[static_cast<std::size_t>(index)] = true;
   motions_.push_back({std::move(name), index, std::move(motion)});
 }
 

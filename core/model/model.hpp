@@ -129,6 +129,8 @@ class Model {
   std::vector<MotionNode> motions_;
   Vector3 gravity_;
   Layout layout_;
+  std::vector<int> bodies_by_name_, hinges_by_name_;  ///< indices in the order of names
+  std::vector<bool> driven_;                          ///< by hinge
 };
 
 }  // namespace withy

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -36,6 +37,10 @@ class Body {
   [[nodiscard]] virtual std::shared_ptr<const Body> expanded(const StrainKinematics& /*kinematics*/) const {
     return nullptr;
   }
+  /// The body in pieces that lie one behind the other, from its root on: each has the stations `root` and `tip`, and
+  /// the tip of one is joined rigidly to the root of the next. A model is made of them in place of the body; shape() is
+  /// then of the whole as if it were one piece. Empty where it is one.
+  [[nodiscard]] virtual std::span<const std::shared_ptr<const Body>> segments() const { return {}; }
   /// What a user should know of the body beyond its numbers, such as what its data lack: each a sentence.
   [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
 };

@@ -42,6 +42,9 @@ class ModeFamily {
   virtual ~ModeFamily() = default;
   /// Greatest number of functions the family gives to stated accuracy.
   [[nodiscard]] virtual std::size_t most() const = 0;
+  /// Whether enough of its functions describe any bending of a beam that is clamped at its root and free at its tip:
+  /// studies may take one such family in place of another.
+  [[nodiscard]] virtual bool spans_cantilevers() const { return false; }
   /// The first `count` ≤ most() functions of the beam; null where the family has none for this strain.
   [[nodiscard]] virtual std::unique_ptr<ShapeFunctions> functions(const BeamData& beam, std::size_t count) const = 0;
 };

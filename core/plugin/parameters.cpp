@@ -61,6 +61,11 @@ ParameterSpec ParameterSpec::naming(Refers what) && {
   return std::move(*this);
 }
 
+ParameterSpec ParameterSpec::as(Role what) && {
+  role = what;
+  return std::move(*this);
+}
+
 ParameterSpec number(std::string key, std::string unit, std::string meaning) {
   return make(ParameterSpec::Kind::number, std::move(key), std::move(unit), std::move(meaning));
 }

@@ -29,7 +29,13 @@ struct ParameterSpec {
     named,    ///< any number of named maps, each with `members`; the names refer as `refers` says
   };
   /// What a name must be the name of; the reader reports dangling names.
-  enum class Refers { nothing, body, hinge, frame, mode_family, strain_kinematics, formulation };
+  enum class Refers { nothing, body, hinge, frame, mode_family, motion, strain_kinematics, formulation };
+  /// What a parameter is to studies, whatever its key: they vary those that have a role (mode_parameters.hpp).
+  enum class Role {
+    none,
+    modes,          ///< number of modes of a body or of one of its strains: more make a finer model
+    bending_family  ///< family of the modes in bending whose number stands in the same map
+  };
 
   Kind kind = Kind::number;
   std::string key;
@@ -42,6 +48,7 @@ struct ParameterSpec {
   bool exclusive_minimum = false;    ///< the minimum itself is not allowed
   std::vector<std::string> choices;  ///< texts allowed
   Refers refers = Refers::nothing;
+  Role role = Role::none;
   std::size_t count = 0;
   std::vector<std::string> columns;
   std::vector<ParameterSpec> members;
@@ -57,6 +64,7 @@ struct ParameterSpec {
   ParameterSpec optional() &&;                ///< may be left out, without a default
   ParameterSpec one_of(std::vector<std::string> names) &&;
   ParameterSpec naming(Refers what) &&;
+  ParameterSpec as(Role what) &&;
 };
 
 ParameterSpec number(std::string key, std::string unit, std::string meaning);

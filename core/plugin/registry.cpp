@@ -44,6 +44,7 @@ std::map<std::string, std::string> Enrollment::summaries() const {
 }
 
 void Registry::admit(Enrollment enrollment, const std::string& origin) {
+  const std::lock_guard lock(*mutex_);
   const auto each = [&](auto&& action) {
     std::apply([&](auto&... kind) { (action(kind), ...); }, enrollment.plugins_);
   };
@@ -61,6 +62,7 @@ void Registry::admit(Enrollment enrollment, const std::string& origin) {
 
 void Registry::set_loader(std::function<bool(Registry&, std::string_view, std::string_view)> load,
                           std::function<std::vector<std::string>(std::string_view)> list) {
+  const std::lock_guard lock(*mutex_);
   loader_ = std::move(load);
   lister_ = std::move(list);
 }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -118,6 +119,7 @@ class Enrollment {
       plugins_;
 };
 
+/// Threads may share a registry: what it has found stays where it is, and libraries are loaded by one thread at a time.
 class Registry {
  public:
   /// Admits all plugins of a library, or none.
@@ -128,6 +130,7 @@ class Registry {
   /// \throws PluginError where there is one whose library is refused.
   template <class Interface>
   [[nodiscard]] const Plugin<Interface>* find(std::string_view id) {
+    const std::lock_guard lock(*mutex_);
     auto& plugins = std::get<Map<Interface>>(maps_);
     auto it = plugins.find(id);
     if (it == plugins.end() && loader_ && loader_(*this, kind_name<Interface>(), id)) it = plugins.find(id);
@@ -136,6 +139,7 @@ class Registry {
   /// Ids of a kind that are admitted or that the lister knows, sorted.
   template <class Interface>
   [[nodiscard]] std::vector<std::string> ids() const {
+    const std::lock_guard lock(*mutex_);
     std::vector<std::string> names = lister_ ? lister_(kind_name<Interface>()) : std::vector<std::string>{};
     for (const auto& [id, plugin] : std::get<Map<Interface>>(maps_)) names.push_back(id);
     return sorted_unique(std::move(names));
@@ -154,6 +158,8 @@ class Registry {
   std::tuple<Map<Body>, Map<Hinge>, Map<ModeFamily>, Map<Formulation>, Map<Integrator>, Map<Load>, Map<Motion>,
              Map<StrainKinematics>>
       maps_;
+  /// A loader admits what it loads: recursive. On the heap, so that a registry can be moved before it is shared.
+  std::unique_ptr<std::recursive_mutex> mutex_ = std::make_unique<std::recursive_mutex>();
   std::function<bool(Registry&, std::string_view, std::string_view)> loader_;
   std::function<std::vector<std::string>(std::string_view)> lister_;
 };

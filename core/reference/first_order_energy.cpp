@@ -40,9 +40,9 @@ Orders along(const Matrix& m) {
 /// second moment, which may be negative as a weight.
 struct Piece {
   double weight;
-  bool heavy;             ///< it has weight: a particle
-  M3X<Nested> J;          ///< of all speeds
-  V3<Nested> v, a;        ///< velocity and acceleration of the rigid motion alone
+  bool heavy;       ///< it has weight: a particle
+  M3X<Nested> J;    ///< of all speeds
+  V3<Nested> v, a;  ///< velocity and acceleration of the rigid motion alone
 };
 
 /// The tree with hinges moving and shapes at εq + δ direction, frozen.
@@ -62,7 +62,10 @@ class Frozen {
     };
     for (std::size_t b = 0; b < model.bodies().size(); ++b) {
       tree_.each(
-          b, [this](double mass, const WorldMotion<Nested>& A) { pieces.push_back({mass, true, A.JV, A.v, A.v_bias}); },
+          b,
+          [this](double mass, const WorldMotion<Nested>& A) {
+            pieces.push_back({mass, true, A.JV, A.v, A.v_bias});
+          },
           add_section);
     }
   }
@@ -195,8 +198,8 @@ FirstOrderSystem first_order_system(const Model& model, const std::vector<Terms>
   }
   for (const auto& [at, wrench] : wrenches) {
     const auto [linear, angular] = stretched.frame(at);
-    s.applied += potential_rows(linear, elastic.is_mode, wrench.force) +
-                 potential_rows(angular, elastic.is_mode, wrench.moment);
+    s.applied +=
+        potential_rows(linear, elastic.is_mode, wrench.force) + potential_rows(angular, elastic.is_mode, wrench.moment);
   }
   return s;
 }

@@ -1,6 +1,6 @@
 /// \file
-/// Lagrange's equations of the kinetic energy of first order, T = ½ uᵀ (M₀(x) + M₁(x, q)) u (truncation `symmetric`), from
-/// explicit Jacobians of every particle: what the sweep and the tangents are checked against.
+/// Lagrange's equations of the kinetic energy of first order, T = ½ uᵀ (M₀(x) + M₁(x, q)) u (truncation `symmetric`),
+/// from explicit Jacobians of every particle: what the sweep and the tangents are checked against.
 ///
 /// In dual numbers, J(ε) = J(x, εq) with the rates u not scaled, v = J(ε) u, and ⟨·⟩ the sum of value and derivative,
 /// T = ⟨Σ ½ m v²⟩. Since D_i J_k = D_k J_i for a coordinate s_k = εq_k of the deformation and any direction i,

@@ -6,8 +6,8 @@
 
 namespace withy {
 
-/// Whether the second-order terms that motion and load bring to bear are in the equations. Kinetic energy of first order
-/// has none of motion.
+/// Whether the second-order terms that motion and load bring to bear are in the equations. Kinetic energy of first
+/// order has none of motion.
 inline bool second_order(const Terms& terms) {
   return terms.strain != StrainOrder::linear &&
          (terms.truncation == Truncation::strict || terms.truncation == Truncation::none) && terms.products_of_speeds;
@@ -17,7 +17,8 @@ inline bool second_order(const Terms& terms) {
 /// wrong. A body with modes in one direction alone is taken to bend in the plane of rotation.
 inline double rate_limit(const Terms& terms, bool one_direction) {
   if (terms.truncation == Truncation::ruthless || terms.truncation == Truncation::symmetric ||
-      !terms.products_of_speeds) return one_direction ? 0.325 : 0.130;
+      !terms.products_of_speeds)
+    return one_direction ? 0.325 : 0.130;
   return 0.129;
 }
 

@@ -252,8 +252,7 @@ void TangentDynamics::differentiate_first_order(double t, std::span<const double
           },
           first_order_step);
     };
-    all.col(j) =
-        along([&](std::vector<double>& moved, double h) { displace(moved, h * Eigen::VectorXd::Unit(n, j)); });
+    all.col(j) = along([&](std::vector<double>& moved, double h) { displace(moved, h * Eigen::VectorXd::Unit(n, j)); });
     all.col(n + j) =
         along([&](std::vector<double>& moved, double h) { moved[static_cast<std::size_t>(positions + j)] += h; });
     all.col(2 * n + j) = first_order_efforts(t, y, a + Eigen::VectorXd::Unit(n, j)) - values;  // linear

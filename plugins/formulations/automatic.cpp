@@ -6,7 +6,7 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::none>(
+  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::none, withy::InStudies::aside>(
       enrollment, "auto",
       "The least of ruthless, quadratic and exact whose validity holds, changed along a run where it does not; "
       "quadratic where nothing runs");

@@ -5,7 +5,7 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::exact, withy::Truncation::none>(
+  withy::enroll_formulation<withy::StrainOrder::exact, withy::Truncation::none, withy::InStudies::rung>(
       enrollment, "exact",
       "Inextensible rods whose strains are modal, kinematics not expanded: large deflections, conserves energy and "
       "momentum");

@@ -19,7 +19,8 @@ std::unique_ptr<Formulation> make(const Value& p, const MakeContext& context) {
   if (plugin == nullptr) {
     std::string known;
     for (const std::string& id : context.registry.ids<StrainKinematics>()) known += (known.empty() ? "" : ", ") + id;
-    context.diagnostics.error(wanted.place(), "no strain-kinematics plugin \"" + wanted.text() + "\"; available: " + known);
+    context.diagnostics.error(wanted.place(),
+                              "no strain-kinematics plugin \"" + wanted.text() + "\"; available: " + known);
     return nullptr;
   }
   std::shared_ptr<const StrainKinematics> kinematics = plugin->make(Value::map({}, wanted.place()), context);
@@ -27,7 +28,7 @@ std::unique_ptr<Formulation> make(const Value& p, const MakeContext& context) {
   Terms terms{kinematics->order(), truncation_named(p.text_at("truncation"))};
   const bool anew = terms.strain != StrainOrder::linear && !kinematics->complete();
   if (anew) terms.kinematics = kinematics;
-  return std::make_unique<SweptFormulation>(terms);
+  return std::make_unique<SweptFormulation>(terms, InStudies::aside);
 }
 
 void enroll(Enrollment& enrollment) {

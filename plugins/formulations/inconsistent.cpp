@@ -6,7 +6,7 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::linear, withy::Truncation::strict>(
+  withy::enroll_formulation<withy::StrainOrder::linear, withy::Truncation::strict, withy::InStudies::aside>(
       enrollment, "inconsistent", "First order in the elastic coordinates, from linear strain-displacement relations");
 }
 

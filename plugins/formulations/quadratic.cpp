@@ -5,7 +5,7 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::none>(
+  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::none, withy::InStudies::rung>(
       enrollment, "quadratic",
       "Second-order kinematics, nothing truncated: symmetric positive definite, conserves energy and momentum");
 }

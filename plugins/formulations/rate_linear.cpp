@@ -6,7 +6,7 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::none, false>(
+  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::none, withy::InStudies::aside, false>(
       enrollment, "rate-linear", "Second-order kinematics without Coriolis, centrifugal and gyroscopic terms");
 }
 

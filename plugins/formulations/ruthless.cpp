@@ -6,7 +6,7 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::linear, withy::Truncation::ruthless>(
+  withy::enroll_formulation<withy::StrainOrder::linear, withy::Truncation::ruthless, withy::InStudies::rung>(
       enrollment, "ruthless", "Elastic terms dropped but for q̈, -Kq and -Dq̇ (order zero)");
 }
 

@@ -5,7 +5,7 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::symmetric>(
+  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::symmetric, withy::InStudies::aside>(
       enrollment, "symmetric",
       "Kinetic energy to first order in the elastic coordinates, from nonlinear strain-displacement relations, and all "
       "equations from it");

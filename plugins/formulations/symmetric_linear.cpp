@@ -6,7 +6,7 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::linear, withy::Truncation::symmetric>(
+  withy::enroll_formulation<withy::StrainOrder::linear, withy::Truncation::symmetric, withy::InStudies::aside>(
       enrollment, "symmetric-linear",
       "Kinetic energy to first order in the elastic coordinates, from linear strain-displacement relations");
 }

@@ -182,8 +182,9 @@ PluginHost::PluginHost(const std::vector<fs::path>& directories)
     : catalogue_(std::make_shared<Catalogue>(directories)) {}
 
 fs::path PluginHost::default_directory() {
-  const fs::path program = boost::dll::program_location();
-  return (fs::canonical(program).parent_path() / ".." / "lib" / "withy" / "plugins").lexically_normal();
+  const fs::path library = fs::canonical(boost::dll::this_line_location()).parent_path();
+  const fs::path installed = (library / WITHY_PLUGINS_FROM_LIBRARY).lexically_normal();
+  return fs::is_directory(installed) ? installed : library / "withy" / "plugins";  // the build tree has one lib
 }
 
 void PluginHost::attach(Registry& registry) const {

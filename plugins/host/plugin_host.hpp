@@ -39,8 +39,8 @@ class __attribute__((visibility("default"))) PluginHost {
   /// write to, are refused; so are two manifests that promise the same plugin.
   explicit PluginHost(const std::vector<std::filesystem::path>& directories);
 
-  /// Where the plugins that belong to this program are: `../lib/withy/plugins` from its executable, in the build tree
-  /// and after installation.
+  /// Where the plugins that belong to this library are: `lib/withy/plugins` of the package or the build tree it is in,
+  /// whichever program uses it.
   static std::filesystem::path default_directory();
 
   /// Makes `registry` ask this host for plugins it does not have. A host serves one registry; either may end first.

@@ -22,7 +22,8 @@ class Foreshortening final : public StrainKinematics {
 }  // namespace
 
 Plugin<StrainKinematics> foreshortening_kinematics() {
-  return kinematics_plugin<Foreshortening>("foreshortening", "Axial shortening by bending alone, without coupling of bending and twist");
+  return kinematics_plugin<Foreshortening>("foreshortening",
+                                           "Axial shortening by bending alone, without coupling of bending and twist");
 }
 
 }  // namespace withy

@@ -13,8 +13,6 @@ class Linear final : public StrainKinematics {
 
 }  // namespace
 
-Plugin<StrainKinematics> linear_kinematics() {
-  return kinematics_plugin<Linear>("linear", "Linear fields alone");
-}
+Plugin<StrainKinematics> linear_kinematics() { return kinematics_plugin<Linear>("linear", "Linear fields alone"); }
 
 }  // namespace withy

@@ -5,7 +5,8 @@
 namespace withy {
 
 Plugin<StrainKinematics> quadratic_kinematics() {
-  return kinematics_plugin<CompleteSecondOrder>("quadratic", "Complete second order: foreshortening and the coupling of bending and twist");
+  return kinematics_plugin<CompleteSecondOrder>(
+      "quadratic", "Complete second order: foreshortening and the coupling of bending and twist");
 }
 
 }  // namespace withy

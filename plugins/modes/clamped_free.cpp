@@ -24,8 +24,8 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
 }
 
 void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &torsion>(enrollment, "clamped-free",
-                                    "Eigenfunctions of the uniform beam clamped at the root and free at the tip");
+  enroll_family<&bending, &torsion, 200, true>(
+      enrollment, "clamped-free", "Eigenfunctions of the uniform beam clamped at the root and free at the tip");
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ class ClampedLoaded final : public ModeFamily {
  public:
   ClampedLoaded(double mass, double inertia, double offset) : mass_(mass), inertia_(inertia), offset_(offset) {}
   std::size_t most() const override { return 200; }
+  bool spans_cantilevers() const override { return true; }
   std::unique_ptr<ShapeFunctions> functions(const BeamData& beam, std::size_t count) const override {
     const double L = beam.length;
     if (beam.strain != BeamData::Strain::bending) {

@@ -66,7 +66,7 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
 }
 
 void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &torsion>(
+  enroll_family<&bending, &torsion, 200, true>(
       enrollment, "craig-bampton",
       "Static deflection, slope and twist of the tip, and the modes of the beam with its tip fixed");
 }

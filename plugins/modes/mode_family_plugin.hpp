@@ -15,23 +15,25 @@ using MakeFunctions = std::unique_ptr<ShapeFunctions> (*)(const BeamData& beam, 
 inline std::unique_ptr<ShapeFunctions> no_functions(const BeamData& /*beam*/, std::size_t /*count*/) { return nullptr; }
 
 /// A family that depends on the beam alone.
-template <MakeFunctions bending, MakeFunctions rod, std::size_t most_functions>
+template <MakeFunctions bending, MakeFunctions rod, std::size_t most_functions, bool cantilevers>
 class PlainFamily final : public ModeFamily {
  public:
   std::size_t most() const override { return most_functions; }
+  bool spans_cantilevers() const override { return cantilevers; }
   std::unique_ptr<ShapeFunctions> functions(const BeamData& beam, std::size_t count) const override {
     return (beam.strain == BeamData::Strain::bending ? bending : rod)(beam, count);
   }
 };
 
-template <MakeFunctions bending, MakeFunctions torsion, std::size_t most_functions = 200>
+/// `cantilevers` as ModeFamily::spans_cantilevers.
+template <MakeFunctions bending, MakeFunctions torsion, std::size_t most_functions = 200, bool cantilevers = false>
 void enroll_family(Enrollment& enrollment, const char* id, const char* summary) {
   enrollment.add<ModeFamily>(
       {.id = id,
        .summary = summary,
        .parameters = {},
        .make = [](const Value& /*parameters*/, const MakeContext& /*context*/) -> std::unique_ptr<ModeFamily> {
-         return std::make_unique<PlainFamily<bending, torsion, most_functions>>();
+         return std::make_unique<PlainFamily<bending, torsion, most_functions, cantilevers>>();
        }});
 }
 

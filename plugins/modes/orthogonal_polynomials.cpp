@@ -87,8 +87,8 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
 }
 
 void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &torsion, 100>(enrollment, "orthogonal-polynomials",
-                                         "Polynomials orthogonal over the length, clamped at the root");
+  enroll_family<&bending, &torsion, 100, true>(enrollment, "orthogonal-polynomials",
+                                               "Polynomials orthogonal over the length, clamped at the root");
 }
 
 }  // namespace

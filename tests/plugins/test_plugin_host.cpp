@@ -156,7 +156,7 @@ TEST(PluginHost, records_directories_that_are_not_there) {
   EXPECT_EQ(records[1].reason, "the plugin directory " + file.string() + " cannot be read: it is not a directory");
 }
 
-TEST(PluginHost, finds_the_programs_own_plugins_from_where_the_program_is) {
+TEST(PluginHost, finds_its_own_plugins_from_where_its_library_is) {
   const fs::path program = fs::canonical("/proc/self/exe");
   EXPECT_EQ(PluginHost::default_directory(), program.parent_path().parent_path() / "lib/withy/plugins");
 }

@@ -21,9 +21,7 @@ struct Orders {
   friend Orders operator+(Orders a, const Orders& b) { return a += b; }
   friend Orders operator-(Orders a, const Orders& b) { return a -= b; }
   friend Orders operator*(const Orders& a, double s) { return {a.zero * s, a.one * s}; }
-  friend double dot(const Orders& a, const Orders& b) {
-    return Space::dot(a.zero, b.zero) + Space::dot(a.one, b.one);
-  }
+  friend double dot(const Orders& a, const Orders& b) { return Space::dot(a.zero, b.zero) + Space::dot(a.one, b.one); }
 };
 
 /// M + Mᵀ.

@@ -101,8 +101,8 @@ inline void first_order_body(const FirstOrderNode<Space>& node, const FirstOrder
     if (node.frozen) continue;
     auto coupling = Space::Twist::zero();
     for (int l = 0; l < n; ++l) {
-      coupling += (node.C1[static_cast<std::size_t>(l * n + k)] - node.C1[static_cast<std::size_t>(k * n + l)]) *
-                  q_dot[l];
+      coupling +=
+          (node.C1[static_cast<std::size_t>(l * n + k)] - node.C1[static_cast<std::size_t>(k * n + l)]) * q_dot[l];
       double row = 0;
       for (int j = 0; j < n; ++j) {
         row += (node.G1[static_cast<std::size_t>((l * n + k) * n + j)] -
@@ -125,8 +125,7 @@ struct StationForces {
     // (1 − ε) w answers to the pair (A0, A1) with (w1, w0).
     on_body -= {Space::cross_force(sw.rate0, sw.P1) + Space::cross_force(sw.rate1, sw.P0),
                 Space::cross_force(sw.rate0, sw.P0)};
-    on_modes -= {Space::cross_force(sw.V0, sw.P1) + Space::cross_force(sw.V1, sw.P0),
-                 Space::cross_force(sw.V0, sw.P0)};
+    on_modes -= {Space::cross_force(sw.V0, sw.P1) + Space::cross_force(sw.V1, sw.P0), Space::cross_force(sw.V0, sw.P0)};
   }
 };
 
@@ -310,8 +309,8 @@ inline void first_order_force(const FirstOrderNode<Space>& node, const FirstOrde
 
 /// x = L⁻ᵀ Δ⁻¹ (y − Y A).
 template <int N, class Space>
-inline void back_substitute(const double* L, const Orders<Space>* Y, const double* y, int modes,
-                            const Orders<Space>& A, double* x) {
+inline void back_substitute(const double* L, const Orders<Space>* Y, const double* y, int modes, const Orders<Space>& A,
+                            double* x) {
   const int n = count<N>(modes);
   for (int i = 0; i < n; ++i) x[i] = L[i * n + i] * (y[i] - dot(Y[i], A));
   for (int i = n; i-- > 0;) {

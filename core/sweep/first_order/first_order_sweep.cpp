@@ -61,8 +61,7 @@ FirstOrderSweep<Space>::FirstOrderSweep(const NodeTree& tree, const std::vector<
     station.carried += nodes_[i].mass;
     // Rooting turned the section's axes with the frame.
     const NodeSpec& outer = tree.nodes[static_cast<std::size_t>(spec.parent)];
-    if (outer.root_station >= 0)
-      nodes_[i].joint.F = Space::make(Pose{outer.M.R.transpose(), Vector3::Zero()} * spec.F);
+    if (outer.root_station >= 0) nodes_[i].joint.F = Space::make(Pose{outer.M.R.transpose(), Vector3::Zero()} * spec.F);
   }
   WorkLayout memory;
   std::size_t speeds = 0;

@@ -7,8 +7,8 @@
 ///   hinge     V_M = X V_F + H ẋ,             A_M = X A_F + H ẍ + V_M × H ẋ + Ḣ ẋ
 ///   station   V_S = X V_B + J q̇,             A_S = X A_B + J q̈ + ε (V_S × J q̇ + J′[q̇] q̇),  X = (1 − εξ×) X0, ξ = J0 q
 ///   body      p = I V + C q̇,                 F = I A + C q̈ + V ×* p + ε (I′[q̇] V + C′[q̇] q̇)
-/// The rates q̇ being ε⁻¹ times those of the poses, J q̇ is no velocity of a frame, and Lagrange's equations have beside F
-/// the momentum P_S of all that a station carries:
+/// The rates q̇ being ε⁻¹ times those of the poses, J q̇ is no velocity of a frame, and Lagrange's equations have beside
+/// F the momentum P_S of all that a station carries:
 ///   F_B += Xᵀ (F_S − (1 − ε) (J q̇) ×* P_S),       Q_q += Jᵀ (F_S − (1 − ε) V_S ×* P_S)
 /// (1 − ε)w has the orders w0, w1 − w0. All is linear in the pair (A0, A1), and what answers to it, (F0 + F1, F0), by a
 /// symmetric matrix: the articulated-body recursion applies to pairs, and its pivots are those of M₀ + M₁.
@@ -49,7 +49,7 @@ struct FirstOrderNode {
   std::vector<Twist> C0;
   std::vector<Twist> C1;  ///< ∂C_i/∂q_k, element k n + i
   std::vector<double> G0;
-  std::vector<double> G1;                                 ///< ∂G_ij/∂q_k, element (k n + i) n + j
+  std::vector<double> G1;                                  ///< ∂G_ij/∂q_k, element (k n + i) n + j
   std::vector<typename Space::Position> moment1, moment2;  ///< derivatives of the first moment of mass
   double mass = 0;                                         ///< of it and all that hangs on it [kg]
   std::vector<FirstOrderStation<Space>> stations;

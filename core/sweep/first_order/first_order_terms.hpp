@@ -55,8 +55,8 @@ struct FirstOrderState {
   double* result;
   std::byte* work;
   const FirstOrderNode<Space>* nodes;
-  double delta = 0;              ///< above 0: G + δ D + δ² K in the place of G
-  double* driven = nullptr;      ///< receives all efforts on driven rates; null: they do not accelerate
+  double delta = 0;          ///< above 0: G + δ D + δ² K in the place of G
+  double* driven = nullptr;  ///< receives all efforts on driven rates; null: they do not accelerate
   const double* weight = nullptr;
 };
 
@@ -130,8 +130,7 @@ inline void outward(const FirstOrderNode<Space>& node, const FirstOrderState<Spa
   const int n = node.frozen ? 0 : node.modes;
   for (int k = 0; k < n; ++k) {
     w.s[1] += node.moment1[static_cast<std::size_t>(k)] * q[k];
-    for (int l = 0; l < n; ++l)
-      w.s[2] += node.moment2[static_cast<std::size_t>(k * n + l)] * (0.5 * q[k] * q[l]);
+    for (int l = 0; l < n; ++l) w.s[2] += node.moment2[static_cast<std::size_t>(k * n + l)] * (0.5 * q[k] * q[l]);
   }
   auto* stations = at<FirstOrderStationWork<Space>>(s.work, node.work_stations);
   for (std::size_t k = 0; k < node.stations.size(); ++k) {

@@ -119,10 +119,14 @@ withy::Plugin<withy::Body> tapered_beam() {
                      number("mass_per_length", "kg/m", "mass per length at the root").above(0),
                      number("stiffness", "N m^2", "EI_z at the root").above(0),
                      number("taper", "1", "depth at the tip over depth at the root").above(0).most(1).otherwise(1.0),
-                     withy::integer("modes", "number of assumed modes").least(1).otherwise(2.0),
+                     withy::integer("modes", "number of assumed modes")
+                         .least(1)
+                         .otherwise(2.0)
+                         .as(withy::ParameterSpec::Role::modes),
                      withy::text("family", "assumed-mode family")
                          .naming(withy::ParameterSpec::Refers::mode_family)
-                         .otherwise("clamped-free"),
+                         .otherwise("clamped-free")
+                         .as(withy::ParameterSpec::Role::bending_family),
                      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0)},
       .make = &make};
 }

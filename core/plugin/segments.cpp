@@ -1,4 +1,4 @@
-#include "withy/scene/segments.hpp"
+#include "withy/core/plugin/segments.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -72,14 +72,22 @@ class DampedSegment final : public Body {
   ModalShape shape_;
 };
 
-}  // namespace
+/// A body with its pieces.
+class SegmentedBody final : public Body {
+ public:
+  SegmentedBody(std::unique_ptr<Body> whole, std::vector<std::shared_ptr<const Body>> segments)
+      : whole_(std::move(whole)), segments_(std::move(segments)) {}
+  const ModalShape& shape() const override { return whole_->shape(); }
+  std::optional<PointExpansion> station(const StationName& name) const override { return whole_->station(name); }
+  std::string stations() const override { return whole_->stations(); }
+  const Rod* rod() const override { return whole_->rod(); }
+  std::vector<std::string> remarks() const override { return whole_->remarks(); }
+  std::span<const std::shared_ptr<const Body>> segments() const override { return segments_; }
 
-std::size_t segments_of(const Value& body, const std::vector<ParameterSpec>& specs) {
-  const Value* segments = body.find("segments");
-  const ParameterSpec* spec = spec_of(specs, "segments");
-  if (segments == nullptr || spec == nullptr || spec->kind != ParameterSpec::Kind::integer) return 1;
-  return spec_of(specs, "length") == nullptr ? 1 : body.count_at("segments");
-}
+ private:
+  std::unique_ptr<Body> whole_;
+  std::vector<std::shared_ptr<const Body>> segments_;
+};
 
 Value segment_of(const Value& body, const std::vector<ParameterSpec>& specs, std::size_t k, std::size_t n) {
   const double length = body.number_at("length");
@@ -103,6 +111,22 @@ std::unique_ptr<Body> damped_as(const ModalShape& whole, std::unique_ptr<Body> s
     scale[i] = times[strain_of(shape.mode_names[static_cast<std::size_t>(i)])];
   shape.damping = scale.asDiagonal() * shape.stiffness * scale.asDiagonal();
   return std::make_unique<DampedSegment>(std::move(segment), std::move(shape));
+}
+
+}  // namespace
+
+std::unique_ptr<Body> in_segments(std::unique_ptr<Body> whole, const Value& value,
+                                  const std::vector<ParameterSpec>& specs,
+                                  const std::function<std::unique_ptr<Body>(const Value& segment)>& make) {
+  const std::size_t n = value.count_at("segments");
+  if (n == 1) return whole;
+  std::vector<std::shared_ptr<const Body>> segments;
+  for (std::size_t k = 0; k < n; ++k) {
+    auto segment = make(segment_of(value, specs, k, n));
+    if (segment == nullptr) return nullptr;
+    segments.push_back(damped_as(whole->shape(), std::move(segment)));
+  }
+  return std::make_unique<SegmentedBody>(std::move(whole), std::move(segments));
 }
 
 }  // namespace withy

@@ -1,0 +1,15 @@
+// What the library brings. The name is that of withy_plugin() in CMakeLists.txt.
+#include <withy/core/plugin/entry.hpp>
+
+#include "laws.hpp"
+
+namespace {
+
+void enroll(withy::Enrollment& enrollment) {
+  enrollment.add(example::slow_linear());
+  enrollment.add(example::cycloid());
+}
+
+}  // namespace
+
+WITHY_PLUGIN(laws, enroll);
