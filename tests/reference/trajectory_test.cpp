@@ -237,6 +237,33 @@ TEST_P(Conservation, energy_and_angular_momentum_of_a_free_undamped_scene) {
   }
 }
 
+/// The kinetic energy of first order and the strain energy along a free run without weight, ½ uᵀ M u and ½ qᵀ K q.
+TEST(ConservationOfFirstOrder, of_the_symmetric_truncations_own_energy) {
+  const SceneRun run("beam-on-base", "symmetric",
+                     {"integrator.rtol=1e-10", "integrator.atol=1e-12", "time.end=5", "time.output=1"});
+  ASSERT_EQ(run.summary.status, RunStatus::completed) << run.summary.message;
+  ASSERT_TRUE(run.scene.model->gravity().isZero(0));
+  const Layout& layout = run.scene.model->layout();
+  Work work = run.equations->make_work();
+  std::vector<double> energies;
+  for (const State& s : run.outputs) {
+    std::vector<double> momentum(layout.speeds);
+    const std::span<const double> u(s.y.data() + layout.positions, layout.speeds);
+    run.equations->mass_times(s.y, u, momentum, work);
+    double energy = 0;
+    for (std::size_t i = 0; i < layout.speeds; ++i) energy += 0.5 * momentum[i] * u[i];
+    for (const BodyNode& body : run.scene.model->bodies()) {
+      const Eigen::MatrixXd& K = body.body->shape().stiffness;
+      if (K.size() == 0) continue;
+      const Eigen::Map<const Eigen::VectorXd> q(s.y.data() + layout.body(body.name)->position, K.rows());
+      energy += 0.5 * q.dot(K * q);
+    }
+    energies.push_back(energy);
+  }
+  ASSERT_GT(energies.size(), 3U);
+  for (const double e : energies) EXPECT_NEAR(e, energies.front(), 1e-8 * energies.front());
+}
+
 INSTANTIATE_TEST_SUITE_P(Untruncated, Conservation, testing::Values("quadratic", "exact"));
 
 }  // namespace
