@@ -109,7 +109,8 @@ std::optional<Value> Checker::formulation(const Value& value) const {
   const bool short_form = value.kind() == Value::Kind::text;
   Made<Formulation> made;
   auto checked =
-      check_plugin_map(grammar::named_formulation(value), "name", {grammar::formulation_name()}, *this, made);
+      check_plugin_map(short_form ? Value::map({{"name", value}}, value.place()) : grammar::named_formulation(value),
+                       "name", {grammar::formulation_name()}, *this, made);
   if (checked && short_form) return value;
   return checked;
 }

@@ -86,21 +86,13 @@ ParameterSpec motion_type() { return text("type", "motion plugin"); }
 ParameterSpec family_name() { return text("name", "mode-family plugin"); }
 ParameterSpec formulation_name() { return text("name", "formulation plugin"); }
 
-Value named_formulation(const Value& given) {
-  Place place = given.place();
-  const Place of_name{place.line, place.column, place.path + "/name"};
-  if (given.kind() == Value::Kind::text) {
-    Value name = given;
-    name.set_place(of_name);
-    return Value::map({{"name", std::move(name)}}, std::move(place));
-  }
+Value named_formulation(Value given) {
   if (given.kind() != Value::Kind::map || given.find("name") != nullptr ||
       (given.find("kinematics") == nullptr && given.find("truncation") == nullptr))
     return given;
-  Value general(std::string("general"), of_name);
-  Value named = given;
-  named.set("name", std::move(general));
-  return named;
+  const Place place = given.place();
+  given.set("name", Value(std::string("general"), {place.line, place.column, place.path + "/name"}));
+  return given;
 }
 
 }  // namespace withy::grammar

@@ -15,7 +15,7 @@
 namespace withy {
 namespace {
 
-/// `integrator: dopri5` means `integrator: {name: dopri5}`.
+/// `formulation: quadratic` means `formulation: {name: quadratic}`.
 void lengthen_choice(Value& root, const std::string& key) {
   const Value* given = root.find(key);
   if (given == nullptr || given->kind() != Value::Kind::text) return;
@@ -27,6 +27,7 @@ void lengthen_choice(Value& root, const std::string& key) {
 
 void lengthen_choices(Value& root) {
   if (root.kind() != Value::Kind::map) return;
+  lengthen_choice(root, "formulation");
   if (const Value* given = root.find("formulation")) root.set("formulation", grammar::named_formulation(*given));
   lengthen_choice(root, "integrator");
 }

@@ -205,7 +205,7 @@ class SchemaWriter {
 
   /// Of a body alone.
   Json own_formulation() {
-    Json list = alternatives<Formulation>("name", {grammar::formulation_name()});
+    Json list = alternatives<Formulation>("name", {grammar::formulation_name().optional()});
     for (Json& json : list) require_name(json);
     list.push_back({{"type", "string"}, {"enum", registry_.ids<Formulation>()}});
     return {{"description", "formulation plugin, by name or with options"}, {"anyOf", list}};

@@ -202,7 +202,8 @@ class TreeBuilder {
 
   /// What a body's own formulation keeps: its name, or a map with its options.
   std::optional<Terms> terms_of(const Value& given) {
-    const Value choice = grammar::named_formulation(given);
+    const Value choice =
+        given.kind() == Value::Kind::text ? Value::map({{"name", given}}, given.place()) : given;  // it is checked
     const Value& id = choice.at("name");
     if (id.kind() == Value::Kind::text && id.text() == "auto") {
       checker_.diagnostics().error(id.place(), "got 'auto', which is a choice for a whole scene; name a formulation");

@@ -156,7 +156,7 @@ std::pair<Vector3, Vector3> point_velocity(const PointExpansion& e, StrainOrder 
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const Vector3 phi = e.phi.col(i);
     Vector3 P = phi;
-    if (order == StrainOrder::quadratic) {
+    if (order != StrainOrder::linear) {
       for (Eigen::Index j = 0; j < q.size(); ++j)
         P += Vector3(e.gamma[0](i, j), e.gamma[1](i, j), e.gamma[2](i, j)) * q[j];
     }
