@@ -21,9 +21,10 @@
 
 #include "beam_profile.hpp"
 #include "beam_quadrature.hpp"
+#include "damping.hpp"
 #include "withy/core/plugin/body.hpp"
-#include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/core/plugin/segments.hpp"
 
 namespace withy {
@@ -43,7 +44,8 @@ struct Material {
   double length;                                      ///< [m]
   Profile mass_per_length;                            ///< [kg/m]
   std::vector<std::pair<Vector3, Profile>> inertias;  ///< of the sections per length, about an axis [kg m]
-  double damping_ratio;
+  BodyDamping damping;
+  std::vector<std::string> remarks = {};
 };
 
 /// Values of every coordinate's fields at one x.
@@ -70,7 +72,7 @@ class Beam final : public Body, private Rod {
     integrate_fields(kinematics);
     const Eigen::Index n = shape_.modes();
     shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd modal_mass = Eigen::VectorXd::Zero(n);
+    Eigen::MatrixXd modal_mass = Eigen::MatrixXd::Zero(n, n);
     // Without modes it is a rigid body, to the last bit the one that a scene would write with ρL and ρL³/12.
     const bool rigid = n == 0 && material.mass_per_length.knots().empty();
     if (rigid) {
@@ -87,7 +89,7 @@ class Beam final : public Body, private Rod {
                                          theta_at_nodes_.row(static_cast<Eigen::Index>(k)));
       const double mass = w * material.mass_per_length(x[k]);
       if (!rigid) shape_.particles.push_back({mass, e});
-      modal_mass += mass * f.phi.colwise().squaredNorm().transpose();
+      modal_mass += mass * f.phi.transpose() * f.phi;
       shape_.stiffness += w * stiffness_of(f, x[k]);
     }
     const SectionQuadrature along(length_, wave_number(strains_), kinks(material, strains_));
@@ -101,11 +103,9 @@ class Beam final : public Body, private Rod {
       const LinearFields f = linear_fields(at);
       shape_.sections.push_back({inertia, expansion(at, f, quadrature_.integral_to(at, gamma_slope_),
                                                     quadrature_.integral_to(at, theta_slope_))});
-      modal_mass += (f.psi.transpose() * inertia * f.psi).diagonal();
+      modal_mass += f.psi.transpose() * inertia * f.psi;
     }
-    for (Eigen::Index i = 0; i < n; ++i) {
-      shape_.damping(i, i) = 2 * material.damping_ratio * std::sqrt(shape_.stiffness(i, i) * modal_mass[i]);
-    }
+    shape_.damping = material.damping.matrix(shape_.stiffness, modal_mass);
   }
 
   const ModalShape& shape() const override { return shape_; }
@@ -129,6 +129,11 @@ class Beam final : public Body, private Rod {
   }
   std::shared_ptr<const Body> expanded(const StrainKinematics& kinematics) const override {
     return std::make_shared<const Beam>(material_, strains_, kinematics);
+  }
+  std::vector<std::string> remarks() const override {
+    std::vector<std::string> all = material_.damping.remarks(shape_.modes());
+    all.insert(all.end(), material_.remarks.begin(), material_.remarks.end());
+    return all;
   }
   const Rod* rod() const override {
     // The exact rod is inextensible, without rotary inertia in bending, and clamped at x = 0. Shape functions that
@@ -284,7 +289,7 @@ class Reader {
   Reader(const Value& parameters, const MakeContext& context) : p_(parameters), context_(context) {}
 
   std::unique_ptr<Body> make() {
-    Material material{p_.number_at("length"), profile(p_.at("mass_per_length")), {}, p_.number_at("damping_ratio")};
+    Material material{p_.number_at("length"), profile(p_.at("mass_per_length")), {}, BodyDamping::read(p_)};
     const double mass = material.mass_per_length.mean();
     using enum BeamData::Strain;
     add("bending_y", Vector3::UnitZ(), bending, mass, "rotary_inertia", material);
@@ -314,6 +319,8 @@ class Reader {
     const Profile stiffness = profile(given.at("stiffness"));
     const Profile inertia = given.has(inertia_key) ? profile(given.at(inertia_key)) : Profile(0);
     if (given.has(inertia_key)) material.inertias.emplace_back(direction, inertia);
+    if (given.count_at("modes") == 0)
+      material.remarks.push_back(fmt::format("{} has no modes: the body is rigid to it, whatever its stiffness", key));
     if (given.count_at("modes") == 0 || !good_) return;
     const BeamData beam = {kind, material.length, kind == BeamData::Strain::torsion ? inertia.mean() : mass,
                            stiffness.mean()};
@@ -370,7 +377,7 @@ std::vector<ParameterSpec> parameters() {
     specs.push_back(number("rotary_inertia", "kg m", inertia).least(0).or_table("m").optional());
     return specs;
   };
-  return {
+  std::vector<ParameterSpec> specs = {
       number("length", "m", "length, undeformed").above(0),
       number("mass_per_length", "kg/m", "mass per length").above(0).or_table("m"),
       map("bending_y", bending("EI_z, for deflection along y", "rotary inertia of the sections per length, rho I_z"),
@@ -387,29 +394,29 @@ std::vector<ParameterSpec> parameters() {
       map("shear_z", strain_parameters("shear stiffness k G A along z", "N"),
           "shear, deflection along z beside that of bending_z")
           .optional(),
-      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0),
       integer("segments", "number of beams, welded one behind the other, it is cut into; modes are of each")
           .least(1)
           .most(1000)
           .otherwise(1)};
+  for (ParameterSpec& spec : damping_parameters()) specs.push_back(std::move(spec));
+  return specs;
 }
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Body> make_beam(const Value& p, const MakeContext& context) {
   auto whole = Reader(p, context).make();
   if (whole == nullptr) return nullptr;
   return in_segments(std::move(whole), p, parameters(),
                      [&](const Value& segment) { return Reader(segment, context).make(); });
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_beam(Enrollment& enrollment) {
   enrollment.add<Body>(
       {.id = "beam",
        .summary = "Slender beam along x, bending in two planes and twisting, if wanted with extension and shear",
        .parameters = parameters(),
-       .make = &make});
+       .make = &make_beam});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(beam, withy::enroll);

@@ -17,10 +17,11 @@
 #include <cmath>
 
 #include "beam_quadrature.hpp"
+#include "damping.hpp"
 #include "equal_particles.hpp"
 #include "withy/core/plugin/body.hpp"
-#include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -34,7 +35,7 @@ struct Sheet {
   double mass_per_area;  ///< [kg/m²]
   double stiffness;      ///< D = E h³ / (12 (1 − ν²)) [N m]
   double poisson_ratio;  ///< ν
-  double damping_ratio;
+  BodyDamping damping;
 };
 
 /// Functions of one coordinate and their derivatives, each a row.
@@ -61,6 +62,7 @@ class Plate final : public Body {
   }
 
   const ModalShape& shape() const override { return shape_; }
+  std::vector<std::string> remarks() const override { return sheet_.damping.remarks(shape_.modes()); }
   std::optional<PointExpansion> station(const StationName& name) const override {
     const auto* text = std::get_if<std::string>(&name);
     if (text == nullptr) {
@@ -150,7 +152,7 @@ class Plate final : public Body {
     }
     const VectorXd stiffness = mass * eigen.eigenvalues().head(modes);
     shape_.stiffness = stiffness.asDiagonal();
-    shape_.damping = MatrixXd((2 * sheet_.damping_ratio * (mass * stiffness).cwiseSqrt()).asDiagonal());
+    shape_.damping = sheet_.damping.matrix(shape_.stiffness, mass * MatrixXd::Identity(modes, modes));
     shape_.length = sheet_.length;
   }
 
@@ -256,9 +258,9 @@ class Plate final : public Body {
   ModalShape shape_;
 };
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Body> make_plate(const Value& p, const MakeContext& context) {
   const Sheet sheet{p.number_at("length"),    p.number_at("width"),         p.number_at("mass_per_area"),
-                    p.number_at("stiffness"), p.number_at("poisson_ratio"), p.number_at("damping_ratio")};
+                    p.number_at("stiffness"), p.number_at("poisson_ratio"), BodyDamping::read(p)};
   const auto functions = [&](const char* family, const char* count, double length) {
     return make_shape_functions(Value(std::string(family), p.at(count).place()), p.at(count),
                                 {BeamData::Strain::bending, length, sheet.mass_per_area, sheet.stiffness}, context);
@@ -282,34 +284,29 @@ std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
   return std::make_unique<Plate>(sheet, modes, std::move(along), std::move(across));
 }
 
-void enroll(Enrollment& enrollment) {
-  enrollment.add<Body>(
-      {.id = "plate",
-       .summary = "Thin rectangular plate in the x-y plane, clamped along x = 0, bending along z",
-       .parameters = {number("length", "m", "length along x").above(0),
-                      number("width", "m", "width along y; the middle line is y = 0").above(0),
-                      number("mass_per_area", "kg/m^2", "mass per area").above(0),
-                      number("stiffness", "N m", "bending stiffness D = E h^3 / (12 (1 - nu^2))").above(0),
-                      number("poisson_ratio", "1", "Poisson's ratio nu").above(-1).most(0.5).otherwise(0.3),
-                      integer("modes", "number of modes, the lowest")
-                          .least(0)
-                          .most(12)
-                          .otherwise(3.0)
-                          .as(ParameterSpec::Role::modes),
-                      integer("functions_along", "number of clamped-free functions of x that modes are made of")
-                          .least(1)
-                          .most(12)
-                          .otherwise(6.0),
-                      integer("functions_across",
-                              "number of free-free functions of y that modes are made of, beside 1 and y")
-                          .least(0)
-                          .most(12)
-                          .otherwise(4.0),
-                      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0)},
-       .make = &make});
+}  // namespace
+
+void enroll_plate(Enrollment& enrollment) {
+  std::vector<ParameterSpec> specs = {
+      number("length", "m", "length along x").above(0),
+      number("width", "m", "width along y; the middle line is y = 0").above(0),
+      number("mass_per_area", "kg/m^2", "mass per area").above(0),
+      number("stiffness", "N m", "bending stiffness D = E h^3 / (12 (1 - nu^2))").above(0),
+      number("poisson_ratio", "1", "Poisson's ratio nu").above(-1).most(0.5).otherwise(0.3),
+      integer("modes", "number of modes, the lowest").least(0).most(12).otherwise(3.0).as(ParameterSpec::Role::modes),
+      integer("functions_along", "number of clamped-free functions of x that modes are made of")
+          .least(1)
+          .most(12)
+          .otherwise(6.0),
+      integer("functions_across", "number of free-free functions of y that modes are made of, beside 1 and y")
+          .least(0)
+          .most(12)
+          .otherwise(4.0)};
+  for (ParameterSpec& spec : damping_parameters()) specs.push_back(std::move(spec));
+  enrollment.add<Body>({.id = "plate",
+                        .summary = "Thin rectangular plate in the x-y plane, clamped along x = 0, bending along z",
+                        .parameters = std::move(specs),
+                        .make = &make_plate});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(plate, withy::enroll);

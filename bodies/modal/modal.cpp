@@ -8,14 +8,15 @@
 #include <iterator>
 
 #include "sid_body.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/file_notes.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
 
 constexpr std::uintmax_t most_bytes = std::uintmax_t{256} << 20;
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Body> make_modal(const Value& p, const MakeContext& context) {
   const Value& named = p.at("file");
   const auto fault = [&](const std::string& why) -> std::unique_ptr<Body> {
     context.diagnostics.error(named.place(), fmt::format("got '{}'; {}", named.text(), why));
@@ -30,9 +31,10 @@ std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
   std::ifstream stream(file, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(stream)), {});
   if (!stream) return fault(fmt::format("'{}' cannot be read", file.string()));
+  FileNotes::add(named.text(), text);
   SidBodyOptions options;
   if (p.has("root")) options.root = p.text_at("root");
-  if (p.has("damping_ratio")) options.damping_ratio = p.number_at("damping_ratio");
+  if (BodyDamping::given(p)) options.damping = BodyDamping::read(p);
   try {
     SidReport report;
     return body_of(sid::read(text), options, report);
@@ -43,20 +45,19 @@ std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
   }
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_modal(Enrollment& enrollment) {
+  std::vector<ParameterSpec> specs = {
+      text("file", "file of Standard Input Data; a relative name starts at the scene's directory"),
+      text("root", "node that is the root; without it, the frame the file refers to").optional()};
+  // Given, they take the place of the file's damping.
+  for (ParameterSpec& spec : damping_parameters(false)) specs.push_back(std::move(spec));
   enrollment.add<Body>(
       {.id = "modal",
        .summary = "Flexible body from a file of Standard Input Data (SID), as finite-element programs write it",
-       .parameters = {text("file", "file of Standard Input Data; a relative name starts at the scene's directory"),
-                      text("root", "node that is the root; without it, the frame the file refers to").optional(),
-                      number("damping_ratio", "1",
-                             "modal damping, as a fraction of critical, in the place of the file's")
-                          .least(0)
-                          .optional()},
-       .make = &make});
+       .parameters = std::move(specs),
+       .make = &make_modal});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(modal, withy::enroll);

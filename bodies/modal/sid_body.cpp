@@ -64,14 +64,15 @@ class SidBody final : public Body {
     shape_.particles = particles_of(integrals, report.defect);
     shape_.stiffness = 0.5 * (data.Ke.m0 + data.Ke.m0.transpose());
     shape_.damping = Eigen::MatrixXd::Zero(n, n);
-    if (options.damping_ratio >= 0) {
-      shape_.damping.diagonal() =
-          2 * options.damping_ratio *
-          (shape_.stiffness.diagonal().array().max(0) * data.Me.m0.diagonal().array()).sqrt().matrix();
+    if (options.damping) {
+      shape_.damping = options.damping->matrix(shape_.stiffness, 0.5 * (data.Me.m0 + data.Me.m0.transpose()));
     } else if (!data.De.absent()) {
       shape_.damping = 0.5 * (data.De.m0 + data.De.m0.transpose());
     }
     remarks_ = report.missing;
+    if (options.damping) {
+      for (std::string& remark : options.damping->remarks(n)) remarks_.push_back(std::move(remark));
+    }
     if (report.inconsistency > worth_saying)
       remarks_.push_back(fmt::format("what the data say twice differs by {:.1g} of the largest", report.inconsistency));
     if (report.defect > worth_saying)

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "mass_integrals.hpp"
+#include "withy/bodies/damping.hpp"
 #include "withy/core/plugin/body.hpp"
 
 namespace withy {
 
 struct SidBodyOptions {
-  std::string root;           ///< id of the node that is the root; empty: the frame the data refer to
-  double damping_ratio = -1;  ///< of every mode, in the place of De; negative: De
+  std::string root;                         ///< id of the node that is the root; empty: the frame the data refer to
+  std::optional<BodyDamping> damping = {};  ///< in the place of De; none: De
 };
 
 /// The body that Standard Input Data describe. Its stations are the nodes, with the axes of the body.

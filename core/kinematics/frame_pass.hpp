@@ -3,10 +3,9 @@
 /// duals. For frame_paths.cpp.
 #pragma once
 
-#include <unsupported/Eigen/AutoDiff>
-
 #include "withy/core/deformation/point_motion.hpp"
 #include "withy/core/kinematics/frame_paths.hpp"
+#include "withy/core/spatial/jet.hpp"
 #include "withy/core/sweep/rod/rod_terms.hpp"
 
 namespace withy {
@@ -18,10 +17,10 @@ template <class S>
 using M3 = Eigen::Matrix<S, 3, 3>;
 
 /// a + εb with ε² = 0: the first order in the elastic coordinates.
-using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
+using Dual = DualNumber<double, 1>;
 
 /// The same of duals: with εq + δq for q the coefficient of εδ is twice the second order.
-using Second = Eigen::AutoDiffScalar<Eigen::Matrix<Dual, 1, 1>>;
+using Second = DualNumber<Dual, 1>;
 
 /// An elastic coordinate in a scalar.
 template <class S>

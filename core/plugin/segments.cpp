@@ -1,5 +1,6 @@
 #include "withy/core/plugin/segments.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -98,17 +99,35 @@ Value segment_of(const Value& body, const std::vector<ParameterSpec>& specs, std
   return value;
 }
 
-std::unique_ptr<Body> damped_as(const ModalShape& whole, std::unique_ptr<Body> segment) {
-  std::map<std::string, double> times;  // sqrt(τ) by strain
-  for (Eigen::Index i = 0; i < whole.modes(); ++i) {
-    const double k = whole.stiffness(i, i);
-    times.emplace(strain_of(whole.mode_names[static_cast<std::size_t>(i)]),
-                  k > 0 ? std::sqrt(whole.damping(i, i) / k) : 0.0);
+/// τ of damping τ K by strain, as the lowest mode v of each has it: vᵀ D v / vᵀ K v, 2 ζ/ω where that has the ratio ζ.
+std::map<std::string, double> time_constants(const ModalShape& whole) {
+  std::map<std::string, std::vector<Eigen::Index>> strains;
+  for (Eigen::Index i = 0; i < whole.modes(); ++i)
+    strains[strain_of(whole.mode_names[static_cast<std::size_t>(i)])].push_back(i);
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(whole.modes(), whole.modes());
+  for (const Particle& p : whole.particles) G += p.mass * p.at.phi.transpose() * p.at.phi;
+  for (const Section& s : whole.sections) G += s.at.psi.transpose() * s.inertia * s.at.psi;
+  std::map<std::string, double> times;
+  for (const auto& [strain, at] : strains) {
+    const Eigen::MatrixXd K = whole.stiffness(at, at);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, G(at, at));
+    // Motions without strain come first and are not damped.
+    Eigen::Index lowest = 0;
+    while (lowest + 1 < K.rows() && solver.eigenvalues()[lowest] <= 1e-10 * solver.eigenvalues()[K.rows() - 1])
+      ++lowest;
+    const Eigen::VectorXd v = solver.eigenvectors().col(lowest);
+    const double stiffness = v.dot(K * v);
+    times[strain] = stiffness > 0 ? std::max(0.0, v.dot(whole.damping(at, at) * v)) / stiffness : 0.0;
   }
+  return times;
+}
+
+std::unique_ptr<Body> damped_as(const ModalShape& whole, std::unique_ptr<Body> segment) {
+  const std::map<std::string, double> times = time_constants(whole);
   ModalShape shape = segment->shape();
   Eigen::VectorXd scale(shape.modes());
   for (Eigen::Index i = 0; i < shape.modes(); ++i)
-    scale[i] = times[strain_of(shape.mode_names[static_cast<std::size_t>(i)])];
+    scale[i] = std::sqrt(times.at(strain_of(shape.mode_names[static_cast<std::size_t>(i)])));
   shape.damping = scale.asDiagonal() * shape.stiffness * scale.asDiagonal();
   return std::make_unique<DampedSegment>(std::move(segment), std::move(shape));
 }

@@ -1,17 +1,17 @@
 #include "withy/core/reference/first_order_energy.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <unsupported/Eigen/AutoDiff>
 
 #include "withy/core/reference/reference_tree.hpp"
+#include "withy/core/spatial/jet.hpp"
 
 namespace withy::reference {
 namespace {
 
 /// a + δb, δ² = 0: a derivative along a direction of deformation.
-using Inner = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
+using Inner = DualNumber<double, 1>;
 /// a + εb, ε² = 0, of these: orders in q.
-using Nested = Eigen::AutoDiffScalar<Eigen::Matrix<Inner, 1, 1>>;
+using Nested = DualNumber<Inner, 1>;
 
 Inner inner(double value, double derivative) {
   Inner d(value);
@@ -120,7 +120,7 @@ struct Elastic {
       q_dot.emplace_back(Eigen::VectorXd::Zero(n));
       first.push_back(0);
       if (n == 0) continue;
-      const Slot& slot = *layout.body(node.name);
+      const Slot& slot = *layout.modes(b);
       first.back() = static_cast<Eigen::Index>(slot.speed);
       for (std::size_t i = 0; i < slot.speeds; ++i) is_mode[slot.speed + i] = true;
       if (terms[b].truncation == Truncation::ruthless) continue;

@@ -126,7 +126,7 @@ class ReferenceTree {
     for (std::size_t b = 0; b < model.bodies().size(); ++b) {
       const HingeNode& h = model.hinges()[b];
       const Slot& hinge = layout.hinges[b];
-      const Slot* modal = q_[b].size() > 0 ? layout.body(model.bodies()[b].name) : nullptr;
+      const Slot* modal = q_[b].size() > 0 ? layout.modes(b) : nullptr;
       first_mode_.push_back(modal != nullptr ? static_cast<Eigen::Index>(modal->speed) : 0);
       rods_.emplace_back();
       if constexpr (std::is_same_v<S, double>) {
@@ -245,15 +245,15 @@ class ReferenceTree {
   }
 
  private:
-  /// The elements of y that belong to each body's modes, from `first` on by position or by speed, times its factor.
+  /// The elements of y that belong to each body's modes, by position or from `first_speed` on by speed, times its
+  /// factor.
   static std::vector<VX<S>> scaled(const Model& model, const std::vector<BodyTerms<S>>& terms,
                                    std::span<const double> y, std::size_t first_speed) {
     std::vector<VX<S>> all;
     for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-      const BodyNode& node = model.bodies()[b];
-      all.emplace_back(node.body->shape().modes());
+      all.emplace_back(model.bodies()[b].body->shape().modes());
       if (all.back().size() == 0) continue;
-      const Slot& slot = *model.layout().body(node.name);
+      const Slot& slot = *model.layout().modes(b);
       const std::size_t at = first_speed == 0 ? slot.position : first_speed + slot.speed;
       for (Eigen::Index i = 0; i < all.back().size(); ++i)
         all.back()[i] = terms[b].scale * S(y[at + static_cast<std::size_t>(i)]);

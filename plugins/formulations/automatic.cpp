@@ -3,15 +3,13 @@
 /// runs it is `quadratic`, which holds wherever the ladder begins.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::none, withy::InStudies::aside>(
+void enroll_automatic(Enrollment& enrollment) {
+  enroll_terms<StrainOrder::quadratic, Truncation::none, InStudies::aside>(
       enrollment, "auto",
       "The least of ruthless, quadratic and exact whose validity holds, changed along a run where it does not; "
       "quadratic where nothing runs");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(automatic, enroll);
+}  // namespace withy

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "withy/core/equations/compile_equations.hpp"
-#include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 
@@ -32,7 +32,7 @@ class SweptFormulation final : public Formulation {
 
 /// A name for a choice of terms, without options.
 template <StrainOrder strain, Truncation truncation, InStudies place = InStudies::taken, bool products_of_speeds = true>
-void enroll_formulation(Enrollment& enrollment, const char* id, const char* summary) {
+void enroll_terms(Enrollment& enrollment, const char* id, const char* summary) {
   enrollment.add<Formulation>(
       {.id = id,
        .summary = summary,

@@ -3,9 +3,8 @@
 #include "formulation_plugin.hpp"
 #include "withy/core/plugin/strain_kinematics.hpp"
 
+namespace withy {
 namespace {
-
-using namespace withy;
 
 Truncation truncation_named(const std::string& name) {
   if (name == "ruthless") return Truncation::ruthless;
@@ -31,7 +30,9 @@ std::unique_ptr<Formulation> make(const Value& p, const MakeContext& context) {
   return std::make_unique<SweptFormulation>(terms, InStudies::aside);
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_general(Enrollment& enrollment) {
   enrollment.add<Formulation>(
       {.id = "general",
        .summary = "Any strain kinematics with any truncation",
@@ -42,6 +43,4 @@ void enroll(Enrollment& enrollment) {
        .make = &make});
 }
 
-}  // namespace
-
-WITHY_PLUGIN(general, enroll);
+}  // namespace withy

@@ -3,13 +3,11 @@
 /// first order.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::linear, withy::Truncation::strict, withy::InStudies::aside>(
+void enroll_inconsistent(Enrollment& enrollment) {
+  enroll_terms<StrainOrder::linear, Truncation::strict, InStudies::aside>(
       enrollment, "inconsistent", "First order in the elastic coordinates, from linear strain-displacement relations");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(inconsistent, enroll);
+}  // namespace withy

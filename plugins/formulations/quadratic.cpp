@@ -2,14 +2,12 @@
 /// Second-order kinematics without truncation: the mass matrix is a Gram matrix Σ m JᵀJ.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::none, withy::InStudies::rung>(
+void enroll_quadratic(Enrollment& enrollment) {
+  enroll_terms<StrainOrder::quadratic, Truncation::none, InStudies::rung>(
       enrollment, "quadratic",
       "Second-order kinematics, nothing truncated: symmetric positive definite, conserves energy and momentum");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(quadratic, enroll);
+}  // namespace withy

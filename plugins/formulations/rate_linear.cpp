@@ -3,13 +3,11 @@
 /// section 3], with second-order kinematics in all else. It keeps no energy: it is there to be measured.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::quadratic, withy::Truncation::none, withy::InStudies::aside, false>(
+void enroll_rate_linear(Enrollment& enrollment) {
+  enroll_terms<StrainOrder::quadratic, Truncation::none, InStudies::aside, false>(
       enrollment, "rate-linear", "Second-order kinematics without Coriolis, centrifugal and gyroscopic terms");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(rate_linear, enroll);
+}  // namespace withy

@@ -3,13 +3,11 @@
 /// tree.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::linear, withy::Truncation::ruthless, withy::InStudies::rung>(
+void enroll_ruthless(Enrollment& enrollment) {
+  enroll_terms<StrainOrder::linear, Truncation::ruthless, InStudies::rung>(
       enrollment, "ruthless", "Elastic terms dropped but for q̈, -Kq and -Dq̇ (order zero)");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(ruthless, enroll);
+}  // namespace withy

@@ -3,14 +3,12 @@
 /// is kept from which relations.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::StrainOrder::linear, withy::Truncation::symmetric, withy::InStudies::aside>(
+void enroll_symmetric_linear(Enrollment& enrollment) {
+  enroll_terms<StrainOrder::linear, Truncation::symmetric, InStudies::aside>(
       enrollment, "symmetric-linear",
       "Kinetic energy to first order in the elastic coordinates, from linear strain-displacement relations");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(symmetric_linear, enroll);
+}  // namespace withy

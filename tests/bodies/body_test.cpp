@@ -1,5 +1,8 @@
+#include <gmock/gmock.h>
+
 #include <cmath>
 
+#include "withy/core/simulation/elastic_modes.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/tests/bodies/beam_fixture.hpp"
 #include "withy/tests/conformance/body_suite.hpp"
@@ -67,6 +70,70 @@ TEST(Beam, damping_is_the_asked_for_ratio_of_each_mode) {
   for (const Section& s : shape.sections) G += (s.at.psi.transpose() * s.inertia * s.at.psi).diagonal();
   for (Eigen::Index i = 0; i < shape.modes(); ++i)
     EXPECT_NEAR(shape.damping(i, i) / (2 * std::sqrt(shape.stiffness(i, i) * G[i])), 0.01, 1e-14) << i;
+}
+
+/// v' D v = 2 ζ ω of the body's own modes, whatever functions describe them.
+double ratio_of_mode(const ModalShape& shape, Eigen::Index k) {
+  const ElasticModes modes = elastic_modes(shape);
+  const Eigen::VectorXd v = modes.vectors.col(k);
+  return v.dot(shape.damping * v) / (2 * modes.frequencies[k]);
+}
+
+TEST(Beam, damping_ratio_is_of_its_own_modes_in_every_family) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  for (const std::string family : {"clamped-free", "orthogonal-polynomials", "craig-bampton", "free-free"}) {
+    Value bending = strain(40, 4);
+    bending.set("family", Value(family));
+    const auto body = make_plugin<Body>(registry, "beam",
+                                        {{"length", Value(1.3)},
+                                         {"mass_per_length", Value(0.7)},
+                                         {"bending_y", bending},
+                                         {"bending_z", bending},
+                                         {"damping_ratio", Value(0.01)}});
+    ASSERT_NE(body, nullptr) << family;
+    const Eigen::Index count = elastic_modes(body->shape()).frequencies.size();
+    for (Eigen::Index k = 0; k < count; ++k) EXPECT_NEAR(ratio_of_mode(body->shape(), k), 0.01, 1e-10) << family << k;
+    EXPECT_TRUE(body->shape().damping.topRightCorner(4, 4).isZero(0)) << "planes stay apart, " << family;
+  }
+}
+
+TEST(Beam, single_modes_and_stiffness_have_damping_of_their_own) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const auto row = [](double mode, double ratio) { return Value::list({Value(mode), Value(ratio)}); };
+  Value damping = Value::map({});
+  damping.set("ratios", Value::list({row(1, 0.02), row(3, 0.05)}));
+  damping.set("stiffness_proportional", Value(1e-4));
+  const auto body = make_plugin<Body>(registry, "beam",
+                                      {{"length", Value(1.3)},
+                                       {"mass_per_length", Value(0.7)},
+                                       {"bending_y", strain(40, 3)},
+                                       {"bending_z", strain(25, 2)},
+                                       {"damping_ratio", Value(0.01)},
+                                       {"damping", damping}});
+  ASSERT_NE(body, nullptr);
+  const ElasticModes modes = elastic_modes(body->shape());
+  const std::vector<double> asked = {0.02, 0.01, 0.05, 0.01, 0.01};
+  for (Eigen::Index k = 0; k < 5; ++k)
+    EXPECT_NEAR(ratio_of_mode(body->shape(), k), asked[static_cast<std::size_t>(k)] + 1e-4 * modes.frequencies[k] / 2,
+                1e-12);
+  EXPECT_TRUE(body->remarks().empty());
+}
+
+/// What is allowed and odd is said.
+TEST(Beam, remarks_on_damping_beyond_critical_and_on_strains_without_modes) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const auto body = make_plugin<Body>(registry, "beam",
+                                      {{"length", Value(1.3)},
+                                       {"mass_per_length", Value(0.7)},
+                                       {"bending_y", strain(40, 2)},
+                                       {"bending_z", strain(25, 0)},
+                                       {"damping_ratio", Value(5.0)}});
+  ASSERT_NE(body, nullptr);
+  EXPECT_THAT(body->remarks(), testing::ElementsAre(testing::HasSubstr("damping ratio 5 is above 1"),
+                                                    testing::HasSubstr("bending_z has no modes")));
 }
 
 /// r′ = R e_x with R′ = R κ̂: an inextensible rod without shear, to second order in q. The defect of the second-order

@@ -132,6 +132,7 @@ void jumps(Campaign&);
 void stiff_orders(Campaign&);
 void checkpoints(Campaign&);
 void work_precision(Campaign&);
+void detest(Campaign&);
 void denormals(Campaign&);
 void threads(Campaign&);
 

@@ -34,6 +34,7 @@ const std::vector<Extreme>& extremes() {
       {"stiff-orders", "Order on stiff equations", &stiff_orders},
       {"checkpoints", "Checkpoints", &checkpoints},
       {"work-precision", "Error for tolerance", &work_precision},
+      {"detest", "Error for tolerance on problems of others", &detest},
       {"denormals", "Denormal numbers", &denormals},
       {"threads", "Threads", &threads},
   };
