@@ -105,7 +105,7 @@ TEST(Sid, integrals_that_no_mass_has_are_refused) {
 
 TEST(Sid, nodes_are_stations) {
   SidReport report;
-  const auto body = body_of(car_roof(), {"12", 0.02}, report);
+  const auto body = body_of(car_roof(), {"12", BodyDamping{.ratio = 0.02, .ratios = {}}}, report);
   const auto node = body->station(12.0);
   ASSERT_TRUE(node.has_value());
   EXPECT_EQ(node->X, Vector3(1.0, 1.3, 0));

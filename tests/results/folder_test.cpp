@@ -166,7 +166,9 @@ TEST(KeptResults, ThatAreDamagedAreNotFound) {
     std::string bad = good;
     bad[i] = static_cast<char>(bad[i] ^ 1);
     scratch.write("points/a.json", bad);
-    if (const auto found = kept.find("a")) EXPECT_EQ(found->dump(), R"({"error":0.125,"steps":17})") << i;
+    if (const auto found = kept.find("a")) {
+      EXPECT_EQ(found->dump(), R"({"error":0.125,"steps":17})") << i;
+    }
     if (i + 2 >= good.size()) continue;  // the last line break alone is nothing
     scratch.write("points/a.json", good.substr(0, i));
     EXPECT_FALSE(kept.find("a")) << "cut at " << i;
