@@ -5,6 +5,7 @@
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/point.hpp"
 
 namespace withy::study {
 namespace {
@@ -73,7 +74,8 @@ std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std:
 }
 
 std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std::string& id, double tolerance) {
-  return make_integrator(registry, id, Value::map({{"rtol", Value(tolerance)}, {"atol", Value(1e-2 * tolerance)}}));
+  return make_integrator(registry, id,
+                         Value::map({{"rtol", Value(tolerance)}, {"atol", Value(absolute_tolerance(tolerance))}}));
 }
 
 Beyond compile_throughout(const Prepared& prepared, Registry& registry, const std::string& formulation) {
