@@ -86,7 +86,8 @@ std::optional<study::Thresholds> found(const Engine& engine, const TradeArgument
                                             {points, q.range, holding, arguments.count}, q.limit, control);
   }
   std::optional<TradeFolder> store;
-  if (!arguments.out.empty()) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points, engine.registry()));
+  if (!arguments.out.empty())
+    store.emplace(arguments.out, trade_fingerprint(engine.scene(), points, engine.registry()));
   return study::thresholds_of_runs(engine.prepared(), engine.registry(), points, q.range, q.limit,
                                    {arguments.jobs, store ? &*store : nullptr, control});
 }
