@@ -54,7 +54,7 @@ template <class Space>
 void TreeObservation<Space>::move(std::size_t index) noexcept {
   const Node<Space>& node = tree_->nodes[index];
   if (node.is_rod()) sweep::rod_motion<any_count>(node.rod, node.modes, q(node), q_dot(node), rod(node));
-  sweep::JointMotion<Space> joint;
+  sweep::JointMotion<Space> joint{};  // a planar tree has hinges that set all of it; the compiler does not know that
   sweep::joint_motion<Space>(node.joint, y_.data() + node.joint.position,
                              y_.data() + tree_->positions + node.joint.speed, joint);
   Motion& B = nodes_[index];
