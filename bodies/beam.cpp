@@ -9,9 +9,10 @@
 ///   θ₂ = ½ ∫₀ˣ θ₁ × θ₁′ dσ                    →  Θ_ij = ½ ∫₀ˣ (ψ_i × ψ_j′ + ψ_j × ψ_i′) dσ
 ///   r₂ = ∫₀ˣ θ₂ × e_x + ½ θ₁ × (θ₁ × e_x) + θ₁ × γ dσ
 ///     →  Γ_ij = ∫₀ˣ Θ_ij × e_x + ½ (ψ_i × (ψ_j × e_x) + ψ_j × (ψ_i × e_x)) + ψ_i × γ_j + ψ_j × γ_i dσ
-/// Along x this is the foreshortening −½∫(v′² + w′²) of Padilla & von Flotow, across it the coupling of bending and
-/// twist. The sections' inertia is ρI_p about x, and in bending ρI where a scene gives it (Rayleigh's beam). Mass,
-/// stiffness and inertias may vary along the beam; the assumed modes are then Ritz functions, K and M their integrals.
+/// for the complete second order; another strain kinematics gives other slopes (StrainKinematics). Along x this is the
+/// foreshortening −½∫(v′² + w′²) of Padilla & von Flotow, across it the coupling of bending and twist. The sections'
+/// inertia is ρI_p about x, and in bending ρI where a scene gives it (Rayleigh's beam). Mass, stiffness and inertias
+/// may vary along the beam; the assumed modes are then Ritz functions, K and M their integrals.
 #include <fmt/format.h>
 
 #include <Eigen/QR>
@@ -35,7 +36,7 @@ struct Strain {
   Vector3 direction;  ///< of θ₁ for a unit slope (bending) or unit twist; of γ (elongation)
   BeamData::Strain kind;
   Profile stiffness;  ///< EI, GJ [N m²], EA or kGA [N]
-  std::unique_ptr<ShapeFunctions> functions;
+  std::shared_ptr<const ShapeFunctions> functions;
 };
 
 /// What the beam consists of.
@@ -50,11 +51,13 @@ struct Material {
 /// Values of every coordinate's fields at one x.
 struct LinearFields {
   Matrix3X phi, psi, psi_slope, gamma;  ///< Φ; ψ; curvature and twist rate κ = ψ′; elongation γ
+
+  [[nodiscard]] SectionField field(Eigen::Index i) const { return {psi.col(i), psi_slope.col(i), gamma.col(i)}; }
 };
 
 class Beam final : public Body, private Rod {
  public:
-  Beam(const Material& material, std::vector<Strain> strains)
+  Beam(const Material& material, std::vector<Strain> strains, const StrainKinematics& kinematics)
       : material_(material),
         length_(material.length),
         strains_(std::move(strains)),
@@ -66,7 +69,7 @@ class Beam final : public Body, private Rod {
         shape_.mode_names.push_back(std::string(s.name) + "[" + std::to_string(i) + "]");
       }
     }
-    integrate_fields();
+    integrate_fields(kinematics);
     const Eigen::Index n = shape_.modes();
     shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(n, n);
     Eigen::MatrixXd modal_mass = Eigen::MatrixXd::Zero(n, n);
@@ -123,6 +126,9 @@ class Beam final : public Body, private Rod {
   }
   std::string stations() const override {
     return "root, tip, or a coordinate x from 0 to " + std::to_string(length_) + " m";
+  }
+  std::shared_ptr<const Body> expanded(const StrainKinematics& kinematics) const override {
+    return std::make_shared<const Beam>(material_, strains_, kinematics);
   }
   std::vector<std::string> remarks() const override {
     std::vector<std::string> all = material_.damping.remarks(shape_.modes());
@@ -219,7 +225,7 @@ class Beam final : public Body, private Rod {
   }
 
   /// Θ and Γ at the nodes by running integrals; a row holds the upper triangles of the three components.
-  void integrate_fields() {
+  void integrate_fields(const StrainKinematics& kinematics) {
     const Eigen::Index n = shape_.modes();
     const Eigen::Index pairs = n * (n + 1) / 2;
     const auto nodes = static_cast<Eigen::Index>(quadrature_.nodes().size());
@@ -236,20 +242,15 @@ class Beam final : public Body, private Rod {
     for (Eigen::Index k = 0; k < nodes; ++k) {
       const LinearFields& f = fields[static_cast<std::size_t>(k)];
       each_pair([&](Eigen::Index i, Eigen::Index j, Eigen::Index column) {
-        const Vector3 a = f.psi.col(i), b = f.psi.col(j), da = f.psi_slope.col(i), db = f.psi_slope.col(j);
-        theta_slope_.block<1, 3>(k, column) = 0.5 * (a.cross(db) + b.cross(da)).transpose();
+        theta_slope_.block<1, 3>(k, column) = kinematics.rotation_slope(f.field(i), f.field(j)).transpose();
       });
     }
     theta_at_nodes_ = quadrature_.running_integral(theta_slope_);
-    const Vector3 ex = Vector3::UnitX();
     for (Eigen::Index k = 0; k < nodes; ++k) {
       const LinearFields& f = fields[static_cast<std::size_t>(k)];
       each_pair([&](Eigen::Index i, Eigen::Index j, Eigen::Index column) {
-        const Vector3 a = f.psi.col(i), b = f.psi.col(j), along_a = f.gamma.col(i), along_b = f.gamma.col(j);
         const Vector3 theta = theta_at_nodes_.block<1, 3>(k, column).transpose();
-        gamma_slope_.block<1, 3>(k, column) = (theta.cross(ex) + 0.5 * (a.cross(b.cross(ex)) + b.cross(a.cross(ex))) +
-                                               a.cross(along_b) + b.cross(along_a))
-                                                  .transpose();
+        gamma_slope_.block<1, 3>(k, column) = kinematics.displacement_slope(f.field(i), f.field(j), theta).transpose();
       });
     }
     gamma_at_nodes_ = quadrature_.running_integral(gamma_slope_);
@@ -298,7 +299,7 @@ class Reader {
     add("shear_y", Vector3::UnitY(), elongation, mass, "", material);
     add("shear_z", Vector3::UnitZ(), elongation, mass, "", material);
     if (!good_) return nullptr;
-    return std::make_unique<Beam>(material, std::move(strains_));
+    return std::make_unique<Beam>(material, std::move(strains_), CompleteSecondOrder());
   }
 
  private:

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/core/plugin/motion.hpp"
+#include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
@@ -103,6 +105,16 @@ std::optional<Value> Checker::mode_family(const Value& value) const {
   return checked;
 }
 
+std::optional<Value> Checker::formulation(const Value& value) const {
+  const bool short_form = value.kind() == Value::Kind::text;
+  Made<Formulation> made;
+  auto checked =
+      check_plugin_map(short_form ? Value::map({{"name", value}}, value.place()) : grammar::named_formulation(value),
+                       "name", {grammar::formulation_name()}, *this, made);
+  if (checked && short_form) return value;
+  return checked;
+}
+
 std::optional<Value> Checker::motion(const Value& value) const {
   const bool short_form = value.kind() == Value::Kind::text;
   Made<Motion> made;
@@ -114,6 +126,10 @@ std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec
   if (spec.refers == ParameterSpec::Refers::mode_family &&
       (value.kind() == Value::Kind::text || value.kind() == Value::Kind::map)) {
     return mode_family(value);
+  }
+  if (spec.refers == ParameterSpec::Refers::formulation &&
+      (value.kind() == Value::Kind::text || value.kind() == Value::Kind::map)) {
+    return formulation(value);
   }
   if (spec.refers == ParameterSpec::Refers::motion &&
       (value.kind() == Value::Kind::text || value.kind() == Value::Kind::map)) {
@@ -132,6 +148,10 @@ std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec
     const std::string guess = nearest(value.text(), spec.choices);
     got(value, spec, guess.empty() ? "" : fmt::format("did you mean '{}'?", guess));
     return {};
+  }
+  if (spec.refers == ParameterSpec::Refers::strain_kinematics) {
+    if (plugin<StrainKinematics>(value) == nullptr) return {};
+    return value;
   }
   if (!refers(value.place(), value.text(), spec.refers)) return {};
   return value;

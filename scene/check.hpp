@@ -87,6 +87,7 @@ class Checker {
   std::optional<Value> number(const Value& value, const ParameterSpec& spec, const std::string& unit) const;
   std::optional<Value> text(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> mode_family(const Value& value) const;
+  std::optional<Value> formulation(const Value& value) const;
   std::optional<Value> motion(const Value& value) const;
   std::optional<Value> row(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> table(const Value& value, const ParameterSpec& spec) const;

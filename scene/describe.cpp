@@ -37,6 +37,10 @@ const char* referent(ParameterSpec::Refers what) {
       return "frame";
     case mode_family:
       return "mode family";
+    case strain_kinematics:
+      return "strain kinematics";
+    case formulation:
+      return "formulation";
     case motion:
       return "motion";
     case nothing:
@@ -60,6 +64,9 @@ std::string expectation(const ParameterSpec& spec) {
       if (!spec.unit.empty()) return "a name, or a number" + range(spec) + bracketed(spec.unit);
       if (spec.refers == ParameterSpec::Refers::mode_family) {
         return "the name of a mode family, or a map with its name and options";
+      }
+      if (spec.refers == ParameterSpec::Refers::formulation) {
+        return "the name of a formulation, or a map with its kinematics and truncation";
       }
       if (spec.refers == ParameterSpec::Refers::motion) {
         return "the type of a motion, or a map with its type and options";

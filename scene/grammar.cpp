@@ -61,7 +61,7 @@ std::vector<ParameterSpec> body_members() {
   return {text("type", "body plugin"),
           named("frames", frame, "frames for hinges and loads, each fixed to the section at a station")
               .otherwise(Value::map({})),
-          text("formulation", "formulation plugin for this body alone").optional()};
+          text("formulation", "formulation for this body alone").naming(ParameterSpec::Refers::formulation).optional()};
 }
 
 std::vector<ParameterSpec> hinge_members() {
@@ -84,5 +84,15 @@ ParameterSpec choice_name(std::string_view kind, std::string_view otherwise) {
 ParameterSpec motion_type() { return text("type", "motion plugin"); }
 
 ParameterSpec family_name() { return text("name", "mode-family plugin"); }
+ParameterSpec formulation_name() { return text("name", "formulation plugin"); }
+
+Value named_formulation(Value given) {
+  if (given.kind() != Value::Kind::map || given.find("name") != nullptr ||
+      (given.find("kinematics") == nullptr && given.find("truncation") == nullptr))
+    return given;
+  const Place place = given.place();
+  given.set("name", Value(std::string("general"), {place.line, place.column, place.path + "/name"}));
+  return given;
+}
 
 }  // namespace withy::grammar

@@ -28,6 +28,9 @@ std::vector<ParameterSpec> motion_members();
 ParameterSpec choice_name(std::string_view kind, std::string_view otherwise);
 /// The name of a mode family beside the plugin's own options.
 ParameterSpec family_name();
+ParameterSpec formulation_name();
+/// A formulation with its name: `{kinematics: …, truncation: …}` is short for the formulation `general` with these.
+Value named_formulation(Value given);
 /// The type of a motion beside the plugin's own options.
 ParameterSpec motion_type();
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "withy/scene/describe.hpp"
+#include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/scene.hpp"
 #include "withy/scene/sha256.hpp"
@@ -28,6 +29,7 @@ void lengthen_choice(Value& root, const std::string& key) {
 void lengthen_choices(Value& root) {
   if (root.kind() != Value::Kind::map) return;
   lengthen_choice(root, "formulation");
+  if (const Value* given = root.find("formulation")) root.set("formulation", grammar::named_formulation(*given));
   lengthen_choice(root, "integrator");
 }
 

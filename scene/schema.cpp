@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/scene.hpp"
 
@@ -70,6 +71,7 @@ class SchemaWriter {
          {{"quantity", {{"type", "string"}, {"pattern", quantity_pattern}, {"description", "a number with its unit"}}},
           {"numbers", {{"type", "array"}, {"items", number_or_quantity({{"type", "number"}})}}},
           {"mode-family", mode_family()},
+          {"formulation", own_formulation()},
           {"motion", motion()},
           {"name", {{"type", "string"}, {"pattern", name_pattern}}}}}};
   }
@@ -86,11 +88,13 @@ class SchemaWriter {
     return json;
   }
 
-  static Json word(const ParameterSpec& spec) {
+  Json word(const ParameterSpec& spec) {
     if (!spec.unit.empty()) return {{"type", {"string", "number"}}};
     if (spec.refers == ParameterSpec::Refers::mode_family) return reference("mode-family");
+    if (spec.refers == ParameterSpec::Refers::formulation) return reference("formulation");
     if (spec.refers == ParameterSpec::Refers::motion) return reference("motion");
     Json json = {{"type", "string"}};
+    if (spec.refers == ParameterSpec::Refers::strain_kinematics) json["enum"] = registry_.ids<StrainKinematics>();
     if (!spec.choices.empty()) json["enum"] = spec.choices;
     return json;
   }
@@ -106,7 +110,7 @@ class SchemaWriter {
     return {{"type", "array"}, {"items", row(number_or_quantity({{"type", "number"}}), spec.count)}, {"minItems", 1}};
   }
 
-  static Json kind(const ParameterSpec& spec) {
+  Json kind(const ParameterSpec& spec) {
     using enum ParameterSpec::Kind;
     const auto quantity = [&] { return number_or_quantity(bounded(spec, "number")); };
     switch (spec.kind) {
@@ -135,7 +139,7 @@ class SchemaWriter {
     return {};
   }
 
-  static Json described(const ParameterSpec& spec) {
+  Json described(const ParameterSpec& spec) {
     Json json = kind(spec);
     const bool has_unit = !spec.unit.empty() && spec.unit != "1";
     json["description"] = spec.meaning + (has_unit ? fmt::format(" [{}]", spec.unit) : "");
@@ -143,7 +147,7 @@ class SchemaWriter {
     return json;
   }
 
-  static Json members(const Specs& specs) {
+  Json members(const Specs& specs) {
     Json properties = Json::object();
     Json required = Json::array();
     for (const ParameterSpec& s : specs) {
@@ -185,7 +189,7 @@ class SchemaWriter {
     Json list = alternatives<Interface>("name", {grammar::choice_name(key, otherwise)});
     // Without a name the options are those of the default plugin.
     for (Json& json : list) {
-      if (json["properties"]["name"]["const"] != otherwise) json["required"].push_back("name");
+      if (json["properties"]["name"]["const"] != otherwise) require_name(json);
     }
     list.push_back({{"type", "string"}, {"enum", registry_.ids<Interface>()}});
     return {{"description", fmt::format("{} plugin, by name or with options", key)},
@@ -197,6 +201,18 @@ class SchemaWriter {
     Json list = alternatives<ModeFamily>("name", {grammar::family_name()});
     list.push_back({{"type", "string"}, {"enum", registry_.ids<ModeFamily>()}});
     return {{"description", "mode-family plugin, by name or with options"}, {"anyOf", list}};
+  }
+
+  /// Of a body alone.
+  Json own_formulation() {
+    Json list = alternatives<Formulation>("name", {grammar::formulation_name().optional()});
+    for (Json& json : list) require_name(json);
+    list.push_back({{"type", "string"}, {"enum", registry_.ids<Formulation>()}});
+    return {{"description", "formulation plugin, by name or with options"}, {"anyOf", list}};
+  }
+  /// Requires the plugin's name beside its options; kinematics and truncation say theirs (grammar::named_formulation).
+  static void require_name(Json& json) {
+    if (!json["properties"].contains("truncation")) json["required"].push_back("name");
   }
 
   Json motion() {

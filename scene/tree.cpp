@@ -202,16 +202,18 @@ class TreeBuilder {
     }
   }
 
-  /// What a body's own formulation keeps; it has no options there.
-  std::optional<Terms> terms_of(const Value& id) {
+  /// What a body's own formulation keeps: its name, or a map with its options.
+  std::optional<Terms> terms_of(const Value& given) {
+    const Value choice =
+        given.kind() == Value::Kind::text ? Value::map({{"name", given}}, given.place()) : given;  // it is checked
+    const Value& id = choice.at("name");
     if (id.kind() == Value::Kind::text && id.text() == "auto") {
       checker_.diagnostics().error(id.place(), "got 'auto', which is a choice for a whole scene; name a formulation");
       good_ = false;
       return {};
     }
     Made<Formulation> made;
-    const Value choice = Value::map({{"name", id}}, id.place());
-    const auto value = check_plugin_map(choice, "name", {text("name", "")}, checker_, made);
+    const auto value = check_plugin_map(choice, "name", {grammar::formulation_name()}, checker_, made);
     const auto formulation = value ? make_object(*made.plugin, *value, checker_) : nullptr;
     if (formulation != nullptr && formulation->terms().products_of_speeds) return formulation->terms();
     if (formulation != nullptr)

@@ -13,8 +13,8 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
 
     # Inside the core: each room sees those named before it, and what is named here alone.
     engine = standard "|(unsupported/)?Eigen/.*|boost/math/.*"
-    rooms = split("spatial shape plugin model deformation tree sweep sweep/rod sweep/strict sweep/symmetric kinematics " \
-                  "reference tangents equations simulation analysis", core, " ")
+    rooms = split("spatial shape plugin model deformation tree sweep sweep/rod sweep/strict sweep/symmetric sweep/first_order " \
+                  "kinematics reference tangents equations simulation analysis", core, " ")
     seen = ""
     for (i = 1; i <= rooms; ++i) {
       seen = seen (i > 1 ? "|" : "") core[i]
@@ -25,6 +25,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["study"] = inner "|withy/(scene|study|plugins/host)/.*|fmt/.*|boost/math/.*"
     may["results"] = inner "|withy/(scene|study|results)/.*|nlohmann/.*|fmt/.*|boost/crc.hpp|(sys/)?[a-z]+[.]h"
     may["plugins/formulations"] = inner "|withy/plugins/formulations/.*|fmt/.*"
+    may["plugins/kinematics"] = inner "|withy/plugins/kinematics/.*"
     may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"
     may["plugins/host"] = inner "|withy/plugins/host/.*|fmt/.*|boost/.*|(sys/)?[a-z]+[.]h"
     may["bodies"] = inner "|withy/bodies/.*|fmt/.*|boost/math/.*"

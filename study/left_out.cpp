@@ -15,7 +15,13 @@ std::string left_out(const Terms& terms) {
     case Truncation::strict:
       return terms.strain == StrainOrder::linear
                  ? "second-order kinematics, and all beyond the first order of elastic coordinates and rates"
-                 : "all beyond the first order of elastic coordinates and rates, the square in the mass matrix too";
+                 : "all beyond the first order of elastic coordinates and rates, and that order in the columns of the "
+                   "mass matrix that belong to modes";
+    case Truncation::symmetric:
+      return terms.strain == StrainOrder::linear ? "second-order kinematics, and all beyond the first order of the "
+                                                   "kinetic energy in the elastic coordinates"
+                                                 : "all beyond the first order of the kinetic energy in the elastic "
+                                                   "coordinates, stiffening by rotation too";
     case Truncation::none:
       break;
   }
@@ -33,7 +39,7 @@ std::string left_out(const ModelAt& model) {
   std::string bodies;
   for (const auto& own : model.point.bodies) bodies += (bodies.empty() ? "; of " : ", ") + own.first;
   if (bodies.empty()) return text;
-  constexpr Terms least{StrainOrder::linear, Truncation::ruthless};  // bodies have no other formulation of their own
+  const Terms least{StrainOrder::linear, Truncation::ruthless};  // bodies have no other formulation of their own
   return text + bodies + " " + left_out(least);
 }
 

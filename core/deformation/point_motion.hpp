@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "withy/core/plugin/strain_kinematics.hpp"
+#include "withy/core/deformation/point_kinematics.hpp"
 #include "withy/core/plugin/terms.hpp"
 #include "withy/core/shape/modal_shape.hpp"
 
@@ -156,7 +156,7 @@ std::pair<Vector3, Vector3> point_velocity(const PointExpansion& e, StrainOrder 
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const Vector3 phi = e.phi.col(i);
     Vector3 P = phi;
-    if (order == StrainOrder::quadratic) {
+    if (order != StrainOrder::linear) {
       for (Eigen::Index j = 0; j < q.size(); ++j)
         P += Vector3(e.gamma[0](i, j), e.gamma[1](i, j), e.gamma[2](i, j)) * q[j];
     }
@@ -181,7 +181,7 @@ PointMotionOf<S> offset_motion(const PointMotionOf<S>& section, const Pose& offs
 }
 
 /// Strain kinematics given by expansions: `linear` or `quadratic`.
-class PolynomialKinematics final : public StrainKinematics {
+class PolynomialKinematics final : public PointKinematics {
  public:
   PolynomialKinematics(std::vector<PointExpansion> points, StrainOrder order, Eigen::Index modes)
       : points_(std::move(points)), order_(order), modes_(modes) {}

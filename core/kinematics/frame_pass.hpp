@@ -19,15 +19,33 @@ using M3 = Eigen::Matrix<S, 3, 3>;
 /// a + εb with ε² = 0: the first order in the elastic coordinates.
 using Dual = DualNumber<double, 1>;
 
-inline Dual dual(double value, double derivative) {
-  Dual d(value);
-  d.derivatives()[0] = derivative;
-  return d;
+/// The same of duals: with εq + δq for q the coefficient of εδ is twice the second order.
+using Second = DualNumber<Dual, 1>;
+
+/// An elastic coordinate in a scalar.
+template <class S>
+inline S elastic(double q) {
+  if constexpr (std::is_same_v<S, double>) {
+    return q;
+  } else if constexpr (std::is_same_v<S, Dual>) {
+    Dual d(0.0);
+    d.derivatives()[0] = q;
+    return d;
+  } else {
+    Second d(elastic<Dual>(q));
+    d.derivatives()[0] = Dual(q);
+    return d;
+  }
 }
 
-/// What remains of an expansion to first order at ε = 1.
-inline double total(double x) { return x; }
-inline double total(const Dual& x) { return x.value() + x.derivatives()[0]; }
+/// What a mode's row keeps of an expansion: all, or the first order.
+inline double on_mode(double x) { return x; }
+inline double on_mode(const Dual& x) { return x.value() + x.derivatives()[0]; }
+inline double on_mode(const Second& x) { return x.value().value() + x.derivatives()[0].value(); }
+/// A hinge's row: the second order as well where both come from one potential.
+inline double on_hinge(double x) { return x; }
+inline double on_hinge(const Dual& x) { return on_mode(x); }
+inline double on_hinge(const Second& x) { return on_mode(x) + 0.5 * x.derivatives()[0].derivatives()[0]; }
 
 /// The hinge's motion, found once for all scalars.
 struct HingeStep {
@@ -160,7 +178,7 @@ class FramePaths::Pass {
       for (std::size_t j = 0; j < link.slot.speeds; ++j) {
         const auto k = static_cast<Eigen::Index>(j);
         const V3 turn = hinge.angular.col(k).template cast<S>(), slide = hinge.linear.col(k).template cast<S>();
-        efforts[link.slot.speed + j] += frame_pass::total(S(turn.dot(t) + slide.dot(f)));
+        efforts[link.slot.speed + j] += frame_pass::on_hinge(S(turn.dot(t) + slide.dot(f)));
       }
       if (!link.at_world) attach(link.F, force, moment + m.arm_h.cross(force), efforts);
     }
@@ -174,11 +192,7 @@ class FramePaths::Pass {
     const double kept = link.truncation == Truncation::ruthless ? 0.0 : 1.0;
     for (Eigen::Index i = 0; i < link.modes; ++i) {
       const double value = kept * positions[link.modal.position + static_cast<std::size_t>(i)];
-      if constexpr (std::is_same_v<S, double>) {
-        q[i] = value;
-      } else {
-        q[i] = frame_pass::dual(0, value);
-      }
+      q[i] = frame_pass::elastic<S>(value);
       q_dot[i] = kept * speeds[link.modal.speed + static_cast<std::size_t>(i)];
     }
     if constexpr (std::is_same_v<S, double>) {
@@ -306,7 +320,7 @@ class FramePaths::Pass {
               along(frame_pass::component(section.at.gamma, i, j), frame_pass::component(section.at.theta, i, j)) *
               q[j];
       }
-      e[i] += sign * frame_pass::total(effort);
+      e[i] += sign * frame_pass::on_mode(effort);
     }
   }
 

@@ -13,6 +13,7 @@ FramePaths::FramePaths(const Model& model, Terms terms, const std::vector<FrameI
   hinge_offset_ = memory.take<frame_pass::HingeStep>(links_.size());
   for (Link& link : links_) {
     strict_ = strict_ || (link.modes > 0 && link.truncation == Truncation::strict);
+    symmetric_ = symmetric_ || (link.modes > 0 && link.truncation == Truncation::symmetric);
     if (link.order != StrainOrder::exact || link.truncation != Truncation::none || link.modes == 0) continue;
     // The rod wants its sections as stations of a node.
     NodeSpec node;
@@ -32,6 +33,7 @@ FramePaths::FramePaths(const Model& model, Terms terms, const std::vector<FrameI
   partials_offset_ = memory.take<Spatial::Twist>(partials_);
   full_offset_ = Pass<double>::take(*this, memory);
   if (strict_) first_order_offset_ = Pass<frame_pass::Dual>::take(*this, memory);
+  if (symmetric_) first_order_offset_ = Pass<frame_pass::Second>::take(*this, memory);
   work_size_ = memory.size();
 }
 
@@ -43,12 +45,15 @@ void FramePaths::motions(std::span<const double> positions, std::span<const doub
   full.outward(positions, speeds);
   for (std::size_t i = 0; i < frames_.size(); ++i) motions[i] = full.frame(frames_[i]);
   if (strict_) Pass<frame_pass::Dual>(*this, work, first_order_offset_).outward(positions, speeds);
+  if (symmetric_) Pass<frame_pass::Second>(*this, work, first_order_offset_).outward(positions, speeds);
 }
 
 void FramePaths::add_efforts(std::span<const Wrench> wrenches, std::span<double> efforts,
                              std::byte* work) const noexcept {
   if (strict_) {
     Pass<frame_pass::Dual>(*this, work, first_order_offset_).inward(wrenches, efforts);
+  } else if (symmetric_) {
+    Pass<frame_pass::Second>(*this, work, first_order_offset_).inward(wrenches, efforts);
   } else {
     Pass<double>(*this, work, full_offset_).inward(wrenches, efforts);
   }

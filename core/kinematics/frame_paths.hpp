@@ -15,7 +15,8 @@ namespace withy {
 /// inward for the efforts Σ J_ωᵀ m + J_vᵀ f of wrenches at them. Either costs as many steps as there are such bodies.
 ///
 /// Motion is that of the bodies' strain kinematics at q, q̇; of a ruthless body at q = 0, q̇ = 0. The partial velocities
-/// are those of the same motion, but under strict truncation linear in q: J(0) + dJ(εq)/dε.
+/// are those of the same motion, but under strict truncation linear in q: J(0) + dJ(εq)/dε; under symmetric truncation
+/// so for modes, and to second order for hinges, that the efforts of a dead force have a potential.
 class FramePaths {
  public:
   /// `terms` hold for every body that has none of its own. The model must outlive the paths.
@@ -73,7 +74,7 @@ class FramePaths {
   std::vector<Place> frames_;
   std::size_t modes_ = 0;
   std::size_t partials_ = 0;
-  bool strict_ = false;
+  bool strict_ = false, symmetric_ = false;
   std::size_t hinge_offset_ = 0, partials_offset_ = 0, full_offset_ = 0, first_order_offset_ = 0, work_size_ = 0;
 };
 

@@ -229,6 +229,28 @@ State Model::reference_state() const {
   return s;
 }
 
+std::shared_ptr<const Model> Model::in_kinematics(std::shared_ptr<const Model> model, const Terms& scene) {
+  std::shared_ptr<Model> changed;
+  for (std::size_t b = 0; b < model->bodies_.size(); ++b) {
+    const BodyNode& node = model->bodies_[b];
+    const Terms& terms = node.terms ? *node.terms : scene;
+    if (terms.kinematics == nullptr || node.body->shape().modes() == 0) continue;
+    auto body = node.body->expanded(*terms.kinematics);
+    if (body == nullptr) {
+      throw std::invalid_argument("body '" + node.name + "' cannot be in strain kinematics '" +
+                                  std::string(terms.kinematics->name()) +
+                                  "': a slender body offers the linear fields that it needs; give the body a "
+                                  "formulation of its own");
+    }
+    if (changed == nullptr) changed = std::make_shared<Model>(*model);
+    BodyNode& own = changed->bodies_[b];
+    own.body = std::move(body);
+    for (Frame& frame : own.frames) frame.section = own.body->station(frame.section.X.x()).value();
+  }
+  if (changed == nullptr) return model;
+  return changed;
+}
+
 Model Model::rigidified() const {
   std::vector<BodyNode> bodies = bodies_;
   for (BodyNode& b : bodies) {

@@ -108,6 +108,11 @@ class Model {
   /// The same tree with every body rigid in its undeformed shape, without loads and motions.
   [[nodiscard]] Model rigidified() const;
 
+  /// The same tree with the bodies in the strain kinematics that their terms name, `scene` where they have none.
+  /// \throws std::invalid_argument where a body cannot be; the text names it and the kinematics.
+  [[nodiscard]] static std::shared_ptr<const Model> in_kinematics(std::shared_ptr<const Model> model,
+                                                                  const Terms& scene);
+
   /// Adds a load, bound to this model. For builders of a model, before it is shared.
   /// \throws std::invalid_argument as Load::bind.
   void add_load(std::string name, const Load& load);

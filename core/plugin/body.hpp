@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "withy/core/plugin/rod.hpp"
+#include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/core/shape/modal_shape.hpp"
 
 namespace withy {
@@ -30,6 +31,12 @@ class Body {
   [[nodiscard]] virtual std::string stations() const = 0;
   /// The body as a rod of exact kinematics; null where it cannot be one. It lives as long as the body.
   [[nodiscard]] virtual const Rod* rod() const { return nullptr; }
+  /// The same body with its second-order maps made by `kinematics` from its linear fields; it has a station at every
+  /// coordinate along x where this one has one. Null where the body has not the fields, as it is not slender or reads
+  /// its maps from data.
+  [[nodiscard]] virtual std::shared_ptr<const Body> expanded(const StrainKinematics& /*kinematics*/) const {
+    return nullptr;
+  }
   /// The body in pieces that lie one behind the other, from its root on: each has the stations `root` and `tip`, and
   /// the tip of one is joined rigidly to the root of the next. A model is made of them in place of the body; shape() is
   /// then of the whole as if it were one piece. Empty where it is one.

@@ -19,7 +19,7 @@ struct Standing {
 };
 
 /// A rank from what is kept: none elastic first, then by strain kinematics, and within one by truncation.
-constexpr int rank_of(const Terms& terms) {
+inline int rank_of(const Terms& terms) {
   if (terms.truncation == Truncation::ruthless) return 0;
   const int kept = terms.products_of_speeds ? static_cast<int>(terms.truncation) : 0;
   return 10 * (1 + static_cast<int>(terms.strain)) + kept;

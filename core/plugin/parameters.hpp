@@ -29,7 +29,7 @@ struct ParameterSpec {
     named,    ///< any number of named maps, each with `members`; the names refer as `refers` says
   };
   /// What a name must be the name of; the reader reports dangling names.
-  enum class Refers { nothing, body, hinge, frame, mode_family, motion };
+  enum class Refers { nothing, body, hinge, frame, mode_family, motion, strain_kinematics, formulation };
   /// What a parameter is to studies, whatever its key: they vary those that have a role (mode_parameters.hpp).
   enum class Role {
     none,

@@ -25,6 +25,7 @@ class Formulation;
 class Integrator;
 class Load;
 class Motion;
+class StrainKinematics;
 class Registry;
 
 /// What a plugin is told when it makes something: where other plugins are found, where to report, for which object.
@@ -78,9 +79,14 @@ constexpr std::string_view kind_name<Motion>() {
   return "motion";
 }
 
-inline constexpr std::array<std::string_view, 7> plugin_kinds = {
+template <>
+constexpr std::string_view kind_name<StrainKinematics>() {
+  return "strain-kinematics";
+}
+
+inline constexpr std::array<std::string_view, 8> plugin_kinds = {
     kind_name<Body>(),       kind_name<Hinge>(), kind_name<ModeFamily>(), kind_name<Formulation>(),
-    kind_name<Integrator>(), kind_name<Load>(),  kind_name<Motion>()};
+    kind_name<Integrator>(), kind_name<Load>(),  kind_name<Motion>(),     kind_name<StrainKinematics>()};
 
 /// Whether a text can be a plugin's id: 1 to 64 of a-z, 0-9 and '-'.
 bool is_plugin_id(std::string_view text);
@@ -109,7 +115,7 @@ class Enrollment {
   friend class Registry;
   std::tuple<std::vector<Plugin<Body>>, std::vector<Plugin<Hinge>>, std::vector<Plugin<ModeFamily>>,
              std::vector<Plugin<Formulation>>, std::vector<Plugin<Integrator>>, std::vector<Plugin<Load>>,
-             std::vector<Plugin<Motion>>>
+             std::vector<Plugin<Motion>>, std::vector<Plugin<StrainKinematics>>>
       plugins_;
 };
 
@@ -149,7 +155,9 @@ class Registry {
   using Map = std::map<std::string, Plugin<Interface>, std::less<>>;
   static std::vector<std::string> sorted_unique(std::vector<std::string> names);
 
-  std::tuple<Map<Body>, Map<Hinge>, Map<ModeFamily>, Map<Formulation>, Map<Integrator>, Map<Load>, Map<Motion>> maps_;
+  std::tuple<Map<Body>, Map<Hinge>, Map<ModeFamily>, Map<Formulation>, Map<Integrator>, Map<Load>, Map<Motion>,
+             Map<StrainKinematics>>
+      maps_;
   /// A loader admits what it loads: recursive. On the heap, so that a registry can be moved before it is shared.
   std::unique_ptr<std::recursive_mutex> mutex_ = std::make_unique<std::recursive_mutex>();
   std::function<bool(Registry&, std::string_view, std::string_view)> loader_;

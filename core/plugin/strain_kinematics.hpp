@@ -1,33 +1,54 @@
 /// \file
-/// The interface of strain kinematics: how the material points of one body move with its modal coordinates.
+/// The interface of strain kinematics: which relations between displacements and strains hold.
 #pragma once
 
-#include <span>
+#include <string_view>
 
-#include "withy/core/shape/modal_shape.hpp"
+#include "withy/core/plugin/terms.hpp"
+#include "withy/core/spatial/pose.hpp"
 
 namespace withy {
 
-/// Motion of one material point relative to the body frame, in body axes, for given q and q̇.
-struct PointMotion {
-  Vector3 r = Vector3::Zero();       ///< position [m]
-  Matrix3 R = Matrix3::Identity();   ///< rotation of the section
-  Matrix3X P;                        ///< partial velocities ∂ṙ/∂q̇ = ∂r/∂q, 3×n
-  Matrix3X W;                        ///< partial angular velocities ∂ω/∂q̇, 3×n
-  Vector3 r_bias = Vector3::Zero();  ///< Ṗ q̇ [m/s²]
-  Vector3 w_bias = Vector3::Zero();  ///< Ẇ q̇ [rad/s²]
+/// Linear fields of one modal coordinate at a section of a slender body along x, body axes, per unit of the coordinate.
+struct SectionField {
+  Vector3 rotation;    ///< ψ [rad]
+  Vector3 curvature;   ///< κ = ψ′ [1/m]: twist rate, then the two curvatures
+  Vector3 elongation;  ///< γ: extension, then the two shears; zero where the body has none
 };
 
-/// Motion of a list of material points of one body as functions of its modal coordinates. Implementations are
-/// immutable; several threads may evaluate one.
+/// A strain kinematics. Of the second order it makes maps Γ, Θ (theory, section 1) from a body's linear fields: the
+/// body integrates, with Θ = Γ = 0 at its root,
+///   Θ_ij′ = rotation_slope(i, j),   Γ_ij′ = displacement_slope(i, j, Θ_ij)
+/// and offers the result by Body::expanded. Both are symmetric in i and j. Immutable; threads share it.
 class StrainKinematics {
  public:
   virtual ~StrainKinematics() = default;
-  [[nodiscard]] virtual Eigen::Index modes() const = 0;
-  [[nodiscard]] virtual std::size_t points() const = 0;
-  /// Fills one PointMotion a point. q, q̇: modal coordinates and rates, n each.
-  virtual void evaluate(std::span<const double> q, std::span<const double> q_dot,
-                        std::span<PointMotion> motions) const = 0;
+  /// Its plugin's id, for messages and comparisons.
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /// `linear`: it has no second order and is not asked for slopes. `exact`: it does not expand, and its second order is
+  /// the complete one.
+  [[nodiscard]] virtual StrainOrder order() const = 0;
+  /// Whether its second order is the complete one, which every body has of its own: no body is expanded anew then.
+  [[nodiscard]] virtual bool complete() const { return false; }
+  /// Θ_ij′ [1/m]; here, and below, the complete second order of R′ = R κ̂, r′ = R (e_x + γ).
+  [[nodiscard]] virtual Vector3 rotation_slope(const SectionField& i, const SectionField& j) const {
+    return 0.5 * (i.rotation.cross(j.curvature) + j.rotation.cross(i.curvature));
+  }
+  /// Γ_ij′, `theta` being Θ_ij at the section.
+  [[nodiscard]] virtual Vector3 displacement_slope(const SectionField& i, const SectionField& j,
+                                                   const Vector3& theta) const {
+    const Vector3 ex = Vector3::UnitX();
+    return theta.cross(ex) + 0.5 * (i.rotation.cross(j.rotation.cross(ex)) + j.rotation.cross(i.rotation.cross(ex))) +
+           i.rotation.cross(j.elongation) + j.rotation.cross(i.elongation);
+  }
+};
+
+/// The complete second order: what bodies have of their own.
+class CompleteSecondOrder : public StrainKinematics {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "quadratic"; }
+  [[nodiscard]] StrainOrder order() const override { return StrainOrder::quadratic; }
+  [[nodiscard]] bool complete() const override { return true; }
 };
 
 }  // namespace withy

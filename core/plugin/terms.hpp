@@ -2,7 +2,11 @@
 /// What a formulation keeps: a strain kinematics times a truncation (theory, section 2).
 #pragma once
 
+#include <memory>
+
 namespace withy {
+
+class StrainKinematics;
 
 /// Which terms of the expansion r = X + Φq + ½qᵀΓq, θ = Ψq + ½qᵀΘq a strain kinematics keeps.
 enum class StrainOrder {
@@ -13,9 +17,10 @@ enum class StrainOrder {
 
 /// How elastic coordinates enter the equations.
 enum class Truncation {
-  ruthless,  ///< order 0: inertia, velocity terms and loads at q = 0, q̇ = 0
-  strict,    ///< order 1: linear in (q, q̇, q̈)
-  none       ///< all terms
+  ruthless,   ///< order 0: inertia, velocity terms and loads at q = 0, q̇ = 0
+  strict,     ///< order 1 of the equations: linear in (q, q̇, q̈)
+  symmetric,  ///< order 1 of the kinetic energy: M linear in q, all equations from it by Lagrange's
+  none        ///< all terms
 };
 
 struct Terms {
@@ -24,6 +29,9 @@ struct Terms {
   /// Whether inertia forces that are products of speeds are kept, Coriolis and centrifugal ones among them. All bodies
   /// of a model do or none does, so that only the terms of the whole formulation say it; without truncation alone.
   bool products_of_speeds = true;
+  /// What makes the second-order maps Γ, Θ of every body anew; null: they are the bodies' own, the complete ones.
+  /// Model::in_kinematics.
+  std::shared_ptr<const StrainKinematics> kinematics = nullptr;
 };
 
 }  // namespace withy

@@ -15,6 +15,12 @@ namespace withy {
 
 struct RodTable;
 
+namespace reference {
+struct PlacedWrench;
+template <class S>
+class ReferenceTree;
+}  // namespace reference
+
 /// Dense reference dynamics of a model. Const functions allocate; they may throw std::bad_alloc.
 class ReferenceDynamics {
  public:
@@ -33,19 +39,10 @@ class ReferenceDynamics {
 
  private:
   [[nodiscard]] Terms terms_of(std::size_t body) const;
-  template <class S>
-  class Tree;
-  template <class S>
-  struct BodyTerms;
-  /// A wrench of a load and where it acts.
-  struct PlacedWrench {
-    FrameIndex at;
-    Wrench wrench;
-  };
   /// Those of all loads, given at the deformation that the truncations keep.
-  [[nodiscard]] std::vector<PlacedWrench> wrenches_at(double t, std::span<const double> y) const;
+  [[nodiscard]] std::vector<reference::PlacedWrench> wrenches_at(double t, std::span<const double> y) const;
   /// Every body in its own strain kinematics, without truncation.
-  [[nodiscard]] Tree<double> untruncated(std::span<const double> y) const;
+  [[nodiscard]] reference::ReferenceTree<double> untruncated(std::span<const double> y) const;
 
   std::shared_ptr<const Model> model_;
   Terms terms_;

@@ -6,15 +6,19 @@
 
 namespace withy {
 
-/// Whether the second-order terms that motion and load bring to bear are in the equations.
-constexpr bool second_order(const Terms& terms) {
-  return terms.strain != StrainOrder::linear && terms.truncation != Truncation::ruthless && terms.products_of_speeds;
+/// Whether the second-order terms that motion and load bring to bear are in the equations. Kinetic energy of first
+/// order has none of motion.
+inline bool second_order(const Terms& terms) {
+  return terms.strain != StrainOrder::linear &&
+         (terms.truncation == Truncation::strict || terms.truncation == Truncation::none) && terms.products_of_speeds;
 }
 
 /// Rate of a body over its fundamental frequency beyond which frequencies of a truncation of linear kinematics are 1 %
 /// wrong. A body with modes in one direction alone is taken to bend in the plane of rotation.
-constexpr double rate_limit(const Terms& terms, bool one_direction) {
-  if (terms.truncation == Truncation::ruthless || !terms.products_of_speeds) return one_direction ? 0.325 : 0.130;
+inline double rate_limit(const Terms& terms, bool one_direction) {
+  if (terms.truncation == Truncation::ruthless || terms.truncation == Truncation::symmetric ||
+      !terms.products_of_speeds)
+    return one_direction ? 0.325 : 0.130;
   return 0.129;
 }
 

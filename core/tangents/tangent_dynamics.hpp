@@ -13,6 +13,13 @@
 
 namespace withy {
 
+namespace analysis {
+template <class S>
+class Recursion;
+template <class S>
+struct AppliedWrench;
+}  // namespace analysis
+
 /// The residual r(δ, u, a) = M a − f − τ at one state, τ the efforts of the loads, with its derivatives. Displacements
 /// δ have one number a speed: x changes as if the speeds were δ for a unit of time, so that a rotation is displaced by
 /// the rotation vector whose rate its speeds are. Shapes: speeds, speeds × speeds.
@@ -45,7 +52,8 @@ struct FrameTangent {
 /// A model in one formulation. Derivatives are exact to rounding: the recursive Newton–Euler algorithm in numbers that
 /// carry derivatives, an algorithm independent of sweeps and of ReferenceDynamics; the strict truncation, itself a
 /// derivative (theory (3)), takes them nested. Exceptions: loads and hinges of others that do not differentiate
-/// themselves. Const functions allocate.
+/// themselves; and the symmetric truncation, whose residual is that of the dense reference and whose derivatives are
+/// differences of eighth order, to some 1e-11 of what is differentiated. Const functions allocate.
 class TangentDynamics {
  public:
   /// `terms` are the formulation's.
@@ -71,6 +79,10 @@ class TangentDynamics {
   struct Seeds;
   template <class T>
   struct Builder;
+  /// Wrenches of the loads at frames, `shown` being the tree at the deformation that the truncations keep.
+  template <class T>
+  std::vector<analysis::AppliedWrench<T>> wrenches(double t, const analysis::Recursion<T>& shown,
+                                                   std::vector<bool>* differenced) const;
   template <class T>
   [[nodiscard]] Eigen::Matrix<T, Eigen::Dynamic, 1> efforts(double t, std::span<const double> y,
                                                             const Eigen::VectorXd& a, Seeds seeds,
@@ -78,6 +90,11 @@ class TangentDynamics {
   /// The residual; its derivatives along directions from `from` on, one a column.
   Eigen::VectorXd differentiate(double t, std::span<const double> y, const Eigen::VectorXd& a, std::size_t from,
                                 Eigen::Ref<Eigen::MatrixXd> columns, std::vector<bool>* differenced) const;
+  /// Of the symmetric truncation.
+  [[nodiscard]] Eigen::VectorXd first_order_efforts(double t, std::span<const double> y,
+                                                    const Eigen::VectorXd& a) const;
+  void differentiate_first_order(double t, std::span<const double> y, const Eigen::VectorXd& a, std::size_t from,
+                                 Eigen::Ref<Eigen::MatrixXd> columns, std::vector<bool>* differenced) const;
   void add_elastic(Tangents& tangents) const;
   void add_loads(double t, std::span<const double> y, Tangents& tangents) const;
   [[nodiscard]] Eigen::VectorXd load_efforts(double t, std::span<const double> y) const;
@@ -88,7 +105,7 @@ class TangentDynamics {
   std::vector<Terms> terms_;                           ///< of each body
   std::vector<const Slot*> slots_;                     ///< of each body's modes; null where it has none
   std::vector<std::shared_ptr<const RodTable>> rods_;  ///< of each body; null where its kinematics is an expansion
-  bool strict_ = false;
+  bool strict_ = false, symmetric_ = false;
   bool products_of_speeds_ = true;
 };
 

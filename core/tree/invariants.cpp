@@ -109,6 +109,20 @@ Invariants::Invariants(const NodeSpec& node, StrainOrder order) {
   }
 }
 
+std::vector<Eigen::MatrixXd> modal_mass_slopes(const NodeSpec& node, StrainOrder order) {
+  const auto n = static_cast<Eigen::Index>(node.modes);
+  std::vector<Eigen::MatrixXd> slopes(node.modes, Eigen::MatrixXd::Zero(n, n));
+  for (const Piece& piece : pieces_of(rooted(in_strain_order(node, order)))) {
+    for (Eigen::Index k = 0; k < n; ++k) {
+      Matrix3X gamma(3, n);  // Γ_k
+      for (Eigen::Index c = 0; c < 3; ++c) gamma.row(c) = piece.at.gamma[static_cast<std::size_t>(c)].row(k);
+      const Eigen::MatrixXd half = piece.weight * gamma.transpose() * piece.at.phi;
+      slopes[static_cast<std::size_t>(k)] += half + half.transpose();
+    }
+  }
+  return slopes;
+}
+
 NodeSpec in_strain_order(NodeSpec node, StrainOrder order) {
   if (order != StrainOrder::linear) return node;
   const auto strip = [](PointExpansion& e) {

@@ -23,6 +23,8 @@ struct Invariants {
   Invariants(const NodeSpec& node, StrainOrder order);
 };
 
+/// ∂G/∂q_k of the kinetic energy above, n×n each.
+std::vector<Eigen::MatrixXd> modal_mass_slopes(const NodeSpec& node, StrainOrder order);
 /// The node with Γ = Θ = 0 where the strain kinematics is linear.
 NodeSpec in_strain_order(NodeSpec node, StrainOrder order);
 /// The node with its frame moved to the hinge frame of a root that its modes move, by expansion to second order: exact

@@ -6,8 +6,7 @@
 namespace withy {
 
 void enroll_automatic(Enrollment& enrollment) {
-  constexpr Terms kept = {StrainOrder::quadratic, Truncation::none};
-  enroll_terms<kept, aside<kept>>(
+  enroll_terms<StrainOrder::quadratic, Truncation::none, InStudies::aside>(
       enrollment, "auto",
       "The least of ruthless, quadratic and exact whose validity holds, changed along a run where it does not; "
       "quadratic where nothing runs");

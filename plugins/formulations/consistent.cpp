@@ -6,7 +6,7 @@
 namespace withy {
 
 void enroll_consistent(Enrollment& enrollment) {
-  enroll_terms<Terms{StrainOrder::quadratic, Truncation::strict}>(
+  enroll_terms<StrainOrder::quadratic, Truncation::strict>(
       enrollment, "consistent", "First order in the elastic coordinates, from nonlinear strain-displacement relations");
 }
 

@@ -7,6 +7,9 @@ namespace withy {
 void enroll_ruthless(Enrollment& enrollment);
 void enroll_inconsistent(Enrollment& enrollment);
 void enroll_consistent(Enrollment& enrollment);
+void enroll_symmetric(Enrollment& enrollment);
+void enroll_symmetric_linear(Enrollment& enrollment);
+void enroll_general(Enrollment& enrollment);
 void enroll_quadratic(Enrollment& enrollment);
 void enroll_linear(Enrollment& enrollment);
 void enroll_exact(Enrollment& enrollment);
@@ -19,6 +22,9 @@ void enroll(Enrollment& enrollment) {
   enroll_ruthless(enrollment);
   enroll_inconsistent(enrollment);
   enroll_consistent(enrollment);
+  enroll_symmetric(enrollment);
+  enroll_symmetric_linear(enrollment);
+  enroll_general(enrollment);
   enroll_quadratic(enrollment);
   enroll_linear(enrollment);
   enroll_exact(enrollment);

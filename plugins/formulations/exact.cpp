@@ -5,8 +5,7 @@
 namespace withy {
 
 void enroll_exact(Enrollment& enrollment) {
-  constexpr Terms kept = {StrainOrder::exact, Truncation::none};
-  enroll_terms<kept, rung<kept>>(
+  enroll_terms<StrainOrder::exact, Truncation::none, InStudies::rung>(
       enrollment, "exact",
       "Inextensible rods whose strains are modal, kinematics not expanded: large deflections, conserves energy and "
       "momentum");

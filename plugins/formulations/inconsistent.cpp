@@ -6,9 +6,8 @@
 namespace withy {
 
 void enroll_inconsistent(Enrollment& enrollment) {
-  constexpr Terms kept = {StrainOrder::linear, Truncation::strict};
-  enroll_terms<kept, aside<kept>>(enrollment, "inconsistent",
-                                  "First order in the elastic coordinates, from linear strain-displacement relations");
+  enroll_terms<StrainOrder::linear, Truncation::strict, InStudies::aside>(
+      enrollment, "inconsistent", "First order in the elastic coordinates, from linear strain-displacement relations");
 }
 
 }  // namespace withy

@@ -5,7 +5,7 @@
 namespace withy {
 
 void enroll_linear(Enrollment& enrollment) {
-  enroll_terms<Terms{StrainOrder::linear, Truncation::none}>(
+  enroll_terms<StrainOrder::linear, Truncation::none>(
       enrollment, "linear",
       "Linear kinematics, nothing truncated: the floating-frame model of most engines, for comparison");
 }

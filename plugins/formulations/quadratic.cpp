@@ -5,8 +5,7 @@
 namespace withy {
 
 void enroll_quadratic(Enrollment& enrollment) {
-  constexpr Terms kept = {StrainOrder::quadratic, Truncation::none};
-  enroll_terms<kept, rung<kept>>(
+  enroll_terms<StrainOrder::quadratic, Truncation::none, InStudies::rung>(
       enrollment, "quadratic",
       "Second-order kinematics, nothing truncated: symmetric positive definite, conserves energy and momentum");
 }

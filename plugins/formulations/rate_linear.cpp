@@ -6,9 +6,8 @@
 namespace withy {
 
 void enroll_rate_linear(Enrollment& enrollment) {
-  constexpr Terms kept = {StrainOrder::quadratic, Truncation::none, false};
-  enroll_terms<kept, aside<kept>>(enrollment, "rate-linear",
-                                  "Second-order kinematics without Coriolis, centrifugal and gyroscopic terms");
+  enroll_terms<StrainOrder::quadratic, Truncation::none, InStudies::aside, false>(
+      enrollment, "rate-linear", "Second-order kinematics without Coriolis, centrifugal and gyroscopic terms");
 }
 
 }  // namespace withy

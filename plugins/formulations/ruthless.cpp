@@ -6,8 +6,8 @@
 namespace withy {
 
 void enroll_ruthless(Enrollment& enrollment) {
-  constexpr Terms kept = {StrainOrder::linear, Truncation::ruthless};
-  enroll_terms<kept, rung<kept>>(enrollment, "ruthless", "Elastic terms dropped but for q̈, -Kq and -Dq̇ (order zero)");
+  enroll_terms<StrainOrder::linear, Truncation::ruthless, InStudies::rung>(
+      enrollment, "ruthless", "Elastic terms dropped but for q̈, -Kq and -Dq̇ (order zero)");
 }
 
 }  // namespace withy

@@ -13,8 +13,9 @@
 
 namespace withy::test {
 
-inline const std::vector<std::string> all_formulations = {"ruthless", "inconsistent", "consistent", "quadratic",
-                                                          "linear",   "exact",        "rate-linear"};
+inline const std::vector<std::string> all_formulations = {"ruthless",    "inconsistent", "consistent",
+                                                          "quadratic",   "linear",       "exact",
+                                                          "rate-linear", "symmetric",    "symmetric-linear"};
 
 struct AnalysedScene {
   Registry registry;

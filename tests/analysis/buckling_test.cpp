@@ -59,8 +59,20 @@ TEST(Buckling, a_cantilever_tips_over_sideways) {
       EXPECT_NEAR(P, expected, 0.5e-4) << formulation << " " << modes;
     }
   }
-  for (const std::string formulation : {"ruthless", "inconsistent", "linear"})
+  for (const std::string formulation : {"ruthless", "inconsistent", "linear", "symmetric-linear"})
     EXPECT_EQ(critical_load([&](double x) { return lateral(x, 4); }, formulation, 2, 6), 0) << formulation;
+  EXPECT_NEAR(critical_load([&](double x) { return lateral(x, 4); }, "symmetric", 2, 6), 4.0154, 0.5e-4)
+      << "weight has a potential of second order";
+}
+
+/// Axial shortening alone buckles columns as the complete second order does, and nothing sideways.
+TEST(Buckling, with_foreshortening_alone_columns_fall_and_cantilevers_do_not_tip_over) {
+  for (const char* truncation : {"strict", "none"}) {
+    const std::string choice =
+        std::string("formulation: {kinematics: foreshortening, truncation: ") + truncation + "}\n";
+    EXPECT_NEAR(critical_load([&](double x) { return column(x, 2, 1, 0) + choice; }, "", 5, 10), 7.8529, 0.5e-4);
+    EXPECT_EQ(critical_load([&](double x) { return lateral(x, 4) + choice; }, "", 2, 6), 0) << truncation;
+  }
 }
 
 }  // namespace

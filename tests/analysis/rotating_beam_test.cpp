@@ -49,6 +49,30 @@ TEST_P(RotatingBeam, has_the_published_frequencies) {
 
 INSTANTIATE_TEST_SUITE_P(FirstOrderSeesStiffening, RotatingBeam, testing::Values("consistent", "quadratic", "exact"));
 
+/// Axial shortening is all that a spinning beam needs.
+TEST(RotatingBeamForeshortened, has_the_frequencies_of_the_complete_second_order) {
+  const std::string text = blade(6, 6);
+  for (const char* truncation : {"strict", "none"}) {
+    const std::string choice =
+        std::string("formulation: {kinematics: foreshortening, truncation: ") + truncation + "}\n";
+    for (const char* group : {"bending_y", "bending_z"}) {
+      const std::vector<Mode> complete = spun(text, "quadratic", 6, group), own = spun(text + choice, "", 6, group);
+      ASSERT_EQ(complete.size(), own.size());
+      for (std::size_t i = 0; i < own.size(); ++i)
+        EXPECT_NEAR(own[i].frequency() / complete[i].frequency(), 1, 1e-10) << truncation << ' ' << group;
+    }
+  }
+}
+
+/// Kinetic energy of first order has nothing of what rotation does to stiffness: frequencies are those at rest.
+TEST(RotatingBeamInFirstOrderOfEnergy, does_not_stiffen) {
+  const std::vector<Mode> spinning = spun(blade(3, 3), "symmetric", 4, "bending_z"),
+                          resting = spun(blade(3, 3), "ruthless", 0, "bending_z");
+  ASSERT_EQ(spinning.size(), resting.size());
+  for (std::size_t i = 0; i < resting.size(); ++i)
+    EXPECT_NEAR(spinning[i].frequency() / resting[i].frequency(), 1, 1e-9);
+}
+
 /// Rayleigh's quotient with the mode at rest: ω² = ω₁² + (∫ ½(1−x²) φ′² dx − 1) Ω² in the plane, hub radius 0,
 /// ∫φ² = 1. The integral by Simpson's rule on the closed form of φ.
 double rayleigh_coefficient() {

@@ -188,7 +188,8 @@ int main(int argc, char** argv) {
   agree("inconsistent", &full2, false);
   benchmark::RegisterBenchmark("closed form ruthless", closed_form, &ruth2);
   benchmark::RegisterBenchmark("closed form consistent", closed_form, &full2);
-  for (const char* formulation : {"ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact"}) {
+  for (const char* formulation :
+       {"ruthless", "inconsistent", "consistent", "symmetric", "quadratic", "linear", "exact"}) {
     benchmark::RegisterBenchmark(formulation, sweep, std::string(formulation));
   }
   benchmark::Initialize(&argc, argv);

@@ -62,7 +62,7 @@ TEST_P(Formulations, without_modes_are_bitwise_the_same_rigid_body) {
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, Formulations,
                          testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact",
-                                         "rate-linear", "auto"));
+                                         "rate-linear", "auto", "symmetric", "symmetric-linear"));
 
 struct Neglect {
   const char* formulation;
@@ -71,8 +71,9 @@ struct Neglect {
 
 /// The forces of a formulation differ from those without truncation by terms of the order it drops: ruthless drops the
 /// first, inconsistent drops first-order terms too (those of second-order kinematics), consistent only the second.
-/// Exact kinematics differ from quadratic ones in P at second order, and first-order terms are the same: the strict
-/// truncation of `exact` is `consistent`.
+/// The symmetric forms drop ½ ẋᵀ M₂ ẋ of the kinetic energy, with it first-order terms: what rotation does to
+/// stiffness. Exact kinematics differ from quadratic ones in P at second order, and first-order terms are the same: the
+/// strict truncation of `exact` is `consistent`.
 TEST(Truncation, neglected_terms_have_the_order_the_name_says) {
   Registry registry;
   enroll_static_plugins(registry);
@@ -81,8 +82,9 @@ TEST(Truncation, neglected_terms_have_the_order_the_name_says) {
   for (std::size_t i = 0; i < state.y.size(); ++i) state.y[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
   const auto quadratic = make_plugin<Formulation>(registry, "quadratic");
   const auto exact = make_plugin<Formulation>(registry, "exact");
-  for (const Neglect& n : {Neglect{"ruthless", 1}, Neglect{"inconsistent", 1}, Neglect{"linear", 1},
-                           Neglect{"consistent", 2}, Neglect{"exact", 2}}) {
+  for (const Neglect& n :
+       {Neglect{"ruthless", 1}, Neglect{"inconsistent", 1}, Neglect{"linear", 1}, Neglect{"consistent", 2},
+        Neglect{"exact", 2}, Neglect{"symmetric", 1}, Neglect{"symmetric-linear", 1}}) {
     const auto formulation = make_plugin<Formulation>(registry, n.formulation);
     EXPECT_NEAR(order_of_difference(*formulation, *quadratic, s.model, state), n.order, 0.1) << n.formulation;
   }

@@ -42,8 +42,8 @@ std::unique_ptr<Body> rod_like_beam() {
                             {"torsion", strain(30, 2, 0.002)}});
 }
 
-/// Exact kinematics as a StrainKinematics, at some places along the rod.
-class ExactKinematics final : public StrainKinematics {
+/// Exact kinematics as PointKinematics, at some places along the rod.
+class ExactKinematics final : public PointKinematics {
  public:
   explicit ExactKinematics(const Rod& rod) : table_(rod) {}
   Eigen::Index modes() const override { return table_.rod->modes(); }

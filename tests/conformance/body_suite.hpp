@@ -20,7 +20,7 @@ inline Eigen::VectorXd random_modes(Eigen::Index n, double size, std::mt19937& r
 
 /// Partial velocities are the derivatives of positions and rotations, biases those of the partial velocities; central
 /// differences of step 1e-5 leave 1e-9 of fields of size one.
-inline void expect_kinematics_conforms(const StrainKinematics& kinematics) {
+inline void expect_kinematics_conforms(const PointKinematics& kinematics) {
   std::mt19937 random(3);
   const Eigen::Index n = kinematics.modes();
   const std::size_t points = kinematics.points();

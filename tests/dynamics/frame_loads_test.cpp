@@ -120,7 +120,7 @@ TEST_P(FrameLoads, efforts_of_single_loads_add_up) {
 
 INSTANTIATE_TEST_SUITE_P(Formulations, FrameLoads,
                          testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact",
-                                         "rate-linear"),
+                                         "rate-linear", "symmetric", "symmetric-linear"),
                          [](const auto& of) {
                            std::string name = of.param;
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -221,7 +221,7 @@ TEST_P(Motions, linearly_implicit_solutions_leave_driven_speeds_alone) {
 
 INSTANTIATE_TEST_SUITE_P(Formulations, Motions,
                          testing::Values("ruthless", "inconsistent", "consistent", "quadratic", "linear", "exact",
-                                         "rate-linear"),
+                                         "rate-linear", "symmetric", "symmetric-linear"),
                          [](const auto& of) {
                            std::string name = of.param;
                            std::replace(name.begin(), name.end(), '-', '_');

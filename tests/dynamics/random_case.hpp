@@ -40,8 +40,9 @@ struct Case {
   }
 };
 
-inline const std::vector<std::string> formulations = {"ruthless", "inconsistent", "consistent", "quadratic",
-                                                      "linear",   "exact",        "rate-linear"};
+inline const std::vector<std::string> formulations = {"ruthless",    "inconsistent", "consistent",
+                                                      "quadratic",   "linear",       "exact",
+                                                      "rate-linear", "symmetric",    "symmetric-linear"};
 /// For names of parametrized tests.
 inline std::string formulation_name(const testing::TestParamInfo<std::string>& info) {
   std::string name = info.param;

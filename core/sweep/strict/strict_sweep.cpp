@@ -1,13 +1,13 @@
 #include "withy/core/sweep/strict/strict_sweep.hpp"
 
+#include "withy/core/sweep/first_slopes.hpp"
 #include "withy/core/sweep/strict/strict_kernel.hpp"
 #include "withy/core/sweep/with_modes.hpp"
 
 namespace withy::sweep {
 namespace {
 
-/// J_i of a section at q = 0 and ∂J_i/∂q_k, in section axes: with θ̂ the section's rotation to first order,
-/// (1 − θ̂)(Φ + Γq) and (1 − ½θ̂)(Ψ + Θq).
+/// J_i of a section at q = 0 and ∂J_i/∂q_k, in section axes.
 template <class Space>
 StrictStation<Space> strict_station_of(const StationSpec& spec) {
   const PointExpansion& e = spec.at;
@@ -19,20 +19,7 @@ StrictStation<Space> strict_station_of(const StationSpec& spec) {
     J << e.psi.col(i), e.phi.col(i);
     s.J.push_back(Space::Twist::of(J));
   }
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Vector3 turn = e.psi.col(k);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Vector3 psi = e.psi.col(i), phi = e.phi.col(i);
-      Vector6 J;
-      for (Eigen::Index c = 0; c < 3; ++c) {
-        J[c] = e.theta[static_cast<std::size_t>(c)](i, k);
-        J[3 + c] = e.gamma[static_cast<std::size_t>(c)](i, k);
-      }
-      J.head<3>() -= 0.5 * turn.cross(psi);
-      J.tail<3>() -= turn.cross(phi);
-      s.J1.push_back(Space::Twist::of(J));
-    }
-  }
+  s.J1 = first_slopes<Space>(e);
   return s;
 }
 

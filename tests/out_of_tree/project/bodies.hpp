@@ -1,5 +1,5 @@
 /// \file
-/// The bodies of this library, each in a file of its own.
+/// What this library brings, each in a file of its own.
 #pragma once
 
 #include <withy/core/plugin/body.hpp>
@@ -9,5 +9,6 @@ namespace example {
 
 withy::Plugin<withy::Body> rod();
 withy::Plugin<withy::Body> tapered_beam();
+withy::Plugin<withy::StrainKinematics> unturned();
 
 }  // namespace example

@@ -8,6 +8,7 @@ namespace {
 void enroll(withy::Enrollment& enrollment) {
   enrollment.add(example::rod());
   enrollment.add(example::tapered_beam());
+  enrollment.add(example::unturned());
 }
 
 }  // namespace

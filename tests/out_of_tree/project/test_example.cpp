@@ -66,7 +66,8 @@ double integral(double length, const Function& f) {
 TEST_F(Example, loads_from_its_own_directory_and_from_the_package_only_what_is_asked_for) {
   tapered(0.5, 2, "polynomial-clamped");
   for (const withy::PluginRecord& record : host_.plugins()) {
-    const bool asked = record.id == "tapered-beam" || record.id == "rod" || record.id == "polynomial-clamped";
+    const bool asked = record.id == "tapered-beam" || record.id == "rod" || record.id == "unturned" ||
+                       record.id == "polynomial-clamped";
     EXPECT_EQ(record.state, asked ? withy::PluginRecord::State::loaded : withy::PluginRecord::State::available)
         << record.kind << "/" << record.id << " " << record.reason;
   }
@@ -176,6 +177,26 @@ TEST_F(Example, polynomials_of_twist_vanish_at_the_root_and_have_amplitude_one) 
     for (std::size_t i = 0; i < count; ++i) greatest[i] = std::max(greatest[i], std::abs(p[i]));
   }
   for (const double value : greatest) EXPECT_NEAR(value, 1, 1e-12);
+}
+
+TEST_F(Example, a_strain_kinematics_gives_the_beam_of_the_package_other_maps) {
+  const auto beam = body(
+      "beam", {{"length", Value(2.0)},
+               {"mass_per_length", Value(1.5)},
+               {"bending_y", Value::map({{"stiffness", Value(40.0)}, {"modes", Value(2.0)}})},
+               {"torsion", Value::map({{"stiffness", Value(20.0)}, {"inertia", Value(0.1)}, {"modes", Value(1.0)}})},
+               {"damping_ratio", Value(0.01)}});
+  withy::Diagnostics diagnostics;
+  const auto kinematics =
+      registry_.find<withy::StrainKinematics>("unturned")->make(Value::map({}), {registry_, diagnostics});
+  const auto expanded = beam->expanded(*kinematics);
+  ASSERT_NE(expanded, nullptr);
+  const PointExpansion own = *beam->station("tip"), anew = *expanded->station("tip");
+  EXPECT_EQ(own.phi, anew.phi);
+  EXPECT_TRUE(own.gamma[0].isApprox(anew.gamma[0], 1e-12)) << "foreshortening";
+  EXPECT_GT((own.gamma[2] - anew.gamma[2]).norm(), 1e-3) << "bending and twist";
+  for (const auto& theta : anew.theta) EXPECT_TRUE(theta.isZero(0));
+  EXPECT_EQ(tapered(0.5, 2, "polynomial-clamped")->expanded(*kinematics), nullptr) << "it reads its own maps";
 }
 
 TEST_F(Example, says_what_is_wrong_with_a_scene) {
