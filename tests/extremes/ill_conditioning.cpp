@@ -7,10 +7,10 @@
 #include <fstream>
 
 #include "campaign.hpp"
-#include "withy/results/svg_plot.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/results/svg_plot.hpp"
 
 namespace {
 
@@ -113,12 +113,58 @@ std::string courses(const std::string& pictures) {
     }
     panels.back().x_label = "t [s]";
     write(pictures + "/singular-values-" + family.name + ".svg",
-          svg_plot("Singular values of M (log₁₀), " + family.name + " modes", {"1", "2", "3", "4", "5", "6"},
-                        panels));
+          svg_plot("Singular values of M (log₁₀), " + family.name + " modes", {"1", "2", "3", "4", "5", "6"}, panels));
     determinants.push_back(std::move(determinant));
   }
   determinants.back().x_label = "t [s]";
   write(pictures + "/determinant.svg", svg_plot("det M over det M at the start", formulations, determinants));
+  return table;
+}
+
+/// Every block of the first order of M switched on and off, at the state at which `consistent` becomes singular, each
+/// coordinate in the unit in which its own inertia at the start is one.
+std::string ablation() {
+  const Made failing = arm(families[0], "consistent");
+  RunOptions options;
+  options.end = *failing.scene.end;
+  options.output = options.end;
+  const State state =
+      simulate(failing.model(), *failing.equations, *failing.scene.integrator, failing.scene.initial, options, {})
+          .final;
+  const auto raw = [](const std::string& formulation, const State& at) -> Eigen::MatrixXd {
+    const Made made = arm(families[0], formulation);
+    const DenseSystem s = made.equations->system(at.time, at.y);
+    const auto n = static_cast<Eigen::Index>(s.size);
+    return Eigen::Map<const DenseMatrix>(s.mass.data(), n, n);
+  };
+  const Eigen::VectorXd scale = raw("quadratic", failing.scene.initial).diagonal().cwiseSqrt().cwiseInverse();
+  const auto mass = [&](const std::string& formulation) -> Eigen::MatrixXd {
+    return scale.asDiagonal() * raw(formulation, state) * scale.asDiagonal();
+  };
+  const Eigen::MatrixXd M0 = mass("ruthless"), M1 = mass("symmetric") - M0, M = mass("quadratic");
+  Eigen::VectorXd hinges = Eigen::VectorXd::Zero(scale.size());
+  for (const Slot& h : failing.model().layout().hinges)
+    hinges.segment(static_cast<Eigen::Index>(h.speed), static_cast<Eigen::Index>(h.speeds)).setOnes();
+  const Eigen::MatrixXd P = hinges.asDiagonal(), Q = Eigen::MatrixXd::Identity(P.rows(), P.cols()) - P;
+  const Eigen::MatrixXd strict = M0 + M1 * P;
+  std::string table =
+      "| matrix | blocks of M₁: RR, ER, RE, EE | det M / det M₀ | least eigenvalue of the symmetric part |\n"
+      "|---|---|---|---|\n";
+  const auto row = [&](const char* what, const char* blocks, const Eigen::MatrixXd& A) {
+    const Eigen::MatrixXd symmetric = 0.5 * (A + A.transpose());
+    table += fmt::format("| {} | {} | {:.3g} | {:.2g} |\n", what, blocks, A.determinant() / M0.determinant(),
+                         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric).eigenvalues()[0]);
+  };
+  row("M₀", "– – – –", M0);
+  row("strict: M₀ + M₁P", "+ + – –", strict);
+  row("strict and its missing RE", "+ + + –", strict + P * M1 * Q);
+  row("strict and its missing EE", "+ + – +", strict + Q * M1 * Q);
+  row("**symmetric: M₀ + M₁**", "+ + + +", M0 + M1);
+  row("RR alone", "+ – – –", M0 + P * M1 * P);
+  row("ER alone", "– + – –", M0 + Q * M1 * P);
+  row("EE alone", "– – – +", M0 + Q * M1 * Q);
+  row("strict and all of second order and beyond", "+ + – –, M − M₀ − M₁", strict + M - M0 - M1);
+  row("quadratic", "M", M);
   return table;
 }
 
@@ -188,6 +234,7 @@ int main(int argc, char** argv) {
   const std::string document = argv[1], pictures = argv[2];
   try {
     put(document, "courses", courses(pictures));
+    put(document, "ablation", ablation());
     put(document, "treatments", treatments());
   } catch (const std::exception& e) {
     std::fprintf(stderr, "withy-ill-conditioning: %s\n", e.what());
