@@ -40,7 +40,7 @@ struct Truncated {
   /// M, or any function of a state, to first order in the elastic coordinates: by a difference of eighth order.
   template <class Function>
   [[nodiscard]] auto slope(Function&& of) const {
-    return central_difference([&](double h) { return of(deflected(h)); }, 0.5);
+    return central_difference([&](double h) { return of(deflected(h)); }, 0.05);
   }
 };
 
@@ -132,7 +132,7 @@ TEST(FirstOrderOfTheKineticEnergy, has_the_weight_of_a_potential_of_second_order
         return t.none.equations->energies(scaled).potential - strain;
       };
       // V(0) + V′ + ½ V″ at factor 1, by central differences of sixth order.
-      const double h = 0.25;
+      const double h = 0.05;
       const double v0 = at(0), a1 = at(h), b1 = at(-h), a2 = at(2 * h), b2 = at(-2 * h), a3 = at(3 * h),
                    b3 = at(-3 * h);
       const double first = (45 * (a1 - b1) - 9 * (a2 - b2) + (a3 - b3)) / (60 * h);

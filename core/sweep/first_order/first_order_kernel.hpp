@@ -2,6 +2,8 @@
 /// The three passes of the sweep of first order over one node; the relations are in first_order_sweep.hpp.
 #pragma once
 
+#include <cmath>
+
 #include "withy/core/sweep/first_order/first_order_terms.hpp"
 
 namespace withy::sweep {
@@ -145,10 +147,32 @@ inline void pass_momentum(const FirstOrderNodeWork<Space>& w, Outer& outer) {
   outer.P1 += Space::to_parent(w.SM, w.P1);
 }
 
-/// Elimination of q̈: leaves Y, y, L in the work memory and adds to I, p; false where G is not positive definite.
+/// As `factorize`, of a G that may be indefinite: the sign of its determinant, 0 where a pivot vanishes.
+template <int N>
+inline int factorize_indefinite(double* G, int modes) {
+  const int n = count<N>(modes);
+  int sign = 1;
+  for (int j = 0; j < n; ++j) {
+    double d = G[j * n + j];
+    for (int k = 0; k < j; ++k) {
+      const double scaled = G[j * n + k];
+      G[j * n + k] = scaled * G[k * n + k];
+      d -= scaled * G[j * n + k];
+    }
+    if (!(std::abs(d) > 0)) return 0;
+    if (d < 0) sign = -sign;
+    G[j * n + j] = 1 / d;
+    for (int i = j + 1; i < n; ++i) {
+      for (int k = 0; k < j; ++k) G[i * n + j] -= G[i * n + k] * G[j * n + k];
+    }
+  }
+  return sign;
+}
+
+/// Elimination of q̈: leaves Y, y, L in the work memory and adds to I, p. The sign of det G, 0 where it is singular.
 template <class Space, int N>
-inline bool eliminate_modes(const FirstOrderNode<Space>& node, const FirstOrderState<Space>& s,
-                            FirstOrderNodeWork<Space>& w, OrdersInertia<Space>& I, Orders<Space>& p) {
+inline int eliminate_modes(const FirstOrderNode<Space>& node, const FirstOrderState<Space>& s,
+                           FirstOrderNodeWork<Space>& w, OrdersInertia<Space>& I, Orders<Space>& p) {
   using Twist = typename Space::Twist;
   const int n = count<N>(node.modes);
   const double* q = s.positions + node.mode_position;
@@ -194,19 +218,20 @@ inline bool eliminate_modes(const FirstOrderNode<Space>& node, const FirstOrderS
       if (j <= i) G[i * n + j] += s.delta * (node.damping[ij] + s.delta * node.stiffness[ij]);
     }
   }
-  if (!factorize<N>(G, n)) return false;
+  const int sign = factorize_indefinite<N>(G, n);
+  if (sign == 0) return 0;
   solve_lower<N>(G, n, Y);
   solve_lower<N>(G, n, y);
   for (int i = 0; i < n; ++i) {
     I.subtract_square(Y[i], G[i * n + i]);
     p += Y[i] * (G[i * n + i] * y[i]);
   }
-  return true;
+  return sign;
 }
 
-/// Elimination of ẍ of a hinge with several rates; Y, y, L stay in the work memory.
-inline bool eliminate_joint(const JointData<Spatial>& joint, const FirstOrderState<Spatial>& s,
-                            FirstOrderElimination<Spatial>& e, OrdersInertia<Spatial>& I, Orders<Spatial>& p) {
+/// Elimination of ẍ of a hinge with several rates; Y, y, L stay in the work memory. The sign as above.
+inline int eliminate_joint(const JointData<Spatial>& joint, const FirstOrderState<Spatial>& s,
+                           FirstOrderElimination<Spatial>& e, OrdersInertia<Spatial>& I, Orders<Spatial>& p) {
   const auto k = static_cast<int>(joint.speeds);
   const HingeMotion motion = general_motion(joint, s.positions + joint.position, s.speeds + joint.speed);
   for (int i = 0; i < k; ++i) {
@@ -215,23 +240,27 @@ inline bool eliminate_joint(const JointData<Spatial>& joint, const FirstOrderSta
     e.y[i] = s.efforts[joint.speed + static_cast<std::size_t>(i)] - Spatial::dot(e.H[i], p.zero);
     for (int j = 0; j <= i; ++j) e.L[i * k + j] = Spatial::dot(e.Y[i].zero, e.H[j]);
   }
-  if (!factorize<-1>(e.L, k)) return false;
+  const int sign = factorize_indefinite<-1>(e.L, k);
+  if (sign == 0) return 0;
   solve_lower<-1>(e.L, k, e.Y);
   solve_lower<-1>(e.L, k, e.y);
   for (int i = 0; i < k; ++i) {
     I.subtract_square(e.Y[i], e.L[i * k + i]);
     p += e.Y[i] * (e.L[i * k + i] * e.y[i]);
   }
-  return true;
+  return sign;
 }
 
+/// The sign of the determinant of the node's block, 0 where it is singular.
 template <class Space, int N>
-[[gnu::flatten]] inline bool first_order_inward(const FirstOrderNode<Space>& node, const FirstOrderState<Space>& s) {
+[[gnu::flatten]] inline int first_order_inward(const FirstOrderNode<Space>& node, const FirstOrderState<Space>& s) {
   auto& w = *at<FirstOrderNodeWork<Space>>(s.work, node.work);
   OrdersInertia<Space> I = w.I;
   Orders<Space> p = w.p;
+  int sign = 1;
   if constexpr (N != 0) {
-    if (!eliminate_modes<Space, N>(node, s, w, I, p)) return false;
+    sign = eliminate_modes<Space, N>(node, s, w, I, p);
+    if (sign == 0) return 0;
   }
   const JointData<Space>& joint = node.joint;
   if (joint.driven) [[unlikely]] {  // passes on everything
@@ -241,26 +270,27 @@ template <class Space, int N>
     const bool turns = joint.kind == Joint::rotate;
     const Orders<Space> U = turns ? I.turn_column() : I.slide_column();
     const double inertia = component<Space>(joint.kind, U.zero);
-    if (!(inertia > 0)) return false;
+    if (!(std::abs(inertia) > 0)) return 0;
+    if (inertia < 0) sign = -sign;
     w.U = U;
     w.inverse = 1 / inertia;
     w.u = joint.direction * s.efforts[joint.speed] - component<Space>(joint.kind, p.zero);
-    if (node.parent < 0) return true;
+    if (node.parent < 0) return sign;
     I.subtract_square(U, w.inverse);
     p += U * (w.inverse * w.u);
   } else if constexpr (Space::angular == 3) {  // a planar tree has no other hinges
-    if (joint.kind != Joint::fixed &&
-        !eliminate_joint(joint, s, *at<FirstOrderElimination<Space>>(s.work, node.work_elimination), I, p))
-      return false;
+    if (joint.kind != Joint::fixed)
+      sign *= eliminate_joint(joint, s, *at<FirstOrderElimination<Space>>(s.work, node.work_elimination), I, p);
+    if (sign == 0) return 0;
   }
-  if (node.parent < 0) return true;
+  if (node.parent < 0) return sign;
   p += I * w.sigma;
   with_outer(node, s, [&](auto& outer) {
     outer.I += to_parent<Space>(w.SM, I);
     outer.p += to_parent<Space>(w.SM, p);
     pass_momentum<Space>(w, outer);
   });
-  return true;
+  return sign;
 }
 
 /// The inward pass for `forces` at rest, against the factors already in the work memory; p begins at zero.

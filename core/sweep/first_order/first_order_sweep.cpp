@@ -104,12 +104,14 @@ void FirstOrderSweep<Space>::find_weight(const FirstOrderState<Space>& state, do
 
 template <class Space>
 Evaluation FirstOrderSweep<Space>::inward(const FirstOrderState<Space>& state) const noexcept {
+  int sign = 1;
   for (std::size_t i = nodes_.size(); i-- > 0;) {
-    bool good = true;
-    with_modes(nodes_[i].modes, [&](auto n) { good = first_order_inward<Space, n.value>(nodes_[i], state); });
-    if (!good) return {Evaluation::Outcome::singular, nodes_[i].body};
+    int of_node = 0;
+    with_modes(nodes_[i].modes, [&](auto n) { of_node = first_order_inward<Space, n.value>(nodes_[i], state); });
+    if (of_node == 0) return {Evaluation::Outcome::singular, nodes_[i].body};
+    sign *= of_node;
   }
-  return {};
+  return {Evaluation::Outcome::ok, -1, sign};
 }
 
 template <class Space>

@@ -71,8 +71,8 @@ class FirstOrderSweep {
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
   /// What was computed once for all evaluations, a line each.
   [[nodiscard]] std::vector<std::string> savings(const NodeTree& tree) const;
-  /// As SymmetricSweep: accelerations, with M + δ D + δ² K in the place of M = M₀ + M₁. Singular where that is not
-  /// positive definite.
+  /// As SymmetricSweep: accelerations, with M + δ D + δ² K in the place of M = M₀ + M₁, which may be
+  /// indefinite: the evaluation says the sign of its determinant.
   Evaluation accelerations(const double* positions, const double* speeds, double* efforts, double delta, double* result,
                            std::byte* work) const noexcept;
   void inverse(const double* positions, const double* speeds, const double* accelerations, bool inertial,
