@@ -16,16 +16,13 @@ RunOptions options_of(const Prepared& prepared, const Control& control) {
   return options;
 }
 
-/// Whether the wall time between checkpoints has passed, since it last had.
+/// Whether the wall time between checkpoints has passed since the last one was written: a disk that takes longer than
+/// this to write one does not stop the run.
 class Timer {
  public:
   explicit Timer(double seconds) : interval_(seconds), last_(Clock::now()) {}
-  bool operator()() {
-    const Clock::time_point now = Clock::now();
-    if (now - last_ < interval_) return false;
-    last_ = now;
-    return true;
-  }
+  [[nodiscard]] bool due() const { return Clock::now() - last_ >= interval_; }
+  void restart() { last_ = Clock::now(); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -55,10 +52,15 @@ RunSummary run_plainly(const Prepared& prepared, const RunSettings& settings, co
   const Scene& scene = prepared.scene;
   RunOptions options = options_of(prepared, settings.control);
   options.beyond = beyond;
-  options.checkpoint = settings.checkpoint;
+  Timer timer(settings.checkpoint_seconds);
+  if (settings.checkpoint)
+    options.checkpoint = [&](const Checkpoint& checkpoint) {
+      settings.checkpoint(checkpoint);
+      timer.restart();
+    };
   options.resume = settings.resume;
   options.seen = settings.seen;
-  if (settings.checkpoint_seconds > 0) options.put_down = Timer(settings.checkpoint_seconds);
+  if (settings.checkpoint_seconds > 0) options.put_down = [&] { return timer.due(); };
   return withy::simulate(*scene.model, *prepared.equations, *scene.integrator, scene.initial, options,
                          [&](const State& state) {
                            settings.control.tell(state.time, options.end);

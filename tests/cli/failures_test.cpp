@@ -55,10 +55,10 @@ TEST(Failures, AnAccuracyThatCannotBeHadIsRefusedAndWhatCanIsRun) {
 TEST(Failures, AFullDiskIsAnErrorWhereverItIsMet) {
   const Folder folder;
   fs::create_directory(folder.path() / "out");
-  fs::create_symlink("/dev/full", folder.path() / "out/results.csv");
-  const Finished csv = withy(folder, {"run", "scenes/pendulum.yaml", "--out", "out"});
-  EXPECT_EQ(csv.status, 3);
-  EXPECT_THAT(csv.err, HasSubstr("results.csv: No space left on device"));
+  fs::create_symlink("/dev/full", folder.path() / "out/checkpoint.cbor.part");
+  const Finished checkpoint = withy(folder, {"run", "scenes/pendulum.yaml", "--checkpoint", "1e-9", "--out", "out"});
+  EXPECT_EQ(checkpoint.status, 3);
+  EXPECT_THAT(checkpoint.err, HasSubstr("checkpoint.cbor.part: No space left on device"));
   EXPECT_FALSE(fs::exists(folder.path() / "out/run.json"));
 
   fs::create_directory(folder.path() / "out2");

@@ -131,9 +131,9 @@ TEST(Folders, TwoRunsDoNotWriteOne) {
 
 TEST(Folders, DefaultsAreOthersForOtherSettings) {
   const Folder folder;
-  for (const Arguments& more : {Arguments{}, {"--set", "bodies.bob.mass=2"}, {"--integrator", "rk4-adaptive"}})
+  for (const Arguments& more : {Arguments{}, {"--set", "bodies.rod.mass=2"}, {"--integrator", "rk4-adaptive"}})
     ASSERT_EQ(withy(folder, joined({"run", "scenes/pendulum.yaml", "--set", "time.end=0.1"}, more)).status, 0);
-  for (const char* name : {"", ",bodies.bob.mass=2"})
+  for (const char* name : {"", ",bodies.rod.mass=2"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "results" /
                                         ("pendulum-quadratic-time.end=0.1" + std::string(name)) / "run.json"));
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "results/pendulum-quadratic-rk4-adaptive-time.end=0.1/run.json"));
