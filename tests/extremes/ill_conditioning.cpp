@@ -7,10 +7,10 @@
 #include <fstream>
 
 #include "campaign.hpp"
-#include "withy/results/svg_plot.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/results/svg_plot.hpp"
 
 namespace {
 
@@ -113,8 +113,7 @@ std::string courses(const std::string& pictures) {
     }
     panels.back().x_label = "t [s]";
     write(pictures + "/singular-values-" + family.name + ".svg",
-          svg_plot("Singular values of M (log₁₀), " + family.name + " modes", {"1", "2", "3", "4", "5", "6"},
-                        panels));
+          svg_plot("Singular values of M (log₁₀), " + family.name + " modes", {"1", "2", "3", "4", "5", "6"}, panels));
     determinants.push_back(std::move(determinant));
   }
   determinants.back().x_label = "t [s]";
