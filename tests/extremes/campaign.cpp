@@ -126,20 +126,4 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-std::vector<double> least_cpu_seconds(const std::vector<std::function<void()>>& actions) {
-  std::vector<double> least(actions.size(), std::numeric_limits<double>::infinity()), settled = least;
-  for (int turns = 0; turns < 300; ++turns) {
-    for (std::size_t i = 0; i < actions.size(); ++i) {
-      const double began = cpu_seconds();
-      actions[i]();
-      least[i] = std::min(least[i], cpu_seconds() - began);
-      if (least[i] < 0.99 * settled[i]) {
-        settled[i] = least[i];
-        turns = 0;
-      }
-    }
-  }
-  return least;
-}
-
 }  // namespace withy::extremes

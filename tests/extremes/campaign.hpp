@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -107,10 +106,6 @@ std::string scene_text(const std::string& name);
 double difference(const std::vector<double>& a, const std::vector<double>& b);
 /// CPU time of this thread [s].
 double cpu_seconds();
-/// Least CPU time [s] of each action, what it takes when nothing is in its way: called in turn, so that all see the
-/// same machine, until none has become a hundredth less for 300 turns. Actions of 10 to 1000 µs slip between
-/// disturbances.
-std::vector<double> least_cpu_seconds(const std::vector<std::function<void()>>& actions);
 
 // The parts.
 void high_modes(Campaign&);

@@ -130,7 +130,6 @@ struct OnSmallStack {
   int links;
   std::vector<double> accelerations;
   std::size_t work = 0;
-  double seconds = 0;
   std::string error;
   static void* start(void* self) {
     auto& job = *static_cast<OnSmallStack*>(self);
@@ -142,13 +141,6 @@ struct OnSmallStack {
       if (!made.equations->derivatives(0, made.state.y, y_dot, work).ok()) throw std::runtime_error("not evaluated");
       const auto first = y_dot.begin() + static_cast<std::ptrdiff_t>(made.model->layout().positions);
       job.accelerations.assign(first, first + job.links);
-      // As many evaluations of short chains as make a burst; those of 1e5 links are long enough to be disturbed once
-      // each.
-      const int times = std::max(1, 1000 / job.links);
-      job.seconds = least_cpu_seconds({[&] {
-                      for (int k = 0; k < times; ++k) made.equations->derivatives(0, made.state.y, y_dot, work);
-                    }})[0] /
-                    times;
     } catch (const std::exception& e) {
       job.error = e.what();
     }
@@ -173,13 +165,10 @@ void chains(Campaign& campaign) {
       campaign.quick() ? std::vector<int>{10, 100, 1000} : std::vector<int>{10, 100, 1000, 10000, 100000};
   double last = 1, before_last = 1;
   std::size_t work_before = 0;
-  double seconds_before = 0, seconds_first = 0;
   for (const int n : sizes) {
     const OnSmallStack run(n);
-    if (!run.error.empty()) {
-      campaign.row(fmt::format("{} links", n), "–", "evaluated", run.error, false);
-      continue;
-    }
+    campaign.holds(fmt::format("{} links in 256 KiB of stack", n), "no recursion", "evaluated", run.error);
+    if (!run.error.empty()) continue;
     const double error = difference(run.accelerations, by_constraint_forces(n));
     // κ of M in the engine's scaling; of chains that it does not look at as a whole, by the growth that it has shown.
     double condition = last * last / std::max(1.0, before_last);
@@ -198,17 +187,9 @@ void chains(Campaign& campaign) {
       const double exponent = std::log10(static_cast<double>(run.work) / static_cast<double>(work_before));
       campaign.row(fmt::format("{} links, memory of an evaluation against a tenth of the links", n), "O(n)",
                    "exponent ≤ 1.01", fmt::format("{:.4f}, {} kB", exponent, run.work / 1024), exponent <= 1.01);
-      campaign.row(fmt::format("{} links in 256 KiB of stack", n), "no recursion", "evaluated",
-                   fmt::format("evaluated in {:.3g} ms", 1e3 * run.seconds), true);
     }
-    if (seconds_first == 0) seconds_first = run.seconds;
     work_before = run.work;
-    seconds_before = run.seconds;
   }
-  const double exponent =
-      std::log(seconds_before / seconds_first) / std::log(static_cast<double>(sizes.back()) / sizes.front());
-  campaign.row(fmt::format("CPU time of an evaluation from {} to {} links", sizes.front(), sizes.back()), "O(n)",
-               "exponent ≤ 1.05", fmt::format("{:.3f}", exponent), exponent <= 1.05);
 }
 
 }  // namespace withy::extremes

@@ -64,6 +64,7 @@ double residual(const DenseSystem& s, const std::vector<double>& a) {
 }  // namespace
 
 void tip_mass(Campaign& campaign) {
+  double of_clamped_free = 0;
   for (const double mass : {0.0, 1.0, 1e3, 1e6, 1e9}) {
     const Made made(arm(mass, "clamped-free"), "ruthless");
     State state = made.scene.initial;
@@ -77,12 +78,14 @@ void tip_mass(Campaign& campaign) {
                  fmt::format("{:.2g}; κ = {:.2g}, κ·2⁻⁵² = {:.2g}, residual {:.1g}", error, attainable.condition,
                              attainable.accuracy, residual(system, a)),
                  error <= 10 * attainable.accuracy);
+    of_clamped_free = attainable.condition;
   }
-  // The family that knows its load has no such direction.
+  // The family that knows its load loses fewer digits; that the hinge moves the tip as its first mode does remains.
   const Made loaded(arm(1e9, "{name: clamped-loaded, tip_mass: 1e9}"), "ruthless");
   const AttainableAccuracy good = attainable_accuracy(loaded.equations->system(0, loaded.scene.initial.y));
-  campaign.row("tip 1e9 × beam, clamped-loaded modes", "–", "reported", fmt::format("κ = {:.2g}", good.condition),
-               true);
+  campaign.row("tip 1e9 × beam, clamped-loaded modes", "clamped-free modes", "κ at most half of theirs",
+               fmt::format("κ = {:.2g} of {:.2g}", good.condition, of_clamped_free),
+               good.condition <= 0.5 * of_clamped_free);
   for (const auto& [mass, rtol, refused] : {std::tuple(1e9, 1e-6, true), {1e9, 0.9, false}, {1.0, 1e-6, false}}) {
     const Made made(arm(mass, "clamped-free", rtol), "quadratic");
     const std::string why = unattainable(*made.scene.model, *made.equations, made.scene.initial, rtol);

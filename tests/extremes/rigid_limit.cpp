@@ -1,7 +1,6 @@
 /// \file
 /// Flexible bodies that become rigid, are rigid, and have no stiffness left.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "campaign.hpp"
@@ -33,19 +32,6 @@ std::vector<double> angles(const std::string& formulation, double factor, double
                                 });
   if (s.status != RunStatus::completed) x.clear();
   return x;
-}
-
-/// CPU time of an evaluation of each [ns].
-std::pair<double, double> costs(const Made& a, const Made& b) {
-  std::vector<double> y_dot(std::max(a.equations->size(), b.equations->size()));
-  Work work_a = a.equations->make_work(), work_b = b.equations->make_work();
-  const auto burst = [&](const Made& made, Work& work) {
-    return [&] {
-      for (int i = 0; i < 200; ++i) made.equations->derivatives(0, made.scene.initial.y, y_dot, work);
-    };
-  };
-  const std::vector<double> least = least_cpu_seconds({burst(a, work_a), burst(b, work_b)});
-  return {least[0] / 200 * 1e9, least[1] / 200 * 1e9};
 }
 
 /// A chain of six beams of no modes, or of rigid bodies with the mass that beams have: m = ρL, I = mL²/12 about the
@@ -97,11 +83,6 @@ void rigid_limit(Campaign& campaign) {
   const auto a = beams.accelerations(), b = bodies.accelerations();
   campaign.row("six beams of no modes against six rigid bodies", "the same numbers", "bitwise",
                a == b ? "bitwise" : fmt::format("{:.2g}", difference(a, b)), a == b);
-  if (!campaign.quick()) {
-    const auto [of_beams, of_bodies] = costs(beams, bodies);
-    campaign.row("cost of beams of no modes", "rigid bodies, the same run", "≤ 1.02 ×",
-                 fmt::format("{:.3f} × ({:.0f} ns)", of_beams / of_bodies, of_bodies), of_beams / of_bodies <= 1.02);
-  }
   for (const std::string& formulation : formulations) {
     if (campaign.quick() && formulation == "exact") continue;
     const Made made(scene_text("two-link-slew"), formulation,
