@@ -5,7 +5,7 @@
 #   group      who                                                        headers
 #   core       core/ but the sweeps                                       precompiled/engine.hpp
 #   plugins    bodies, loads, integrators, modes, formulations, fem       precompiled/engine.hpp
-#   programs   scene, apps                                                precompiled/programs.hpp
+#   programs   scene, study, results, apps                                precompiled/programs.hpp
 #   tests      tests but for benchmarks and the zoo of bad plugins        precompiled/tests.hpp
 #
 # They all also declare Eigen's decompositions and products as compiled elsewhere (eigen_instances.cpp), for a source
@@ -86,6 +86,10 @@ endfunction()
 
 withy_precompiled_group(plugins engine.hpp)
 withy_precompiled_group(programs programs.hpp fmt::fmt nlohmann_json::nlohmann_json)
+if(TARGET withy-precompiled-programs)
+  # Libraries of hosts show their names: types of precompiled headers must not hide theirs.
+  set_target_properties(withy-precompiled-programs PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
+endif()
 if(WITHY_TESTS)
   withy_precompiled_group(tests tests.hpp GTest::gmock)
 endif()
