@@ -45,7 +45,7 @@ TEST(Help, AnUnknownCommandIsCalledThatWithTheNearest) {
   const Finished near = withy(folder, {"comparre", "scenes/pendulum.yaml"});
   EXPECT_EQ(near.status, 2);
   EXPECT_EQ(near.out, "");
-  EXPECT_THAT(near.err, HasSubstr("'comparre' is no command; did you mean 'compare'?"));
+  EXPECT_THAT(near.err, HasSubstr("\"comparre\" is no command; did you mean 'compare'?"));
   const Finished far = withy(folder, {"plot"});
   EXPECT_EQ(far.status, 2);
   for (const std::string& c : commands) EXPECT_THAT(far.err, HasSubstr(c));

@@ -97,7 +97,10 @@ TEST(Recorder, AChangedTableIsNoticedBeforeItIsTouched) {
 TEST(Recorder, WhatCannotBeWrittenIsAnError) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
   CsvRecorder csv("/dev/full");
-  EXPECT_THROW(csv.begin(columns), std::system_error);
+  csv.begin(columns);
+  EXPECT_THROW(csv.mark(), std::system_error);
+  csv.row(row(1));
+  EXPECT_THROW(csv.end(), std::system_error);
   EXPECT_THROW(CsvRecorder("/nowhere/t.csv"), std::system_error);
 }
 
