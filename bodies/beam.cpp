@@ -22,8 +22,8 @@
 #include "beam_quadrature.hpp"
 #include "damping.hpp"
 #include "withy/core/plugin/body.hpp"
-#include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/core/plugin/segments.hpp"
 
 namespace withy {
@@ -401,22 +401,21 @@ std::vector<ParameterSpec> parameters() {
   return specs;
 }
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Body> make_beam(const Value& p, const MakeContext& context) {
   auto whole = Reader(p, context).make();
   if (whole == nullptr) return nullptr;
   return in_segments(std::move(whole), p, parameters(),
                      [&](const Value& segment) { return Reader(segment, context).make(); });
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_beam(Enrollment& enrollment) {
   enrollment.add<Body>(
       {.id = "beam",
        .summary = "Slender beam along x, bending in two planes and twisting, if wanted with extension and shear",
        .parameters = parameters(),
-       .make = &make});
+       .make = &make_beam});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(beam, withy::enroll);

@@ -20,8 +20,8 @@
 #include "damping.hpp"
 #include "equal_particles.hpp"
 #include "withy/core/plugin/body.hpp"
-#include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -258,7 +258,7 @@ class Plate final : public Body {
   ModalShape shape_;
 };
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Body> make_plate(const Value& p, const MakeContext& context) {
   const Sheet sheet{p.number_at("length"),    p.number_at("width"),         p.number_at("mass_per_area"),
                     p.number_at("stiffness"), p.number_at("poisson_ratio"), BodyDamping::read(p)};
   const auto functions = [&](const char* family, const char* count, double length) {
@@ -284,7 +284,9 @@ std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
   return std::make_unique<Plate>(sheet, modes, std::move(along), std::move(across));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_plate(Enrollment& enrollment) {
   std::vector<ParameterSpec> specs = {
       number("length", "m", "length along x").above(0),
       number("width", "m", "width along y; the middle line is y = 0").above(0),
@@ -304,10 +306,7 @@ void enroll(Enrollment& enrollment) {
   enrollment.add<Body>({.id = "plate",
                         .summary = "Thin rectangular plate in the x-y plane, clamped along x = 0, bending along z",
                         .parameters = std::move(specs),
-                        .make = &make});
+                        .make = &make_plate});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(plate, withy::enroll);

@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "withy/core/plugin/body.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -36,7 +36,7 @@ bool physical(const Matrix3& inertia, double& excess) {
   return I[0] >= -rounding && excess <= rounding;
 }
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Body> make_rigid(const Value& p, const MakeContext& context) {
   const std::vector<double> c = p.at("center_of_mass").numbers();
   const std::vector<double> i = p.at("inertia").numbers();
   Matrix3 inertia;
@@ -53,7 +53,9 @@ std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
   return std::make_unique<RigidBody>(p.number_at("mass"), Vector3(c[0], c[1], c[2]), inertia);
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_rigid(Enrollment& enrollment) {
   const Value none = Value::list({Value(0.0), Value(0.0), Value(0.0)});
   const Value point = Value::list({Value(0.0), Value(0.0), Value(0.0), Value(0.0), Value(0.0), Value(0.0)});
   enrollment.add<Body>({.id = "rigid",
@@ -64,10 +66,7 @@ void enroll(Enrollment& enrollment) {
                                               "elements xx, yy, zz, xy, xz, yz of the inertia matrix about the centre "
                                               "of mass, body axes")
                                            .otherwise(point)},
-                        .make = &make});
+                        .make = &make_rigid});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(rigid, withy::enroll);

@@ -12,14 +12,14 @@
 # with one eigenvalue problem instantiates all that this calls: core/simulation/diagnosis.cpp takes 10 s instead of 24 s.
 # That asks for arguments that are matrices: a decomposition of an expression is instantiated anew.
 #
-# Programs and tests are compiled twelve sources at a time: they instantiate the same, apps took 292 s of CPU time and
-# take 150 s, tests/cli 231 s and 76 s. Core and plugins share too little: core/analysis takes longer as one source.
-# Names in unnamed namespaces must then differ within a folder. Everything is optimized alike: -O1 would take 2 to 7 %
+# All but the core is compiled twelve sources at a time: a room's sources instantiate the same, apps took 292 s of CPU
+# time and take 150 s, tests/cli 231 s and 76 s. The core's share too little: core/analysis takes longer as one source.
+# Names in unnamed namespaces must then differ within a room. Everything is optimized alike: -O1 would take 2 to 7 %
 # off the tests' compilation.
 #
-# The sweeps, the benchmarks and the zoo are compiled file by file: few sources with flags of their own. A build with a
-# cache of objects (ccache, which passes by sources with precompiled headers) goes without: sources include all they
-# need, and there a missing #include is an error.
+# The sweeps are compiled without precompiled headers, which two sets of flags would need twice; benchmarks and the zoo
+# file by file. A build with a cache of objects (ccache, which passes by sources with precompiled headers) goes without:
+# sources include all they need, and there a missing #include is an error.
 set(WITHY_PRECOMPILE_HEADERS "" CACHE STRING "ON or OFF; if empty, ON for g++ without a compiler launcher")
 set(precompile ${WITHY_PRECOMPILE_HEADERS})
 if(WITHY_PRECOMPILE_HEADERS STREQUAL "")
@@ -45,6 +45,13 @@ if(precompile)
   target_compile_features(withy-eigen-instances PRIVATE cxx_std_20)
 endif()
 
+# withy_unite(TARGET): compiles its sources twelve at a time.
+function(withy_unite target)
+  if(precompile)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+  endif()
+endfunction()
+
 # withy_precompile(GROUP TARGET...): these targets use the headers of the group. The core makes them for
 # itself; the other groups share those of an empty library with the same flags.
 function(withy_precompile group)
@@ -58,8 +65,8 @@ function(withy_precompile group)
     else()
       target_precompile_headers(${target} REUSE_FROM withy-precompiled-${group})
     endif()
-    if(group MATCHES "programs|tests")
-      set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    if(NOT group STREQUAL "core")
+      withy_unite(${target})
     endif()
     target_link_libraries(${target} PRIVATE withy-eigen-instances)
   endforeach()

@@ -3,13 +3,14 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <unsupported/Eigen/AutoDiff>
+
+#include "withy/core/spatial/jet.hpp"
 
 namespace withy::fem {
 namespace {
 
 /// A value with its gradient.
-using Real = Eigen::AutoDiffScalar<Vector3>;
+using Real = DualNumber<double, 3>;
 using Values = std::vector<Real>;
 using Coordinates = std::array<Real, 3>;
 
@@ -24,8 +25,8 @@ constexpr std::array<std::array<int, 3>, 20> brick_nodes = {{
 Values brick(const Coordinates& s, std::size_t nodes) {
   Values N;
   for (std::size_t a = 0; a < nodes; ++a) {
-    Real product(nodes == 8 ? 0.125 : 1.0, Vector3::Zero());
-    Real sum(-2.0, Vector3::Zero());
+    Real product(nodes == 8 ? 0.125 : 1.0);
+    Real sum(-2.0);
     int middles = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       const double at = brick_nodes[a][c];
@@ -37,7 +38,7 @@ Values brick(const Coordinates& s, std::size_t nodes) {
         sum += at * s[c];
       }
     }
-    if (nodes == 20) product *= middles == 0 ? Real(0.125 * sum) : Real(0.25, Vector3::Zero());
+    if (nodes == 20) product *= middles == 0 ? Real(0.125 * sum) : Real(0.25);
     N.push_back(product);
   }
   return N;
@@ -124,10 +125,14 @@ ElementShape shape(Values (*functions)(const Coordinates&, std::size_t), std::si
   s.nodes = static_cast<int>(nodes);
   for (const Point& p : points) {
     Coordinates at;
-    for (int c = 0; c < 3; ++c) at[static_cast<std::size_t>(c)] = Real(p.at[c], 3, c);
+    for (std::size_t c = 0; c < 3; ++c) {
+      at[c] = p.at[static_cast<Eigen::Index>(c)];
+      at[c].derivatives()[c] = 1;
+    }
     const Values N = functions(at, nodes);
     Matrix3X gradient(3, s.nodes);
-    for (std::size_t a = 0; a < nodes; ++a) gradient.col(static_cast<Eigen::Index>(a)) = N[a].derivatives();
+    for (std::size_t a = 0; a < nodes; ++a)
+      gradient.col(static_cast<Eigen::Index>(a)) = Eigen::Map<const Vector3>(N[a].derivatives().data());
     s.weights.push_back(p.weight);
     s.gradients.push_back(gradient);
   }

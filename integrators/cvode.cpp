@@ -71,6 +71,55 @@ Context new_context() {
   return Context(context);
 }
 
+/// CVODE begins anew after so many steps: few enough to be made again in a moment, so many that it costs less than 1 %.
+constexpr std::size_t most_steps_of_history = 5000;
+
+/// What made CVODE's history: the state it began at and the limit of each step since.
+class History {
+ public:
+  /// Steps one after another with the same limit [s].
+  struct Stretch {
+    double limit = 0;
+    std::size_t steps = 0;
+  };
+
+  History() { stretches_.reserve(most_steps_of_history); }  // steps do not allocate
+  void begin(const State& state) {
+    start_.time = state.time;
+    start_.y.assign(state.y.begin(), state.y.end());
+    stretches_.clear();
+    steps_ = 0;
+  }
+  void add(double limit) {
+    if (stretches_.empty() || stretches_.back().limit != limit) stretches_.push_back({limit, 0});
+    ++stretches_.back().steps;
+    ++steps_;
+  }
+  [[nodiscard]] const State& start() const { return start_; }
+  [[nodiscard]] const std::vector<Stretch>& stretches() const { return stretches_; }
+  [[nodiscard]] std::size_t steps() const { return steps_; }
+  void remember(Memory& memory) {
+    memory(start_.time);
+    memory(start_.y);
+    std::size_t count = stretches_.size();
+    memory(count);
+    if (memory.reading()) {
+      if (count > most_steps_of_history) throw std::invalid_argument("more steps than CVODE makes without a new start");
+      stretches_.resize(count);
+    }
+    for (Stretch& s : stretches_) {
+      memory(s.limit);
+      memory(s.steps);
+    }
+    memory(steps_);
+  }
+
+ private:
+  State start_;
+  std::vector<Stretch> stretches_;
+  std::size_t steps_ = 0;
+};
+
 class CvodeStepper final : public Stepper {
  public:
   CvodeStepper(const EquationsOfMotion& equations, const State& start, const CvodeOptions& options)
@@ -118,6 +167,7 @@ class CvodeStepper final : public Stepper {
     if (begin_) {
       std::copy(state_.y.begin(), state_.y.end(), N_VGetArrayPointer(y_.get()));
       CVodeReInit(cvode_.get(), state_.time, y_.get());
+      history_.begin(state_);
       begin_ = false;
       failures_ = 0;
     }
@@ -131,6 +181,8 @@ class CvodeStepper final : public Stepper {
     }
     const double* values = N_VGetArrayPointer(y_.get());
     if (!(t > state_.time)) return failure();
+    history_.add(t_limit);
+    begin_ = history_.steps() == most_steps_of_history;
     return accept(t, {values, state_.y.size()});
   }
 
@@ -151,20 +203,34 @@ class CvodeStepper final : public Stepper {
     place(state);
     begin_ = true;
   }
-  // CVODE keeps its history to itself, so that this stepper forgets it too when it is asked what it knows: both go on
-  // alike from here.
+  // CVODE keeps its history to itself. What made it is remembered instead: where CVODE last began, and the steps since,
+  // which are made again. That it begins anew after a fixed number of steps bounds them.
   [[nodiscard]] std::vector<double> memory() const override {
-    begin_ = true;
     Memory memory;
     const_cast<CvodeStepper*>(this)->remember(memory);  // which only reads them, since it writes
     return memory.numbers();
   }
   void resume(const State& state, std::span<const double> numbers) override {
-    place(state);
     Memory memory(numbers);
     remember(memory);
     memory.finish();
-    begin_ = true;
+    const StepStatistics statistics = statistics_;
+    const int sign = sign_;
+    if (begin_) {
+      place(state);
+    } else {
+      const History made = history_;
+      place(made.start());
+      begin_ = true;
+      for (const History::Stretch& stretch : made.stretches())
+        for (std::size_t i = 0; i < stretch.steps; ++i)
+          if (step(stretch.limit).outcome != StepResult::Outcome::ok)
+            throw std::invalid_argument("a step of the checkpoint cannot be made again");
+      if (state_.time != state.time || state_.y != state.y)
+        throw std::invalid_argument("the steps to the checkpoint, made again, lead to another state");
+    }
+    statistics_ = statistics;
+    sign_ = sign;
   }
   [[nodiscard]] std::vector<std::string> remarks() const override {
     std::vector<std::string> all;
@@ -216,6 +282,8 @@ class CvodeStepper final : public Stepper {
     memory(statistics_.largest_step);
     memory(statistics_.determinant_sign);
     memory(sign_);
+    memory(begin_);
+    history_.remember(memory);
   }
   void count_rejections() {
     long errors = 0, unsolved = 0;
@@ -277,9 +345,10 @@ class CvodeStepper final : public Stepper {
   StepStatistics statistics_;
   double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which the step may evaluate
   int sign_ = 1;
-  Evaluation failed_;           ///< the last evaluation that failed in this step
-  long failures_ = 0;           ///< of CVODE's, those counted
-  mutable bool begin_ = false;  ///< CVODE begins anew at state_
+  Evaluation failed_;  ///< the last evaluation that failed in this step
+  long failures_ = 0;  ///< of CVODE's, those counted
+  bool begin_ = true;  ///< CVODE begins anew at state_
+  History history_;    ///< since CVODE last began
   Context context_;
   Vector y_, inside_;
   Matrix matrix_;

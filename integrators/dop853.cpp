@@ -7,10 +7,10 @@
 #include <span>
 
 #include "adaptive_stepper.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
-namespace {
+namespace dop853 {
 
 /// A coefficient and the stage it multiplies.
 struct Term {
@@ -202,14 +202,13 @@ class Dop853Stepper final : public AdaptiveStepper {
   mutable bool dense_ = false;  ///< c_ belongs to the last accepted step
 };
 
-void enroll(Enrollment& enrollment) {
+}  // namespace dop853
+
+void enroll_dop853(Enrollment& enrollment) {
   enrollment.add<Integrator>({.id = "dop853",
                               .summary = "Dormand-Prince method of order 8 with dense output of order 7",
                               .parameters = step_control_parameters(),
-                              .make = &make_controlled<Dop853Stepper>});
+                              .make = &make_controlled<dop853::Dop853Stepper>});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(dop853, withy::enroll);

@@ -2,7 +2,7 @@
 /// The pair 5(4) of Dormand & Prince (J. Comput. Appl. Math. 6, 1980, 19–26) with the continuous extension of order 4
 /// in Hairer, Nørsett & Wanner I, II.6. Six evaluations a step.
 #include "adaptive_stepper.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -63,14 +63,13 @@ class Dopri5Stepper final : public AdaptiveStepper {
   Eigen::ArrayXd c2_, c3_, c4_, c5_;  ///< the continuous extension over the last accepted step
 };
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_dopri5(Enrollment& enrollment) {
   enrollment.add<Integrator>({.id = "dopri5",
                               .summary = "Dormand-Prince pair of orders 5 and 4 with dense output",
                               .parameters = step_control_parameters(),
                               .make = &make_controlled<Dopri5Stepper>});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(dopri5, withy::enroll);

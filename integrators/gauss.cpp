@@ -4,7 +4,7 @@
 /// steps summed with compensation (VIII.5 and Hairer, McLachlan & Razakarivony, BIT 48, 2008).
 #include "collocation.hpp"
 #include "equal_steps.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -105,7 +105,9 @@ class Gauss final : public Integrator {
   StepJacobian::Source source_;
 };
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_gauss(Enrollment& enrollment) {
   enrollment.add<Integrator>(
       {.id = "gauss",
        .summary = "Gauss collocation of order 6, equal steps, symmetric: keeps the energy of undamped motion",
@@ -115,7 +117,4 @@ void enroll(Enrollment& enrollment) {
        }});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(gauss, withy::enroll);

@@ -6,7 +6,7 @@
 ///   x₁ = x₀ moved for h with the speeds Δ = u₀ + h ((½ − β) a₀ + β a₁).
 #include "equal_steps.hpp"
 #include "jacobian.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -202,7 +202,7 @@ class GeneralizedAlpha final : public Integrator {
   AlphaOptions options_;
 };
 
-std::unique_ptr<Integrator> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Integrator> make_generalized_alpha(const Value& p, const MakeContext& context) {
   const double rho = p.number_at("rho_infinity");
   const bool hht = p.at("method").text() == "hht";
   if (hht && rho < 0.5) {
@@ -213,7 +213,9 @@ std::unique_ptr<Integrator> make(const Value& p, const MakeContext& context) {
       p.number_at("step"), hht ? AlphaParameters::hht(rho) : AlphaParameters::chung_hulbert(rho), jacobian_source(p)});
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_generalized_alpha(Enrollment& enrollment) {
   enrollment.add<Integrator>(
       {.id = "generalized-alpha",
        .summary = "Generalized-alpha method of order 2, equal steps, with the numerical damping one chooses",
@@ -227,10 +229,7 @@ void enroll(Enrollment& enrollment) {
                           .one_of({"chung-hulbert", "hht"})
                           .otherwise("chung-hulbert"),
                       jacobian_parameter()},
-       .make = &make});
+       .make = &make_generalized_alpha});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(generalized_alpha, withy::enroll);

@@ -11,10 +11,10 @@
 #include <limits>
 
 #include "adaptive_stepper.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
-namespace {
+namespace imex {
 
 constexpr std::size_t stages = 8;
 using Row = std::array<double, stages>;
@@ -150,16 +150,15 @@ class ImexStepper final : public AdaptiveStepper {
   Node older_;                   ///< the start of the step before it
 };
 
-void enroll(Enrollment& enrollment) {
+}  // namespace imex
+
+void enroll_imex(Enrollment& enrollment) {
   enrollment.add<Integrator>(
       {.id = "imex",
        .summary = "Semi-implicit Runge-Kutta method of order 5, L-stable: stiffness and damping implicit at the price "
                   "of an explicit stage",
        .parameters = step_control_parameters(),
-       .make = &make_controlled<ImexStepper>});
+       .make = &make_controlled<imex::ImexStepper>});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(imex, withy::enroll);

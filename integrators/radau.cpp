@@ -4,7 +4,7 @@
 /// serve several steps; error estimate of order 3; between the steps the collocation polynomial.
 #include "adaptive_stepper.hpp"
 #include "collocation.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -163,7 +163,7 @@ class Radau final : public Integrator {
   RadauOptions options_;
 };
 
-std::unique_ptr<Integrator> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Integrator> make_radau(const Value& p, const MakeContext& context) {
   const std::optional<StepControl> control = read_step_control(p, context);
   if (!control) return nullptr;
   return std::make_unique<Radau>(RadauOptions{*control, jacobian_source(p), p.number_at("iteration_error")});
@@ -179,15 +179,14 @@ std::vector<ParameterSpec> parameters() {
   return all;
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_radau(Enrollment& enrollment) {
   enrollment.add<Integrator>(
       {.id = "radau",
        .summary = "Radau IIA of order 5, fully implicit, L-stable: for what is stiff, at any accuracy",
        .parameters = parameters(),
-       .make = &make});
+       .make = &make_radau});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(radau, withy::enroll);

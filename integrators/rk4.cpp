@@ -1,7 +1,7 @@
 /// \file
 /// The classical Runge–Kutta method of order 4 with equal steps; interpolation is cubic Hermite.
 #include "equal_steps.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -41,7 +41,9 @@ class Rk4 final : public Integrator {
   double step_;
 };
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_rk4(Enrollment& enrollment) {
   enrollment.add<Integrator>({.id = "rk4",
                               .summary = "Classical Runge-Kutta method of order 4, equal steps",
                               .parameters = {step_parameter()},
@@ -50,7 +52,4 @@ void enroll(Enrollment& enrollment) {
                               }});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(rk4, withy::enroll);

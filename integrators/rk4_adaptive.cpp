@@ -2,7 +2,7 @@
 /// Runge–Kutta of order 4 with step doubling: each step is made once whole and once in two halves; their difference is
 /// the error estimate and, added (local extrapolation), makes the result of order 5. Eleven evaluations a step.
 #include "adaptive_stepper.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -67,14 +67,13 @@ class Rk4AdaptiveStepper final : public AdaptiveStepper {
   Eigen::ArrayXd kept_middle_, kept_middle_slope_;  ///< of the last accepted step, extrapolated
 };
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_rk4_adaptive(Enrollment& enrollment) {
   enrollment.add<Integrator>({.id = "rk4-adaptive",
                               .summary = "Runge-Kutta of order 4 with step doubling and local extrapolation",
                               .parameters = step_control_parameters(),
                               .make = &make_controlled<Rk4AdaptiveStepper>});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(rk4_adaptive, withy::enroll);

@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "adaptive_stepper.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
-namespace {
+namespace rosenbrock_w {
 
 constexpr double gamma_ii = 0.435866521508459;
 constexpr double a21 = 0.87173304301691801, a31 = 0.84457060015369423, a32 = -0.11299064236484185, a43 = 1;
@@ -74,15 +74,14 @@ class RosenbrockWStepper final : public AdaptiveStepper {
   Eigen::ArrayXd stage_, slope_here_, shift_, k1_, k2_, k3_, k4_;
 };
 
-void enroll(Enrollment& enrollment) {
+}  // namespace rosenbrock_w
+
+void enroll_rosenbrock_w(Enrollment& enrollment) {
   enrollment.add<Integrator>(
       {.id = "rosenbrock-w",
        .summary = "Linearly implicit method of order 3, L-stable: steps are not limited by the modes' frequencies",
        .parameters = step_control_parameters(),
-       .make = &make_controlled<RosenbrockWStepper>});
+       .make = &make_controlled<rosenbrock_w::RosenbrockWStepper>});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(rosenbrock_w, withy::enroll);

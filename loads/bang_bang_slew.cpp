@@ -2,7 +2,7 @@
 /// Open-loop efforts that take one or two hinges of the rigid tree from rest to rest in least time under limits.
 #include <algorithm>
 
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/loads/hinge_rate.hpp"
 #include "withy/loads/time_optimal.hpp"
 
@@ -75,7 +75,7 @@ class BangBangSlew final : public Load {
   std::vector<Target> targets_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Load> make_bang_bang_slew(const Value& p, const MakeContext& context) {
   std::vector<Target> targets;
   for (const auto& [hinge, target] : p.at("hinges").members())
     targets.push_back({hinge, target.number_at("from"), target.number_at("to"), target.number_at("limit")});
@@ -91,7 +91,9 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
   return std::make_unique<BangBangSlew>(std::move(targets));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_bang_bang_slew(Enrollment& enrollment) {
   enrollment.add<Load>(
       {.id = "bang-bang-slew",
        .summary = "Open-loop efforts of least time, at their limits, that would carry the tree of rigid bodies",
@@ -102,10 +104,7 @@ void enroll(Enrollment& enrollment) {
                             "one or two hinges to move, of one coordinate each; the others count as held at their "
                             "reference")
                           .naming(ParameterSpec::Refers::hinge)},
-       .make = &make});
+       .make = &make_bang_bang_slew});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(bang_bang_slew, withy::enroll);

@@ -5,7 +5,7 @@
 /// 0.
 #include <algorithm>
 
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/core/sweep/rigid_inverse_dynamics.hpp"
 #include "withy/loads/followed_hinges.hpp"
 #include "withy/loads/sampled.hpp"
@@ -74,7 +74,7 @@ class ComputedTorque final : public Load {
   double period_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Load> make_computed_torque(const Value& p, const MakeContext& context) {
   auto hinges = TrajectoryReader(p, context).read();
   if (!hinges) return nullptr;
   return std::make_unique<ComputedTorque>(
@@ -83,7 +83,9 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
       sample_period(p));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_computed_torque(Enrollment& enrollment) {
   std::vector<ParameterSpec> parameters =
       trajectory_parameters({"quintic", "bang-bang", "table", "sine", "constant"}, {},
                             "hinges to control, of one coordinate each; of the others no acceleration is expected");
@@ -93,10 +95,7 @@ void enroll(Enrollment& enrollment) {
   enrollment.add<Load>({.id = "computed-torque",
                         .summary = "Controller: feedback through the inverse dynamics of the tree of rigid bodies",
                         .parameters = std::move(parameters),
-                        .make = &make});
+                        .make = &make_computed_torque});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(computed_torque, withy::enroll);

@@ -1,6 +1,6 @@
 /// \file
 /// An effort on one rate of a hinge as a function of time: constant, sine, table or steps.
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/loads/hinge_rate.hpp"
 #include "withy/loads/time_law.hpp"
 
@@ -43,21 +43,20 @@ class HingeEffort final : public Load {
   Effort effort_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Load> make_hinge_effort(const Value& p, const MakeContext& context) {
   std::optional<Effort> effort = TimeLawReader<double>(p, context).read();
   if (!effort) return nullptr;
   return std::make_unique<HingeEffort>(rate_name(p), std::move(*effort));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_hinge_effort(Enrollment& enrollment) {
   enrollment.add<Load>(
       {.id = "hinge-effort",
        .summary = "Effort on one rate of a hinge as a function of time; a force in N where the rate is a velocity",
        .parameters = rate_parameters(time_law_parameters<double>("effort", "N m")),
-       .make = &make});
+       .make = &make_hinge_effort});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(hinge_effort, withy::enroll);

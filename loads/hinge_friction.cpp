@@ -2,7 +2,7 @@
 /// Dry friction on a rate of a hinge, made smooth: τ = −c tanh(ẋ / s).
 #include <cmath>
 
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/loads/hinge_rate.hpp"
 
 namespace withy {
@@ -47,21 +47,20 @@ class HingeFriction final : public Load {
   double scale_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& /*context*/) {
+std::unique_ptr<Load> make_hinge_friction(const Value& p, const MakeContext& /*context*/) {
   return std::make_unique<HingeFriction>(rate_name(p), p.number_at("effort"), p.number_at("rate_scale"));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_hinge_friction(Enrollment& enrollment) {
   enrollment.add<Load>(
       {.id = "hinge-friction",
        .summary = "Dry friction on a rate of a hinge, smooth through zero",
        .parameters = rate_parameters(
            {number("effort", "N m", "friction of a fast motion; a force in N where the rate is a velocity").least(0),
             number("rate_scale", "rad/s", "rate at which 76 % of it act: below, the hinge creeps").above(0)}),
-       .make = &make});
+       .make = &make_hinge_friction});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(hinge_friction, withy::enroll);

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/loads/hinge_rate.hpp"
 
 namespace withy {
@@ -78,7 +78,7 @@ class HingeLimit final : public Load {
   Limits limits_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Load> make_hinge_limit(const Value& p, const MakeContext& context) {
   Limits limits;
   limits.stiffness = p.number_at("stiffness");
   limits.dissipation = p.number_at("dissipation");
@@ -96,7 +96,9 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
   return std::make_unique<HingeLimit>(rate_name(p), limits);
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_hinge_limit(Enrollment& enrollment) {
   enrollment.add<Load>(
       {.id = "hinge-limit",
        .summary = "Soft stops at the ends of a coordinate's range; per metre where the coordinate is a length",
@@ -108,10 +110,7 @@ void enroll(Enrollment& enrollment) {
                 .least(0)
                 .otherwise(0.0),
             number("onset", "rad", "depth over which the stiffness grows from zero").above(0).otherwise(0.01)}),
-       .make = &make});
+       .make = &make_hinge_limit});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(hinge_limit, withy::enroll);

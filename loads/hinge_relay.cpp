@@ -2,7 +2,7 @@
 /// An on-off controller with hysteresis on a rate of a hinge, as of attitude thrusters (Schmitt trigger): on
 ///   s = x − x_r + T ẋ
 /// it switches −τ on where s rises to `on` and +τ where it falls to −`on`, and off where |s| has come back to `off`.
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/loads/hinge_rate.hpp"
 
 namespace withy {
@@ -86,7 +86,7 @@ class HingeRelay final : public Load {
   Relay relay_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Load> make_hinge_relay(const Value& p, const MakeContext& context) {
   const Relay relay{p.number_at("effort"), p.number_at("target"), p.number_at("rate_time"), p.number_at("on"),
                     p.number_at("off")};
   if (relay.off >= relay.on) {
@@ -97,7 +97,9 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
   return std::make_unique<HingeRelay>(rate_name(p), relay);
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_hinge_relay(Enrollment& enrollment) {
   enrollment.add<Load>({.id = "hinge-relay",
                         .summary = "On-off controller with hysteresis on a rate of a hinge, as of attitude thrusters",
                         .parameters = rate_parameters(
@@ -106,10 +108,7 @@ void enroll(Enrollment& enrollment) {
                              number("rate_time", "s", "weight of the rate in the signal").least(0).otherwise(0.0),
                              number("on", "rad", "signal at which it switches on").above(0),
                              number("off", "rad", "signal at which it switches off; below 'on'").least(0)}),
-                        .make = &make});
+                        .make = &make_hinge_relay});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(hinge_relay, withy::enroll);

@@ -1,6 +1,6 @@
 /// \file
 /// A linear spring and damper on a coordinate of a hinge: τ = preload − k (x − x₀) − c ẋ.
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/loads/hinge_rate.hpp"
 
 namespace withy {
@@ -55,7 +55,7 @@ class HingeSpring final : public Load {
   Spring spring_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Load> make_hinge_spring(const Value& p, const MakeContext& context) {
   const Spring spring{p.number_at("stiffness"), p.number_at("damping"), p.number_at("free_position"),
                       p.number_at("preload")};
   if (spring.stiffness == 0 && spring.damping == 0 && spring.preload == 0) {
@@ -65,7 +65,9 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
   return std::make_unique<HingeSpring>(rate_name(p), spring);
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_hinge_spring(Enrollment& enrollment) {
   enrollment.add<Load>(
       {.id = "hinge-spring",
        .summary = "Linear spring and damper on a coordinate of a hinge; per metre where the coordinate is a length",
@@ -74,10 +76,7 @@ void enroll(Enrollment& enrollment) {
                             number("damping", "N m s/rad", "effort for one radian per second").least(0).otherwise(0.0),
                             number("free_position", "rad", "coordinate at which the spring is slack").otherwise(0.0),
                             number("preload", "N m", "constant effort, in the sense of the rate").otherwise(0.0)}),
-       .make = &make});
+       .make = &make_hinge_spring});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(hinge_spring, withy::enroll);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/loads/followed_hinges.hpp"
 #include "withy/loads/sampled.hpp"
 
@@ -95,7 +95,7 @@ class PdController final : public Load {
   double period_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Load> make_pd_controller(const Value& p, const MakeContext& context) {
   const auto hinges = TrajectoryReader(p, context).read();
   if (!hinges) return nullptr;
   std::vector<Loop> loops;
@@ -107,7 +107,9 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
   return std::make_unique<PdController>(std::move(loops), p.text_at("law") != "constant", sample_period(p));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_pd_controller(Enrollment& enrollment) {
   std::vector<ParameterSpec> parameters =
       trajectory_parameters({"quintic", "bang-bang", "table", "sine", "constant"},
                             {component_parameter(), number("stiffness", "N m/rad", "proportional gain").least(0),
@@ -118,10 +120,7 @@ void enroll(Enrollment& enrollment) {
   enrollment.add<Load>({.id = "pd-controller",
                         .summary = "Controller: proportional and derivative feedback on coordinates of hinges",
                         .parameters = std::move(parameters),
-                        .make = &make});
+                        .make = &make_pd_controller});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(pd_controller, withy::enroll);

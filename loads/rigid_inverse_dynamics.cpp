@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/loads/followed_hinges.hpp"
 
 namespace withy {
@@ -67,22 +67,21 @@ class Slew final : public Load {
   std::vector<FollowedHinge> hinges_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Load> make_rigid_inverse_dynamics(const Value& p, const MakeContext& context) {
   auto hinges = TrajectoryReader(p, context).read();
   if (!hinges) return nullptr;
   return std::make_unique<Slew>(std::move(*hinges));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_rigid_inverse_dynamics(Enrollment& enrollment) {
   enrollment.add<Load>({.id = "rigid-inverse-dynamics",
                         .summary = "Open-loop efforts that would carry the tree of rigid bodies along a trajectory",
                         .parameters = trajectory_parameters(
                             {"quintic", "bang-bang", "table", "sine"}, {},
                             "hinges to move, of one coordinate each; the others count as held at their reference"),
-                        .make = &make});
+                        .make = &make_rigid_inverse_dynamics});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(rigid_inverse_dynamics, withy::enroll);

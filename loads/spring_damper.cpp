@@ -2,7 +2,7 @@
 /// A spring and damper along the line between two points: force k (ℓ − ℓ₀) + c ℓ̇ of attraction.
 #include <optional>
 
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/loads/frame_load.hpp"
 
 namespace withy {
@@ -60,7 +60,7 @@ class SpringDamperLoad final : public Load {
   SpringDamper spring_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Load> make_spring_damper(const Value& p, const MakeContext& context) {
   const SpringDamper spring{p.number_at("stiffness"), p.number_at("damping"), p.number_at("free_length")};
   bool good = true;
   const auto error = [&](const Value& at, const char* message) {
@@ -83,7 +83,9 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
   return std::make_unique<SpringDamperLoad>(p.text_at("frame"), std::move(to), anchor, spring);
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_spring_damper(Enrollment& enrollment) {
   enrollment.add<Load>(
       {.id = "spring-damper",
        .summary = "Linear spring and damper along the line between two frames, or a frame and a point of the world",
@@ -94,10 +96,7 @@ void enroll(Enrollment& enrollment) {
             number("stiffness", "N/m", "force for one metre").least(0).otherwise(0.0),
             number("damping", "N s/m", "force for one metre per second").least(0).otherwise(0.0),
             number("free_length", "m", "length at which the spring is slack").least(0).otherwise(0.0)},
-       .make = &make});
+       .make = &make_spring_damper});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(spring_damper, withy::enroll);

@@ -2,7 +2,7 @@
 /// A thruster: a force fixed in a frame, on or off.
 #include <algorithm>
 
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/loads/frame_load.hpp"
 
 namespace withy {
@@ -13,9 +13,9 @@ struct Firing {
   double on, off;
 };
 
-class Bound final : public FrameLoad {
+class BoundThruster final : public FrameLoad {
  public:
-  Bound(FrameIndex frame, const Vector3& thrust, std::vector<Firing> firings)
+  BoundThruster(FrameIndex frame, const Vector3& thrust, std::vector<Firing> firings)
       : FrameLoad({frame}), thrust_(thrust), firings_(std::move(firings)) {}
   void wrenches(double t, std::span<const FrameMotion> motions, std::span<Wrench> wrenches) const noexcept override {
     const auto next =
@@ -44,7 +44,7 @@ class Thruster final : public Load {
   Thruster(std::string frame, const Vector3& thrust, std::vector<Firing> firings)
       : frame_(std::move(frame)), thrust_(thrust), firings_(std::move(firings)) {}
   std::unique_ptr<BoundLoad> bind(const Model& model) const override {
-    return std::make_unique<Bound>(frame_index(model, frame_), thrust_, firings_);
+    return std::make_unique<BoundThruster>(frame_index(model, frame_), thrust_, firings_);
   }
 
  private:
@@ -53,7 +53,7 @@ class Thruster final : public Load {
   std::vector<Firing> firings_;
 };
 
-std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Load> make_thruster(const Value& p, const MakeContext& context) {
   bool good = true;
   const auto error = [&](const Value& at, const char* message) {
     context.diagnostics.error(at.place(), message);
@@ -75,7 +75,9 @@ std::unique_ptr<Load> make(const Value& p, const MakeContext& context) {
                                     std::move(firings));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_thruster(Enrollment& enrollment) {
   enrollment.add<Load>(
       {.id = "thruster",
        .summary = "Force fixed in a frame, switched on and off",
@@ -84,10 +86,7 @@ void enroll(Enrollment& enrollment) {
                       number("thrust", "N", "force while it is on").above(0),
                       vector("direction", 3, "1", "of the force on the body, in the axes of the frame, of any length"),
                       table("firings", {"s", "s"}, "times on and off")},
-       .make = &make});
+       .make = &make_thruster});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(thruster, withy::enroll);

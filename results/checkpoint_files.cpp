@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr const char* format = "withy-checkpoint/1";
+constexpr const char* format = "withy-checkpoint/2";
 
 std::uint32_t checksum(const Bytes& bytes) {
   boost::crc_32_type crc;
@@ -58,7 +58,9 @@ void CheckpointFiles::write(const StoredRun& run) const {
                                       {"y", run.checkpoint.state.y},
                                       {"stepper", run.checkpoint.stepper},
                                       {"watches", run.checkpoint.watches},
-                                      {"table_bytes", run.table_bytes}});
+                                      {"rows", run.table.rows},
+                                      {"bytes", run.table.bytes},
+                                      {"sha256", run.table.sha256}});
   const Bytes whole =
       Json::to_cbor({{"format", format}, {"crc32", checksum(packed)}, {"content", Json::binary(packed)}});
   if (std::filesystem::exists(newest_)) std::filesystem::rename(newest_, previous_);
@@ -82,8 +84,12 @@ StoredRun CheckpointFiles::read() const {
         fmt::format("{} belongs to another scene, formulation, integrator or version; run without --resume "
                     "to begin anew",
                     newest_.string()));
-  return {{{j.at("time"), j.at("y")}, j.at("stepper"), j.at("watches")}, j.at("table_bytes"), std::move(remark)};
+  return {{{j.at("time"), j.at("y")}, j.at("stepper"), j.at("watches")},
+          {j.at("rows"), j.at("bytes"), j.at("sha256")},
+          std::move(remark)};
 }
+
+bool CheckpointFiles::exist() const { return std::filesystem::exists(newest_) || std::filesystem::exists(previous_); }
 
 void CheckpointFiles::remove() const {
   std::filesystem::remove(newest_);

@@ -2,19 +2,19 @@
 /// Checkpoints of runs on disk: in the results folder, two generations, each with a checksum.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 
 #include "withy/core/simulation/simulate.hpp"
+#include "withy/results/recorder.hpp"
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// A checkpoint of a run, with what belongs to it in its folder.
 struct StoredRun {
   Checkpoint checkpoint;
-  std::uintmax_t table_bytes = 0;  ///< length of results.csv then
-  std::string remark = {};         ///< once read: why it is not the newest checkpoint, or empty
+  RecordMark table;         ///< how far results.csv was
+  std::string remark = {};  ///< once read: why it is not the newest checkpoint, or empty
 };
 
 /// The checkpoints of one run, in a folder: `checkpoint.cbor`, and the one before as `checkpoint.previous.cbor`.
@@ -26,6 +26,8 @@ class CheckpointFiles {
   void write(const StoredRun& run) const;
   /// The newest undamaged checkpoint. \throws ResultsError where there is none, or it is another run's.
   [[nodiscard]] StoredRun read() const;
+  /// Whether there is any.
+  [[nodiscard]] bool exist() const;
   void remove() const;
 
  private:
@@ -33,4 +35,4 @@ class CheckpointFiles {
   std::string run_;  ///< fingerprint
 };
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 
 namespace withy {
@@ -81,12 +80,6 @@ Json parameter_json(const ParameterSpec& p) {
   if (!p.columns.empty()) j["columns"] = p.columns;
   for (const ParameterSpec& member : p.members) j["members"].push_back(parameter_json(member));
   return j;
-}
-
-std::string fingerprint_of(const std::string& text) {
-  std::uint64_t h = 14695981039346656037U;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211U;
-  return fmt::format("{:016x}", h);
 }
 
 }  // namespace withy

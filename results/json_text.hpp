@@ -8,7 +8,7 @@
 #include "withy/core/plugin/parameters.hpp"
 #include "withy/core/plugin/value.hpp"
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// The text of a result, indented, ending its line. Numbers that are not finite become null.
 std::string json_text(const nlohmann::ordered_json& json);
@@ -18,7 +18,4 @@ nlohmann::ordered_json value_json(const Value& value);
 /// A plugin's option: key, kind, unit, meaning, whether required, default, limits, choices, members.
 nlohmann::ordered_json parameter_json(const ParameterSpec& parameter);
 
-/// FNV-1a of a text, as hexadecimal digits: the same on every machine.
-std::string fingerprint_of(const std::string& text);
-
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

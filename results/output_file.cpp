@@ -15,14 +15,32 @@ OutputFile::OutputFile(std::filesystem::path path, bool append)
 }
 
 void OutputFile::write(std::string_view text) {
-  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() || std::fflush(file_.get()) != 0) fail();
+  constexpr std::size_t many = 1 << 16;
+  waiting_ += text;
+  if (waiting_.size() >= many) flush();
+}
+
+void OutputFile::flush() {
+  if (!hand_over()) fail();
+}
+
+bool OutputFile::hand_over() noexcept {
+  const bool written = std::fwrite(waiting_.data(), 1, waiting_.size(), file_.get()) == waiting_.size();
+  waiting_.clear();
+  return std::fflush(file_.get()) == 0 && written;
+}
+
+OutputFile::~OutputFile() {
+  if (file_) hand_over();  // of a run that ends by an exception
 }
 
 void OutputFile::sync() {
+  flush();
   if (::fsync(::fileno(file_.get())) != 0) fail();
 }
 
 void OutputFile::close() {
+  flush();
   if (std::fclose(file_.release()) != 0) fail();
 }
 

@@ -5,18 +5,24 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
-/// A text file written from its beginning; each write reaches the system before the next, so that a run that is killed
-/// leaves whole lines.
+/// A text file written from its beginning. What is written reaches the system some writes at a time, never a part of
+/// one, so that a run that is killed leaves whole lines.
 class OutputFile {
  public:
   /// \throws std::system_error naming the file, as do the other functions.
   /// \param append after what is there, or in its place
   explicit OutputFile(std::filesystem::path path, bool append = false);
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  ~OutputFile();
   void write(std::string_view text);
+  /// Gives the system all that was written.
+  void flush();
   /// Makes what was written last through a loss of power.
   void sync();
   /// To be called once, last: closing may report what writing could not.
@@ -27,9 +33,11 @@ class OutputFile {
     void operator()(std::FILE* file) const noexcept { std::fclose(file); }
   };
   [[noreturn]] void fail() const;
+  bool hand_over() noexcept;
 
   std::filesystem::path path_;
   std::unique_ptr<std::FILE, Closer> file_;
+  std::string waiting_;
 };
 
 /// Writes a file whole or not at all: under another name first, then renamed. \throws std::system_error
@@ -37,4 +45,4 @@ void write_file(const std::filesystem::path& path, std::string_view text);
 /// The same, made to last through a loss of power.
 void write_lasting_file(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

@@ -24,7 +24,12 @@ std::string numbered(const std::string& name, std::size_t index, std::size_t cou
 }  // namespace
 
 ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equations)
-    : model_(model), equations_(equations), tips_(tips(model)) {
+    : model_(model),
+      equations_(equations),
+      tips_(tips(model)),
+      seen_(equations.make_observation()),
+      work_(equations.make_work()),
+      efforts_(model.layout().speeds) {
   const Layout& layout = model.layout();
   columns_.push_back({"t", "s"});
   const auto append = [&](const std::vector<Column>& more) {
@@ -53,41 +58,45 @@ ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equati
   add(columns_, "angular_momentum", {".x", ".y", ".z"}, "kg m^2/s");
 }
 
-std::vector<double> ResultColumns::row(const State& state) const {
+const std::vector<double>& ResultColumns::row(const State& state) {
+  seen_->observe(state.y);
+  return row_of_seen(state);
+}
+
+const std::vector<double>& ResultColumns::row_of_seen(const State& state) {
   const Layout& layout = model_.layout();
-  std::vector<double> row{state.time};
-  row.reserve(columns_.size());
-  const auto append = [&](std::size_t first, std::size_t count) {
-    const auto begin = state.y.begin() + static_cast<std::ptrdiff_t>(first);
-    row.insert(row.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
-  };
-  for (const Slot& s : layout.hinges) append(s.position, s.positions);
-  for (const Slot& s : layout.bodies) append(s.position, s.positions);
-  for (const Slot& s : layout.hinges) append(layout.positions + s.speed, s.speeds);
-  for (const Slot& s : layout.bodies) append(layout.positions + s.speed, s.speeds);
+  row_.assign(1, state.time);
+  for (const Slot& s : layout.hinges) append(state, s.position, s.positions);
+  for (const Slot& s : layout.bodies) append(state, s.position, s.positions);
+  for (const Slot& s : layout.hinges) append(state, layout.positions + s.speed, s.speeds);
+  for (const Slot& s : layout.bodies) append(state, layout.positions + s.speed, s.speeds);
   for (const Tip& tip : tips_) {
-    if (!tip.flexible) continue;
-    const auto d = deflection(equations_, state.y, tip);
-    row.insert(row.end(), d.begin(), d.end());
+    if (tip.flexible) append(deflection(*seen_, tip));
   }
-  for (const Tip& tip : tips_) {
-    const auto p = equations_.frame_pose(state.y, tip.tip.body, tip.tip.frame).position;
-    row.insert(row.end(), p.begin(), p.end());
+  for (const Tip& tip : tips_) append(seen_->frame_pose(tip.tip.body, tip.tip.frame).position);
+  if (!model_.motions().empty()) append_motion_efforts(state);
+  const Energies e = seen_->energies();
+  row_.insert(row_.end(), {e.kinetic, e.potential, state.y.back()});
+  append(e.linear_momentum);
+  append(e.angular_momentum);
+  return row_;
+}
+
+void ResultColumns::append(const State& state, std::size_t first, std::size_t count) {
+  const auto begin = state.y.begin() + static_cast<std::ptrdiff_t>(first);
+  row_.insert(row_.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+}
+
+void ResultColumns::append(const std::array<double, 3>& vector) {
+  row_.insert(row_.end(), vector.begin(), vector.end());
+}
+
+void ResultColumns::append_motion_efforts(const State& state) {
+  equations_.motion_efforts(state.time, state.y, efforts_, work_);
+  for (const MotionNode& motion : model_.motions()) {
+    const Slot& slot = model_.layout().hinges[static_cast<std::size_t>(motion.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) row_.push_back(efforts_[slot.speed + i]);
   }
-  if (!model_.motions().empty()) {
-    std::vector<double> efforts(layout.speeds);
-    Work work = equations_.make_work();
-    equations_.motion_efforts(state.time, state.y, efforts, work);
-    for (const MotionNode& motion : model_.motions()) {
-      const Slot& slot = layout.hinges[static_cast<std::size_t>(motion.hinge)];
-      for (std::size_t i = 0; i < slot.speeds; ++i) row.push_back(efforts[slot.speed + i]);
-    }
-  }
-  const Energies e = equations_.energies(state.y);
-  row.insert(row.end(), {e.kinetic, e.potential, state.y.back()});
-  row.insert(row.end(), e.linear_momentum.begin(), e.linear_momentum.end());
-  row.insert(row.end(), e.angular_momentum.begin(), e.angular_momentum.end());
-  return row;
 }
 
 }  // namespace withy

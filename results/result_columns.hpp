@@ -2,6 +2,8 @@
 /// The numbers that a result table shows of a state, with their names and units.
 #pragma once
 
+#include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,7 +12,7 @@
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/tips.hpp"
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// What `results.csv` holds: time, hinge and modal coordinates and their rates, deflections and world positions of the
 /// tips, energies, work and momenta.
@@ -19,14 +21,25 @@ class ResultColumns {
   /// Both must outlive the object.
   ResultColumns(const Model& model, const EquationsOfMotion& equations);
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
-  /// As many numbers as there are columns.
-  [[nodiscard]] std::vector<double> row(const State& state) const;
+  /// As many numbers as there are columns, until the next row. Allocates nothing.
+  const std::vector<double>& row(const State& state);
+  /// The same where `seen()` is at that state already.
+  const std::vector<double>& row_of_seen(const State& state);
+  /// For RunOptions::seen: a row then costs no pass of its own.
+  [[nodiscard]] Observation& seen() { return *seen_; }
 
  private:
+  void append(const State& state, std::size_t first, std::size_t count);
+  void append(const std::array<double, 3>& vector);
+  void append_motion_efforts(const State& state);
+
   const Model& model_;
   const EquationsOfMotion& equations_;
   std::vector<Tip> tips_;
   std::vector<Column> columns_;
+  std::unique_ptr<Observation> seen_;
+  Work work_;  ///< for the efforts of motions
+  std::vector<double> efforts_, row_;
 };
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// Results are damaged, or another run's; what() names the file or folder and says what to do. They are left as they
 /// are.
@@ -13,4 +13,4 @@ class ResultsError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

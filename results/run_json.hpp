@@ -6,7 +6,7 @@
 
 #include "withy/scene/scene.hpp"
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// What run.json holds of a run, but for its certificate; see docs/command-line.md.
 nlohmann::ordered_json run_json(const Scene& scene, const RunSummary& summary);
@@ -14,4 +14,4 @@ nlohmann::ordered_json run_json(const Scene& scene, const RunSummary& summary);
 /// A state as JSON, in the form that `initial` and --state read.
 nlohmann::ordered_json state_json(const Model& model, const State& state);
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

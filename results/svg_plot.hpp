@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace [[gnu::visibility("default")]] withy {
+namespace withy {
 
 /// One curve. Its place in Panel::curves, or `pen`, chooses its colour and dashes, the same in every panel and in the
 /// legend.
@@ -40,4 +40,4 @@ std::vector<double> axis_marks(double low, double high);
 /// The same for an axis in decades: powers of ten in [low, high], and twice and five times them where these are few.
 std::vector<double> decade_marks(double low, double high);
 
-}  // namespace gnu::visibility("default")]]withy
+}  // namespace withy

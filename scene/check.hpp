@@ -11,6 +11,7 @@
 #include "withy/core/plugin/registry.hpp"
 #include "withy/scene/describe.hpp"
 #include "withy/scene/document.hpp"
+#include "withy/scene/sources.hpp"
 
 namespace withy {
 
@@ -44,6 +45,8 @@ class Checker {
 
   /// From now on references are compared with these names; before, any name is taken.
   void know(const SceneNames* names) { names_ = names; }
+  /// From now on plugins that are found are noted there.
+  void note(SceneSources* sources) { sources_ = sources; }
 
   /// The value in SI units with defaults filled in; nothing where it, or anything in it, is wrong.
   /// A text specification that has a unit takes a name or a number in that unit; one that refers to a mode family takes
@@ -70,7 +73,11 @@ class Checker {
   template <class Interface>
   const Plugin<Interface>* plugin(const Value& id) const {
     if (id.kind() == Value::Kind::text && is_plugin_id(id.text())) {
-      if (const Plugin<Interface>* found = registry_.find<Interface>(id.text())) return found;
+      if (const Plugin<Interface>* found = registry_.find<Interface>(id.text())) {
+        if (sources_ != nullptr)
+          sources_->add(PluginUsed{std::string(kind_name<Interface>()), found->id, found->origin});
+        return found;
+      }
     }
     unknown_plugin(id, std::string(kind_name<Interface>()), registry_.ids<Interface>());
     return nullptr;
@@ -92,6 +99,7 @@ class Checker {
   Registry& registry_;
   Diagnostics& diagnostics_;
   const SceneNames* names_ = nullptr;
+  SceneSources* sources_ = nullptr;
   mutable int suggested_ = 0;  ///< among many candidates
 };
 

@@ -6,10 +6,12 @@
 #include <cmath>
 
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/plugin/file_notes.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/sha256.hpp"
 #include "withy/scene/state.hpp"
 #include "withy/scene/tree.hpp"
 
@@ -23,8 +25,10 @@ constexpr double driven_tolerance = 1e-6;
 /// Checks one document and makes the scene of it.
 class SceneBuilder {
  public:
-  SceneBuilder(const Document& document, Registry& registry, Diagnostics& diagnostics)
-      : document_(document), diagnostics_(diagnostics), checker_(document, registry, diagnostics) {}
+  SceneBuilder(const Document& document, Registry& registry, SceneSources& sources, Diagnostics& diagnostics)
+      : document_(document), diagnostics_(diagnostics), checker_(document, registry, diagnostics) {
+    checker_.note(&sources);
+  }
 
   /// Complete only if no problem was reported.
   Scene build() {
@@ -42,6 +46,7 @@ class SceneBuilder {
     SceneTree tree = build_tree(part("bodies"), part("hinges"), gravity_, checker_);
     scene_.source.set("bodies", std::move(tree.bodies));
     scene_.source.set("hinges", std::move(tree.hinges));
+    scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);
     add_motions(tree.model.get());
     add_loads(tree.model.get());
@@ -254,9 +259,16 @@ class SceneBuilder {
 
 Scene make_scene(const SceneValues& values, Registry& registry) {
   Diagnostics diagnostics = values.problems();
-  Scene scene = SceneBuilder(values.document(), registry, diagnostics).build();
+  SceneSources sources;
+  const FileNotes notes([&](const std::string& file, std::string_view bytes) {
+    sources.add(FileUsed{file, withy::sha256(bytes)});
+  });
+  Scene scene = SceneBuilder(values.document(), registry, sources, diagnostics).build();
   if (!diagnostics.ok()) throw SceneError(values.file(), diagnostics.errors(), values.origins());
   scene.file = values.file();
+  scene.sha256 = values.sha256();
+  scene.sources = std::move(sources);
+  scene.settings = values.settings();
   return scene;
 }
 

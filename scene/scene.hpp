@@ -11,9 +11,11 @@
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/integrator.hpp"
+#include "withy/core/plugin/mode_parameters.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/scene/scene_values.hpp"
+#include "withy/scene/sources.hpp"
 
 namespace withy {
 
@@ -24,11 +26,21 @@ struct SceneOptions {
   std::vector<std::string> overrides;  ///< `path.to.value=text`, applied before the scene is checked
 };
 
+/// The numbers of modes that a scene gives a body, which studies may vary.
+struct BodyModes {
+  std::string body;
+  std::vector<ModeCount> counts;  ///< in the order of the body's modal coordinates
+};
+
 /// A scene ready to run. Immutable but for what the caller does with its copies.
 struct Scene {
   std::string name;
   std::string file;
-  Value source;  ///< checked values, SI units, defaults filled in
+  Value source;                       ///< checked values, SI units, defaults filled in
+  std::string sha256;                 ///< of the text as it was read
+  std::vector<std::string> settings;  ///< `path=value` of the command line, in their order
+  SceneSources sources;               ///< files and plugins that it is made from
+  std::vector<BodyModes> modes;       ///< of the bodies that have such numbers, in the order of the file
   std::shared_ptr<const Model> model;
   std::string formulation_name;
   std::shared_ptr<const Formulation> formulation;

@@ -10,6 +10,7 @@
 #include "withy/scene/describe.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/scene.hpp"
+#include "withy/scene/sha256.hpp"
 
 namespace withy {
 namespace {
@@ -74,6 +75,7 @@ SceneValues SceneValues::read(const std::string& file) { return parse(read_bytes
 SceneValues SceneValues::parse(std::string_view text, const std::string& name) {
   SceneValues values;
   values.file_ = name;
+  values.sha256_ = withy::sha256(text);
   values.document_.directory = std::filesystem::path(name).parent_path().string();
   if (!read_document(text, {}, values.document_, values.diagnostics_))
     throw SceneError(name, values.diagnostics_.errors());
@@ -154,6 +156,7 @@ SceneValues& SceneValues::set(std::string_view path, Value value, const std::str
 
 SceneValues& SceneValues::set_text(const std::string& text, std::string origin) {
   const int line = add_origin(origin.empty() ? fmt::format("--set '{}'", text) : std::move(origin));
+  settings_.push_back(text);
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
     diagnostics_.error({line, 0, ""}, "need path=value, as time.end=2");

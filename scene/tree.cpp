@@ -132,6 +132,8 @@ class TreeBuilder {
       if (node.body != nullptr) add_frames(value->at("frames"), *node.body);
     }
     body_values_.emplace_back(name, *value);
+    if (auto counts = mode_counts(*value, made.plugin->parameters); !counts.empty())
+      tree_.modes.push_back({name, std::move(counts)});
   }
 
   bool check_shape(const Body& body, const std::string& plugin, const Value& value) {

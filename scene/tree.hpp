@@ -6,6 +6,7 @@
 
 #include "withy/core/model/model.hpp"
 #include "withy/scene/check.hpp"
+#include "withy/scene/scene.hpp"
 
 namespace withy {
 
@@ -14,6 +15,7 @@ struct SceneTree {
   std::unique_ptr<Model> model;  ///< null after reported problems
   SceneNames names;              ///< of all bodies and hinges in the scene, right or wrong
   Value bodies;                  ///< checked
+  std::vector<BodyModes> modes;  ///< of Scene
   Value hinges;                  ///< checked
 };
 

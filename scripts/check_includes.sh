@@ -22,7 +22,8 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     }
     may["core/sweep/symmetric"] = engine "|withy/core/(spatial|shape|plugin|model|deformation|tree|sweep|sweep/rod|sweep/symmetric)/[^/]*"
     may["scene"] = inner "|withy/scene/.*|yaml-cpp/.*|nlohmann/.*|fmt/.*|spdlog/.*"
-    may["results"] = inner "|withy/(scene|results)/.*|nlohmann/.*|fmt/.*|boost/crc.hpp|(sys/)?[a-z]+[.]h"
+    may["study"] = inner "|withy/(scene|study|plugins/host)/.*|fmt/.*|boost/math/.*"
+    may["results"] = inner "|withy/(scene|study|results)/.*|nlohmann/.*|fmt/.*|boost/crc.hpp|(sys/)?[a-z]+[.]h"
     may["plugins/formulations"] = inner "|withy/plugins/formulations/.*|fmt/.*"
     may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"
     may["plugins/host"] = inner "|withy/plugins/host/.*|fmt/.*|boost/.*|(sys/)?[a-z]+[.]h"

@@ -1,96 +1,100 @@
-#include <fmt/format.h>
-
-#include <algorithm>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/advice_report.hpp"
-#include "withy/apps/withy/beyond.hpp"
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/advice_text.hpp"
+#include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
-#include "withy/apps/withy/progress.hpp"
 #include "withy/apps/withy/scene_edit.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/scene/document.hpp"
+#include "withy/study/left_out.hpp"
 
 namespace withy::app {
 namespace {
 
-/// What the scene does not say already.
-std::vector<std::string> new_overrides(const Engine& engine, const AdviseArguments& arguments,
-                                       const TradePoint& point) {
-  SceneArguments plain = arguments;
-  plain.options.overrides.clear();
-  std::vector<std::string> all{"formulation=" + point.formulation};
-  for (const std::string& o : overrides_at(plain, engine.scene(), point)) {
-    const std::size_t equals = o.find('=');
-    const Value* at = &engine.scene().source;
-    for (std::size_t begin = 0; at != nullptr && begin < equals;) {
-      const std::size_t end = std::min(o.find('.', begin), equals);
-      at = at->find(o.substr(begin, end - begin));
-      begin = end + 1;
-    }
-    const std::string value = o.substr(equals + 1);
-    const bool known =
-        at != nullptr && ((at->kind() == Value::Kind::number && fmt::format("{:g}", at->number()) == value) ||
-                          (at->kind() == Value::Kind::text && at->text() == value));
-    if (!known) all.push_back(o);
-  }
-  // The integrator beside the formulation.
-  std::stable_partition(all.begin(), all.end(), [](const std::string& o) {
-    return o.starts_with("formulation=") || o.starts_with("integrator=");
-  });
-  return all;
-}
+/// What is advised is the cheapest of these that holds the accuracy.
+struct AdviseArguments : SceneArguments {
+  std::string accuracy = "1%";
+  std::vector<std::string> outputs;        ///< that errors are measured on; empty: hinges and tips
+  study::Axes axes = study::usual_axes();  ///< families empty: the scene's, and another where it means the same beams
+  std::string write;                       ///< file for the scene as advised; empty: none
+};
 
-/// The choice, run as `withy run` does: a deflection past the scene's limit shows there alone.
-RunSummary confirm(const Engine& engine, const ProbedModel& model, const TradePoint& point) {
-  RunOptions options;
-  options.end = end_of_run(model.scene);
-  options.output = model.scene.output;
-  options.deflection_limit = model.scene.deflection_limit;
-  options.interrupted = interrupted;
-  return simulate(*model.scene.model, *model.equations, *integrator_at(engine.registry(), point), model.scene.initial,
-                  options, {});
-}
-
-void write_scene(const AdviseArguments& arguments, const Engine& engine, const std::vector<std::string>& overrides) {
-  const std::string text = edited(read_bytes(arguments.scene), overrides);
+void write_scene(const AdviseArguments& arguments, Registry& registry, const std::vector<std::string>& changes) {
+  const std::string text = edited(read_bytes(arguments.scene), changes);
   // Read as it will be read: an edit that went wrong leaves no file.
-  static_cast<void>(parse_scene(text, arguments.write, engine.registry()));
+  static_cast<void>(parse_scene(text, arguments.write, registry));
   write_file(arguments.write, text);
 }
 
-}  // namespace
+std::vector<std::string> texts_of(const std::vector<study::Change>& changes) {
+  std::vector<std::string> texts;
+  for (const study::Change& change : changes) texts.push_back(change.text());
+  return texts;
+}
 
 ExitStatus advise(const AdviseArguments& arguments) {
   if (!arguments.write.empty() && !arguments.options.overrides.empty())
     throw InputError("--write takes the scene as its file has it: put what --set changes into the file first");
-  watch_for_interrupt();
   const Engine engine(arguments);
-  Advisor advisor(engine, arguments);
-  bool found = advisor.search();
-  RunSummary confirmed;
-  while (found && !advisor.interrupted()) {
-    confirmed = confirm(engine, advisor.model_of(advisor.choice()->point), advisor.choice()->point);
-    if (confirmed.status == RunStatus::completed || confirmed.status == RunStatus::interrupted) break;
-    found = advisor.reject_choice();
-  }
-  if (advisor.interrupted() || interrupted()) return ExitStatus::interrupted;
-  if (!found) {
-    if (arguments.json) print(json_text(search_json(engine, advisor)));
-    complain(no_advice_text(advisor));
+  const study::Accuracy accuracy = study::Accuracy::parse(arguments.accuracy);
+  const study::Outputs outputs(engine.model(), arguments.outputs);
+  const study::Candidates candidates = study::candidates_for(engine.prepared(), engine.registry(), arguments.axes);
+  study::Evaluator evaluator(engine.prepared(), engine.registry(), outputs, study_control("advise"));
+  const study::Advice advice = study::advise(evaluator, candidates, accuracy);
+  const AdviceQuestion question{engine.prepared(), outputs, accuracy};
+  if (advice.interrupted) return ExitStatus::interrupted;
+  if (!advice.choice) {
+    const std::string why = no_advice_text(advice, accuracy);
+    if (arguments.json) print(json_text(search_json(question, advice, why)));
+    complain(why);
     return ExitStatus::stopped;
   }
-  advisor.look_up();
-  const TradePoint point = advisor.choice()->point;
-  const StepLimit steps = step_limit(*integrator_at(engine.registry(), point), engine.scene().initial.time, confirmed);
-  Advice advice{advisor, engine, confirmed, steps, new_overrides(engine, arguments, point)};
-  if (!arguments.write.empty()) write_scene(arguments, engine, advice.overrides);
-  std::string text = arguments.json ? json_text(advice_json(advice)) : advice_text(advice);
+  const std::string left_out = study::left_out(evaluator.model(advice.choice->point));
+  const std::vector<std::string> changes = texts_of(study::new_changes(engine.scene(), advice.choice->point));
+  if (!arguments.write.empty()) write_scene(arguments, engine.registry(), changes);
+  std::string text = arguments.json ? json_text(advice_json(question, advice, left_out, changes, scene_lines(changes)))
+                                    : advice_text({question, candidates, advice, left_out, changes});
   if (!arguments.json && !arguments.write.empty()) text += "\nwritten to " + arguments.write + '\n';
   print(text);
   return ExitStatus::done;
 }
+
+std::function<ExitStatus()> add_advise(CLI::App& c) {
+  const auto arguments = std::make_shared<AdviseArguments>();
+  AdviseArguments& a = *arguments;
+  add_scene(c, a);
+  const auto axis = [&](const char* name, auto& values, const char* type, const char* meaning) {
+    c.add_option(name, values, meaning)->type_name(type)->delimiter(',');
+  };
+  c.add_option(
+       "--accuracy", a.accuracy,
+       "Greatest error of the outputs: a share of the greatest way of any of them, a length, an angle, or several")
+      ->type_name("A,...")
+      ->capture_default_str();
+  axis("--outputs,--output", a.outputs, "NAME,...",
+       "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection; default: all free hinges and tips");
+  axis("--formulations,--formulation", a.axes.formulations, "ID,...",
+       "Formulations to choose from; default: all that take part in studies, plugins' too");
+  axis("--families,--family", a.axes.families, "ID,...",
+       "Mode families of bending to choose from; default: the scene's, and orthogonal-polynomials where they are the "
+       "same beams");
+  axis("--modes", a.axes.modes, "N,...", "Modes of each family of a beam to choose from; default: 1,2,3,4");
+  axis("--integrators", a.axes.integrators, "ID,...",
+       "Integrators to choose from, with a relative tolerance; default: dopri5,dop853,imex");
+  axis("--tolerances", a.axes.tolerances, "R,...",
+       "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
+  c.add_option("--write", a.write, "File for the scene with what is advised; comments are kept")->type_name("FILE");
+  return [arguments] { return advise(*arguments); };
+}
+
+}  // namespace
+
+const Command advise_command = {
+    "advise", "Find the cheapest model and integration that hold an accuracy",
+    "  withy advise scenes/pendulum.yaml --accuracy 1%\n"
+    "  withy advise scenes/two-link-slew.yaml --set time.end=0.5 --accuracy 1mm,0.1deg --output payload.tip,elbow",
+    &add_advise};
 
 }  // namespace withy::app

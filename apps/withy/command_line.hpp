@@ -5,7 +5,7 @@
 #include <functional>
 #include <variant>
 
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/command.hpp"
 
 namespace withy::app {
 

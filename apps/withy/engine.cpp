@@ -1,9 +1,9 @@
 #include "withy/apps/withy/engine.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <filesystem>
 #include <system_error>
 
@@ -12,15 +12,13 @@
 namespace withy::app {
 namespace {
 
-/// A file that cannot be read is bad input, as is a formulation that cannot treat the model.
+/// A file that cannot be read is bad input.
 template <class Function>
-auto as_input(const std::string& what, Function&& function) {
+auto as_input(Function&& function) {
   try {
     return function();
   } catch (const std::system_error& e) {
     throw InputError(e.what());
-  } catch (const std::invalid_argument& e) {
-    throw InputError(what + ": " + e.what());
   }
 }
 
@@ -50,94 +48,42 @@ Plugins::Plugins(const CommonArguments& arguments)
   host_.attach(*registry_);
 }
 
+SceneValues read_values(const SceneArguments& arguments) {
+  return as_input([&] { return SceneValues::read(arguments.scene).apply(arguments.options); });
+}
+
 Engine::Engine(const SceneArguments& arguments)
-    : plugins_(arguments),
-      scene_(as_input(arguments.scene, [&] { return read_scene(arguments.scene, registry(), arguments.options); })),
-      equations_(as_input(arguments.scene + ": formulation " + scene_.formulation_name,
-                          [&] { return scene_.formulation->compile(scene_.model); })) {
-  spdlog::debug("{}: {} bodies, {} generalized speeds", scene_.file, model().bodies().size(), model().layout().speeds);
+    : plugins_(arguments), prepared_(study::prepare(read_values(arguments), registry())) {
+  spdlog::debug("{}: {} bodies, {} generalized speeds", scene().file, model().bodies().size(), model().layout().speeds);
   for (const PluginRecord& p : plugins_.host().plugins()) {
     if (p.state == PluginRecord::State::loaded) spdlog::debug("plugin {}/{} from {}", p.kind, p.id, p.file.string());
     if (p.state == PluginRecord::State::refused) spdlog::debug("refused {}: {}", p.file.string(), p.reason);
   }
-  for (const std::string& saving : equations_->savings()) spdlog::debug("compiled: {}", saving);
-  if (scene_.formulation_name == "auto") make_rungs();
-}
-
-void Engine::make_rungs() {
-  for (const char* id : {"ruthless", "quadratic", "exact"}) {
-    const auto* plugin = registry().find<Formulation>(id);
-    if (plugin == nullptr) throw InputError(std::string("formulation auto needs '") + id + "', which is not found");
-    Diagnostics diagnostics;
-    const auto formulation = plugin->make(Value::map({}), {registry(), diagnostics});
-    try {
-      rung_equations_.push_back(formulation->compile(scene_.model));
-    } catch (const std::invalid_argument&) {
-      continue;  // a body without exact kinematics: the ladder ends before it
-    }
-    rungs_.push_back({id, formulation->terms(), rung_equations_.back().get()});
-  }
+  for (const std::string& saving : equations().savings()) spdlog::debug("compiled: {}", saving);
 }
 
 std::string Engine::formulation_summary() const {
-  const auto* plugin = registry().find<Formulation>(scene_.formulation_name);
+  const auto* plugin = registry().find<Formulation>(scene().formulation_name);
   return plugin != nullptr ? plugin->summary : std::string();
 }
 
-State Engine::state(const std::string& file) const {
-  if (file.empty()) return scene_.initial;
-  return as_input(file, [&] { return read_state(file, *scene_.model, scene_.initial); });
+State Engine::state(const std::string& file) const { return read_state(prepared_, file); }
+
+State read_state(const study::Prepared& prepared, const std::string& file) {
+  if (file.empty()) return prepared.scene.initial;
+  return as_input([&] { return withy::read_state(file, prepared.model(), prepared.scene.initial); });
 }
 
-RunOptions Engine::run_options() const {
-  RunOptions options;
-  options.end = end_of_run(scene_);
-  options.output = scene_.output;
-  options.deflection_limit = scene_.deflection_limit;
-  options.interrupted = interrupted;
-  options.events = scene_.events;
-  return options;
-}
-
-EscalatedRun Engine::simulate_escalating(const std::function<void(const State&, std::size_t)>& output) const {
-  for (const LoadNode& load : model().loads())
-    if (load.load->discrete() != nullptr)
-      throw InputError(scene_.file + ": /formulation: got 'auto', which changes the equations along a run; load '" +
-                       load.name + "' has discrete states, which do not go over: name a formulation");
-  const RunOptions options = run_options();
+study::Control run_control(const std::string& label) {
   watch_for_interrupt();
-  Progress progress(scene_.formulation_name, options.end);
-  return withy::simulate_escalating(*scene_.model, rungs_, *scene_.integrator, scene_.initial, options,
-                                    [&](const State& state, std::size_t rung) {
-                                      progress.at(state.time);
-                                      output(state, rung);
-                                    });
+  const auto progress = std::make_shared<Progress>(label);
+  return {interrupted, [progress](double done, double all) { progress->at(done, all); }};
 }
 
-RunSummary Engine::simulate(const std::function<void(const State&)>& output, const SimulationExtras& extras) const {
-  if (escalates()) return simulate_escalating([&](const State& state, std::size_t) { output(state); }).summary;
-  RunOptions options = run_options();
+study::Control study_control(const std::string& label) {
   watch_for_interrupt();
-  Progress progress(scene_.formulation_name, options.end);
-  options.beyond = extras.beyond;
-  options.checkpoint = extras.checkpoint;
-  options.resume = extras.resume;
-  using Clock = std::chrono::steady_clock;
-  const std::chrono::duration<double> interval(extras.checkpoint_seconds);
-  Clock::time_point last = Clock::now();
-  if (extras.checkpoint_seconds > 0) {
-    options.put_down = [&] {
-      const Clock::time_point now = Clock::now();
-      if (now - last < interval) return false;
-      last = now;
-      return true;
-    };
-  }
-  return withy::simulate(*scene_.model, *equations_, *scene_.integrator, scene_.initial, options,
-                         [&](const State& state) {
-                           progress.at(state.time);
-                           output(state);
-                         });
+  const auto progress = std::make_shared<Progress>(label);
+  return {interrupted, [progress](double done, double all) { progress->of_points(done, all); }};
 }
 
 }  // namespace withy::app

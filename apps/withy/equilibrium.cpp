@@ -1,24 +1,30 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "withy/apps/withy/analysis.hpp"
+#include "withy/apps/withy/configuration.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/text_table.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/modes_files.hpp"
 #include "withy/results/output_file.hpp"
 
 namespace withy::app {
 namespace {
 
+struct EquilibriumArguments : ConfigurationArguments {
+  std::string out;  ///< file for the state; empty: none
+};
+
 using Json = nlohmann::ordered_json;
 
-TextTable hinge_table(const Configuration& c, const SteadyState& steady) {
+TextTable hinge_table(const study::Configuration& c, const SteadyState& steady) {
   TextTable table({"<coordinate", "value", "<unit", "rate\n[rad/s, m/s]", "<held", "effort\n[N m, N]"});
-  const Model& model = c.engine().model();
+  const Model& model = c.prepared().model();
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const Slot& slot = c.layout().hinges[h];
     const auto columns = coordinate_columns(model.hinges()[h]);
@@ -36,22 +42,21 @@ TextTable hinge_table(const Configuration& c, const SteadyState& steady) {
   return table;
 }
 
-}  // namespace
-
 ExitStatus equilibrium(const EquilibriumArguments& arguments) {
-  const Configuration c(arguments);
+  const Engine engine(arguments);
+  const study::Configuration c = configuration_of(engine, arguments);
   const SteadyState steady = find_steady_state(c.dynamics(), c.state(), c.held());
   const Tangents tangents =
       c.dynamics().tangents(steady.state.time, steady.state.y, c.dynamics().steady_accelerations(steady.state.time));
   const bool steady_for_good = stays_steady(c.dynamics(), tangents, steady.state, c.held());
-  const std::string problem = no_steady_state(c, steady);
-  const Scene& scene = c.engine().scene();
-  const std::string state = write_state(c.engine().model(), steady.state);
+  const std::string problem = study::no_steady_state(c, steady);
+  const Scene& scene = c.prepared().scene;
+  const std::string state = write_state(c.prepared().model(), steady.state);
   if (!arguments.out.empty() && steady.converged) write_file(arguments.out, state + '\n');
 
   Json deflections = Json::object();
-  for (const Tip& tip : tips(c.engine().model())) {
-    if (tip.flexible) deflections[tip.body + ".tip"] = deflection(c.engine().equations(), steady.state.y, tip);
+  for (const Tip& tip : tips(c.prepared().model())) {
+    if (tip.flexible) deflections[tip.body + ".tip"] = deflection(*c.prepared().equations, steady.state.y, tip);
   }
   const std::string changing =
       steady_for_good
@@ -62,10 +67,10 @@ ExitStatus equilibrium(const EquilibriumArguments& arguments) {
     Json j;
     j["scene"] = scene.file;
     j["formulation"] = scene.formulation_name;
-    j.update(steady_json(c, steady));
+    j.update(steady_json(engine.model(), steady, c.held()));
     j["tip_deflections"] = deflections;
     j["stays_steady"] = steady_for_good;
-    j["derivatives"] = derivatives_text(tangents);
+    j["derivatives"] = study::derivatives_text(tangents);
     j["message"] = problem.empty() ? changing : problem;
     print(json_text(j));
   } else if (steady.converged) {
@@ -89,5 +94,23 @@ ExitStatus equilibrium(const EquilibriumArguments& arguments) {
   complain(problem);
   return ExitStatus::stopped;
 }
+
+std::function<ExitStatus()> add_equilibrium(CLI::App& c) {
+  const auto arguments = std::make_shared<EquilibriumArguments>();
+  EquilibriumArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulation(c, a);
+  add_configuration(c, a);
+  c.add_option("--out", a.out, "File for the state, as --at, --state and `initial` read it")->type_name("FILE");
+  return [arguments] { return equilibrium(*arguments); };
+}
+
+}  // namespace
+
+const Command equilibrium_command = {
+    "equilibrium", "Find the state that stays as it is: at rest, or spinning steadily",
+    "  withy equilibrium scenes/rotating-blade.yaml --spin axle=6\n"
+    "  withy equilibrium scenes/two-link-slew.yaml --lock shoulder,elbow --set gravity.1=-9.81 --out bent.json",
+    &add_equilibrium};
 
 }  // namespace withy::app

@@ -1,12 +1,15 @@
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
 
 namespace withy::app {
 
 using Json = nlohmann::ordered_json;
+
+namespace {
 
 ExitStatus eval(const StateArguments& arguments) {
   const Engine engine(arguments);
@@ -56,5 +59,22 @@ ExitStatus eval(const StateArguments& arguments) {
                 : ""));
   return ExitStatus::stopped;
 }
+
+std::function<ExitStatus()> add_eval(CLI::App& c) {
+  const auto arguments = std::make_shared<StateArguments>();
+  StateArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulation(c, a);
+  add_state(c, a);
+  return [arguments] { return eval(*arguments); };
+}
+
+}  // namespace
+
+const Command eval_command = {
+    "eval", "Evaluate the equations of motion at a state, as JSON",
+    "  withy eval scenes/two-link-slew.yaml\n"
+    "  withy eval scenes/two-link-slew.yaml --state scenes/states/two-link-bent.json --formulation consistent",
+    &add_eval};
 
 }  // namespace withy::app

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/bodies/modal/sid_body.hpp"
@@ -16,6 +17,20 @@
 
 namespace withy::app {
 namespace {
+
+/// Files of a finite-element program, and what to reduce them to.
+struct ImportArguments : CommonArguments {
+  std::string job;          ///< of CalculiX: the files' name without extension
+  std::string mesh;         ///< input deck or result file; empty: that of the job
+  std::string stiffness;    ///< of Abaqus; empty: the job's
+  std::string mass_matrix;  ///< the same
+  std::string root;         ///< node set or numbers
+  std::vector<std::string> interfaces;
+  std::vector<std::string> stations;
+  int modes = 10;      ///< fixed-interface modes
+  double highest = 0;  ///< [Hz]; 0: none
+  std::string out;     ///< empty: <job>.SID_FEM
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -167,8 +182,6 @@ std::string report_text(const Json& j) {
   return out;
 }
 
-}  // namespace
-
 ExitStatus import_mesh(const ImportArguments& a) {
   try {
     const Files files = files_of(a);
@@ -198,5 +211,44 @@ ExitStatus import_mesh(const ImportArguments& a) {
     throw InputError(e.what());
   }
 }
+
+std::function<ExitStatus()> add_import_mesh(CLI::App& c) {
+  const auto arguments = std::make_shared<ImportArguments>();
+  ImportArguments& a = *arguments;
+  c.add_option("JOB", a.job, "Name of the job: JOB.inp, and of CalculiX JOB.sti, JOB.mas and JOB.dof")->required();
+  c.add_option("--mesh", a.mesh, "Input deck or .frd file with the nodes; default: JOB.inp")->type_name("FILE");
+  c.add_option("--stiffness", a.stiffness, "Stiffness matrix of Abaqus (*_STIF*.mtx)")->type_name("FILE");
+  c.add_option("--mass", a.mass_matrix, "Mass matrix of Abaqus (*_MASS*.mtx)")->type_name("FILE");
+  c.add_option("--root", a.root, "Nodes that are clamped: a node set, or numbers separated by commas")
+      ->type_name("NODES")
+      ->required();
+  const auto several = [&](const char* name, std::vector<std::string>& value, const char* meaning) {
+    c.add_option(name, value, meaning)
+        ->type_name("NODES")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->expected(1)
+        ->allow_extra_args(false);
+  };
+  several("--interface", a.interfaces,
+          "Nodes to attach to, a rigid section with static modes: a set, a node, or name=17,18,19; repeatable");
+  several("--station", a.stations, "A node to attach to without modes of its own; repeatable");
+  c.add_option("--modes", a.modes, "Number of normal modes with the interfaces held")
+      ->check(CLI::Range(0, 200))
+      ->capture_default_str();
+  c.add_option("--highest", a.highest, "Drop modes of the reduced body above this frequency [Hz]")
+      ->type_name("HZ")
+      ->check(CLI::PositiveNumber);
+  c.add_option("--out", a.out, "File of Standard Input Data; default: JOB.SID_FEM")->type_name("FILE");
+  add_common(c, a);
+  return [arguments] { return import_mesh(*arguments); };
+}
+
+}  // namespace
+
+const Command import_command = {
+    "import", "Reduce a finite-element mesh to a modal body",
+    "  withy import scenes/meshes/cantilever --root ROOT --interface TIP --modes 6\n"
+    "  withy import scenes/meshes/cantilever --root ROOT --station 85 --modes 4 --out boom.SID_FEM",
+    &add_import_mesh};
 
 }  // namespace withy::app

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/core/simulation/accuracy.hpp"
@@ -168,16 +169,19 @@ std::string tree_text(const Engine& engine) {
   }
   struct Entry {
     int body;
+    std::size_t level;
     std::string indent;
     bool last;
   };
+  // Deeper levels are numbered instead of indented: a line is a line, however long the chain.
+  constexpr std::size_t most_indented = 16;
   std::vector<Entry> open;
-  const auto push_children = [&](int parent, const std::string& indent) {
+  const auto push_children = [&](int parent, std::size_t level, const std::string& indent) {
     const auto& below = children[parent];
-    for (std::size_t i = below.size(); i-- > 0;) open.push_back({below[i], indent, i + 1 == below.size()});
+    for (std::size_t i = below.size(); i-- > 0;) open.push_back({below[i], level, indent, i + 1 == below.size()});
   };
   std::string out = "world\n";
-  push_children(-1, "");
+  push_children(-1, 1, "");
   while (!open.empty()) {
     const Entry e = open.back();
     open.pop_back();
@@ -185,13 +189,14 @@ std::string tree_text(const Engine& engine) {
     const BodyNode& body = model.bodies()[static_cast<std::size_t>(e.body)];
     const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(e.body)];
     const std::string own = said(scene, "bodies", scene_name(body), "formulation");
-    out += fmt::format("{}{} {}: {}{}, {:.6g} kg{}   [{}: {} at {}{}]\n", e.indent, e.last ? "└─" : "├─",
-                       scene_name(body), type_of(scene, "bodies", scene_name(body)),
+    out += fmt::format("{}{} {}{}: {}{}, {:.6g} kg{}   [{}: {} at {}{}]\n", e.indent, e.last ? "└─" : "├─",
+                       e.level > most_indented ? fmt::format("(level {}) ", e.level) : "", scene_name(body),
+                       type_of(scene, "bodies", scene_name(body)),
                        branch.segments > 1 ? fmt::format(" in {} segments", branch.segments) : "", branch.mass,
                        branch.modes > 0 ? fmt::format(", {} mode{}", branch.modes, branch.modes > 1 ? "s" : "") : "",
                        hinge.name, type_of(scene, "hinges", hinge.name), parent_of(model, hinge),
                        own.empty() ? "" : ", formulation " + own);
-    push_children(e.body, e.indent + (e.last ? "   " : "│  "));
+    push_children(e.body, e.level + 1, e.level < most_indented ? e.indent + (e.last ? "   " : "│  ") : e.indent);
   }
   return out;
 }
@@ -248,13 +253,25 @@ std::string inspect_text(const Engine& engine, const Json& j) {
   return out;
 }
 
-}  // namespace
-
 ExitStatus inspect(const StateArguments& arguments) {
   const Engine engine(arguments);
   const Json j = inspect_json(engine, engine.state(arguments.state));
   print(arguments.json ? json_text(j) : inspect_text(engine, j));
   return ExitStatus::done;
 }
+
+std::function<ExitStatus()> add_inspect(CLI::App& c) {
+  const auto arguments = std::make_shared<StateArguments>();
+  StateArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulation(c, a);
+  add_state(c, a);
+  return [arguments] { return inspect(*arguments); };
+}
+
+}  // namespace
+
+const Command inspect_command = {"inspect", "Show what a scene is made of and what its compilation saved",
+                                 "  withy inspect scenes/two-link-slew.yaml", &add_inspect};
 
 }  // namespace withy::app

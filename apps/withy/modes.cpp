@@ -1,128 +1,129 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <stdexcept>
 
-#include "withy/apps/withy/analysis.hpp"
-#include "withy/apps/withy/modes_report.hpp"
+#include "withy/apps/withy/configuration.hpp"
+#include "withy/apps/withy/modes_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/progress.hpp"
+#include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/variation.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/modes_files.hpp"
 #include "withy/results/output_file.hpp"
 
 namespace withy::app {
 namespace {
 
+struct ModesArguments : ConfigurationArguments, OutputArguments {
+  std::vector<std::string> formulations;  ///< empty: the scene's
+  std::string sweep;      ///< `path=a:b:n`, a path of the scene or `spin.hinge`; empty: one configuration
+  std::size_t count = 6;  ///< modes that are shown
+  bool as_is = false;     ///< about the state as it is given, steady or not
+};
+
 using Json = nlohmann::ordered_json;
 
-/// Modes of one configuration; `last` is the steady state of the value before, where there is one, and becomes this
-/// one's.
-ModesAt modes_at(Configuration& c, bool as_is, std::optional<State>& last, BranchTracker& tracker) {
-  ModesAt at;
-  at.names = c.layout().speed_names;
-  State state = c.state();
-  if (!as_is) {
-    if (last && last->y.size() == state.y.size()) c.begin_at(*last);
-    const SteadyState steady = find_steady_state(c.dynamics(), c.state(), c.held());
-    at.steady = steady_json(c, steady);
-    at.problem = no_steady_state(c, steady);
-    if (!steady.converged) return at;
-    state = steady.state;
-    last = state;
-  }
-  try {
-    const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
-    at.modes = tracker.follow(natural_modes(tangents, c.held()), tangents.mass.diagonal().cwiseAbs());
-    if (!as_is) {
-      at.steady["stays_steady"] = stays_steady(c.dynamics(), tangents, state, c.held());
-      at.steady["derivatives"] = derivatives_text(tangents);
-    }
-  } catch (const std::domain_error& e) {
-    at.problem = e.what();
-  }
-  return at;
-}
-
-ModesOf modes_of(const ModesArguments& arguments, const std::string& formulation, const Sweep& sweep) {
-  ModesOf run;
-  ConfigurationArguments scene = arguments;
-  if (!formulation.empty()) scene.options.formulation = formulation;
-  std::unique_ptr<Configuration> c;
-  std::optional<State> last;
-  BranchTracker tracker;
-  Progress progress(formulation, static_cast<double>(sweep.values.size()));
-  for (std::size_t k = 0; k < sweep.values.size(); ++k) {
-    const double value = sweep.values[k];
-    const std::string spun = sweep.spun();
-    if (!c || (!sweep.none() && spun.empty())) {
-      ConfigurationArguments here = scene;
-      if (!sweep.none() && spun.empty()) here.options.overrides.push_back(fmt::format("{}={}", sweep.path, value));
-      c = std::make_unique<Configuration>(here);
-    }
-    if (!spun.empty()) c->spin(c->read_spin(fmt::format("{}={}", spun, value), "--sweep"));
-    run.points.push_back(modes_at(*c, arguments.as_is, last, tracker));
-    run.points.back().value = value;
-    progress.at(static_cast<double>(k + 1));
-  }
-  run.formulation = c->engine().scene().formulation_name;
-  return run;
-}
-
-}  // namespace
-
-ExitStatus modes(const ModesArguments& arguments) {
-  const Sweep sweep = parse_sweep(arguments.sweep, "--sweep");
+/// One run a formulation.
+std::vector<study::ModesOf> runs_of(const Engine& engine, const ModesArguments& arguments, const study::Sweep& sweep) {
+  const study::Holding holding = holding_of(engine.model(), arguments.lock, arguments.spin);
+  const auto start = [&](const study::Prepared& prepared) { return read_state(prepared, arguments.state); };
   std::vector<std::string> formulations = arguments.formulations;
-  if (formulations.empty()) formulations.emplace_back();
-  std::vector<ModesOf> runs;
-  for (const std::string& formulation : formulations) runs.push_back(modes_of(arguments, formulation, sweep));
+  if (formulations.empty()) formulations.push_back(engine.scene().formulation_name);
+  std::vector<study::ModesOf> runs;
+  for (const std::string& formulation : formulations) {
+    SceneValues values = engine.prepared().values;
+    values.choose_formulation(formulation, "--formulations " + formulation);
+    runs.push_back(study::sweep_modes(values, engine.registry(), start, holding, sweep, arguments.as_is,
+                                      study_control(formulation)));
+  }
+  return runs;
+}
 
-  Json j;
-  j["scene"] = arguments.scene;
-  j["sweep"] = sweep.none() ? Json() : Json(sweep.path);
-  j["runs"] = Json::array();
-  for (const ModesOf& run : runs) j["runs"].push_back(modes_json(run));
-  if (!arguments.out.empty()) {
-    const std::filesystem::path folder(arguments.out);
-    std::filesystem::create_directories(folder);
-    write_file(folder / "modes.json", json_text(j));
-    write_file(folder / "modes.csv", modes_csv(runs, sweep.none() ? "value" : sweep.path));
-    if (!sweep.none())
-      write_file(folder / "modes.svg", modes_svg(runs, "Modes of " + arguments.scene, sweep.path, arguments.count));
+std::string run_text(const study::ModesOf& run, const ModesArguments& arguments, const study::Sweep& sweep) {
+  std::string text = fmt::format("{} in {}\n", arguments.scene, run.formulation);
+  if (!run.points.front().modes.empty() || !sweep.none())
+    text += '\n' + (sweep.none() ? modes_text(run, arguments.count) : sweep_text(run, sweep.path, arguments.count));
+  for (const study::ModesAt& at : run.points) {
+    if (!at.steady || at.steady->stays.value_or(true)) continue;
+    text += "What acts on the free coordinates turns with the hinges: these are modes at this angle alone.\n";
+    break;
   }
-  if (arguments.json) {
-    print(json_text(j));
-  } else {
-    for (const ModesOf& run : runs) {
-      std::string text =
-          fmt::format("{}{} in {}\n", &run == &runs.front() ? "" : "\n", arguments.scene, run.formulation);
-      const bool found = !run.points.front().modes.empty() || !sweep.none();
-      if (found)
-        text += '\n' + (sweep.none() ? modes_text(run, arguments.count) : sweep_text(run, sweep.path, arguments.count));
-      for (const ModesAt& at : run.points) {
-        if (at.steady.is_object() && at.steady.contains("stays_steady") && !at.steady["stays_steady"].get<bool>()) {
-          text += "What acts on the free coordinates turns with the hinges: these are modes at this angle alone.\n";
-          break;
-        }
-      }
-      print(text);
-    }
-    if (!arguments.out.empty()) print("\nResults: " + arguments.out + '\n');
-  }
+  return text;
+}
+
+void write_files(const std::vector<study::ModesOf>& runs, const Json& j, const ModesArguments& arguments,
+                 const study::Sweep& sweep) {
+  const std::filesystem::path folder(arguments.out);
+  write_file(folder / "modes.json", json_text(j));
+  write_file(folder / "modes.csv", modes_csv(runs, sweep.none() ? "value" : sweep.path));
+  if (!sweep.none())
+    write_file(folder / "modes.svg", modes_picture(runs, "Modes of " + arguments.scene, sweep.path, arguments.count));
+}
+
+/// Says on standard error where there are no modes, and why. False where there are everywhere.
+bool complain_of(const std::vector<study::ModesOf>& runs, const study::Sweep& sweep) {
   bool failed = false;
-  for (const ModesOf& run : runs) {
-    for (const ModesAt& at : run.points) {
+  for (const study::ModesOf& run : runs) {
+    for (const study::ModesAt& at : run.points) {
       if (at.problem.empty()) continue;
       failed = true;
       complain(fmt::format("{}{}: {}", run.formulation,
                            sweep.none() ? "" : fmt::format(", {} = {}", sweep.path, at.value), at.problem));
     }
   }
-  return failed ? ExitStatus::stopped : ExitStatus::done;
+  return failed;
 }
+
+ExitStatus modes(const ModesArguments& arguments) {
+  const study::Sweep sweep = parse_sweep(arguments.sweep, "--sweep");
+  const Engine engine(arguments);
+  const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
+                                  {"modes.json", "modes.csv", "modes.svg"});
+  const std::vector<study::ModesOf> runs = runs_of(engine, arguments, sweep);
+  if (interrupted()) return ExitStatus::interrupted;
+  Json j;
+  j["scene"] = arguments.scene;
+  j["sweep"] = sweep.none() ? Json() : Json(sweep.path);
+  j["runs"] = Json::array();
+  for (const study::ModesOf& run : runs) j["runs"].push_back(modes_json(run));
+  if (!arguments.out.empty()) write_files(runs, j, arguments, sweep);
+  if (arguments.json) {
+    print(json_text(j));
+  } else {
+    for (const study::ModesOf& run : runs) print((&run == &runs.front() ? "" : "\n") + run_text(run, arguments, sweep));
+    if (!arguments.out.empty()) print("\nResults: " + arguments.out + '\n');
+  }
+  return complain_of(runs, sweep) ? ExitStatus::stopped : ExitStatus::done;
+}
+
+std::function<ExitStatus()> add_modes(CLI::App& c) {
+  const auto arguments = std::make_shared<ModesArguments>();
+  ModesArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulations(c, a.formulations, "--formulations,--formulation", "Formulations; default: the scene's");
+  add_configuration(c, a);
+  c.add_option("--sweep", a.sweep, "Any number of the scene, or spin.HINGE, over a range")
+      ->type_name("PATH=FROM:TO:COUNT");
+  c.add_option("--count", a.count, "Modes that are shown (files hold all)")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100000}))
+      ->capture_default_str();
+  c.add_flag("--as-is", a.as_is, "About the state as it is given, without finding the steady one");
+  add_output(c, a, "Folder for modes.csv, modes.json and, of a sweep, modes.svg");
+  return [arguments] { return modes(*arguments); };
+}
+
+}  // namespace
+
+const Command modes_command = {
+    "modes", "Frequencies, damping and shapes of small motions; over a sweep, if wanted",
+    "  withy modes scenes/two-link-slew.yaml --lock shoulder,elbow\n"
+    "  withy modes scenes/rotating-blade.yaml --spin axle=6 --count 4\n"
+    "  withy modes scenes/rotating-blade.yaml --formulations ruthless,inconsistent,consistent --sweep "
+    "spin.axle=0:6:13 --count 4 --out results/campbell",
+    &add_modes};
 
 }  // namespace withy::app

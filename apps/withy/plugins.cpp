@@ -1,12 +1,13 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/text_table.hpp"
@@ -19,6 +20,10 @@
 
 namespace withy::app {
 namespace {
+
+struct PluginsArguments : CommonArguments {
+  std::string name;  ///< id or kind/id; empty: all
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -112,8 +117,6 @@ std::string description_text(const Json& plugin) {
   return out;
 }
 
-}  // namespace
-
 ExitStatus plugins(const PluginsArguments& arguments) {
   const Plugins plugins(arguments);
   const std::vector<PluginRecord> records = load_wanted(plugins, arguments.name);
@@ -134,5 +137,20 @@ ExitStatus plugins(const PluginsArguments& arguments) {
   }
   return ExitStatus::done;
 }
+
+std::function<ExitStatus()> add_plugins(CLI::App& c) {
+  const auto arguments = std::make_shared<PluginsArguments>();
+  PluginsArguments& a = *arguments;
+  c.add_option("NAME", a.name, "Id of a plugin, or kind/id");
+  add_common(c, a);
+  return [arguments] { return plugins(*arguments); };
+}
+
+}  // namespace
+
+const Command plugins_command = {"plugins", "List the plugins found, or describe one with its options",
+                                 "  withy plugins\n"
+                                 "  withy plugins quadratic",
+                                 &add_plugins};
 
 }  // namespace withy::app

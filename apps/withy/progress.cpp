@@ -21,24 +21,36 @@ void watch_for_interrupt() {
   action.sa_handler = remember_interrupt;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
+  // A batch system's way to end a job, and the end of a terminal, if nohup has not said that it is to be ignored.
+  for (const int signal : {SIGTERM, SIGHUP}) {
+    struct sigaction before = {};
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
 }
 
 bool interrupted() { return interrupt_seen != 0; }
 
-Progress::Progress(std::string label, double end)
-    : label_(std::move(label)), end_(end), terminal_(::isatty(STDERR_FILENO) == 1), next_(Clock::now()) {}
+Progress::Progress(std::string label)
+    : label_(std::move(label)), terminal_(::isatty(STDERR_FILENO) == 1), began_(Clock::now()), next_(began_) {}
 
 Progress::~Progress() {
   if (shown_) static_cast<void>(std::fputs("\r\033[K", stderr));
 }
 
-void Progress::at(double t) {
-  if (!terminal_ || Clock::now() < next_) return;
+void Progress::show(const std::string& text) {
   next_ = Clock::now() + std::chrono::milliseconds(100);
   shown_ = true;
-  const std::string line =
-      fmt::format("\r\033[K{}: {:.3f} of {:g} s ({:.0f} %)", label_, t, end_, end_ > 0 ? 100 * t / end_ : 100.0);
-  static_cast<void>(std::fputs(line.c_str(), stderr));
+  static_cast<void>(std::fputs(fmt::format("\r\033[K{}: {}", label_, text).c_str(), stderr));
+}
+
+void Progress::at(double t, double end) {
+  if (due()) show(fmt::format("{:.3f} of {:g} s ({:.0f} %)", t, end, end > 0 ? 100 * t / end : 100.0));
+}
+
+void Progress::of_points(double done, double all) {
+  if (!due()) return;
+  const double passed = std::chrono::duration<double>(Clock::now() - began_).count();
+  show(fmt::format("{:g} of {:g}, about {:.0f} s left", done, all, done > 0 ? passed / done * (all - done) : 0.0));
 }
 
 }  // namespace withy::app

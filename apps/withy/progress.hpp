@@ -7,29 +7,33 @@
 
 namespace withy::app {
 
-/// From now on SIGINT is remembered instead of ending the program; a second one ends it.
+/// From now on SIGINT, SIGTERM and SIGHUP are remembered instead of ending the program; a second one ends it.
 void watch_for_interrupt();
-/// Whether SIGINT has come.
+/// Whether one of them has come.
 bool interrupted();
 
 /// One line on standard error, renewed in place ten times a second and erased at the end; nothing where standard error
 /// is no terminal.
 class Progress {
  public:
-  Progress(std::string label, double end);
+  explicit Progress(std::string label);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// Simulated time reached [s].
-  void at(double t);
+  /// Simulated time reached [s], of a run to `end`.
+  void at(double t, double end);
+  /// Points that are done, of all; with the time that is left at this rate.
+  void of_points(double done, double all);
 
  private:
   using Clock = std::chrono::steady_clock;
+  [[nodiscard]] bool due() const { return terminal_ && Clock::now() >= next_; }
+  void show(const std::string& text);
+
   std::string label_;
-  double end_;
   bool terminal_;
   bool shown_ = false;
-  Clock::time_point next_;
+  Clock::time_point began_, next_;
 };
 
 }  // namespace withy::app

@@ -1,33 +1,25 @@
 /// \file
-/// The folder a run leaves behind.
+/// The folder a command leaves behind, and its exit status.
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <optional>
+#include <memory>
 
-#include "withy/apps/withy/certificate.hpp"
+#include "withy/apps/withy/engine.hpp"
+#include "withy/results/results_folder.hpp"
 
 namespace withy::app {
 
-/// Simulates into a folder, made where it is not there: results.csv as the run goes, run.json when it has ended (so a
-/// folder without run.json is a run that was killed). `also` sees every output too.
-/// \throws std::system_error where something cannot be written.
-RunSummary simulate_into(const std::filesystem::path& folder, const Engine& engine,
-                         const std::function<void(const State&)>& also = {});
+/// Takes the folder of the command line; null where none is asked for.
+/// \param content of the folder, as ResultsFolder has it
+/// \throws ResultsError, FolderBusy, std::system_error
+std::unique_ptr<ResultsFolder> take_folder(const OutputArguments& arguments, const std::string& command,
+                                           const Provenance& provenance, const std::vector<std::string>& content);
 
-/// A run with what its certificate needs.
-struct CertifiedRun {
-  RunSummary summary;
-  std::optional<Beyond> beyond;
-  std::optional<ErrorEstimate> estimate;
-  std::optional<EscalatedRun> escalated;  ///< of formulation `auto`
-  [[nodiscard]] Evidence evidence() const {
-    return {beyond ? &*beyond : nullptr, estimate ? &*estimate : nullptr, escalated ? &*escalated : nullptr};
-  }
-};
-/// The same for `withy run`: what is left out is measured, and its effect estimated after the run.
-CertifiedRun run_into(const std::filesystem::path& folder, const Engine& engine, const RunArguments& arguments);
+/// What results of the scene come from.
+Provenance provenance_of(const Scene& scene, const Plugins& plugins);
+
+/// `results/<scene>-<what>`, with what `--integrator` and `--set` say behind it.
+std::string default_folder(const SceneArguments& arguments, const std::string& what);
 
 /// Exit status that a run's end stands for.
 ExitStatus exit_status(RunStatus status);

@@ -1,16 +1,31 @@
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/certificate_text.hpp"
+#include "withy/apps/withy/command.hpp"
+#include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/run_report.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/results/checkpoint_files.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/recorded_run.hpp"
+#include "withy/results/results_error.hpp"
 
 namespace withy::app {
 namespace {
+
+struct RunArguments : SceneArguments, OutputArguments {
+  /// When the error against the next model up is estimated: auto (against `quadratic`), always, never.
+  std::string estimate = "auto";
+  /// Wall time between checkpoints [s]; 0: only where the run is interrupted; not given: 60.
+  std::optional<double> checkpoint;
+  bool resume = false;  ///< go on from the checkpoint in the folder
+};
 
 /// Refuses a tolerance below what the mass matrix leaves to be had, and a start at which it is singular.
 void check_accuracy(const Engine& engine) {
@@ -24,28 +39,90 @@ void check_accuracy(const Engine& engine) {
                                    : scene.file + ": " + why);
 }
 
-}  // namespace
+study::Estimate estimate_of(const std::string& text) {
+  if (text == "always") return study::Estimate::always;
+  return text == "never" ? study::Estimate::never : study::Estimate::automatic;
+}
 
-ExitStatus run(const RunArguments& arguments) {
+/// The run of a formulation that keeps checkpoints, from its beginning or from where it was.
+RecordedRun lasting_run(const Engine& engine, const RunArguments& arguments, const Provenance& provenance,
+                        study::RunSettings settings) {
+  settings.checkpoint_seconds = arguments.checkpoint.value_or(60);
+  const std::filesystem::path folder = arguments.out;
+  if (!arguments.resume) {
+    const ResultsFolder taken(folder, "run", provenance, run_content(),
+                              arguments.force ? FolderUse::replace : FolderUse::begin);
+    return record_lasting_run(folder, engine.prepared(), engine.registry(), provenance, settings, nullptr);
+  }
+  const CheckpointFiles files(folder, provenance.fingerprint());
+  if (!files.exist()) throw ResultsError(folder.string() + " holds no checkpoint: there is nothing to resume");
+  const ResultsFolder taken(folder, "run", provenance, run_content(), FolderUse::go_on);
+  if (!taken.changed().empty())
+    throw ResultsError(folder.string() + " belongs to another run: " + taken.changed() +
+                       " changed since; run without --resume to begin anew");
+  const StoredRun from = files.read();
+  if (!from.remark.empty()) complain(from.remark);
+  return record_lasting_run(folder, engine.prepared(), engine.registry(), provenance, settings, &from);
+}
+
+RecordedRun recorded(const Engine& engine, const RunArguments& arguments) {
+  const Provenance provenance = provenance_of(engine.scene(), engine.plugins());
+  study::RunSettings settings;
+  settings.estimate = estimate_of(arguments.estimate);
+  settings.control = run_control(engine.scene().formulation_name);
+  if (!engine.prepared().escalates()) return lasting_run(engine, arguments, provenance, settings);
+  const auto taken = take_folder(arguments, "run", provenance, run_content());
+  return record_run(arguments.out, engine.prepared(), engine.registry(), provenance, settings);
+}
+
+ExitStatus run(const RunArguments& given) {
+  RunArguments arguments = given;
   const Engine engine(arguments);
-  if (engine.escalates() && (arguments.resume || arguments.checkpoint))
+  if (engine.prepared().escalates() && (arguments.resume || arguments.checkpoint))
     throw InputError(std::string(arguments.resume ? "--resume" : "--checkpoint") +
                      ": a run of formulation 'auto' keeps no checkpoints; leave it out, or name a formulation");
   check_accuracy(engine);
-  std::filesystem::path folder = arguments.out;
-  if (folder.empty()) {
-    folder = std::filesystem::path("results") /
-             (std::filesystem::path(arguments.scene).stem().string() + '-' + engine.scene().formulation_name);
-  }
-  const CertifiedRun certified = run_into(folder, engine, arguments);
-  const RunSummary& summary = certified.summary;
-  print(arguments.json ? json_text(run_json(engine, summary, certified.evidence()))
-                       : run_table(engine, summary) + certificate_text(engine, summary, certified.evidence()) +
-                             "\nresults in " + folder.string() + '\n');
+  if (arguments.out.empty()) arguments.out = default_folder(arguments, engine.scene().formulation_name);
+  const RecordedRun run = recorded(engine, arguments);
+  const RunSummary& summary = run.run.summary;
+  print(arguments.json
+            ? json_text(run.json)
+            : run_table(engine.prepared(), summary) + certificate_text(engine.model(), summary, run.run.certificate) +
+                  "\nresults in " + arguments.out + '\n');
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
-  if (summary.status == RunStatus::interrupted && !engine.escalates())
+  if (summary.status == RunStatus::interrupted && !engine.prepared().escalates())
     complain("the same command with --resume goes on from there");
   return exit_status(summary.status);
 }
+
+std::function<ExitStatus()> add_run(CLI::App& c) {
+  const auto arguments = std::make_shared<RunArguments>();
+  RunArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulation(c, a);
+  add_output(c, a, "Folder of the results; default: results/<scene>-<formulation>, with what is --set behind it");
+  c.add_option("--estimate", a.estimate,
+               "Estimate the error against the next model up: auto (where that is quadratic), always, never")
+      ->type_name("WHEN")
+      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->capture_default_str();
+
+  c.add_option("--checkpoint", a.checkpoint,
+               "Wall time between checkpoints; 0: only where the run is interrupted; default: 60")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, std::numeric_limits<double>::max(), "NONNEGATIVE"));
+  c.add_flag("--resume", a.resume,
+             "Go on from the checkpoint in the folder of the results: the same command as before, and this");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace
+
+const Command run_command = {"run", "Simulate a scene",
+                             "  withy run scenes/two-link-slew.yaml\n"
+                             "  withy run scenes/two-link-slew.yaml --formulation ruthless "
+                             "--set loads.slew.time_scale=1.2 --out results/fast\n"
+                             "  withy run scenes/pendulum.yaml --checkpoint 10",
+                             &add_run};
 
 }  // namespace withy::app

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "withy/core/model/columns.hpp"
-#include "withy/results/run_json.hpp"
+#include "withy/study/run.hpp"
 
 namespace withy::app {
 namespace {
@@ -17,35 +16,23 @@ std::string name_of_sign(int sign) { return sign > 0 ? "positive" : (sign < 0 ? 
 
 }  // namespace
 
-nlohmann::ordered_json run_json(const Engine& engine, const RunSummary& summary, const Evidence& evidence) {
-  nlohmann::ordered_json j = withy::run_json(engine.scene(), summary);
-  j["certificate"] = certificate_json(engine, summary, evidence);
-  return j;
-}
-
-std::string outcome_text(const RunSummary& summary) {
-  if (summary.status == RunStatus::completed) return "completed";
-  return fmt::format("{} at {:.4g} s", name(summary.status), summary.final.time);
-}
-
 std::string readable(double value, const std::string& unit) {
   if (unit == "rad") return fmt::format("{:.4f} deg", value * 180 / std::numbers::pi);
   return fmt::format("{:.6g}{}{}", value, unit.empty() || unit == "1" ? "" : " ", unit == "1" ? "" : unit);
 }
 
-std::string run_table(const Engine& engine, const RunSummary& summary) {
-  const Scene& scene = engine.scene();
+std::string run_table(const study::Prepared& prepared, const RunSummary& summary) {
+  const Scene& scene = prepared.scene;
   const Model& model = *scene.model;
   std::string out;
   const auto line = [&](const std::string& what, const std::string& text) {
     out += fmt::format("{:<23} {}\n", what, text);
   };
-  out += fmt::format("{} ({}, {})\n\n", scene.name.empty() ? scene.file : scene.name, scene.formulation_name,
-                     scene.integrator_name);
-  line("outcome", outcome_text(summary));
-  for (const HingeNode& hinge : model.hinges()) {
-    const auto columns = coordinate_columns(hinge);
-    const Slot& slot = *model.layout().hinge(hinge.name);
+  out += fmt::format("{} ({}, {})\n\n", prepared.title(), scene.formulation_name, scene.integrator_name);
+  line("outcome", study::outcome_text(summary));
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const auto columns = coordinate_columns(model.hinges()[h]);
+    const Slot& slot = model.layout().hinges[h];
     for (std::size_t i = 0; i < columns.size(); ++i)
       line("final " + columns[i].name, readable(summary.final.y[slot.position + i], columns[i].unit));
   }

@@ -1,38 +1,30 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
-#include "withy/apps/withy/commands.hpp"
+#include "withy/apps/withy/command.hpp"
+#include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/text_table.hpp"
-#include "withy/apps/withy/trade_run.hpp"
-#include "withy/apps/withy/trade_threshold.hpp"
+#include "withy/apps/withy/trade_axes.hpp"
+#include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
-#include "withy/results/svg_plot.hpp"
+#include "withy/results/trade_files.hpp"
 
 namespace withy::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-std::string over_text(const TradePoint& point) {
-  std::string text;
-  for (const std::string& o : point.over) {
-    const std::string path = o.substr(0, o.find('='));
-    text += (text.empty() ? "" : " ") + path.substr(path.find_last_of('.') + 1) + o.substr(o.find('='));
-  }
-  return text;
-}
-
-std::string table_text(const std::vector<TradeResult>& results, const std::vector<bool>& front) {
+std::string table_text(const std::vector<study::TradeResult>& results, const std::vector<bool>& front) {
   const auto any = [&](auto&& has) { return std::any_of(results.begin(), results.end(), has); };
-  const bool families = any([](const TradeResult& r) { return !r.point.family.empty(); });
-  const bool overs = any([](const TradeResult& r) { return !r.point.over.empty(); });
+  const bool families = any([](const study::TradeResult& r) { return !r.point.family.empty(); });
+  const bool overs = any([](const study::TradeResult& r) { return !r.point.over.empty(); });
   std::vector<std::string> head = {"<", "<formulation", "modes"};
   if (families) head.emplace_back("<family");
   if (overs) head.emplace_back("<over");
@@ -41,10 +33,10 @@ std::string table_text(const std::vector<TradeResult>& results, const std::vecto
     head.emplace_back(h);
   TextTable table(head);
   for (std::size_t i = 0; i < results.size(); ++i) {
-    const TradeResult& r = results[i];
+    const study::TradeResult& r = results[i];
     std::vector<std::string> row = {front[i] ? "*" : "", r.point.formulation, std::to_string(r.point.modes)};
     if (families) row.push_back(r.point.family.empty() ? "scene's" : r.point.family);
-    if (overs) row.push_back(over_text(r.point));
+    if (overs) row.push_back(trade_over_text(r.point));
     row.push_back(r.point.integrator);
     row.push_back(fmt::format("{:g}", r.point.tolerance));
     row.push_back(r.status);
@@ -63,9 +55,9 @@ std::string table_text(const std::vector<TradeResult>& results, const std::vecto
 }
 
 /// Reasons of the points that failed, each said once.
-std::string reasons_text(const std::vector<TradeResult>& results) {
+std::string reasons_text(const std::vector<study::TradeResult>& results) {
   std::map<std::string, std::pair<std::string, std::size_t>> reasons;  // by formulation, integrator and status
-  for (const TradeResult& r : results) {
+  for (const study::TradeResult& r : results) {
     if (r.completed()) continue;
     auto& [text, count] = reasons[r.point.formulation + ' ' + r.point.integrator + ' ' + r.status];
     if (text.empty()) text = r.point.text() + ": " + r.message;
@@ -80,79 +72,29 @@ std::string reasons_text(const std::vector<TradeResult>& results) {
   return out;
 }
 
-std::string references_text(const Json& references) {
+std::string references_text(const study::TradeStudy& study) {
   std::string out;
-  for (const auto& [over, r] : references.items()) {
+  for (const auto& [over, r] : study.references()) {
     out += fmt::format(
         "Reference{}: {}, {} modes, {} at {:g}; its own error, against one mode less and ten times the tolerance: "
         "hinges {:.2g}, tips {:.2g} mm, {:.2g} %.\n",
-        over.empty() ? "" : " at " + over, r.at("formulation").get<std::string>(), r.at("modes").get<int>(),
-        r.at("integrator").get<std::string>(), r.at("tolerance").get<double>(), r.at("hinge_error").get<double>(),
-        1e3 * r.at("tip_error").get<double>(), 100 * r.at("relative_error").get<double>());
+        over.empty() ? "" : " at " + over, r.point.formulation, r.point.modes, r.point.integrator, r.point.tolerance,
+        r.hinge_error, 1e3 * r.tip_error, 100 * r.relative_error);
   }
   return out;
 }
 
-std::string csv_text(const std::vector<TradeResult>& results, const std::vector<bool>& front) {
-  std::string text =
-      "formulation,modes,family,integrator,tolerance,over,status,hinge_error,tip_error[m],relative_error,steps,"
-      "evaluations,cpu[s],pareto\n";
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const TradeResult& r = results[i];
-    text += fmt::format("{},{},{},{},{:g},\"{}\",{},", r.point.formulation, r.point.modes, r.point.family,
-                        r.point.integrator, r.point.tolerance, over_text(r.point), r.status);
-    if (r.completed())
-      text += fmt::format("{},{},{},{},{},{},{}\n", r.hinge_error, r.tip_error, r.relative_error, r.steps,
-                          r.evaluations, r.cpu_seconds, front[i] ? 1 : 0);
-    else
-      text += ",,,,,,0\n";
-  }
-  return text;
-}
-
-/// Error over cost, both logarithmic; a colour a formulation, the front as a line. A panel for each of the values gone
-/// over.
-std::string picture(const std::string& title, const std::vector<TradeResult>& results, const std::vector<bool>& front) {
-  std::vector<std::string> legend;
-  std::map<std::string, std::size_t> pens;
-  for (const TradeResult& r :
-       results)  // those that failed too: a colour means the same in every study of the same list
-    if (pens.emplace(r.point.formulation, legend.size()).second) legend.push_back(r.point.formulation);
-  const std::size_t line = legend.size();
-  legend.emplace_back("Pareto front");
-  std::vector<std::string> overs;
-  std::vector<Panel> panels;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const TradeResult& r = results[i];
-    if (!r.completed()) continue;
-    const std::string over = over_text(r.point);
-    const auto at = std::find(overs.begin(), overs.end(), over);
-    const auto p = static_cast<std::size_t>(at - overs.begin());
-    if (at == overs.end()) {
-      overs.push_back(over);
-      panels.push_back({"CPU time [ms]" + (over.empty() ? "" : ", " + over), "error [%]", {1e300, 0}, {}});
-      panels.back().log_x = panels.back().log_y = true;
-      panels.back().curves.resize(legend.size());
-      for (std::size_t c = 0; c < line; ++c) panels.back().curves[c].points = true;
-    }
-    const double x = 1e3 * r.cpu_seconds, y = std::max(100 * r.relative_error, 1e-12);
-    const auto add = [&](Curve& curve) {
-      curve.x.push_back(x);
-      curve.y.push_back(y);
-    };
-    add(panels[p].curves[pens.at(r.point.formulation)]);
-    if (front[i]) add(panels[p].curves[line]);
-    panels[p].y_range = {std::min(panels[p].y_range.first, y), std::max(panels[p].y_range.second, y)};
-  }
-  for (Panel& panel : panels) {  // along the front error falls as cost rises
-    Curve& curve = panel.curves[line];
-    std::sort(curve.x.begin(), curve.x.end());
-    std::sort(curve.y.rbegin(), curve.y.rend());
-  }
-  return svg_plot(title, legend, panels);
-}
-
 }  // namespace
+
+study::Axes axes_of(const TradeAxes& asked, Registry& registry) {
+  study::Axes axes{asked.formulations, asked.families, asked.modes, asked.integrators, asked.tolerances, {}};
+  for (const std::string& over : asked.over) axes.over.push_back(parse_variation(over));
+  if (axes.formulations.empty()) axes.formulations = studied_formulations(registry);
+  study::check_axes(axes);
+  return axes;
+}
+
+namespace {
 
 ExitStatus trade(const TradeArguments& arguments) {
   if (!arguments.limit.empty()) return trade_threshold(arguments);
@@ -160,33 +102,89 @@ ExitStatus trade(const TradeArguments& arguments) {
     throw InputError(
         "--measure frequencies, --lock and --spin go with --limit; frequencies over a range are what "
         "withy modes --sweep shows");
-  TradeStudy study(arguments, trade_points(arguments.axes), {arguments.out, arguments.jobs});
+  const Engine engine(arguments);
+  const std::vector<study::Point> points = study::points_of(axes_of(arguments.axes, engine.registry()));
+  std::optional<TradeFolder> store;
+  const auto taken = take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()),
+                                 {"trade.json", "trade.csv", "trade.svg"});
+  if (taken) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points, engine.registry()));
+  study::TradeStudy study(engine.prepared(), engine.registry(), points,
+                          {arguments.jobs, store ? &*store : nullptr, study_control("trade")});
   const bool whole = study.run();
   const auto results = study.results();
-  const auto front = pareto_front(results);
-  const Scene& scene = study.engine().scene();
-  const std::string title = scene.name.empty() ? scene.file : scene.name;
-  Json j{{"scene", scene.file}, {"name", scene.name}, {"references", study.references()}, {"points", Json::array()}};
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    j["points"].push_back(result_json(results[i]));
-    j["points"].back()["pareto"] = static_cast<bool>(front[i]);
-  }
+  const auto front = study::pareto_front(results);
+  const std::string title = engine.prepared().title();
+  const nlohmann::ordered_json j = trade_json(engine.scene(), study, results, front);
   std::string text =
       arguments.json
           ? json_text(j)
           : title + "\n\n" + table_text(results, front) +
                 "\n*: no other point is both more accurate, as far as the reference can tell, and cheaper. Error "
                 "in % of the greatest way of a hinge or tip.\n" +
-                references_text(study.references()) + reasons_text(results);
+                references_text(study) + reasons_text(results);
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
     write_file(folder / "trade.json", json_text(j));
-    write_file(folder / "trade.csv", csv_text(results, front));
-    write_file(folder / "trade.svg", picture(title, results, front));
+    write_file(folder / "trade.csv", trade_csv(results, front));
+    write_file(folder / "trade.svg", trade_picture(title, results, front));
     if (!arguments.json) text += "\ntrade.csv, trade.svg and trade.json in " + arguments.out + '\n';
   }
   print(text);
   return whole ? ExitStatus::done : ExitStatus::interrupted;
 }
+
+std::function<ExitStatus()> add_trade(CLI::App& c) {
+  const auto arguments = std::make_shared<TradeArguments>();
+  TradeArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulations(c, a.axes.formulations, "--formulations,--formulation",
+                   "Formulations; default: all that take part in studies, plugins' too");
+  c.add_option("--families,--family", a.axes.families, "Mode families of bending; default: the scene's")
+      ->type_name("ID,ID,...")
+      ->delimiter(',');
+  c.add_option("--modes", a.axes.modes, "Modes of each family of a beam; default: 1,2,3")
+      ->type_name("N,N,...")
+      ->delimiter(',');
+  c.add_option("--integrators", a.axes.integrators, "Integrators with a relative tolerance; default: dopri5,imex")
+      ->type_name("ID,ID,...")
+      ->delimiter(',');
+  c.add_option("--tolerances", a.axes.tolerances, "Relative tolerances; default: 1e-4,1e-6")
+      ->type_name("R,R,...")
+      ->delimiter(',');
+  c.add_option("--over", a.axes.over, "Trade at each of these values of the scene; repeatable")
+      ->type_name("PATH=VALUE,VALUE,...")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->expected(1)
+      ->allow_extra_args(false);
+  c.add_option("--limit", a.limit,
+               "Find where along --over PATH=FROM:TO[:COUNT] each model's error passes this share, as 1%")
+      ->type_name("SHARE");
+  c.add_option("--measure", a.measure, "With --limit: errors of runs, or of frequencies")
+      ->type_name("WHAT")
+      ->check(CLI::IsMember({"runs", "frequencies"}))
+      ->capture_default_str();
+  c.add_option("--count", a.count, "Lowest modes whose frequencies are compared")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}))
+      ->capture_default_str();
+  c.add_option("--lock", a.lock, "Of frequencies: hinges that are held")->type_name("HINGE,HINGE,...")->delimiter(',');
+  c.add_option("--spin", a.spin, "Of frequencies: hinges held at a constant rate")
+      ->type_name("HINGE=RATE,...")
+      ->delimiter(',');
+  c.add_option("--jobs", a.jobs, "Points run at once; default: one a core")->type_name("N");
+  add_output(c, a, "Folder for table and picture, and for finished points: the same command continues");
+  return [arguments] { return trade(*arguments); };
+}
+
+}  // namespace
+
+const Command trade_command = {
+    "trade", "Weigh error against cost over formulations, modes, integrators and tolerances",
+    "  withy trade scenes/screw.yaml --formulations ruthless,quadratic --modes 1,2\n"
+    "  withy trade scenes/two-link-slew.yaml --set time.end=1 --modes 2 --tolerances 1e-4 "
+    "--over loads.slew.time_scale=0.5,1 --out results/trade\n"
+    "  withy trade scenes/rotating-blade.yaml --measure frequencies --limit 1% --over spin.axle=0:3.5 "
+    "--formulations ruthless,inconsistent,quadratic --modes 2",
+    &add_trade};
 
 }  // namespace withy::app

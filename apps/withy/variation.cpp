@@ -13,12 +13,13 @@ namespace {
 constexpr std::size_t most_values = 100000;
 }  // namespace
 
-Variation parse_variation(const std::string& text) {
-  if (text.empty()) return {"", {""}};
+std::string label_of(const std::string& path) { return path.substr(path.find_last_of('.') + 1); }
+
+study::Variation parse_variation(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
     throw InputError("--over: got '" + text + "'; need PATH=VALUE,VALUE,...");
-  Variation v{text.substr(0, equals), {}};
+  study::Variation v{text.substr(0, equals), {}};
   for (std::size_t begin = equals + 1; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     v.values.push_back(text.substr(begin, end - begin));
@@ -27,8 +28,8 @@ Variation parse_variation(const std::string& text) {
   return v;
 }
 
-Sweep parse_sweep(const std::string& text, const std::string& option, std::optional<std::size_t> count) {
-  if (text.empty()) return {"", {0}};
+study::Sweep parse_sweep(const std::string& text, const std::string& option, std::optional<std::size_t> count) {
+  if (text.empty()) return {};
   const auto bad = [&](const std::string& why) {
     return InputError(option + ": got '" + text + "'; " + why + "need PATH=FROM:TO" + (count ? "[:COUNT]" : ":COUNT") +
                       ", as spin.axle=0:12:49 or gravity.0=0:-9:31");
@@ -48,7 +49,7 @@ Sweep parse_sweep(const std::string& text, const std::string& option, std::optio
       throw bad(fmt::format("the count is a whole number from 2 to {}; ", most_values));
     count = static_cast<std::size_t>(*given);
   }
-  Sweep sweep{text.substr(0, equals), {}};
+  study::Sweep sweep{text.substr(0, equals), {}};
   for (std::size_t k = 0; k < *count; ++k) {
     const double r = static_cast<double>(k) / static_cast<double>(*count - 1);
     sweep.values.push_back(k + 1 == *count ? *to : *from + r * (*to - *from));

@@ -28,20 +28,19 @@ class Cylindrical final : public HolonomicHinge {
   Vector3 axis_;
 };
 
-std::unique_ptr<Hinge> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Hinge> make_cylindrical(const Value& p, const MakeContext& context) {
   const auto axis = unit_vector(p, "axis", context);
   if (!axis) return nullptr;
   return std::make_unique<Cylindrical>(*axis);
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_cylindrical(Enrollment& enrollment) {
   enrollment.add<Hinge>({.id = "cylindrical",
                          .summary = "Rotation about an axis and translation along it",
                          .parameters = axis_parameter(),
-                         .make = &make});
+                         .make = &make_cylindrical});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(cylindrical, withy::enroll);

@@ -48,16 +48,17 @@ class Free final : public Hinge {
   std::optional<HingeKernel> kernel() const override { return HingeKernel{HingeKernel::Kind::free, Vector3::UnitZ()}; }
 };
 
-std::unique_ptr<Hinge> make(const Value& /*p*/, const MakeContext& /*context*/) { return std::make_unique<Free>(); }
-
-void enroll(Enrollment& enrollment) {
-  enrollment.add<Hinge>({.id = "free",
-                         .summary = "Any motion; coordinates are a quaternion and a position",
-                         .parameters = {},
-                         .make = &make});
+std::unique_ptr<Hinge> make_free(const Value& /*p*/, const MakeContext& /*context*/) {
+  return std::make_unique<Free>();
 }
 
 }  // namespace
-}  // namespace withy
 
-WITHY_PLUGIN(free, withy::enroll);
+void enroll_free(Enrollment& enrollment) {
+  enrollment.add<Hinge>({.id = "free",
+                         .summary = "Any motion; coordinates are a quaternion and a position",
+                         .parameters = {},
+                         .make = &make_free});
+}
+
+}  // namespace withy

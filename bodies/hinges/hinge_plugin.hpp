@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/hinge.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 

@@ -36,7 +36,7 @@ class PlanarHinge final : public HolonomicHinge {
   Eigen::Matrix<double, 3, 2> across_;
 };
 
-std::unique_ptr<Hinge> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Hinge> make_planar(const Value& p, const MakeContext& context) {
   const auto normal = unit_vector(p, "normal", context), along = unit_vector(p, "along", context);
   if (!normal || !along) return nullptr;
   if (nearly_parallel(*normal, *along)) {
@@ -46,7 +46,9 @@ std::unique_ptr<Hinge> make(const Value& p, const MakeContext& context) {
   return std::make_unique<PlanarHinge>(*normal, (*along - *normal * normal->dot(*along)).normalized());
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_planar(Enrollment& enrollment) {
   enrollment.add<Hinge>(
       {.id = "planar",
        .summary = "Rotation about a normal and translation in the plane across it",
@@ -54,10 +56,7 @@ void enroll(Enrollment& enrollment) {
                           .otherwise(direction(0, 0, 1)),
                       vector("along", 3, "1", "direction of the first translation; its part across the normal counts")
                           .otherwise(direction(1, 0, 0))},
-       .make = &make});
+       .make = &make_planar});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(planar, withy::enroll);

@@ -26,18 +26,19 @@ class Prismatic final : public HolonomicHinge {
   Vector3 axis_;
 };
 
-std::unique_ptr<Hinge> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Hinge> make_prismatic(const Value& p, const MakeContext& context) {
   const auto axis = unit_vector(p, "axis", context);
   if (!axis) return nullptr;
   return std::make_unique<Prismatic>(*axis);
 }
 
-void enroll(Enrollment& enrollment) {
-  enrollment.add<Hinge>(
-      {.id = "prismatic", .summary = "Translation along an axis", .parameters = axis_parameter(), .make = &make});
+}  // namespace
+
+void enroll_prismatic(Enrollment& enrollment) {
+  enrollment.add<Hinge>({.id = "prismatic",
+                         .summary = "Translation along an axis",
+                         .parameters = axis_parameter(),
+                         .make = &make_prismatic});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(prismatic, withy::enroll);

@@ -26,18 +26,17 @@ class Revolute final : public HolonomicHinge {
   Vector3 axis_;
 };
 
-std::unique_ptr<Hinge> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Hinge> make_revolute(const Value& p, const MakeContext& context) {
   const auto axis = unit_vector(p, "axis", context);
   if (!axis) return nullptr;
   return std::make_unique<Revolute>(*axis);
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_revolute(Enrollment& enrollment) {
   enrollment.add<Hinge>(
-      {.id = "revolute", .summary = "Rotation about an axis", .parameters = axis_parameter(), .make = &make});
+      {.id = "revolute", .summary = "Rotation about an axis", .parameters = axis_parameter(), .make = &make_revolute});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(revolute, withy::enroll);

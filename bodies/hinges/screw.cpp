@@ -27,13 +27,15 @@ class Screw final : public HolonomicHinge {
   double pitch_;  ///< [m/rad]
 };
 
-std::unique_ptr<Hinge> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Hinge> make_screw(const Value& p, const MakeContext& context) {
   const auto axis = unit_vector(p, "axis", context);
   if (!axis) return nullptr;
   return std::make_unique<Screw>(*axis, p.number_at("pitch"));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_screw(Enrollment& enrollment) {
   std::vector<ParameterSpec> parameters = axis_parameter();
   parameters.push_back(number("pitch", "m/rad",
                               "translation for one radian, as \"2 mm/rev\" where a turn is meant; a negative one is a "
@@ -41,10 +43,7 @@ void enroll(Enrollment& enrollment) {
   enrollment.add<Hinge>({.id = "screw",
                          .summary = "Rotation about an axis with a translation along it in proportion",
                          .parameters = std::move(parameters),
-                         .make = &make});
+                         .make = &make_screw});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(screw, withy::enroll);

@@ -39,16 +39,17 @@ class Spherical final : public Hinge {
   }
 };
 
-std::unique_ptr<Hinge> make(const Value& /*p*/, const MakeContext& /*context*/) {
+std::unique_ptr<Hinge> make_spherical(const Value& /*p*/, const MakeContext& /*context*/) {
   return std::make_unique<Spherical>();
 }
 
-void enroll(Enrollment& enrollment) {
-  enrollment.add<Hinge>(
-      {.id = "spherical", .summary = "Any rotation; coordinates are a quaternion", .parameters = {}, .make = &make});
+}  // namespace
+
+void enroll_spherical(Enrollment& enrollment) {
+  enrollment.add<Hinge>({.id = "spherical",
+                         .summary = "Any rotation; coordinates are a quaternion",
+                         .parameters = {},
+                         .make = &make_spherical});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(spherical, withy::enroll);

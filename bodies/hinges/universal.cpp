@@ -36,7 +36,7 @@ class Universal final : public HolonomicHinge {
   Vector3 second_;
 };
 
-std::unique_ptr<Hinge> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Hinge> make_universal(const Value& p, const MakeContext& context) {
   const auto first = unit_vector(p, "first_axis", context), second = unit_vector(p, "second_axis", context);
   if (!first || !second) return nullptr;
   if (nearly_parallel(*first, *second)) {
@@ -46,7 +46,9 @@ std::unique_ptr<Hinge> make(const Value& p, const MakeContext& context) {
   return std::make_unique<Universal>(*first, *second);
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_universal(Enrollment& enrollment) {
   enrollment.add<Hinge>(
       {.id = "universal",
        .summary = "Rotation about an axis of the parent, then about an axis of the child",
@@ -54,10 +56,7 @@ void enroll(Enrollment& enrollment) {
                           .otherwise(direction(1, 0, 0)),
                       vector("second_axis", 3, "1", "axis in the hinge frame M of the child; any length")
                           .otherwise(direction(0, 1, 0))},
-       .make = &make});
+       .make = &make_universal});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(universal, withy::enroll);

@@ -21,13 +21,15 @@ class Weld final : public HolonomicHinge {
   std::optional<HingeKernel> kernel() const override { return HingeKernel{HingeKernel::Kind::weld, Vector3::UnitZ()}; }
 };
 
-std::unique_ptr<Hinge> make(const Value& /*p*/, const MakeContext& /*context*/) { return std::make_unique<Weld>(); }
-
-void enroll(Enrollment& enrollment) {
-  enrollment.add<Hinge>({.id = "weld", .summary = "Fixes the child to the parent", .parameters = {}, .make = &make});
+std::unique_ptr<Hinge> make_weld(const Value& /*p*/, const MakeContext& /*context*/) {
+  return std::make_unique<Weld>();
 }
 
 }  // namespace
-}  // namespace withy
 
-WITHY_PLUGIN(weld, withy::enroll);
+void enroll_weld(Enrollment& enrollment) {
+  enrollment.add<Hinge>(
+      {.id = "weld", .summary = "Fixes the child to the parent", .parameters = {}, .make = &make_weld});
+}
+
+}  // namespace withy

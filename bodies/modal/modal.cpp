@@ -8,14 +8,15 @@
 #include <iterator>
 
 #include "sid_body.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/file_notes.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
 
 constexpr std::uintmax_t most_bytes = std::uintmax_t{256} << 20;
 
-std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<Body> make_modal(const Value& p, const MakeContext& context) {
   const Value& named = p.at("file");
   const auto fault = [&](const std::string& why) -> std::unique_ptr<Body> {
     context.diagnostics.error(named.place(), fmt::format("got '{}'; {}", named.text(), why));
@@ -30,6 +31,7 @@ std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
   std::ifstream stream(file, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(stream)), {});
   if (!stream) return fault(fmt::format("'{}' cannot be read", file.string()));
+  FileNotes::add(named.text(), text);
   SidBodyOptions options;
   if (p.has("root")) options.root = p.text_at("root");
   if (BodyDamping::given(p)) options.damping = BodyDamping::read(p);
@@ -43,7 +45,9 @@ std::unique_ptr<Body> make(const Value& p, const MakeContext& context) {
   }
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_modal(Enrollment& enrollment) {
   std::vector<ParameterSpec> specs = {
       text("file", "file of Standard Input Data; a relative name starts at the scene's directory"),
       text("root", "node that is the root; without it, the frame the file refers to").optional()};
@@ -53,10 +57,7 @@ void enroll(Enrollment& enrollment) {
       {.id = "modal",
        .summary = "Flexible body from a file of Standard Input Data (SID), as finite-element programs write it",
        .parameters = std::move(specs),
-       .make = &make});
+       .make = &make_modal});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(modal, withy::enroll);

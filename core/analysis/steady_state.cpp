@@ -25,13 +25,14 @@ class Newton {
       for (std::size_t i = 0; i < slot.speeds; ++i) state_.y[layout.positions + slot.speed + i] = 0;
     }
     rest_ = dynamics.steady_accelerations(start.time);
+    set_scale();
   }
 
   SteadyState solve() {
     SteadyState result;
     double moved = 0;
     for (; result.iterations < most_iterations; ++result.iterations) {
-      const Tangents t = dynamics_.tangents(state_.time, state_.y, rest_);
+      const Stiffness t = dynamics_.stiffness(state_.time, state_.y, rest_);
       result.efforts = t.residual;
       result.step = rest_ * 0;
       // Nothing is free to move.
@@ -58,11 +59,14 @@ class Newton {
   }
 
  private:
-  /// Coordinates are scaled by √M_ii, so that angles and modes are measured alike.
-  bool factorize(const Tangents& t) {
+  /// Coordinates are scaled by √M_ii at the start, so that angles and modes are measured alike.
+  void set_scale() {
+    const Eigen::VectorXd mass = dynamics_.mass_diagonal(state_.time, state_.y);
+    scale_ = mass(free_).cwiseAbs().cwiseSqrt();
+    for (double& s : scale_) s = s > 0 ? 1 / s : 1.0;
+  }
+  bool factorize(const Stiffness& t) {
     const auto m = static_cast<Eigen::Index>(free_.size());
-    scale_ = t.mass.diagonal()(free_).cwiseAbs().cwiseSqrt();
-    for (Eigen::Index i = 0; i < m; ++i) scale_[i] = scale_[i] > 0 ? 1 / scale_[i] : 1.0;
     const Eigen::MatrixXd K = scale_.asDiagonal() * t.by_position(free_, free_) * scale_.asDiagonal();
     if (!K.allFinite()) return false;
     solver_.setThreshold(singular_share);
@@ -79,7 +83,7 @@ class Newton {
     return -scale_.cwiseProduct(solver_.solve(scale_.cwiseProduct(residual(free_))));
   }
   /// Whether what is left over is rounding of the terms in it.
-  [[nodiscard]] bool balanced(const Tangents& t) const {
+  [[nodiscard]] bool balanced(const Stiffness& t) const {
     if (free_.empty()) return true;
     const Eigen::VectorXd left = scale_.cwiseProduct(t.residual(free_));
     if (!singular_) return left.allFinite();

@@ -56,10 +56,10 @@ TermForces TermLedger::evaluate(const State& state, std::span<const double> u_do
   TermForces forces;
   const auto set = [&forces](Term term, Forces f) { forces[static_cast<std::size_t>(term)] = std::move(f); };
   Forces stiffness(layout.speeds), damping(layout.speeds);
-  for (const BodyNode& body : model_.bodies()) {
-    const ModalShape& shape = body.body->shape();
+  for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
+    const ModalShape& shape = model_.bodies()[b].body->shape();
     if (shape.modes() == 0) continue;
-    const Slot& slot = *layout.body(body.name);
+    const Slot& slot = *layout.modes(b);
     const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + slot.position, shape.modes()),
         rate(state.y.data() + layout.positions + slot.speed, shape.modes());
     Eigen::Map<Eigen::VectorXd>(stiffness.data() + slot.speed, shape.modes()) = shape.stiffness * q;

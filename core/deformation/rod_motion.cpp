@@ -26,17 +26,19 @@ auto by_columns(const Eigen::MatrixBase<Derived>& m, Linear&& linear) {
   if constexpr (std::is_same_v<typename Derived::Scalar, double>) {
     return linear(m.derived());
   } else {
-    constexpr Eigen::Index parts = 1 + Jet::DerType::RowsAtCompileTime;
+    constexpr Eigen::Index parts = 1 + jet_directions;
     Eigen::MatrixXd flat(m.rows(), m.cols() * parts);
     for (Eigen::Index j = 0; j < m.cols(); ++j) {
       for (Eigen::Index i = 0; i < m.rows(); ++i)
-        flat.block<1, parts>(i, j * parts) << m(i, j).value(), m(i, j).derivatives().transpose();
+        flat.block<1, parts>(i, j * parts) << m(i, j).value(), derivatives_of(m(i, j)).transpose();
     }
     const Eigen::MatrixXd image = linear(flat);
     MX<Jet> result(image.rows(), m.cols());
     for (Eigen::Index j = 0; j < m.cols(); ++j) {
-      for (Eigen::Index i = 0; i < image.rows(); ++i)
-        result(i, j) = Jet(image(i, j * parts), image.block<1, parts - 1>(i, j * parts + 1).transpose());
+      for (Eigen::Index i = 0; i < image.rows(); ++i) {
+        result(i, j) = image(i, j * parts);
+        derivatives_of(result(i, j)) = image.block<1, parts - 1>(i, j * parts + 1).transpose();
+      }
     }
     return result;
   }

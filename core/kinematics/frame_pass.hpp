@@ -3,10 +3,9 @@
 /// duals. For frame_paths.cpp.
 #pragma once
 
-#include <unsupported/Eigen/AutoDiff>
-
 #include "withy/core/deformation/point_motion.hpp"
 #include "withy/core/kinematics/frame_paths.hpp"
+#include "withy/core/spatial/jet.hpp"
 #include "withy/core/sweep/rod/rod_terms.hpp"
 
 namespace withy {
@@ -18,7 +17,7 @@ template <class S>
 using M3 = Eigen::Matrix<S, 3, 3>;
 
 /// a + εb with ε² = 0: the first order in the elastic coordinates.
-using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
+using Dual = DualNumber<double, 1>;
 
 inline Dual dual(double value, double derivative) {
   Dual d(value);

@@ -77,7 +77,7 @@ std::size_t FramePaths::link(const Model& model, Terms terms, int body) {
            .truncation = own.truncation,
            .sections = {},
            .rod = nullptr};
-    if (l.modes > 0) l.modal = *model.layout().body(node.name);
+    if (l.modes > 0) l.modal = *model.layout().modes(index);
     modes_ += static_cast<std::size_t>(l.modes);
     if (!l.at_world) l.F = place(model, terms, {hinge.parent, hinge.parent_frame}, hinge.offset);
     link_of_[index] = static_cast<int>(links_.size());

@@ -163,6 +163,7 @@ Model::Model(std::vector<BodyNode> bodies, std::vector<HingeNode> hinges, Vector
 void Model::lay_out() {
   std::size_t x = 0;
   std::size_t u = 0;
+  layout_.modes_of.assign(bodies_.size(), -1);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const HingeNode& h = hinges_[b];
     layout_.hinges.push_back({h.name, x, h.hinge->coordinates(), u, h.hinge->speeds()});
@@ -172,6 +173,7 @@ void Model::lay_out() {
     const ModalShape& shape = bodies_[b].body->shape();
     const std::size_t modes = shape.mode_names.size();
     if (modes == 0) continue;
+    layout_.modes_of[b] = static_cast<int>(layout_.bodies.size());
     layout_.bodies.push_back({bodies_[b].name, x, modes, u, modes});
     x += modes;
     u += modes;

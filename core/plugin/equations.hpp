@@ -77,6 +77,26 @@ struct WorldPose {
   std::array<double, 9> rotation{};
 };
 
+/// Velocities of a frame, world axes.
+struct WorldVelocity {
+  std::array<double, 3> angular{};  ///< [rad/s]
+  std::array<double, 3> linear{};   ///< of its origin [m/s]
+};
+
+/// What there is to see of a state beside its coordinates, in time and memory proportional to the number of bodies.
+/// Every body moves by its own strain kinematics without truncation. Allocates nothing once made; of one thread.
+class Observation {
+ public:
+  virtual ~Observation() = default;
+  /// Goes to a state, y as in State; all else tells of it until the next.
+  virtual void observe(std::span<const double> y) noexcept = 0;
+  [[nodiscard]] virtual Energies energies() const noexcept = 0;
+  [[nodiscard]] virtual WorldPose frame_pose(int body, int frame) const noexcept = 0;
+  [[nodiscard]] virtual WorldVelocity frame_velocity(int body, int frame) const noexcept = 0;
+  /// Displacement r − X of the section at a frame relative to the body frame, body axes [m].
+  [[nodiscard]] virtual std::array<double, 3> deflection(int body, int frame) const noexcept = 0;
+};
+
 /// Linear systems with W = 1 − δ A, where A is what makes flexible trees stiff: the part of ∂ẏ/∂y that comes from modal
 /// stiffness and damping,
 ///   q' = u_q,   u' = −M⁻¹ (K q + D u_q),
@@ -156,7 +176,11 @@ class EquationsOfMotion {
   /// Scales quaternions in y back to unit length.
   virtual void normalize(std::span<double> y) const noexcept = 0;
 
-  /// M, f and applied efforts, assembled by an algorithm independent of `derivatives`.
+  /// For what a run reports: energies, poses and deflections of many states.
+  [[nodiscard]] virtual std::unique_ptr<Observation> make_observation() const = 0;
+
+  /// M, f and applied efforts, assembled by an algorithm independent of `derivatives`; with the three below it is the
+  /// dense reference, for eyes and tests: O(bodies · speeds) memory and more time.
   [[nodiscard]] virtual DenseSystem system(double t, std::span<const double> y) const = 0;
   [[nodiscard]] virtual Energies energies(std::span<const double> y) const = 0;
   [[nodiscard]] virtual WorldPose frame_pose(std::span<const double> y, int body, int frame) const = 0;

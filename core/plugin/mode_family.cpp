@@ -17,18 +17,25 @@ Value options(const Value& family, const std::vector<ParameterSpec>& specs) {
   return map;
 }
 
+const Value& name_of(const Value& family) { return family.kind() == Value::Kind::map ? family.at("name") : family; }
+
 }  // namespace
+
+std::unique_ptr<ModeFamily> make_mode_family(const Value& family, const MakeContext& context) {
+  const Value& name = name_of(family);
+  const Plugin<ModeFamily>* plugin = context.registry.find<ModeFamily>(name.text());
+  if (plugin == nullptr) {
+    context.diagnostics.error(name.place(), "no mode family '" + name.text() + "'");
+    return nullptr;
+  }
+  return plugin->make(options(family, plugin->parameters), context);
+}
 
 std::unique_ptr<ShapeFunctions> make_shape_functions(const Value& family, const Value& count, const BeamData& beam,
                                                      const MakeContext& context) {
-  const Value& name = family.kind() == Value::Kind::map ? family.at("name") : family;
+  const Value& name = name_of(family);
   const std::string id = "mode family '" + name.text() + "'";
-  const Plugin<ModeFamily>* plugin = context.registry.find<ModeFamily>(name.text());
-  if (plugin == nullptr) {
-    context.diagnostics.error(name.place(), "no " + id);
-    return nullptr;
-  }
-  const auto made = plugin->make(options(family, plugin->parameters), context);
+  const auto made = make_mode_family(family, context);
   if (made == nullptr) return nullptr;
   const auto modes = static_cast<std::size_t>(count.number());
   if (modes > made->most()) {

@@ -49,6 +49,9 @@ class ModeFamily {
   [[nodiscard]] virtual std::unique_ptr<ShapeFunctions> functions(const BeamData& beam, std::size_t count) const = 0;
 };
 
+/// The family that a scene's checked `family` names, as in make_shape_functions(). Null after reporting.
+std::unique_ptr<ModeFamily> make_mode_family(const Value& family, const MakeContext& context);
+
 /// The first `count` functions of the family that a scene's checked `family` names, either as `clamped-free` or with
 /// its options as `{name: clamped-loaded, tip_mass: 2}` (a parameter `naming(ParameterSpec::Refers::mode_family)`).
 /// Null after reporting, at the value's place, that there is no such family, that it gives fewer, or none for this

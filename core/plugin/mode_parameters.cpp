@@ -24,7 +24,7 @@ void collect(const Value& map, const std::vector<ParameterSpec>& specs, const st
     });
     if (family != specs.end()) {
       count.family_path = prefix + family->key;
-      count.family = map.find(family->key);
+      if (const Value* chosen = map.find(family->key)) count.family = *chosen;
     }
     counts.push_back(std::move(count));
   }
@@ -33,8 +33,8 @@ void collect(const Value& map, const std::vector<ParameterSpec>& specs, const st
 }  // namespace
 
 std::string ModeCount::family_id() const {
-  if (family == nullptr) return {};
-  return family->kind() == Value::Kind::text ? family->text() : family->text_at("name");
+  if (family.kind() == Value::Kind::text) return family.text();
+  return family.kind() == Value::Kind::map ? family.text_at("name") : "";
 }
 
 std::vector<ModeCount> mode_counts(const Value& body, const std::vector<ParameterSpec>& specs) {

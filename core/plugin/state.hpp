@@ -29,6 +29,7 @@ struct DiscreteSlot {
 struct Layout {
   std::vector<Slot> hinges;
   std::vector<Slot> bodies;              ///< only flexible ones
+  std::vector<int> modes_of;             ///< of each body its index in `bodies`; −1: it is rigid
   std::vector<std::string> speed_names;  ///< as `shoulder.0`, `link1.bending_y[1]`
   std::size_t positions = 0;
   std::size_t speeds = 0;
@@ -39,6 +40,10 @@ struct Layout {
   [[nodiscard]] std::size_t size() const { return positions + speeds + discrete + 1; }
   [[nodiscard]] const Slot* hinge(std::string_view name) const;
   [[nodiscard]] const Slot* body(std::string_view name) const;
+  /// Modes of a body of the model, by its index; null where it has none.
+  [[nodiscard]] const Slot* modes(std::size_t index) const {
+    return modes_of[index] < 0 ? nullptr : &bodies[static_cast<std::size_t>(modes_of[index])];
+  }
 };
 
 /// Time [s], then in one array y: positions (hinge coordinates [rad, m], modal coordinates), speeds (their rates; for

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <optional>
 #include <stdexcept>
-#include <unsupported/Eigen/AutoDiff>
 
 #include "withy/core/deformation/rod_motion.hpp"
 
@@ -22,7 +21,7 @@ template <class S>
 using MX = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// a + εb with ε² = 0.
-using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
+using Dual = DualNumber<double, 1>;
 
 /// Motion of a frame in the world, world axes: pose, velocities, their Jacobians over all generalized speeds, and the
 /// accelerations that remain with u̇ = 0.
@@ -99,6 +98,13 @@ WorldMotion<S> across(const WorldMotion<S>& F, const HingeMotion& h, std::span<c
   M.JW.middleCols(first, n) += M.R * h.H.topRows<3>().cast<S>();
   M.JV.middleCols(first, n) += M.R * h.H.bottomRows<3>().cast<S>();
   return M;
+}
+
+/// Whether the modes of a body are those of exact kinematics, which is that of equations without truncation.
+bool is_exact(const Model& model, std::size_t body, Terms terms) {
+  const BodyNode& node = model.bodies()[body];
+  const Terms own = node.terms.value_or(terms);
+  return node.body->shape().modes() > 0 && own.strain == StrainOrder::exact && own.truncation == Truncation::none;
 }
 
 }  // namespace
@@ -276,22 +282,22 @@ class ReferenceDynamics::Tree {
 
 ReferenceDynamics::ReferenceDynamics(std::shared_ptr<const Model> model, Terms terms)
     : model_(std::move(model)), terms_(terms) {
-  for (const BodyNode& body : model_->bodies()) slots_.push_back(model_->layout().body(body.name));
+  check(*model_, terms);
   for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
-    const BodyNode& node = model_->bodies()[b];
+    slots_.push_back(model_->layout().modes(b));
     rods_.emplace_back();
-    const Terms own = terms_of(b);
-    if (node.body->shape().modes() == 0 || own.strain != StrainOrder::exact || own.truncation != Truncation::none)
-      continue;
-    const Rod* rod = node.body->rod();
-    if (rod == nullptr) {
+    if (is_exact(*model_, b, terms)) rods_.back() = std::make_shared<const RodTable>(*model_->bodies()[b].body->rod());
+  }
+}
+
+void ReferenceDynamics::check(const Model& model, Terms terms) {
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const BodyNode& node = model.bodies()[b];
+    if (is_exact(model, b, terms) && node.body->rod() == nullptr)
       throw std::invalid_argument(
           "body '" + node.name +
-          "' has no exact kinematics: a body offers it that is a rod clamped at its root, without "
-          "extension and shear; "
+          "' has no exact kinematics: a body offers it that is a rod clamped at its root, without extension and shear; "
           "give it a formulation of its own");
-    }
-    rods_.back() = std::make_shared<const RodTable>(*rod);
   }
 }
 

@@ -45,10 +45,10 @@ std::vector<double> of_all(const Scaled& s, const Eigen::VectorXd& v, std::size_
 }
 
 /// Moment of inertia about a hinge's place, over all axes, of what the hinge carries [kg m²].
-double carried_inertia(const Model& model, const EquationsOfMotion& equations, const State& state, int hinge) {
+double carried_inertia(const Model& model, const Observation& seen, int hinge) {
   const auto h = static_cast<std::size_t>(hinge);
   const auto place = [&](int body, int frame) {
-    const WorldPose pose = equations.frame_pose(state.y, body, frame);
+    const WorldPose pose = seen.frame_pose(body, frame);
     return std::pair(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.rotation.data()).eval(),
                      Eigen::Map<const Vector3>(pose.position.data()).eval());
   };
@@ -70,6 +70,8 @@ double carried_inertia(const Model& model, const EquationsOfMotion& equations, c
 /// The hinge rate that turns nothing but rounding; −1 where there is none. κ of the scaled M does not see it.
 int rate_without_inertia(const Model& model, const EquationsOfMotion& equations, const State& state,
                          const DenseSystem& system) {
+  const auto seen = equations.make_observation();
+  seen->observe(state.y);
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     if (model.driven(h)) continue;
     const Slot& slot = model.layout().hinges[h];
@@ -77,7 +79,7 @@ int rate_without_inertia(const Model& model, const EquationsOfMotion& equations,
     std::size_t i = slot.speed;
     for (const HingeRate& rate : hinge_rates(*model.hinges()[h].hinge)) {
       const double own = system.mass[i * system.size + i];
-      if (rate.angular && carried < 0) carried = carried_inertia(model, equations, state, static_cast<int>(h));
+      if (rate.angular && carried < 0) carried = carried_inertia(model, *seen, static_cast<int>(h));
       if (rate.angular && !(own > 4 * epsilon * carried)) return static_cast<int>(i);
       if (!rate.angular && !(own > 0)) return static_cast<int>(i);
       ++i;
@@ -97,10 +99,10 @@ std::string body_of_speed(const Model& model, std::size_t speed) {
 /// Calls act(speed, system without it) for the highest mode of every family of every body.
 template <class Act>
 void without_highest_modes(const Model& model, const DenseSystem& system, Act&& act) {
-  for (const BodyNode& body : model.bodies()) {
-    const Slot* slot = model.layout().body(body.name);
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const Slot* slot = model.layout().modes(b);
     if (slot == nullptr) continue;
-    for (const ModeGroup& group : mode_groups(body.body->shape())) {
+    for (const ModeGroup& group : mode_groups(model.bodies()[b].body->shape())) {
       // As a prescribed speed it takes no part.
       const std::size_t speed = slot->speed + static_cast<std::size_t>(group.coordinates.back());
       DenseSystem without = system;

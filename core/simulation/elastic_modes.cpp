@@ -47,10 +47,10 @@ std::vector<ModeGroup> mode_groups(const ModalShape& shape) {
 Eigen::MatrixXd stiffness_of_modes(const Model& model) {
   const auto n = static_cast<Eigen::Index>(model.layout().speeds);
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
-  for (const BodyNode& body : model.bodies()) {
-    const ModalShape& shape = body.body->shape();
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const ModalShape& shape = model.bodies()[b].body->shape();
     if (shape.modes() == 0) continue;
-    const auto at = static_cast<Eigen::Index>(model.layout().body(body.name)->speed);
+    const auto at = static_cast<Eigen::Index>(model.layout().modes(b)->speed);
     K.block(at, at, shape.modes(), shape.modes()) = shape.stiffness;
   }
   return K;

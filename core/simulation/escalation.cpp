@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "withy/core/simulation/elastic_modes.hpp"
@@ -60,7 +61,9 @@ void join(RunSummary& all, const RunSummary& next, bool first) {
 }
 
 double energy(const EquationsOfMotion& equations, const State& state) {
-  const Energies e = equations.energies(state.y);
+  const auto seen = equations.make_observation();
+  seen->observe(state.y);
+  const Energies e = seen->energies();
   return e.kinetic + e.potential;
 }
 
@@ -85,7 +88,19 @@ struct LimitWatch::Watched {
   TreeMotion motion;
   std::vector<Flexible> bodies;
   std::vector<Tip> places;
+  // Of the equations that were used last.
+  const EquationsOfMotion* equations = nullptr;
   std::vector<double> rates;
+  std::optional<Work> work;
+  std::unique_ptr<Observation> seen;
+
+  void use(const EquationsOfMotion& used) {
+    if (equations == &used) return;
+    equations = &used;
+    rates.resize(used.size());
+    work.emplace(used.make_work());
+    seen = used.make_observation();
+  }
 };
 
 LimitWatch::LimitWatch(const Model& model) : model_(model), watched_(std::make_unique<Watched>(model)) {}
@@ -93,9 +108,8 @@ LimitWatch::~LimitWatch() = default;
 
 std::vector<Excess> LimitWatch::excess(const State& state, const Rung& used, const Terms& limits_of) {
   std::vector<Excess> found;
-  Work work = used.equations->make_work();
-  watched_->rates.resize(used.equations->size());
-  if (!used.equations->derivatives(state.time, state.y, watched_->rates, work).ok()) return found;
+  watched_->use(*used.equations);
+  if (!used.equations->derivatives(state.time, state.y, watched_->rates, *watched_->work).ok()) return found;
   const Layout& layout = model_.layout();
   watched_->motion.update(state.y, std::span<const double>(watched_->rates).subspan(layout.positions, layout.speeds));
   const auto check = [&](const std::string& body, const char* indicator, double value, double limit) {
@@ -110,14 +124,155 @@ std::vector<Excess> LimitWatch::excess(const State& state, const Rung& used, con
             rate_limit(terms, f.one_direction));
     check(node.name, "load over buckling load", f.stiffness.evaluate(watched_->motion.bodies()).size(), load_limit);
   }
+  watched_->seen->observe(state.y);
   for (const Tip& tip : watched_->places) {
     const Terms terms = model_.bodies()[static_cast<std::size_t>(tip.tip.body)].terms.value_or(limits_of);
     if (!tip.flexible || terms.strain == StrainOrder::exact || !(tip.length > 0)) continue;
-    const auto d = deflection(*used.equations, state.y, tip);
+    const auto d = deflection(*watched_->seen, tip);
     check(tip.body, "deflection over length", std::hypot(d[0], d[1], d[2]) / tip.length, deflection_limit);
   }
   return found;
 }
+
+namespace {
+
+/// A run that goes from one formulation over to the next.
+class Escalation {
+ public:
+  Escalation(const Model& model, const std::vector<Rung>& rungs, const Integrator& integrator, const State& initial,
+             const RunOptions& options, const std::function<void(const State&, std::size_t)>& output)
+      : model_(model),
+        rungs_(rungs),
+        integrator_(integrator),
+        options_(options),
+        output_(output),
+        watch_(model),
+        from_(initial) {}
+
+  EscalatedRun run() {
+    for (bool done = false; !done;) done = one_stretch();
+    run_.summary.cpu_seconds = seconds_;
+    return std::move(run_);
+  }
+
+ private:
+  /// How far a formulation has gone, and why no further.
+  struct Attempt {
+    RunSummary summary;
+    std::vector<Excess> excess;  ///< empty: to its end
+    std::optional<double> held;  ///< time of the last output at which all limits held
+    std::size_t next = 0;        ///< rung that goes on
+  };
+
+  [[nodiscard]] bool is_last() const { return rung_ + 1 == rungs_.size(); }
+  [[nodiscard]] RunOptions options_of_rung() const {
+    RunOptions own = options_;
+    own.beyond = is_last() ? options_.beyond : rungs_[rung_ + 1].equations;
+    return own;
+  }
+
+  /// Runs with the present formulation up to where an indicator passes its limit.
+  Attempt attempt() {
+    const Rung& used = rungs_[rung_];
+    Attempt a;
+    RunOptions own = options_of_rung();
+    if (!is_last()) {
+      own.accept = [&](const State& s) {
+        a.excess = watch_.excess(s, used, used.terms);
+        if (!a.excess.empty()) a.next = rung_for(s);
+        return a.excess.empty();
+      };
+    }
+    a.summary = simulate(model_, *used.equations, integrator_, from_, own, [&](const State& s) {
+      a.held = s.time;
+      emit(s);
+    });
+    // A formulation that cannot go on is past its validity, whatever the indicators said.
+    const RunStatus status = a.summary.status;
+    if (a.excess.empty() && !is_last() && status != RunStatus::completed && status != RunStatus::interrupted) {
+      a.excess.push_back({"", "it stopped: " + a.summary.message, 0, 0, a.summary.final.time});
+      a.next = rung_ + 1;
+    }
+    seconds_ += a.summary.cpu_seconds;
+    return a;
+  }
+
+  /// The least formulation beyond the present one whose limits hold at a state, or the last.
+  std::size_t rung_for(const State& state) {
+    std::size_t next = rung_ + 1;
+    while (next + 1 < rungs_.size() && !watch_.excess(state, rungs_[rung_], rungs_[next].terms).empty()) ++next;
+    return next;
+  }
+
+  void emit(const State& state) {
+    if (emitted_ && state.time <= *emitted_) return;
+    emitted_ = state.time;
+    if (output_) output_(state, rung_);
+  }
+
+  void keep(const Stretch& stretch, const RunSummary& summary) {
+    join(run_.summary, summary, !joined_);
+    joined_ = true;
+    run_.stretches.push_back(stretch);
+  }
+
+  static Stretch stretch_of(std::size_t rung, double start, const RunSummary& summary) {
+    return {rung, start, summary.final.time, summary.steps.accepted, summary.steps.evaluations, summary.energy_drift,
+            {},   0};
+  }
+
+  /// One formulation, as far as it holds. \returns whether the run is done
+  bool one_stretch() {
+    Attempt tried = attempt();
+    if (tried.excess.empty()) {
+      keep(stretch_of(rung_, from_.time, tried.summary), tried.summary);
+      return true;
+    }
+    run_.discarded_evaluations += tried.summary.steps.evaluations;
+    if (tried.held && *tried.held > from_.time) return again(*tried.held, tried);
+    Stretch none{rung_, from_.time, tried.held.value_or(from_.time), 0, 0, 0, tried.excess, 0};
+    go_over(none, tried.next);
+    run_.stretches.push_back(none);
+    return false;
+  }
+
+  /// Runs once more, up to the last output at which all limits held.
+  bool again(double held, const Attempt& tried) {
+    RunOptions own = options_of_rung();
+    own.end = held;
+    const RunSummary summary = simulate(model_, *rungs_[rung_].equations, integrator_, from_, own, {});
+    seconds_ += summary.cpu_seconds;
+    Stretch stretch = stretch_of(rung_, from_.time, summary);
+    from_ = summary.final;
+    // An event that ends the run, up to rounding where the stretch does, ends it all the same.
+    const bool stopped = summary.final.time < held;
+    const bool done = stopped || summary.status != RunStatus::completed;
+    if (!stopped) stretch.excess = tried.excess;
+    if (!done) go_over(stretch, tried.next);
+    keep(stretch, summary);
+    return done;
+  }
+
+  void go_over(Stretch& stretch, std::size_t next) {
+    stretch.energy_jump = energy(*rungs_[next].equations, from_) - energy(*rungs_[rung_].equations, from_);
+    rung_ = next;
+  }
+
+  const Model& model_;
+  const std::vector<Rung>& rungs_;
+  const Integrator& integrator_;
+  const RunOptions& options_;
+  const std::function<void(const State&, std::size_t)>& output_;
+  LimitWatch watch_;
+  EscalatedRun run_;
+  State from_;  ///< where the present stretch begins
+  std::size_t rung_ = 0;
+  std::optional<double> emitted_;  ///< time of the last output
+  bool joined_ = false;
+  double seconds_ = 0;
+};
+
+}  // namespace
 
 EscalatedRun simulate_escalating(const Model& model, const std::vector<Rung>& rungs, const Integrator& integrator,
                                  const State& initial, const RunOptions& options,
@@ -126,88 +281,8 @@ EscalatedRun simulate_escalating(const Model& model, const std::vector<Rung>& ru
   if (!model.layout().discrete_slots.empty())
     throw std::invalid_argument("discrete states of loads do not go over from one formulation to the next");
   if (options.checkpoint || options.resume != nullptr)
-    throw std::invalid_argument("a run that changes its formulation is neither put down nor resumed");
-  EscalatedRun run;
-  LimitWatch watch(model);
-  State from = initial;
-  std::size_t rung = 0;
-  bool begun = false, joined = false;
-  double seconds = 0, emitted = 0;
-  while (true) {
-    const Rung& used = rungs[rung];
-    const bool last = rung + 1 == rungs.size();
-    std::vector<Excess> excess;
-    double held = from.time;  // last output at which all limits held
-    bool held_any = false;
-    RunOptions own = options;
-    own.beyond = last ? options.beyond : rungs[rung + 1].equations;
-    own.interrupted = [&] { return !excess.empty() || (options.interrupted && options.interrupted()); };
-    std::size_t next_rung = rung;
-    const auto emit = [&](const State& s) {
-      if (begun && s.time <= emitted) return;
-      begun = true;
-      emitted = s.time;
-      if (output) output(s, rung);
-    };
-    RunSummary summary = simulate(model, *used.equations, integrator, from, own, [&](const State& s) {
-      if (!excess.empty()) return;
-      if (!last) excess = watch.excess(s, used, used.terms);
-      if (excess.empty()) {
-        held = s.time;
-        held_any = true;
-        emit(s);
-        return;
-      }
-      do {
-        ++next_rung;
-      } while (next_rung + 1 < rungs.size() && !watch.excess(s, used, rungs[next_rung].terms).empty());
-    });
-    seconds += summary.cpu_seconds;
-    // A formulation that cannot go on is past its validity, whatever the indicators said.
-    if (excess.empty() && !last && summary.status != RunStatus::completed && summary.status != RunStatus::interrupted) {
-      excess.push_back({"", "it stopped: " + summary.message, 0, 0, summary.final.time});
-      next_rung = rung + 1;
-    }
-    if (excess.empty()) {
-      run.stretches.push_back({rung,
-                               from.time,
-                               summary.final.time,
-                               summary.steps.accepted,
-                               summary.steps.evaluations,
-                               summary.energy_drift,
-                               {},
-                               0});
-      join(run.summary, summary, !joined);
-      break;
-    }
-    run.discarded_evaluations += summary.steps.evaluations;
-    Stretch stretch{rung, from.time, held, 0, 0, 0, excess, 0};
-    if (held_any && held > from.time) {
-      own.end = held;
-      own.interrupted = options.interrupted;
-      summary = simulate(model, *used.equations, integrator, from, own, {});
-      seconds += summary.cpu_seconds;
-      stretch.steps = summary.steps.accepted;
-      stretch.evaluations = summary.steps.evaluations;
-      stretch.energy_drift = summary.energy_drift;
-      join(run.summary, summary, !joined);
-      joined = true;
-      from = summary.final;
-      // An event that ends the run, up to rounding where the stretch does, ends it all the same.
-      const bool stopped = summary.final.time < held;
-      if (stopped || summary.status != RunStatus::completed) {
-        if (stopped) stretch.excess.clear();
-        stretch.end = summary.final.time;
-        run.stretches.push_back(stretch);
-        break;
-      }
-    }
-    stretch.energy_jump = energy(*rungs[next_rung].equations, from) - energy(*used.equations, from);
-    run.stretches.push_back(stretch);
-    rung = next_rung;
-  }
-  run.summary.cpu_seconds = seconds;
-  return run;
+    throw std::invalid_argument("a run that changes its formulation has no checkpoints");
+  return Escalation(model, rungs, integrator, initial, options, output).run();
 }
 
 }  // namespace withy

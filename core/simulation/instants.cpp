@@ -28,6 +28,11 @@ bool has_switches(const Model& model) {
                      [&](const DiscreteSlot& slot) { return part_of(model, slot).switches() > 0; });
 }
 
+State begun(const Model& model, State state) {
+  Clocks(model).begin(state);
+  return state;
+}
+
 Clocks::Clocks(const Model& model) : model_(model) {
   std::size_t scratch = 0;
   for (const DiscreteSlot& slot : model.layout().discrete_slots) {
@@ -102,13 +107,17 @@ void ZeroWatch::begin_at(const State& state) {
   std::transform(values_.begin(), values_.end(), signs_.begin(), sign);
 }
 
-const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& state, const Zero& zero) {
+const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& state, std::span<const Zero> known) {
   zeros_.clear();
   evaluate(state.time, state.y, values_);
-  pass(zero);
+  signs_ = start_signs_;  // what else `find` has seen lies beyond this state, or is seen again
+  for (const Zero& zero : known) {
+    signs_[zero.function] = zero.direction;
+    values_[zero.function] = 0;  // up to rounding of either sign
+  }
   for (std::size_t f = 0; f < signs_.size(); ++f) {
     const int now = sign(values_[f]);
-    if (f == zero.function || now == 0) continue;  // its own is zero up to rounding of either sign
+    if (now == 0) continue;
     if (signs_[f] * now < 0 && noticed(f, now)) zeros_.push_back({state.time, f, now});
     signs_[f] = now;
   }
@@ -137,7 +146,7 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, doub
         .second;
   };
   zeros_.clear();
-  before_ = signs_;
+  before_ = start_signs_ = signs_;
   double begin = from;
   for (int look = 1; look <= looks; ++look) {
     const double end = look == looks ? to : from + (to - from) * look / looks;

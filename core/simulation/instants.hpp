@@ -12,12 +12,15 @@
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/memory.hpp"
-#include "withy/core/simulation/simulate.hpp"
+#include "withy/core/simulation/run_event.hpp"
 
 namespace withy {
 
 /// Whether any load switches where a function of the state is zero.
 bool has_switches(const Model& model);
+
+/// The state with all discrete states set for the start of a run at its time.
+State begun(const Model& model, State state);
 
 /// Renews discrete states by their loads' clocks.
 class Clocks {
@@ -62,8 +65,11 @@ class ZeroWatch {
   const std::vector<Zero>& find(const Stepper& stepper, double from);
   /// Says that a zero has been dealt with.
   void pass(const Zero& zero) { signs_[zero.function] = zero.direction; }
-  /// At a state that a step was made to end at because of `zero`: the zeros of others passed with it.
-  const std::vector<Zero>& land(const State& state, const Zero& zero);
+  /// Whether a zero changes the run: a load switches there, or an event stops it.
+  [[nodiscard]] bool acts(const Zero& zero) const { return zero.function < switches_ || event(zero.function).stops; }
+  /// At a state that a step was made to end at because of one of the zeros `known`: the zeros of others passed with
+  /// it. The functions of `known` have passed, whatever sign rounding leaves them here.
+  const std::vector<Zero>& land(const State& state, std::span<const Zero> known);
   /// Takes the signs at a state where discrete states have changed.
   void begin_at(const State& state);
 
@@ -84,6 +90,7 @@ class ZeroWatch {
   std::vector<DiscreteSlot> slots_;  ///< of loads with switching functions
   std::vector<int> signs_;           ///< −1, 0, +1 at the last accepted state
   std::vector<int> before_;
+  std::vector<int> start_signs_;  ///< `signs_` at the start of the step that `find` has looked at
   std::vector<double> values_, ends_;
   std::vector<Zero> zeros_;
   State inside_;

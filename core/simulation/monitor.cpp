@@ -3,15 +3,33 @@
 #include <algorithm>
 #include <cmath>
 
-#include "withy/core/deformation/point_motion.hpp"
-
 namespace withy {
 
+Monitor::SectionExpansion::SectionExpansion(const PointExpansion& e) {
+  for (Eigen::Index i = 0; i < e.phi.cols(); ++i) {
+    first.emplace_back(e.phi.col(i));
+    for (Eigen::Index j = i; j < e.phi.cols(); ++j)
+      second.emplace_back(Vector3(e.gamma[0](i, j), e.gamma[1](i, j), e.gamma[2](i, j)) * (i == j ? 0.5 : 1.0));
+  }
+}
+
+Vector3 Monitor::SectionExpansion::displacement(const double* q) const {
+  Vector3 d = Vector3::Zero();
+  const Vector3* gamma = second.data();
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    d += first[i] * q[i];
+    for (std::size_t j = i; j < first.size(); ++j) d += *gamma++ * (q[i] * q[j]);
+  }
+  return d;
+}
+
 Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
-                 RunSummary& summary)
+                 Observation* seen, RunSummary& summary)
     : model_(model),
       equations_(equations),
       summary_(summary),
+      own_(seen != nullptr ? nullptr : equations.make_observation()),
+      seen_(seen != nullptr ? *seen : *own_),
       deflection_limit_(deflection_limit),
       efforts_(model.layout().speeds),
       rates_(equations.size()),
@@ -20,38 +38,30 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       checked_(initial.time) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
-    const Slot* slot = model.layout().body(node.name);
     const double length = node.body->shape().length;
+    if (node.body->shape().modes() == 0 || !(length > 0)) continue;
     const auto section = node.body->station("tip");
-    if (slot == nullptr || !section || !(length > 0)) continue;
-    ends_.push_back({slot,
+    if (!section) continue;
+    ends_.push_back({model.layout().modes(b),
                      static_cast<int>(b),
                      node.frame("tip"),
-                     *section,
+                     SectionExpansion(*section),
                      length,
                      node.segment ? nullptr : &summary.peak_deflection[node.name],
                      &summary.peak_deflection_ratio[node.name],
                      {}});
   }
   for (Tip& tip : tips(model)) {
-    if (tip.in_segments() && tip.flexible) wholes_.push_back(std::move(tip));
+    if (!tip.in_segments() || !tip.flexible) continue;
+    summary.peak_deflection[tip.body] = {};
+    wholes_.push_back(std::move(tip));
   }
   summary.peak_effort.assign(model.layout().speeds, 0.0);
   summary.peak_motion_effort.assign(model.layout().speeds, 0.0);
-  const Energies e = equations.energies(initial.y);
+  seen_.observe(initial.y);
+  const Energies e = seen_.energies();
   initial_energy_ = e.kinetic + e.potential;
   initial_sign_ = mass_matrix_sign(initial);
-}
-
-std::array<double, 3> Monitor::deflection_of(const End& end, const State& state) const {
-  return end.frame >= 0 ? equations_.deflection(state.y, end.body, end.frame) : expanded(end, state);
-}
-
-std::array<double, 3> Monitor::expanded(const End& end, const State& state) {
-  const Eigen::Map<const Eigen::VectorXd> q(state.y.data() + end.slot->position,
-                                            static_cast<Eigen::Index>(end.slot->positions));
-  const Vector3 d = point_velocity(end.section, StrainOrder::quadratic, q, q).first - end.section.X;
-  return {d.x(), d.y(), d.z()};
 }
 
 void Monitor::note(const std::string& name, double length, const std::array<double, 3>& d,
@@ -63,25 +73,39 @@ void Monitor::note(const std::string& name, double length, const std::array<doub
             " times its length (limit " + brief(deflection_limit_) + ")";
 }
 
-void Monitor::observe(const State& state, bool output) {
-  for (End& end : ends_) {
-    // Exact kinematics integrates along the body, at the cost of several evaluations: between outputs only where the
-    // expansion says that the deflection has not been so great before.
-    const std::array<double, 3> rough = expanded(end, state);
-    bool greater = false;
-    for (std::size_t k = 0; k < 3; ++k) {
-      greater = greater || std::abs(rough[k]) > end.rough[k];
-      end.rough[k] = std::max(end.rough[k], std::abs(rough[k]));
-    }
-    if (!output && !greater) continue;
-    const std::array<double, 3> d = deflection_of(end, state);
-    *end.ratio = std::max(*end.ratio, std::hypot(d[0], d[1], d[2]) / end.length);
-    note(end.slot->name, end.length, d, end.peak);
+/// Exact kinematics integrates along the body, at the cost of an evaluation: between outputs only where the expansion
+/// says that the deflection has not been so great before.
+void Monitor::observe_end(End& end, const State& state, bool output, bool& seen) {
+  const Vector3 rough = end.section.displacement(state.y.data() + end.slot->position);
+  bool greater = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double size = std::abs(rough[static_cast<Eigen::Index>(k)]);
+    greater = greater || size > end.rough[k];
+    end.rough[k] = std::max(end.rough[k], size);
   }
+  if (!output && !greater) return;
+  std::array<double, 3> d{rough.x(), rough.y(), rough.z()};
+  if (end.frame >= 0) {
+    if (!seen) seen_.observe(state.y);
+    seen = true;
+    d = seen_.deflection(end.body, end.frame);
+  }
+  *end.ratio = std::max(*end.ratio, std::hypot(d[0], d[1], d[2]) / end.length);
+  note(end.slot->name, end.length, d, end.peak);
+}
+
+void Monitor::observe(const State& state, bool output) {
+  bool seen = output;
+  if (output) seen_.observe(state.y);
+  for (End& end : ends_) observe_end(end, state, output, seen);
   if (output) {
     for (const Tip& tip : wholes_)
-      note(tip.body, tip.length, deflection(equations_, state.y, tip), &summary_.peak_deflection[tip.body]);
+      note(tip.body, tip.length, deflection(seen_, tip), &summary_.peak_deflection[tip.body]);
   }
+  raise_efforts(state);
+}
+
+void Monitor::raise_efforts(const State& state) {
   const auto raise = [&](std::vector<double>& peak) {
     for (std::size_t i = 0; i < efforts_.size(); ++i) peak[i] = std::max(peak[i], std::abs(efforts_[i]));
   };
@@ -94,7 +118,8 @@ void Monitor::observe(const State& state, bool output) {
 }
 
 void Monitor::audit_energy(const State& state) {
-  const Energies e = equations_.energies(state.y);
+  seen_.observe(state.y);
+  const Energies e = seen_.energies();
   const double energy = e.kinetic + e.potential;
   const double work = state.y.back() - initial_work_;
   energy_error_ = std::max(energy_error_, std::abs(energy - initial_energy_ - work));
@@ -132,6 +157,8 @@ void Monitor::remember(Memory& memory) {
   memory(checked_);
   memory(rejected_);
   memory(burst_);
+  memory(calm_);
+  memory(noted_);
 }
 
 // Where the right-hand side is smooth, error control rejects a step now and then. At a jump inside a step it rejects

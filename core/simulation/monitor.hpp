@@ -2,6 +2,7 @@
 /// What a run watches while it goes: peaks, deflections, energy, the sign of det M.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,11 +17,12 @@ namespace withy {
 /// Watches one run from its initial state on; the peaks go to the run's summary.
 class Monitor {
  public:
+  /// \param seen an observation of these equations; null: the monitor makes its own
   Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
-          RunSummary& summary);
+          Observation* seen, RunSummary& summary);
 
   /// Peaks of deflections and efforts: for every accepted step and output. Those of bodies in segments are left to the
-  /// outputs, since they cost more than a step.
+  /// outputs. At an output the observation is left at its state.
   void observe(const State& state, bool output);
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
@@ -38,20 +40,26 @@ class Monitor {
   void remember(Memory& memory);
 
  private:
+  /// Displacement of a section, to second order.
+  struct SectionExpansion {
+    std::vector<Vector3> first;   ///< Φ_i
+    std::vector<Vector3> second;  ///< Γ_ij for i ≤ j, halved where i = j
+    explicit SectionExpansion(const PointExpansion& e);
+    [[nodiscard]] Vector3 displacement(const double* q) const;
+  };
   /// A flexible body's tip, or a segment's.
   struct End {
     const Slot* slot;  ///< of the body's modes
     int body;
     int frame;  ///< −1: `section` stands for it
-    PointExpansion section;
+    SectionExpansion section;
     double length;                ///< [m]
     std::array<double, 3>* peak;  ///< null: a segment's
     double* ratio;
     std::array<double, 3> rough{};  ///< greatest |deflection| by the expansion
   };
-  [[nodiscard]] std::array<double, 3> deflection_of(const End& end, const State& state) const;
-  /// The same by the second-order expansion of the section.
-  [[nodiscard]] static std::array<double, 3> expanded(const End& end, const State& state);
+  void observe_end(End& end, const State& state, bool output, bool& seen);
+  void raise_efforts(const State& state);
   void note(const std::string& name, double length, const std::array<double, 3>& d, std::array<double, 3>* peak);
   /// Sign of det M by one evaluation; 0 where it cannot be solved.
   [[nodiscard]] int mass_matrix_sign(const State& state);
@@ -59,6 +67,8 @@ class Monitor {
   const Model& model_;
   const EquationsOfMotion& equations_;
   RunSummary& summary_;
+  std::unique_ptr<Observation> own_;  ///< null where another is used
+  Observation& seen_;
   std::vector<End> ends_;
   std::vector<Tip> wholes_;  ///< of bodies in segments
   double deflection_limit_;

@@ -1,11 +1,12 @@
 #include "withy/core/simulation/paired_run.hpp"
 
-#include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_times.hpp"
+#include "withy/core/simulation/stepping.hpp"
 
 namespace withy {
 namespace {
@@ -61,11 +62,12 @@ class PairedEquations final : public EquationsOfMotion {
   void mass_times(std::span<const double>, std::span<const double>, std::span<double>, Work&) const override {
     refuse();
   }
-  // Reports ask for these, steppers do not.
+  // Reports ask for these; steppers do not.
   void load_efforts(double, std::span<const double>, int, std::span<double>, Work&) const noexcept override {}
   Evaluation motion_efforts(double, std::span<const double>, std::span<double>, Work&) const noexcept override {
     return {Evaluation::Outcome::singular};
   }
+  std::unique_ptr<Observation> make_observation() const override { refuse(); }
   DenseSystem system(double, std::span<const double>) const override { refuse(); }
   Energies energies(std::span<const double>) const override { refuse(); }
   WorldPose frame_pose(std::span<const double>, int, int) const override { refuse(); }
@@ -93,6 +95,46 @@ class PairedEquations final : public EquationsOfMotion {
   Layout layout_;
 };
 
+/// Gives both states at outputs, and renews the discrete states of each.
+class PairObserver final : public SteppingObserver {
+ public:
+  PairObserver(const PairedEquations& pair, const PairedRunOptions& options, const State& initial,
+               const std::function<void(const State&, const State&)>& output)
+      : pair_(pair), options_(options), output_(output), first_(initial), second_(initial), emitted_(initial.time) {}
+
+  bool before_step(const Stepper& stepper) override {
+    const bool spent = options_.most_evaluations > 0 && stepper.statistics().evaluations >= options_.most_evaluations;
+    return !spent && !(options_.interrupted && options_.interrupted());
+  }
+  bool output(const State& both) override {
+    take(both);
+    emitted_ = both.time;
+    output_(first_, second_);
+    return true;
+  }
+  void renew(Clocks& clocks, State& both) override {
+    take(both);
+    clocks.renew(first_);
+    clocks.renew(second_);
+    pair_.put(first_.y, 0, both.y);
+    pair_.put(second_.y, 1, both.y);
+  }
+  [[nodiscard]] double emitted() const { return emitted_; }
+
+ private:
+  void take(const State& both) {
+    first_.time = second_.time = both.time;
+    pair_.take(both.y, 0, first_.y);
+    pair_.take(both.y, 1, second_.y);
+  }
+
+  const PairedEquations& pair_;
+  const PairedRunOptions& options_;
+  const std::function<void(const State&, const State&)>& output_;
+  State first_, second_;
+  double emitted_;  ///< time of the last output
+};
+
 }  // namespace
 
 PairedTolerances paired_tolerances(const RunSummary& summary) {
@@ -111,52 +153,15 @@ PairedRun run_paired(const Model& model, const EquationsOfMotion& first, const E
   if (has_switches(model)) throw std::invalid_argument("loads with switching functions have no common steps");
   const double began = thread_cpu_seconds();
   const PairedEquations pair(first, second);
+  const State one = begun(model, initial);
   State both{initial.time, std::vector<double>(pair.size())};
-  Clocks clocks(model);
-  State one = initial;
-  clocks.begin(one);
-  State other = one;
   pair.put(one.y, 0, both.y);
   pair.put(one.y, 1, both.y);
-  const auto emit = [&](const State& s) {
-    one.time = other.time = s.time;
-    pair.take(s.y, 0, one.y);
-    pair.take(s.y, 1, other.y);
-    output(one, other);
-  };
-  const auto stepper = integrator.start(pair, both);
-  OutputTimes times(initial.time, options.output, options.end);
-  double emitted = initial.time;
-  const auto spent = [&] {
-    return options.most_evaluations > 0 && stepper->statistics().evaluations >= options.most_evaluations;
-  };
-  bool stopped = false;
-  for (const double landing : landings(model, initial.time, options.end)) {
-    while (!stopped && stepper->state().time < landing) {
-      stopped = spent() || (options.interrupted && options.interrupted()) ||
-                stepper->step(std::min(landing, clocks.next())).outcome != StepResult::Outcome::ok;
-      for (; times.due(stepper->state().time); times.pass()) {
-        both.time = emitted = times.next();
-        stepper->interpolate(both.time, both.y);
-        emit(both);
-      }
-      if (stopped || stepper->state().time < clocks.next()) continue;
-      both = stepper->state();
-      one.time = other.time = both.time;
-      pair.take(both.y, 0, one.y);
-      pair.take(both.y, 1, other.y);
-      clocks.renew(one);
-      clocks.renew(other);
-      clocks.go_on_after(both.time);
-      pair.put(one.y, 0, both.y);
-      pair.put(other.y, 1, both.y);
-      stepper->jump(both);
-    }
-    if (stopped) break;
-    stepper->restart();
-  }
-  if (stepper->state().time > emitted) emit(stepper->state());
-  return {stepper->state().time, stepper->statistics().evaluations, thread_cpu_seconds() - began};
+  PairObserver observer(pair, options, initial, output);
+  Stepping loop(model, integrator.start(pair, both), {options.end, options.output});
+  loop.run(observer);
+  if (loop.state().time > observer.emitted()) observer.output(loop.state());
+  return {loop.state().time, loop.stepper().statistics().evaluations, thread_cpu_seconds() - began};
 }
 
 }  // namespace withy

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/monitor.hpp"
 #include "withy/core/simulation/run_times.hpp"
+#include "withy/core/simulation/stepping.hpp"
 
 namespace withy {
 namespace {
@@ -40,8 +39,8 @@ Stop stop_of(const StepResult& result, const Model& model, const EquationsOfMoti
   return {};
 }
 
-/// The loop itself: what happens between two accepted steps.
-class Run {
+/// What a run makes of its steps: checks, outputs, its summary.
+class Run final : public SteppingObserver {
  public:
   Run(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator, const State& initial,
       const RunOptions& options, const std::function<void(const State&)>& output, RunSummary& summary)
@@ -50,189 +49,123 @@ class Run {
         options_(options),
         output_(output),
         summary_(summary),
-        clocks_(model),
-        stepper_(integrator.start(equations, begun(initial))),
-        monitor_(model, equations, stepper_->state(), options.deflection_limit, summary),
-        validity_(model, equations, options.beyond, summary.validity),
-        zeros_(model, options.events, stepper_->state()),
-        times_(initial.time, options.output, options.end),
-        sample_(stepper_->state()) {
+        loop_(model, integrator.start(equations, begun(model, initial)), {options.end, options.output, options.events}),
+        monitor_(model, equations, loop_.state(), options.deflection_limit, options.seen, summary),
+        validity_(model, equations, options.beyond, summary.validity) {
     if (options.resume != nullptr) {
-      take_up(*options.resume);
+      restore(*options.resume);
       return;
     }
-    emit(stepper_->state());
-    monitor_.observe(stepper_->state(), true);
-    validity_.observe(stepper_->state(), 0);
+    if (!output_at(loop_.state())) return;
+    validity_.observe(loop_.state(), 0);
   }
 
   Stop to_end() {
-    const double start = time();
-    for (const double landing : landings(model_, start, options_.end)) {
-      while (time() < landing) {
-        const double limit = std::min(landing, clocks_.next());
-        if (Stop stop = to(limit, true); stop.status != RunStatus::completed || stopped_) return stop;
-        if (time() < clocks_.next()) continue;
-        sample_ = stepper_->state();
-        clocks_.renew(sample_);
-        clocks_.go_on_after(sample_.time);
-        stepper_->jump(sample_);
-        zeros_.begin_at(sample_);
-        monitor_.pass_instant();
-      }
-      stepper_->restart();
+    if (left_) return stop_;
+    const SteppingEnd end = loop_.run(*this);
+    switch (end.cause) {
+      case SteppingEnd::Cause::failed:
+        return stop_of(end.step, model_, equations_, loop_.state(), loop_.stepper().statistics());
+      case SteppingEnd::Cause::crowded:
+        return {RunStatus::step_underflow, "switches follow each other without time between them"};
+      case SteppingEnd::Cause::stopped:
+        return stop_;
+      case SteppingEnd::Cause::event:
+      case SteppingEnd::Cause::reached:
+        break;
     }
     return {};
   }
 
   /// The last state is an output, however the run ended.
   void finish(RunStatus status) {
-    const State& state = stepper_->state();
-    monitor_.observe(state, true);
-    if (state.time > emitted_) emit(state);
+    const State& state = loop_.state();
+    if (state.time > emitted_ && !left_) {
+      output_at(state);
+    } else {
+      monitor_.observe(state, true);
+    }
     monitor_.audit_energy(state);
-    validity_.finish(state, stepper_->statistics().evaluations, status == RunStatus::completed);
+    validity_.finish(state, loop_.stepper().statistics().evaluations, status == RunStatus::completed);
   }
 
-  [[nodiscard]] const Stepper& stepper() const { return *stepper_; }
+  [[nodiscard]] const Stepper& stepper() const { return loop_.stepper(); }
   [[nodiscard]] const Monitor& monitor() const { return monitor_; }
-  /// Whether an event has ended the run.
-  [[nodiscard]] bool stopped() const { return stopped_; }
+  /// Names of the events that have ended the run.
+  [[nodiscard]] const std::vector<std::string>& stopped_by() const { return stopped_by_; }
+
+  bool before_step(const Stepper& stepper) override {
+    const bool interrupted = options_.interrupted && options_.interrupted();
+    if (options_.checkpoint && (interrupted || (options_.put_down && options_.put_down()))) save();
+    if (interrupted) {
+      stop_ = {RunStatus::interrupted, "interrupted", false};
+    } else if (stepper.statistics().accepted >= options_.most_steps) {
+      stop_ = {RunStatus::interrupted, "stopped after the " + std::to_string(options_.most_steps) + " steps allowed",
+               false};
+    } else if (options_.most_seconds > 0 && seconds() > options_.most_seconds) {
+      stop_ = {RunStatus::interrupted, "stopped after the " + brief(options_.most_seconds) + " s allowed", false};
+    }
+    return stop_.status == RunStatus::completed;
+  }
+  bool output(const State& state) override { return output_at(state); }
+  bool after_step(const Stepper& stepper, bool outputs) override {
+    const State& state = stepper.state();
+    monitor_.audit_steps(state, stepper.statistics());
+    if (outputs) monitor_.audit_energy(state);
+    monitor_.observe(state, false);
+    validity_.observe(state, stepper.statistics().evaluations);
+    monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
+    // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
+    if (monitor_.sign_change()) {
+      stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
+    } else if (!monitor_.excess().empty()) {
+      stop_ = {RunStatus::diverged, monitor_.excess()};
+    }
+    return stop_.status == RunStatus::completed;
+  }
+  void passed(const EventTime& event) override {
+    summary_.events.push_back(event);
+    const auto of_that_name = [&](const RunEvent& e) { return e.name == event.name; };
+    const auto stated = std::find_if(options_.events.begin(), options_.events.end(), of_that_name);
+    if (stated != options_.events.end() && stated->stops) stopped_by_.push_back(event.name);
+  }
+  void switched() override { ++summary_.switchings; }
+  void jumped() override { monitor_.pass_instant(); }
 
  private:
-  [[nodiscard]] double time() const { return stepper_->state().time; }
-
-  State begun(State state) {
-    clocks_.begin(state);
-    return state;
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   }
 
-  /// Steps to a time, or to an event on the way that stops the run; from a switch passed on the way the steps go on.
-  /// Not watching: a step taken back is made again to end at a zero, and nothing comes between.
-  Stop to(double limit, bool watching) {
-    while (time() < limit && !stopped_) {
-      if (watching) {
-        if (Stop stop = ended_by_caller(); stop.status != RunStatus::completed) return stop;
-        if (!zeros_.empty()) before_ = stepper_->state();
-      }
-      const StepResult result = stepper_->step(limit);
-      if (result.outcome != StepResult::Outcome::ok)
-        return stop_of(result, model_, equations_, stepper_->state(), stepper_->statistics());
-      if (watching && !zeros_.empty()) {
-        const std::optional<ZeroWatch::Zero> zero = look_for_zeros();
-        if (zero) {
-          if (Stop stop = act_at(*zero); stop.status != RunStatus::completed) return stop;
-          continue;
-        }
-      }
-      if (Stop stop = after_step(); stop.status != RunStatus::completed) return stop;
+  /// False where the caller does not accept the state: the run ends before it.
+  bool output_at(const State& state) {
+    if (options_.accept && !options_.accept(state)) {
+      left_ = true;
+      stop_ = {RunStatus::interrupted, "stopped by its caller", false};
+      return false;
     }
-    return {};
-  }
-
-  Stop ended_by_caller() {
-    const bool interrupted = options_.interrupted && options_.interrupted();
-    if (options_.checkpoint && (interrupted || (options_.put_down && options_.put_down()))) put_down();
-    if (interrupted) return {RunStatus::interrupted, "interrupted", false};
-    if (stepper_->statistics().accepted >= options_.most_steps)
-      return {RunStatus::interrupted,
-              std::string("stopped after the ") + std::to_string(options_.most_steps) + " steps allowed", false};
-    if (options_.most_seconds > 0 &&
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count() > options_.most_seconds)
-      return {RunStatus::interrupted, std::string("stopped after the ") + brief(options_.most_seconds) + " s allowed",
-              false};
-    return {};
-  }
-
-  /// Notes the events passed in the last step up to the first zero that changes the run, which is returned.
-  std::optional<ZeroWatch::Zero> look_for_zeros() {
-    for (const ZeroWatch::Zero& zero : zeros_.find(*stepper_, before_.time)) {
-      if (zeros_.switching(zero.function) || zeros_.event(zero.function).stops) return zero;
-      note(zero);
-      zeros_.pass(zero);
-    }
-    return {};
-  }
-
-  /// Takes the last step back, steps to the zero and does what is to be done there.
-  Stop act_at(const ZeroWatch::Zero& zero) {
-    if (zero.time - last_zero_ <= 16 * std::numeric_limits<double>::epsilon() * std::abs(zero.time)) {
-      if (++zeros_at_once_ > most_zeros_at_once)
-        return {RunStatus::step_underflow, "switches follow each other without time between them"};
-    } else {
-      zeros_at_once_ = 0;
-    }
-    last_zero_ = zero.time;
-    stepper_->jump(before_);
-    if (Stop stop = to(zero.time, false); stop.status != RunStatus::completed) return stop;
-    std::vector<ZeroWatch::Zero> passed{zero};
-    const std::vector<ZeroWatch::Zero>& others = zeros_.land(stepper_->state(), zero);
-    passed.insert(passed.end(), others.begin(), others.end());
-    sample_ = stepper_->state();
-    for (const ZeroWatch::Zero& z : passed) {
-      if (const auto load = zeros_.switching(z.function)) {
-        clocks_.renew(sample_, load->first, {load->second, z.direction});
-        ++summary_.switchings;
-      } else {
-        note(z);
-        stopped_ = stopped_ || zeros_.event(z.function).stops;
-      }
-    }
-    stepper_->jump(sample_);
-    monitor_.pass_instant();
-    return {};
-  }
-
-  void note(const ZeroWatch::Zero& zero) {
-    summary_.events.push_back({zeros_.event(zero.function).name, zero.time, zero.direction});
-  }
-
-  Stop after_step() {
-    const State& state = stepper_->state();
-    monitor_.audit_steps(state, stepper_->statistics());
-    if (times_.due(state.time)) {
-      for (; times_.due(state.time); times_.pass()) {
-        sample_.time = times_.next();
-        stepper_->interpolate(sample_.time, sample_.y);
-        monitor_.observe(sample_, true);
-        emit(sample_);
-      }
-      monitor_.audit_energy(state);
-    }
-    monitor_.observe(state, false);
-    validity_.observe(state, stepper_->statistics().evaluations);
-    monitor_.audit_mass_matrix(state, stepper_->statistics().determinant_sign);
-    // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
-    if (monitor_.sign_change()) return {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
-    if (!monitor_.excess().empty()) return {RunStatus::diverged, monitor_.excess()};
-    return {};
-  }
-
-  void emit(const State& state) {
+    monitor_.observe(state, true);
     emitted_ = state.time;
     if (output_) output_(state);
+    return true;
   }
 
-  void put_down() {
+  void save() {
     Memory memory;
     remember(memory);
-    options_.checkpoint({stepper_->state(), stepper_->memory(), memory.numbers()});
+    options_.checkpoint({loop_.state(), loop_.stepper().memory(), memory.numbers()});
   }
-  void take_up(const Checkpoint& checkpoint) {
-    stepper_->resume(checkpoint.state, checkpoint.stepper);
+  void restore(const Checkpoint& checkpoint) {
+    loop_.resume(checkpoint.state, checkpoint.stepper);
     Memory memory(checkpoint.watches);
     remember(memory);
     memory.finish();
-    clocks_.go_on_after(checkpoint.state.time);
   }
   void remember(Memory& memory) {
     monitor_.remember(memory);
     validity_.remember(memory);
-    zeros_.remember(memory);
-    times_.remember(memory);
+    loop_.remember(memory);
     memory(emitted_);
-    memory(last_zero_);
-    memory(zeros_at_once_);
     memory(summary_.switchings);
     std::size_t count = summary_.events.size();
     memory(count);
@@ -247,25 +180,18 @@ class Run {
     }
   }
 
-  static constexpr int most_zeros_at_once = 20;
-
   const Model& model_;
   const EquationsOfMotion& equations_;
   const RunOptions& options_;
   const std::function<void(const State&)>& output_;
   RunSummary& summary_;
-  Clocks clocks_;
-  std::unique_ptr<Stepper> stepper_;
+  Stepping loop_;
   Monitor monitor_;
   ValidityWatch validity_;
-  ZeroWatch zeros_;
-  OutputTimes times_;
-  State sample_;
-  State before_;          ///< where the last step began; kept only where zeros are watched
-  double emitted_ = 0;    ///< time of the last output
-  bool stopped_ = false;  ///< by an event
-  double last_zero_ = -std::numeric_limits<double>::infinity();  ///< time of the last one that changed the run
-  int zeros_at_once_ = 0;
+  double emitted_ = 0;  ///< time of the last output
+  bool left_ = false;   ///< an output was not accepted
+  Stop stop_;           ///< why this observer has ended the stepping
+  std::vector<std::string> stopped_by_;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
@@ -273,6 +199,37 @@ std::string note_on_jumps(const std::vector<double>& times) {
   std::string text = "Steps were rejected again and again near t =";
   for (const double t : times) text.append(" ").append(brief(t));
   return text + " s: does a load jump there without declaring it?";
+}
+
+/// Looks at the mass matrix at the end of a run, and why a run that ended badly did.
+MassMatrixHistory look_at_mass_matrix(const Run& run, const Model& model, const EquationsOfMotion& equations,
+                                      const State& initial, const Stop& stop, RunSummary& summary) {
+  MassMatrixHistory history;
+  if (equations.layout().speeds > largest_examined) return history;
+  const std::optional<SignChange>& change = run.monitor().sign_change();
+  if (change || stop.status != RunStatus::completed) {
+    history = examine(equations, initial, summary.final, change);
+    summary.conditioning = history.end;
+  } else {
+    history.last = equations.system(summary.final.time, summary.final.y);
+    summary.conditioning = conditioning(history.last);
+  }
+  summary.fastest_mode = fastest_mode(model, history.last);
+  return history;
+}
+
+std::string message_of_completed(const Run& run, const RunSummary& summary) {
+  std::string text;
+  const auto add = [&text](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
+  if (const std::vector<std::string>& names = run.stopped_by(); !names.empty()) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "'" : ", '") + name + "'";
+    add((names.size() > 1 ? "The events " : "The event ") + list +
+        " ended the run at t = " + brief(summary.final.time) + " s.");
+  }
+  if (!summary.suspected_jumps.empty()) add(note_on_jumps(summary.suspected_jumps));
+  for (const std::string& remark : run.stepper().remarks()) add("The integrator: " + remark + ".");
+  return text;
 }
 
 }  // namespace
@@ -304,31 +261,16 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   run.finish(stop.status);
   summary.final = run.stepper().state();
   summary.steps = run.stepper().statistics();
+  const MassMatrixHistory history = look_at_mass_matrix(run, model, equations, initial, stop, summary);
   const bool examined = equations.layout().speeds <= largest_examined;
-  const std::optional<SignChange>& change = run.monitor().sign_change();
-  MassMatrixHistory history;
-  if (examined && (change || stop.status != RunStatus::completed)) {
-    history = examine(equations, initial, summary.final, change);
-    summary.conditioning = history.end;
-  } else if (examined) {
-    history.last = equations.system(summary.final.time, summary.final.y);
-    summary.conditioning = conditioning(history.last);
-  }
-  if (examined) summary.fastest_mode = fastest_mode(model, history.last);
   if (stop.status == RunStatus::completed) {
-    if (run.stopped())
-      summary.message = std::string("The event '") + summary.events.back().name +
-                        "' ended the run at t = " + brief(summary.final.time) + " s.";
-    if (!summary.suspected_jumps.empty())
-      summary.message += (summary.message.empty() ? "" : " ") + note_on_jumps(summary.suspected_jumps);
-    for (const std::string& remark : run.stepper().remarks())
-      summary.message += (summary.message.empty() ? "The integrator: " : " The integrator: ") + remark + ".";
+    summary.message = message_of_completed(run, summary);
   } else {
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end
     // Steps that collapse where M loses rank collapse because of it.
     if (stop.status == RunStatus::step_underflow && examined && history.lost_definiteness())
       stop.status = RunStatus::singular;
-    summary.message = std::string("t = ") + brief(summary.final.time) + " s: " + stop.reason + ".";
+    summary.message = "t = " + brief(summary.final.time) + " s: " + stop.reason + ".";
     if (stop.physical)
       summary.message +=
           examined ? " " + describe(history, model.layout()) : " The mass matrix, with so many rows, was not examined.";

@@ -13,6 +13,7 @@
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/integrator.hpp"
+#include "withy/core/simulation/run_event.hpp"
 #include "withy/core/simulation/validity.hpp"
 
 namespace withy {
@@ -22,23 +23,8 @@ enum class RunStatus { completed, diverged, singular, step_underflow, interrupte
 /// "completed", "diverged", "singular", "step-underflow", "interrupted".
 std::string_view name(RunStatus status);
 
-/// A function of the state whose zeros are looked for in a run.
-struct RunEvent {
-  std::string name;
-  std::function<double(double t, std::span<const double> y)> function;  ///< continuous; y as in State
-  int direction = 0;   ///< +1: from below alone, −1: from above alone
-  bool stops = false;  ///< the run ends there, completed
-};
-
-/// Where an event's function was zero.
-struct EventTime {
-  std::string name;
-  double time = 0;    ///< [s]
-  int direction = 0;  ///< +1: from below, −1: from above
-};
-
-/// A run put down between two steps: `simulate` with it and else the same arguments goes on as if it had not ended, bit
-/// by bit.
+/// A run between two steps: `simulate` restores it and, with the same arguments otherwise, goes on as if it had not
+/// ended, bit by bit.
 struct Checkpoint {
   State state;
   std::vector<double> stepper;  ///< Stepper::memory
@@ -56,6 +42,12 @@ struct RunOptions {
   std::function<bool()> put_down;     ///< asked between steps: whether `checkpoint` is to be called
   std::function<void(const Checkpoint&)> checkpoint;  ///< called then and when the run is interrupted
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: begin at the initial state
+  /// Asked of each output before anything is made of it. Where it answers false the run ends, as interrupted, and that
+  /// output is not given.
+  std::function<bool(const State&)> accept;
+  /// Of these equations: brought to the state of each output before it is given, so that a row of results costs no
+  /// second pass. Null: the run uses its own.
+  Observation* seen = nullptr;
   /// Equations of the same model that neglect less, for RunSummary::validity; null where there are none.
   const EquationsOfMotion* beyond = nullptr;
 };

@@ -34,14 +34,20 @@ std::vector<Tip> tips(const Model& model) {
   return all;
 }
 
-std::array<double, 3> deflection(const EquationsOfMotion& equations, std::span<const double> y, const Tip& tip) {
-  if (!tip.in_segments()) return equations.deflection(y, tip.tip.body, tip.tip.frame);
-  const WorldPose from = equations.frame_pose(y, tip.root.body, tip.root.frame);
-  const WorldPose to = equations.frame_pose(y, tip.tip.body, tip.tip.frame);
+std::array<double, 3> deflection(const Observation& seen, const Tip& tip) {
+  if (!tip.in_segments()) return seen.deflection(tip.tip.body, tip.tip.frame);
+  const WorldPose from = seen.frame_pose(tip.root.body, tip.root.frame);
+  const WorldPose to = seen.frame_pose(tip.tip.body, tip.tip.frame);
   const Vector3 way = Eigen::Map<const Vector3>(to.position.data()) - Eigen::Map<const Vector3>(from.position.data());
   std::array<double, 3> d{};
   Eigen::Map<Vector3>(d.data()) = Eigen::Map<const Rotation>(from.rotation.data()).transpose() * way - tip.at;
   return d;
+}
+
+std::array<double, 3> deflection(const EquationsOfMotion& equations, std::span<const double> y, const Tip& tip) {
+  const auto seen = equations.make_observation();
+  seen->observe(y);
+  return deflection(*seen, tip);
 }
 
 }  // namespace withy

@@ -26,7 +26,10 @@ struct Tip {
 std::vector<Tip> tips(const Model& model);
 
 /// Displacement of a tip in the frame of its body's root [m]. Of a body in segments this is the exact difference of
-/// places in the world, and costs two of EquationsOfMotion::frame_pose.
+/// places in the world.
+/// \param seen at the state
+std::array<double, 3> deflection(const Observation& seen, const Tip& tip);
+/// The same of one state alone.
 std::array<double, 3> deflection(const EquationsOfMotion& equations, std::span<const double> y, const Tip& tip);
 
 }  // namespace withy

@@ -24,7 +24,7 @@ TreeMotion::TreeMotion(const Model& model) : model_(model), bodies_(model.bodies
       mass.modal += particle.mass * particle.at.phi;
     }
     masses_.push_back(std::move(mass));
-    slots_.push_back(shape.modes() > 0 ? model.layout().body(model.bodies()[b].name) : nullptr);
+    slots_.push_back(model.layout().modes(b));
     hinges_.emplace_back();
     hinges_.back().H.resize(6, static_cast<Eigen::Index>(model.layout().hinges[b].speeds));
   }

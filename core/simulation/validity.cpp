@@ -36,7 +36,7 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
     const ElasticModes modes = elastic_modes(shape);
     BodyValidity v{.name = node.name, .load = {}, .highest = {}};
     if (modes.frequencies.size() > 0) v.fundamental = modes.frequencies[0];
-    Watched w{b, model.layout().body(node.name), MotionStiffness(model, b), {}};
+    Watched w{b, model.layout().modes(b), MotionStiffness(model, b), {}};
     for (const ModeGroup& group : mode_groups(shape)) {
       const ElasticModes own = elastic_modes(shape, group.coordinates);
       const Eigen::Index highest = own.frequencies.size() - 1;

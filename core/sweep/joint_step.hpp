@@ -42,6 +42,17 @@ inline HingeMotion general_motion(const JointData<Spatial>& joint, const double*
   return m;
 }
 
+/// joint_motion of a hinge with several rates, apart: no pass has its code more than once.
+[[gnu::noinline]] inline void general_joint_motion(const JointData<Spatial>& joint, const double* x, const double* u,
+                                                   JointMotion<Spatial>& out) {
+  const HingeMotion m = general_motion(joint, x, u);
+  out.SM = Spatial::compose(joint.F, Spatial::make(m.pose));
+  Vector6 rate = Vector6::Zero();
+  for (Eigen::Index i = 0; i < m.H.cols(); ++i) rate += m.H.col(i) * u[i];
+  out.rate = Spatial::Twist::of(rate);
+  out.bias = Spatial::Twist::of(m.bias);
+}
+
 /// Pose, rate and bias of a hinge at coordinates x and rates u (its own, not the whole State's).
 template <class Space>
 inline void joint_motion(const JointData<Space>& joint, const double* x, const double* u, JointMotion<Space>& out) {
@@ -81,14 +92,7 @@ inline void joint_motion(const JointData<Space>& joint, const double* x, const d
     default:
       break;
   }
-  if constexpr (Space::angular == 3) {  // a planar tree has no other hinges
-    const HingeMotion m = general_motion(joint, x, u);
-    out.SM = Space::compose(joint.F, Space::make(m.pose));
-    Vector6 rate = Vector6::Zero();
-    for (Eigen::Index i = 0; i < m.H.cols(); ++i) rate += m.H.col(i) * u[i];
-    out.rate = Twist::of(rate);
-    out.bias = Twist::of(m.bias);
-  }
+  if constexpr (Space::angular == 3) general_joint_motion(joint, x, u, out);  // a planar tree has no other hinges
 }
 
 /// H a of a driven hinge at coordinates x and rates u (its own) for the accelerations a of its rates.

@@ -37,14 +37,14 @@ std::vector<AppliedWrench<Jet>> wrenches_of(const BoundLoad& load, double t, con
     for (int part = 0; part < 4; ++part) {
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         // The change of this element along each direction; a turn is Ṙ Rᵀ, whose axial vector it is.
-        Jet::DerType change;
+        JetDerivatives change;
         if (part == 0) {
           const Eigen::Index i = (axis + 1) % 3, j = (axis + 2) % 3;
           change.setZero();
-          for (Eigen::Index c = 0; c < 3; ++c) change += frames[k].R(j, c).derivatives() * m.R(i, c);
+          for (Eigen::Index c = 0; c < 3; ++c) change += derivatives_of(frames[k].R(j, c)) * m.R(i, c);
         } else {
           const auto& x = part == 1 ? frames[k].p : part == 2 ? frames[k].w : frames[k].v;
-          change = x[axis].derivatives();
+          change = derivatives_of(x[axis]);
         }
         if (change.isZero(0)) continue;
         const Eigen::Matrix<double, 6, Eigen::Dynamic> slope = central_difference(
@@ -60,7 +60,7 @@ std::vector<AppliedWrench<Jet>> wrenches_of(const BoundLoad& load, double t, con
             difference_step);
         if (slope.isZero(0)) continue;
         depends = true;
-        for (Eigen::Index e = 0; e < slope.size(); ++e) all(e).derivatives() += slope(e) * change;
+        for (Eigen::Index e = 0; e < slope.size(); ++e) derivatives_of(all(e)) += slope(e) * change;
       }
     }
   }

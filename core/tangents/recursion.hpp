@@ -18,7 +18,7 @@ namespace withy::analysis {
 
 /// a + εb with ε² = 0, in numbers T.
 template <class T>
-using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<T, 1, 1>>;
+using Dual = DualNumber<T, 1>;
 
 /// A hinge at one state: HingeMotion, its rates and their derivatives.
 template <class S>
@@ -35,6 +35,7 @@ template <class S>
 struct BodyState {
   StrainOrder order = StrainOrder::quadratic;
   const RodTable* rod = nullptr;
+  bool plain = false;  ///< q, q̇ carry no derivatives: its sections and particles move in plain numbers
   Eigen::Matrix<S, Eigen::Dynamic, 1> q, q_dot, q_ddot;
 };
 
@@ -43,6 +44,20 @@ template <class S>
 struct FrameState {
   Eigen::Matrix<S, 3, 3> R;
   Eigen::Matrix<S, 3, 1> p, w, v;
+};
+
+/// A scalar without the derivatives of an analysis: with those of a truncation alone, or none.
+template <class S>
+struct PlainScalar {
+  using Type = S;
+};
+template <>
+struct PlainScalar<Jet> {
+  using Type = double;
+};
+template <>
+struct PlainScalar<Dual<Jet>> {
+  using Type = Dual<double>;
 };
 
 /// A wrench of a load and where it acts.
@@ -85,6 +100,10 @@ class Recursion {
     VX modes;
   };
 
+  using Plain = typename PlainScalar<S>::Type;
+  static constexpr bool has_plain = !std::is_same_v<S, Plain>;
+  using PlainVector = Eigen::Matrix<Plain, Eigen::Dynamic, 1>;
+
   /// The frame that moves as `m` in B.
   static Frame outward(const Frame& B, const PointMotionOf<S>& m, const VX& q_ddot);
   /// The body frame whose frame M moves as `m` in it.
@@ -92,6 +111,7 @@ class Recursion {
   static Frame across(const Frame& F, const HingeState<S>& h);
   [[nodiscard]] PointMotionOf<S> section(std::size_t b, const PointExpansion& e) const;
   [[nodiscard]] PointMotionOf<S> relative(int body, int frame, const Pose& offset) const;
+  [[nodiscard]] PointMotionOf<S> path(std::size_t b, const PointExpansion& e) const;
   void add_particle(Load& load, const Frame& B, const PointMotionOf<S>& m, double mass, const VX& q_ddot) const;
   void add_section(Load& load, const Frame& B, const PointMotionOf<S>& m, const Matrix3& inertia,
                    const VX& q_ddot) const;
@@ -101,8 +121,10 @@ class Recursion {
   std::vector<HingeState<S>> hinges_;
   std::vector<BodyState<S>> states_;
   std::vector<std::optional<RodMotionOf<std::conditional_t<truncating, double, S>>>> rods_;
-  std::vector<PointMotionOf<S>> parent_, child_;  ///< of each hinge: F in the parent, M in the child
-  std::vector<Frame> hinge_frames_, frames_;      ///< M of each hinge, B of each body
+  std::vector<std::optional<RodMotionOf<double>>> plain_rods_;  ///< of bodies in plain numbers
+  std::vector<PlainVector> plain_q_, plain_q_dot_;              ///< of these
+  std::vector<PointMotionOf<S>> parent_, child_;                ///< of each hinge: F in the parent, M in the child
+  std::vector<Frame> hinge_frames_, frames_;                    ///< M of each hinge, B of each body
 };
 
 extern template class Recursion<double>;

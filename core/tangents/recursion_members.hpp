@@ -6,6 +6,43 @@
 
 namespace withy::analysis {
 
+inline double plain(const Jet& x) { return x.value(); }
+inline Dual<double> plain(const Dual<Jet>& x) {
+  Dual<double> d(x.value().value());
+  d.derivatives()[0] = x.derivatives()[0].value();
+  return d;
+}
+inline void lift(double x, Jet& y) { y = Jet(x); }
+inline void lift(const Dual<double>& x, Dual<Jet>& y) {
+  y = Dual<Jet>(Jet(x.value()));
+  y.derivatives()[0] = Jet(x.derivatives()[0]);
+}
+
+/// A matrix of plain numbers in numbers that carry derivatives, which are zero.
+template <class To, class From>
+void lift_matrix(const From& from, To& to) {
+  to.resize(from.rows(), from.cols());
+  for (Eigen::Index j = 0; j < from.cols(); ++j) {
+    for (Eigen::Index i = 0; i < from.rows(); ++i) lift(from(i, j), to(i, j));
+  }
+}
+
+/// `rotation`: whether what turns is to be had as well.
+template <class S, class T>
+PointMotionOf<S> lifted(const PointMotionOf<T>& m, bool rotation) {
+  PointMotionOf<S> n;
+  lift_matrix(m.r, n.r);
+  lift_matrix(m.r_rate, n.r_rate);
+  lift_matrix(m.r_bias, n.r_bias);
+  lift_matrix(m.P, n.P);
+  if (!rotation) return n;
+  lift_matrix(m.R, n.R);
+  lift_matrix(m.W, n.W);
+  lift_matrix(m.w_rate, n.w_rate);
+  lift_matrix(m.w_bias, n.w_bias);
+  return n;
+}
+
 template <class S>
 Recursion<S>::Recursion(const Model& model, std::vector<HingeState<S>> hinges, std::vector<BodyState<S>> bodies)
     : model_(model), hinges_(std::move(hinges)), states_(std::move(bodies)) {
@@ -13,9 +50,23 @@ Recursion<S>::Recursion(const Model& model, std::vector<HingeState<S>> hinges, s
     const HingeNode& h = model.hinges()[b];
     const BodyState<S>& state = states_[b];
     rods_.emplace_back();
+    plain_rods_.emplace_back();
+    plain_q_.emplace_back();
+    plain_q_dot_.emplace_back();
+    if constexpr (has_plain) {
+      if (state.plain) {
+        plain_q_.back() = state.q.unaryExpr([](const S& x) { return plain(x); });
+        plain_q_dot_.back() = state.q_dot.unaryExpr([](const S& x) { return plain(x); });
+      }
+    }
     // A rod in a scalar that carries a truncation has been refused by the formulation.
     if constexpr (!truncating) {
-      if (state.rod != nullptr) rods_.back().emplace(*state.rod, state.q, state.q_dot);
+      if (state.rod != nullptr) {
+        if constexpr (has_plain) {
+          if (state.plain) plain_rods_.back().emplace(*state.rod, plain_q_.back(), plain_q_dot_.back());
+        }
+        if (!plain_rods_.back()) rods_.back().emplace(*state.rod, state.q, state.q_dot);
+      }
     }
     Frame F;
     parent_.emplace_back();
@@ -59,7 +110,7 @@ typename Recursion<S>::VX Recursion<S>::efforts(const std::vector<AppliedWrench<
     const V3 n = load.moment - V3(M.p - B.p).cross(f);  // about M
     load.modes -= child_[b].P.transpose() * V3(B.R.transpose() * f) + child_[b].W.transpose() * V3(B.R.transpose() * n);
     if (load.modes.size() > 0) {
-      const Slot& slot = *layout.body(model_.bodies()[b].name);
+      const Slot& slot = *layout.modes(b);
       result.segment(static_cast<Eigen::Index>(slot.speed), load.modes.size()) = load.modes;
     }
     Eigen::Matrix<S, 6, 1> wrench;
@@ -143,10 +194,27 @@ typename Recursion<S>::Frame Recursion<S>::across(const Frame& F, const HingeSta
 
 template <class S>
 PointMotionOf<S> Recursion<S>::section(std::size_t b, const PointExpansion& e) const {
+  if constexpr (has_plain) {
+    if constexpr (!truncating) {
+      if (plain_rods_[b]) return lifted<S>(plain_rods_[b]->at(e.X.x()), true);
+    }
+    if (states_[b].plain)
+      return lifted<S>(point_motion<Plain>(e, states_[b].order, plain_q_[b], plain_q_dot_[b]), true);
+  }
   if constexpr (!truncating) {
     if (rods_[b]) return rods_[b]->at(e.X.x());
   }
   return point_motion<S>(e, states_[b].order, states_[b].q, states_[b].q_dot);
+}
+
+/// A particle's motion, which has no rotation.
+template <class S>
+PointMotionOf<S> Recursion<S>::path(std::size_t b, const PointExpansion& e) const {
+  const BodyState<S>& state = states_[b];
+  if constexpr (has_plain) {
+    if (state.plain) return lifted<S>(path_motion<Plain>(e, state.order, plain_q_[b], plain_q_dot_[b]), false);
+  }
+  return path_motion<S>(e, state.order, state.q, state.q_dot);
 }
 
 template <class S>
@@ -185,11 +253,17 @@ typename Recursion<S>::Load Recursion<S>::own_load(std::size_t b) const {
   load.modes = VX::Zero(state.q.size());
   const Frame& B = frames_[b];
   if constexpr (!truncating) {
-    if (rods_[b]) {
+    if (state.rod != nullptr) {
+      const auto node = [&](std::size_t k) -> PointMotionOf<S> {
+        if constexpr (has_plain) {
+          if (plain_rods_[b]) return lifted<S>(plain_rods_[b]->at_node(k), true);
+        }
+        return rods_[b]->at_node(k);
+      };
       for (std::size_t k = 0; k < state.rod->sections.size(); ++k) {
         const double weight = state.rod->quadrature.weights()[k];
         const RodSection& s = state.rod->sections[k];
-        const PointMotionOf<S> m = rods_[b]->at_node(k);
+        const PointMotionOf<S> m = node(k);
         add_particle(load, B, m, weight * s.mass_per_length, state.q_ddot);
         if (s.inertia_per_length == 0) continue;
         add_section(load, B, m, weight * s.inertia_per_length * Vector3::UnitX() * Vector3::UnitX().transpose(),
@@ -199,8 +273,7 @@ typename Recursion<S>::Load Recursion<S>::own_load(std::size_t b) const {
     }
   }
   const ModalShape& shape = model_.bodies()[b].body->shape();
-  for (const Particle& p : shape.particles)
-    add_particle(load, B, path_motion<S>(p.at, state.order, state.q, state.q_dot), p.mass, state.q_ddot);
+  for (const Particle& p : shape.particles) add_particle(load, B, path(b, p.at), p.mass, state.q_ddot);
   for (const Section& s : shape.sections) add_section(load, B, section(b, s.at), s.inertia, state.q_ddot);
   return load;
 }

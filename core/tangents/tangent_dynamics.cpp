@@ -28,6 +28,10 @@ using VX = Eigen::Matrix<S, Eigen::Dynamic, 1>;
 /// then speeds, then accelerations.
 struct TangentDynamics::Seeds {
   std::size_t first = 0;
+  /// Whether any of `count` directions from `from` on is among them.
+  [[nodiscard]] bool meet(std::size_t from, std::size_t count) const {
+    return from < first + 8 && first < from + count;
+  }
 };
 
 /// States of hinges and bodies in numbers T, double or Jet.
@@ -43,8 +47,8 @@ struct TangentDynamics::Builder {
   [[nodiscard]] T seeded(double value, std::size_t direction) const {
     T x(value);
     if constexpr (std::is_same_v<T, Jet>) {
-      if (const std::size_t i = direction - seeds.first; direction >= seeds.first && i < 8)
-        x.derivatives()[static_cast<Eigen::Index>(i)] = 1;
+      if (const std::size_t i = direction - seeds.first; direction >= seeds.first && i < jet_directions)
+        x.derivatives()[i] = 1;
     }
     return x;
   }
@@ -78,8 +82,7 @@ struct TangentDynamics::Builder {
     for (std::size_t k = 0; k < n; ++k) {
       if (const std::size_t i = slot.speed + k - seeds.first; slot.speed + k >= seeds.first && i < 8) {
         const auto set = [&](auto& target, const auto& derivative) {
-          for (Eigen::Index e = 0; e < target.size(); ++e)
-            target(e).derivatives()[static_cast<Eigen::Index>(i)] = derivative(e);
+          for (Eigen::Index e = 0; e < target.size(); ++e) target(e).derivatives()[i] = derivative(e);
         };
         const auto column = m.H.col(static_cast<Eigen::Index>(k));
         set(s.R, Matrix3(m.pose.R * skew<double>(Vector3(column.template head<3>()))));
@@ -102,7 +105,7 @@ struct TangentDynamics::Builder {
         hinge.motion(x, unit, along);
         hinge.motion(x, sum, both);
         const Vector6 derivative = both.bias - m.bias - along.bias;
-        for (Eigen::Index e = 0; e < 6; ++e) s.bias[e].derivatives()[static_cast<Eigen::Index>(i)] = derivative[e];
+        for (Eigen::Index e = 0; e < 6; ++e) s.bias[e].derivatives()[i] = derivative[e];
       }
     }
   }
@@ -122,6 +125,8 @@ struct TangentDynamics::Builder {
       s.q_dot[i] = at_rest ? T(0.0) : seeded(y[layout.positions + at], speeds() + at);
       s.q_ddot[i] = seeded(a[static_cast<Eigen::Index>(at)], 2 * speeds() + at);
     }
+    s.plain = std::is_same_v<T, Jet> && (slot == nullptr || (!seeds.meet(slot->speed, slot->speeds) &&
+                                                             !seeds.meet(speeds() + slot->speed, slot->speeds)));
     return s;
   }
 
@@ -146,8 +151,9 @@ struct TangentDynamics::Builder {
 
 TangentDynamics::TangentDynamics(std::shared_ptr<const Model> model, Terms terms)
     : model_(std::move(model)), products_of_speeds_(terms.products_of_speeds) {
-  for (const BodyNode& body : model_->bodies()) {
-    slots_.push_back(model_->layout().body(body.name));
+  for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
+    const BodyNode& body = model_->bodies()[b];
+    slots_.push_back(model_->layout().modes(b));
     terms_.push_back(body.terms.value_or(terms));
     rods_.emplace_back();
     if (slots_.back() == nullptr) continue;
@@ -204,6 +210,7 @@ VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen:
     s.q = b.q.unaryExpr(first_order);
     s.q_dot = b.q_dot.unaryExpr(first_order);
     s.q_ddot = VX<D>::Zero(b.q.size());
+    s.plain = b.plain;
     bodies.push_back(std::move(s));
   }
   std::vector<AppliedWrench<D>> constant;
@@ -248,24 +255,59 @@ Eigen::VectorXd TangentDynamics::residual(double t, std::span<const double> y, c
   return efforts<double>(t, y, a, {}) + elastic(y) - load_efforts(t, y);
 }
 
+Eigen::VectorXd TangentDynamics::differentiate(double t, std::span<const double> y, const Eigen::VectorXd& a,
+                                               std::size_t from, Eigen::Ref<Eigen::MatrixXd> columns,
+                                               std::vector<bool>* differenced) const {
+  const Eigen::Index n = columns.rows();
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index first = 0; first < columns.cols(); first += 8) {
+    const VX<Jet> r = efforts<Jet>(t, y, a, {from + static_cast<std::size_t>(first)}, differenced);
+    const Eigen::Index count = std::min<Eigen::Index>(8, columns.cols() - first);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      values[i] = r[i].value();
+      columns.block(i, first, 1, count) = derivatives_of(r[i]).head(count).transpose();
+    }
+  }
+  return values + elastic(y) - load_efforts(t, y);
+}
+
+Stiffness TangentDynamics::stiffness(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
+  const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
+  Tangents result;
+  result.by_position.resize(n, n);
+  result.by_speed.setZero(n, n);
+  result.residual = differentiate(t, y, a, 0, result.by_position, nullptr);
+  add_elastic(result);
+  add_loads(t, y, result);
+  return {std::move(result.residual), std::move(result.by_position)};
+}
+
+Eigen::VectorXd TangentDynamics::mass_diagonal(double t, std::span<const double> y) const {
+  const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
+  Eigen::MatrixXd mass(n, n);
+  differentiate(t, y, Eigen::VectorXd::Zero(n), 2 * model_->layout().speeds, mass, nullptr);
+  return mass.diagonal();
+}
+
 Tangents TangentDynamics::tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
   const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
   Eigen::MatrixXd all(n, 3 * n);
-  Eigen::VectorXd values = Eigen::VectorXd::Zero(n);
   std::vector<bool> differenced(model_->loads().size(), false);
-  for (Eigen::Index first = 0; first < 3 * n; first += 8) {
-    const VX<Jet> r = efforts<Jet>(t, y, a, {static_cast<std::size_t>(first)}, &differenced);
-    const Eigen::Index count = std::min<Eigen::Index>(8, 3 * n - first);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      values[i] = r[i].value();
-      all.block(i, first, 1, count) = r[i].derivatives().head(count).transpose();
-    }
-  }
   Tangents result;
-  result.residual = values + elastic(y) - load_efforts(t, y);
+  result.residual = differentiate(t, y, a, 0, all, &differenced);
   result.by_position = all.leftCols(n);
   result.by_speed = all.middleCols(n, n);
   result.mass = all.rightCols(n);
+  add_elastic(result);
+  for (std::size_t l = 0; l < differenced.size(); ++l) {
+    if (differenced[l]) result.differenced.push_back(model_->loads()[l].name);
+  }
+  add_loads(t, y, result);
+  result.drift = drift(y);
+  return result;
+}
+
+void TangentDynamics::add_elastic(Tangents& result) const {
   for (std::size_t b = 0; b < slots_.size(); ++b) {
     if (slots_[b] == nullptr) continue;
     const ModalShape& shape = model_->bodies()[b].body->shape();
@@ -273,12 +315,6 @@ Tangents TangentDynamics::tangents(double t, std::span<const double> y, const Ei
     result.by_position.block(at, at, shape.modes(), shape.modes()) += shape.stiffness;
     result.by_speed.block(at, at, shape.modes(), shape.modes()) += shape.damping;
   }
-  for (std::size_t l = 0; l < differenced.size(); ++l) {
-    if (differenced[l]) result.differenced.push_back(model_->loads()[l].name);
-  }
-  add_loads(t, y, result);
-  result.drift = drift(y);
-  return result;
 }
 
 void TangentDynamics::add_loads(double t, std::span<const double> y, Tangents& tangents) const {
@@ -391,9 +427,9 @@ FrameTangent TangentDynamics::frame(std::span<const double> y, int body, int fra
     const Eigen::Index count = std::min<Eigen::Index>(8, n - first);
     for (Eigen::Index i = 0; i < 3; ++i) {
       result.position[i] = p[i].value();
-      result.by_position.block(i, first, 1, count) = p[i].derivatives().head(count).transpose();
+      result.by_position.block(i, first, 1, count) = derivatives_of(p[i]).head(count).transpose();
       result.deflection[i] = d[i].value();
-      result.deflection_by_position.block(i, first, 1, count) = d[i].derivatives().head(count).transpose();
+      result.deflection_by_position.block(i, first, 1, count) = derivatives_of(d[i]).head(count).transpose();
     }
   }
   return result;

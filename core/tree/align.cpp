@@ -5,8 +5,21 @@
 namespace withy::compilation {
 namespace {
 
+/// What hangs on each node: one list a node.
+struct Dependents {
+  std::vector<std::vector<std::size_t>> nodes, bodies;
+  explicit Dependents(const PlacedTree& tree) : nodes(tree.nodes.size()), bodies(tree.nodes.size()) {
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+      if (tree.nodes[i].parent >= 0) nodes[static_cast<std::size_t>(tree.nodes[i].parent)].push_back(i);
+    }
+    for (std::size_t b = 0; b < tree.places.size(); ++b) {
+      if (tree.places[b].node >= 0) bodies[static_cast<std::size_t>(tree.places[b].node)].push_back(b);
+    }
+  }
+};
+
 /// Gives a node's frame a new place: X_AN of the old frame N in the new frame A.
-void rebase(NodeTree& tree, std::size_t index, const Pose& AN) {
+void rebase(PlacedTree& tree, const Dependents& dependents, std::size_t index, const Pose& AN) {
   NodeSpec& n = tree.nodes[index];
   const auto turn = [&](const Matrix3& I) { return Matrix3(AN.R * I * AN.R.transpose()); };
   n.base = n.base.seen_from(AN);
@@ -15,9 +28,14 @@ void rebase(NodeTree& tree, std::size_t index, const Pose& AN) {
   for (StationSpec& s : n.stations) s = {moved(s.at, AN), s.carried.seen_from(turned(AN.R))};
   n.rod_frame = AN * n.rod_frame;
   n.M = n.root_station < 0 ? AN * n.M : turned(AN.R) * n.M;
-  for (NodeSpec& child : tree.nodes) {
-    if (child.parent != static_cast<int>(index)) continue;
-    child.F = child.parent_station < 0 ? AN * child.F : turned(AN.R) * child.F;
+  const auto seen = [&](int station, const Pose& X) { return station < 0 ? AN * X : turned(AN.R) * X; };
+  for (const std::size_t i : dependents.nodes[index]) {
+    NodeSpec& child = tree.nodes[i];
+    child.F = seen(child.parent_station, child.F);
+  }
+  for (const std::size_t b : dependents.bodies[index]) {
+    BodyPlace& place = tree.places[b];
+    place.pose = seen(place.station, place.pose);
   }
 }
 
@@ -50,6 +68,8 @@ bool across(const Vector3& a, const Vector3& unit, double scale) {
   return std::abs(a.dot(unit)) <= angle_tolerance * scale;
 }
 
+}  // namespace
+
 bool fields_in_plane(const PointExpansion& e, const Vector3& n) {
   bool good = true;
   const auto size = [](const auto& a, const auto& b) { return a.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff(); };
@@ -65,8 +85,6 @@ bool fields_in_plane(const PointExpansion& e, const Vector3& n) {
   }
   return good;
 }
-
-}  // namespace
 
 std::optional<Vector3> plane_normal(const NodeTree& tree) {
   const std::vector<Matrix3> R = reference_rotations(tree);
@@ -114,10 +132,11 @@ Matrix3 basis_near_x(const Vector3& z) {
   return basis(z, &x);
 }
 
-void align(NodeTree& tree) {
+void align(PlacedTree& tree) {
   using enum HingeKernel::Kind;
   const Vector3 normal = tree.plane.R.col(2);
-  std::vector<Matrix3> R = reference_rotations(tree);
+  const std::vector<Matrix3> R = reference_rotations(tree);
+  const Dependents dependents(tree);
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     NodeSpec& n = tree.nodes[i];
     Matrix3 Q = Matrix3::Identity();
@@ -140,12 +159,12 @@ void align(NodeTree& tree) {
     n.M = n.M * turned(Q);
     if (n.root_station < 0) {
       const Pose to_hinge = n.M.inverse();
-      rebase(tree, i, to_hinge);
+      rebase(tree, dependents, i, to_hinge);
       tree.nodes[i].M = Pose{};
     } else if (tree.planar) {
       // The body frame itself must lie in the plane: turn it about its own origin.
       const Vector3 z = R[i].transpose() * normal;
-      rebase(tree, i, turned(basis_near_x(z).transpose()));
+      rebase(tree, dependents, i, turned(basis_near_x(z).transpose()));
     }
   }
 }

@@ -40,19 +40,12 @@ RigidInertia rigid_inertia(const ModalShape& shape) {
   return I;
 }
 
-/// Where something is fixed: a node's frame, or a station's section; node −1 is the world.
-struct Place {
-  int node = -1;
-  int station = -1;
-  Pose pose;
-};
-
 /// Turns the model's bodies into nodes.
 class Merger {
  public:
-  explicit Merger(const Model& model) : model_(model), places_(model.bodies().size()) {}
+  explicit Merger(const Model& model) : model_(model) { tree_.places.resize(model.bodies().size()); }
 
-  NodeTree run() {
+  PlacedTree run() {
     for (const std::size_t b : by_name()) place(b);
     return std::move(tree_);
   }
@@ -88,12 +81,12 @@ class Merger {
     const bool clamped = !moves(root.section, body.body->shape());
     const auto kernel = h.hinge->kernel();
     const bool weld = kernel && kernel->kind == HingeKernel::Kind::weld;
-    Place F{-1, -1, h.offset};
+    BodyPlace F{-1, -1, h.offset};
     if (h.parent >= 0) F = place_of(static_cast<std::size_t>(h.parent), h.parent_frame, h.offset);
 
     if (weld && clamped) {
       // The child's frame where it is fixed; X_FB of the body frame in the hinge frame.
-      const Place at_frame{F.node, F.station, F.pose * (at(root.section.X) * root.pose).inverse()};
+      const BodyPlace at_frame{F.node, F.station, F.pose * (at(root.section.X) * root.pose).inverse()};
       if (!flexible) {
         fix_rigid(b, at_frame);
         return;
@@ -108,10 +101,10 @@ class Merger {
 
   NodeSpec& node(int i) { return tree_.nodes[static_cast<std::size_t>(i)]; }
 
-  /// Place of `offset` in a frame of a body.
-  Place place_of(std::size_t b, int frame, const Pose& offset) {
+  /// BodyPlace of `offset` in a frame of a body.
+  BodyPlace place_of(std::size_t b, int frame, const Pose& offset) {
     const Frame& f = model_.bodies()[b].frames[static_cast<std::size_t>(frame)];
-    const Place& body = places_[b];
+    const BodyPlace& body = tree_.places[b];
     const Pose in_section = f.pose * offset;
     // Where the hinge holds a section that the modes move, the body's own frame moves too: no place on it is rigid.
     const bool floats = body.node >= 0 && body.station < 0 && node(body.node).root_station >= 0;
@@ -130,9 +123,9 @@ class Merger {
     return static_cast<int>(stations.size()) - 1;
   }
 
-  void fix_rigid(std::size_t b, const Place& where) {
+  void fix_rigid(std::size_t b, const BodyPlace& where) {
     const std::string& name = model_.bodies()[b].name;
-    places_[b] = where;
+    tree_.places[b] = where;
     if (where.node < 0) {
       tree_.savings.push_back("'" + name + "' is fixed to the world: not modelled");
       return;
@@ -151,7 +144,7 @@ class Merger {
   void take_modes(std::size_t b, NodeSpec& n, const Pose& where) {
     const BodyNode& body = model_.bodies()[b];
     const ModalShape& shape = body.body->shape();
-    const Slot& slot = *model_.layout().body(body.name);
+    const Slot& slot = *model_.layout().modes(b);
     n.body = static_cast<int>(b);
     n.modes = slot.speeds;
     n.mode_position = slot.position;
@@ -166,16 +159,16 @@ class Merger {
     }
   }
 
-  void absorb_flexible(std::size_t b, const Place& where) {
+  void absorb_flexible(std::size_t b, const BodyPlace& where) {
     NodeSpec& n = node(where.node);
     const std::string rigid = n.name;
     n.name = model_.bodies()[b].name;
     take_modes(b, n, where.pose);
-    places_[b] = where;
+    tree_.places[b] = where;
     tree_.savings.push_back("'" + rigid + "' is rigidly part of '" + n.name + "'");
   }
 
-  void new_node(std::size_t b, const Place& F, const Frame& root, bool clamped) {
+  void new_node(std::size_t b, const BodyPlace& F, const Frame& root, bool clamped) {
     const HingeNode& h = model_.hinges()[b];
     const BodyNode& body = model_.bodies()[b];
     NodeSpec n;
@@ -199,16 +192,15 @@ class Merger {
     tree_.nodes.push_back(std::move(n));
     const int index = static_cast<int>(tree_.nodes.size()) - 1;
     if (!clamped) node(index).root_station = station(index, root.section);
-    places_[b] = {index, -1, Pose{}};
+    tree_.places[b] = {index, -1, Pose{}};
   }
 
   const Model& model_;
-  NodeTree tree_;
-  std::vector<Place> places_;
+  PlacedTree tree_;
 };
 
 }  // namespace
 
-NodeTree merge(const Model& model) { return Merger(model).run(); }
+PlacedTree merge(const Model& model) { return Merger(model).run(); }
 
 }  // namespace withy::compilation

@@ -68,9 +68,9 @@ PointExpansion relative_to(const PointExpansion& e, const PointExpansion& root, 
   return moved(a, M.inverse());
 }
 
-NodeTree compile_tree(const Model& model) {
-  NodeTree tree = compilation::merge(model);
-  if (const auto normal = compilation::plane_normal(tree)) {
+PlacedTree compile_placed_tree(const Model& model, bool planar) {
+  PlacedTree tree = compilation::merge(model);
+  if (const auto normal = planar ? compilation::plane_normal(tree) : std::nullopt) {
     tree.planar = true;
     tree.plane.R = compilation::basis_near_x(*normal);
     tree.savings.insert(tree.savings.begin(), "the motion is planar: three numbers a twist instead of six");
@@ -83,5 +83,7 @@ NodeTree compile_tree(const Model& model) {
   }
   return tree;
 }
+
+NodeTree compile_tree(const Model& model) { return compile_placed_tree(model); }
 
 }  // namespace withy

@@ -3,17 +3,14 @@
 /// runs it is `quadratic`, which holds wherever the ladder begins.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-constexpr withy::Terms kept = {withy::StrainOrder::quadratic, withy::Truncation::none};
-
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<kept, withy::aside<kept>>(
+void enroll_automatic(Enrollment& enrollment) {
+  constexpr Terms kept = {StrainOrder::quadratic, Truncation::none};
+  enroll_terms<kept, aside<kept>>(
       enrollment, "auto",
       "The least of ruthless, quadratic and exact whose validity holds, changed along a run where it does not; "
       "quadratic where nothing runs");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(automatic, enroll);
+}  // namespace withy

@@ -3,13 +3,11 @@
 /// first order.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::Terms{withy::StrainOrder::quadratic, withy::Truncation::strict}>(
+void enroll_consistent(Enrollment& enrollment) {
+  enroll_terms<Terms{StrainOrder::quadratic, Truncation::strict}>(
       enrollment, "consistent", "First order in the elastic coordinates, from nonlinear strain-displacement relations");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(consistent, enroll);
+}  // namespace withy

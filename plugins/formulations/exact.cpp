@@ -2,17 +2,14 @@
 /// Exact kinematics of rods without truncation: no limit of small deflection, the same coordinates and stiffness.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-constexpr withy::Terms kept = {withy::StrainOrder::exact, withy::Truncation::none};
-
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<kept, withy::rung<kept>>(
+void enroll_exact(Enrollment& enrollment) {
+  constexpr Terms kept = {StrainOrder::exact, Truncation::none};
+  enroll_terms<kept, rung<kept>>(
       enrollment, "exact",
       "Inextensible rods whose strains are modal, kinematics not expanded: large deflections, conserves energy and "
       "momentum");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(exact, enroll);
+}  // namespace withy

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "withy/core/equations/compile_equations.hpp"
-#include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 
@@ -27,7 +27,7 @@ class SweptFormulation final : public Formulation {
 };
 
 template <Terms kept, Standing place = Standing{.rank = rank_of(kept)}>
-void enroll_formulation(Enrollment& enrollment, const char* id, const char* summary) {
+void enroll_terms(Enrollment& enrollment, const char* id, const char* summary) {
   enrollment.add<Formulation>(
       {.id = id,
        .summary = summary,

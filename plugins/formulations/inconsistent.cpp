@@ -3,15 +3,12 @@
 /// first order.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-constexpr withy::Terms kept = {withy::StrainOrder::linear, withy::Truncation::strict};
-
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<kept, withy::aside<kept>>(
-      enrollment, "inconsistent", "First order in the elastic coordinates, from linear strain-displacement relations");
+void enroll_inconsistent(Enrollment& enrollment) {
+  constexpr Terms kept = {StrainOrder::linear, Truncation::strict};
+  enroll_terms<kept, aside<kept>>(enrollment, "inconsistent",
+                                  "First order in the elastic coordinates, from linear strain-displacement relations");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(inconsistent, enroll);
+}  // namespace withy

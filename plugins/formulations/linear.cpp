@@ -2,14 +2,12 @@
 /// Linear kinematics without truncation, a diagnostic: what widely used floating-frame models solve.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<withy::Terms{withy::StrainOrder::linear, withy::Truncation::none}>(
+void enroll_linear(Enrollment& enrollment) {
+  enroll_terms<Terms{StrainOrder::linear, Truncation::none}>(
       enrollment, "linear",
       "Linear kinematics, nothing truncated: the floating-frame model of most engines, for comparison");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(linear, enroll);
+}  // namespace withy

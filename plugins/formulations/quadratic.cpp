@@ -2,16 +2,13 @@
 /// Second-order kinematics without truncation: the mass matrix is a Gram matrix Σ m JᵀJ.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-constexpr withy::Terms kept = {withy::StrainOrder::quadratic, withy::Truncation::none};
-
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<kept, withy::rung<kept>>(
+void enroll_quadratic(Enrollment& enrollment) {
+  constexpr Terms kept = {StrainOrder::quadratic, Truncation::none};
+  enroll_terms<kept, rung<kept>>(
       enrollment, "quadratic",
       "Second-order kinematics, nothing truncated: symmetric positive definite, conserves energy and momentum");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(quadratic, enroll);
+}  // namespace withy

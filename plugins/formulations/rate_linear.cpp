@@ -3,15 +3,12 @@
 /// section 3], with second-order kinematics in all else. It keeps no energy: it is there to be measured.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-constexpr withy::Terms kept = {withy::StrainOrder::quadratic, withy::Truncation::none, false};
-
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<kept, withy::aside<kept>>(
-      enrollment, "rate-linear", "Second-order kinematics without Coriolis, centrifugal and gyroscopic terms");
+void enroll_rate_linear(Enrollment& enrollment) {
+  constexpr Terms kept = {StrainOrder::quadratic, Truncation::none, false};
+  enroll_terms<kept, aside<kept>>(enrollment, "rate-linear",
+                                  "Second-order kinematics without Coriolis, centrifugal and gyroscopic terms");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(rate_linear, enroll);
+}  // namespace withy

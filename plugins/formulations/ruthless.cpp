@@ -3,15 +3,11 @@
 /// tree.
 #include "formulation_plugin.hpp"
 
-namespace {
+namespace withy {
 
-constexpr withy::Terms kept = {withy::StrainOrder::linear, withy::Truncation::ruthless};
-
-void enroll(withy::Enrollment& enrollment) {
-  withy::enroll_formulation<kept, withy::rung<kept>>(enrollment, "ruthless",
-                                                     "Elastic terms dropped but for q̈, -Kq and -Dq̇ (order zero)");
+void enroll_ruthless(Enrollment& enrollment) {
+  constexpr Terms kept = {StrainOrder::linear, Truncation::ruthless};
+  enroll_terms<kept, rung<kept>>(enrollment, "ruthless", "Elastic terms dropped but for q̈, -Kq and -Dq̇ (order zero)");
 }
 
-}  // namespace
-
-WITHY_PLUGIN(ruthless, enroll);
+}  // namespace withy

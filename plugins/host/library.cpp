@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <boost/dll/shared_library.hpp>
+#include <deque>
 #include <map>
+#include <mutex>
 #include <vector>
 
 #include "withy/core/plugin/entry.hpp"
@@ -22,13 +24,25 @@ std::string loader_message(const std::exception& e) {
   return text.substr(start + before.size(), end - start - before.size());
 }
 
+/// What the process has loaded. Never destroyed, so that no library is unloaded, not even at exit: objects made by
+/// plugins may outlive any order.
+struct Loaded {
+  std::mutex mutex;  ///< of loading: hosts of several threads share what follows
+  std::deque<boost::dll::shared_library> libraries;
+  /// A library does its harm when it is first loaded; that it did is remembered, since it stays loaded.
+  std::map<std::filesystem::path, std::string> harmful;
+};
+
+Loaded& loaded() {
+  static auto& all = *new Loaded;
+  return all;
+}
+
 const boost::dll::shared_library& open(const std::filesystem::path& file) {
-  // Never destroyed, so that no library is unloaded, not even at exit: objects made by plugins may outlive any order.
-  static auto& libraries = *new std::vector<boost::dll::shared_library>;
   using boost::dll::load_mode::type;
   boost::dll::shared_library library;
   library.load(file, static_cast<type>(boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local));
-  return libraries.emplace_back(std::move(library));
+  return loaded().libraries.emplace_back(std::move(library));
 }
 
 std::string list(const std::vector<std::string>& names) {
@@ -69,10 +83,10 @@ Enrollment load_library(const std::filesystem::path& directory, const Manifest& 
   }
   if (!exposed.empty()) throw PluginError("the plugin library " + named + " is refused: " + exposed);
 
+  const std::lock_guard lock(loaded().mutex);
   FloatingPointGuard guard;
   const auto check_floating_point = [&] {
-    // A library does its harm when it is first loaded; that it did is remembered, since it stays loaded.
-    static std::map<std::filesystem::path, std::string> harmful;
+    auto& harmful = loaded().harmful;
     if (const std::string changed = guard.restore(); !changed.empty()) harmful.emplace(file, changed);
     if (const auto it = harmful.find(file); it != harmful.end()) {
       throw PluginError("the plugin library " + named + " is refused: it changes " + it->second +

@@ -1,10 +1,12 @@
 #include "withy/plugins/host/manifest.hpp"
 
 #include <algorithm>
-#include <boost/property_tree/ini_parser.hpp>
-#include <boost/property_tree/ptree.hpp>
-#include <regex>
-#include <sstream>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string_view>
+#include <utility>
 
 #include "withy/core/plugin/registry.hpp"
 
@@ -22,8 +24,11 @@ std::string kinds() {
 
 std::vector<std::string> read_provides(const std::string& text) {
   std::vector<std::string> names;
-  std::istringstream words(text);
-  for (std::string name; words >> name;) {
+  constexpr const char* blank = " \t";
+  for (std::size_t begin = text.find_first_not_of(blank), end = 0; begin != std::string::npos;
+       begin = text.find_first_not_of(blank, end)) {
+    end = std::min(text.find_first_of(blank, begin), text.size());
+    const std::string name = text.substr(begin, end - begin);
     const std::size_t slash = name.find('/');
     const std::string kind = name.substr(0, slash);
     if (slash == std::string::npos || std::find(plugin_kinds.begin(), plugin_kinds.end(), kind) == plugin_kinds.end()) {
@@ -42,33 +47,88 @@ std::vector<std::string> read_provides(const std::string& text) {
   return names;
 }
 
-Manifest parse(const std::filesystem::path& file) {
+/// The manifest's text. \throws std::filesystem::filesystem_error; PluginError where it is too long.
+std::string text_of(const std::filesystem::path& file) {
   if (std::filesystem::file_size(file) > most_bytes) throw PluginError("it is too long");
-  boost::property_tree::ptree tree;
-  boost::property_tree::read_ini(file.string(), tree);
-  const auto section = tree.find("withy-plugin");
-  if (tree.size() != 1 || section == tree.not_found()) {
-    throw PluginError("it does not consist of one section [withy-plugin]");
+  std::ifstream stream(file, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(stream)), {});
+  if (!stream)
+    throw std::filesystem::filesystem_error("read", file, std::make_error_code(std::errc::permission_denied));
+  return text;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// Calls `section` with the name of each section and `entry` with each key and its value. Comments begin with ';' or
+/// '#'.
+template <class Section, class Entry>
+void read_lines(std::string_view text, Section&& section, Entry&& entry) {
+  for (int number = 1; !text.empty(); ++number) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = trimmed(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (line.empty() || line.front() == ';' || line.front() == '#') continue;
+    const auto fault = [&](const char* why) { return PluginError("line " + std::to_string(number) + ": " + why); };
+    if (line.front() == '[') {
+      if (line.back() != ']') throw fault("unmatched '['");
+      section(trimmed(line.substr(1, line.size() - 2)));
+      continue;
+    }
+    const std::size_t equals = line.find('=');
+    if (equals == std::string_view::npos) throw fault("'=' character not found in line");
+    if (!entry(std::string(trimmed(line.substr(0, equals))), trimmed(line.substr(equals + 1))))
+      throw fault("duplicate key name");
   }
+}
+
+bool is_entry(std::string_view symbol) {
+  constexpr std::string_view prefix = "withy_plugin_";
+  if (!symbol.starts_with(prefix)) return false;
+  symbol.remove_prefix(prefix.size());
+  return !symbol.empty() && symbol.size() <= 64 && std::all_of(symbol.begin(), symbol.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+Manifest parse(const std::filesystem::path& file) {
+  const std::string text = text_of(file);
   Manifest manifest;
   std::string provides;
-  const std::vector<std::pair<std::string, std::string*>> keys = {{"library", &manifest.library},
-                                                                  {"entry", &manifest.entry},
-                                                                  {"provides", &provides},
-                                                                  {"version", &manifest.version}};
-  for (const auto& [key, value] : section->second) {
+  const std::array<std::pair<std::string_view, std::string*>, 4> keys = {{{"library", &manifest.library},
+                                                                          {"entry", &manifest.entry},
+                                                                          {"provides", &provides},
+                                                                          {"version", &manifest.version}}};
+  std::map<std::string, std::string> values;
+  int sections = 0;
+  bool apart = false;
+  read_lines(
+      text,
+      [&](std::string_view name) {
+        ++sections;
+        apart = apart || name != "withy-plugin";
+      },
+      [&](std::string key, std::string_view value) {
+        apart = apart || sections == 0;
+        return values.emplace(std::move(key), value).second;
+      });
+  if (apart || sections != 1) throw PluginError("it does not consist of one section [withy-plugin]");
+  for (const auto& [key, value] : values) {
     const auto it = std::find_if(keys.begin(), keys.end(), [&k = key](const auto& known) { return known.first == k; });
     if (it == keys.end()) throw PluginError("the key '" + key + "' is unknown");
-    *it->second = value.data();
+    *it->second = value;
   }
   for (const auto& [key, value] : keys) {
-    if (value->empty()) throw PluginError("the key '" + key + "' is missing or empty");
+    if (value->empty()) throw PluginError("the key '" + std::string(key) + "' is missing or empty");
   }
   if (const std::filesystem::path library = manifest.library;
       library.has_parent_path() || library == "." || library == "..") {
     throw PluginError("'" + manifest.library + "' under library is not the plain name of a file");
   }
-  if (!std::regex_match(manifest.entry, std::regex("withy_plugin_[a-z0-9_]{1,64}"))) {
+  if (!is_entry(manifest.entry)) {
     throw PluginError("'" + manifest.entry + "' under entry is not a symbol withy_plugin_<name>");
   }
   manifest.provides = read_provides(provides);
@@ -83,8 +143,6 @@ Manifest read_manifest(const std::filesystem::path& file) {
   };
   try {
     return parse(file);
-  } catch (const boost::property_tree::ini_parser_error& e) {
-    throw refuse("line " + std::to_string(e.line()) + ": " + e.message());
   } catch (const PluginError& e) {
     throw refuse(e.what());
   } catch (const std::filesystem::filesystem_error& e) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <map>
+#include <mutex>
 
 #include "withy/plugins/host/library.hpp"
 #include "withy/plugins/host/manifest.hpp"
@@ -38,10 +39,11 @@ class PluginHost::Catalogue {
   };
 
   void add_directory(const fs::path& given);
-  void add_manifest(const fs::path& file, const std::string& exposed_directory);
+  void add_manifest(const fs::directory_entry& entry, const std::string& exposed_directory);
   void refuse_duplicates();
   void load(Registry& registry, Library& library);
 
+  mutable std::mutex mutex_;           ///< guards what loading changes: refusal, loaded and summaries of a library
   std::vector<fs::path> directories_;  ///< canonical
   std::vector<Library> libraries_;
 };
@@ -59,18 +61,19 @@ void PluginHost::Catalogue::add_directory(const fs::path& given) {
     if (std::find(directories_.begin(), directories_.end(), directory) != directories_.end()) return;
     directories_.push_back(directory);
     const std::string exposed = exposure(directory);
-    std::vector<fs::path> files;
+    std::vector<fs::directory_entry> files;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
-      if (entry.path().extension() == ".plugin") files.push_back(entry.path());
+      if (entry.path().native().ends_with(".plugin")) files.push_back(entry);
     }
     std::sort(files.begin(), files.end());
-    for (const fs::path& file : files) add_manifest(file, exposed);
+    for (const fs::directory_entry& file : files) add_manifest(file, exposed);
   } catch (const fs::filesystem_error& e) {
     refuse(e.code().message());
   }
 }
 
-void PluginHost::Catalogue::add_manifest(const fs::path& file, const std::string& exposed_directory) {
+void PluginHost::Catalogue::add_manifest(const fs::directory_entry& entry, const std::string& exposed_directory) {
+  const fs::path& file = entry.path();
   Library library;
   library.file = file;
   try {
@@ -78,7 +81,7 @@ void PluginHost::Catalogue::add_manifest(const fs::path& file, const std::string
     std::string exposed = exposed_directory;
     // The directory is canonical: a file in it that is no link has no other directories above it.
     if (exposed.empty())
-      exposed = fs::is_symlink(file) ? exposure(fs::canonical(file)) : exposure_in_safe_directory(file);
+      exposed = entry.is_symlink() ? exposure(fs::canonical(file)) : exposure_in_safe_directory(file);
     if (!exposed.empty()) library.refusal = "the plugin " + file.string() + " is refused: " + exposed;
   } catch (const PluginError& e) {
     library.refusal = e.what();
@@ -101,6 +104,7 @@ void PluginHost::Catalogue::refuse_duplicates() {
 }
 
 bool PluginHost::Catalogue::load(Registry& registry, std::string_view kind, std::string_view id) {
+  const std::lock_guard lock(mutex_);
   const std::string name = std::string(kind) + "/" + std::string(id);
   const Library* refused = nullptr;
   for (Library& library : libraries_) {
@@ -136,6 +140,7 @@ void PluginHost::Catalogue::load(Registry& registry, Library& library) {
 }
 
 std::vector<std::string> PluginHost::Catalogue::ids(std::string_view kind) const {
+  const std::lock_guard lock(mutex_);
   std::vector<std::string> ids;
   const std::string prefix = std::string(kind) + "/";
   for (const Library& library : libraries_) {
@@ -148,6 +153,7 @@ std::vector<std::string> PluginHost::Catalogue::ids(std::string_view kind) const
 }
 
 std::vector<PluginRecord> PluginHost::Catalogue::records() const {
+  const std::lock_guard lock(mutex_);
   std::vector<PluginRecord> records;
   for (const Library& library : libraries_) {
     PluginRecord record;

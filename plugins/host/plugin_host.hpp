@@ -31,8 +31,8 @@ struct PluginRecord {
 /// Plugin libraries in a list of directories. Each is described by a manifest `*.plugin` beside it, so that a library
 /// is loaded only when one of its plugins is asked for; once loaded it stays for the life of the process.
 ///
-/// Never fatal: what cannot be used is recorded as refused, and only asking for it throws PluginError. Not for use by
-/// several threads at a time; the plugins themselves are.
+/// Never fatal: what cannot be used is recorded as refused, and only asking for it throws PluginError. Threads may
+/// share a host, or have one each: libraries are loaded one at a time in the whole process.
 class __attribute__((visibility("default"))) PluginHost {
  public:
   /// Reads the manifests of the directories. Directories that are absent, and files or directories that others can

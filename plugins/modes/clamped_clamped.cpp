@@ -9,7 +9,7 @@
 #include "uniform_rod.hpp"
 
 namespace withy {
-namespace {
+namespace clamped_clamped {
 
 std::unique_ptr<ShapeFunctions> bending(const BeamData& beam, std::size_t count) {
   return clamped_clamped_beam(beam.length, count);
@@ -19,12 +19,11 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
   return std::make_unique<RodWaves>(beam.length, RodWaves::Root::clamped, 0.0, count);
 }
 
-void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &torsion>(enrollment, "clamped-clamped",
-                                    "Eigenfunctions of the uniform beam clamped at root and tip");
+}  // namespace clamped_clamped
+
+void enroll_clamped_clamped(Enrollment& enrollment) {
+  enroll_family<&clamped_clamped::bending, &clamped_clamped::torsion>(
+      enrollment, "clamped-clamped", "Eigenfunctions of the uniform beam clamped at root and tip");
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(clamped_clamped, withy::enroll);

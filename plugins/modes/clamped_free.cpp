@@ -9,7 +9,7 @@
 #include "uniform_rod.hpp"
 
 namespace withy {
-namespace {
+namespace clamped_free {
 
 std::unique_ptr<ShapeFunctions> bending(const BeamData& beam, std::size_t count) {
   return beam_waves(
@@ -23,12 +23,11 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
   return std::make_unique<RodWaves>(beam.length, RodWaves::Root::clamped, -0.5, count);
 }
 
-void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &torsion, 200, true>(
+}  // namespace clamped_free
+
+void enroll_clamped_free(Enrollment& enrollment) {
+  enroll_family<&clamped_free::bending, &clamped_free::torsion, 200, true>(
       enrollment, "clamped-free", "Eigenfunctions of the uniform beam clamped at the root and free at the tip");
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(clamped_free, withy::enroll);

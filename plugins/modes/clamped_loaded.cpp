@@ -9,7 +9,7 @@
 
 #include "loaded_beam.hpp"
 #include "uniform_rod.hpp"
-#include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 namespace {
@@ -79,7 +79,7 @@ class ClampedLoaded final : public ModeFamily {
   double mass_, inertia_, offset_;
 };
 
-std::unique_ptr<ModeFamily> make(const Value& p, const MakeContext& context) {
+std::unique_ptr<ModeFamily> make_clamped_loaded(const Value& p, const MakeContext& context) {
   if (!p.has("tip_mass") && !p.has("tip_inertia")) {
     context.diagnostics.error(
         p.place(),
@@ -90,7 +90,9 @@ std::unique_ptr<ModeFamily> make(const Value& p, const MakeContext& context) {
   return std::make_unique<ClampedLoaded>(given("tip_mass"), given("tip_inertia"), p.number_at("tip_offset"));
 }
 
-void enroll(Enrollment& enrollment) {
+}  // namespace
+
+void enroll_clamped_loaded(Enrollment& enrollment) {
   enrollment.add<ModeFamily>(
       {.id = "clamped-loaded",
        .summary = "Eigenfunctions of the uniform beam clamped at the root that carries a rigid body at its tip",
@@ -101,10 +103,7 @@ void enroll(Enrollment& enrollment) {
                 .least(0)
                 .optional(),
             number("tip_offset", "m", "distance of its centre of mass beyond the tip, along the beam").otherwise(0.0)},
-       .make = &make});
+       .make = &make_clamped_loaded});
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(clamped_loaded, withy::enroll);

@@ -6,19 +6,18 @@
 #include "uniform_beam.hpp"
 
 namespace withy {
-namespace {
+namespace clamped_pinned {
 
 std::unique_ptr<ShapeFunctions> bending(const BeamData& beam, std::size_t count) {
   return beam_waves(beam.length, count, EndCondition::clamped, EndCondition::pinned, &beam_roots::one_pinned,
                     [](double beta) { return clamped_wave(beta, h_of_held_tip(beta)); });
 }
 
-void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &no_functions>(
+}  // namespace clamped_pinned
+
+void enroll_clamped_pinned(Enrollment& enrollment) {
+  enroll_family<&clamped_pinned::bending, &no_functions>(
       enrollment, "clamped-pinned", "Eigenfunctions of the uniform beam clamped at the root and pinned at the tip");
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(clamped_pinned, withy::enroll);

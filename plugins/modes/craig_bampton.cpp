@@ -11,7 +11,7 @@
 #include "uniform_rod.hpp"
 
 namespace withy {
-namespace {
+namespace craig_bampton {
 
 /// Value, slope and curvature of a constraint mode at ξ for L = 1.
 struct Static {
@@ -65,13 +65,12 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
   return std::make_unique<ConstrainedFunctions<1>>(beam.length, count, line, std::move(fixed));
 }
 
-void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &torsion, 200, true>(
+}  // namespace craig_bampton
+
+void enroll_craig_bampton(Enrollment& enrollment) {
+  enroll_family<&craig_bampton::bending, &craig_bampton::torsion, 200, true>(
       enrollment, "craig-bampton",
       "Static deflection, slope and twist of the tip, and the modes of the beam with its tip fixed");
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(craig_bampton, withy::enroll);

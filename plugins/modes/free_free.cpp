@@ -10,7 +10,7 @@
 #include "uniform_rod.hpp"
 
 namespace withy {
-namespace {
+namespace free_free {
 
 /// With h = ½ (σ − 1) exp β: cosh βξ − σ sinh βξ is (1 + h e^(−β)) e^(−βξ) − h e^(−β(1−ξ)).
 BeamWave wave(double beta) {
@@ -27,12 +27,11 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
   return std::make_unique<RodWaves>(beam.length, RodWaves::Root::free, 0.0, count);
 }
 
-void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &torsion>(enrollment, "free-free",
-                                    "Elastic eigenfunctions of the uniform beam free at root and tip");
+}  // namespace free_free
+
+void enroll_free_free(Enrollment& enrollment) {
+  enroll_family<&free_free::bending, &free_free::torsion>(
+      enrollment, "free-free", "Elastic eigenfunctions of the uniform beam free at root and tip");
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(free_free, withy::enroll);

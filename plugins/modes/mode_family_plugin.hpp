@@ -3,8 +3,8 @@
 /// a rod, in torsion or elongation.
 #pragma once
 
-#include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 

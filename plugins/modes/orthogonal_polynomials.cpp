@@ -13,7 +13,7 @@
 #include "mode_family_plugin.hpp"
 
 namespace withy {
-namespace {
+namespace orthogonal_polynomials {
 
 /// P_n^(a,b)(t) for n = 0, 1, … in turn.
 class JacobiSequence {
@@ -86,12 +86,11 @@ std::unique_ptr<ShapeFunctions> torsion(const BeamData& beam, std::size_t count)
   return std::make_unique<ClampedPolynomials>(beam.length, count, 1, false);
 }
 
-void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &torsion, 100, true>(enrollment, "orthogonal-polynomials",
-                                               "Polynomials orthogonal over the length, clamped at the root");
+}  // namespace orthogonal_polynomials
+
+void enroll_orthogonal_polynomials(Enrollment& enrollment) {
+  enroll_family<&orthogonal_polynomials::bending, &orthogonal_polynomials::torsion, 100, true>(
+      enrollment, "orthogonal-polynomials", "Polynomials orthogonal over the length, clamped at the root");
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(orthogonal_polynomials, withy::enroll);

@@ -8,7 +8,7 @@
 #include "uniform_beam.hpp"
 
 namespace withy {
-namespace {
+namespace pinned_free {
 
 BeamWave wave(double beta) {
   const double e = std::exp(-beta);
@@ -22,12 +22,11 @@ std::unique_ptr<ShapeFunctions> bending(const BeamData& beam, std::size_t count)
   return beam_waves(beam.length, count, EndCondition::pinned, EndCondition::free, &beam_roots::one_pinned, &wave);
 }
 
-void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &no_functions>(
+}  // namespace pinned_free
+
+void enroll_pinned_free(Enrollment& enrollment) {
+  enroll_family<&pinned_free::bending, &no_functions>(
       enrollment, "pinned-free", "Elastic eigenfunctions of the uniform beam pinned at the root and free at the tip");
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(pinned_free, withy::enroll);

@@ -5,7 +5,7 @@
 #include "uniform_beam.hpp"
 
 namespace withy {
-namespace {
+namespace pinned_pinned {
 
 std::unique_ptr<ShapeFunctions> bending(const BeamData& beam, std::size_t count) {
   return beam_waves(
@@ -16,12 +16,11 @@ std::unique_ptr<ShapeFunctions> bending(const BeamData& beam, std::size_t count)
       });
 }
 
-void enroll(Enrollment& enrollment) {
-  enroll_family<&bending, &no_functions>(enrollment, "pinned-pinned",
-                                         "Eigenfunctions of the uniform beam pinned at root and tip");
+}  // namespace pinned_pinned
+
+void enroll_pinned_pinned(Enrollment& enrollment) {
+  enroll_family<&pinned_pinned::bending, &no_functions>(enrollment, "pinned-pinned",
+                                                        "Eigenfunctions of the uniform beam pinned at root and tip");
 }
 
-}  // namespace
 }  // namespace withy
-
-WITHY_PLUGIN(pinned_pinned, withy::enroll);

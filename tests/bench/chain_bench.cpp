@@ -144,6 +144,7 @@ struct Nothing final : withy::EquationsOfMotion {
   void normalize(std::span<double> /*y*/) const noexcept override {}
   withy::DenseSystem system(double /*t*/, std::span<const double> /*y*/) const override { return {}; }
   withy::Energies energies(std::span<const double> /*y*/) const override { return {}; }
+  std::unique_ptr<withy::Observation> make_observation() const override { return nullptr; }
   withy::WorldPose frame_pose(std::span<const double> /*y*/, int /*body*/, int /*frame*/) const override { return {}; }
   std::array<double, 3> deflection(std::span<const double> /*y*/, int /*body*/, int /*frame*/) const override {
     return {};

@@ -7,14 +7,15 @@
 #include <fstream>
 #include <map>
 
-#include "withy/apps/withy/advice.hpp"
+#include "withy/study/advice.hpp"
 #include "withy/tests/cli/campaign.hpp"
 #include "withy/tests/cli/random_machine.hpp"
+#include "withy/tests/study/plugins.hpp"
 
 namespace withy::test {
 namespace {
 
-using namespace withy::app;
+using namespace withy::study;
 
 struct Verdict {
   bool advised = false;
@@ -29,102 +30,110 @@ struct Verdict {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Verdict, advised, trouble, use, cost_ratio, cpu_ratio, own_use, probing, choice,
                                    cheapest)
 
-double least_seconds(const Engine& engine, const ProbedModel& model, const TradePoint& point) {
+double least_seconds(Evaluator& evaluator, const Point& point) {
+  const auto integrator = make_integrator(plugins(), point.integrator, point.tolerance);
   double least = 1e300;
   for (int i = 0; i < 5; ++i)
-    least = std::min(least,
-                     walk(model, *integrator_at(engine.registry(), point), [](const State&) { return true; }).seconds);
+    least = std::min(
+        least,
+        walk(*evaluator.model(point).prepared, *integrator, {[](const State&) { return true; }, {}, {}}).seconds);
   return least;
 }
 
-/// Two modes and two digits more than the advisor's own reference.
-Reference truth_of(const Engine& engine, Advisor& advisor) {
-  Reference truth = *advisor.reference();
-  truth.point.modes += 2;
-  truth.point.tolerance *= 1e-2;
-  truth.own = {};
-  const std::size_t outputs = truth.values.size();
-  truth.values.clear();
-  const ProbedModel& model = advisor.model_of(truth.point);
+/// Two modes and two digits more than the advice's own reference.
+Yardstick truth_of(Evaluator& evaluator, const Yardstick& known) {
+  Yardstick truth = known;
+  Reference& r = truth.reference;
+  r.point.modes += 2;
+  r.point.tolerance *= 1e-2;
+  r.own.clear();
+  const std::size_t outputs = r.readings.values.size();
+  r.readings = {};
+  const ModelAt& model = evaluator.model(r.point);
   EXPECT_FALSE(model.refused()) << model.refusal;
-  const Walk w = walk(model, *integrator_at(engine.registry(), truth.point), [&](const State& s) {
-    truth.values.emplace_back();
-    advisor.outputs().read(*model.scene.model, *model.equations, s.y, truth.values.back());
+  OutputReader reader(evaluator.outputs(), model.prepared->model(), *model.prepared->equations);
+  const auto keep = [&](const State& s) {
+    r.readings.times.push_back(s.time);
+    r.readings.values.push_back(reader.read(s.y));
     return true;
-  });
+  };
+  const Walk w =
+      walk(*model.prepared, *make_integrator(plugins(), r.point.integrator, r.point.tolerance), {keep, {}, {}});
   EXPECT_EQ(w.end, Walk::End::reached) << w.reason;
-  EXPECT_EQ(truth.values.size(), outputs);
+  EXPECT_EQ(r.readings.values.size(), outputs);
   return truth;
 }
 
-Verdict judge(const AdviseArguments& arguments) {
-  const Engine engine(arguments);
-  Advisor advisor(engine, arguments);
+/// What each run costs: evaluations times the least time of one that was seen in its model and integrator.
+class Costs {
+ public:
+  double unit(const Probe& p) {
+    const std::string key = p.point.formulation + p.point.family + std::to_string(p.point.modes) + p.point.integrator;
+    const double seen = p.walk.seconds / static_cast<double>(p.walk.evaluations);
+    double& least = units_.try_emplace(key, seen).first->second;
+    return least = std::min(least, seen);
+  }
+  double of(const Probe& p) { return unit(p) * static_cast<double>(p.walk.evaluations); }
+
+ private:
+  std::map<std::string, double> units_;
+};
+
+/// Every candidate that holds the accuracy, cut where it fails or costs more than the cheapest so far; the choice
+/// first.
+std::vector<Probe> search_all(Evaluator& evaluator, const Candidates& all, const Point& choice, const Yardstick& truth,
+                              Costs& costs, double& best) {
+  std::vector<Probe> passed{evaluator.run(choice, truth)};
+  best = passed.front().walk.seconds;
+  for (const Point& point : points_of(all)) {
+    const Probe p = evaluator.run(point, truth, {1, 1.5 * best});
+    if (p.walk.evaluations > 0) static_cast<void>(costs.unit(p));
+    if (!p.passed()) continue;
+    best = std::min(best, p.walk.seconds);
+    passed.push_back(p);
+  }
+  return passed;
+}
+
+Verdict judge(const std::string& scene, const std::string& accuracy_text) {
+  const Prepared prepared = prepare(SceneValues::read(scene), plugins());
+  const Outputs outputs(prepared.model());
+  const Accuracy accuracy = Accuracy::parse(accuracy_text);
+  const Candidates all = candidates_for(prepared, plugins(), usual_axes());
+  Evaluator evaluator(prepared, plugins(), outputs, {});
+  const Advice advice = advise(evaluator, all, accuracy);
   Verdict v;
-  if (!advisor.search()) {
-    v.trouble = advisor.trouble().empty() ? "no candidate holds the accuracy" : advisor.trouble();
+  if (!advice.choice) {
+    v.trouble = advice.trouble.empty() ? "no candidate holds the accuracy" : advice.trouble;
     return v;
   }
   v.advised = true;
-  const Probe choice = *advisor.choice();
+  const Probe& choice = *advice.choice;
   EXPECT_NE(choice.point.formulation, "inconsistent");
-  v.choice = choice.point.text() + " for " + arguments.accuracy;
-  v.own_use = advisor.reference()->own_use();
-  v.probing = advisor.spent() / advisor.cost(choice);
-  const Reference truth = truth_of(engine, advisor);
-  const auto run = [&](const TradePoint& point, double most_use, double most_seconds) {
-    return probe(engine, advisor.model_of(point), point, advisor.outputs(), truth, most_use, most_seconds);
-  };
-  v.use = run(choice.point, 1e300, 1e300).use;
-
-  // Every candidate, cut where it fails or costs more than the cheapest so far. Unit costs are the least seen.
-  std::map<std::string, double> units;
-  const auto unit = [&](const Probe& p) {
-    const std::string key = p.point.formulation + p.point.family + std::to_string(p.point.modes) + p.point.integrator;
-    const double seen = p.walk.seconds / static_cast<double>(p.walk.evaluations);
-    double& least = units.try_emplace(key, seen).first->second;
-    least = std::min(least, seen);
-    return least;
-  };
-  const Candidates& all = advisor.candidates();
-  std::vector<Probe> passed{run(choice.point, 1e300, 1e300)};
-  double best = passed.front().walk.seconds;
-  for (const auto& formulation : all.formulations) {
-    for (const auto& family : all.families) {
-      for (const int modes : all.modes) {
-        for (const auto& integrator : all.integrators) {
-          for (const double tolerance : all.tolerances) {
-            const Probe p = run({formulation, family, modes, integrator, tolerance, {}}, 1, 1.5 * best);
-            if (p.walk.evaluations > 0) static_cast<void>(unit(p));
-            if (!p.passed()) continue;
-            best = std::min(best, p.walk.seconds);
-            passed.push_back(p);
-          }
-        }
-      }
-    }
-  }
-  const auto cost = [&](const Probe& p) { return unit(p) * static_cast<double>(p.walk.evaluations); };
-  const Probe* cheapest = &passed.front();
+  v.choice = choice.point.text() + " for " + accuracy_text;
+  v.own_use = advice.yardstick->own_use();
+  v.probing = advice.cpu_seconds / choice.cost;
+  const Yardstick truth = truth_of(evaluator, *advice.yardstick);
+  Costs costs;
+  double best = 0;
+  const std::vector<Probe> passed = search_all(evaluator, all, choice.point, truth, costs, best);
+  v.use = passed.front().use;
   // Unit costs of what is near, once more: other work on the machine only adds.
   for (const Probe& p : passed)
-    if (cost(p) < 2 * best) static_cast<void>(unit(run(p.point, 1e300, 1e300)));
+    if (costs.of(p) < 2 * best) static_cast<void>(costs.unit(evaluator.run(p.point, truth)));
+  const Probe* cheapest = &passed.front();
   for (const Probe& p : passed)
-    if (cost(p) < cost(*cheapest)) cheapest = &p;
-  v.cost_ratio = cost(passed.front()) / cost(*cheapest);
+    if (costs.of(p) < costs.of(*cheapest)) cheapest = &p;
+  v.cost_ratio = costs.of(passed.front()) / costs.of(*cheapest);
   v.cheapest = cheapest->point.text();
-  v.cpu_ratio = least_seconds(engine, advisor.model_of(choice.point), choice.point) /
-                least_seconds(engine, advisor.model_of(cheapest->point), cheapest->point);
+  v.cpu_ratio = least_seconds(evaluator, choice.point) / least_seconds(evaluator, cheapest->point);
   return v;
 }
 
 Verdict judge_random(unsigned seed, const std::string& scene) {
   RandomMachine machine(seed);
-  AdviseArguments arguments;
-  arguments.scene = scene;
-  std::ofstream(arguments.scene) << machine.text();
-  arguments.accuracy = machine.accuracy();
-  return judge(arguments);
+  std::ofstream(scene) << machine.text();
+  return judge(scene, machine.accuracy());
 }
 
 TEST(AdviseCampaign, what_is_advised_holds_the_accuracy_at_nearly_the_least_cost) {
@@ -171,9 +180,7 @@ TEST(AdviseCampaign, what_is_advised_for_a_shipped_scene_holds_the_accuracy) {
                                            "gallery/wind-turbine-blade"};
   const Campaign campaign("shipped", 1, static_cast<unsigned>(scenes.size()));
   const auto verdicts = campaign.run<Verdict>([&](unsigned number, const std::string&) {
-    AdviseArguments arguments;
-    arguments.scene = std::string(WITHY_SOURCES) + "/scenes/" + scenes[number - 1] + ".yaml";
-    return judge(arguments);
+    return judge(std::string(WITHY_SOURCES) + "/scenes/" + scenes[number - 1] + ".yaml", "1%");
   });
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     const Verdict& v = verdicts[i];

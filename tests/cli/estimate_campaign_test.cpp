@@ -6,15 +6,16 @@
 #include <cstdio>
 #include <fstream>
 
-#include "withy/apps/withy/beyond.hpp"
-#include "withy/apps/withy/certificate.hpp"
+#include "withy/study/error_estimate.hpp"
+#include "withy/study/run.hpp"
 #include "withy/tests/cli/campaign.hpp"
 #include "withy/tests/cli/random_machine.hpp"
+#include "withy/tests/study/plugins.hpp"
 
 namespace withy::test {
 namespace {
 
-using namespace withy::app;
+using namespace withy::study;
 
 struct Claim {
   std::string formulation;
@@ -30,16 +31,15 @@ struct Claims {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Claims, list)
 
 /// Outputs up to a time, at a tolerance at which a run is the truth of its equations.
-std::vector<State> exact_outputs(const Engine& engine, const EquationsOfMotion& equations, double end) {
-  const auto integrator =
-      make_integrator(engine.registry(), "dop853", Value::map({{"rtol", Value(1e-10)}, {"atol", Value(1e-12)}}));
+std::vector<State> exact_outputs(const Prepared& scene, const EquationsOfMotion& equations, double end) {
+  const auto integrator = make_integrator(plugins(), "dop853", 1e-10);
   RunOptions options;
   options.end = end;
-  options.output = engine.scene().output;
+  options.output = scene.scene.output;
   options.deflection_limit = 1e3;
   std::vector<State> outputs;
-  const RunSummary summary = simulate(engine.model(), equations, *integrator, engine.scene().initial, options,
-                                      [&](const State& s) { outputs.push_back(s); });
+  const RunSummary summary = withy::simulate(scene.model(), equations, *integrator, scene.scene.initial, options,
+                                             [&](const State& s) { outputs.push_back(s); });
   return summary.status == RunStatus::completed ? outputs : std::vector<State>();
 }
 
@@ -47,21 +47,22 @@ Claims claims_of(unsigned seed, const std::string& scene) {
   Claims claims;
   std::ofstream(scene) << RandomMachine(seed).text();
   for (const char* formulation : {"ruthless", "linear", "consistent", "quadratic"}) {
-    RunArguments arguments;
-    arguments.scene = scene;
-    arguments.options.formulation = formulation;
-    const Engine engine(arguments);
-    const std::optional<Beyond> beyond = next_model_up(engine, arguments);
+    const Prepared prepared =
+        prepare(SceneValues::read(scene).choose_formulation(formulation, "the campaign"), plugins());
+    const std::optional<Beyond> beyond = next_model_up(prepared, plugins());
     if (!beyond) continue;
-    const RunSummary summary = engine.simulate([](const State&) {});
-    const ErrorEstimate e = estimate_error(engine, engine.equations(), *beyond, summary);
-    if (!(e.distances.until > engine.scene().initial.time)) continue;
-    const std::vector<State> used = exact_outputs(engine, engine.equations(), e.distances.until);
-    const std::vector<State> up = exact_outputs(engine, *beyond->equations, e.distances.until);
+    const RunSummary summary = simulate(prepared, {});
+    const ErrorEstimate e = estimate_error(prepared.scene, *prepared.equations, *beyond, summary, plugins(), {});
+    if (!(e.distances.until > prepared.scene.initial.time)) continue;
+    const std::vector<State> used = exact_outputs(prepared, *prepared.equations, e.distances.until);
+    const std::vector<State> up = exact_outputs(prepared, *beyond->equations, e.distances.until);
     if (used.empty() || used.size() != up.size()) continue;  // singular or diverged: no truth
-    Distances truth;
-    for (std::size_t i = 0; i < used.size(); ++i)
-      add_distances(truth, {engine.model(), engine.equations(), used[i]}, {*beyond->model, *beyond->equations, up[i]});
+    const Outputs outputs = Outputs::all(prepared.model());
+    OutputReader ours(outputs, prepared.model(), *prepared.equations);
+    OutputReader theirs(outputs, *beyond->model, *beyond->equations);
+    Distances greatest = outputs.none();
+    for (std::size_t i = 0; i < used.size(); ++i) outputs.raise(ours.read(used[i].y), theirs.read(up[i].y), greatest);
+    const NamedDistances truth = named(outputs, greatest, e.distances.until);
     claims.list.push_back({formulation, truth.greatest_hinge(), truth.greatest_tip(), e.distances.greatest_hinge(),
                            e.distances.greatest_tip(), e.distances.until, e.end});
   }

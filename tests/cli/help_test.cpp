@@ -40,6 +40,19 @@ TEST(Help, NamesEveryCommand) {
   for (const std::string& c : commands) EXPECT_THAT(f.out, HasSubstr("\n  " + c + " "));
 }
 
+TEST(Help, AnUnknownCommandIsCalledThatWithTheNearest) {
+  const Folder folder;
+  const Finished near = withy(folder, {"comparre", "scenes/pendulum.yaml"});
+  EXPECT_EQ(near.status, 2);
+  EXPECT_EQ(near.out, "");
+  EXPECT_THAT(near.err, HasSubstr("'comparre' is no command; did you mean 'compare'?"));
+  const Finished far = withy(folder, {"plot"});
+  EXPECT_EQ(far.status, 2);
+  for (const std::string& c : commands) EXPECT_THAT(far.err, HasSubstr(c));
+  EXPECT_EQ(withy(folder, {}).status, 2);
+  EXPECT_EQ(withy(folder, {"run", "scenes/pendulum.yaml", "--checkpoint", "nan"}).status, 2);
+}
+
 class HelpOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(HelpOf, HasExamplesThatRun) {

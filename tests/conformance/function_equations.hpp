@@ -2,6 +2,7 @@
 /// Equations of motion given by functions: test problems for integrators and the run loop.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -79,6 +80,7 @@ class FunctionEquations : public EquationsOfMotion, public LinearlyImplicit {
     return s;
   }
   Energies energies(std::span<const double> y) const override { return energies_ ? energies_(y) : Energies{}; }
+  std::unique_ptr<Observation> make_observation() const override { return std::make_unique<Seen>(*this); }
   WorldPose frame_pose(std::span<const double>, int, int) const override { return {}; }
   std::array<double, 3> deflection(std::span<const double>, int, int) const override { return {}; }
   std::vector<std::string> savings() const override { return {}; }
@@ -91,6 +93,20 @@ class FunctionEquations : public EquationsOfMotion, public LinearlyImplicit {
   std::vector<double> stiffness_;
 
  private:
+  class Seen final : public Observation {
+   public:
+    explicit Seen(const FunctionEquations& equations) : equations_(equations), y_(equations.size()) {}
+    void observe(std::span<const double> y) noexcept override { std::copy(y.begin(), y.end(), y_.begin()); }
+    Energies energies() const noexcept override { return equations_.energies(y_); }
+    WorldPose frame_pose(int, int) const noexcept override { return {}; }
+    WorldVelocity frame_velocity(int, int) const noexcept override { return {}; }
+    std::array<double, 3> deflection(int, int) const noexcept override { return {}; }
+
+   private:
+    const FunctionEquations& equations_;
+    std::vector<double> y_;
+  };
+
   Function derivatives_;
   Layout layout_;
 };

@@ -6,24 +6,12 @@
 #include "withy/tests/conformance/plugins.hpp"
 
 extern "C" {
-extern const withy::PluginDescriptor withy_plugin_rk4;
-extern const withy::PluginDescriptor withy_plugin_rk4_adaptive;
-extern const withy::PluginDescriptor withy_plugin_dopri5;
-extern const withy::PluginDescriptor withy_plugin_dop853;
-extern const withy::PluginDescriptor withy_plugin_rosenbrock_w;
-extern const withy::PluginDescriptor withy_plugin_imex;
-extern const withy::PluginDescriptor withy_plugin_radau;
-extern const withy::PluginDescriptor withy_plugin_gauss;
-extern const withy::PluginDescriptor withy_plugin_generalized_alpha;
+extern const withy::PluginDescriptor withy_plugin_integrators;
 }
 
 namespace withy {
 
-inline Registry integrator_registry() {
-  return registry_of({&withy_plugin_rk4, &withy_plugin_rk4_adaptive, &withy_plugin_dopri5, &withy_plugin_dop853,
-                      &withy_plugin_rosenbrock_w, &withy_plugin_imex, &withy_plugin_radau, &withy_plugin_gauss,
-                      &withy_plugin_generalized_alpha});
-}
+inline Registry integrator_registry() { return registry_of({&withy_plugin_integrators}); }
 
 inline std::unique_ptr<Integrator> make_integrator(const std::string& id, std::vector<Value::Member> given) {
   Registry registry = integrator_registry();

@@ -1,6 +1,8 @@
 // Finding and loading: only what is named, from where it is safe, each plugin from one place.
 #include <gmock/gmock.h>
 
+#include <thread>
+
 #include "withy/core/plugin/load.hpp"
 #include "zoo_keeper.hpp"
 
@@ -159,6 +161,38 @@ TEST(PluginHost, records_directories_that_are_not_there) {
 TEST(PluginHost, finds_its_own_plugins_from_where_its_library_is) {
   const fs::path program = fs::canonical("/proc/self/exe");
   EXPECT_EQ(PluginHost::default_directory(), program.parent_path().parent_path() / "lib/withy/plugins");
+}
+
+// Helgrind and the thread sanitizer find no race here either.
+TEST(PluginHost, may_be_one_for_all_threads_or_one_for_each) {
+  const std::vector<std::string> cases = {"good", "half", "two", "fast-math", "rounding", "missing-symbol", "left"};
+  std::vector<fs::path> places;
+  for (const char* name : {"good", "half", "two", "fast-math", "rounding", "missing-symbol", "pair"})
+    places.push_back(place(name));
+  const auto answers = [&](const PluginHost& host) {
+    std::vector<std::string> all;
+    for (const std::string& name : cases) {
+      Registry registry;  // a registry asks again
+      host.attach(registry);
+      all.push_back(ask(registry, "zoo-" + name));
+    }
+    return all;
+  };
+  const PluginHost shared(places);
+  std::vector<std::vector<std::string>> own(4), common(4);
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      threads.emplace_back([&, i] {
+        own[i] = answers(PluginHost(places));
+        common[i] = answers(shared);
+        static_cast<void>(shared.plugins());
+      });
+  }
+  EXPECT_EQ(own[0][0], "loaded");
+  EXPECT_THAT(own[0][3], HasSubstr("flush-to-zero"));
+  for (const auto& each : own) EXPECT_EQ(each, own[0]);
+  for (const auto& each : common) EXPECT_EQ(each, common[0]);
 }
 
 }  // namespace

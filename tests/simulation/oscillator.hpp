@@ -12,7 +12,7 @@
 #include "withy/tests/integrators/integrator_plugins.hpp"
 
 extern "C" {
-extern const withy::PluginDescriptor withy_plugin_revolute;
+extern const withy::PluginDescriptor withy_plugin_hinges;
 }
 
 namespace withy {
@@ -48,7 +48,7 @@ class TestLoad final : public Load {
 
 /// y: hinge angle x, mode q; their rates; work. The body "boom" is 2 m long and its tip moves by q.
 inline Model boom() {
-  Registry registry = registry_of({&withy_plugin_revolute});
+  Registry registry = registry_of({&withy_plugin_hinges});
   const Value axis = Value::list({Value(0.0), Value(0.0), Value(1.0)});
   return Model(
       {test_node("boom", test_rod(1, 2, 1))},

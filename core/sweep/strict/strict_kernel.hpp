@@ -77,8 +77,8 @@ inline void eliminate_rate(Response<Space>& r, const typename Space::Twist& colu
 }
 
 /// Elimination of ẍ of a hinge with several rates; the sign of the determinant of their block, 0 where it is singular.
-inline int eliminate_rates(const JointData<Spatial>& joint, const StrictState<Spatial>& s,
-                           StrictElimination<Spatial>& e, Response<Spatial>& r) {
+[[gnu::noinline]] inline int eliminate_rates(const JointData<Spatial>& joint, const StrictState<Spatial>& s,
+                                             StrictElimination<Spatial>& e, Response<Spatial>& r) {
   const auto k = static_cast<int>(joint.speeds);
   const HingeMotion motion = general_motion(joint, s.positions + joint.position, s.speeds + joint.speed);
   Spatial::Twist column[Spatial::dim], column0[Spatial::dim];
@@ -98,41 +98,12 @@ inline int eliminate_rates(const JointData<Spatial>& joint, const StrictState<Sp
   return sign;
 }
 
-template <class Space, int N>
-[[gnu::flatten]] inline int strict_inward(const StrictNode<Space>& node, const StrictState<Space>& s) {
-  const int n = count<N>(node.modes);
-  auto& w = *at<StrictNodeWork<Space>>(s.work, node.work);
+/// Elimination of ẍ, and what the hinge passes to the parent: the sign of the node's block so far, `sign`, times that
+/// of the hinge; 0 where the hinge's is singular.
+template <class Space>
+inline int strict_pass_inward(const StrictNode<Space>& node, const StrictState<Space>& s, StrictNodeWork<Space>& w,
+                              int sign) {
   Response<Space>& r = w.response;
-  int sign = 1;  // of the determinant of the node's block
-  if constexpr (N != 0) {
-    const double* q = s.positions + node.mode_position;
-    const double* q_dot = s.speeds + node.mode_speed;
-    const ModalBlock<Space> m(node, s.work, n);
-    strict_body<Space, N>(node, q, q_dot, w, m);
-    const auto* stations = at<StrictStationWork<Space>>(s.work, node.work_stations);
-    for (std::size_t k = 0; k < node.stations.size(); ++k) {
-      if (node.stations[k].has_children) strict_station<Space, N>(node, node.stations[k], stations[k], q, w, m);
-    }
-    for (int i = 0; i < n; ++i) {
-      m.rhs[i] += s.efforts[node.mode_speed + static_cast<std::size_t>(i)];
-      for (int j = 0; j < n; ++j) {
-        m.rhs[i] -= node.stiffness[static_cast<std::size_t>(i * n + j)] * q[j] +
-                    node.damping[static_cast<std::size_t>(i * n + j)] * q_dot[j];
-      }
-    }
-    sign = solve_general<N>(m.G, n, m.row, m.row0, m.rhs, m.scale);
-    if (sign == 0) return 0;
-    for (int i = 0; i < n; ++i) {
-      if (node.leaf) {  // q̈ does not enter F0
-        r.P.subtract_outer(m.column[i], m.row[i]);
-        r.Q.subtract_outer(m.column[i], m.row0[i]);
-        r.p += m.column[i] * m.rhs[i];
-      } else {
-        eliminate_rate(r, m.column[i], m.column0[i], m.row[i], m.row0[i], m.rhs[i]);
-      }
-    }
-  }
-
   const JointData<Space>& joint = node.joint;
   if (joint.driven) [[unlikely]] {
     w.row = r.p;
@@ -171,6 +142,54 @@ template <class Space, int N>
   outer.p += Space::to_parent(X, r.p);
   outer.p0 += Space::to_parent(X, r.p0);
   return sign;
+}
+
+/// The same where modes were eliminated before, which takes longer than the call: one instance for any number of them.
+[[gnu::noinline, gnu::flatten]] inline int strict_pass_inward_apart(const StrictNode<Spatial>& node,
+                                                                    const StrictState<Spatial>& s,
+                                                                    StrictNodeWork<Spatial>& w, int sign) {
+  return strict_pass_inward<Spatial>(node, s, w, sign);
+}
+
+template <class Space, int N>
+[[gnu::flatten]] inline int strict_inward(const StrictNode<Space>& node, const StrictState<Space>& s) {
+  const int n = count<N>(node.modes);
+  auto& w = *at<StrictNodeWork<Space>>(s.work, node.work);
+  Response<Space>& r = w.response;
+  int sign = 1;  // of the determinant of the node's block
+  if constexpr (N != 0) {
+    const double* q = s.positions + node.mode_position;
+    const double* q_dot = s.speeds + node.mode_speed;
+    const ModalBlock<Space> m(node, s.work, n);
+    strict_body<Space, N>(node, q, q_dot, w, m);
+    const auto* stations = at<StrictStationWork<Space>>(s.work, node.work_stations);
+    for (std::size_t k = 0; k < node.stations.size(); ++k) {
+      if (node.stations[k].has_children) strict_station<Space, N>(node, node.stations[k], stations[k], q, w, m);
+    }
+    for (int i = 0; i < n; ++i) {
+      m.rhs[i] += s.efforts[node.mode_speed + static_cast<std::size_t>(i)];
+      for (int j = 0; j < n; ++j) {
+        m.rhs[i] -= node.stiffness[static_cast<std::size_t>(i * n + j)] * q[j] +
+                    node.damping[static_cast<std::size_t>(i * n + j)] * q_dot[j];
+      }
+    }
+    sign = solve_general<N>(m.G, n, m.row, m.row0, m.rhs, m.scale);
+    if (sign == 0) return 0;
+    for (int i = 0; i < n; ++i) {
+      if (node.leaf) {  // q̈ does not enter F0
+        r.P.subtract_outer(m.column[i], m.row[i]);
+        r.Q.subtract_outer(m.column[i], m.row0[i]);
+        r.p += m.column[i] * m.rhs[i];
+      } else {
+        eliminate_rate(r, m.column[i], m.column0[i], m.row[i], m.row0[i], m.rhs[i]);
+      }
+    }
+  }
+  if constexpr (N != 0 && Space::angular == 3) {
+    return strict_pass_inward_apart(node, s, w, sign);
+  } else {
+    return strict_pass_inward<Space>(node, s, w, sign);
+  }
 }
 
 template <class Space, int N>

@@ -42,6 +42,23 @@ inline void section_motion(const SymmetricNode<Space>& node, std::size_t station
   }
 }
 
+/// The root section of a body whose modes move it: V_M = X V_B + J q̇, solved for V_B. Apart, for any number of modes.
+template <class Space, Flavor flavor>
+[[gnu::noinline, gnu::flatten]] void root_motion(const SymmetricNode<Space>& node, const SymmetricState<Space>& s,
+                                                 typename Space::Twist& V) {
+  using Twist = typename Space::Twist;
+  const int n = node.modes;
+  StationMotion<Space> m;
+  Twist* JM = at<Twist>(s.work, node.work_J) + n * static_cast<int>(node.stations.size());
+  section_motion<Space, -1, flavor>(node, static_cast<std::size_t>(node.root_station), s, m, JM);
+  const Twist rate = Space::to_child(node.M, m.rate);
+  auto& root = *at<RootWork<Space>>(s.work, node.work_root);
+  root.frame = Space::compose(m.frame, node.M);
+  root.sigma = Space::cross(V, rate) + Space::to_child(node.M, m.bias);
+  for (int i = 0; i < n; ++i) JM[i] = Space::to_child(node.M, JM[i]);
+  V = Space::from_child(root.frame, V - rate);
+}
+
 template <class Space, int N, Flavor flavor>
 [[gnu::flatten]] inline void outward_motion(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
@@ -73,18 +90,7 @@ template <class Space, int N, Flavor flavor>
   if constexpr (flavor == Flavor::full || flavor == Flavor::exact) {
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
     Twist* J = at<Twist>(s.work, node.work_J);
-    if (node.root_station >= 0) {
-      // The root section moves with q: V_M = X V_B + J q̇, solved for V_B.
-      StationMotion<Space> m;
-      Twist* JM = J + n * static_cast<int>(node.stations.size());
-      section_motion<Space, N, flavor>(node, static_cast<std::size_t>(node.root_station), s, m, JM);
-      const Twist rate = Space::to_child(node.M, m.rate);
-      auto& root = *at<RootWork<Space>>(s.work, node.work_root);
-      root.frame = Space::compose(m.frame, node.M);
-      root.sigma = Space::cross(V, rate) + Space::to_child(node.M, m.bias);
-      for (int i = 0; i < n; ++i) JM[i] = Space::to_child(node.M, JM[i]);
-      V = Space::from_child(root.frame, V - rate);
-    }
+    if (node.root_station >= 0) root_motion<Space, flavor>(node, s, V);
     for (std::size_t k = 0; k < node.stations.size(); ++k) {
       const auto& station = node.stations[k];
       if (!station.loaded) continue;
@@ -169,7 +175,7 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
     }
     if (node.root_station >= 0) {
       const auto& root = *at<RootWork<Space>>(s.work, node.work_root);
-      move_to_root<Space, N>(root.frame, root.sigma, n, J + n * static_cast<int>(node.stations.size()), I, p, C, G, y);
+      move_to_root<Space>(root.frame, root.sigma, n, J + n * static_cast<int>(node.stations.size()), I, p, C, G, y);
     }
   }
   // q̈ = G⁻¹ (−K q − D q̇ − h − Cᵀ A), with G = L Δ Lᵀ, Y = L⁻¹ Cᵀ, y = L⁻¹ (…).
@@ -217,8 +223,8 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
 }
 
 /// Elimination of ẍ of a hinge with several rates; Y, y, L stay in the work memory.
-inline bool eliminate_joint(const JointData<Spatial>& joint, const SymmetricState<Spatial>& s,
-                            JointElimination<Spatial>& e, Spatial::Inertia& I, Spatial::Twist& p) {
+[[gnu::noinline]] inline bool eliminate_joint(const JointData<Spatial>& joint, const SymmetricState<Spatial>& s,
+                                              JointElimination<Spatial>& e, Spatial::Inertia& I, Spatial::Twist& p) {
   const auto k = static_cast<int>(joint.speeds);
   const HingeMotion motion = general_motion(joint, s.positions + joint.position, s.speeds + joint.speed);
   for (int i = 0; i < k; ++i) {
@@ -237,18 +243,12 @@ inline bool eliminate_joint(const JointData<Spatial>& joint, const SymmetricStat
   return true;
 }
 
-template <class Space, int N, Flavor flavor>
-[[gnu::flatten]] inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+/// Elimination of ẍ, and what the hinge passes to the parent's station: inertia I, wrench p at zero A'. False where the
+/// articulated inertia along the hinge is not positive.
+template <class Space>
+inline bool pass_inward(const SymmetricNode<Space>& node, const SymmetricState<Space>& s, NodeWork<Space>& w,
+                        typename Space::Inertia& I, typename Space::Twist& p) {
   using Twist = typename Space::Twist;
-  auto& w = *at<NodeWork<Space>>(s.work, node.work);
-  const bool constant = flavor == Flavor::frozen && is_constant(node, s);
-  typename Space::Inertia I = constant ? node.reduced : node.base.inertia;
-  if (node.has_children) I += *at<typename Space::Inertia>(s.work, node.work_I);
-  Twist p = constant ? node.base.velocity_wrench(w.V) : w.p;
-  if constexpr (flavor != Flavor::rigid) {
-    if (!eliminate_modes<Space, N, flavor>(node, s, w.V, I, p)) return false;
-  }
-  // Elimination of ẍ, and what the hinge passes to the parent's station: inertia I, wrench p at zero A'.
   const JointData<Space>& joint = node.joint;
   if (joint.driven) [[unlikely]] {  // passes on everything
     *at<DrivenWork<Space>>(s.work, node.work_driven) = {I, p};
@@ -288,6 +288,31 @@ template <class Space, int N, Flavor flavor>
     outer_p += Space::to_parent(w.SM, p);
   }
   return true;
+}
+
+/// The same where modes were eliminated before, which takes longer than the call: one instance for any number of them.
+[[gnu::noinline, gnu::flatten]] inline bool pass_inward_apart(const SymmetricNode<Spatial>& node,
+                                                              const SymmetricState<Spatial>& s, NodeWork<Spatial>& w,
+                                                              Spatial::Inertia& I, Spatial::Twist& p) {
+  return pass_inward<Spatial>(node, s, w, I, p);
+}
+
+template <class Space, int N, Flavor flavor>
+[[gnu::flatten]] inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+  using Twist = typename Space::Twist;
+  auto& w = *at<NodeWork<Space>>(s.work, node.work);
+  const bool constant = flavor == Flavor::frozen && is_constant(node, s);
+  typename Space::Inertia I = constant ? node.reduced : node.base.inertia;
+  if (node.has_children) I += *at<typename Space::Inertia>(s.work, node.work_I);
+  Twist p = constant ? node.base.velocity_wrench(w.V) : w.p;
+  if constexpr (flavor != Flavor::rigid) {
+    if (!eliminate_modes<Space, N, flavor>(node, s, w.V, I, p)) return false;
+  }
+  if constexpr (flavor != Flavor::rigid && Space::angular == 3) {
+    return pass_inward_apart(node, s, w, I, p);
+  } else {
+    return pass_inward<Space>(node, s, w, I, p);
+  }
 }
 
 /// What the inward pass has left for `forces` at rest: generalized forces alone, one for each speed, against the

@@ -17,20 +17,38 @@ std::vector<double> row_major(const Eigen::MatrixXd& m) {
   return a;
 }
 
-/// Calls action(n, flavor), both std::integral_constant; see with_modes.
+/// Calls action(n, flavor), both std::integral_constant, for a node of n modes; see with_modes.
+template <class Space, class Modes, class Action>
+inline void with_flavor_of(const SymmetricNode<Space>& node, Modes n, Action&& action) {
+  if (node.flavor == Flavor::frozen) {
+    action(n, std::integral_constant<Flavor, Flavor::frozen>{});
+  } else if (node.flavor == Flavor::exact) {
+    action(n, std::integral_constant<Flavor, Flavor::exact>{});
+  } else {
+    action(n, std::integral_constant<Flavor, Flavor::full>{});
+  }
+}
+
+/// For the passes of an evaluation: few modes are a number that the compiler knows.
 template <class Space, class Action>
 inline void with_flavor(const SymmetricNode<Space>& node, Action&& action) {
   with_modes(node.modes, [&](auto n) {
     if constexpr (n.value == 0) {
       action(n, std::integral_constant<Flavor, Flavor::rigid>{});
-    } else if (node.flavor == Flavor::frozen) {
-      action(n, std::integral_constant<Flavor, Flavor::frozen>{});
-    } else if (node.flavor == Flavor::exact) {
-      action(n, std::integral_constant<Flavor, Flavor::exact>{});
     } else {
-      action(n, std::integral_constant<Flavor, Flavor::full>{});
+      with_flavor_of(node, n, action);
     }
   });
+}
+
+/// For the other passes: any number of modes in one instance.
+template <class Space, class Action>
+inline void with_flavor_alone(const SymmetricNode<Space>& node, Action&& action) {
+  if (node.modes == 0) {
+    action(std::integral_constant<int, 0>{}, std::integral_constant<Flavor, Flavor::rigid>{});
+  } else {
+    with_flavor_of(node, std::integral_constant<int, -1>{}, action);
+  }
 }
 
 }  // namespace
@@ -224,7 +242,8 @@ void SymmetricSweep<Space>::solve(const double* forces, double delta, double* re
     for (std::size_t k = 0; k < node.stations.size(); ++k) stations[k].p = still;
   }
   for (std::size_t i = nodes_.size(); i-- > 0;) {
-    with_flavor(nodes_[i], [&](auto n, auto flavor) { inward_force<Space, n.value, flavor.value>(nodes_[i], state); });
+    with_flavor_alone(nodes_[i],
+                      [&](auto n, auto flavor) { inward_force<Space, n.value, flavor.value>(nodes_[i], state); });
   }
   outward(state);
 }
@@ -236,14 +255,13 @@ void SymmetricSweep<Space>::inverse(const double* positions, const double* speed
   const SymmetricState<Space> state{
       positions, speeds, accelerations, efforts, work, nodes_.data(), inertial ? &still : &world_acceleration_};
   for (const SymmetricNode<Space>& node : nodes_) {
-    with_flavor(node, [&](auto n, auto flavor) {
-      outward_motion<Space, n.value, flavor.value>(node, state);
-      given_acceleration<Space, n.value, flavor.value>(node, state);
-    });
+    with_flavor(node, [&](auto n, auto flavor) { outward_motion<Space, n.value, flavor.value>(node, state); });
+    with_flavor_alone(node,
+                      [&](auto n, auto flavor) { given_acceleration<Space, n.value, flavor.value>(node, state); });
   }
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     const SymmetricNode<Space>& node = nodes_[i];
-    with_flavor(node, [&](auto n, auto flavor) {
+    with_flavor_alone(node, [&](auto n, auto flavor) {
       inward_effort<Space, n.value, flavor.value>(node, state, inertial ? 0.0 : 1.0);
     });
   }

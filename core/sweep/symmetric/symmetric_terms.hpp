@@ -167,12 +167,12 @@ inline void collect_frozen_station(const StationWork<Space>& sw, const typename 
 }
 
 /// (3) seen from the hinge frame M where the modes move it: A_B = X (A_M − J q̈ − σ).
-template <class Space, int N>
-inline void move_to_root(const typename Space::Frame& root, const typename Space::Twist& sigma, int modes,
-                         const typename Space::Twist* JM, typename Space::Inertia& I, typename Space::Twist& p,
-                         typename Space::Twist* C, double* G, double* h) {
+template <class Space>
+[[gnu::noinline, gnu::flatten]] void move_to_root(const typename Space::Frame& root, const typename Space::Twist& sigma,
+                                                  int n, const typename Space::Twist* JM, typename Space::Inertia& I,
+                                                  typename Space::Twist& p, typename Space::Twist* C, double* G,
+                                                  double* h) {
   using Twist = typename Space::Twist;
-  const int n = count<N>(modes);
   // Congruence with the pose of B in M.
   const typename Space::Frame B = Space::inverse(root);
   I = Space::to_parent(B, I);

@@ -1,0 +1,179 @@
+#include "withy/apps/withy/advice_text.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <utility>
+
+#include "withy/apps/withy/certificate_text.hpp"
+#include "withy/apps/withy/scene_edit.hpp"
+
+namespace withy::app {
+namespace {
+
+std::string point_modes(const study::Point& p) {
+  if (p.modes == 0) return "modes as they are";
+  return fmt::format("{} mode{}{}", p.modes, p.modes == 1 ? "" : "s", p.family.empty() ? "" : ' ' + p.family);
+}
+
+std::string integration_text(const study::Point& p) { return fmt::format("{} at {:g}", p.integrator, p.tolerance); }
+
+/// Of the accuracy asked, or where that is a share, the same share: "0.61 %".
+std::string use_text(const study::Accuracy& accuracy, double use) {
+  if (accuracy.share && !accuracy.length && !accuracy.angle)
+    return fmt::format("{:.2g} %", 100 * use * *accuracy.share);
+  return fmt::format("{:.2g} of the accuracy", use);
+}
+
+std::string distances_text(const study::Outputs& outputs, const study::Distances& distances) {
+  const study::PerMeasure d = outputs.per_measure(distances);
+  std::string out;
+  constexpr std::array<const char*, study::measures> nouns = {"angles", "slides", "places", "deflections"};
+  for (std::size_t m = 0; m < study::measures; ++m) {
+    if (!outputs.has(static_cast<study::Measure>(m))) continue;
+    out += fmt::format(
+        "{}{} {}", out.empty() ? "" : ", ", nouns.at(m),
+        m == 0 ? fmt::format("{:.2g} deg", d[m] * 180 / std::numbers::pi) : fmt::format("{:.2g} mm", 1e3 * d[m]));
+  }
+  return out;
+}
+
+std::string milliseconds(double seconds) { return fmt::format("{:.3g} ms", 1e3 * seconds); }
+
+/// The best that the probes with a property did: cheapest that passed, else the least wrong of those that went
+/// furthest.
+template <class Property>
+const study::Probe* best_of(const std::vector<study::Probe>& probes, Property&& property) {
+  const study::Probe* best = nullptr;
+  for (const study::Probe& p : probes) {
+    if (!property(p.point)) continue;
+    if (best == nullptr || p.passed() != best->passed()) {
+      if (best == nullptr || p.passed()) best = &p;
+    } else if (p.passed()) {
+      if (p.cost < best->cost) best = &p;
+    } else if (std::pair(p.walk.time, -p.use) > std::pair(best->walk.time, -best->use)) {
+      best = &p;
+    }
+  }
+  return best;
+}
+
+/// How a probe fared beside the choice, as a clause.
+std::string fared(const study::Advice& a, const study::Accuracy& accuracy, const study::Probe& p) {
+  using Outcome = study::Probe::Outcome;
+  const study::Probe& choice = *a.choice;
+  const double end = choice.walk.time;
+  switch (p.outcome) {
+    case Outcome::passed:
+      return fmt::format("holds it at {:.2g} times the cost, with {} and {}: {}", p.cost / choice.cost,
+                         point_modes(p.point), integration_text(p.point), use_text(accuracy, p.use));
+    case Outcome::inaccurate:
+      return p.walk.time < end ? fmt::format("with {}, {} off when it was cut at {:.3g} of {:.3g} s",
+                                             point_modes(p.point), use_text(accuracy, p.use), p.walk.time, end)
+                               : fmt::format("with {}, {} off", point_modes(p.point), use_text(accuracy, p.use));
+    case Outcome::too_costly:
+      return fmt::format("with {} and {}, not done when it had cost more than the choice", point_modes(p.point),
+                         integration_text(p.point));
+    case Outcome::no_candidate:
+      return fmt::format("holds it with {} and {}, which is not among the candidates", point_modes(p.point),
+                         integration_text(p.point));
+    case Outcome::stopped:
+      return fmt::format("with {}, stops at {:.3g} s: {}", point_modes(p.point), p.walk.time, p.reason);
+    default:
+      return p.reason;
+  }
+}
+
+/// Lines of "what  text"; the first of several about one thing has its name.
+class Lines {
+ public:
+  void add(const std::string& what, const std::string& text) {
+    text_ += fmt::format("{:<12}{}\n", what == last_ ? "" : what, text);
+    last_ = what;
+  }
+  [[nodiscard]] const std::string& str() const { return text_; }
+
+ private:
+  std::string text_, last_;
+};
+
+/// Why the choice: how the others fared.
+void add_reasons(Lines& lines, const AdviceReport& report) {
+  const study::Advice& a = report.advice;
+  const study::Point& choice = a.choice->point;
+  const auto add = [&](const std::string& what, const std::function<bool(const study::Point&)>& property) {
+    const study::Probe* p = best_of(a.probes, property);
+    if (p != nullptr) lines.add("why", what + ": " + fared(a, report.question.accuracy, *p));
+  };
+  if (!choice.bodies.empty())
+    add(choice.formulation + " everywhere",
+        [&](const study::Point& t) { return t.formulation == choice.formulation && t.bodies.empty(); });
+  for (const std::string& f : report.candidates.formulations)
+    if (f != choice.formulation) add(f, [&](const study::Point& t) { return t.formulation == f; });
+  const auto own = [&](const study::Point& t) {
+    return t.formulation == choice.formulation && t.family == choice.family;
+  };
+  add("fewer modes", [&](const study::Point& t) { return own(t) && t.modes < choice.modes; });
+  for (const std::string& i : report.candidates.integrators)
+    if (i != choice.integrator)
+      add(i, [&](const study::Point& t) { return own(t) && t.modes == choice.modes && t.integrator == i; });
+}
+
+}  // namespace
+
+std::string no_advice_text(const study::Advice& a, const study::Accuracy& accuracy) {
+  if (!a.trouble.empty()) return a.trouble;
+  std::string text = "none of the candidates holds " + accuracy.text();
+  if (!a.yardstick) return text;
+  text += fmt::format("; the reference ({}) is known to {}.", a.yardstick->reference.point.text(),
+                      use_text(accuracy, a.yardstick->own_use()));
+  const study::Probe* nearest = nullptr;
+  for (const study::Probe& p : a.probes)
+    if (p.outcome == study::Probe::Outcome::inaccurate && p.walk.end == study::Walk::End::reached &&
+        (nearest == nullptr || p.use < nearest->use))
+      nearest = &p;
+  if (nearest != nullptr)
+    text += fmt::format(" Nearest: {}, {} off. Allow more --modes or tighter --tolerances.", nearest->point.text(),
+                        use_text(accuracy, nearest->use));
+  return text;
+}
+
+std::string advice_text(const AdviceReport& report) {
+  const study::Advice& a = report.advice;
+  const study::Accuracy& accuracy = report.question.accuracy;
+  const study::Probe& choice = *a.choice;
+  Lines lines;
+  lines.add("advice", fmt::format("{}, {}, {}", choice.point.formulation_text(), point_modes(choice.point),
+                                  integration_text(choice.point)));
+  lines.add("error", fmt::format("{} ({}); the reference itself is known to {}", use_text(accuracy, choice.use),
+                                 distances_text(report.question.outputs, choice.distances),
+                                 use_text(accuracy, a.yardstick->own_use())));
+  lines.add("cost", fmt::format("{} of CPU time: {} steps, {} evaluations", milliseconds(choice.cost),
+                                choice.walk.steps, choice.walk.evaluations));
+  if (a.steps.product > 0) lines.add("steps", step_limit_text(a.steps));
+  add_reasons(lines, report);
+  lines.add("left out", report.left_out);
+  if (!a.indicators.empty()) {
+    const study::Indicator& first = a.indicators.front();
+    lines.add("binds",
+              fmt::format("{}: {:.2g}, limit {:.3g}{}", first.text, first.value, first.limit,
+                          first.use() > 1 ? "; beyond it " + first.meaning + ", which the error above has in it" : ""));
+  }
+  for (const study::Probe& p : a.above) {
+    const bool fails = p.outcome == study::Probe::Outcome::stopped || p.outcome == study::Probe::Outcome::refused;
+    lines.add("next up",
+              fails ? p.point.text() + ": " + p.reason
+                    : fmt::format("{}: {} off, {}", p.point.text(), use_text(accuracy, p.use), milliseconds(p.cost)));
+  }
+  lines.add("measured", fmt::format("{} probes, {:.2g} s of CPU time, against {}", a.probes.size(), a.cpu_seconds,
+                                    a.yardstick->reference.point.text()));
+  std::string names;
+  for (const std::string& n : report.question.outputs.names()) names += (names.empty() ? "" : ", ") + n;
+  return fmt::format("{}: {}{} of {}\n\n{}\nin the scene:\n\n{}", report.question.prepared.title(), accuracy.text(),
+                     accuracy.share ? " of the greatest way" : "", names, lines.str(), scene_lines(report.changes));
+}
+
+}  // namespace withy::app

@@ -1,0 +1,168 @@
+/// \file
+/// Momentum and kinetic energy of a flexible body's own mass: the integrals of mass_table.hpp, rotary_terms.hpp and
+/// rod_terms.hpp without their accelerations.
+#pragma once
+
+#include "withy/core/kinematics/observed_node.hpp"
+#include "withy/core/sweep/rod/rotary_terms.hpp"
+
+namespace withy::observed {
+
+/// Of a part about its node's frame, in that frame's axes.
+template <class Space>
+struct PartMomentum {
+  typename Space::Twist h = Space::Twist::zero();             ///< (∫ r × v; ∫ v)
+  typename Space::Position moment = Space::Position::zero();  ///< ∫ r
+  double mass = 0, kinetic = 0;
+};
+
+/// Adds four particles: r, their velocities v beside those that V.v gives; both times the weights of the mass. `m`:
+/// the weights of the constant function.
+inline void add_particles(const Planar::Twist& V, const Pack& m, const Pack* r, const Pack* v,
+                          PartMomentum<Planar>& part) {
+  const Pack w = spread(V.w);
+  const Pack x = v[0] + m * spread(V.x) - w * r[1], y = v[1] + m * spread(V.y) + w * r[0];
+  part.kinetic += 0.5 * sum(x * x + y * y);
+  part.h += Planar::Twist{sum(r[0] * y - r[1] * x), sum(m * x), sum(m * y)};
+  part.moment += Planar::Position{sum(m * r[0]), sum(m * r[1])};
+}
+
+inline void add_particles(const Spatial::Twist& V, const Pack& m, const Pack* r, const Pack* v,
+                          PartMomentum<Spatial>& part) {
+  const double wx = V.w[0], wy = V.w[1], wz = V.w[2];
+  const Pack x = v[0] + m * spread(V.v[0]) + wy * r[2] - wz * r[1];
+  const Pack y = v[1] + m * spread(V.v[1]) + wz * r[0] - wx * r[2];
+  const Pack z = v[2] + m * spread(V.v[2]) + wx * r[1] - wy * r[0];
+  part.kinetic += 0.5 * sum(x * x + y * y + z * z);
+  part.h += Spatial::Twist{Triple(sum(r[1] * z - r[2] * y), sum(r[2] * x - r[0] * z), sum(r[0] * y - r[1] * x)),
+                           Triple(sum(m * x), sum(m * y), sum(m * z))};
+  part.moment += Triple(sum(m * r[0]), sum(m * r[1]), sum(m * r[2]));
+}
+
+/// Generalized particles: the constant function is the first lane of the first pack.
+template <class Space>
+inline void add_mass(const sweep::MassTable<Space>& table, int modes, const double* q, const double* q_dot,
+                     const typename Space::Twist& V, Pack* P, PartMomentum<Space>& part) {
+  Pack m = spread(0.0);
+  set_lane(m, 0, table.root_mass);
+  for (std::size_t k = 0; k < table.packs; ++k) {
+    const sweep::ParticleMotion<Space, any_count> x(table.data.data() + k * table.stride, table.second_order, modes, q,
+                                                    q_dot, P);
+    add_particles(V, m, x.r, x.v, part);
+    m = spread(0.0);
+  }
+  part.mass += table.root_mass * table.root_mass;
+}
+
+/// Rotary inertia J t tᵀ of four sections with angular velocity V.w + ω.
+inline void add_turning(const Pack& J, const sweep::PackVector& t, const sweep::PackVector& omega,
+                        const Spatial::Twist& V, PartMomentum<Spatial>& part) {
+  const Pack rate =
+      t[0] * (omega[0] + spread(V.w[0])) + t[1] * (omega[1] + spread(V.w[1])) + t[2] * (omega[2] + spread(V.w[2]));
+  const Pack roll = J * rate;
+  part.kinetic += 0.5 * sum(roll * rate);
+  part.h.w += Triple(sum(roll * t[0]), sum(roll * t[1]), sum(roll * t[2]));
+}
+
+/// θ = Ψq + ½qᵀΘq and θ̇ of four sections, `A` components each.
+template <int A>
+inline void section_angles(const Pack* psi, bool second_order, int n, const double* q, const double* q_dot, Pack* theta,
+                           Pack* rate) {
+  for (int c = 0; c < A; ++c) theta[c] = rate[c] = spread(0.0);
+  for (int i = 0; i < n; ++i) {
+    for (int c = 0; c < A; ++c) {
+      theta[c] += psi[A * i + c] * spread(q[i]);
+      rate[c] += psi[A * i + c] * spread(q_dot[i]);
+    }
+  }
+  if (!second_order) return;
+  const Pack* second = psi + A * n;
+  for (int i = 0; i < n; ++i) {
+    for (int j = i; j < n; ++j, second += A) {
+      const Pack product = spread((i == j ? 0.5 : 1.0) * q[i] * q[j]);
+      const Pack change = spread(i == j ? q[i] * q_dot[i] : q_dot[i] * q[j] + q[i] * q_dot[j]);
+      for (int c = 0; c < A; ++c) {
+        theta[c] += second[c] * product;
+        rate[c] += second[c] * change;
+      }
+    }
+  }
+}
+
+inline void add_sections(const sweep::RotaryTable<Planar>& table, int modes, const double* q, const double* q_dot,
+                         const Planar::Twist& V, PartMomentum<Planar>& part) {
+  for (std::size_t k = 0; k < table.packs; ++k) {
+    Pack theta, rate;
+    section_angles<1>(table.fields.data() + k * table.stride, table.second_order, modes, q, q_dot, &theta, &rate);
+    rate += spread(V.w);
+    const Pack roll = table.axes[k].J * rate;
+    part.kinetic += 0.5 * sum(roll * rate);
+    part.h.w += sum(roll);
+  }
+}
+
+inline void add_sections(const sweep::RotaryTable<Spatial>& table, int modes, const double* q, const double* q_dot,
+                         const Spatial::Twist& V, PartMomentum<Spatial>& part) {
+  using sweep::PackVector;
+  const auto times = [](const PackVector& v, const Pack& s) { return PackVector{v[0] * s, v[1] * s, v[2] * s}; };
+  for (std::size_t k = 0; k < table.packs; ++k) {
+    PackVector theta, rate;
+    section_angles<3>(table.fields.data() + k * table.stride, table.second_order, modes, q, q_dot, theta.c, rate.c);
+    const sweep::PackExponential e(theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2]);
+    const PackVector x = cross(theta, rate);
+    const PackVector omega = rate + times(x, e.b) + times(cross(theta, x), e.c);
+    for (std::size_t j = 0; j < table.axes_each; ++j) {
+      const auto& axis = table.axes[k * table.axes_each + j];
+      const PackVector fixed{axis.e[0], axis.e[1], axis.e[2]}, y = cross(theta, fixed);
+      add_turning(axis.J, fixed + times(y, e.a) + times(cross(theta, y), e.b), omega, V, part);
+    }
+  }
+}
+
+/// A rod at the state that `work` holds.
+inline void add_rod(const sweep::RodKinematics<Planar>& rod, const sweep::RodWork& work, int n, const double* q_dot,
+                    const Planar::Twist& V, PartMomentum<Planar>& part) {
+  using Rod = sweep::RodKinematics<Planar>;
+  const int packs = rod.integrals.packs;
+  for (int k = 0; k < packs; ++k) {
+    const Pack m = rod.integrals.root_mass[static_cast<std::size_t>(k)];
+    const Pack* y = work.value + k;
+    Pack r[2], v[2];
+    for (int c = 0; c < 2; ++c) {
+      r[c] = m * y[c * packs];
+      v[c] = spread(0.0);
+      for (int i = 0; i < n; ++i) v[c] += y[(Rod::P + 2 * i + c) * packs] * spread(q_dot[i]);
+      v[c] = m * v[c];
+    }
+    add_particles(V, m, r, v, part);
+  }
+  part.mass += rod.integrals.mass;
+}
+
+inline void add_rod(const sweep::RodKinematics<Spatial>& rod, const sweep::RodWork& work, int n, const double* q_dot,
+                    const Spatial::Twist& V, PartMomentum<Spatial>& part) {
+  using Rod = sweep::RodKinematics<Spatial>;
+  const int packs = rod.integrals.packs;
+  for (int k = 0; k < packs; ++k) {
+    const Pack m = rod.integrals.root_mass[static_cast<std::size_t>(k)];
+    const Pack* y = work.value + k;
+    Pack r[3], v[3];
+    sweep::PackVector omega;
+    for (int c = 0; c < 3; ++c) {
+      r[c] = m * y[c * packs];
+      v[c] = omega[c] = spread(0.0);
+      for (int i = 0; i < n; ++i) {
+        v[c] += y[(Rod::P(n) + 3 * i + c) * packs] * spread(q_dot[i]);
+        omega[c] += y[(Rod::w + 3 * i + c) * packs] * spread(q_dot[i]);
+      }
+      v[c] = m * v[c];
+    }
+    add_particles(V, m, r, v, part);
+    if (rod.inertia.empty()) continue;
+    const Pack* t = work.slope + Rod::axis(n) * packs + k;
+    add_turning(rod.inertia[static_cast<std::size_t>(k)], {t[0], t[packs], t[2 * packs]}, omega, V, part);
+  }
+  part.mass += rod.integrals.mass;
+}
+
+}  // namespace withy::observed

@@ -1,0 +1,155 @@
+#include "withy/core/simulation/stepping.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace withy {
+
+using Cause = SteppingEnd::Cause;
+
+Stepping::Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const SteppingOptions& options)
+    : model_(model),
+      stepper_(std::move(stepper)),
+      clocks_(model),
+      zeros_(model, options.events, stepper_->state()),
+      times_(stepper_->state().time, options.output, options.end),
+      end_(options.end),
+      sample_(stepper_->state()) {
+  clocks_.go_on_after(state().time);
+}
+
+SteppingEnd Stepping::run(SteppingObserver& observer) {
+  observer_ = &observer;
+  ended_ = {};
+  for (const double landing : landings(model_, state().time, end_)) {
+    while (state().time < landing) {
+      if (!to(std::min(landing, clocks_.next()), true)) return ended_;
+      if (state().time >= clocks_.next()) renew_clocks();
+    }
+    stepper_->restart();
+  }
+  return ended_;
+}
+
+bool Stepping::end(Cause cause) {
+  ended_.cause = cause;
+  return false;
+}
+
+void Stepping::renew_clocks() {
+  sample_ = state();
+  observer_->renew(clocks_, sample_);
+  clocks_.go_on_after(sample_.time);
+  stepper_->jump(sample_);
+  zeros_.begin_at(sample_);
+  observer_->jumped();
+}
+
+/// Steps to a time; false where stepping ends before. Not watching: a step taken back is made again to end at a zero,
+/// and nothing comes between.
+bool Stepping::to(double limit, bool watching) {
+  while (state().time < limit) {
+    if (watching) {
+      if (!observer_->before_step(*stepper_)) return end(Cause::stopped);
+      if (!zeros_.empty()) before_ = state();
+    }
+    ended_.step = stepper_->step(limit);
+    if (ended_.step.outcome != StepResult::Outcome::ok) return end(Cause::failed);
+    if (watching && !zeros_.empty()) {
+      handled_ = zeros_.find(*stepper_, before_.time);
+      const bool cut = std::any_of(handled_.begin(), handled_.end(), [&](const Zero& z) { return zeros_.acts(z); });
+      if (!act_on_zeros()) return false;
+      if (cut) continue;
+    }
+    if (!after_step()) return false;
+  }
+  return true;
+}
+
+bool Stepping::after_step() {
+  const double time = state().time;
+  const bool outputs = times_.due(time);
+  for (; times_.due(time); times_.pass()) {
+    sample_.time = times_.next();
+    stepper_->interpolate(sample_.time, sample_.y);
+    if (!observer_->output(sample_)) return end(Cause::stopped);
+  }
+  return observer_->after_step(*stepper_, outputs) || end(Cause::stopped);
+}
+
+void Stepping::note(const Zero& zero) {
+  const RunEvent& event = zeros_.event(zero.function);
+  observer_->passed({event.name, zero.time, zero.direction});
+}
+
+/// How far apart zeros of one step may be and still be at one time: what interpolation and root finding leave.
+double Stepping::coincidence(const Zero& zero) const {
+  return 64 * std::numeric_limits<double>::epsilon() * std::abs(zero.time) + 1e-9 * (state().time - before_.time);
+}
+
+/// Deals with the zeros of the last step; false where stepping ends. Where one of them changes the run the step is cut
+/// there.
+bool Stepping::act_on_zeros() {
+  const auto acts = [&](const Zero& z) { return zeros_.acts(z); };
+  const auto first = std::find_if(handled_.begin(), handled_.end(), acts);
+  if (first == handled_.end()) {
+    for (const Zero& zero : handled_) {
+      note(zero);
+      zeros_.pass(zero);
+    }
+    return true;
+  }
+  const double apart = coincidence(*first), at = first->time;
+  const auto at_once = [&](const Zero& z) { return z.time >= at - apart; };
+  const auto beyond = [&](const Zero& z) { return z.time > at + apart; };
+  // Those beyond the cut are found again, or never happen.
+  handled_.erase(std::find_if(first, handled_.end(), beyond), handled_.end());
+  const auto here = std::find_if(handled_.begin(), handled_.end(), at_once);
+  std::for_each(handled_.begin(), here, [&](const Zero& z) { note(z); });
+  return cut_at(at, static_cast<std::size_t>(here - handled_.begin()));
+}
+
+/// Takes the last step back, steps to the time of a zero and does there what is to be done: of the zeros handled the
+/// first `noted` have been told already.
+bool Stepping::cut_at(double time, std::size_t noted) {
+  if (time - last_zero_ <= 16 * std::numeric_limits<double>::epsilon() * std::abs(time)) {
+    if (++zeros_at_once_ > most_zeros_at_once) return end(Cause::crowded);
+  } else {
+    zeros_at_once_ = 0;
+  }
+  last_zero_ = time;
+  stepper_->jump(before_);
+  if (!to(time, false)) return false;
+  const std::vector<Zero>& others = zeros_.land(state(), handled_);
+  handled_.insert(handled_.end(), others.begin(), others.end());
+  sample_ = state();
+  bool stops = false;
+  for (std::size_t i = noted; i < handled_.size(); ++i) {
+    Zero& zero = handled_[i];
+    zero.time = std::min(zero.time, sample_.time);
+    if (const auto load = zeros_.switching(zero.function)) {
+      clocks_.renew(sample_, load->first, {load->second, zero.direction});
+      observer_->switched();
+    } else {
+      note(zero);
+      stops = stops || zeros_.event(zero.function).stops;
+    }
+  }
+  stepper_->jump(sample_);
+  observer_->jumped();
+  return !stops || end(Cause::event);
+}
+
+void Stepping::resume(const State& state, std::span<const double> memory) {
+  stepper_->resume(state, memory);
+  clocks_.go_on_after(state.time);
+}
+
+void Stepping::remember(Memory& memory) {
+  zeros_.remember(memory);
+  times_.remember(memory);
+  memory(last_zero_);
+  memory(zeros_at_once_);
+}
+
+}  // namespace withy

@@ -1,0 +1,106 @@
+/// \file
+/// The loop over the steps of an integration: it lands on discontinuities, renews discrete states, finds the zeros of
+/// switching functions and events, and interpolates outputs. Runs, pairs of runs and probes observe it.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "withy/core/plugin/integrator.hpp"
+#include "withy/core/plugin/memory.hpp"
+#include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/run_event.hpp"
+#include "withy/core/simulation/run_times.hpp"
+
+namespace withy {
+
+/// How stepping ended.
+struct SteppingEnd {
+  enum class Cause {
+    reached,  ///< the end
+    event,    ///< an event that stops the run
+    stopped,  ///< the observer said so
+    failed,   ///< no step can be made: `step` says why
+    crowded   ///< switching functions pass through zero again and again without time between them
+  };
+  Cause cause = Cause::reached;
+  StepResult step;
+};
+
+/// What watches stepping, and may end it.
+class SteppingObserver {
+ public:
+  SteppingObserver() = default;
+  SteppingObserver(const SteppingObserver&) = delete;
+  SteppingObserver& operator=(const SteppingObserver&) = delete;
+  virtual ~SteppingObserver() = default;
+  /// Asked before each step; false ends the stepping at the last accepted state.
+  virtual bool before_step(const Stepper& /*stepper*/) { return true; }
+  /// A state at a multiple of the output interval, interpolated within the last step. False ends the stepping.
+  virtual bool output(const State& state) = 0;
+  /// After each accepted step and the outputs within it; `outputs`: there were some. False ends the stepping.
+  virtual bool after_step(const Stepper& /*stepper*/, bool /*outputs*/) { return true; }
+  /// Zeros of an event's function have been passed at this time. Each is told once, in the order of their times.
+  virtual void passed(const EventTime& /*event*/) {}
+  /// A load has switched at the zero of a function of its own.
+  virtual void switched() {}
+  /// Discrete states of loads have been renewed or have switched: what follows is not smooth with what was before.
+  virtual void jumped() {}
+  /// Renews the discrete states that are due at the state's time; for states that are not laid out as the model's.
+  virtual void renew(Clocks& clocks, State& state) { clocks.renew(state); }
+};
+
+struct SteppingOptions {
+  double end = 0;                         ///< [s]
+  double output = 0.01;                   ///< interval of outputs [s]; they fall on its multiples
+  std::span<const RunEvent> events = {};  ///< looked for on the dense output
+};
+
+/// One integration under way.
+class Stepping {
+ public:
+  /// \param stepper begun at a state whose discrete states are set (see `begun`)
+  /// The model and the events must outlive the object.
+  Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const SteppingOptions& options);
+  /// Steps to the end. Steps land on discontinuities of loads and motions, on the instants of discrete states and on
+  /// the end bit by bit. The states at the start and at the end are no outputs.
+  SteppingEnd run(SteppingObserver& observer);
+  [[nodiscard]] const Stepper& stepper() const { return *stepper_; }
+  [[nodiscard]] const State& state() const { return stepper_->state(); }
+  /// Goes on from a checkpoint's state and the numbers that Stepper::memory gave for it.
+  /// \throws std::invalid_argument as Stepper::resume.
+  void resume(const State& state, std::span<const double> memory);
+  /// What the loop knows beyond the stepper.
+  void remember(Memory& memory);
+
+ private:
+  using Zero = ZeroWatch::Zero;
+  bool to(double limit, bool watching);
+  bool after_step();
+  bool act_on_zeros();
+  bool cut_at(double time, std::size_t noted);
+  void note(const Zero& zero);
+  void renew_clocks();
+  bool end(SteppingEnd::Cause cause);
+  [[nodiscard]] double coincidence(const Zero& zero) const;
+
+  static constexpr int most_zeros_at_once = 20;
+
+  const Model& model_;
+  std::unique_ptr<Stepper> stepper_;
+  SteppingObserver* observer_ = nullptr;  ///< of the run under way
+  Clocks clocks_;
+  ZeroWatch zeros_;
+  OutputTimes times_;
+  double end_;
+  State sample_;
+  State before_;               ///< where the last step began; kept only where zeros are watched
+  std::vector<Zero> handled_;  ///< zeros of the last step, or those up to where it is cut
+  SteppingEnd ended_;
+  double last_zero_ = -std::numeric_limits<double>::infinity();  ///< time of the last one that changed the run
+  int zeros_at_once_ = 0;
+};
+
+}  // namespace withy

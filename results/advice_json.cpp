@@ -1,0 +1,90 @@
+#include "withy/results/advice_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "withy/results/certificate_json.hpp"
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json distances_json(const study::Outputs& outputs, const study::Distances& distances) {
+  Json j = Json::object();
+  if (distances.empty()) return j;
+  const study::PerMeasure d = outputs.per_measure(distances);
+  for (std::size_t m = 0; m < study::measures; ++m)
+    if (outputs.has(static_cast<study::Measure>(m))) j[study::measure_name(m)] = d[m];
+  return j;
+}
+
+Json point_json(const study::Point& p) {
+  Json bodies = Json::object();
+  for (const auto& [body, formulation] : p.bodies) bodies[body] = formulation;
+  return {{"formulation", p.formulation},
+          {"bodies", std::move(bodies)},
+          {"modes", p.modes > 0 ? Json(p.modes) : Json()},
+          {"family", p.family.empty() ? Json() : Json(p.family)},
+          {"integrator", p.integrator},
+          {"tolerance", p.tolerance}};
+}
+
+Json probe_json(const study::Outputs& outputs, const study::Probe& p) {
+  Json j = point_json(p.point);
+  j["outcome"] = study::outcome_name(p.outcome);
+  if (!p.reason.empty()) j["reason"] = p.reason;
+  j["of_accuracy"] = p.use;
+  j["distances"] = distances_json(outputs, p.distances);
+  j["until"] = p.walk.time;
+  j["steps"] = p.walk.steps;
+  j["evaluations"] = p.walk.evaluations;
+  j["cost_seconds"] = p.cost;
+  return j;
+}
+
+/// A limit that is asked of nothing is infinite, which JSON has no number for.
+Json reference_json(const study::Outputs& outputs, const study::Yardstick& yardstick) {
+  const study::Reference& r = yardstick.reference;
+  Json j = point_json(r.point);
+  j["ways"] = distances_json(outputs, r.ways);
+  j["allowed"] = distances_json(outputs, yardstick.limits);
+  j["own_error"] = distances_json(outputs, r.own);
+  j["own_error_of_accuracy"] = yardstick.own_use();
+  return j;
+}
+
+}  // namespace
+
+Json search_json(const AdviceQuestion& question, const study::Advice& advice, const std::string& reason) {
+  const Scene& scene = question.prepared.scene;
+  Json j{{"scene", scene.file}, {"name", scene.name}};
+  const auto number = [](const std::optional<double>& x) { return x ? Json(*x) : Json(); };
+  j["accuracy"] = {{"share", number(question.accuracy.share)},
+                   {"length", number(question.accuracy.length)},
+                   {"angle", number(question.accuracy.angle)}};
+  j["outputs"] = question.outputs.names();
+  if (advice.yardstick) j["reference"] = reference_json(question.outputs, *advice.yardstick);
+  j["advice"] = nullptr;
+  if (!reason.empty()) j["reason"] = reason;
+  j["probes"] = Json::array();
+  for (const study::Probe& p : advice.probes) j["probes"].push_back(probe_json(question.outputs, p));
+  j["cpu_seconds"] = advice.cpu_seconds;
+  return j;
+}
+
+Json advice_json(const AdviceQuestion& question, const study::Advice& advice, const std::string& left_out,
+                 const std::vector<std::string>& changes, const std::string& scene_lines) {
+  Json j = search_json(question, advice, "");
+  Json choice = probe_json(question.outputs, *advice.choice);
+  choice["steps_limited_by"] = advice.steps.cause();
+  choice["left_out"] = left_out;
+  choice["indicators"] = indicators_json(advice.indicators);
+  choice["overrides"] = changes;
+  choice["scene_lines"] = scene_lines;
+  j["advice"] = std::move(choice);
+  j["next_up"] = Json::array();
+  for (const study::Probe& p : advice.above) j["next_up"].push_back(probe_json(question.outputs, p));
+  return j;
+}
+
+}  // namespace withy

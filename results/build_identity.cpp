@@ -1,0 +1,106 @@
+#include "withy/results/build_identity.hpp"
+
+#include <dlfcn.h>
+#include <elf.h>
+#include <link.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "withy/results/git_description.hpp"
+#include "withy/scene/sha256.hpp"
+
+namespace withy {
+namespace {
+
+/// The build id among the notes of a loaded object, in hexadecimal digits; empty where it has none.
+std::string build_id(const dl_phdr_info& object) {
+  for (int i = 0; i < object.dlpi_phnum; ++i) {
+    const ElfW(Phdr)& segment = object.dlpi_phdr[i];
+    if (segment.p_type != PT_NOTE) continue;
+    const auto* at = reinterpret_cast<const unsigned char*>(object.dlpi_addr + segment.p_vaddr);
+    const unsigned char* end = at + segment.p_memsz;
+    while (end - at >= static_cast<std::ptrdiff_t>(sizeof(ElfW(Nhdr)))) {
+      ElfW(Nhdr) note;
+      std::memcpy(&note, at, sizeof note);
+      const auto padded = [](std::size_t size) { return (size + 3) & ~std::size_t{3}; };
+      const unsigned char* name = at + sizeof note;
+      const unsigned char* id = name + padded(note.n_namesz);
+      at = id + padded(note.n_descsz);
+      if (at > end) break;
+      if (note.n_type != NT_GNU_BUILD_ID || note.n_namesz != 4 || std::memcmp(name, "GNU", 4) != 0) continue;
+      std::string digits;
+      for (const unsigned char* byte = id; byte != id + note.n_descsz; ++byte) {
+        digits += "0123456789abcdef"[*byte >> 4];
+        digits += "0123456789abcdef"[*byte & 15];
+      }
+      return digits;
+    }
+  }
+  return {};
+}
+
+struct LoadedObject {
+  std::string file;
+  std::string id;
+};
+
+std::vector<LoadedObject> loaded_objects() {
+  std::vector<LoadedObject> all;
+  ::dl_iterate_phdr(
+      [](dl_phdr_info* object, std::size_t, void* to) {
+        static_cast<std::vector<LoadedObject>*>(to)->push_back({object->dlpi_name, build_id(*object)});
+        return 0;
+      },
+      &all);
+  return all;
+}
+
+std::string hash_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return {};
+  return sha256(std::string((std::istreambuf_iterator<char>(stream)), {}));
+}
+
+/// The libraries named libwithy-…, and what this function is in: all code of the project but plugins.
+BuildIdentity identify() {
+  std::string self;
+  Dl_info here = {};
+  if (::dladdr(reinterpret_cast<const void*>(&build_identity), &here) != 0 && here.dli_fname != nullptr)
+    self = here.dli_fname;
+  std::vector<std::string> ids;
+  for (const LoadedObject& object : loaded_objects()) {
+    // The program itself has no name there.
+    const std::string file = object.file.empty() ? "/proc/self/exe" : object.file;
+    const std::string name = std::filesystem::path(file).filename().string();
+    const bool ours = name.starts_with("libwithy-") || object.file == self || object.file.empty();
+    if (ours) ids.push_back(object.id.empty() ? hash_of(file) : object.id);
+  }
+  std::sort(ids.begin(), ids.end());
+  std::string text;
+  for (const std::string& id : ids) text += id + ' ';
+  return {WITHY_VERSION, git_description, sha256(text)};
+}
+
+}  // namespace
+
+const BuildIdentity& build_identity() {
+  static const BuildIdentity identity = identify();
+  return identity;
+}
+
+std::string library_identity(const std::string& file) {
+  std::error_code none;
+  const std::filesystem::path path = std::filesystem::canonical(file, none);
+  if (none) return {};
+  for (const LoadedObject& object : loaded_objects())
+    if (object.file == path.string() && !object.id.empty()) return object.id;
+  return hash_of(path.string());
+}
+
+}  // namespace withy

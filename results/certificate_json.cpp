@@ -1,0 +1,117 @@
+#include "withy/results/certificate_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "withy/results/json_text.hpp"
+#include "withy/results/run_json.hpp"
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using study::Certificate;
+
+Json body_json(const BodyValidity& b, const RunSummary& summary) {
+  Json j{{"name", b.name},
+         {"fundamental_frequency", b.fundamental},
+         {"rate_over_fundamental", {{"value", b.rate_ratio}, {"time", b.rate_time}}}};
+  Json shares = Json::object();
+  for (std::size_t k = 0; k < motion_terms; ++k)
+    if (b.load.shares[k] != 0) shares[motion_term_name(k)] = b.load.shares[k];
+  j["load_over_buckling"] = {
+      {"value", b.load.size()},
+      {"sense", b.load.greatest > -b.load.least ? "stiffening" : "buckling"},
+      {"time", b.load_time},
+      {"binds", b.load.size() > 0 ? Json(motion_term_name(study::greatest_share(b.load))) : Json()},
+      {"shares", std::move(shares)},
+      {"compressive", b.buckling}};
+  const auto deflection = summary.peak_deflection_ratio.find(b.name);
+  j["deflection_over_length"] = deflection != summary.peak_deflection_ratio.end() ? Json(deflection->second) : Json();
+  j["highest_mode"] = Json::object();
+  for (const HighestMode& h : b.highest) {
+    j["highest_mode"][h.family] = {
+        {"frequency", h.frequency}, {"modes", h.modes}, {"energy_share", h.modes > 1 ? Json(h.share) : Json()}};
+  }
+  return j;
+}
+
+Json stretches_json(const Certificate& c) {
+  Json all = Json::array();
+  for (const study::NamedStretch& named : c.stretches) {
+    const Stretch& s = named.stretch;
+    Json why = Json::array();
+    for (const Excess& e : s.excess)
+      why.push_back(
+          {{"body", e.body}, {"indicator", e.indicator}, {"value", e.value}, {"limit", e.limit}, {"time", e.time}});
+    all.push_back({{"formulation", named.formulation},
+                   {"start", s.start},
+                   {"end", s.end},
+                   {"steps", s.steps},
+                   {"evaluations", s.evaluations},
+                   {"energy_drift", s.energy_drift},
+                   {"escalated_because", std::move(why)},
+                   {"energy_jump", s.energy_jump}});
+  }
+  return {{"list", std::move(all)}, {"discarded_evaluations", c.discarded_evaluations}};
+}
+
+Json estimate_json(const Certificate& c) {
+  if (!c.estimate) return {};
+  return {{"against", c.estimate->against},
+          {"hinges", c.estimate->distances.hinges},
+          {"tips", c.estimate->distances.tips},
+          {"until", c.estimate->distances.until},
+          {"cpu_seconds", c.estimate->cpu_seconds}};
+}
+
+Json steps_json(const study::StepLimit& s) {
+  Json j = {{"limited_by", s.cause()},
+            {"mean", s.mean},
+            {"fastest_mode", s.fastest > 0 ? Json(s.fastest) : Json()},
+            {"step_times_fastest_mode", s.product > 0 ? Json(s.product) : Json()},
+            {"stability_limit", s.limit ? Json(*s.limit) : Json()}};
+  if (s.fewer) j["fewer_modes"] = {{"without", s.fewer->mode}, {"fastest_mode", s.fewer->fastest}};
+  if (!s.unlimited.empty()) j["unlimited_integrators"] = s.unlimited;
+  return j;
+}
+
+}  // namespace
+
+Json indicators_json(const std::vector<study::Indicator>& indicators) {
+  Json all = Json::array();
+  for (const study::Indicator& i : indicators)
+    all.push_back({{"what", i.text}, {"value", i.value}, {"limit", i.limit}, {"beyond", i.meaning}});
+  return all;
+}
+
+Json certificate_json(const Scene& scene, const RunSummary& summary, const Certificate& certificate) {
+  Json c;
+  c["program"] = "withy " WITHY_VERSION;
+  c["formulation"] = {{"name", certificate.formulation}, {"meaning", certificate.meaning}};
+  if (!certificate.stretches.empty()) c["stretches"] = stretches_json(certificate);
+  c["integrator"] = value_json(scene.source.at("integrator"));
+  c["output_interval"] = scene.output;
+  c["compiled"] = certificate.compiled;
+  c["energy_drift"] = certificate.energy_drift;
+  c["condition_times_epsilon"] = certificate.rounding ? Json(*certificate.rounding) : Json();
+  c["samples"] = certificate.samples;
+  c["bodies"] = Json::array();
+  for (const BodyValidity& b : certificate.bodies) c["bodies"].push_back(body_json(b, summary));
+  const NeglectedAcceleration& n = certificate.neglected;
+  c["neglected_acceleration"] =
+      !certificate.against.empty() && n.samples > 0
+          ? Json{{"against", certificate.against}, {"rms", n.rms}, {"peak", n.peak}, {"samples", n.samples}}
+          : Json();
+  c["estimated_error"] = estimate_json(certificate);
+  c["steps"] = steps_json(certificate.steps);
+  c["indicators"] = indicators_json(certificate.indicators);
+  return c;
+}
+
+Json run_json(const Scene& scene, const RunSummary& summary, const Certificate& certificate) {
+  Json j = run_json(scene, summary);
+  j["certificate"] = certificate_json(scene, summary, certificate);
+  return j;
+}
+
+}  // namespace withy

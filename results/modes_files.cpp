@@ -1,0 +1,163 @@
+#include "withy/results/modes_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "withy/results/svg_plot.hpp"
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double hertz(const Mode& m) { return m.frequency() / (2 * std::numbers::pi); }
+
+/// The steady state that modes are about.
+Json found_json(const study::ModesAt& at) {
+  Json j = steady_json(*at.model, at.steady->steady, at.steady->held);
+  if (at.steady->stays) {
+    j["stays_steady"] = *at.steady->stays;
+    j["derivatives"] = at.steady->derivatives;
+  }
+  return j;
+}
+
+Json rows_json(const Eigen::MatrixXd& m) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    const Eigen::VectorXd row = m.row(i);
+    rows.push_back(std::vector<double>(row.data(), row.data() + row.size()));
+  }
+  return rows;
+}
+
+}  // namespace
+
+Json steady_json(const Model& model, const SteadyState& steady, const Held& held) {
+  const std::vector<std::string>& names = model.layout().speed_names;
+  Json efforts = Json::object();
+  double left = 0;
+  for (std::size_t s = 0; s < held.size(); ++s) {
+    const double effort = steady.efforts[static_cast<Eigen::Index>(s)];
+    if (held[s])
+      efforts[names[s]] = effort;
+    else
+      left = std::max(left, std::abs(effort));
+  }
+  Json j;
+  j["converged"] = steady.converged;
+  j["iterations"] = steady.iterations;
+  j["residual"] = left;
+  j["efforts"] = std::move(efforts);
+  j["state"] = Json::parse(write_state(model, steady.state));
+  return j;
+}
+
+Json modes_json(const study::ModesOf& run) {
+  Json points = Json::array();
+  for (const study::ModesAt& at : run.points) {
+    Json modes = Json::array();
+    for (const Mode& m : at.modes) {
+      Json shape = Json::object();
+      for (std::size_t s = 0; s < at.names.size(); ++s) {
+        const std::complex<double> x = m.shape[static_cast<Eigen::Index>(s)];
+        shape[at.names[s]] = {x.real(), x.imag()};
+      }
+      Json j;
+      j["eigenvalue"] = {m.eigenvalue.real(), m.eigenvalue.imag()};
+      j["partner"] = {m.partner.real(), m.partner.imag()};
+      j["frequency"] = m.frequency();
+      j["hertz"] = hertz(m);
+      j["squared_frequency"] = m.squared_frequency();
+      j["damping_ratio"] = m.rigid ? Json() : Json(m.damping_ratio());
+      j["growth"] = m.growth();
+      j["state"] = study::behaviour(at, m);
+      j["dominated_by"] = study::dominating(at, m);
+      j["shape"] = std::move(shape);
+      modes.push_back(std::move(j));
+    }
+    Json point;
+    point["value"] = at.value;
+    point["steady"] = at.steady ? found_json(at) : Json();
+    point["problem"] = at.problem;
+    point["modes"] = std::move(modes);
+    points.push_back(std::move(point));
+  }
+  return {{"formulation", run.formulation}, {"points", std::move(points)}};
+}
+
+std::string modes_csv(const std::vector<study::ModesOf>& runs, const std::string& label) {
+  std::string text = "formulation," + label +
+                     ",branch,dominated_by,frequency[rad/s],frequency[Hz],squared_frequency[1/s^2],damping_ratio,"
+                     "real[1/s],imaginary[rad/s],state\n";
+  for (const study::ModesOf& run : runs) {
+    for (const study::ModesAt& at : run.points) {
+      for (std::size_t i = 0; i < at.modes.size(); ++i) {
+        const Mode& m = at.modes[i];
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", run.formulation, at.value, i + 1,
+                            study::dominating(at, m), m.frequency(), hertz(m), m.squared_frequency(),
+                            m.rigid ? std::string() : fmt::format("{}", m.damping_ratio()), m.eigenvalue.real(),
+                            m.eigenvalue.imag(), study::behaviour(at, m));
+      }
+    }
+  }
+  return text;
+}
+
+std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const std::string& label,
+                          std::size_t count) {
+  Panel frequencies{label, "frequency [rad/s]", {0, 0}, {}, 420};
+  Panel growths{label, "growth [1/s]", {0, 0}, {}, 160};
+  std::vector<std::string> legend;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    legend.push_back(runs[r].formulation);
+    for (std::size_t i = 0; i < count; ++i) {
+      Curve frequency, growth;
+      frequency.pen = growth.pen = r;
+      for (const study::ModesAt& at : runs[r].points) {
+        if (i >= at.modes.size()) continue;
+        const Mode& m = at.modes[i];
+        frequency.x.push_back(at.value);
+        frequency.y.push_back(m.eigenvalue.imag());
+        growth.x.push_back(at.value);
+        growth.y.push_back(study::unstable(at, m) ? m.growth() : 0.0);
+        frequencies.y_range.second = std::max(frequencies.y_range.second, frequency.y.back());
+        growths.y_range.second = std::max(growths.y_range.second, growth.y.back());
+      }
+      if (frequency.x.empty()) continue;
+      frequencies.curves.push_back(std::move(frequency));
+      growths.curves.push_back(std::move(growth));
+    }
+  }
+  std::vector<Panel> panels = {std::move(frequencies)};
+  if (growths.y_range.second > 0) panels.push_back(std::move(growths));
+  return svg_plot(title, legend, panels);
+}
+
+Json linear_model_json(const study::Configuration& c, const study::LinearModel& linear) {
+  Json accelerations = Json::object();
+  for (const auto& [name, value] : linear.accelerations) accelerations[name] = value;
+  Json j;
+  j["scene"] = c.prepared().scene.file;
+  j["formulation"] = c.prepared().scene.formulation_name;
+  j["state"] = Json::parse(write_state(c.prepared().model(), c.state()));
+  j["held"] = c.held_names();
+  j["states"] = linear.states;
+  j["inputs"] = linear.inputs;
+  j["outputs"] = linear.outputs;
+  j["output_values"] = linear.output_values;
+  j["A"] = rows_json(linear.A);
+  j["B"] = rows_json(linear.B);
+  j["C"] = rows_json(linear.C);
+  j["D"] = rows_json(Eigen::MatrixXd::Zero(linear.C.rows(), linear.B.cols()));
+  j["accelerations"] = accelerations;
+  j["equilibrium"] = linear.equilibrium;
+  j["derivatives"] = linear.derivatives;
+  return j;
+}
+
+}  // namespace withy

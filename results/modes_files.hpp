@@ -1,0 +1,27 @@
+/// \file
+/// Steady states, modes and linear models as JSON, table and picture.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "withy/study/linear_model.hpp"
+#include "withy/study/modes.hpp"
+
+namespace withy {
+
+/// Outcome, efforts on what is held, and the state in the form of state files.
+nlohmann::ordered_json steady_json(const Model& model, const SteadyState& steady, const Held& held);
+/// An element of "runs" in modes.json.
+nlohmann::ordered_json modes_json(const study::ModesOf& run);
+/// A line a formulation, value and branch.
+std::string modes_csv(const std::vector<study::ModesOf>& runs, const std::string& label);
+/// Frequencies, and where something grows the rates of growth, over the value.
+std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const std::string& label,
+                          std::size_t count);
+
+/// What `withy linearize` prints.
+nlohmann::ordered_json linear_model_json(const study::Configuration& configuration, const study::LinearModel& linear);
+
+}  // namespace withy

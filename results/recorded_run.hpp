@@ -1,0 +1,52 @@
+/// \file
+/// Runs that leave a folder behind: results.csv as they go, run.json when they have ended.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "withy/results/checkpoint_files.hpp"
+#include "withy/results/provenance.hpp"
+#include "withy/results/recorder.hpp"
+#include "withy/results/result_columns.hpp"
+#include "withy/study/run.hpp"
+
+namespace withy {
+
+/// The rows of a run. Tips and energies are those of the formulation that the run is in.
+class RunTable {
+ public:
+  /// Both must outlive it. Begins the recorder's table.
+  RunTable(const study::Prepared& prepared, Recorder& recorder);
+  void add(const State& state, std::size_t rung) { recorder_.row(columns_[rung].row(state)); }
+  /// The same of the first formulation, where `seen()` is at that state.
+  void add_seen(const State& state) { recorder_.row(columns_.front().row_of_seen(state)); }
+  /// For RunSettings::seen: a row then costs no pass of its own.
+  [[nodiscard]] Observation& seen() { return columns_.front().seen(); }
+
+ private:
+  Recorder& recorder_;
+  std::vector<ResultColumns> columns_;
+};
+
+struct RecordedRun {
+  study::CertifiedRun run;
+  nlohmann::ordered_json json;  ///< the content of run.json
+};
+
+/// What a run leaves in its folder, checkpoints included.
+std::vector<std::string> run_content();
+
+/// Simulates into a folder, made where it is not there; a folder without run.json is a run that was killed.
+/// `settings.output` sees every output too. \throws std::system_error where something cannot be written.
+RecordedRun record_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
+                       const Provenance& provenance, study::RunSettings settings);
+
+/// The same with checkpoints in the folder every `settings.checkpoint_seconds`, and where the run is interrupted; they
+/// are removed when it has ended. \param from where to go on; null: it begins
+RecordedRun record_lasting_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
+                               const Provenance& provenance, study::RunSettings settings, const StoredRun* from);
+
+}  // namespace withy

@@ -1,0 +1,174 @@
+#include "withy/results/results_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "withy/results/json_text.hpp"
+#include "withy/results/results_error.hpp"
+#include "withy/scene/sha256.hpp"
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* format = "withy-result/1";
+constexpr const char* name_of_record = "result.json";
+constexpr std::size_t longest_suffix = 100;
+
+/// What a folder says of itself; null where it says nothing, or nothing that can be read.
+Json read_record(const std::filesystem::path& folder) {
+  std::ifstream in(folder / name_of_record, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  Json j = Json::parse(text, nullptr, false);
+  return j.is_object() && j.value("format", "") == format ? j : Json();
+}
+
+std::vector<std::string> content_of(const Json& record) {
+  std::vector<std::string> names;
+  const auto content = record.find("content");
+  if (content == record.end() || !content->is_array()) return names;
+  for (const Json& name : *content)
+    if (name.is_string()) names.push_back(name.get<std::string>());
+  return names;
+}
+
+/// A plain name, or one below a folder in it: what a record may have removed.
+bool is_inside(const std::string& name) {
+  const std::filesystem::path path = name;
+  return !path.empty() && path.is_relative() && std::find(path.begin(), path.end(), "..") == path.end();
+}
+
+std::vector<std::string> present(const std::filesystem::path& folder, const std::vector<std::string>& names) {
+  std::vector<std::string> there;
+  for (const std::string& name : names)
+    if (std::filesystem::exists(folder / name)) there.push_back(name);
+  return there;
+}
+
+bool same_result(const Json& kept, const Json& now) {
+  return !kept.is_null() && kept.value("command", "") == now.at("command") &&
+         kept.value("subject", "") == now.at("subject");
+}
+
+std::vector<std::string> united(std::vector<std::string> names, const std::vector<std::string>& more) {
+  for (const std::string& name : more)
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  return names;
+}
+
+/// Why the folder cannot be taken for this result, whose record is `now`; empty where it can.
+std::string refusal(const std::filesystem::path& folder, const Json& kept, const Json& now,
+                    const std::vector<std::string>& content) {
+  constexpr const char* advice = "give another folder, or --force to replace it";
+  const std::vector<std::string> there = present(folder, kept.is_null() ? content : content_of(kept));
+  if (there.empty() || same_result(kept, now)) return {};
+  if (kept.is_null())
+    return fmt::format("{} holds {}, and nothing says of what result: {}", folder.string(), there.front(), advice);
+  const std::string command = kept.value("command", "");
+  if (command != now.at("command"))
+    return fmt::format("{} holds a result of withy {}: {}", folder.string(), command, advice);
+  const std::string scene = kept.value("scene", "");
+  if (scene != now.at("scene"))
+    return fmt::format("{} holds the result of another scene, {}: {}", folder.string(), scene, advice);
+  return fmt::format("{} holds the result of other values of {}: {}", folder.string(), scene, advice);
+}
+
+/// Why a result goes on otherwise than it began.
+std::string change(const Json& kept, const Provenance& now) {
+  if (kept.is_null()) return {};
+  try {
+    return differences(provenance_of_json(kept), now);
+  } catch (const ResultsError&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+ResultsFolder::ResultsFolder(std::filesystem::path path, const std::string& command, const Provenance& provenance,
+                             const std::vector<std::string>& content, FolderUse use)
+    : path_(std::move(path)) {
+  std::filesystem::create_directories(path_);
+  lock();
+  try {
+    const Json kept = read_record(path_);
+    Json now = stored_provenance(provenance);
+    now["format"] = format;
+    now["command"] = command;
+    now["subject"] = provenance.subject();
+    now["content"] = content;
+    now["process"] = ::getpid();
+    if (use == FolderUse::begin)
+      if (const std::string why = refusal(path_, kept, now, content); !why.empty()) throw ResultsError(why);
+    changed_ = change(kept, provenance);
+    if (use == FolderUse::go_on && !changed_.empty()) return;  // the caller will not go on
+    std::vector<std::string> old = content;
+    if (use != FolderUse::go_on && !same_result(kept, now)) {
+      const std::vector<std::string> other = content_of(kept);
+      old.insert(old.end(), other.begin(), other.end());
+    } else {
+      now["content"] = united(content_of(kept), content);
+    }
+    if (use != FolderUse::go_on) {
+      for (const std::string& name : old)
+        if (is_inside(name)) std::filesystem::remove_all(path_ / name);
+    }
+    write(json_text(now));
+  } catch (...) {
+    ::close(file_);
+    throw;
+  }
+}
+
+ResultsFolder::~ResultsFolder() { ::close(file_); }
+
+void ResultsFolder::lock() {
+  const std::filesystem::path record = path_ / name_of_record;
+  file_ = ::open(record.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file_ < 0) throw std::system_error(errno, std::generic_category(), record.string());
+  if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+  const int error = errno;
+  ::close(file_);
+  if (error != EWOULDBLOCK) throw std::system_error(error, std::generic_category(), record.string());
+  const Json kept = read_record(path_);
+  const Json process = kept.is_null() ? Json() : kept.value("process", Json());
+  throw FolderBusy(fmt::format("{} is being written by {}; wait for its end, or give another folder", path_.string(),
+                               process.is_number() ? "process " + process.dump() : "another process"));
+}
+
+// In place, since the lock is the file's.
+void ResultsFolder::write(const std::string& text) const {
+  const auto fail = [&] { throw std::system_error(errno, std::generic_category(), (path_ / name_of_record).string()); };
+  if (::ftruncate(file_, 0) != 0) fail();
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t count = ::pwrite(file_, text.data() + done, text.size() - done, static_cast<off_t>(done));
+    if (count < 0 && errno != EINTR) fail();
+    if (count > 0) done += static_cast<std::size_t>(count);
+  }
+  if (::fsync(file_) != 0) fail();
+}
+
+std::string folder_suffix(const std::vector<std::string>& settings) {
+  std::string text;
+  for (const std::string& setting : settings) text += (text.empty() ? '-' : ',') + setting;
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' ||
+           c == '-' || c == '+' || c == '=' || c == ',';
+  };
+  if (text.size() <= longest_suffix && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string whole;
+  for (const std::string& setting : settings) whole += setting + '\n';
+  return "-set-" + sha256(whole).substr(0, 8);
+}
+
+}  // namespace withy

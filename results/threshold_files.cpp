@@ -1,0 +1,127 @@
+#include "withy/results/threshold_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "withy/results/svg_plot.hpp"
+
+namespace withy {
+
+using Json = nlohmann::ordered_json;
+
+std::string threshold_outcome(const study::Threshold& row, const study::Sweep& range) {
+  switch (row.crossing.kind) {
+    case study::Crossing::Kind::passes:
+      return row.crossing.fails ? "fails beyond" : "passes";
+    case study::Crossing::Kind::holds:
+      return fmt::format("holds to {:g}", range.values.back());
+    case study::Crossing::Kind::exceeds:
+      return fmt::format("{} at {:g}", row.crossing.fails ? "fails" : "above it", range.values.front());
+  }
+  return "";
+}
+
+std::vector<std::string> ThresholdLabels::heads() const {
+  std::vector<std::string> heads = {"formulation", "modes"};
+  if (families) heads.emplace_back("family");
+  if (overs) heads.emplace_back("over");
+  if (frequencies)
+    heads.emplace_back("mode");
+  else
+    heads.insert(heads.end(), {"integrator", "tolerance"});
+  return heads;
+}
+
+std::vector<std::string> ThresholdLabels::of(const study::Threshold& row) const {
+  std::vector<std::string> cells = {row.point.formulation, std::to_string(row.point.modes)};
+  if (families) cells.push_back(row.point.family);
+  if (overs) {
+    std::string over;
+    for (const std::string& o : row.point.over) over += (over.empty() ? "" : " ") + o;
+    cells.push_back(over);
+  }
+  if (frequencies) {
+    cells.push_back(row.mode);
+  } else {
+    cells.push_back(row.point.integrator);
+    cells.push_back(fmt::format("{:g}", row.point.tolerance));
+  }
+  return cells;
+}
+
+Json threshold_json(const study::Threshold& row, const study::Sweep& range) {
+  Json j{{"formulation", row.point.formulation},
+         {"modes", row.point.modes},
+         {"family", row.point.family.empty() ? Json() : Json(row.point.family)},
+         {"over", row.point.over}};
+  if (row.mode.empty()) {
+    j["integrator"] = row.point.integrator;
+    j["tolerance"] = row.point.tolerance;
+  } else {
+    j["mode"] = row.mode;
+  }
+  const bool passes = row.crossing.kind == study::Crossing::Kind::passes;
+  j["outcome"] = passes ? "passes" : row.crossing.kind == study::Crossing::Kind::holds ? "holds" : "exceeds";
+  j["value"] = passes ? Json(row.crossing.value) : Json();
+  if (row.at_rest > 0) j["over_frequency_at_rest"] = passes ? Json(row.crossing.value / row.at_rest) : Json();
+  j["fails"] = row.crossing.fails;
+  j["errors"] = Json::array();
+  for (std::size_t k = 0; k < row.errors.size(); ++k) {
+    const double e = row.errors[k];
+    j["errors"].push_back({{"value", range.values[k]}, {"relative_error", std::isfinite(e) ? Json(e) : Json()}});
+  }
+  return j;
+}
+
+std::string threshold_csv(const std::vector<study::Threshold>& rows, const study::Sweep& range,
+                          const ThresholdLabels& labels) {
+  std::string text;
+  for (const std::string& h : labels.heads()) text += h + ",";
+  text += range.path + ",outcome\n";
+  for (const study::Threshold& row : rows) {
+    for (const std::string& cell : labels.of(row)) text += '"' + cell + "\",";
+    const bool passes = row.crossing.kind == study::Crossing::Kind::passes;
+    text += fmt::format("{},{}\n", passes ? fmt::format("{}", row.crossing.value) : "", threshold_outcome(row, range));
+  }
+  return text;
+}
+
+std::string threshold_picture(const std::string& title, const std::vector<study::Threshold>& rows,
+                              const study::Sweep& range, double limit) {
+  std::vector<std::string> modes, legend;
+  std::vector<Panel> panels;
+  for (const study::Threshold& row : rows) {
+    const std::string name = fmt::format("{} {}", row.point.formulation, row.point.modes);
+    const auto pen = static_cast<std::size_t>(std::find(legend.begin(), legend.end(), name) - legend.begin());
+    if (pen == legend.size()) legend.push_back(name);
+    const auto m = static_cast<std::size_t>(std::find(modes.begin(), modes.end(), row.mode) - modes.begin());
+    if (m == modes.size()) {
+      modes.push_back(row.mode);
+      panels.push_back({range.path + (row.mode.empty() ? "" : ", frequency of " + row.mode),
+                        "error [%]",
+                        {0.1 * limit, 1e4 * limit},
+                        {}});
+      panels.back().log_y = true;
+    }
+    Curve curve;
+    curve.pen = pen;
+    for (std::size_t k = 0; k < row.errors.size() && std::isfinite(row.errors[k]); ++k) {
+      curve.x.push_back(range.values[k]);
+      curve.y.push_back(std::max(100 * row.errors[k], 1e-12));
+    }
+    curve.ends_early = !curve.x.empty() && curve.x.size() < row.errors.size();
+    panels[m].curves.push_back(std::move(curve));
+  }
+  for (Panel& panel : panels) {
+    Curve line{{range.values.front(), range.values.back()}, {}, false, false, legend.size()};
+    line.y.assign(2, 100 * limit);
+    panel.curves.push_back(line);
+  }
+  legend.emplace_back("limit");
+  return svg_plot(title, legend, panels);
+}
+
+}  // namespace withy

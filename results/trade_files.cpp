@@ -1,0 +1,181 @@
+#include "withy/results/trade_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "withy/core/plugin/mode_family.hpp"
+#include "withy/results/provenance.hpp"
+#include "withy/results/svg_plot.hpp"
+#include "withy/scene/sha256.hpp"
+
+namespace withy {
+
+using Json = nlohmann::ordered_json;
+
+std::string trade_over_text(const study::Point& point) {
+  std::string text;
+  for (const std::string& o : point.over) {
+    const std::string path = o.substr(0, o.find('='));
+    text += (text.empty() ? "" : " ") + path.substr(path.find_last_of('.') + 1) + o.substr(o.find('='));
+  }
+  return text;
+}
+
+Json trade_result_json(const study::TradeResult& r) {
+  return {{"formulation", r.point.formulation},
+          {"modes", r.point.modes},
+          {"family", r.point.family.empty() ? Json() : Json(r.point.family)},
+          {"integrator", r.point.integrator},
+          {"tolerance", r.point.tolerance},
+          {"over", r.point.over},
+          {"status", r.status},
+          {"message", r.message},
+          {"hinge_error", r.hinge_error},
+          {"tip_error", r.tip_error},
+          {"relative_error", r.relative_error},
+          {"cpu_seconds", r.cpu_seconds},
+          {"steps", r.steps},
+          {"evaluations", r.evaluations}};
+}
+
+Json trade_reference_json(const study::TradeReference& r) {
+  return {{"formulation", r.point.formulation}, {"modes", r.point.modes},   {"integrator", r.point.integrator},
+          {"tolerance", r.point.tolerance},     {"hinge_way", r.hinge_way}, {"tip_way", r.tip_way},
+          {"hinge_error", r.hinge_error},       {"tip_error", r.tip_error}, {"relative_error", r.relative_error}};
+}
+
+Json trade_json(const Scene& scene, const study::TradeStudy& study, const std::vector<study::TradeResult>& results,
+                const std::vector<bool>& front) {
+  Json j{{"scene", scene.file}, {"name", scene.name}, {"references", Json::object()}, {"points", Json::array()}};
+  for (const auto& [over, reference] : study.references()) j["references"][over] = trade_reference_json(reference);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    j["points"].push_back(trade_result_json(results[i]));
+    j["points"].back()["pareto"] = static_cast<bool>(front[i]);
+  }
+  return j;
+}
+
+std::string trade_csv(const std::vector<study::TradeResult>& results, const std::vector<bool>& front) {
+  std::string text =
+      "formulation,modes,family,integrator,tolerance,over,status,hinge_error,tip_error[m],relative_error,steps,"
+      "evaluations,cpu[s],pareto\n";
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const study::TradeResult& r = results[i];
+    text += fmt::format("{},{},{},{},{:g},\"{}\",{},", r.point.formulation, r.point.modes, r.point.family,
+                        r.point.integrator, r.point.tolerance, trade_over_text(r.point), r.status);
+    if (r.completed())
+      text += fmt::format("{},{},{},{},{},{},{}\n", r.hinge_error, r.tip_error, r.relative_error, r.steps,
+                          r.evaluations, r.cpu_seconds, front[i] ? 1 : 0);
+    else
+      text += ",,,,,,0\n";
+  }
+  return text;
+}
+
+std::string trade_picture(const std::string& title, const std::vector<study::TradeResult>& results,
+                          const std::vector<bool>& front) {
+  std::vector<std::string> legend;
+  std::map<std::string, std::size_t> pens;
+  for (const study::TradeResult& r :
+       results)  // those that failed too: a colour means the same in every study of the same list
+    if (pens.emplace(r.point.formulation, legend.size()).second) legend.push_back(r.point.formulation);
+  const std::size_t line = legend.size();
+  legend.emplace_back("Pareto front");
+  std::vector<std::string> overs;
+  std::vector<Panel> panels;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const study::TradeResult& r = results[i];
+    if (!r.completed()) continue;
+    const std::string over = trade_over_text(r.point);
+    const auto at = std::find(overs.begin(), overs.end(), over);
+    const auto p = static_cast<std::size_t>(at - overs.begin());
+    if (at == overs.end()) {
+      overs.push_back(over);
+      panels.push_back({"CPU time [ms]" + (over.empty() ? "" : ", " + over), "error [%]", {1e300, 0}, {}});
+      panels.back().log_x = panels.back().log_y = true;
+      panels.back().curves.resize(legend.size());
+      for (std::size_t c = 0; c < line; ++c) panels.back().curves[c].points = true;
+    }
+    const double x = 1e3 * r.cpu_seconds, y = std::max(100 * r.relative_error, 1e-12);
+    const auto add = [&](Curve& curve) {
+      curve.x.push_back(x);
+      curve.y.push_back(y);
+    };
+    add(panels[p].curves[pens.at(r.point.formulation)]);
+    if (front[i]) add(panels[p].curves[line]);
+    panels[p].y_range = {std::min(panels[p].y_range.first, y), std::max(panels[p].y_range.second, y)};
+  }
+  for (Panel& panel : panels) {  // along the front error falls as cost rises
+    Curve& curve = panel.curves[line];
+    std::sort(curve.x.begin(), curve.x.end());
+    std::sort(curve.y.rbegin(), curve.y.rend());
+  }
+  return svg_plot(title, legend, panels);
+}
+
+namespace {
+
+study::PointStore::Kept read(const Json& j, const study::Point& point) {
+  const Json& r = j.at("reference");
+  study::PointStore::Kept kept;
+  kept.reference = {{r.at("formulation"), "", r.at("modes"), r.at("integrator"), r.at("tolerance"), point.over},
+                    r.at("hinge_way"),
+                    r.at("tip_way"),
+                    r.at("hinge_error"),
+                    r.at("tip_error"),
+                    r.at("relative_error")};
+  kept.result = {point,
+                 j.at("status"),
+                 j.at("message"),
+                 j.at("hinge_error"),
+                 j.at("tip_error"),
+                 j.at("relative_error"),
+                 j.at("cpu_seconds"),
+                 j.at("steps"),
+                 j.at("evaluations"),
+                 kept.reference.relative_error};
+  return kept;
+}
+
+}  // namespace
+
+std::optional<study::PointStore::Kept> TradeFolder::find(const study::Point& point) {
+  const std::optional<Json> kept = points_.find(point.key());
+  if (!kept) return {};
+  try {
+    return read(*kept, point);
+  } catch (const Json::exception&) {
+    return {};  // no result of this version: it is computed anew
+  }
+}
+
+void TradeFolder::keep(const Kept& kept) {
+  Json j = trade_result_json(kept.result);
+  j["reference"] = trade_reference_json(kept.reference);
+  points_.keep(kept.result.point.key(), j);
+}
+
+std::string trade_fingerprint(const Scene& scene, const std::vector<study::Point>& points, Registry& registry) {
+  int modes = 0;
+  double tolerance = 1;
+  std::map<std::string, std::string> builds;
+  const auto build_of = [&]<class Interface>(const std::string& id) {
+    const Plugin<Interface>* plugin = id.empty() ? nullptr : registry.find<Interface>(id);
+    if (plugin != nullptr) builds[std::string(kind_name<Interface>()) + '/' + id] = library_identity(plugin->origin);
+  };
+  for (const study::Point& p : points) {
+    modes = std::max(modes, p.modes);
+    tolerance = std::min(tolerance, p.tolerance);
+    build_of.operator()<Formulation>(p.formulation);
+    build_of.operator()<ModeFamily>(p.family);
+    build_of.operator()<Integrator>(p.integrator);
+  }
+  for (const char* reference : {"exact", "quadratic"}) build_of.operator()<Formulation>(reference);
+  build_of.operator()<Integrator>("dopri5");
+  return sha256(Json{provenance_of(scene).fingerprint(), modes, tolerance, builds}.dump());
+}
+
+}  // namespace withy

@@ -1,0 +1,47 @@
+/// \file
+/// Trade studies as JSON, table and picture, and the folder that keeps their finished points.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "withy/results/kept_results.hpp"
+#include "withy/study/trade.hpp"
+
+namespace withy {
+
+/// The values gone over for people: "time_scale=1.2 end=3".
+std::string trade_over_text(const study::Point& point);
+
+nlohmann::ordered_json trade_result_json(const study::TradeResult& result);
+nlohmann::ordered_json trade_reference_json(const study::TradeReference& reference);
+/// The content of trade.json. \param front one a result
+nlohmann::ordered_json trade_json(const Scene& scene, const study::TradeStudy& study,
+                                  const std::vector<study::TradeResult>& results, const std::vector<bool>& front);
+/// A line a point.
+std::string trade_csv(const std::vector<study::TradeResult>& results, const std::vector<bool>& front);
+/// Error over cost, both logarithmic; a colour a formulation, the front as a line. A panel for each of the values gone
+/// over.
+std::string trade_picture(const std::string& title, const std::vector<study::TradeResult>& results,
+                          const std::vector<bool>& front);
+
+/// Finished points in a folder, a file each.
+class TradeFolder : public study::PointStore {
+ public:
+  /// \param folder its `points` is made with the first
+  /// \param fingerprint of all that points have in common: those of another study are not found
+  TradeFolder(const std::filesystem::path& folder, const std::string& fingerprint)
+      : points_(folder / "points", fingerprint) {}
+  std::optional<Kept> find(const study::Point& point) override;
+  void keep(const Kept& kept) override;
+
+ private:
+  KeptResults points_;
+};
+
+/// Of a study: the scene, what the points ask of a reference, and the builds of the plugins that they name.
+std::string trade_fingerprint(const Scene& scene, const std::vector<study::Point>& points, Registry& registry);
+
+}  // namespace withy

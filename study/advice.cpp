@@ -1,0 +1,92 @@
+#include "withy/study/advice.hpp"
+
+#include <algorithm>
+
+#include "withy/core/simulation/instants.hpp"
+#include "withy/study/advice_search.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::study {
+namespace {
+
+/// The choice, run as a scene that says so is: a deflection past the scene's limit shows there alone.
+RunSummary confirm(Evaluator& evaluator, const Point& choice) {
+  const Prepared& model = *evaluator.model(choice).prepared;
+  RunOptions options = run_options(model.scene);
+  options.interrupted = evaluator.control().interrupted;
+  return simulate(model.model(), *model.equations,
+                  *make_integrator(evaluator.registry(), choice.integrator, choice.tolerance), model.scene.initial,
+                  options, {});
+}
+
+/// Fills the advice of a search that has a choice.
+void finish(Search& search, Evaluator& evaluator, Advice& advice) {
+  while (advice.choice && !search.stopped()) {
+    advice.confirmed = confirm(evaluator, advice.choice->point);
+    if (advice.confirmed.status == RunStatus::completed || search.stopped()) break;
+    const std::string key = advice.choice->point.key();
+    for (Probe& p : advice.probes) {
+      if (p.point.key() != key) continue;
+      p.outcome = Probe::Outcome::stopped;
+      p.reason = advice.confirmed.message;
+    }
+    search.choose();
+  }
+  for (Probe& p : advice.probes) p.cost = evaluator.cost(p);
+  if (!advice.choice || search.stopped()) return;
+  Probe& choice = *advice.choice;
+  choice.cost = evaluator.cost(choice);
+  const Prepared& model = *evaluator.model(choice.point).prepared;
+  const auto integrator = make_integrator(evaluator.registry(), choice.point.integrator, choice.point.tolerance);
+  advice.steps = step_limit(*integrator, model.scene.initial.time, advice.confirmed);
+  advice.indicators = indicators(model.scene, advice.confirmed);
+  search.look_up();
+  for (Probe& p : advice.above) p.cost = evaluator.cost(p);
+}
+
+}  // namespace
+
+Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy) {
+  const Scene& scene = evaluator.base().scene;
+  if (has_switches(*scene.model))
+    throw InputError(scene.file +
+                     ": a load switches at zeros of a function of the state, at times of their own in every model; "
+                     "runs that are measured against each other need common ones");
+  accuracy.require_something_of(evaluator.outputs());
+  Advice advice;
+  Search search(evaluator, candidates, accuracy, advice);
+  search.find_yardstick();
+  if (advice.yardstick && !search.stopped()) {
+    search.try_models();
+    search.choose();
+    search.simplify_bodies();
+    finish(search, evaluator, advice);
+  }
+  advice.interrupted = search.stopped();
+  if (advice.interrupted) advice.choice.reset();
+  advice.cpu_seconds = evaluator.spent();
+  return advice;
+}
+
+std::vector<Change> new_changes(const Scene& scene, const Point& choice) {
+  const auto says = [&](const Change& change) {
+    const Value* at = &scene.source;
+    for (std::size_t begin = 0; at != nullptr && begin <= change.path.size();) {
+      const std::size_t end = std::min(change.path.find('.', begin), change.path.size());
+      at = at->find(change.path.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    if (at == nullptr || at->kind() != change.value.kind()) return false;
+    return (at->kind() == Value::Kind::number && at->number() == change.value.number()) ||
+           (at->kind() == Value::Kind::text && at->text() == change.value.text());
+  };
+  std::vector<Change> all{{"formulation", Value(choice.formulation)}};
+  for (Change& change : changes_at(scene, choice))
+    if (!says(change)) all.push_back(std::move(change));
+  // The integrator beside the formulation.
+  std::stable_partition(all.begin(), all.end(),
+                        [](const Change& c) { return c.path == "formulation" || c.path == "integrator"; });
+  return all;
+}
+
+}  // namespace withy::study

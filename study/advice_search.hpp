@@ -1,0 +1,39 @@
+/// \file
+/// The steps of a search for advice. Its numbers are in advice_search.cpp, with what they mean.
+#pragma once
+
+#include "withy/study/advice.hpp"
+
+namespace withy::study {
+
+/// A search under way: what it is about does not change, what it has found is in the advice.
+class Search {
+ public:
+  Search(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice)
+      : evaluator_(evaluator), candidates_(candidates), accuracy_(accuracy), advice_(advice) {}
+
+  void find_yardstick();
+  void try_models();
+  void choose();
+  void simplify_bodies();
+  void look_up();
+  [[nodiscard]] bool stopped() const { return advice_.interrupted || evaluator_.control().stop(); }
+
+ private:
+  void explain(const ReferenceFound& found);
+  [[nodiscard]] std::vector<Point> models_by_cost() const;
+  void try_model(const Point& model);
+  bool model_holds(const Point& model);
+  [[nodiscard]] double exact_enough_tolerance() const;
+  [[nodiscard]] double best_cost() const;
+  const Probe& run(const Point& point, const Allowance& allowance);
+  void time_again(const Probe& probe);
+  [[nodiscard]] const Yardstick& yardstick() const { return *advice_.yardstick; }
+
+  Evaluator& evaluator_;
+  const Candidates& candidates_;
+  const Accuracy& accuracy_;
+  Advice& advice_;
+};
+
+}  // namespace withy::study

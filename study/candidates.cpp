@@ -1,0 +1,101 @@
+#include "withy/study/candidates.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "withy/core/plugin/formulation_ladder.hpp"
+#include "withy/core/plugin/mode_family.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::study {
+namespace {
+
+/// A basis that is complete for any clamped beam, whatever it carries.
+constexpr const char* polynomials = "orthogonal-polynomials";
+/// What stands for all formulations where no body is flexible: the one of scenes that name none.
+constexpr const char* plain_formulation = "quadratic";
+
+/// Whether a family describes any bending of a beam that is clamped at the root and free at the tip.
+bool spans_cantilevers(const Value& family, Registry& registry) {
+  Diagnostics diagnostics;
+  const auto made = make_mode_family(family, {registry, diagnostics});
+  return made != nullptr && made->spans_cantilevers();
+}
+
+/// Calls with every number of modes in bending that is not zero.
+template <class Function>
+void for_each_bending(const Scene& scene, Function&& function) {
+  for (const BodyModes& body : scene.modes)
+    for (const ModeCount& count : body.counts)
+      if (count.modes > 0 && !count.family_path.empty()) function(count);
+}
+
+/// Whether another basis of clamped beams means the same beams: all are clamped at the root and free at the tip, no
+/// damping is that of single modes, and no modal coordinate has a value at the start.
+bool families_are_exchangeable(const Scene& scene, Registry& registry) {
+  bool fit = true;
+  for_each_bending(scene, [&](const ModeCount& count) { fit = fit && spans_cantilevers(count.family, registry); });
+  for (const BodyNode& body : scene.model->bodies()) fit = fit && body.body->shape().damping.isZero(0);
+  const Layout& layout = scene.model->layout();
+  for (const Slot& body : layout.bodies) {
+    for (std::size_t i = 0; i < body.positions; ++i) fit = fit && scene.initial.y[body.position + i] == 0;
+    for (std::size_t i = 0; i < body.speeds; ++i) fit = fit && scene.initial.y[layout.positions + body.speed + i] == 0;
+  }
+  return fit;
+}
+
+void check(const Axes& axes, Registry& registry) {
+  check_axes(axes);
+  for (const std::string& f : axes.formulations) {
+    if (!make_formulation(registry, f)->standing().studied)
+      throw InputError("formulations: '" + f +
+                       "' is never advised: it is there to be compared. See withy trade for its error");
+  }
+  for (const std::string& i : axes.integrators)
+    if (registry.find<Integrator>(i) == nullptr) throw InputError("no integrator '" + i + "'");
+}
+
+}  // namespace
+
+Axes usual_axes() { return {{}, {}, {1, 2, 3, 4}, {"dopri5", "dop853", "imex"}, {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, {}}; }
+
+Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes c) {
+  if (c.formulations.empty()) c.formulations = studied_formulations(registry);
+  check(c, registry);
+  const Scene& scene = prepared.scene;
+  if (!flexible(prepared.model())) c.formulations = {plain_formulation};  // without modes all are the same
+  bool bending = false, polynomial_already = true;
+  for_each_bending(scene, [&](const ModeCount& count) {
+    bending = true;
+    polynomial_already = polynomial_already && count.family_id() == polynomials;
+  });
+  if (scene.modes.empty()) c.modes = {0};
+  if (!bending) c.families = {""};
+  if (c.families.empty()) {
+    c.families = {""};
+    if (!polynomial_already && families_are_exchangeable(scene, registry)) c.families.emplace_back(polynomials);
+  }
+  std::sort(c.tolerances.begin(), c.tolerances.end(), std::greater<>());
+  std::sort(c.modes.begin(), c.modes.end());
+  return c;
+}
+
+std::string reference_family(const Candidates& candidates) {
+  const auto& all = candidates.families;
+  return std::find(all.begin(), all.end(), polynomials) != all.end() ? polynomials : "";
+}
+
+std::vector<std::string> flexible_bodies(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const auto& [name, body] : scene.source.at("bodies").members()) {
+    const std::string& of = name;
+    const auto is_part = [&](const BodyNode& b) {
+      return b.body->shape().modes() > 0 && (b.segment ? b.segment->whole : b.name) == of;
+    };
+    const auto& nodes = scene.model->bodies();
+    if (std::any_of(nodes.begin(), nodes.end(), is_part)) names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace withy::study

@@ -1,0 +1,32 @@
+/// \file
+/// What advice chooses from.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "withy/study/point.hpp"
+#include "withy/study/prepared.hpp"
+
+namespace withy::study {
+
+/// Values of each axis as asked for, and as they make sense for the scene: formulations cost less before more, modes
+/// fewer before more (0 where no body has a number of them), tolerances loosest first.
+using Candidates = Axes;
+
+/// What is chosen from where nothing else is asked; no formulations: those that take part in studies.
+Axes usual_axes();
+
+/// The axes without what means nothing for the scene, families of bending added where they mean the same beams.
+/// \param asked no families: the scene's, and another where it means the same beams
+/// \throws InputError where a value cannot be, or is `inconsistent`.
+Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes asked);
+
+/// The family of a candidate that references are best made of: empty for the scene's own.
+std::string reference_family(const Candidates& candidates);
+
+/// Names of the scene's bodies that have modes, in its order; a beam in segments is one.
+std::vector<std::string> flexible_bodies(const Scene& scene);
+
+}  // namespace withy::study

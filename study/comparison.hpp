@@ -1,0 +1,41 @@
+/// \file
+/// Several runs of one scene, seen together: how far they are apart.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "withy/study/measures.hpp"
+#include "withy/study/run.hpp"
+
+namespace withy::study {
+
+/// One run of a comparison, with every output it gave.
+struct ComparedRun {
+  Prepared prepared;
+  RunSummary summary;
+  std::vector<State> outputs;
+  [[nodiscard]] const std::string& formulation() const { return prepared.scene.formulation_name; }
+};
+
+/// The runs of a scene in several formulations.
+struct Comparison {
+  std::vector<ComparedRun> runs;
+  std::size_t listed = 0;     ///< runs beyond these were made for reference only
+  std::size_t reference = 0;  ///< index; past the end where the user interrupted before it was run
+  [[nodiscard]] bool interrupted() const { return runs.back().summary.status == RunStatus::interrupted; }
+  [[nodiscard]] bool has_reference() const { return reference < runs.size(); }
+  /// Greatest distances of a run from the reference, over the outputs both have.
+  [[nodiscard]] NamedDistances distances(const ComparedRun& run) const;
+};
+
+/// Simulates a scene, every output handed on.
+using Simulator = std::function<RunSummary(const Prepared&, const std::function<void(const State&)>& output)>;
+
+/// Runs the formulations, and the reference where it is not among them.
+/// \throws SceneError, InputError, PluginError
+Comparison compare(const SceneValues& values, Registry& registry, const std::vector<std::string>& formulations,
+                   const std::string& reference, const Simulator& simulator);
+
+}  // namespace withy::study

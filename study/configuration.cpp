@@ -1,0 +1,141 @@
+#include "withy/study/configuration.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "withy/core/model/hinge_rates.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::study {
+namespace {
+
+/// The one speed of a hinge, or of that name.
+std::size_t one_speed(const Model& model, const std::string& name, const std::string& what) {
+  const std::vector<std::size_t> speeds = speeds_of(model, name, what);
+  if (speeds.size() == 1) return speeds[0];
+  throw InputError(fmt::format("{}: hinge '{}' has {} rates; name one, as {}.0", what, name, speeds.size(), name));
+}
+
+/// The hinge that a speed belongs to.
+std::size_t hinge_of(const Layout& layout, std::size_t speed) {
+  std::size_t h = 0;
+  while (speed < layout.hinges[h].speed || speed >= layout.hinges[h].speed + layout.hinges[h].speeds) ++h;
+  return h;
+}
+
+}  // namespace
+
+Configuration::Configuration(const Prepared& prepared, State state, const Holding& holding)
+    : prepared_(prepared),
+      dynamics_(prepared.scene.model, prepared.scene.formulation->terms()),
+      state_(std::move(state)),
+      held_(layout().speeds, false) {
+  const Model& model = prepared_.model();
+  for (const DiscreteSlot& slot : layout().discrete_slots)
+    throw InputError(prepared.scene.file + ": load '" + model.loads()[slot.load].name +
+                     "' changes at instants (sampled, or a relay); linear analyses need loads that are continuous in "
+                     "time: leave out its 'sample', or the load");
+  model.prescribe(state_);
+  for (const MotionNode& motion : model.motions()) {
+    const Slot& slot = layout().hinges[static_cast<std::size_t>(motion.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) held_[slot.speed + i] = true;
+  }
+  for (const std::string& name : holding.locked) {
+    for (const std::size_t s : speeds_of(model, name, "lock")) held_[s] = true;
+  }
+  for (const Spin& spun : holding.spun) spin(spun);
+}
+
+std::vector<std::string> Configuration::held_names() const {
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < held_.size(); ++s) {
+    if (held_[s]) names.push_back(layout().speed_names[s]);
+  }
+  return names;
+}
+
+void Configuration::spin(const Spin& spin) {
+  const std::size_t speed = one_speed(prepared_.model(), spin.name, "spin");
+  if (prepared_.model().driven(hinge_of(layout(), speed)))
+    throw InputError(fmt::format("spin: a motion of the scene drives '{}' already", spin.name));
+  if (!std::isfinite(spin.rate)) throw InputError("spin: rate of '" + spin.name + "': need a finite number");
+  held_[speed] = true;
+  state_.y[layout().positions + speed] = spin.rate;
+}
+
+void Configuration::begin_at(const State& state) {
+  const Layout& order = layout();
+  const auto take = [&](const Slot& slot) {
+    for (std::size_t i = 0; i < slot.speeds; ++i) {
+      if (held_[slot.speed + i]) return;
+    }
+    for (std::size_t i = 0; i < slot.positions; ++i) state_.y[slot.position + i] = state.y[slot.position + i];
+  };
+  for (const Slot& slot : order.hinges) take(slot);
+  for (const Slot& slot : order.bodies) take(slot);
+}
+
+std::vector<std::size_t> speeds_of(const Model& model, const std::string& name, const std::string& what) {
+  const Layout& layout = model.layout();
+  std::vector<std::size_t> speeds;
+  if (const Slot* slot = layout.hinge(name)) {
+    for (std::size_t i = 0; i < slot->speeds; ++i) speeds.push_back(slot->speed + i);
+    if (speeds.empty()) throw InputError(fmt::format("{}: hinge '{}' has no rates", what, name));
+    return speeds;
+  }
+  for (const std::size_t s : hinge_speeds(layout)) {
+    if (layout.speed_names[s] == name) return {s};
+  }
+  std::string known;
+  for (const Slot& slot : layout.hinges) {
+    if (slot.speeds > 0) known += (known.empty() ? "" : ", ") + slot.name;
+  }
+  throw InputError(fmt::format("{}: no hinge '{}'; known: {}", what, name, known));
+}
+
+std::vector<std::size_t> hinge_speeds(const Layout& layout) {
+  std::vector<std::size_t> speeds;
+  for (const Slot& slot : layout.hinges) {
+    for (std::size_t i = 0; i < slot.speeds; ++i) speeds.push_back(slot.speed + i);
+  }
+  return speeds;
+}
+
+bool rate_is_angular(const Model& model, const std::string& name, const std::string& what) {
+  const std::size_t speed = one_speed(model, name, what);
+  const std::size_t h = hinge_of(model.layout(), speed);
+  return hinge_rates(*model.hinges()[h].hinge)[speed - model.layout().hinges[h].speed].angular;
+}
+
+std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
+  if (steady.converged) return {};
+  std::string text = fmt::format("no steady state was found: after {} steps of Newton's method ", steady.iterations);
+  std::size_t worst = 0;
+  double left = 0;
+  for (std::size_t s = 0; s < c.held().size(); ++s) {
+    const double effort = std::abs(steady.efforts[static_cast<Eigen::Index>(s)]);
+    if (c.held()[s] || !(effort > left)) continue;
+    left = effort;
+    worst = s;
+  }
+  text += fmt::format("{:.3g} are left over on {}", left, c.layout().speed_names[worst]);
+  if (steady.neutral.size() > 0) {
+    Eigen::Index weakest = 0;
+    steady.neutral.cwiseAbs().maxCoeff(&weakest);
+    text += fmt::format("; nothing holds {}: lock its hinge, give it a spring, or start from another state",
+                        c.layout().speed_names[static_cast<std::size_t>(weakest)]);
+  } else {
+    text += "; start from a state nearer to one (--at), or approach the load in steps (withy modes --sweep)";
+  }
+  return text;
+}
+
+std::string derivatives_text(const Tangents& tangents) {
+  if (tangents.differenced.empty()) return "exact";
+  std::string names;
+  for (const std::string& n : tangents.differenced) names += (names.empty() ? "" : ", ") + n;
+  return "exact but for the loads " + names + ", by central differences of eighth order";
+}
+
+}  // namespace withy::study

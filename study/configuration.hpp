@@ -1,0 +1,63 @@
+/// \file
+/// A scene at a state, with what is held of it: what studies of steady states and small motions look at.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/core/analysis/steady_state.hpp"
+#include "withy/study/prepared.hpp"
+
+namespace withy::study {
+
+/// A rate that a hinge is held at.
+struct Spin {
+  std::string name;  ///< of the hinge, or where it has several rates of one of its speeds, as "ball.2"
+  double rate = 0;   ///< [rad/s, m/s]
+};
+
+/// What is held beside the hinges that motions drive.
+struct Holding {
+  std::vector<std::string> locked;  ///< hinges, or single speeds of them, at the state's coordinates and rates
+  std::vector<Spin> spun;
+};
+
+class Configuration {
+ public:
+  /// \throws InputError where a load changes at instants, or there is no such hinge.
+  Configuration(const Prepared& prepared, State state, const Holding& holding);
+
+  [[nodiscard]] const Prepared& prepared() const { return prepared_; }
+  [[nodiscard]] const Layout& layout() const { return prepared_.model().layout(); }
+  [[nodiscard]] const TangentDynamics& dynamics() const { return dynamics_; }
+  [[nodiscard]] const State& state() const { return state_; }
+  [[nodiscard]] const Held& held() const { return held_; }
+  /// Names of the speeds that are held, as "axle.0".
+  [[nodiscard]] std::vector<std::string> held_names() const;
+
+  /// Gives a speed a rate and holds it. \throws InputError where a motion drives it already.
+  void spin(const Spin& spin);
+  /// Takes the free coordinates from another state of the same model.
+  void begin_at(const State& state);
+  void set_state(State state) { state_ = std::move(state); }
+
+ private:
+  Prepared prepared_;
+  TangentDynamics dynamics_;
+  State state_;
+  Held held_;
+};
+
+/// Speeds of a hinge, or the one speed of that name. \throws InputError naming `what` they were wanted for
+std::vector<std::size_t> speeds_of(const Model& model, const std::string& name, const std::string& what);
+/// Speeds that belong to hinges.
+std::vector<std::size_t> hinge_speeds(const Layout& layout);
+/// Whether the one rate of that name turns something. \throws InputError as speeds_of, and where it names several
+bool rate_is_angular(const Model& model, const std::string& name, const std::string& what);
+
+/// Why there is no steady state, in a sentence or two; empty where there is one.
+std::string no_steady_state(const Configuration& configuration, const SteadyState& steady);
+/// How the derivatives were found: exact, or numerical for loads that are named.
+std::string derivatives_text(const Tangents& tangents);
+
+}  // namespace withy::study

@@ -1,0 +1,56 @@
+#include "withy/study/indicators.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "withy/core/plugin/formulation.hpp"
+#include "withy/core/simulation/validity_limits.hpp"
+
+namespace withy::study {
+namespace {
+
+/// Of the elastic energy of a family: what its highest mode may have before the next one is missed.
+constexpr double highest_mode_limit = 0.1;
+/// Relative error of accelerations by rounding that leaves six digits.
+constexpr double rounding_limit = 1e-6;
+
+/// Modes in one direction alone: taken as the plane of rotation.
+bool one_direction(const BodyValidity& body) { return body.highest.size() == 1; }
+
+void add_body(std::vector<Indicator>& all, const BodyValidity& b, const Terms& own, const RunSummary& summary) {
+  if (!second_order(own)) {
+    all.push_back({"rate of '" + b.name + "' over its fundamental frequency", b.rate_ratio,
+                   rate_limit(own, one_direction(b)), "frequencies of vibration are 1 % wrong"});
+    all.push_back({"load of '" + b.name + "' over its buckling load", b.load.size(), load_limit,
+                   "the second-order terms left out act"});
+  }
+  const auto d = summary.peak_deflection_ratio.find(b.name);
+  if (d != summary.peak_deflection_ratio.end() && own.strain != StrainOrder::exact)
+    all.push_back({"tip deflection of '" + b.name + "' over its length", d->second, deflection_limit,
+                   "deflections are not small"});
+  for (const HighestMode& h : b.highest) {
+    if (h.modes > 1)
+      all.push_back({"energy of the highest " + h.family + " mode of '" + b.name + "'", h.share, highest_mode_limit,
+                     "modes that were left out would take part"});
+  }
+}
+
+}  // namespace
+
+std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary, std::optional<Terms> used) {
+  const Terms terms = used.value_or(scene.formulation->terms());
+  std::vector<Indicator> all;
+  for (const BodyValidity& b : summary.validity.bodies) {
+    const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(b.name))];
+    add_body(all, b, node.terms.value_or(terms), summary);
+  }
+  if (summary.conditioning.condition > 0) {
+    all.push_back({"condition of the mass matrix times the rounding unit",
+                   summary.conditioning.condition * std::numeric_limits<double>::epsilon(), rounding_limit,
+                   "accelerations have fewer than six digits"});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Indicator& a, const Indicator& b) { return a.use() > b.use(); });
+  return all;
+}
+
+}  // namespace withy::study

@@ -1,0 +1,28 @@
+/// \file
+/// How a run stands against the limits of its formulation (theory, section 5).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "withy/core/plugin/terms.hpp"
+#include "withy/core/simulation/simulate.hpp"
+#include "withy/scene/scene.hpp"
+
+namespace withy::study {
+
+/// An indicator of validity against its limit.
+struct Indicator {
+  std::string text;  ///< "tip deflection of 'link2' over its length"
+  double value = 0;
+  double limit = 0;
+  std::string meaning;  ///< what happens past the limit
+  [[nodiscard]] double use() const { return value / limit; }
+};
+
+/// Those that matter to the scene's formulation, the one nearest to its limit (or furthest past it) first.
+/// \param used what the run kept in the end, where that is not what the scene's formulation says
+std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary, std::optional<Terms> used = {});
+
+}  // namespace withy::study

@@ -1,0 +1,40 @@
+#include "withy/study/left_out.hpp"
+
+#include "withy/core/plugin/formulation.hpp"
+
+namespace withy::study {
+namespace {
+
+/// What a formulation does not know.
+std::string left_out(const Terms& terms) {
+  switch (terms.truncation) {
+    case Truncation::ruthless:
+      return "every product of an elastic coordinate or rate with the rigid motion: stiffening and softening by "
+             "rotation "
+             "and load, foreshortening, change of inertia by deflection";
+    case Truncation::strict:
+      return terms.strain == StrainOrder::linear
+                 ? "second-order kinematics, and all beyond the first order of elastic coordinates and rates"
+                 : "all beyond the first order of elastic coordinates and rates, the square in the mass matrix too";
+    case Truncation::none:
+      break;
+  }
+  if (terms.strain == StrainOrder::linear)
+    return "second-order kinematics: foreshortening, and with it stiffening and buckling by axial load";
+  if (terms.strain == StrainOrder::quadratic) return "the third and higher orders of deflection";
+  return "extension along beams and shear";
+}
+
+}  // namespace
+
+std::string left_out(const ModelAt& model) {
+  if (!flexible(model.prepared->model())) return "nothing: no body is flexible";
+  std::string text = left_out(model.prepared->scene.formulation->terms());
+  std::string bodies;
+  for (const auto& own : model.point.bodies) bodies += (bodies.empty() ? "; of " : ", ") + own.first;
+  if (bodies.empty()) return text;
+  constexpr Terms least{StrainOrder::linear, Truncation::ruthless};  // bodies have no other formulation of their own
+  return text + bodies + " " + left_out(least);
+}
+
+}  // namespace withy::study

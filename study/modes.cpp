@@ -1,0 +1,90 @@
+#include "withy/study/modes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace withy::study {
+namespace {
+
+double greatest_eigenvalue(const ModesAt& at) {
+  double g = 0;
+  for (const Mode& m : at.modes) g = std::max({g, std::abs(m.eigenvalue), std::abs(m.partner)});
+  return g;
+}
+
+}  // namespace
+
+ModesAt modes_at(const Configuration& c, bool as_is) {
+  ModesAt at;
+  at.names = c.layout().speed_names;
+  at.model = c.prepared().scene.model;
+  State state = c.state();
+  if (!as_is) {
+    at.steady = SteadyFound{find_steady_state(c.dynamics(), c.state(), c.held()), c.held(), {}, {}};
+    at.problem = no_steady_state(c, at.steady->steady);
+    if (!at.steady->steady.converged) return at;
+    state = at.steady->steady.state;
+  }
+  try {
+    const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
+    at.modes = natural_modes(tangents, c.held());
+    at.masses = tangents.mass.diagonal().cwiseAbs();
+    if (!as_is) {
+      at.steady->stays = stays_steady(c.dynamics(), tangents, state, c.held());
+      at.steady->derivatives = derivatives_text(tangents);
+    }
+  } catch (const std::domain_error& e) {
+    at.problem = e.what();
+  }
+  return at;
+}
+
+ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartState& start, const Holding& holding,
+                    const Sweep& sweep, bool as_is, const Control& control) {
+  ModesOf run;
+  const bool spins = !sweep.spun().empty(), varies = !sweep.none() && !spins;
+  std::optional<Configuration> c;
+  std::optional<State> last;
+  BranchTracker tracker;
+  for (std::size_t k = 0; k < sweep.values.size() && !control.stop(); ++k) {
+    const double value = sweep.values[k];
+    if (!c || varies) {
+      SceneValues here = values;
+      if (varies) here.set_text(fmt::format("{}={}", sweep.path, value));
+      const Prepared prepared = prepare(std::move(here), registry);
+      c.emplace(prepared, start ? start(prepared) : prepared.scene.initial, holding);
+    }
+    if (spins) c->spin({sweep.spun(), value});
+    if (last && last->y.size() == c->state().y.size()) c->begin_at(*last);
+    run.points.push_back(modes_at(*c, as_is));
+    ModesAt& at = run.points.back();
+    at.value = value;
+    if (at.steady && at.steady->steady.converged) last = at.steady->steady.state;
+    if (at.problem.empty()) at.modes = tracker.follow(std::move(at.modes), at.masses);
+    control.tell(static_cast<double>(k + 1), static_cast<double>(sweep.values.size()));
+  }
+  if (c) run.formulation = c->prepared().scene.formulation_name;
+  return run;
+}
+
+std::string dominating(const ModesAt& at, const Mode& mode) {
+  return at.names[static_cast<std::size_t>(mode.dominant)];
+}
+
+double resolved_growth(const ModesAt& at, const Mode& mode) {
+  constexpr double resolution = 1e-10;
+  return std::abs(mode.growth()) > resolution * greatest_eigenvalue(at) ? mode.growth() : 0.0;
+}
+
+bool unstable(const ModesAt& at, const Mode& mode) { return !mode.rigid && resolved_growth(at, mode) > 0; }
+
+std::string behaviour(const ModesAt& at, const Mode& mode) {
+  if (mode.rigid) return "rigid";
+  if (unstable(at, mode)) return mode.eigenvalue.imag() == 0 ? "diverges" : "flutters";
+  return mode.eigenvalue.imag() == 0 ? "overdamped" : "stable";
+}
+
+}  // namespace withy::study

@@ -1,0 +1,72 @@
+/// \file
+/// Natural modes about steady states, along a sweep of a value of the scene or of a hinge's rate.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "withy/core/analysis/modes.hpp"
+#include "withy/study/configuration.hpp"
+#include "withy/study/control.hpp"
+
+namespace withy::study {
+
+/// Numbers that a value takes, one after the other.
+struct Sweep {
+  std::string path;  ///< in the scene, or `spin.hinge`: the hinge is held at that rate; empty: nothing is swept
+  std::vector<double> values{0.0};
+  [[nodiscard]] bool none() const { return path.empty(); }
+  /// The hinge of `spin.hinge`; empty for a path of the scene.
+  [[nodiscard]] std::string spun() const { return path.starts_with("spin.") ? path.substr(5) : ""; }
+};
+
+using StartState = std::function<State(const Prepared&)>;
+
+/// A steady state that was looked for.
+struct SteadyFound {
+  SteadyState steady;
+  Held held;
+  /// Whether it stays as the hinges turn; not known where no modes were found about it.
+  std::optional<bool> stays;
+  std::string derivatives;  ///< how they were found; the same
+};
+
+/// The modes at one configuration.
+struct ModesAt {
+  double value = 0;  ///< of what is swept
+  std::vector<Mode> modes;
+  std::vector<std::string> names;     ///< of the speeds
+  Eigen::VectorXd masses;             ///< M_ii, one a speed; empty where there are no modes
+  std::string problem;                ///< why there are none; empty where there are
+  std::optional<SteadyFound> steady;  ///< none where the state was taken as it is
+  std::shared_ptr<const Model> model;
+};
+
+/// One formulation, all values.
+struct ModesOf {
+  std::string formulation;
+  std::vector<ModesAt> points;
+};
+
+/// Modes about the configuration's steady state, or where `as_is` about its state.
+ModesAt modes_at(const Configuration& configuration, bool as_is);
+
+/// Goes through the sweep: each value begins at the steady state of the one before, and modes keep their branches.
+/// \param start gives the state that a scene begins at; empty: its initial one
+/// \throws SceneError, InputError, PluginError
+ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartState& start, const Holding& holding,
+                    const Sweep& sweep, bool as_is, const Control& control);
+
+/// Name of the coordinate that dominates a mode, as "link1.bending_y[1]".
+std::string dominating(const ModesAt& at, const Mode& mode);
+/// A growth without what rounding leaves of it: eigenvalues are found to about 1e-10 of the greatest [1/s].
+double resolved_growth(const ModesAt& at, const Mode& mode);
+/// Whether it grows, beyond that.
+bool unstable(const ModesAt& at, const Mode& mode);
+/// "rigid", "diverges", "flutters", "overdamped" or "stable".
+std::string behaviour(const ModesAt& at, const Mode& mode);
+
+}  // namespace withy::study

@@ -1,0 +1,195 @@
+#include "withy/study/point.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <numeric>
+#include <string_view>
+
+#include "withy/study/input_error.hpp"
+
+namespace withy::study {
+namespace {
+
+/// What an initial state says of a body's modal coordinates or rates, for another number of modes.
+/// \param had modes of each strain up to now, in the order of the values.
+Value resized(std::span<const double> values, const std::vector<int>& had, int modes) {
+  std::vector<Value> items;
+  std::size_t first = 0;
+  for (const int n : had) {
+    for (int i = 0; n > 0 && i < modes; ++i)
+      items.emplace_back(i < n ? values[first + static_cast<std::size_t>(i)] : 0.0);
+    first += static_cast<std::size_t>(n);
+  }
+  return Value::list(std::move(items));
+}
+
+/// Gives a body the point's modes and family. \returns the modes that it had, in the order of its coordinates
+std::vector<int> change_modes(std::vector<Change>& changes, const BodyModes& body, const Point& point) {
+  std::vector<int> had;
+  for (const ModeCount& count : body.counts) {
+    had.push_back(static_cast<int>(count.modes));
+    if (count.modes == 0) continue;
+    const std::string path = "bodies." + body.body + '.';
+    changes.push_back({path + count.path, Value(static_cast<double>(point.modes))});
+    if (!point.family.empty() && !count.family_path.empty())
+      changes.push_back({path + count.family_path, Value(point.family)});
+  }
+  return had;
+}
+
+/// Keeps what the initial state says of a body's modes.
+void change_start(std::vector<Change>& changes, const Scene& scene, const std::string& name, const Slot& slot,
+                  const std::vector<int>& had, int modes) {
+  const Value* initial = scene.source.find("initial");
+  const Value* starts = initial != nullptr ? initial->find("bodies") : nullptr;
+  const Value* start = starts != nullptr ? starts->find(name) : nullptr;
+  if (start == nullptr) return;
+  if (std::accumulate(had.begin(), had.end(), std::size_t{0}) != slot.speeds)
+    throw InputError("body '" + name +
+                     "' has other modes than its plugin says: its initial state cannot be carried over");
+  const std::string path = "initial.bodies." + name;
+  const std::span<const double> y = scene.initial.y;
+  if (start->has("modes"))
+    changes.push_back({path + ".modes", resized(y.subspan(slot.position, slot.speeds), had, modes)});
+  if (start->has("rates"))
+    changes.push_back(
+        {path + ".rates", resized(y.subspan(scene.model->layout().positions + slot.speed, slot.speeds), had, modes)});
+}
+
+/// As in a file, on one line.
+std::string flow_text(const Value& value) {
+  std::string out;
+  switch (value.kind()) {
+    case Value::Kind::null:
+      return "null";
+    case Value::Kind::boolean:
+      return value.boolean() ? "true" : "false";
+    case Value::Kind::number:
+      return fmt::format("{}", value.number());
+    case Value::Kind::text:
+      return value.text();
+    case Value::Kind::list:
+      for (const Value& item : value.items()) out += (out.empty() ? "" : ", ") + flow_text(item);
+      return '[' + out + ']';
+    case Value::Kind::map:
+      for (const auto& [key, member] : value.members())
+        out += (out.empty() ? "" : ", ") + key + ": " + flow_text(member);
+      return '{' + out + '}';
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string Point::key() const {
+  std::string key =
+      fmt::format("{}_{}_{}_{}_{:g}", formulation, modes, family.empty() ? "scene" : family, integrator, tolerance);
+  for (const std::string& o : over) key += '_' + o;
+  for (const auto& [body, own] : bodies) key += '_' + body + '=' + own;
+  for (char& c : key) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && std::string_view("._=+-").find(c) == std::string::npos)
+      c = '~';
+  }
+  return key;
+}
+
+std::string Point::formulation_text() const {
+  std::string text = formulation;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    text += (i == 0 ? " (" : ", ") + bodies[i].first;
+    if (i + 1 == bodies.size() || bodies[i + 1].second != bodies[i].second) text += ": " + bodies[i].second;
+  }
+  return bodies.empty() ? text : text + ')';
+}
+
+std::string Point::text() const {
+  std::string text = fmt::format("{}, {} mode{}{}, {} at {:g}", formulation_text(), modes, modes == 1 ? "" : "s",
+                                 family.empty() ? "" : ' ' + family, integrator, tolerance);
+  for (const std::string& o : over) text += ", " + o;
+  return text;
+}
+
+bool Point::same_model(const Point& other) const {
+  return formulation == other.formulation && family == other.family && modes == other.modes && bodies == other.bodies &&
+         over == other.over;
+}
+
+double absolute_tolerance(double relative) {
+  const std::string text = fmt::format("{:g}", 1e-2 * relative);
+  double rounded = 0;
+  std::from_chars(text.data(), text.data() + text.size(), rounded);
+  return rounded;
+}
+
+void check_axes(const Axes& axes) {
+  for (const int m : axes.modes)
+    if (m < 1 || m > 200) throw InputError(fmt::format("modes: got {}; need 1 to 200", m));
+  for (const double t : axes.tolerances)
+    if (!(t > 0 && t <= 1)) throw InputError(fmt::format("tolerances: got {:g}; need above 0, at most 1", t));
+  for (const std::string& f : axes.formulations)
+    if (f == "auto") throw InputError("formulations: 'auto' is a choice along a run, not a model; leave it out");
+}
+
+std::vector<Point> points_of(const Axes& axes) {
+  std::vector<std::vector<std::string>> overs{{}};
+  for (const Variation& v : axes.over) {
+    std::vector<std::vector<std::string>> longer;
+    for (const auto& before : overs) {
+      for (const std::string& value : v.values) {
+        longer.push_back(before);
+        longer.back().push_back(v.path + '=' + value);
+      }
+    }
+    overs = std::move(longer);
+  }
+  std::vector<Point> points;
+  for (const auto& over : overs)
+    for (const std::string& formulation : axes.formulations)
+      for (const std::string& family : axes.families)
+        for (const int modes : axes.modes)
+          for (const std::string& integrator : axes.integrators)
+            for (const double tolerance : axes.tolerances)
+              points.push_back({formulation, family, modes, integrator, tolerance, over});
+  return points;
+}
+
+std::string Change::text() const { return path + '=' + flow_text(value); }
+
+std::vector<Change> changes_at(const Scene& scene, const Point& point) {
+  std::vector<Change> changes;
+  if (!point.integrator.empty())
+    changes.push_back({"integrator", Value::map({{"name", Value(point.integrator)},
+                                                 {"rtol", Value(point.tolerance)},
+                                                 {"atol", Value(absolute_tolerance(point.tolerance))}})});
+  for (const BodyModes& body : scene.modes) {
+    if (point.modes == 0) continue;
+    const std::vector<int> had = change_modes(changes, body, point);
+    // The initial states of segments have names of their own.
+    if (const Slot* const slot = scene.model->layout().body(body.body))
+      change_start(changes, scene, body.body, *slot, had, point.modes);
+  }
+  for (const auto& [name, body] : scene.source.at("bodies").members()) {
+    const std::string& of = name;
+    const auto own =
+        std::find_if(point.bodies.begin(), point.bodies.end(), [&](const auto& b) { return b.first == of; });
+    if (own != point.bodies.end()) {
+      changes.push_back({"bodies." + name + ".formulation", Value(own->second)});
+    } else if (body.has("formulation")) {
+      changes.push_back({"bodies." + name + ".formulation", Value(point.formulation)});
+    }
+  }
+  return changes;
+}
+
+SceneValues values_at(SceneValues values, const Scene& scene, const Point& point) {
+  for (const std::string& over : point.over) values.set_text(over);
+  const std::string origin = "the study's point " + point.text();
+  values.choose_formulation(point.formulation, origin);
+  for (Change& change : changes_at(scene, point)) values.set(change.path, std::move(change.value), origin);
+  return values;
+}
+
+}  // namespace withy::study

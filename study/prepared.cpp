@@ -1,0 +1,120 @@
+#include "withy/study/prepared.hpp"
+
+#include <algorithm>
+
+#include "withy/core/plugin/formulation.hpp"
+#include "withy/core/plugin/formulation_ladder.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::study {
+namespace {
+
+bool has_modes(const BodyNode& body) { return body.body->shape().modes() > 0; }
+
+/// Of the scene's formulation and those of single bodies.
+int least_rank(const Scene& scene) {
+  int rank = scene.formulation->standing().rank;
+  for (const BodyNode& body : scene.model->bodies())
+    if (has_modes(body) && body.terms) rank = std::min(rank, rank_of(*body.terms));
+  return rank;
+}
+
+void make_rungs(Prepared& prepared, Registry& registry) {
+  for (const RankedFormulation& rung : formulation_rungs(registry)) {
+    try {
+      prepared.rung_equations.push_back(rung.formulation->compile(prepared.scene.model));
+    } catch (const std::invalid_argument&) {
+      continue;  // a body without exact kinematics: the ladder ends before it
+    }
+    prepared.rungs.push_back({rung.id, rung.formulation->terms(), prepared.rung_equations.back().get()});
+  }
+}
+
+}  // namespace
+
+Prepared prepare(SceneValues values, Registry& registry) {
+  Scene scene = make_scene(values, registry);
+  Prepared prepared{std::move(values), std::move(scene), nullptr, {}, {}};
+  try {
+    prepared.equations = prepared.scene.formulation->compile(prepared.scene.model);
+  } catch (const std::invalid_argument& e) {
+    throw InputError(prepared.scene.file + ": formulation " + prepared.scene.formulation_name + ": " + e.what());
+  }
+  if (prepared.scene.formulation_name == "auto") make_rungs(prepared, registry);
+  return prepared;
+}
+
+RunOptions run_options(const Scene& scene) {
+  RunOptions options;
+  options.end = end_of_run(scene);
+  options.output = scene.output;
+  options.deflection_limit = scene.deflection_limit;
+  options.events = scene.events;
+  return options;
+}
+
+std::shared_ptr<const Formulation> make_formulation(Registry& registry, const std::string& id) {
+  const auto* plugin = registry.find<Formulation>(id);
+  if (plugin == nullptr) throw InputError("no formulation '" + id + "'");
+  Diagnostics diagnostics;
+  return plugin->make(Value::map({}), {registry, diagnostics});
+}
+
+std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std::string& id, Value options) {
+  const auto* plugin = registry.find<Integrator>(id);
+  if (plugin == nullptr) throw InputError("no integrator '" + id + "'");
+  for (const ParameterSpec& spec : plugin->parameters) {
+    if (spec.fallback && !options.has(spec.key)) options.set(spec.key, *spec.fallback);
+  }
+  Diagnostics diagnostics;
+  std::shared_ptr<const Integrator> made = plugin->make(options, {registry, diagnostics});
+  if (made == nullptr) throw InputError("integrator '" + id + "': " + diagnostics.errors().front().message);
+  return made;
+}
+
+std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std::string& id, double tolerance) {
+  return make_integrator(registry, id, Value::map({{"rtol", Value(tolerance)}, {"atol", Value(1e-2 * tolerance)}}));
+}
+
+Beyond compile_throughout(const Prepared& prepared, Registry& registry, const std::string& formulation) {
+  const Scene& scene = prepared.scene;
+  SceneValues values = prepared.values;
+  bool own = false;
+  for (const BodyNode& body : scene.model->bodies()) {
+    const std::string& name = body.segment ? body.segment->whole : body.name;
+    if (!body.terms) continue;
+    values.body_formulation(name, formulation, "every body in one formulation");
+    own = true;
+  }
+  if (!own) return {formulation, scene.model, make_formulation(registry, formulation)->compile(scene.model), false};
+  const Scene all = make_scene(values.choose_formulation(formulation, "every body in one formulation"), registry);
+  return {formulation, all.model, all.formulation->compile(all.model), false};
+}
+
+std::optional<Beyond> next_model_up(const Prepared& prepared, Registry& registry) {
+  if (!flexible(prepared.model())) return {};
+  const int rank = least_rank(prepared.scene);
+  const std::vector<RankedFormulation> rungs = formulation_rungs(registry);
+  for (const RankedFormulation& rung : rungs) {
+    if (rung.standing.rank <= rank) continue;
+    try {
+      Beyond beyond = compile_throughout(prepared, registry, rung.id);
+      beyond.highest = rung.id == rungs.back().id;
+      return beyond;
+    } catch (const std::invalid_argument&) {
+      continue;  // a body without exact kinematics
+    }
+  }
+  return {};
+}
+
+std::optional<std::string> next_rung(Registry& registry, const std::string& formulation) {
+  const int rank = make_formulation(registry, formulation)->standing().rank;
+  for (const RankedFormulation& rung : formulation_rungs(registry))
+    if (rung.standing.rank > rank) return rung.id;
+  return {};
+}
+
+bool flexible(const Model& model) { return std::any_of(model.bodies().begin(), model.bodies().end(), has_modes); }
+
+}  // namespace withy::study

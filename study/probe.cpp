@@ -1,0 +1,116 @@
+#include "withy/study/probe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace withy::study {
+namespace {
+
+std::string cost_key(const Point& p) {
+  return fmt::format("{} {} {} {}", p.formulation_text(), p.family, p.modes, p.integrator);
+}
+
+Probe::Outcome outcome_of(const Probe& p, const Yardstick& yardstick, bool afforded) {
+  switch (p.walk.end) {
+    case Walk::End::reached:
+      return p.use + yardstick.own_use() <= 1 ? Probe::Outcome::passed : Probe::Outcome::inaccurate;
+    case Walk::End::cut:
+      return afforded ? Probe::Outcome::inaccurate : Probe::Outcome::too_costly;
+    case Walk::End::stopped:
+      return Probe::Outcome::stopped;
+    case Walk::End::interrupted:
+      break;
+  }
+  return Probe::Outcome::interrupted;
+}
+
+}  // namespace
+
+double Yardstick::use(const Distances& distances) const {
+  double most = 0;
+  for (std::size_t i = 0; i < distances.size(); ++i)
+    if (std::isfinite(limits[i])) most = std::max(most, distances[i] / limits[i]);
+  return most;
+}
+
+const char* outcome_name(Probe::Outcome outcome) {
+  switch (outcome) {
+    case Probe::Outcome::passed:
+      return "passed";
+    case Probe::Outcome::inaccurate:
+      return "inaccurate";
+    case Probe::Outcome::too_costly:
+      return "too-costly";
+    case Probe::Outcome::stopped:
+      return "stopped";
+    case Probe::Outcome::refused:
+      return "refused";
+    case Probe::Outcome::no_candidate:
+      return "no-candidate";
+    case Probe::Outcome::interrupted:
+      return "interrupted";
+  }
+  return "unknown";
+}
+
+Evaluator::Evaluator(const Prepared& base, Registry& registry, const Outputs& outputs, Control control)
+    : base_(base), registry_(registry), outputs_(outputs), control_(std::move(control)) {}
+
+const ModelAt& Evaluator::model(const Point& point) {
+  for (const auto& m : models_)
+    if (m->point.same_model(point)) return *m;
+  models_.push_back(std::make_unique<ModelAt>(model_at(base_, registry_, point)));
+  return *models_.back();
+}
+
+Probe Evaluator::run(const Point& point, const Yardstick& yardstick, const Allowance& allowance) {
+  Probe p;
+  p.point = point;
+  const ModelAt& at = model(point);
+  if (at.refused()) {
+    p.reason = at.refusal;
+    return p;
+  }
+  p.distances = outputs_.none();
+  const Readings& truth = yardstick.reference.readings;
+  OutputReader reader(outputs_, at.prepared->model(), *at.prepared->equations);
+  std::size_t next = 0;
+  bool afforded = true;
+  const auto measure = [&](const State& s) {
+    if (next >= truth.values.size()) return false;
+    outputs_.raise(reader.read(s.y), truth.values[next++], p.distances);
+    p.use = yardstick.use(p.distances);
+    return p.use <= allowance.use;
+  };
+  const auto afford = [&](const Walk& so_far) { return afforded = so_far.seconds <= allowance.seconds; };
+  try {
+    p.walk = walk(*at.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
+                  {measure, afford, control_.interrupted});
+  } catch (const std::invalid_argument& e) {
+    p.reason = e.what();  // the integrator cannot treat these equations
+    return p;
+  }
+  p.reason = p.walk.reason;
+  p.outcome = outcome_of(p, yardstick, afforded);
+  spent_ += p.walk.seconds;
+  note_cost(p);
+  return p;
+}
+
+void Evaluator::note_cost(const Probe& probe) {
+  constexpr std::size_t least_evaluations = 50;  // the start is not like the rest
+  if (probe.walk.evaluations < least_evaluations) return;
+  const double seconds = probe.walk.seconds / static_cast<double>(probe.walk.evaluations);
+  const auto [known, is_new] = unit_costs_.emplace(cost_key(probe.point), seconds);
+  if (!is_new) known->second = std::min(known->second, seconds);
+}
+
+double Evaluator::cost(const Probe& probe) const {
+  const auto known = unit_costs_.find(cost_key(probe.point));
+  return known != unit_costs_.end() ? known->second * static_cast<double>(probe.walk.evaluations) : probe.walk.seconds;
+}
+
+}  // namespace withy::study

@@ -1,0 +1,88 @@
+/// \file
+/// Probes: runs of a scene in another model, measured against a reference while they go and ended as soon as it is
+/// clear that they will not do.
+#pragma once
+
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "withy/study/reference.hpp"
+
+namespace withy::study {
+
+/// A reference, and how far from it runs may be.
+struct Yardstick {
+  Reference reference;
+  Distances limits;  ///< infinite where nothing is asked
+  /// Greatest share of what is allowed.
+  [[nodiscard]] double use(const Distances& distances) const;
+  /// That of the reference itself.
+  [[nodiscard]] double own_use() const { return use(reference.own); }
+};
+
+struct Probe {
+  enum class Outcome {
+    passed,
+    inaccurate,
+    too_costly,
+    stopped,       ///< it does not come to the end
+    refused,       ///< there is no such model
+    no_candidate,  ///< it holds the accuracy, but was run to know the model alone
+    interrupted
+  };
+  Point point;
+  Outcome outcome = Outcome::refused;
+  std::string reason;   ///< of `stopped` and `refused`
+  Distances distances;  ///< greatest ones from the reference up to the time reached; empty where refused
+  double use = 0;       ///< of the accuracy; the reference's own error comes on top
+  Walk walk;
+  double cost = 0;  ///< [s], by Evaluator::cost when the search had ended
+  [[nodiscard]] bool passed() const { return outcome == Outcome::passed; }
+};
+/// "passed", "inaccurate", "too-costly", "stopped", "refused", "no-candidate", "interrupted".
+const char* outcome_name(Probe::Outcome outcome);
+
+/// What a probe may use up before it is cut.
+struct Allowance {
+  double use = std::numeric_limits<double>::infinity();      ///< of the accuracy
+  double seconds = std::numeric_limits<double>::infinity();  ///< of CPU time
+};
+
+/// Makes the models of one scene, runs probes of them and knows what they cost.
+class Evaluator {
+ public:
+  /// All must outlive it.
+  Evaluator(const Prepared& base, Registry& registry, const Outputs& outputs, Control control);
+
+  [[nodiscard]] const Prepared& base() const { return base_; }
+  [[nodiscard]] Registry& registry() const { return registry_; }
+  [[nodiscard]] const Outputs& outputs() const { return outputs_; }
+  [[nodiscard]] const Control& control() const { return control_; }
+  /// Made once, kept as long as this.
+  const ModelAt& model(const Point& point);
+  /// Runs the point until its allowance is used up. It passes where error and the reference's own together keep within
+  /// the accuracy.
+  Probe run(const Point& point, const Yardstick& yardstick, const Allowance& allowance = {});
+  /// Evaluations times their least CPU time in this model and integrator [s]: what a run costs without the noise of
+  /// other work on the machine.
+  [[nodiscard]] double cost(const Probe& probe) const;
+  /// Takes what a search for a reference has cost.
+  void spend(double seconds) { spent_ += seconds; }
+  [[nodiscard]] double spent() const { return spent_; }  ///< CPU time of all runs [s]
+
+ private:
+  void note_cost(const Probe& probe);
+
+  const Prepared& base_;
+  Registry& registry_;
+  const Outputs& outputs_;
+  Control control_;
+  std::vector<std::unique_ptr<ModelAt>> models_;
+  std::map<std::string, double> unit_costs_;  ///< by model and integrator [s an evaluation]
+  double spent_ = 0;
+};
+
+}  // namespace withy::study

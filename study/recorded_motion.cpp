@@ -1,0 +1,161 @@
+#include "withy/study/recorded_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "withy/core/model/columns.hpp"
+#include "withy/scene/units.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::study {
+namespace {
+
+constexpr std::size_t cubic_points = 4;
+
+std::vector<std::string> cells_of(std::string line) {
+  if (line.ends_with('\r')) line.pop_back();
+  std::vector<std::string> cells;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');) {
+    const auto first = cell.find_first_not_of(" \t\""), last = cell.find_last_not_of(" \t\"");
+    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
+  }
+  return cells;
+}
+
+/// A column of the head: "shoulder[deg]" has the name shoulder and the unit deg.
+struct Head {
+  std::string name, unit;
+  explicit Head(const std::string& text) {
+    const auto bracket = text.find('[');
+    name = text.substr(0, bracket);
+    if (bracket != std::string::npos && text.ends_with(']')) unit = text.substr(bracket + 1, text.size() - bracket - 2);
+  }
+};
+
+/// A column that is read.
+struct Source {
+  std::size_t column = 0;
+  double factor = 1;            ///< to SI units
+  std::vector<double>* values;  ///< where they go
+};
+
+double factor_of(const Head& head, const std::string& si_unit, const std::string& file) {
+  if (head.unit.empty()) return 1;
+  const QuantityReading one = read_quantity("1 " + head.unit, si_unit);
+  if (!one.value) throw InputError(fmt::format("{}:1: column '{}': {}", file, head.name, one.problem));
+  return *one.value;
+}
+
+/// The polynomial through points, at most a cubic, and its derivative.
+struct Extended {
+  double value = 0, rate = 0;
+};
+Extended extended(const std::vector<double>& times, const std::vector<double>& values, std::size_t first,
+                  std::size_t count, double t) {
+  const auto n = static_cast<Eigen::Index>(count);
+  const double scale = times[first + count - 1] - times[first];
+  Eigen::MatrixXd powers(n, n);
+  Eigen::VectorXd x(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::size_t row = first + static_cast<std::size_t>(i);
+    for (Eigen::Index k = 0; k < n; ++k) powers(i, k) = std::pow((times[row] - t) / scale, k);
+    x[i] = values[row];
+  }
+  const Eigen::VectorXd c = powers.fullPivLu().solve(x);
+  return {c[0], c[1] / scale};
+}
+
+/// The columns of the head that are read, time first.
+std::vector<Source> sources_of(const std::vector<std::string>& head, const Model& model, const std::string& file,
+                               RecordedMotion& motion) {
+  std::vector<Source> sources;
+  for (std::size_t k = 0; k < head.size(); ++k) {
+    const Head h(head[k]);
+    if (h.name == "t") sources.insert(sources.begin(), {k, factor_of(h, "s", file), &motion.times});
+    for (const HingeNode& hinge : model.hinges()) {
+      const auto columns = coordinate_columns(hinge);
+      if (hinge.name != h.name || columns.size() != 1) continue;
+      const auto [made, is_new] = motion.coordinates.emplace(h.name, std::vector<double>());
+      if (!is_new) throw InputError(fmt::format("{}:1: column '{}' is there twice", file, h.name));
+      sources.push_back({k, factor_of(h, columns[0].unit, file), &made->second});
+    }
+  }
+  const bool timed = !sources.empty() && sources.front().values == &motion.times;
+  if (timed && !motion.coordinates.empty()) return sources;
+  std::string known;
+  for (const HingeNode& hinge : model.hinges())
+    if (coordinate_columns(hinge).size() == 1) known += (known.empty() ? "" : ", ") + hinge.name;
+  throw InputError(fmt::format("{}:1: need a column {}", file,
+                               timed ? "named after a hinge of one coordinate; there are " + known : "t[s]"));
+}
+
+void read_row(const std::vector<std::string>& cells, const std::vector<Source>& sources, const std::string& file,
+              std::size_t number, const std::vector<double>& times) {
+  for (const Source& s : sources) {
+    const auto value = s.column < cells.size() ? plain_number(cells[s.column]) : std::nullopt;
+    if (!value) throw InputError(fmt::format("{}:{}: column {} is no number", file, number, s.column + 1));
+    s.values->push_back(s.factor * *value);
+  }
+  const std::size_t rows = times.size();
+  if (rows == 1 && times[0] != 0)
+    throw InputError(fmt::format("{}:{}: begins at {:g} s; need 0", file, number, times[0]));
+  if (rows > 1 && !(times[rows - 1] > times[rows - 2]))
+    throw InputError(fmt::format("{}:{}: time does not increase", file, number));
+}
+
+Value pair(double a, double b) { return Value::list({Value(a), Value(b)}); }
+
+/// The table of a hinge, as the file has it under `motions`.
+Value table_of(const std::string& hinge, const std::vector<double>& t, const std::vector<double>& x) {
+  const std::size_t n = t.size(), count = std::min(n, cubic_points);
+  const double beyond = t[n - 1] + (t[n - 1] - t[n - 2]);
+  const Extended start = extended(t, x, 0, count, t[0]), end = extended(t, x, n - count, count, beyond);
+  std::vector<Value> rows;
+  for (std::size_t i = 0; i < n; ++i) rows.push_back(pair(t[i], x[i]));
+  rows.push_back(pair(beyond, end.value));
+  return Value::map({{"hinge", Value(hinge)},
+                     {"type", Value(std::string("table"))},
+                     {"start_rate", Value(start.rate)},
+                     {"end_rate", Value(end.rate)},
+                     {"table", Value::list(std::move(rows))}});
+}
+
+}  // namespace
+
+RecordedMotion read_recorded_motion(const std::filesystem::path& path, const Model& model) {
+  const std::string file = path.string();
+  std::ifstream in(path);
+  if (!in) throw InputError(file + ": cannot be read");
+  std::string line;
+  if (!std::getline(in, line)) throw InputError(file + ": empty; need a head as t[s],shoulder[rad],elbow[rad]");
+  RecordedMotion motion;
+  const std::vector<Source> sources = sources_of(cells_of(line), model, file, motion);
+  for (std::size_t number = 2; std::getline(in, line); ++number) {
+    const std::vector<std::string> cells = cells_of(line);
+    if (!cells.empty()) read_row(cells, sources, file, number, motion.times);
+  }
+  if (motion.times.size() < 2) throw InputError(file + ": need at least two rows");
+  return motion;
+}
+
+SceneValues led_by(SceneValues values, const RecordedMotion& motion) {
+  const std::string origin = "the recorded motion";
+  std::vector<Value::Member> motions;
+  for (const auto& [hinge, x] : motion.coordinates) motions.emplace_back(hinge, table_of(hinge, motion.times, x));
+  values.motions(Value::map(std::move(motions)), origin);
+  values.set("time.end", Value(motion.times.back()), origin);
+  for (const auto& [hinge, x] : motion.coordinates) {  // they begin where the motion does
+    const std::string start = "initial.hinges." + hinge;
+    if (values.find(start) != nullptr) values.set(start, Value::map({}), origin);
+  }
+  return values;
+}
+
+}  // namespace withy::study

@@ -1,0 +1,30 @@
+/// \file
+/// Hinge coordinates over time from a table, as motions of a scene.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "withy/scene/scene.hpp"
+
+namespace withy::study {
+
+/// Coordinates of hinges at the same times.
+struct RecordedMotion {
+  std::vector<double> times;                               ///< [s], increasing, from 0
+  std::map<std::string, std::vector<double>> coordinates;  ///< by hinge [rad, m]
+};
+
+/// Reads a CSV file with the head `t[s],shoulder[rad],elbow[deg],…`: as many hinges of one coordinate as it names, in
+/// any unit that measures them. Other columns are left out, so that results.csv of a run is such a file. \throws
+/// InputError with file and line.
+RecordedMotion read_recorded_motion(const std::filesystem::path& file, const Model& model);
+
+/// The scene with these motions in the place of its own, through the rows by cubic splines; it ends with the last row.
+/// Rates in the first row, and what lies a step beyond the last, are those of the cubic through the four rows next to
+/// it: accelerations are right to second order in the step up to the ends.
+SceneValues led_by(SceneValues values, const RecordedMotion& motion);
+
+}  // namespace withy::study

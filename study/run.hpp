@@ -1,0 +1,52 @@
+/// \file
+/// A run of a scene with its certificate.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "withy/study/certificate.hpp"
+#include "withy/study/control.hpp"
+
+namespace withy::study {
+
+/// When the error against the next model up is estimated.
+enum class Estimate {
+  automatic,  ///< against `quadratic`; against `exact` it costs more than it tells of most runs
+  always,
+  never
+};
+
+struct RunSettings {
+  Estimate estimate = Estimate::automatic;
+  /// Whether accelerations are compared with the next model up along the run; without it there is no estimate either.
+  bool look_beyond = true;
+  /// Receives every output, with the rung that a run of `auto` is in, else 0; may be empty.
+  std::function<void(const State&, std::size_t rung)> output;
+  /// Brought to the state of each output before it is given; of a run that has one formulation. May be null.
+  Observation* seen = nullptr;
+  double checkpoint_seconds = 0;                      ///< wall time between checkpoints; 0: only where interrupted
+  std::function<void(const Checkpoint&)> checkpoint;  ///< takes them; may be empty
+  const Checkpoint* resume = nullptr;                 ///< where to go on; null: at the scene's initial state
+  Control control;
+};
+
+struct CertifiedRun {
+  RunSummary summary;
+  Certificate certificate;
+};
+
+/// Simulates from the scene's initial state to its end, measures what is left out on the way, and estimates its effect
+/// afterwards.
+/// \throws InputError where `auto` meets a load with discrete states, or is to be put down or resumed; SceneError where
+/// the scene has no end.
+CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings = {});
+
+/// "completed", or "diverged at 0.0523 s".
+std::string outcome_text(const RunSummary& summary);
+
+/// The run alone, with no more than its outputs.
+RunSummary simulate(const Prepared& prepared, const std::function<void(const State&)>& output,
+                    const Control& control = {});
+
+}  // namespace withy::study

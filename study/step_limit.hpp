@@ -1,0 +1,33 @@
+/// \file
+/// What limited the steps of a run.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "withy/core/simulation/accuracy.hpp"
+#include "withy/study/prepared.hpp"
+
+namespace withy::study {
+
+struct StepLimit {
+  double mean = 0;              ///< [s]
+  double fastest = 0;           ///< fastest mode [rad/s]
+  double product = 0;           ///< mean step times the fastest mode; 0 where that is not known
+  std::optional<double> limit;  ///< of that product, beyond which the integrator is not stable
+  /// What helps against stability: the mode without which the fastest vibration is slowest, and the integrators of
+  /// those there are that no vibration limits and that can integrate these equations. Empty where nothing is proposed.
+  std::optional<Slowing> fewer;
+  std::vector<std::string> unlimited;
+  /// "stability", "accuracy" or "unknown". Error control that meets the limit goes to and fro about it, so the mean
+  /// stays a little below.
+  [[nodiscard]] std::string cause() const;
+};
+
+/// Of a run from a time `start` [s], without proposals.
+StepLimit step_limit(const Integrator& integrator, double start, const RunSummary& summary);
+/// Of a run of the scene itself; where stability limited it, with proposals.
+StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Registry& registry);
+
+}  // namespace withy::study

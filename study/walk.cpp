@@ -1,0 +1,157 @@
+#include "withy/study/walk.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/stepping.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::study {
+namespace {
+
+/// CPU time of one evaluation at the initial state [s]: the least of some batches, since other work only adds.
+double seconds_per_evaluation(const Prepared& model) {
+  const EquationsOfMotion& equations = *model.equations;
+  const State& initial = model.scene.initial;
+  Work work = equations.make_work();
+  std::vector<double> rates(equations.size());
+  double least = std::numeric_limits<double>::max();
+  for (int batch = 0; batch < 5; ++batch) {
+    constexpr int count = 40;
+    const double began = thread_cpu_seconds();
+    for (int i = 0; i < count; ++i) static_cast<void>(equations.derivatives(initial.time, initial.y, rates, work));
+    least = std::min(least, (thread_cpu_seconds() - began) / count);
+  }
+  return least;
+}
+
+std::string reason_of(const StepResult& result, const Prepared& model) {
+  const auto& bodies = model.model().bodies();
+  const std::string body =
+      result.body >= 0 ? " at body '" + bodies[static_cast<std::size_t>(result.body)].name + "'" : "";
+  switch (result.outcome) {
+    case StepResult::Outcome::nonfinite:
+      return "the derivatives are not finite" + body;
+    case StepResult::Outcome::singular:
+      return "the mass matrix cannot be solved" + body;
+    default:
+      return "the accuracy asked for needs steps below the resolution of time";
+  }
+}
+
+/// Watches a walk: gives outputs, counts what stepping costs, and ends it.
+class Watch final : public SteppingObserver {
+ public:
+  /// \param sign of the mass matrix's determinant at the start
+  Watch(const WalkObserver& observer, int sign) : observer_(observer), sign_(sign), began_(thread_cpu_seconds()) {}
+
+  bool output(const State& state) override {
+    pause();
+    walk.time = state.time;
+    const bool on = may_go_on() && seen(observer_.output(state));
+    began_ = thread_cpu_seconds();
+    return on;
+  }
+
+  bool after_step(const Stepper& stepper, bool) override {
+    constexpr std::size_t steps_between_looks = 64;
+    if (stepper.statistics().determinant_sign != sign_) {
+      walk.end = Walk::End::stopped;
+      walk.reason = "the determinant of the mass matrix changed its sign";
+      return false;
+    }
+    if (stepper.statistics().accepted % steps_between_looks != 0) return true;
+    pause();
+    walk.time = stepper.state().time;
+    const bool on = may_go_on();
+    began_ = thread_cpu_seconds();
+    return on;
+  }
+
+  /// What is known when stepping has ended.
+  void finish(const Stepping& loop, const SteppingEnd& ended, const Prepared& model) {
+    pause();
+    walk.time = loop.state().time;
+    walk.steps = loop.stepper().statistics().accepted;
+    walk.evaluations = loop.stepper().statistics().evaluations;
+    if (ended.cause == SteppingEnd::Cause::reached) static_cast<void>(seen(observer_.output(loop.state())));
+    if (ended.cause == SteppingEnd::Cause::failed) stop(reason_of(ended.step, model));
+    if (ended.cause == SteppingEnd::Cause::crowded)
+      stop("loads switch again and again without time between the instants");
+  }
+
+  Walk walk;
+
+ private:
+  void pause() { walk.seconds += thread_cpu_seconds() - began_; }
+  void stop(std::string why) {
+    walk.end = Walk::End::stopped;
+    walk.reason = std::move(why);
+  }
+  bool may_go_on() {
+    if (observer_.interrupted && observer_.interrupted()) {
+      walk.end = Walk::End::interrupted;
+      return false;
+    }
+    return !observer_.afford || seen(observer_.afford(walk));
+  }
+  bool seen(bool on) {
+    if (!on) walk.end = Walk::End::cut;
+    return on;
+  }
+
+  const WalkObserver& observer_;
+  int sign_;
+  double began_;
+};
+
+}  // namespace
+
+ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
+  ModelAt m{point, {}, {}, 0, 0};
+  try {
+    Point any = point;  // a scene has an integrator, whatever is walked with
+    any.integrator = "dop853";
+    any.tolerance = 1e-6;
+    m.prepared = prepare(values_at(base.values, base.scene, any), registry);
+  } catch (const SceneError& e) {
+    m.refusal = e.what();
+  } catch (const InputError& e) {
+    m.refusal = e.what();
+  }
+  if (m.refused()) return m;
+  m.seconds = seconds_per_evaluation(*m.prepared);
+  const EquationsOfMotion& equations = *m.prepared->equations;
+  const State& initial = m.prepared->scene.initial;
+  if (equations.layout().speeds <= largest_examined)
+    m.fastest = fastest_mode(m.prepared->model(), equations.system(initial.time, initial.y));
+  return m;
+}
+
+Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserver& observer) {
+  const EquationsOfMotion& equations = *model.equations;
+  const State start = begun(model.model(), model.scene.initial);
+  Stepping loop(model.model(), integrator.start(equations, start), {end_of_run(model.scene), model.scene.output});
+  std::vector<double> rates(equations.size());
+  Work work = equations.make_work();
+  Watch watch(observer, equations.derivatives(start.time, start.y, rates, work).determinant_sign);
+  if (watch.output(start)) watch.finish(loop, loop.run(watch), model);
+  return watch.walk;
+}
+
+std::pair<Distances, double> distances(const Outputs& outputs, const Readings& a, const Readings& b) {
+  Distances greatest = outputs.none();
+  double until = 0;
+  for (std::size_t i = 0; i < std::min(a.times.size(), b.times.size()); ++i) {
+    // The last output of a run that stopped need not be at a common time.
+    if (a.times[i] != b.times[i]) break;
+    outputs.raise(a.values[i], b.values[i], greatest);
+    until = a.times[i];
+  }
+  return {greatest, until};
+}
+
+}  // namespace withy::study

@@ -1,0 +1,188 @@
+/// \file
+/// A folder holds one result, written by one process; a fingerprint changes with all that a result comes from.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "scratch.hpp"
+#include "withy/results/kept_results.hpp"
+#include "withy/results/results_error.hpp"
+#include "withy/results/results_folder.hpp"
+
+namespace withy {
+namespace {
+
+using test::Scratch;
+using testing::HasSubstr;
+
+const std::vector<std::string> content = {"run.json", "results.csv"};
+
+Provenance origin(const std::string& values = "v", const std::string& file = "f") {
+  Provenance p;
+  p.scene = "arm.yaml";
+  p.scene_sha256 = "s";
+  p.values = values;
+  p.sources.files = {{"boom.SID_FEM", file}};
+  p.sources.plugins = {{"body", "beam", "/lib/beam.so"}};
+  p.plugin_builds = {"b"};
+  p.program = {"0.1.0", "g", "h"};
+  return p;
+}
+
+std::string refusal(const std::filesystem::path& folder, const std::string& command, const Provenance& p,
+                    FolderUse use = FolderUse::begin) {
+  try {
+    const ResultsFolder taken(folder, command, p, content, use);
+  } catch (const ResultsError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(ResultsFolder, IsTakenByOneWriterAtATime) {
+  const Scratch scratch;
+  {
+    const ResultsFolder first(scratch / "out", "run", origin(), content, FolderUse::begin);
+    for (const FolderUse use : {FolderUse::begin, FolderUse::replace, FolderUse::go_on}) {
+      try {
+        const ResultsFolder second(scratch / "out", "run", origin(), content, use);
+        ADD_FAILURE() << "taken twice";
+      } catch (const FolderBusy& e) {
+        EXPECT_THAT(e.what(), HasSubstr("is being written by process " + std::to_string(::getpid())));
+      }
+    }
+  }
+  EXPECT_EQ(refusal(scratch / "out", "run", origin()), "");
+}
+
+TEST(ResultsFolder, RemovesTheSameResultBeforeItIsWrittenAnewAndNoOtherFile) {
+  const Scratch scratch;
+  EXPECT_EQ(refusal(scratch / "out", "run", origin()), "");
+  for (const char* name : {"out/run.json", "out/results.csv", "out/notes.txt"}) scratch.write(name, "old");
+  {
+    const ResultsFolder again(scratch / "out", "run", origin(), content, FolderUse::begin);
+    EXPECT_FALSE(std::filesystem::exists(again / "run.json"));
+    EXPECT_FALSE(std::filesystem::exists(again / "results.csv"));
+    EXPECT_TRUE(std::filesystem::exists(again / "notes.txt"));
+  }
+  scratch.write("out/run.json", "new");
+  {
+    const ResultsFolder on(scratch / "out", "run", origin(), content, FolderUse::go_on);
+    EXPECT_EQ(on.changed(), "");
+  }
+  EXPECT_EQ(scratch.read("out/run.json"), "new");
+}
+
+TEST(ResultsFolder, AnotherResultIsLeftAloneUnlessItIsToBeReplaced) {
+  const Scratch scratch;
+  EXPECT_EQ(refusal(scratch / "out", "run", origin()), "");
+  scratch.write("out/run.json", "kept");
+  const std::string record = scratch.read("out/result.json");
+  Provenance other_scene = origin("w");
+  other_scene.scene = "crane.yaml";
+  EXPECT_THAT(refusal(scratch / "out", "run", origin("w")), HasSubstr("other values of arm.yaml"));
+  EXPECT_THAT(refusal(scratch / "out", "run", origin("v", "g")), HasSubstr("other values of arm.yaml"));
+  EXPECT_THAT(refusal(scratch / "out", "run", other_scene), HasSubstr("another scene, arm.yaml"));
+  EXPECT_THAT(refusal(scratch / "out", "compare", origin()), HasSubstr("a result of withy run"));
+  EXPECT_EQ(scratch.read("out/run.json"), "kept");
+  EXPECT_EQ(scratch.read("out/result.json"), record);
+  Provenance other_program = origin();
+  other_program.program.build = "i";
+  EXPECT_EQ(refusal(scratch / "out", "run", other_program), "") << "the same result is meant";
+  scratch.write("out/run.json", "kept");
+  EXPECT_EQ(refusal(scratch / "out", "compare", origin("w"), FolderUse::replace), "");
+  EXPECT_FALSE(std::filesystem::exists(scratch / "out/run.json"));
+}
+
+TEST(ResultsFolder, FilesOfUnknownOriginAreLeftAlone) {
+  const Scratch scratch;
+  scratch.write("out/run.json", "kept");
+  EXPECT_THAT(refusal(scratch / "out", "run", origin()), HasSubstr("holds run.json, and nothing says of what result"));
+  scratch.write("out/result.json", "{\"format\": \"withy-result/1\", \"content\": [\"../victim\", \"/etc/x\", 7]}");
+  scratch.write("victim", "kept");
+  EXPECT_EQ(refusal(scratch / "out", "run", origin(), FolderUse::replace), "");
+  EXPECT_EQ(scratch.read("victim"), "kept") << "a record is no order to remove files elsewhere";
+}
+
+TEST(ResultsFolder, SaysWhatHasChangedSinceItWasWritten) {
+  const Scratch scratch;
+  EXPECT_EQ(refusal(scratch / "out", "run", origin()), "");
+  const auto changed = [&](const Provenance& p) {
+    return ResultsFolder(scratch / "out", "run", p, content, FolderUse::go_on).changed();
+  };
+  Provenance plugin = origin();
+  plugin.plugin_builds = {"c"};
+  Provenance program = origin();
+  program.program.description = "other";
+  EXPECT_EQ(changed(origin("w")), "the values of the scene");
+  EXPECT_EQ(changed(origin("v", "g")), "the file 'boom.SID_FEM'");
+  EXPECT_EQ(changed(plugin), "the plugin body/beam");
+  EXPECT_EQ(changed(program), "the program");
+  EXPECT_EQ(changed(origin()), "");
+}
+
+TEST(Provenance, FingerprintIsOfEverythingAResultComesFrom) {
+  Provenance plugin = origin(), program = origin(), moved = origin();
+  plugin.plugin_builds = {"c"};
+  program.program.build = "i";
+  moved.scene = "elsewhere/arm.yaml";
+  moved.sources.plugins[0].file = "/opt/lib/beam.so";
+  std::set<std::string> all;
+  for (const Provenance& p : {origin(), origin("w"), origin("v", "g"), plugin, program}) all.insert(p.fingerprint());
+  EXPECT_EQ(all.size(), 5U);
+  EXPECT_EQ(moved.fingerprint(), origin().fingerprint()) << "not of where things are";
+  const Provenance read = provenance_of_json(stored_provenance(plugin));
+  EXPECT_EQ(read.fingerprint(), plugin.fingerprint());
+  EXPECT_EQ(differences(read, plugin), "");
+  EXPECT_THROW(provenance_of_json(nlohmann::ordered_json::object()), ResultsError);
+}
+
+TEST(Provenance, TheProgramIsKnownByItsBuild) {
+  EXPECT_EQ(build_identity().build.size(), 64U);
+  EXPECT_EQ(library_identity("built in"), "");
+  EXPECT_GE(library_identity("/proc/self/exe").size(), 40U);
+}
+
+TEST(KeptResults, AreFoundByTheSameFingerprintAlone) {
+  const Scratch scratch;
+  const KeptResults mine(scratch / "points", "mine"), others(scratch / "points", "other");
+  EXPECT_FALSE(mine.find("a"));
+  const nlohmann::ordered_json value = {{"error", 0.1}, {"status", "completed"}, {"peak", std::nan("")}};
+  mine.keep("a", value);
+  ASSERT_TRUE(mine.find("a"));
+  EXPECT_EQ(mine.find("a")->at("error"), 0.1);
+  EXPECT_TRUE(mine.find("a")->at("peak").is_null());
+  EXPECT_FALSE(others.find("a"));
+}
+
+TEST(KeptResults, ThatAreDamagedAreNotFound) {
+  const Scratch scratch;
+  const KeptResults kept(scratch / "points", "mine");
+  kept.keep("a", {{"error", 0.125}, {"steps", 17}});
+  const std::string good = scratch.read("points/a.json");
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ 1);
+    scratch.write("points/a.json", bad);
+    if (const auto found = kept.find("a")) EXPECT_EQ(found->dump(), R"({"error":0.125,"steps":17})") << i;
+    if (i + 2 >= good.size()) continue;  // the last line break alone is nothing
+    scratch.write("points/a.json", good.substr(0, i));
+    EXPECT_FALSE(kept.find("a")) << "cut at " << i;
+  }
+}
+
+TEST(FolderSuffix, TellsSettingsApartInANameForAFolder) {
+  EXPECT_EQ(folder_suffix({}), "");
+  EXPECT_EQ(folder_suffix({"loads.slew.time_scale=1.2"}), "-loads.slew.time_scale=1.2");
+  EXPECT_EQ(folder_suffix({"a=1", "b=2"}), "-a=1,b=2");
+  const std::string long_one = folder_suffix({"a=" + std::string(200, '1')}), map = folder_suffix({"loads={}"});
+  EXPECT_THAT(long_one, testing::MatchesRegex("-set-[0-9a-f]{8}"));
+  EXPECT_THAT(map, testing::MatchesRegex("-set-[0-9a-f]{8}"));
+  EXPECT_NE(long_one, map);
+  EXPECT_NE(folder_suffix({"name=../../x"}).find("set-"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace withy

@@ -1,0 +1,192 @@
+// The library as a host uses it: a scene is a value, studies give values.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "withy/study/advice.hpp"
+#include "withy/study/comparison.hpp"
+#include "withy/study/linear_model.hpp"
+#include "withy/study/run.hpp"
+#include "withy/study/threshold.hpp"
+#include "withy/tests/study/plugins.hpp"
+
+namespace withy::study {
+namespace {
+
+using test::plugins;
+
+SceneValues scene(const std::string& name) {
+  return SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/" + name + ".yaml");
+}
+
+SceneValues short_slew(double scale = 1.0) {
+  SceneValues values = scene("two-link-slew");
+  values.set("time.end", Value(0.2), "the test").set("loads.slew.time_scale", Value(scale), "the test");
+  return values;
+}
+
+TEST(StudyRun, OfAVariedSceneHasACertificateWithItsError) {
+  SceneValues values = short_slew(1.2);
+  const Prepared prepared = prepare(values.choose_formulation("ruthless", "the test"), plugins());
+  const CertifiedRun result = run(prepared, plugins());
+  ASSERT_EQ(result.summary.status, RunStatus::completed);
+  EXPECT_EQ(result.certificate.formulation, "ruthless");
+  EXPECT_EQ(result.certificate.against, "quadratic");
+  ASSERT_TRUE(result.certificate.estimate);
+  // Against the difference of two runs.
+  const Comparison c = compare(short_slew(1.2), plugins(), {"ruthless"}, "quadratic",
+                               [](const Prepared& p, const auto& output) { return simulate(p, output); });
+  const double truth = c.distances(c.runs[0]).tips.at("payload.tip");
+  EXPECT_NEAR(result.certificate.estimate->distances.tips.at("payload.tip"), truth, 0.2 * truth);
+}
+
+TEST(StudyRun, OutputsDoNotDependOnWhatIsMeasuredBeside) {
+  const Prepared prepared = prepare(short_slew(), plugins());
+  std::vector<State> alone, beside;
+  simulate(prepared, [&](const State& s) { alone.push_back(s); });
+  RunSettings settings;
+  settings.estimate = Estimate::always;
+  settings.output = [&](const State& s, std::size_t) { beside.push_back(s); };
+  static_cast<void>(run(prepared, plugins(), settings));
+  ASSERT_EQ(alone.size(), beside.size());
+  for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_EQ(alone[i].y, beside[i].y);
+}
+
+TEST(StudyPrepare, SaysWhichFormulationCannotTreatAModel) {
+  SceneValues values = scene("solar-panel");
+  try {
+    static_cast<void>(prepare(values.choose_formulation("exact", "the test"), plugins()));
+    FAIL() << "a plate has no exact kinematics";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("formulation exact"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Measures, OneDistanceServesNamesAndMeasures) {
+  const Prepared prepared = prepare(scene("beam-on-base"), plugins());
+  const Outputs outputs = Outputs::all(prepared.model());
+  OutputReader reader(outputs, prepared.model(), *prepared.equations);
+  State turned = prepared.scene.initial;
+  const Slot& base = prepared.model().layout().hinges.front();
+  ASSERT_EQ(base.positions, 7U) << "a free hinge";
+  turned.y[base.position] = std::cos(0.1);
+  turned.y[base.position + 1] = std::sin(0.1);
+  turned.y[base.position + 4] += 0.05;
+  Distances greatest = outputs.none();
+  outputs.raise(reader.read(prepared.scene.initial.y), reader.read(turned.y), greatest);
+  EXPECT_NEAR(outputs.per_measure(greatest)[static_cast<std::size_t>(Measure::angle)], 0.2, 1e-12);
+  EXPECT_NEAR(outputs.per_measure(greatest)[static_cast<std::size_t>(Measure::slide)], 0.05, 1e-12);
+  EXPECT_NEAR(named(outputs, greatest, 0).greatest_hinge(), 0.2, 1e-12) << "the greater of both";
+  // q and −q are one orientation.
+  State mirrored = turned;
+  for (std::size_t i = 0; i < 4; ++i) mirrored.y[base.position + i] *= -1;
+  Distances none = outputs.none();
+  outputs.raise(reader.read(turned.y), reader.read(mirrored.y), none);
+  for (const double d : none) EXPECT_NEAR(d, 0, 1e-7);
+}
+
+TEST(Measures, WhatIsNoNumberIsInfinitelyFar) {
+  const Prepared prepared = prepare(scene("pendulum"), plugins());
+  const Outputs outputs(prepared.model());
+  OutputReader reader(outputs, prepared.model(), *prepared.equations);
+  State lost = prepared.scene.initial;
+  lost.y[0] = std::nan("");
+  Distances greatest = outputs.none();
+  outputs.raise(reader.read(prepared.scene.initial.y), reader.read(lost.y), greatest);
+  EXPECT_TRUE(std::isinf(greatest[0]));
+}
+
+/// Keeps what it is given.
+struct MemoryStore : PointStore {
+  std::map<std::string, Kept> kept;
+  std::optional<Kept> find(const Point& point) override {
+    const auto found = kept.find(point.key());
+    return found == kept.end() ? std::nullopt : std::optional(found->second);
+  }
+  void keep(const Kept& k) override { kept.emplace(k.result.point.key(), k); }
+};
+
+TEST(StudyTrade, RunsInThreadsGiveWhatOneGivesAndAreRunOnce) {
+  const Prepared prepared = prepare(short_slew(), plugins());
+  const auto points = points_of({{"linear", "quadratic"}, {""}, {1, 2}, {"dopri5"}, {1e-4}, {}});
+  MemoryStore store;
+  TradeStudy several(prepared, plugins(), points, {3, &store, {}});
+  ASSERT_TRUE(several.run());
+  TradeStudy one(prepared, plugins(), points, {1, nullptr, {}});
+  ASSERT_TRUE(one.run());
+  const auto a = several.results(), b = one.results();
+  ASSERT_EQ(a.size(), 4U);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].status, "completed") << a[i].message;
+    EXPECT_EQ(a[i].relative_error, b[i].relative_error);
+    EXPECT_EQ(a[i].steps, b[i].steps);
+  }
+  ASSERT_EQ(store.kept.size(), 4U);
+  TradeStudy again(prepared, plugins(), points, {1, &store, {[] { return true; }, {}}});
+  EXPECT_EQ(again.results().size(), 4U) << "all are found";
+}
+
+TEST(StudyTrade, AnInterruptedStudyKeepsWhatIsFinished) {
+  const Prepared prepared = prepare(short_slew(), plugins());
+  int done = 0;
+  const Control control{[&] { return done >= 1; }, [&](double, double) { ++done; }};
+  TradeStudy study(prepared, plugins(), points_of({{"quadratic"}, {""}, {1, 2, 3}, {"dopri5"}, {1e-4}, {}}),
+                   {1, nullptr, control});
+  EXPECT_FALSE(study.run());
+  EXPECT_EQ(study.results().size(), 1U);
+}
+
+TEST(StudyAdvice, IsTheSameScenesRunOfItsChanges) {
+  SceneValues values = scene("spin-up");
+  const Prepared prepared = prepare(values.set("time.end", Value(2.0), "the test"), plugins());
+  const Outputs outputs(prepared.model());
+  const Candidates candidates =
+      candidates_for(prepared, plugins(), {{"ruthless", "quadratic"}, {""}, {1, 2}, {"dopri5"}, {1e-3, 1e-5}, {}});
+  Evaluator evaluator(prepared, plugins(), outputs, {});
+  const Advice advice = advise(evaluator, candidates, Accuracy::parse("5%"));
+  ASSERT_TRUE(advice.choice) << advice.trouble;
+  EXPECT_EQ(advice.confirmed.status, RunStatus::completed);
+  EXPECT_LE(advice.choice->use + advice.yardstick->own_use(), 1);
+  SceneValues advised = values;
+  for (const Change& change : new_changes(prepared.scene, advice.choice->point)) advised.set_text(change.text());
+  const RunSummary again = simulate(prepare(advised, plugins()), {});
+  EXPECT_EQ(again.steps.evaluations, advice.confirmed.steps.evaluations);
+  EXPECT_EQ(again.final.y, advice.confirmed.final.y);
+}
+
+TEST(StudyLinearModel, OfThePendulumIsItsFrequency) {
+  const Prepared prepared = prepare(scene("pendulum"), plugins());
+  State hanging = prepared.scene.initial;
+  std::fill(hanging.y.begin(), hanging.y.end(), 0.0);
+  const LinearModel linear = linear_model({prepared, hanging, {}}, {});
+  ASSERT_EQ(linear.A.rows(), 2);
+  // 1.2 kg, centre of mass 0.5 m from the pivot, 0.4 kg m² about it.
+  EXPECT_NEAR(linear.A(1, 0), -1.2 * 9.81 * 0.5 / 0.4, 1e-9);
+  EXPECT_TRUE(linear.equilibrium);
+}
+
+TEST(StudyModes, FollowASweepOfTheRateAndEndWhereAsked) {
+  const Sweep sweep{"spin.axle", {0, 1, 2}};
+  const ModesOf run = sweep_modes(scene("rotating-blade"), plugins(), {}, {}, sweep, false, {});
+  ASSERT_EQ(run.points.size(), 3U);
+  for (std::size_t k = 0; k + 1 < run.points.size(); ++k) {
+    ASSERT_FALSE(run.points[k].modes.empty()) << run.points[k].problem;
+    EXPECT_LT(run.points[k].modes[0].frequency(), run.points[k + 1].modes[0].frequency()) << "rotation stiffens";
+  }
+  int asked = 0;
+  const Control soon{[&] { return asked++ >= 1; }, {}};
+  EXPECT_EQ(sweep_modes(scene("rotating-blade"), plugins(), {}, {}, sweep, false, soon).points.size(), 1U);
+}
+
+TEST(StudyConfiguration, NamesTheHingesThatThereAre) {
+  const Prepared prepared = prepare(scene("rotating-blade"), plugins());
+  try {
+    const Configuration c(prepared, prepared.scene.initial, {{"wheel"}, {}});
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("known: axle"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace withy::study

@@ -1,0 +1,98 @@
+// What errors are measured by, and what a study makes of them.
+#include <gtest/gtest.h>
+
+#include "withy/study/accuracy.hpp"
+#include "withy/study/probe.hpp"
+#include "withy/study/trade.hpp"
+#include "withy/tests/study/plugins.hpp"
+
+namespace withy::study {
+namespace {
+
+using test::plugins;
+
+Prepared pendulum() {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/pendulum.yaml");
+  return prepare(values.set("time.end", Value(0.5), "the test"), plugins());
+}
+
+TEST(Distances, EndWhereTheTimesOfTwoRunsPart) {
+  const Prepared scene = pendulum();
+  const Outputs outputs(scene.model());
+  const auto reading = [&](double x) { return std::vector<double>(outputs.size(), x); };
+  const Readings whole{{0, 0.1, 0.2}, {reading(0), reading(0), reading(0)}};
+  const Readings stopped{{0, 0.1, 0.15}, {reading(0), reading(0.25), reading(7)}};
+  const auto [greatest, until] = distances(outputs, stopped, whole);
+  EXPECT_EQ(until, 0.1);
+  EXPECT_EQ(greatest[0], 0.25) << "where the stopped run ends is no common time";
+}
+
+TEST(Accuracy, ReadsSharesLengthsAndAngles) {
+  const Accuracy a = Accuracy::parse("1%, 2 mm, 0.5 deg");
+  EXPECT_DOUBLE_EQ(a.share.value(), 0.01);
+  EXPECT_DOUBLE_EQ(a.length.value(), 2e-3);
+  EXPECT_NEAR(a.angle.value(), 0.5 * 3.14159265358979 / 180, 1e-15);
+  for (const char* wrong : {"", "0", "-1%", "150%", "1%,2%", "3 kg"})
+    EXPECT_THROW(static_cast<void>(Accuracy::parse(wrong)), std::runtime_error) << wrong;
+}
+
+TEST(Accuracy, OfOutputsThatStandStillIsNotZero) {
+  const Prepared scene = pendulum();
+  const Outputs outputs(scene.model());
+  const Distances limits = Accuracy::parse("1%").limits(outputs, outputs.none());
+  for (const double limit : limits) EXPECT_GT(limit, 0);
+  EXPECT_EQ(relative_error(outputs, outputs.none(), outputs.none()), 0);
+}
+
+/// A pendulum's own run at a tight tolerance.
+Yardstick yardstick_of(Evaluator& evaluator) {
+  ReferenceGoal goal;
+  goal.first = {"", "", 0, "dop853", 1e-8, {}, {}};
+  const ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator.model(p); },
+                                              evaluator.registry(), evaluator.outputs(), goal, {});
+  EXPECT_TRUE(found.reference) << found.trouble;
+  return {*found.reference, Accuracy::parse("1%").limits(evaluator.outputs(), found.reference->ways)};
+}
+
+TEST(Probe, PassesOnlyWithTheReferencesOwnErrorOnTop) {
+  const Prepared scene = pendulum();
+  const Outputs outputs(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  Yardstick yardstick = yardstick_of(evaluator);
+  const Point point{"quadratic", "", 0, "dopri5", 1e-6, {}, {}};
+  EXPECT_TRUE(evaluator.run(point, yardstick).passed());
+  yardstick.reference.own = yardstick.limits;  // all of the accuracy
+  EXPECT_EQ(evaluator.run(point, yardstick).outcome, Probe::Outcome::inaccurate);
+}
+
+TEST(Probe, IsCutWhereItsAllowanceIsUsedUp) {
+  const Prepared scene = pendulum();
+  const Outputs outputs(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const Yardstick yardstick = yardstick_of(evaluator);
+  Point point{"quadratic", "", 0, "dopri5", 1e-6, {}, {}};
+  EXPECT_EQ(evaluator.run(point, yardstick, {1, 0}).outcome, Probe::Outcome::too_costly);
+  point.integrator = "no-such";
+  EXPECT_THROW(static_cast<void>(evaluator.run(point, yardstick)), std::runtime_error);
+}
+
+TradeResult result(double error, double cost, double own = 0) {
+  TradeResult r;
+  r.status = "completed";
+  r.relative_error = error;
+  r.cpu_seconds = cost;
+  r.reference_error = own;
+  return r;
+}
+
+TEST(ParetoFront, HasWhatNothingBeats) {
+  EXPECT_EQ(pareto_front({result(0.1, 1), result(0.01, 2), result(0.1, 2)}), (std::vector<bool>{true, true, false}));
+  // Below what the reference is known to, the cheaper wins.
+  EXPECT_EQ(pareto_front({result(1e-4, 1, 1e-3), result(1e-6, 2, 1e-3)}), (std::vector<bool>{true, false}));
+  TradeResult failed = result(0, 0);
+  failed.status = "singular";
+  EXPECT_EQ(pareto_front({failed, result(0.1, 1)}), (std::vector<bool>{false, true}));
+}
+
+}  // namespace
+}  // namespace withy::study
