@@ -57,6 +57,8 @@ study::Sweep parse_sweep(const std::string& text, const std::string& option, std
   if (!from || !to) throw bad("the ends of the range are numbers, with a unit or in SI units; ");
   if (!from_end.unit.empty() && !to_end.unit.empty() && from_end.unit != to_end.unit)
     throw bad("its ends have different units; ");
+  if (count && !(from_end.unit.empty() && to_end.unit.empty()))
+    throw bad("the ends of this range are plain numbers in SI units; ");
   if (second != std::string::npos) {
     const auto given = plain_number(std::string_view(text).substr(second + 1));
     if (!given || *given != std::floor(*given) || *given < 2 || *given > most_values)
