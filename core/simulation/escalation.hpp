@@ -64,7 +64,7 @@ class LimitWatch {
 /// Where one passes, the run is taken back to the last output at which all held, by running up to there once more, so
 /// that neither an output nor a peak comes from beyond a limit; there the least formulation goes on whose limits hold
 /// where the one before failed, or the last. The same input gives the same bits. `output` is told the rung as well.
-/// Events are those of what is kept; nothing is put down or resumed.
+/// Events are those of what is kept; there are no checkpoints.
 /// \throws std::invalid_argument as `simulate`, where there is no rung, a load of the model has discrete states (they
 /// are renewed where a run begins), or the options ask for a checkpoint.
 EscalatedRun simulate_escalating(const Model& model, const std::vector<Rung>& rungs, const Integrator& integrator,

@@ -110,6 +110,7 @@ void ZeroWatch::begin_at(const State& state) {
 const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& state, std::span<const Zero> known) {
   zeros_.clear();
   evaluate(state.time, state.y, values_);
+  signs_ = start_signs_;  // what else `find` has seen lies beyond this state, or is seen again
   for (const Zero& zero : known) {
     signs_[zero.function] = zero.direction;
     values_[zero.function] = 0;  // up to rounding of either sign
@@ -145,7 +146,7 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, doub
         .second;
   };
   zeros_.clear();
-  before_ = signs_;
+  before_ = start_signs_ = signs_;
   double begin = from;
   for (int look = 1; look <= looks; ++look) {
     const double end = look == looks ? to : from + (to - from) * look / looks;

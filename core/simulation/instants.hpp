@@ -90,6 +90,7 @@ class ZeroWatch {
   std::vector<DiscreteSlot> slots_;  ///< of loads with switching functions
   std::vector<int> signs_;           ///< −1, 0, +1 at the last accepted state
   std::vector<int> before_;
+  std::vector<int> start_signs_;  ///< `signs_` at the start of the step that `find` has looked at
   std::vector<double> values_, ends_;
   std::vector<Zero> zeros_;
   State inside_;

@@ -40,7 +40,7 @@ struct Duffing {
 };
 
 /// ẍ = −x + s(t) from rest at 0; s jumps at 0.7 and 1.9.
-struct BangBang {
+struct SwitchedOscillator {
   static constexpr double first = 0.7, second = 1.9, end = 3.1;
   static double force(double t) { return t < first ? 1 : (t < second ? -1 : 1); }
   static FunctionEquations equations() {

@@ -114,13 +114,13 @@ TEST_P(IntegratorSuite, lands_on_limits_to_the_bit_and_never_passes_them) {
 // before the jump and the next the force after it.
 TEST_P(IntegratorSuite, keeps_its_order_over_declared_jumps) {
   const auto error = [this](double h) {
-    const FunctionEquations equations = BangBang::equations();
-    const auto stepper = with_step(h)->start(equations, BangBang::start());
-    for (const double limit : {BangBang::first, BangBang::second, BangBang::end}) {
+    const FunctionEquations equations = SwitchedOscillator::equations();
+    const auto stepper = with_step(h)->start(equations, SwitchedOscillator::start());
+    for (const double limit : {SwitchedOscillator::first, SwitchedOscillator::second, SwitchedOscillator::end}) {
       if (drive(*stepper, limit).outcome != StepResult::Outcome::ok) throw std::runtime_error("a step failed");
       stepper->restart();
     }
-    return BangBang::error(stepper->state().y);
+    return SwitchedOscillator::error(stepper->state().y);
   };
   const double measured = std::log2(error(0.05 * GetParam().stretch) / error(0.025 * GetParam().stretch));
   RecordProperty("order", std::to_string(measured));

@@ -10,17 +10,18 @@
 namespace withy::extremes {
 namespace {
 
-/// Error of BangBang with declared switches, with equal steps of the interval between two switches over `parts`.
+/// Error of SwitchedOscillator with declared switches, with equal steps of the interval between two switches over
+/// `parts`.
 double error_over_switches(const std::string& id, int parts) {
-  FunctionEquations equations = BangBang::equations();
+  FunctionEquations equations = SwitchedOscillator::equations();
   equations.stiffness_ = {0.5};  // half of it: linearly implicit methods must do with any part
-  State state = BangBang::start();
-  for (const double limit : {BangBang::first, BangBang::second, BangBang::end}) {
+  State state = SwitchedOscillator::start();
+  for (const double limit : {SwitchedOscillator::first, SwitchedOscillator::second, SwitchedOscillator::end}) {
     const auto stepper = integrator(equal_steps(id, (limit - state.time) / parts))->start(equations, state);
     drive(*stepper, limit);
     state = stepper->state();
   }
-  return BangBang::error(state.y);
+  return SwitchedOscillator::error(state.y);
 }
 
 }  // namespace
@@ -54,7 +55,7 @@ void stability(Campaign& campaign) {
 }
 
 void jumps(Campaign& campaign) {
-  const FunctionEquations equations = BangBang::equations();
+  const FunctionEquations equations = SwitchedOscillator::equations();
   struct Method {
     const char* name;
     const char* options;  ///< {0}: step or tolerance
@@ -69,13 +70,14 @@ void jumps(Campaign& campaign) {
       double before = 0;
       for (int k = 0; k < 6; ++k) {
         const double h = m.first * std::pow(m.factor, k);
-        const auto stepper = integrator(fmt::format(fmt::runtime(m.options), h))->start(equations, BangBang::start());
-        for (const double limit : {BangBang::first, BangBang::second, BangBang::end}) {
-          if (!declared && limit != BangBang::end) continue;
+        const auto stepper =
+            integrator(fmt::format(fmt::runtime(m.options), h))->start(equations, SwitchedOscillator::start());
+        for (const double limit : {SwitchedOscillator::first, SwitchedOscillator::second, SwitchedOscillator::end}) {
+          if (!declared && limit != SwitchedOscillator::end) continue;
           drive(*stepper, limit);
           if (declared) stepper->restart();
         }
-        const double error = BangBang::error(stepper->state().y);
+        const double error = SwitchedOscillator::error(stepper->state().y);
         if (k > 0) order[declared ? 0 : 1] = std::min(order[declared ? 0 : 1], std::log2(before / error));
         before = error;
       }
@@ -110,12 +112,12 @@ void jumps(Campaign& campaign) {
     std::string text;
     for (const double tolerance : tolerances) {
       const auto stepper = integrator(fmt::format("{{name: {}, rtol: {}, atol: {}}}", name, tolerance, tolerance))
-                               ->start(equations, BangBang::start());
-      for (const double limit : {BangBang::first, BangBang::second, BangBang::end}) {
+                               ->start(equations, SwitchedOscillator::start());
+      for (const double limit : {SwitchedOscillator::first, SwitchedOscillator::second, SwitchedOscillator::end}) {
         drive(*stepper, limit);
         stepper->restart();
       }
-      const double error = BangBang::error(stepper->state().y);
+      const double error = SwitchedOscillator::error(stepper->state().y);
       const double work = static_cast<double>(stepper->statistics().evaluations);
       if (error_before > 0) slope = std::min(slope, std::log(error_before / error) / std::log(work / work_before));
       error_before = error;

@@ -108,13 +108,13 @@ TEST_P(Cvode, interpolates_and_lands) {
 }
 
 TEST_P(Cvode, sees_declared_jumps_on_their_own_side) {
-  const FunctionEquations equations = BangBang::equations();
-  const auto stepper = start(equations, BangBang::start(), 1e-9);
-  for (const double limit : {BangBang::first, BangBang::second, BangBang::end}) {
+  const FunctionEquations equations = SwitchedOscillator::equations();
+  const auto stepper = start(equations, SwitchedOscillator::start(), 1e-9);
+  for (const double limit : {SwitchedOscillator::first, SwitchedOscillator::second, SwitchedOscillator::end}) {
     ASSERT_EQ(drive(*stepper, limit).outcome, StepResult::Outcome::ok);
     stepper->restart();
   }
-  EXPECT_LT(BangBang::error(stepper->state().y), 1e-6);
+  EXPECT_LT(SwitchedOscillator::error(stepper->state().y), 1e-6);
 }
 
 TEST_P(Cvode, keeps_quaternions_at_unit_length) {
