@@ -69,7 +69,8 @@ Json steps_json(const study::StepLimit& s) {
             {"mean", s.mean},
             {"fastest_mode", s.fastest > 0 ? Json(s.fastest) : Json()},
             {"step_times_fastest_mode", s.product > 0 ? Json(s.product) : Json()},
-            {"stability_limit", s.limit ? Json(*s.limit) : Json()}};
+            {"stability_limit", s.limit ? Json(*s.limit) : Json()},
+            {"fastest_pole", s.maker.empty() ? Json() : Json(s.maker)}};
   if (s.fewer) j["fewer_modes"] = {{"without", s.fewer->mode}, {"fastest_mode", s.fewer->fastest}};
   if (!s.unlimited.empty()) j["unlimited_integrators"] = s.unlimited;
   return j;

@@ -26,6 +26,38 @@ Json found_json(const study::ModesAt& at) {
   return j;
 }
 
+Json exponents_json(const std::vector<study::NamedMode>& modes) {
+  Json list = Json::array();
+  for (const study::NamedMode& m : modes) {
+    Json lines = Json::array();
+    for (const auto& [frequency, share] : m.lines) lines.push_back({{"frequency", frequency}, {"share", share}});
+    list.push_back({{"exponent", {m.exponent.real(), m.exponent.imag()}},
+                    {"dominated_by", m.dominated_by},
+                    {"resolved", m.resolved},
+                    {"lines", std::move(lines)}});
+  }
+  return list;
+}
+
+/// What a turn says of the modes.
+Json turn_json(const study::TurningModes& turn) {
+  Json j;
+  j["period"] = turn.check.turning.period > 0 ? Json(turn.check.turning.period) : Json();
+  j["periodic"] = turn.check.periodic();
+  j["change"] = turn.check.change;
+  j["balanced"] = turn.check.steady;
+  j["problem"] = turn.problem.empty() ? turn.check.turning.problem : turn.problem;
+  if (turn.floquet)
+    j["floquet"] = {{"stable", turn.floquet->stable},
+                    {"resolution", turn.floquet->resolution},
+                    {"exponents", exponents_json(turn.floquet->modes)}};
+  if (turn.blades)
+    j["multiblade"] = {{"blades", turn.blades->blades},
+                       {"change", turn.blades->change},
+                       {"modes", exponents_json(turn.blades->modes)}};
+  return j;
+}
+
 Json rows_json(const Eigen::MatrixXd& m) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < m.rows(); ++i) {
@@ -83,6 +115,7 @@ Json modes_json(const study::ModesOf& run) {
     Json point;
     point["value"] = at.value;
     point["steady"] = at.steady ? found_json(at) : Json();
+    point["turn"] = at.turn ? turn_json(*at.turn) : Json();
     point["problem"] = at.problem;
     point["modes"] = std::move(modes);
     points.push_back(std::move(point));
@@ -114,10 +147,17 @@ std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::st
   Panel growths{label, "growth [1/s]", {0, 0}, {}, 160};
   std::vector<std::string> legend;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    legend.push_back(runs[r].formulation);
+    // One formulation: a colour a branch, named after what dominates it at first. Several: a colour a formulation.
+    if (runs.size() > 1) legend.push_back(runs[r].formulation);
     for (std::size_t i = 0; i < count; ++i) {
       Curve frequency, growth;
-      frequency.pen = growth.pen = r;
+      frequency.pen = growth.pen = runs.size() > 1 ? r : i;
+      if (runs.size() == 1) {
+        const auto named = std::find_if(runs[r].points.begin(), runs[r].points.end(),
+                                        [i](const study::ModesAt& at) { return i < at.modes.size(); });
+        if (named == runs[r].points.end()) continue;
+        legend.push_back(study::dominating(*named, named->modes[i]));
+      }
       for (const study::ModesAt& at : runs[r].points) {
         if (i >= at.modes.size()) continue;
         const Mode& m = at.modes[i];

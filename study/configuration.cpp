@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -42,7 +44,13 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
     for (std::size_t i = 0; i < slot.speeds; ++i) held_[slot.speed + i] = true;
   }
   for (const std::string& name : holding.locked) {
-    for (const std::size_t s : speeds_of(model, name, "lock")) held_[s] = true;
+    for (const std::size_t s : speeds_of(model, name, "lock")) {
+      if (model.driven(hinge_of(layout(), s)))
+        throw OptionError("lock",
+                          fmt::format("a motion of the scene drives '{}': leave that motion out, or do not lock",
+                                      layout().hinges[hinge_of(layout(), s)].name));
+      held_[s] = true;
+    }
   }
   for (const Spin& spun : holding.spun) spin(spun);
 }
@@ -106,6 +114,14 @@ bool rate_is_angular(const Model& model, const std::string& name, const std::str
   const std::size_t speed = one_speed(model, name, what);
   const std::size_t h = hinge_of(model.layout(), speed);
   return hinge_rates(*model.hinges()[h].hinge)[speed - model.layout().hinges[h].speed].angular;
+}
+
+Spin read_spin(const Model& model, const std::string& hinge, const std::string& rate, const std::string& what) {
+  const bool angular = rate_is_angular(model, hinge, what);
+  if (const std::optional<double> number = plain_number(rate)) return {hinge, *number};
+  const QuantityReading quantity = read_quantity(rate, angular ? "rad/s" : "m/s");
+  if (!quantity.value) throw OptionError(what, "rate of '" + hinge + "': " + quantity.problem);
+  return {hinge, *quantity.value};
 }
 
 std::string no_steady_state(const Configuration& c, const SteadyState& steady) {

@@ -55,6 +55,9 @@ std::vector<std::size_t> hinge_speeds(const Layout& layout);
 /// Whether the one rate of that name turns something. \throws InputError as speeds_of, and where it names several
 bool rate_is_angular(const Model& model, const std::string& name, const std::string& what);
 
+/// A rate from its text, a number or "60 rev/min". \throws InputError naming `what` it was wanted for
+Spin read_spin(const Model& model, const std::string& hinge, const std::string& rate, const std::string& what);
+
 /// Why there is no steady state, in a sentence or two; empty where there is one.
 std::string no_steady_state(const Configuration& configuration, const SteadyState& steady);
 /// How the derivatives were found: exact, or numerical for loads that are named.

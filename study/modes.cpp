@@ -17,7 +17,11 @@ double greatest_eigenvalue(const ModesAt& at) {
 
 }  // namespace
 
-ModesAt modes_at(const Configuration& c, bool as_is) {
+std::string Sweep::text(double value) const {
+  return unit.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, unit);
+}
+
+ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
   ModesAt at;
   at.names = c.layout().speed_names;
   at.model = c.prepared().scene.model;
@@ -36,6 +40,7 @@ ModesAt modes_at(const Configuration& c, bool as_is) {
       at.steady->stays = stays_steady(c.dynamics(), tangents, state, c.held());
       at.steady->derivatives = derivatives_text(tangents);
     }
+    at.turn = turning_modes(c, state, wish);
   } catch (const std::domain_error& e) {
     at.problem = e.what();
   }
@@ -43,7 +48,7 @@ ModesAt modes_at(const Configuration& c, bool as_is) {
 }
 
 ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartState& start, const Holding& holding,
-                    const Sweep& sweep, bool as_is, const Control& control) {
+                    const Sweep& sweep, bool as_is, const TurningWish& wish, const Control& control) {
   ModesOf run;
   const bool spins = !sweep.spun().empty(), varies = !sweep.none() && !spins;
   std::optional<Configuration> c;
@@ -53,13 +58,13 @@ ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartSt
     const double value = sweep.values[k];
     if (!c || varies) {
       SceneValues here = values;
-      if (varies) here.set_text(fmt::format("{}={}", sweep.path, value));
+      if (varies) here.set_text(sweep.path + '=' + sweep.text(value));
       const Prepared prepared = prepare(std::move(here), registry);
       c.emplace(prepared, start ? start(prepared) : prepared.scene.initial, holding);
     }
-    if (spins) c->spin({sweep.spun(), value});
+    if (spins) c->spin(read_spin(c->prepared().model(), sweep.spun(), sweep.text(value), "sweep"));
     if (last && last->y.size() == c->state().y.size()) c->begin_at(*last);
-    run.points.push_back(modes_at(*c, as_is));
+    run.points.push_back(modes_at(*c, as_is, wish));
     ModesAt& at = run.points.back();
     at.value = value;
     if (at.steady && at.steady->steady.converged) last = at.steady->steady.state;
@@ -83,6 +88,7 @@ bool unstable(const ModesAt& at, const Mode& mode) { return !mode.rigid && resol
 
 std::string behaviour(const ModesAt& at, const Mode& mode) {
   if (mode.rigid) return "rigid";
+  if (at.frozen()) return unstable(at, mode) ? "grows here" : "decays here";
   if (unstable(at, mode)) return mode.eigenvalue.imag() == 0 ? "diverges" : "flutters";
   return mode.eigenvalue.imag() == 0 ? "overdamped" : "stable";
 }

@@ -11,6 +11,7 @@
 #include "withy/core/analysis/modes.hpp"
 #include "withy/study/configuration.hpp"
 #include "withy/study/control.hpp"
+#include "withy/study/turning.hpp"
 
 namespace withy::study {
 
@@ -18,8 +19,11 @@ namespace withy::study {
 struct Sweep {
   std::string path;  ///< in the scene, or `spin.hinge`: the hinge is held at that rate; empty: nothing is swept
   std::vector<double> values{0.0};
+  std::string unit = {};  ///< of the values, as the scene writes it; empty: SI
   [[nodiscard]] bool none() const { return path.empty(); }
   /// The hinge of `spin.hinge`; empty for a path of the scene.
+  /// A value as a scene writes it, "3.75 rpm".
+  [[nodiscard]] std::string text(double value) const;
   [[nodiscard]] std::string spun() const { return path.starts_with("spin.") ? path.substr(5) : ""; }
 };
 
@@ -43,6 +47,10 @@ struct ModesAt {
   std::string problem;                ///< why there are none; empty where there are
   std::optional<SteadyFound> steady;  ///< none where the state was taken as it is
   std::shared_ptr<const Model> model;
+  std::optional<TurningModes> turn;  ///< none where there are no modes
+
+  /// Whether these are modes of equations that change as the hinges turn, frozen at one angle: they tell no stability.
+  [[nodiscard]] bool frozen() const { return turn && turn->check.periodic(); }
 };
 
 /// One formulation, all values.
@@ -52,13 +60,13 @@ struct ModesOf {
 };
 
 /// Modes about the configuration's steady state, or where `as_is` about its state.
-ModesAt modes_at(const Configuration& configuration, bool as_is);
+ModesAt modes_at(const Configuration& configuration, bool as_is, const TurningWish& wish = {});
 
 /// Goes through the sweep: each value begins at the steady state of the one before, and modes keep their branches.
 /// \param start gives the state that a scene begins at; empty: its initial one
 /// \throws SceneError, InputError, PluginError
 ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartState& start, const Holding& holding,
-                    const Sweep& sweep, bool as_is, const Control& control);
+                    const Sweep& sweep, bool as_is, const TurningWish& wish, const Control& control);
 
 /// Name of the coordinate that dominates a mode, as "link1.bending_y[1]".
 std::string dominating(const ModesAt& at, const Mode& mode);
@@ -66,7 +74,7 @@ std::string dominating(const ModesAt& at, const Mode& mode);
 double resolved_growth(const ModesAt& at, const Mode& mode);
 /// Whether it grows, beyond that.
 bool unstable(const ModesAt& at, const Mode& mode);
-/// "rigid", "diverges", "flutters", "overdamped" or "stable".
+/// "rigid", "diverges", "flutters", "overdamped" or "stable"; of a frozen angle "grows here" and "decays here".
 std::string behaviour(const ModesAt& at, const Mode& mode);
 
 }  // namespace withy::study

@@ -13,8 +13,10 @@ namespace withy::study {
 
 struct StepLimit {
   double mean = 0;              ///< [s]
-  double fastest = 0;           ///< fastest mode [rad/s]
-  double product = 0;           ///< mean step times the fastest mode; 0 where that is not known
+  double fastest = 0;           ///< modulus of the fastest pole at the end, of all that acts [1/s]
+  double product = 0;           ///< mean step times that; 0 where it is not known
+  std::string maker = {};       ///< what makes it so fast, in words; empty where it is not known
+  bool made_by_load = false;    ///< a load does
   std::optional<double> limit;  ///< of that product, beyond which the integrator is not stable
   /// What helps against stability: the mode without which the fastest vibration is slowest, and the integrators of
   /// those there are that no vibration limits and that can integrate these equations. Empty where nothing is proposed.

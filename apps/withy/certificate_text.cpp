@@ -75,6 +75,7 @@ std::string step_limit_text(const study::StepLimit& s) {
     return fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable at any step", s.cause(), s.product);
   std::string text = fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}", s.cause(),
                                  s.product, *s.limit);
+  if (!s.maker.empty() && s.cause() == "stability") text += "; the fastest pole is " + s.maker;
   if (s.fewer && s.fewer->fastest > 0 && s.fewer->fastest < s.fastest)
     text +=
         fmt::format("; without {} the fastest mode is {:.3g} rad/s in place of {:.3g}, for steps {:.2g} times as long",

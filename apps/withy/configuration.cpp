@@ -1,23 +1,16 @@
 #include "withy/apps/withy/configuration.hpp"
 
 #include <CLI/CLI.hpp>
-#include <optional>
-
-#include "withy/scene/units.hpp"
 
 namespace withy::app {
 namespace {
 
-study::Spin read_spin(const Model& model, const std::string& text) {
+/// HINGE=RATE.
+study::Spin spin_of(const Model& model, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
-    throw study::OptionError("spin", "got '" + text + "'; need HINGE=RATE, as axle=6 or axle='60 rev/min'");
-  const std::string name = text.substr(0, equals), value = text.substr(equals + 1);
-  const bool angular = study::rate_is_angular(model, name, "spin");
-  if (const std::optional<double> rate = plain_number(value)) return {name, *rate};
-  const QuantityReading quantity = read_quantity(value, angular ? "rad/s" : "m/s");
-  if (!quantity.value) throw study::OptionError("spin", "rate of '" + name + "': " + quantity.problem);
-  return {name, *quantity.value};
+    throw InputError("--spin: got '" + text + "'; need HINGE=RATE, as axle=6 or axle='60 rev/min'");
+  return study::read_spin(model, text.substr(0, equals), text.substr(equals + 1), "--spin");
 }
 
 }  // namespace
@@ -25,7 +18,7 @@ study::Spin read_spin(const Model& model, const std::string& text) {
 study::Holding holding_of(const Model& model, const std::vector<std::string>& lock,
                           const std::vector<std::string>& spin) {
   study::Holding holding{lock, {}};
-  for (const std::string& text : spin) holding.spun.push_back(read_spin(model, text));
+  for (const std::string& text : spin) holding.spun.push_back(spin_of(model, text));
   return holding;
 }
 

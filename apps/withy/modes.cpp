@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "withy/apps/withy/configuration.hpp"
 #include "withy/apps/withy/modes_text.hpp"
@@ -22,9 +24,26 @@ struct ModesArguments : ConfigurationArguments, OutputArguments {
   std::string sweep;      ///< `path=a:b:n`, a path of the scene or `spin.hinge`; empty: one configuration
   std::size_t count = 6;  ///< modes that are shown
   bool as_is = false;     ///< about the state as it is given, steady or not
+  bool poles = false;     ///< all eigenvalues are listed
+  bool floquet = false;   ///< characteristic exponents over a turn
+  std::optional<std::vector<std::string>> blades;  ///< equal blades by names, or `auto`; none: not asked
+  double period = 0;                               ///< [s]; 0: found from the rates
 };
 
 using Json = nlohmann::ordered_json;
+
+study::TurningWish wish_of(const ModesArguments& arguments) {
+  study::TurningWish wish;
+  wish.floquet = arguments.floquet;
+  wish.blades = arguments.blades.has_value();
+  if (wish.blades) {
+    for (const std::string& name : *arguments.blades) {
+      if (name != "auto") wish.names.push_back(name);
+    }
+  }
+  wish.period = arguments.period;
+  return wish;
+}
 
 /// One run a formulation.
 std::vector<study::ModesOf> runs_of(const Engine& engine, const ModesArguments& arguments, const study::Sweep& sweep) {
@@ -37,7 +56,7 @@ std::vector<study::ModesOf> runs_of(const Engine& engine, const ModesArguments& 
     SceneValues values = engine.prepared().values;
     values.choose_formulation(formulation, "--formulations " + formulation);
     runs.push_back(study::sweep_modes(values, engine.registry(), start, holding, sweep, arguments.as_is,
-                                      study_control(formulation)));
+                                      wish_of(arguments), study_control(formulation)));
   }
   return runs;
 }
@@ -46,10 +65,16 @@ std::string run_text(const study::ModesOf& run, const ModesArguments& arguments,
   std::string text = fmt::format("{} in {}\n", arguments.scene, run.formulation);
   if (!run.points.front().modes.empty() || !sweep.none())
     text += '\n' + (sweep.none() ? modes_text(run, arguments.count) : sweep_text(run, sweep.path, arguments.count));
+  // Of a sweep the first value at which the equations are periodic speaks for all.
+  const auto frozen = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return at.frozen(); });
+  const study::ModesAt& spoken_of = frozen != run.points.end() ? *frozen : run.points.back();
+  if (spoken_of.turn) {
+    if (const std::string words = study::turn_text(spoken_of.turn->check); !words.empty()) text += '\n' + words + '\n';
+  }
+  if (arguments.poles && !run.points.front().modes.empty()) text += '\n' + poles_text(run.points.front());
   for (const study::ModesAt& at : run.points) {
-    if (!at.steady || at.steady->stays.value_or(true)) continue;
-    text += "What acts on the free coordinates turns with the hinges: these are modes at this angle alone.\n";
-    break;
+    if (at.turn)
+      text += turning_text(*at.turn, sweep.none() ? "" : fmt::format("{} = {}", sweep.path, sweep.text(at.value)));
   }
   return text;
 }
@@ -68,6 +93,14 @@ bool complain_of(const std::vector<study::ModesOf>& runs, const study::Sweep& sw
   bool failed = false;
   for (const study::ModesOf& run : runs) {
     for (const study::ModesAt& at : run.points) {
+      if (at.turn && !at.turn->problem.empty()) {
+        failed = true;
+        complain("a whole turn: " + at.turn->problem);
+      }
+      if (at.turn && !at.turn->blade_problem.empty()) {
+        failed = true;
+        complain("--blades: " + at.turn->blade_problem);
+      }
       if (at.problem.empty()) continue;
       failed = true;
       complain(fmt::format("{}{}: {}", run.formulation,
@@ -111,6 +144,14 @@ std::function<ExitStatus()> add_modes(CLI::App& c) {
       ->type_name("N")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100000}))
       ->capture_default_str();
+  c.add_flag("--poles", a.poles, "All eigenvalues, real and complex, in the order of |λ|");
+  c.add_flag("--floquet", a.floquet, "Characteristic exponents over a whole turn, most unstable first");
+  c.add_option("--blades", a.blades, "Equal blades seen from where the rotor does not turn: their names, or auto")
+      ->type_name("NAME,...")
+      ->delimiter(',');
+  c.add_option("--period", a.period, "Period of motions and loads [s]; default: that of the hinges' rates")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
   c.add_flag("--as-is", a.as_is, "About the state as it is given, without finding the steady one");
   add_output(c, a, "Folder for modes.csv, modes.json and, of a sweep, modes.svg");
   return [arguments] { return modes(*arguments); };

@@ -85,4 +85,74 @@ std::string sweep_text(const study::ModesOf& run, const std::string& label, std:
   return text + problems;
 }
 
+std::string poles_text(const study::ModesAt& at) {
+  struct Row {
+    std::complex<double> pole;
+    std::string name;
+  };
+  std::vector<Row> rows;
+  for (const Mode& m : at.modes) {
+    rows.push_back({m.eigenvalue, study::dominating(at, m)});
+    if (m.eigenvalue.imag() == 0 && !m.rigid)
+      rows.push_back({m.partner, at.names[static_cast<std::size_t>(m.partner_dominant)]});
+  }
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const Row& a, const Row& b) { return std::abs(a.pole) < std::abs(b.pole); });
+  TextTable table({"pole", "real\n[1/s]", "imaginary\n[rad/s]", "modulus\n[rad/s]", "<dominated by"});
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::complex<double> p = rows[i].pole;
+    table.add({std::to_string(i + 1), fmt::format("{:.6g}", p.real()),
+               p.imag() != 0 ? fmt::format("±{:.6g}", p.imag()) : std::string("-"), fmt::format("{:.6g}", std::abs(p)),
+               rows[i].name});
+  }
+  return table.str();
+}
+
+namespace {
+
+std::string lines_of(const study::NamedMode& mode) {
+  std::string text;
+  for (std::size_t i = 1; i < mode.lines.size() && i < 4; ++i)
+    text += fmt::format("{}{:.4g} ({:.0f} %)", i > 1 ? ", " : "", std::abs(mode.lines[i].first),
+                        100 * mode.lines[i].second);
+  return text;
+}
+
+std::string exponents_text(const std::vector<study::NamedMode>& modes, double resolution) {
+  TextTable table({"mode", "growth\n[1/s]", "frequency\n[rad/s]", "[Hz]", "<dominated by", "<seen beside at\n[rad/s]"});
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const study::NamedMode& m = modes[i];
+    const double growth = std::abs(m.exponent.real()) > resolution ? m.exponent.real() : 0.0;
+    table.add({std::to_string(i + 1), m.resolved ? fmt::format("{:.4g}", growth) : fmt::format("< {:.4g}", growth),
+               m.resolved ? fmt::format("{:.6g}", m.exponent.imag()) : "-",
+               m.resolved ? fmt::format("{:.6g}", m.exponent.imag() / (2 * std::numbers::pi)) : "-", m.dominated_by,
+               lines_of(m)});
+  }
+  return table.str();
+}
+
+}  // namespace
+
+std::string turning_text(const study::TurningModes& turn, const std::string& label) {
+  std::string text;
+  const std::string at = label.empty() ? "" : " at " + label;
+  if (turn.moves && (turn.floquet || turn.blades))
+    text +=
+        fmt::format("\nThe free coordinates follow a motion of the same period{}: by up to {:.3g} from the start.\n",
+                    at, turn.greatest_displacement);
+  if (turn.floquet)
+    text += fmt::format("\nWhole turn of {:.6g} s{}: {} (Floquet; growth to {:.1g}/s)\n\n{}", turn.check.turning.period,
+                        at, turn.floquet->stable ? "stable" : "unstable", turn.floquet->resolution,
+                        exponents_text(turn.floquet->modes, turn.floquet->resolution));
+  if (turn.blades) {
+    text += fmt::format("\nSeen from where the rotor does not turn{}, {} (multi-blade; {})\n\n{}", at,
+                        fmt::join(turn.blades->blades, ", "),
+                        turn.blades->change < 1e-9 ? std::string("constant over the turn")
+                                                   : fmt::format("averaged over the turn, which leaves out {:.2g} %",
+                                                                 100 * turn.blades->change),
+                        exponents_text(turn.blades->modes, 0));
+  }
+  return text;
+}
+
 }  // namespace withy::app

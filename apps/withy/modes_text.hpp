@@ -10,6 +10,10 @@ namespace withy::app {
 
 /// Frequencies, damping, growth and shapes of one configuration.
 std::string modes_text(const study::ModesOf& run, std::size_t count);
+/// All eigenvalues of one configuration, real ones by themselves, in the order of |λ|.
+std::string poles_text(const study::ModesAt& at);
+/// What a whole turn tells; empty where nobody asked. \param label of the value it is at; may be empty
+std::string turning_text(const study::TurningModes& turn, const std::string& label);
 /// A row a value, a column a branch; unstable ones marked.
 std::string sweep_text(const study::ModesOf& run, const std::string& label, std::size_t count);
 

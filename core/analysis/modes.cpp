@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace withy {
 namespace {
@@ -154,8 +155,13 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
     if (second->value.real() > first->value.real()) std::swap(first, second);
     modes.push_back(mode_of(*first, *second, s, free, tangents));
   }
-  std::stable_sort(modes.begin(), modes.end(),
-                   [](const Mode& a, const Mode& b) { return a.squared_frequency() < b.squared_frequency(); });
+  double greatest = 0;
+  for (const Mode& m : modes) greatest = std::max({greatest, std::abs(m.eigenvalue), std::abs(m.partner)});
+  const auto key = [&](const Mode& m) {
+    const double modulus = std::min(std::abs(m.eigenvalue), std::abs(m.partner));
+    return std::pair(m.growth() <= 1e-10 * greatest, modulus);
+  };
+  std::stable_sort(modes.begin(), modes.end(), [&](const Mode& a, const Mode& b) { return key(a) < key(b); });
   return modes;
 }
 

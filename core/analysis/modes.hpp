@@ -31,7 +31,7 @@ struct Mode {
   [[nodiscard]] double damping_ratio() const { return -eigenvalue.real() / std::abs(eigenvalue); }
 };
 
-/// All modes of the free speeds in the order of squared frequency, unstable first.
+/// All modes of the free speeds, those that grow first, then in the order of the smaller |λ| of each pair.
 /// \throws std::domain_error where the mass matrix of the free speeds is singular or anything is not finite.
 std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held);
 

@@ -81,7 +81,9 @@ TEST_F(StrainKinematicsPlugins, foreshortening_has_the_axial_part_alone) {
   EXPECT_GT(own.gamma[1].norm(), 0.1) << "the coupling that it lacks";
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_TRUE(anew.theta[c].isZero(0));
-    if (c > 0) EXPECT_TRUE(anew.gamma[c].isZero(0));
+    if (c > 0) {
+      EXPECT_TRUE(anew.gamma[c].isZero(0));
+    }
   }
 }
 

@@ -13,7 +13,7 @@
 namespace withy::extremes {
 namespace {
 
-constexpr int looks = 4;  ///< instants at which a run is compared, on which its steps land
+constexpr int instants_compared = 4;  ///< instants at which a run is compared, on which its steps land
 
 using States = std::vector<std::vector<double>>;
 
@@ -35,18 +35,19 @@ struct ProblemSet {
 States run(const Problem& p, const std::string& options) {
   const auto stepper = integrator(options)->start(*p.equations, p.start);
   States found;
-  for (int i = 1; i <= looks; ++i) {
-    if (drive(*stepper, p.start.time + p.end * i / looks, 3'000'000).outcome != StepResult::Outcome::ok) break;
+  for (int i = 1; i <= instants_compared; ++i) {
+    if (drive(*stepper, p.start.time + p.end * i / instants_compared, 3'000'000).outcome != StepResult::Outcome::ok)
+      break;
     found.push_back(stepper->state().y);
   }
   return found;
 }
 
 /// Greatest error of a coordinate or speed over what the tolerance weighs it with, 1 + |y|; NaN where the run fails.
-double error_of(const States& found, const States& reference) {
-  if (found.size() < looks) return std::nan("");
+double distance_of(const States& found, const States& reference) {
+  if (found.size() < instants_compared) return std::nan("");
   double worst = 0;
-  for (std::size_t k = 0; k < looks; ++k) {
+  for (std::size_t k = 0; k < instants_compared; ++k) {
     for (std::size_t i = 0; i + 1 < found[k].size(); ++i) {
       const double e = std::abs(found[k][i] - reference[k][i]) / (1 + std::abs(reference[k][i]));
       if (!(e <= worst)) worst = e;
@@ -58,7 +59,8 @@ double error_of(const States& found, const States& reference) {
 void add_detest(ProblemSet& set) {
   for (const DetestProblem& d : detest_problems()) {
     set.functions.push_back(std::make_unique<FunctionEquations>(d.equations()));
-    Problem p{d.name, set.functions.back().get(), d.state(), DetestProblem::end, detest_reference(d, looks, 4000)};
+    Problem p{d.name, set.functions.back().get(), d.state(), DetestProblem::end,
+              detest_reference(d, instants_compared, 4000)};
     for (std::vector<double>& y : p.reference) y.push_back(0);
     set.problems.push_back(std::move(p));
   }
@@ -93,7 +95,7 @@ Ratios ratios_of(const ProblemSet& set, const std::string& id, const std::string
     if (id == "generalized-alpha" && p.equations->layout().speeds == 0) continue;
     std::string options = with_tolerance(id, tolerance);
     options.insert(options.size() - 1, more);
-    found[p.name] = error_of(run(p, options), p.reference) / tolerance;
+    found[p.name] = distance_of(run(p, options), p.reference) / tolerance;
   }
   return found;
 }

@@ -168,7 +168,7 @@ TEST(StudyLinearModel, OfThePendulumIsItsFrequency) {
 
 TEST(StudyModes, FollowASweepOfTheRateAndEndWhereAsked) {
   const Sweep sweep{"spin.axle", {0, 1, 2}};
-  const ModesOf run = sweep_modes(scene("rotating-blade"), plugins(), {}, {}, sweep, false, {});
+  const ModesOf run = sweep_modes(scene("rotating-blade"), plugins(), {}, {}, sweep, false, {}, {});
   ASSERT_EQ(run.points.size(), 3U);
   for (std::size_t k = 0; k + 1 < run.points.size(); ++k) {
     ASSERT_FALSE(run.points[k].modes.empty()) << run.points[k].problem;
@@ -176,7 +176,7 @@ TEST(StudyModes, FollowASweepOfTheRateAndEndWhereAsked) {
   }
   int asked = 0;
   const Control soon{[&] { return asked++ >= 1; }, {}};
-  EXPECT_EQ(sweep_modes(scene("rotating-blade"), plugins(), {}, {}, sweep, false, soon).points.size(), 1U);
+  EXPECT_EQ(sweep_modes(scene("rotating-blade"), plugins(), {}, {}, sweep, false, {}, soon).points.size(), 1U);
 }
 
 TEST(StudyConfiguration, NamesTheHingesThatThereAre) {

@@ -1,0 +1,65 @@
+/// \file
+/// Small motions about a state that turns: whether their equations are periodic, and then what a whole turn says of
+/// them.
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "withy/core/analysis/multiblade.hpp"
+#include "withy/study/configuration.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::study {
+
+/// A motion e^{λt} p(t) by the names of what moves.
+struct NamedMode {
+  std::complex<double> exponent;  ///< [1/s]
+  std::string dominated_by;       ///< a speed, or of equal blades a pattern, as "blade1.bending_z[1] forward"
+  double share = 1;               ///< of the strongest harmonic
+  std::vector<std::pair<double, double>> lines;  ///< frequencies [rad/s] that are seen, and shares, strongest first
+  bool resolved = true;  ///< false: it decays in a turn to what rounding leaves, its exponent is a bound
+};
+
+/// Characteristic exponents, most unstable first.
+struct FloquetModes {
+  std::vector<NamedMode> modes;
+  double resolution = 0;  ///< [1/s] of real parts
+  bool stable = false;
+};
+
+/// Equal blades seen from where the rotor does not turn, in the order of |λ|.
+struct BladeModes {
+  std::vector<std::string> blades;  ///< in their order
+  std::vector<NamedMode> modes;     ///< of the equations averaged over a turn
+  double change = 0;                ///< what the average leaves out: greatest change of an element, of the greatest
+};
+
+struct TurningModes {
+  TurnCheck check;
+  bool moves = false;  ///< the free coordinates follow a periodic motion, and are not at rest in the turning frames
+  double greatest_displacement = 0;  ///< from the state at the start, of a modal coordinate or hinge [m, rad]
+  std::optional<FloquetModes> floquet;
+  std::optional<BladeModes> blades;
+  std::string problem;        ///< why there are no exponents; empty where there are
+  std::string blade_problem;  ///< why no blades are seen; empty where they are, or nobody asked
+};
+
+struct TurningWish {
+  bool floquet = false;
+  bool blades = false;             ///< multi-blade transform
+  std::vector<std::string> names;  ///< of the blades; empty: found
+  double period = 0;               ///< [s]; 0: found from the rates
+};
+
+/// What a turn says about small motions about a steady state of the configuration.
+TurningModes turning_modes(const Configuration& configuration, const State& steady, const TurningWish& wish);
+
+/// One sentence: that the equations of small motions are constant over a turn, or how they change, or why that is not
+/// known; empty where nothing turns.
+std::string turn_text(const TurnCheck& check);
+
+}  // namespace withy::study

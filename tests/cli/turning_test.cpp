@@ -1,0 +1,98 @@
+/// \file
+/// `withy modes` where the equations of small motions turn with the hinges.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "withy/tests/analysis/rotor.hpp"
+#include "withy/tests/cli/json_result.hpp"
+
+namespace withy::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Turning, FrozenModesSayThatTheyAreAndNeverFlutter) {
+  const Folder folder;
+  folder.write("two.yaml", rotor(2));
+  const Finished f = withy(folder, {"modes", "two.yaml", "--spin", "shaft=12 rpm"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("frozen angle"));
+  EXPECT_THAT(f.out, HasSubstr("--floquet"));
+  EXPECT_THAT(f.out, Not(HasSubstr("flutters")));
+  const Finished constant = withy(folder, {"modes", "scenes/rotating-blade.yaml", "--spin", "axle=6"});
+  EXPECT_THAT(constant.out, HasSubstr("stay the same"));
+}
+
+TEST(Turning, FloquetGivesExponentsMostUnstableFirst) {
+  const Folder folder;
+  folder.write("two.yaml", rotor(2));
+  const json turn = result(folder, {"modes", "two.yaml", "--spin", "shaft=12 rpm", "--floquet", "--json"})
+                        .at("runs")
+                        .at(0)
+                        .at("points")
+                        .at(0)
+                        .at("turn");
+  EXPECT_NEAR(turn.at("period"), 5, 1e-9);
+  EXPECT_TRUE(turn.at("periodic"));
+  const json& exponents = turn.at("floquet").at("exponents");
+  EXPECT_EQ(exponents.size(), 12U);
+  EXPECT_TRUE(turn.at("floquet").at("stable"));
+  for (std::size_t i = 1; i < exponents.size(); ++i)
+    EXPECT_LE(exponents[i].at("exponent")[0], exponents[i - 1].at("exponent")[0]);
+  EXPECT_EQ(withy(folder, {"modes", "two.yaml", "--spin", "shaft=12 rpm", "--blades", "auto"}).status, 1);
+  EXPECT_EQ(withy(folder, {"modes", "two.yaml", "--floquet"}).status, 1) << "nothing turns";
+}
+
+TEST(Turning, EqualBladesAreSeenFromTheTower) {
+  const Folder folder;
+  folder.write("three.yaml", rotor(3));
+  const Finished f = withy(folder, {"modes", "three.yaml", "--spin", "shaft=12 rpm", "--blades", "auto"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("constant over the turn"));
+  EXPECT_THAT(f.out, HasSubstr("blade1.bending_z[1] backward"));
+  const Finished named =
+      withy(folder, {"modes", "three.yaml", "--spin", "shaft=12 rpm", "--blades", "blade1,blade2,tower"});
+  EXPECT_EQ(named.status, 2);
+  EXPECT_THAT(named.err, HasSubstr("not like"));
+}
+
+TEST(Modes, LockOfADrivenHingeIsRefused) {
+  const Folder folder;
+  const Finished f = withy(folder, {"modes", "scenes/spin-up.yaml", "--lock", "axle"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("drives 'axle'"));
+}
+
+TEST(Modes, EndsOfASweepTakeUnits) {
+  const Folder folder;
+  const auto flap = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"modes", "scenes/rotating-blade.yaml", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return result(folder, arguments).at("runs").at(0).at("points").back().at("modes").at(1).at("frequency");
+  };
+  EXPECT_NEAR(flap({"--sweep", "spin.axle=0:30 rpm:3"}), flap({"--spin", "axle=3.141592653589793"}), 1e-9);
+  EXPECT_EQ(withy(folder, {"modes", "scenes/rotating-blade.yaml", "--sweep", "spin.axle=1 rad/s:30 rpm:3"}).status, 2);
+}
+
+/// The two real poles of an overdamped disk stand by themselves.
+TEST(Modes, PolesAreListedByModulus) {
+  const Folder folder;
+  folder.write("disk.yaml", R"(format: withy/1
+time: {end: 1}
+bodies: {disk: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: disk}}
+loads: {spring: {type: hinge-spring, hinge: axle, stiffness: 8, damping: 20}}
+)");
+  const Finished f = withy(folder, {"modes", "disk.yaml", "--poles"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  const std::size_t slow = f.out.find("-0.417424"), fast = f.out.find("-9.58258");
+  EXPECT_NE(slow, std::string::npos) << f.out;
+  EXPECT_NE(fast, std::string::npos) << f.out;
+}
+
+}  // namespace
+}  // namespace withy::test
