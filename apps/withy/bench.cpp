@@ -81,12 +81,21 @@ Json measure(const Engine& engine, const std::string& state_file) {
   return j;
 }
 
+/// Those that a name is enough for, but `auto`: its equations are others', chosen along a run.
+std::vector<std::string> all_formulations(Registry& registry) {
+  std::vector<std::string> ids = registry.ids<Formulation>();
+  std::erase_if(ids, [&](const std::string& id) {
+    const std::vector<ParameterSpec>& options = registry.find<Formulation>(id)->parameters;
+    return id == "auto" || std::any_of(options.begin(), options.end(), [](const auto& o) { return o.required; });
+  });
+  return ids;
+}
+
 ExitStatus bench(const BenchArguments& arguments) {
   std::vector<std::string> formulations = arguments.formulations;
   if (formulations.empty()) formulations = {""};
   if (formulations == std::vector<std::string>{"all"}) {
-    formulations = Plugins(arguments).registry().ids<Formulation>();
-    std::erase(formulations, "auto");  // equations of others, chosen along a run
+    formulations = all_formulations(Plugins(arguments).registry());
   }
   std::vector<Json> results;
   SceneArguments one = arguments;
