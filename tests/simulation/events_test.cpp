@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-double spring(double, double q, double) { return -q; }
+double oscillation(double, double q, double) { return -q; }
 
 // q = 0.1 cos t falls through zero at π/2; functions of other sizes and signs pass with it, an angle before and one
 // after it.
@@ -26,7 +26,7 @@ std::vector<RunEvent> events_at_once(bool second_stop) {
 
 TEST(Events, at_one_time_are_each_reported_once_in_any_order_of_the_file) {
   const Model model = boom();
-  const FunctionEquations equations = boom_equations(model, spring);
+  const FunctionEquations equations = boom_equations(model, oscillation);
   for (const bool second_stop : {false, true}) {
     std::vector<RunEvent> events = events_at_once(second_stop);
     std::vector<std::size_t> order(events.size());
@@ -58,7 +58,7 @@ TEST(Events, at_one_time_are_each_reported_once_in_any_order_of_the_file) {
 
 TEST(Events, that_do_not_stop_are_reported_once_at_every_passage) {
   const Model model = boom();
-  const FunctionEquations equations = boom_equations(model, spring);
+  const FunctionEquations equations = boom_equations(model, oscillation);
   std::vector<RunEvent> events = events_at_once(false);
   events.erase(events.begin() + 1);
   RunOptions options = until(10, 0.5);
