@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "analysed_scene.hpp"
@@ -52,6 +53,9 @@ inline std::vector<Mode> of_group(const AnalysedScene& c, const std::vector<Mode
     if (c.layout().speed_names[static_cast<std::size_t>(m.dominant)].find(group) != std::string::npos)
       found.push_back(m);
   }
+  // The order of the closed forms: by squared frequency, negative where a mode grows.
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Mode& a, const Mode& b) { return a.squared_frequency() < b.squared_frequency(); });
   return found;
 }
 

@@ -32,13 +32,13 @@ inline State with_deflection(const Model& model, State s, double factor) {
 }
 
 /// Order p in ε of the difference of the force vectors f of two formulations at modal coordinates εq, εq̇: the terms
-/// that one neglects. From ε = 1e-3 and 1e-4; −1 where there is no difference.
+/// that one neglects. From ε and a tenth of it; −1 where there is no difference.
 inline double order_of_difference(const Formulation& a, const Formulation& b, std::shared_ptr<const Model> model,
-                                  const State& state) {
+                                  const State& state, double epsilon = 1e-3) {
   const auto ea = a.compile(model);
   const auto eb = b.compile(model);
-  const auto difference = [&](double epsilon) {
-    const State s = with_deflection(*model, state, epsilon);
+  const auto difference = [&](double factor) {
+    const State s = with_deflection(*model, state, factor);
     const DenseSystem fa = ea->system(0, s.y), fb = eb->system(0, s.y);
     double d = 0;
     double size = 0;
@@ -48,8 +48,8 @@ inline double order_of_difference(const Formulation& a, const Formulation& b, st
     }
     return d < 1e-13 * size ? 0.0 : d;
   };
-  const double large = difference(1e-3);
-  const double small = difference(1e-4);
+  const double large = difference(epsilon);
+  const double small = difference(0.1 * epsilon);
   if (large == 0) return -1;
   return std::log10(large / small);
 }

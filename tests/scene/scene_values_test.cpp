@@ -51,7 +51,7 @@ TEST_F(SceneValuesTest, ProblemsOfAllOperationsAreReportedAtOnceInTheWordsOfTheF
   values.set("bodies.hub.mass", Value(-1.0), "variation 1").set("bodies.hubb.mass", Value(1.0), "variation 2");
   values.set_text("tme.end=1").body_formulation("boom", "quadratik", "variation 3");
   EXPECT_EQ(problem(),
-            "variation 3: /bodies/boom/formulation/name: no formulation plugin \"quadratik\"; did you mean "
+            "variation 3: /bodies/boom/formulation: no formulation plugin \"quadratik\"; did you mean "
             "'quadratic'?; available: " +
                 listed(registry.ids<Formulation>()) +
                 "\n--set 'tme.end=1': /tme: unknown key \"tme\"; did you mean 'time'?\n"
@@ -65,7 +65,7 @@ TEST_F(SceneValuesTest, NumbersThatAreNoneAreRefused) {
 }
 
 TEST_F(SceneValuesTest, ChoicesByIdKeepOptionsOfTheSamePlugin) {
-  values.choose_integrator(Value::map({{"name", Value("dopri5")}, {"rtol", Value(1e-9)}}), "v");
+  values.choose_integrator(Value::map({{"name", Value(std::string("dopri5"))}, {"rtol", Value(1e-9)}}), "v");
   values.choose_integrator("dopri5", "v");
   EXPECT_EQ(make_scene(values, registry).source.at("integrator").number_at("rtol"), 1e-9);
   values.choose_integrator("dop853", "v");

@@ -116,12 +116,14 @@ TEST_F(Example, a_beam_without_taper_is_the_beam_of_the_package) {
              {{"length", Value(2.0)},
               {"mass_per_length", Value(1.5)},
               {"bending_y", Value::map({{"stiffness", Value(40.0)}, {"modes", Value(4.0)}, {"family", Value(family)}})},
+              {"segments", Value(1.0)},
               {"damping_ratio", Value(0.01)}});
     const auto& a = own->shape();
     const auto& b = theirs->shape();
     // Both integrate to rounding; a few thousand terms of relative error 1e-16.
     EXPECT_TRUE(a.stiffness.isApprox(b.stiffness, 1e-12)) << family;
-    EXPECT_TRUE(a.damping.isApprox(b.damping, 1e-12)) << family;
+    // The package damps the modes of the beam, the example each of its functions: the same where these are its modes.
+    EXPECT_EQ(a.damping.isApprox(b.damping, 1e-12), family == "clamped-free") << family;
     EXPECT_TRUE(modal_mass(a).isApprox(modal_mass(b), 1e-12)) << family;
     EXPECT_EQ(a.mode_names, b.mode_names);
     const PointExpansion p = *own->station(1.3);
@@ -180,12 +182,17 @@ TEST_F(Example, polynomials_of_twist_vanish_at_the_root_and_have_amplitude_one) 
 }
 
 TEST_F(Example, a_strain_kinematics_gives_the_beam_of_the_package_other_maps) {
-  const auto beam = body(
-      "beam", {{"length", Value(2.0)},
-               {"mass_per_length", Value(1.5)},
-               {"bending_y", Value::map({{"stiffness", Value(40.0)}, {"modes", Value(2.0)}})},
-               {"torsion", Value::map({{"stiffness", Value(20.0)}, {"inertia", Value(0.1)}, {"modes", Value(1.0)}})},
-               {"damping_ratio", Value(0.01)}});
+  const auto beam = body("beam", {{"length", Value(2.0)},
+                                  {"mass_per_length", Value(1.5)},
+                                  {"bending_y", Value::map({{"stiffness", Value(40.0)},
+                                                            {"modes", Value(2.0)},
+                                                            {"family", Value(std::string("clamped-free"))}})},
+                                  {"torsion", Value::map({{"stiffness", Value(20.0)},
+                                                          {"inertia", Value(0.1)},
+                                                          {"modes", Value(1.0)},
+                                                          {"family", Value(std::string("clamped-free"))}})},
+                                  {"segments", Value(1.0)},
+                                  {"damping_ratio", Value(0.01)}});
   withy::Diagnostics diagnostics;
   const auto kinematics =
       registry_.find<withy::StrainKinematics>("unturned")->make(Value::map({}), {registry_, diagnostics});
