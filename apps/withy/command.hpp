@@ -10,7 +10,7 @@
 
 #include "withy/scene/scene.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's name
 class App;
 }
 

@@ -61,15 +61,15 @@ struct ExponentialCoefficients {
   static constexpr int terms = 9;
   /// (−1)^k / (2k+1)!, (2k+2)!, (2k+3)!
   static constexpr std::array<std::array<double, terms>, 3> series = [] {
-    std::array<std::array<double, terms>, 3> a{};
+    std::array<std::array<double, terms>, 3> table{};
     for (int shift = 1; shift <= 3; ++shift) {
       for (int k = 0; k < terms; ++k) {
         double f = k % 2 == 0 ? 1.0 : -1.0;
         for (int i = 2; i <= 2 * k + shift; ++i) f /= i;
-        a[static_cast<std::size_t>(shift - 1)][static_cast<std::size_t>(k)] = f;
+        table[static_cast<std::size_t>(shift - 1)][static_cast<std::size_t>(k)] = f;
       }
     }
-    return a;
+    return table;
   }();
 };
 

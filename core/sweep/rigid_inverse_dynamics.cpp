@@ -17,7 +17,7 @@ class RigidInverseDynamics::Algorithm {
 
 namespace {
 
-using namespace sweep;
+using namespace sweep;  // NOLINT(google-build-using-namespace): the words of the kernels, in this file alone
 
 template <class Space>
 class NewtonEuler final : public RigidInverseDynamics::Algorithm {

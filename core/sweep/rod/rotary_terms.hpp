@@ -71,15 +71,15 @@ struct PackExponential {
   static constexpr int most = 17;
   /// (−1)^k / (2k+1)!, (2k+2)!, (2k+3)!
   static constexpr std::array<std::array<double, most>, 3> series = [] {
-    std::array<std::array<double, most>, 3> a{};
+    std::array<std::array<double, most>, 3> table{};
     for (std::size_t shift = 1; shift <= 3; ++shift) {
       for (std::size_t k = 0; k < most; ++k) {
         double f = k % 2 == 0 ? 1.0 : -1.0;
         for (std::size_t i = 2; i <= 2 * k + shift; ++i) f /= static_cast<double>(i);
-        a[shift - 1][k] = f;
+        table[shift - 1][k] = f;
       }
     }
-    return a;
+    return table;
   }();
 };
 
