@@ -7,7 +7,8 @@
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/scene_edit.hpp"
-#include "withy/scene/document.hpp"
+#include "withy/scene/same_content.hpp"
+#include "withy/scene/scene_values.hpp"
 #include "withy/study/left_out.hpp"
 
 namespace withy::app {
@@ -21,17 +22,24 @@ struct AdviseArguments : SceneArguments {
   std::string write;                       ///< file for the scene as advised; empty: none
 };
 
-void write_scene(const AdviseArguments& arguments, Registry& registry, const std::vector<std::string>& changes) {
-  const std::string text = edited(read_bytes(arguments.scene), changes);
-  // Read as it will be read: an edit that went wrong leaves no file.
-  static_cast<void>(parse_scene(text, arguments.write, registry));
-  write_file(arguments.write, text);
-}
-
 std::vector<std::string> texts_of(const std::vector<study::Change>& changes) {
   std::vector<std::string> texts;
   for (const study::Change& change : changes) texts.push_back(change.text());
   return texts;
+}
+
+/// The scene's text with the changes. What it reads as has to be what is advised: an edit that went wrong leaves no
+/// file.
+void write_scene(const AdviseArguments& arguments, const Engine& engine, const std::vector<study::Change>& changes) {
+  const std::string text = edited(read_bytes(arguments.scene), texts_of(changes));
+  SceneValues advised = engine.prepared().values;
+  for (const study::Change& change : changes) advised.set(change.path, change.value, "what is advised");
+  const SceneValues written = SceneValues::parse(text, arguments.write);
+  if (!same_content(written.root(), advised.root()))
+    throw InputError("--write: the text of " + arguments.scene +
+                     " cannot be edited into what is advised; nothing is written. Change it by hand as the lines say");
+  static_cast<void>(make_scene(written, engine.registry()));
+  write_file(arguments.write, text);
 }
 
 ExitStatus advise(const AdviseArguments& arguments) {
@@ -52,8 +60,9 @@ ExitStatus advise(const AdviseArguments& arguments) {
     return ExitStatus::stopped;
   }
   const std::string left_out = study::left_out(evaluator.model(advice.choice->point));
-  const std::vector<std::string> changes = texts_of(study::new_changes(engine.scene(), advice.choice->point));
-  if (!arguments.write.empty()) write_scene(arguments, engine.registry(), changes);
+  const std::vector<study::Change> new_changes = study::new_changes(engine.scene(), advice.choice->point);
+  const std::vector<std::string> changes = texts_of(new_changes);
+  if (!arguments.write.empty()) write_scene(arguments, engine, new_changes);
   std::string text = arguments.json ? json_text(advice_json(question, advice, left_out, changes, scene_lines(changes)))
                                     : advice_text({question, candidates, advice, left_out, changes});
   if (!arguments.json && !arguments.write.empty()) text += "\nwritten to " + arguments.write + '\n';
