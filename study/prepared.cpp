@@ -12,6 +12,22 @@ namespace {
 
 bool has_modes(const BodyNode& body) { return body.body->shape().modes() > 0; }
 
+/// A plugin's object, options at their defaults but for those given.
+template <class Interface>
+std::shared_ptr<const Interface> make_with_defaults(Registry& registry, const std::string& id, Value options) {
+  const std::string name = std::string(kind_name<Interface>()) + " '" + id + "'";
+  const auto* plugin = registry.find<Interface>(id);
+  if (plugin == nullptr) throw InputError("no " + name);
+  for (const ParameterSpec& spec : plugin->parameters) {
+    if (spec.fallback && !options.has(spec.key)) options.set(spec.key, *spec.fallback);
+    if (spec.required && !spec.fallback && !options.has(spec.key)) throw InputError(name + " needs '" + spec.key + "'");
+  }
+  Diagnostics diagnostics;
+  std::shared_ptr<const Interface> made = plugin->make(options, {registry, diagnostics});
+  if (made != nullptr) return made;
+  throw InputError(name + ": " + (diagnostics.ok() ? "cannot be made" : diagnostics.errors().front().message));
+}
+
 /// Of the scene's formulation and those of single bodies.
 int least_rank(const Scene& scene) {
   int rank = scene.formulation->standing().rank;
@@ -55,22 +71,11 @@ RunOptions run_options(const Scene& scene) {
 }
 
 std::shared_ptr<const Formulation> make_formulation(Registry& registry, const std::string& id) {
-  const auto* plugin = registry.find<Formulation>(id);
-  if (plugin == nullptr) throw InputError("no formulation '" + id + "'");
-  Diagnostics diagnostics;
-  return plugin->make(Value::map({}), {registry, diagnostics});
+  return make_with_defaults<Formulation>(registry, id, Value::map({}));
 }
 
 std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std::string& id, Value options) {
-  const auto* plugin = registry.find<Integrator>(id);
-  if (plugin == nullptr) throw InputError("no integrator '" + id + "'");
-  for (const ParameterSpec& spec : plugin->parameters) {
-    if (spec.fallback && !options.has(spec.key)) options.set(spec.key, *spec.fallback);
-  }
-  Diagnostics diagnostics;
-  std::shared_ptr<const Integrator> made = plugin->make(options, {registry, diagnostics});
-  if (made == nullptr) throw InputError("integrator '" + id + "': " + diagnostics.errors().front().message);
-  return made;
+  return make_with_defaults<Integrator>(registry, id, std::move(options));
 }
 
 std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std::string& id, double tolerance) {

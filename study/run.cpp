@@ -73,7 +73,7 @@ std::optional<Beyond> beyond_last(const Prepared& prepared, const EscalatedRun& 
   const std::size_t last = run.stretches.back().rung;
   if (last + 1 >= prepared.rungs.size() || !flexible(prepared.model())) return {};
   Beyond beyond = compile_throughout(prepared, registry, prepared.rungs[last + 1].name);
-  beyond.highest = last + 2 == prepared.rungs.size();
+  beyond.highest = !next_rung(registry, beyond.formulation);
   return beyond;
 }
 

@@ -137,7 +137,7 @@ std::unique_ptr<Body> damped_as(const ModalShape& whole, std::unique_ptr<Body> s
 std::unique_ptr<Body> in_segments(std::unique_ptr<Body> whole, const Value& value,
                                   const std::vector<ParameterSpec>& specs,
                                   const std::function<std::unique_ptr<Body>(const Value& segment)>& make) {
-  const std::size_t n = value.count_at("segments");
+  const std::size_t n = value.has("segments") ? value.count_at("segments") : 1;
   if (n == 1) return whole;
   std::vector<std::shared_ptr<const Body>> segments;
   for (std::size_t k = 0; k < n; ++k) {

@@ -49,6 +49,21 @@ TEST(PdController, follows_a_sine_with_the_gain_of_its_transfer_function) {
   EXPECT_NEAR(peak, 0.3 * gain, 3e-4 * gain * 0.3);
 }
 
+// A motion of a plugin is followed as the law of the same name is, at any time scale.
+TEST(PdController, follows_motions_of_plugins_as_laws) {
+  const auto along = [](const std::string& law, const std::string& of_hinge) {
+    test::LoadedScene s(turntable + "loads:\n  control: {type: pd-controller, " + law +
+                            ", time_scale: 2, hinges: {axle: {" + of_hinge + ", stiffness: 5, damping: 1.2}}}\n",
+                        {"time.output=0.1"});
+    std::vector<double> x;
+    for (const State& state : s.run()) x.push_back(s.position(state, "axle"));
+    return x;
+  };
+  // Twice as fast is exact, wherever time is scaled.
+  EXPECT_EQ(along("law: motion", "motion: {type: quintic, from: 0.1, to: 0.7, duration: 2}"),
+            along("law: quintic, duration: 2", "from: 0.1, to: 0.7"));
+}
+
 std::vector<double> efforts(const test::LoadedScene& s, const State& state) {
   std::vector<double> tau(s.scene.model->layout().speeds);
   const Layout& layout = s.scene.model->layout();

@@ -212,6 +212,22 @@ const BadScene bad_scenes[] = {
     {"table_with_ragged_rows", "law: sine, amplitude: 20, period: 5", "law: table, table: [[0, 1], [1]]",
      "21:76: /loads/motor/table/1: got a list of 1; need a list of rows of 2 finite numbers [s, N m], the first column "
      "increasing"},
+    {"motion_that_locks_a_hinge_as_a_trajectory",
+     "type: hinge-effort, hinge: shoulder, law: sine, amplitude: 20, period: 5",
+     "type: pd-controller, law: motion, hinges: {shoulder: {stiffness: 1, damping: 1, motion: locked}}",
+     "21:99: /loads/motor/hinges/shoulder/motion: 'locked' holds a hinge where it is; it is no trajectory to follow"},
+    {"unknown_motion_as_a_trajectory", "type: hinge-effort, hinge: shoulder, law: sine, amplitude: 20, period: 5",
+     "type: pd-controller, law: motion, hinges: {shoulder: {stiffness: 1, damping: 1, motion: {type: quintik, to: 1, "
+     "duration: 1}}}",
+     R"(21:106: /loads/motor/hinges/shoulder/motion/type: no motion plugin "quintik"; did you mean 'quintic'?)"},
+    {"motion_as_a_trajectory_with_a_wrong_option",
+     "type: hinge-effort, hinge: shoulder, law: sine, amplitude: 20, period: 5",
+     "type: pd-controller, law: motion, hinges: {shoulder: {stiffness: 1, damping: 1, motion: {type: quintic, to: 1, "
+     "duration: -1}}}",
+     "21:132: /loads/motor/hinges/shoulder/motion/duration: got -1; need finite > 0 [s]"},
+    {"law_motion_without_a_motion", "type: hinge-effort, hinge: shoulder, law: sine, amplitude: 20, period: 5",
+     "type: pd-controller, law: motion, hinges: {shoulder: {stiffness: 1, damping: 1}}",
+     "21:64: /loads/motor/hinges/shoulder: the law 'motion' needs 'motion'"},
     {"choice_of_another_law", "law: sine", "law: sinus",
      R"(21:53: /loads/motor/law: got "sinus": did you mean 'sine'?; need one of: constant, sine, table, steps)"},
     {"load_component_out_of_range", "hinge: shoulder,", "hinge: shoulder, component: 1,", "21:3: /loads/motor: "},

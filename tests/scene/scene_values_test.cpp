@@ -4,11 +4,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "scene_fixture.hpp"
-#include "withy/core/plugin/formulation.hpp"
+#include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/same_content.hpp"
 
 namespace withy::test {
 namespace {
@@ -98,6 +100,80 @@ TEST_F(SceneValuesTest, MalformedPathsAreRefused) {
     ASSERT_EQ(bad.problems().errors().size(), 1u) << path;
     EXPECT_THAT(bad.problems().errors()[0].message, testing::StartsWith("need a path of keys"));
   }
+}
+
+TEST_F(SceneValuesTest, ModesAreFoundByTheRolesOfParameters) {
+  const Scene scene = make_scene(values, registry);
+  ASSERT_EQ(scene.modes.size(), 1u);
+  EXPECT_EQ(scene.modes[0].body, "boom");
+  ASSERT_EQ(scene.modes[0].counts.size(), 1u);
+  const ModeCount& count = scene.modes[0].counts[0];
+  EXPECT_EQ(count.path, "bending_y.modes");
+  EXPECT_EQ(count.strain, "bending_y");
+  EXPECT_EQ(count.modes, 2u);
+  EXPECT_EQ(count.most, 1000u);
+  EXPECT_EQ(count.family_path, "bending_y.family");
+  EXPECT_EQ(count.family_id(), "clamped-free");
+}
+
+TEST_F(SceneValuesTest, FormulationsStandInTheirRanks) {
+  const std::vector<std::string> studied = studied_formulations(registry);
+  const auto place = [&](const char* id) { return std::find(studied.begin(), studied.end(), id) - studied.begin(); };
+  EXPECT_LT(place("ruthless"), place("linear"));
+  EXPECT_LT(place("linear"), place("consistent"));
+  EXPECT_LT(place("consistent"), place("quadratic"));
+  EXPECT_LT(place("quadratic"), place("exact"));
+  for (const char* aside : {"auto", "inconsistent", "rate-linear"})
+    EXPECT_EQ(std::count(studied.begin(), studied.end(), aside), 0) << aside;
+  std::vector<std::string> rungs;
+  for (const RankedFormulation& rung : formulation_rungs(registry)) rungs.push_back(rung.id);
+  EXPECT_EQ(rungs, (std::vector<std::string>{"ruthless", "quadratic", "exact"}));
+}
+
+// Of a thousand wrong names nobody reads what each may have meant; each is reported.
+TEST_F(SceneValuesTest, SuggestionsEndWhereMillionsOfNamesWouldBeCompared) {
+  constexpr int bodies = 300;
+  std::string text = "format: withy/1\nbodies:\n";
+  for (int i = 0; i < bodies; ++i) text += "  body" + std::to_string(i) + ": {type: rigid, mass: 1}\n";
+  text += "hinges:\n";
+  for (int i = 0; i < bodies; ++i)
+    text += "  h" + std::to_string(i) + ": {type: weld, parent: world, child: bady" + std::to_string(i) + "}\n";
+  values = SceneValues::parse(text, "s.yaml");
+  const std::string all = problem();
+  const auto count = [&](const std::string& what) {
+    int n = 0;
+    for (std::size_t at = all.find(what); at != std::string::npos; at = all.find(what, at + 1)) ++n;
+    return n;
+  };
+  EXPECT_EQ(count("no body \"bady"), bodies);
+  EXPECT_EQ(count("did you mean"), 100);
+}
+
+// Hinges in any order make one model: parents before children, else as they are given.
+TEST_F(SceneValuesTest, HingesAreOrderedParentsFirstWhateverTheirOrder) {
+  values = SceneValues::parse(R"(format: withy/1
+bodies: {a: {type: rigid, mass: 1}, b: {type: rigid, mass: 1}, c: {type: rigid, mass: 1}, d: {type: rigid, mass: 1}}
+hinges:
+  hc: {type: free, parent: b, child: c}
+  hb: {type: free, parent: a, child: b}
+  hd: {type: free, parent: world, child: d}
+  ha: {type: free, parent: world, child: a}
+)",
+                              "s.yaml");
+  const Scene scene = make_scene(values, registry);
+  std::vector<std::string> order;
+  for (const HingeNode& hinge : scene.model->hinges()) order.push_back(hinge.name);
+  EXPECT_EQ(order, (std::vector<std::string>{"hd", "ha", "hb", "hc"}));
+  for (const std::string& name : order)
+    EXPECT_EQ(scene.model->hinges()[static_cast<std::size_t>(scene.model->hinge(name))].name, name);
+}
+
+TEST_F(SceneValuesTest, ContentIsTheSameWhateverTheOrderAndPlaces) {
+  const auto root = [](const std::string& text) { return SceneValues::parse(text, "t").root(); };
+  EXPECT_TRUE(same_content(root("{a: 1, b: [x, 2]}"), root("b: [x, 2]\na: 1.0")));
+  for (const char* other : {"{a: 1, b: [2, x]}", "{a: 1, b: [x, 2], c: 1}", "{a: 1, c: [x, 2]}", "{a: '1', b: [x, 2]}",
+                            "{a: 1.0000000000000002, b: [x, 2]}"})
+    EXPECT_FALSE(same_content(root("{a: 1, b: [x, 2]}"), root(other))) << other;
 }
 
 }  // namespace
