@@ -33,6 +33,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["loads"] = inner "|withy/loads/.*|fmt/.*"
     may["fem"] = inner "|withy/fem/.*|withy/bodies/modal/.*|fmt/.*|Spectra/.*"
     may["cmake"] = inner "|withy/(scene|plugins/host)/.*|fmt/.*|nlohmann/.*|gmock/.*|gtest/.*"
+    may["withy.hpp"] = inner "|withy/(scene|study|results|plugins/host)/.*"
     may["apps"] = ".*"
     may["tests"] = ".*"
 

@@ -2,8 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <string>
-#include <withy/plugins/host/plugins.hpp>
-#include <withy/study/run.hpp>
+#include <withy/withy.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
