@@ -82,11 +82,9 @@ Group group_at(const CompareArguments& arguments, const Plugins& plugins, const 
 
 void write_picture(const Group& group, const std::string& label) {
   const study::Comparison& c = group.comparison;
-  std::vector<const study::ComparedRun*> shown;
-  for (std::size_t i = 0; i < c.listed; ++i) shown.push_back(&c.runs[i]);
   std::string title = c.runs.front().prepared.title();
   if (!label.empty()) title += ", " + label + " = " + group.value;
-  write_file(group.folder / "compare.svg", comparison_picture(title, shown));
+  write_file(group.folder / "compare.svg", comparison_picture(title, c));
   if (!has_report_page()) return;
   write_report(group.folder / report_name,
                {title, group.reports, c.has_reference() ? static_cast<int>(c.reference) : -1});

@@ -94,10 +94,10 @@ std::function<ExitStatus()> add_plot(CLI::App& c) {
 }  // namespace
 
 const Command plot_command = {"plot", "Draw columns of finished runs",
+                              "  withy run scenes/pendulum.yaml\n"
                               "  withy plot results/pendulum-quadratic\n"
                               "  withy plot results/pendulum-quadratic pivot kinetic_energy --terminal\n"
-                              "  withy plot results/two-link-slew-quadratic results/two-link-slew-ruthless "
-                              "link2.tip.deflection_y --out deflection.svg",
+                              "  withy plot results/pendulum-quadratic rod.tip --out tip.svg",
                               &add_plot};
 
 }  // namespace withy::app

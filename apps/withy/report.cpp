@@ -80,7 +80,8 @@ std::function<ExitStatus()> add_report(CLI::App& c) {
 }  // namespace
 
 const Command report_command = {"report", "Show several finished runs on one page",
-                                "  withy report results/two-link-slew-quadratic\n"
+                                "  withy run scenes/two-link-slew.yaml\n"
+                                "  withy run scenes/two-link-slew.yaml --formulation ruthless\n"
                                 "  withy report results/two-link-slew-quadratic results/two-link-slew-ruthless "
                                 "--reference 1 --out slews.html",
                                 &add_report};

@@ -186,8 +186,13 @@ Json Drawing::parts() const {
   return all;
 }
 
+/// The drawn model has no loads, and so none of their discrete states.
+std::span<const double> Drawing::without_discrete(std::span<const double> y) const {
+  return y.first(model_->layout().size());
+}
+
 void Drawing::append(std::span<const double> y, std::vector<float>& numbers) {
-  seen_->observe(y);
+  seen_->observe(without_discrete(y));
   for (std::size_t b = 0; b < parts_.size(); ++b) {
     const Part& part = parts_[b];
     const auto body = static_cast<int>(b);
@@ -203,6 +208,26 @@ void Drawing::append(std::span<const double> y, std::vector<float>& numbers) {
     for (std::size_t i = 0; i < part.hung.size(); ++i)
       append_pose(X_BW * pose_of(seen_->frame_pose(body, part.hung[i])) * part.offsets[i], numbers);
   }
+}
+
+std::vector<std::vector<Vector3>> Drawing::lines(std::span<const double> y) {
+  seen_->observe(without_discrete(y));
+  std::vector<std::vector<Vector3>> all;
+  for (std::size_t b = 0; b < parts_.size(); ++b) {
+    const Part& part = parts_[b];
+    const auto place = [&](int frame) { return pose_of(seen_->frame_pose(static_cast<int>(b), frame)); };
+    if (part.kind == Kind::line || part.kind == Kind::strip) {
+      all.emplace_back();
+      for (std::size_t i = part.columns / 2; i < part.points.size(); i += part.columns)
+        all.back().push_back(place(part.points[i]).p);
+      continue;
+    }
+    for (std::size_t i = 0; i < part.hung.size(); ++i)
+      all.push_back({place(part.frame).p, (place(part.hung[i]) * part.offsets[i]).p});
+    const int tip = model_->bodies()[b].frame("tip");
+    if (tip >= 0) all.push_back({place(part.frame).p, place(tip).p});
+  }
+  return all;
 }
 
 std::vector<std::string> Drawing::rates() const {

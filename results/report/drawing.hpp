@@ -27,7 +27,10 @@ class Drawing {
   /// Of a state, y as in State, appended: of each body position [m] and quaternion w x y z in the world; of a flexible
   /// one displacement of each point [m] and the poses on which its children hang, body axes.
   void append(std::span<const double> y, std::vector<float>& numbers);
-  /// How many numbers that is.
+  /// Of a state, each body as a line in the world [m]: along a flexible body, or from a rigid body's root to what hangs
+  /// on it.
+  [[nodiscard]] std::vector<std::vector<Vector3>> lines(std::span<const double> y);
+  /// How many numbers `append` adds.
   [[nodiscard]] std::size_t size() const { return size_; }
 
   /// Names of what is measured against limits of validity, as the certificate has them, and the values at the state
@@ -51,6 +54,7 @@ class Drawing {
     std::vector<Pose> offsets;     ///< of the hinges in them
     std::size_t columns = 1;       ///< points across a strip
   };
+  [[nodiscard]] std::span<const double> without_discrete(std::span<const double> y) const;
   void add_points(BodyNode& node, Part& part) const;
   bool add_strip(BodyNode& node, Part& part) const;
   [[nodiscard]] bool add_line(BodyNode& node, Part& part) const;

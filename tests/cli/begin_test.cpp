@@ -52,7 +52,7 @@ TEST(Check, SaysWhatIsHardlyMeant) {
   // The place is that of the body, hinge or frame.
   const std::string tiny = said({"bodies.upper_link.length=8 mm"});
   EXPECT_THAT(tiny,
-              HasSubstr("scenes/new/arm.yaml:24:5: /bodies/upper_link: a flexible body 0.008 m long in a tree of"));
+              HasSubstr("scenes/new/arm.yaml:22:5: /bodies/upper_link: a flexible body 0.008 m long in a tree of"));
   EXPECT_THAT(said({"bodies.upper_link.mass_per_length=1e-5", "bodies.payload.mass=500"}),
               HasSubstr("a flexible body of 1e-05 kg carries 5"));
   EXPECT_THAT(said({"bodies.fore_link.damping_ratio=5"}), HasSubstr("damping ratio 5 is above 1"));

@@ -76,8 +76,9 @@ TEST(Compare, KeepsResultsAndAWellFormedPicture) {
     ++panels;
     curves += child.count("polyline");
   }
-  EXPECT_EQ(panels, 4U) << "deflections along y of two links, two angles";
-  EXPECT_EQ(curves, 2 * panels) << "a curve a formulation";
+  EXPECT_EQ(panels, 6U) << "the arm, the error, deflections along y of two links, two angles";
+  const std::size_t lines = 6;  // hub, link, elbow, link, payload; from the hub's root to the first link
+  EXPECT_EQ(curves, 2 * lines + 1 + 2 * 4) << "of the arm, of all but the reference, a curve a formulation";
 }
 
 TEST(Compare, AMalformedVariationIsBadInput) {
