@@ -65,7 +65,7 @@ std::function<ExitStatus()> add_check(CLI::App& c) {
 
 const Command check_command = {"check", "Validate a scene, and say what in it is hardly meant",
                                "  withy check scenes/two-link-slew.yaml\n"
-                               "  withy check scenes/pd-arm.yaml --strict",
+                               "  withy check scenes/two-link-slew.yaml --strict",
                                &add_check};
 
 }  // namespace withy::app
