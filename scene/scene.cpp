@@ -159,12 +159,12 @@ class SceneBuilder {
                           : is_default_column(name)     ? "column that every table has"
                                                         : nullptr;
       if (taken == nullptr) continue;
-      checker_.key_error("/outputs/" + name,
-                         fmt::format("got name {}, which is that of a {}; outputs need their own", in_quotes(name), taken));
+      checker_.key_error("/outputs/" + name, fmt::format("got name {}, which is that of a {}; outputs need their own",
+                                                         in_quotes(name), taken));
     }
     add_parts<Sensor>("outputs", grammar::sensor_members(), tree.model != nullptr,
                       [&](const std::string& name, const Value&, const std::unique_ptr<Sensor>& sensor) {
-                        scene_.outputs.push_back({name, sensor->bind(*tree.model)});
+                        scene_.outputs.push_back({name, sensor->bind(*tree.model, scene_.outputs)});
                       });
   }
   static bool is_default_column(std::string_view name) {

@@ -12,7 +12,7 @@ class BoundAngle final : public BoundSensor {
  public:
   BoundAngle(FrameIndex from, FrameIndex to, std::optional<Vector3> axis) : from_(from), to_(to), axis_(axis) {}
   std::vector<SensorColumn> columns() const override { return {{"", "rad"}}; }
-  void read(SensedState& state, std::size_t /*first_section*/, std::span<double> values) const noexcept override {
+  void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
     const Matrix3 R = state.motion(from_).R.transpose() * state.motion(to_).R;
     if (axis_) {
       const Vector3 turned = R * *axis_;
@@ -32,7 +32,7 @@ class AngleSensor final : public Sensor {
  public:
   AngleSensor(std::string from, std::string to, std::optional<Vector3> axis)
       : from_(std::move(from)), to_(std::move(to)), axis_(axis) {}
-  std::unique_ptr<BoundSensor> bind(const Model& model) const override {
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     return std::make_unique<BoundAngle>(sensed_frame(model, from_), sensed_frame(model, to_), axis_);
   }
 

@@ -9,7 +9,7 @@ class BoundDistance final : public BoundSensor {
  public:
   BoundDistance(FrameIndex from, FrameIndex to) : from_(from), to_(to) {}
   std::vector<SensorColumn> columns() const override { return {{"", "m"}, {"rate", "m/s"}}; }
-  void read(SensedState& state, std::size_t /*first_section*/, std::span<double> values) const noexcept override {
+  void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
     const FrameMotion a = state.motion(from_), b = state.motion(to_);
     const Vector3 d = b.position - a.position, v = b.velocity - a.velocity;
     const double length = d.norm();
@@ -24,7 +24,7 @@ class BoundDistance final : public BoundSensor {
 class DistanceSensor final : public Sensor {
  public:
   DistanceSensor(std::string from, std::string to) : from_(std::move(from)), to_(std::move(to)) {}
-  std::unique_ptr<BoundSensor> bind(const Model& model) const override {
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     return std::make_unique<BoundDistance>(sensed_frame(model, from_), sensed_frame(model, to_));
   }
 

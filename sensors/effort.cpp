@@ -19,7 +19,7 @@ class BoundEffort final : public BoundSensor {
       c.push_back({rates_.size() == 1 ? "" : std::to_string(c.size()), rate.angular ? "N m" : "N"});
     return c;
   }
-  void read(SensedState& state, std::size_t /*first_section*/, std::span<double> values) const noexcept override {
+  void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
     std::fill(values.begin(), values.end(), 0.0);
     const auto add = [&](std::span<const double> efforts) {
       for (std::size_t i = 0; i < values.size(); ++i) values[i] += efforts[slot_.speed + i];
@@ -37,7 +37,7 @@ class BoundEffort final : public BoundSensor {
 class EffortSensor final : public Sensor {
  public:
   EffortSensor(std::string hinge, std::string of) : hinge_(std::move(hinge)), of_(std::move(of)) {}
-  std::unique_ptr<BoundSensor> bind(const Model& model) const override {
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     const int index = model.hinge(hinge_);
     if (index < 0) throw std::invalid_argument("there is no hinge '" + hinge_ + "'");
     const auto h = static_cast<std::size_t>(index);

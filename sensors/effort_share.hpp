@@ -31,8 +31,8 @@ inline EffortShare effort_share(const Model& model, const std::string& of) {
   if (of == "all" || of == "loads") share.load = EquationsOfMotion::all_loads;
   share.motion = of == "all" || of == "motion";
   if (share.load || share.motion) return share;
-  const auto found = std::find_if(model.loads().begin(), model.loads().end(),
-                                  [&](const LoadNode& l) { return l.name == of; });
+  const auto found =
+      std::find_if(model.loads().begin(), model.loads().end(), [&](const LoadNode& l) { return l.name == of; });
   if (found == model.loads().end()) throw std::invalid_argument("there is no load '" + of + "'");
   share.load = static_cast<int>(found - model.loads().begin());
   return share;

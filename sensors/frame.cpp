@@ -39,7 +39,7 @@ class BoundFrame final : public BoundSensor {
     if (shown_.acceleration) add_columns(c, "alpha", "rad/s^2");
     return c;
   }
-  void read(SensedState& state, std::size_t /*first_section*/, std::span<double> values) const noexcept override {
+  void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
     const SeenMotion seen = seen_from(state, observer_, frame_);
     const Matrix3 turned = own_axes_ ? Matrix3(seen.R.transpose()) : Matrix3(Matrix3::Identity());
     if (shown_.position) put(turned * seen.position, values);
@@ -71,7 +71,7 @@ class FrameSensor final : public Sensor {
     shown_ = {all || show == "position", all || show == "orientation", all || show == "velocity",
               all || show == "acceleration"};
   }
-  std::unique_ptr<BoundSensor> bind(const Model& model) const override {
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     const bool own = in_ == "own";
     return std::make_unique<BoundFrame>(sensed_frame(model, of_), own ? world_frame : sensed_frame(model, in_), own,
                                         shown_);

@@ -47,12 +47,9 @@ inline SeenMotion seen_from(SensedState& state, FrameIndex observer, FrameIndex 
   const Vector3 d = B.position - A.position, spin = B.angular_velocity - w;
   const Vector3 v = B.velocity - A.velocity - w.cross(d);
   const Matrix3 back = A.R.transpose();
-  return {back * B.R,
-          back * d,
-          back * v,
-          back * (b.linear - a.linear - a.angular.cross(d) - w.cross(w.cross(d)) - 2 * w.cross(v)),
-          back * spin,
-          back * (b.angular - a.angular - w.cross(spin))};
+  return {back * B.R,  back * d,
+          back * v,    back * (b.linear - a.linear - a.angular.cross(d) - w.cross(w.cross(d)) - 2 * w.cross(v)),
+          back * spin, back * (b.angular - a.angular - w.cross(spin))};
 }
 
 inline void put(const Vector3& v, std::span<double>& values) noexcept {

@@ -30,7 +30,7 @@ class BoundHinge final : public BoundSensor {
     }
   }
   std::vector<SensorColumn> columns() const override { return columns_; }
-  void read(SensedState& state, std::size_t /*first_section*/, std::span<double> values) const noexcept override {
+  void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
     double* next = values.data();
     const std::size_t speeds = state.layout().positions;
     for (std::size_t i = 0; i < slot_.positions; ++i) *next++ = state.y()[slot_.position + i];
@@ -46,7 +46,7 @@ class BoundHinge final : public BoundSensor {
 class HingeSensor final : public Sensor {
  public:
   explicit HingeSensor(std::string hinge) : hinge_(std::move(hinge)) {}
-  std::unique_ptr<BoundSensor> bind(const Model& model) const override {
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     const int index = model.hinge(hinge_);
     if (index < 0) throw std::invalid_argument("there is no hinge '" + hinge_ + "'");
     const auto h = static_cast<std::size_t>(index);
@@ -66,11 +66,10 @@ std::unique_ptr<Sensor> make_hinge(const Value& p, const MakeContext& /*context*
 }  // namespace
 
 void enroll_hinge(Enrollment& enrollment) {
-  enrollment.add<Sensor>(
-      {.id = "hinge",
-       .summary = "Coordinates of a hinge, their rates and accelerations",
-       .parameters = {text("hinge", "hinge that is observed").naming(ParameterSpec::Refers::hinge)},
-       .make = &make_hinge});
+  enrollment.add<Sensor>({.id = "hinge",
+                          .summary = "Coordinates of a hinge, their rates and accelerations",
+                          .parameters = {text("hinge", "hinge that is observed").naming(ParameterSpec::Refers::hinge)},
+                          .make = &make_hinge});
 }
 
 }  // namespace withy

@@ -16,7 +16,7 @@ class BoundInertial final : public BoundSensor {
     add_columns(c, "", quantity == Quantity::proper_acceleration ? "m/s^2" : "rad/s");
     return c;
   }
-  void read(SensedState& state, std::size_t /*first_section*/, std::span<double> values) const noexcept override {
+  void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
     const FrameMotion motion = state.motion(frame_);
     if constexpr (quantity == Quantity::proper_acceleration) {
       put(motion.R.transpose() * (state.acceleration(frame_).linear - state.gravity()), values);
@@ -33,7 +33,7 @@ template <Quantity quantity>
 class Inertial final : public Sensor {
  public:
   explicit Inertial(std::string of) : of_(std::move(of)) {}
-  std::unique_ptr<BoundSensor> bind(const Model& model) const override {
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     return std::make_unique<BoundInertial<quantity>>(sensed_frame(model, of_));
   }
 

@@ -11,7 +11,7 @@ class BoundPower final : public BoundSensor {
  public:
   explicit BoundPower(EffortShare share) : share_(share) {}
   std::vector<SensorColumn> columns() const override { return {{"", "W"}}; }
-  void read(SensedState& state, std::size_t /*first_section*/, std::span<double> values) const noexcept override {
+  void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
     const auto speeds = state.y().subspan(state.layout().positions, state.layout().speeds);
     const auto power = [&](std::span<const double> efforts) {
       return std::inner_product(efforts.begin(), efforts.end(), speeds.begin(), 0.0);
@@ -28,7 +28,7 @@ class BoundPower final : public BoundSensor {
 class PowerSensor final : public Sensor {
  public:
   explicit PowerSensor(std::string of) : of_(std::move(of)) {}
-  std::unique_ptr<BoundSensor> bind(const Model& model) const override {
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     return std::make_unique<BoundPower>(effort_share(model, of_));
   }
 

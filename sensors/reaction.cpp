@@ -16,7 +16,7 @@ class BoundReaction final : public BoundSensor {
     add_columns(c, "m", "N m");
     return c;
   }
-  void read(SensedState& state, std::size_t /*first_section*/, std::span<double> values) const noexcept override {
+  void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
     const Wrench wrench = state.reaction(hinge_);
     put(wrench.force, values);
     put(wrench.moment, values);
@@ -29,7 +29,7 @@ class BoundReaction final : public BoundSensor {
 class ReactionSensor final : public Sensor {
  public:
   explicit ReactionSensor(std::string hinge) : hinge_(std::move(hinge)) {}
-  std::unique_ptr<BoundSensor> bind(const Model& model) const override {
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     const int index = model.hinge(hinge_);
     if (index < 0) throw std::invalid_argument("there is no hinge '" + hinge_ + "'");
     return std::make_unique<BoundReaction>(index);

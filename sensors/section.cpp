@@ -30,8 +30,8 @@ class BoundSection final : public BoundSensor {
     return c;
   }
   std::vector<SectionPlace> sections() const override { return {place_}; }
-  void read(SensedState& state, std::size_t first_section, std::span<double> values) const noexcept override {
-    const SectionLoad load = state.section(first_section);
+  void read(SensedState& state, const SensorInputs& inputs, std::span<double> values) const noexcept override {
+    const SectionLoad load = state.section(inputs.first_section);
     put(load.inner.force, values);
     put(load.inner.moment, values);
     put(load.curvature, values);
@@ -50,7 +50,7 @@ class SectionSensor final : public Sensor {
  public:
   SectionSensor(std::string of, double at, std::optional<Moduli> moduli)
       : of_(std::move(of)), at_(at), moduli_(moduli) {}
-  std::unique_ptr<BoundSensor> bind(const Model& model) const override {
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     const std::vector<int> pieces = model.segments(of_);
     if (pieces.empty()) throw std::invalid_argument("there is no body '" + of_ + "'");
     double x = at_, length = 0;

@@ -70,8 +70,7 @@ void SensedReactions::find_inertia(Part<S>& part, const State& state, std::span<
     const sensed::StepOf<S>& section = part.pass.section(cut.body, cut.section);
     const sensed::TwistOf<S> h =
         at_cut(part, cut, sensed::own_momentum(part.pass, cut.body, plan_.bodies[cut.body], cut));
-    const sensed::TwistOf<double> f =
-        sensed::driving(h, section.X.to_child(part.pass.bodies[cut.body].V) + section.V);
+    const sensed::TwistOf<double> f = sensed::driving(h, section.X.to_child(part.pass.bodies[cut.body].V) + section.V);
     sections_[c].moment += f.w;
     sections_[c].force += f.v;
   }

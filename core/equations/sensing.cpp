@@ -77,7 +77,7 @@ class Sensing final : public SensedState {
     SectionLoad load{.inner = reactions_.of_section(index)};
     for (Eigen::Index i = 0; i < body.modes; ++i)
       load.curvature += cut.curvature.col(i) * state_->y[body.modal.position + static_cast<std::size_t>(i)];
-    load.elastic = -cut.stiffness.cwiseProduct(load.curvature);
+    load.elastic = Vector3::Zero() - cut.stiffness.cwiseProduct(load.curvature);  // no −0
     return load;
   }
   const Energies& energies() noexcept override {

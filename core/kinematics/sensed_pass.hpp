@@ -105,8 +105,8 @@ class Pass {
     }
   }
 
-  std::vector<S> q, u;             ///< modal coordinates and their rates, of all bodies
-  std::vector<StepOf<S>> hinges;   ///< M in F
+  std::vector<S> q, u;            ///< modal coordinates and their rates, of all bodies
+  std::vector<StepOf<S>> hinges;  ///< M in F
   std::vector<BodyMotionOf<S>> bodies;
 
   void outward() {

@@ -106,8 +106,7 @@ void Plan::add_cut(const SectionPlace& place) {
   for (std::size_t f = 0; f < body.frames.size(); ++f) cut.frames.push_back(x_of(f) >= place.x - close);
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const HingeNode& hinge = model.hinges()[h];
-    if (hinge.parent == place.body && cut.frames[static_cast<std::size_t>(hinge.parent_frame)])
-      cut.hinges.push_back(h);
+    if (hinge.parent == place.body && cut.frames[static_cast<std::size_t>(hinge.parent_frame)]) cut.hinges.push_back(h);
   }
   cut.inboard = x_of(body.M) > place.x + close;
   cuts.push_back(std::move(cut));

@@ -46,7 +46,7 @@ struct RodPlan {
 
 struct BodyPlan {
   const HingeNode* hinge = nullptr;
-  Slot slot;                   ///< of the hinge
+  Slot slot;  ///< of the hinge
   Eigen::Index modes = 0;
   Slot modal;                  ///< of the modes
   std::size_t first_mode = 0;  ///< among those of all bodies
@@ -54,10 +54,10 @@ struct BodyPlan {
   Truncation truncation = Truncation::none;
   std::vector<SectionFields> sections;
   std::vector<SectionFrame> frames;  ///< of the body, in its order
-  SectionFrame F;                    ///< of the inboard hinge, on the parent; at `F.pose` in the world where there is none
-  std::size_t M = 0;                 ///< of the inboard hinge, on this body: index in `frames`
-  RigidInertia rigid;                ///< of a rigid body
-  std::vector<PointFields> points;   ///< mass of a flexible one
+  SectionFrame F;      ///< of the inboard hinge, on the parent; at `F.pose` in the world where there is none
+  std::size_t M = 0;   ///< of the inboard hinge, on this body: index in `frames`
+  RigidInertia rigid;  ///< of a rigid body
+  std::vector<PointFields> points;  ///< mass of a flexible one
   std::vector<RotarySection> rotary;
   std::shared_ptr<const RodPlan> rod;
 };
@@ -65,16 +65,16 @@ struct BodyPlan {
 /// A body cut across: what belongs to the part beyond.
 struct CutPlan {
   std::size_t body = 0;
-  std::size_t section = 0;           ///< index in BodyPlan::sections
-  RigidInertia rigid;                ///< of a rigid body
-  std::vector<PointFields> points;   ///< mass of a flexible one
+  std::size_t section = 0;          ///< index in BodyPlan::sections
+  RigidInertia rigid;               ///< of a rigid body
+  std::vector<PointFields> points;  ///< mass of a flexible one
   std::vector<RotarySection> rotary;
-  std::vector<double> rod_share;     ///< of a rod: the share of each node's mass
-  std::vector<std::size_t> hinges;   ///< that hang on the part
-  std::vector<bool> frames;          ///< of the body: whether the part has it
-  bool inboard = false;              ///< the body's own hinge holds the part beyond
-  Matrix3X curvature;                ///< as BodyCut
-  Vector3 stiffness;                 ///< as BodyCut
+  std::vector<double> rod_share;    ///< of a rod: the share of each node's mass
+  std::vector<std::size_t> hinges;  ///< that hang on the part
+  std::vector<bool> frames;         ///< of the body: whether the part has it
+  bool inboard = false;             ///< the body's own hinge holds the part beyond
+  Matrix3X curvature;               ///< as BodyCut
+  Vector3 stiffness;                ///< as BodyCut
 };
 
 /// One a body of the model, in its order.

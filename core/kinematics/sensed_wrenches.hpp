@@ -145,7 +145,7 @@ TwistOf<S> of_point(double c, const V3<S>& r, const V3<S>& relative, const Twist
 
 /// Rotary inertia of a rod's node about its axis t, with the angular velocity ω relative to the body.
 inline V3<First> rod_turning(Pass<First>& pass, const BodyPlan& body, int k, std::size_t lane,
-                            const TwistOf<First>& V) {
+                             const TwistOf<First>& V) {
   using Rod = sweep::RodKinematics<Spatial>;
   const Rod& rod = body.rod->kinematics;
   if (rod.inertia.empty()) return V3<First>::Zero();

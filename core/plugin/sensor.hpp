@@ -23,9 +23,9 @@ struct SectionPlace {
 
 /// What is inside a slender body, in the axes of a section and about its place on the body's axis.
 struct SectionLoad {
-  Wrench inner;                           ///< what the part before the section exerts on all that is beyond it
-  Vector3 curvature = Vector3::Zero();    ///< κ [1/m]: twist rate, then the two curvatures
-  Vector3 elastic = Vector3::Zero();      ///< the moment that stiffness makes of κ, in the sense of `inner` [N m]
+  Wrench inner;                         ///< what the part before the section exerts on all that is beyond it
+  Vector3 curvature = Vector3::Zero();  ///< κ [1/m]: twist rate, then the two curvatures
+  Vector3 elastic = Vector3::Zero();    ///< the moment that stiffness makes of κ, in the sense of `inner` [N m]
 };
 
 /// Accelerations of a frame, world axes.
@@ -73,6 +73,12 @@ struct SensorColumn {
   std::string unit;       ///< SI; "1" where there is none
 };
 
+/// What a sensor is read with, beside the state.
+struct SensorInputs {
+  std::size_t first_section = 0;   ///< index that the state has for the first of the sensor's sections
+  std::span<const double> before;  ///< numbers of the sensors before it, one after the other
+};
+
 /// A sensor bound to one model. Immutable; threads share it.
 class BoundSensor {
  public:
@@ -82,22 +88,23 @@ class BoundSensor {
   /// Sections whose inner forces it asks for.
   [[nodiscard]] virtual std::vector<SectionPlace> sections() const { return {}; }
   /// Sets one number a column from a state; all are finite where the state is. Allocates nothing.
-  /// \param first_section index that the state has for the first of `sections()`
-  virtual void read(SensedState& state, std::size_t first_section, std::span<double> values) const noexcept = 0;
-};
-
-/// A sensor as the scene states it.
-class Sensor {
- public:
-  virtual ~Sensor() = default;
-  /// \throws std::invalid_argument where the sensor does not fit the model; the text says why.
-  [[nodiscard]] virtual std::unique_ptr<BoundSensor> bind(const Model& model) const = 0;
+  virtual void read(SensedState& state, const SensorInputs& inputs, std::span<double> values) const noexcept = 0;
 };
 
 /// A sensor of a scene, by its name.
 struct SensorNode {
   std::string name;
   std::shared_ptr<const BoundSensor> sensor;
+};
+
+/// A sensor as the scene states it.
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+  /// \param before the scene's sensors that stand before it, whose numbers it is read with
+  /// \throws std::invalid_argument where the sensor does not fit the model; the text says why.
+  [[nodiscard]] virtual std::unique_ptr<BoundSensor> bind(const Model& model,
+                                                          std::span<const SensorNode> before) const = 0;
 };
 
 }  // namespace withy

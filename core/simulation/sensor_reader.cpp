@@ -20,9 +20,11 @@ SensorReader::SensorReader(std::vector<SensorNode> sensors, const EquationsOfMot
 bool SensorReader::read(const State& state, std::span<double> values) noexcept {
   if (sensed_ == nullptr) return true;
   if (!sensed_->observe(state)) return false;
+  std::size_t next = 0;
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    sensors_[i].sensor->read(*sensed_, parts_[i].first_section, values.first(parts_[i].columns));
-    values = values.subspan(parts_[i].columns);
+    const SensorInputs inputs{parts_[i].first_section, values.first(next)};
+    sensors_[i].sensor->read(*sensed_, inputs, values.subspan(next, parts_[i].columns));
+    next += parts_[i].columns;
   }
   return true;
 }

@@ -170,7 +170,8 @@ TEST_P(SensedStates, the_section_at_a_beams_root_carries_what_its_hinge_carries)
     const Model& model = *c.scene.model;
     std::vector<SectionPlace> roots;
     for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-      if (model.hinges()[b].child_frame == 0 && model.bodies()[b].body->cut(0)) roots.push_back({static_cast<int>(b), 0});
+      if (model.hinges()[b].child_frame == 0 && model.bodies()[b].body->cut(0))
+        roots.push_back({static_cast<int>(b), 0});
     }
     const auto sensed = c.equations->make_sensed_state(roots);
     ASSERT_TRUE(sensed->observe(c.state));
@@ -196,11 +197,12 @@ TEST(Sections, of_a_stiff_beam_carry_its_weight_its_load_and_its_spin) {
   constexpr double x = 0.7, L = 2, rho = 1.5, g = 9.81, P = 4, w = 3;
   for (const bool at_tip : {false, true}) {
     const std::string end = at_tip ? "root" : "tip";
-    Case c("format: withy/1\ntime: {end: 1}\ngravity: [0, 0, -9.81]\nbodies: {boom: {type: beam, length: 2, "
-           "mass_per_length: 1.5}}\nhinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: boom" +
-               std::string(at_tip ? ".tip" : "") +
-               "}}\nloads: {push: {type: force, frame: boom." + end + ", law: constant, value: [0, 0, -4]}}\n",
-           "quadratic");
+    Case c(
+        "format: withy/1\ntime: {end: 1}\ngravity: [0, 0, -9.81]\nbodies: {boom: {type: beam, length: 2, "
+        "mass_per_length: 1.5}}\nhinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: boom" +
+            std::string(at_tip ? ".tip" : "") + "}}\nloads: {push: {type: force, frame: boom." + end +
+            ", law: constant, value: [0, 0, -4]}}\n",
+        "quadratic");
     c.state.y[1] = w;
     const std::vector<SectionPlace> places = {{0, x}};
     const auto sensed = c.equations->make_sensed_state(places);
@@ -227,7 +229,8 @@ TEST(Sections, of_a_rod_and_of_its_expansion_agree_at_small_deflections) {
       }
       std::vector<SectionPlace> places;
       for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-        if (model.bodies()[b].body->cut(0)) places.push_back({static_cast<int>(b), 0.31 * (1 + static_cast<double>(b % 2))});
+        if (model.bodies()[b].body->cut(0))
+          places.push_back({static_cast<int>(b), 0.31 * (1 + static_cast<double>(b % 2))});
       }
       const auto sensed = c.equations->make_sensed_state(places);
       ASSERT_TRUE(sensed->observe(c.state));
@@ -252,7 +255,8 @@ TEST_P(SensedStates, the_effort_that_locks_a_revolute_hinge_is_the_reaction_of_t
       "  arm: {type: beam, length: 1.2, mass_per_length: 0.8, bending_y: {stiffness: 40, modes: 2}, bending_z: "
       "{stiffness: 60, modes: 1}}\n"
       "  bob: {type: rigid, mass: 0.5, center_of_mass: [0.1, 0.2, 0], inertia: [0.02, 0.03, 0.04, 0, 0, 0]}\n"
-      "hinges:\n  base: {type: spherical, parent: world, child: hub}\n  end: {type: weld, parent: arm.tip, child: bob}\n"
+      "hinges:\n  base: {type: spherical, parent: world, child: hub}\n  end: {type: weld, parent: arm.tip, child: "
+      "bob}\n"
       "  elbow: {parent: hub.out, child: arm, ";
   const Case locked(before + "type: revolute, axis: [0, 0.6, 0.8]}\nmotions: {hold: {type: locked, hinge: elbow}}\n",
                     GetParam());
@@ -350,10 +354,10 @@ TEST(Reactions, close_newtons_and_eulers_laws_for_every_body) {
     RandomScene random(seed, {.bodies = bodies, .planar = seed % 4 == 0});
     const std::string last = "b" + std::to_string(bodies - 1);
     const bool loaded = seed % 4 != 0;
-    Case c(random.text() + (loaded ? "loads: {dead: {type: force, frame: " + last +
-                                         ".m, law: constant, value: [1, 2, -3]}}\n"
-                                   : ""),
-           formulation);
+    Case c(
+        random.text() +
+            (loaded ? "loads: {dead: {type: force, frame: " + last + ".m, law: constant, value: [1, 2, -3]}}\n" : ""),
+        formulation);
     c.state = random.state(*c.scene.model, c.scene.initial);
     const Model& model = *c.scene.model;
     const auto sensed = c.equations->make_sensed_state({});

@@ -1,9 +1,8 @@
 // A sensor: the speed of a frame's origin in the world.
+#include <stdexcept>
 #include <withy/core/model/model.hpp>
 #include <withy/core/plugin/registry.hpp>
 #include <withy/core/plugin/sensor.hpp>
-
-#include <stdexcept>
 
 #include "laws.hpp"
 
@@ -14,7 +13,7 @@ class BoundSpeed final : public withy::BoundSensor {
  public:
   explicit BoundSpeed(withy::FrameIndex frame) : frame_(frame) {}
   std::vector<withy::SensorColumn> columns() const override { return {{"", "m/s"}}; }
-  void read(withy::SensedState& state, std::size_t, std::span<double> values) const noexcept override {
+  void read(withy::SensedState& state, const withy::SensorInputs&, std::span<double> values) const noexcept override {
     values[0] = state.motion(frame_).velocity.norm();
   }
 
@@ -25,7 +24,8 @@ class BoundSpeed final : public withy::BoundSensor {
 class Speed final : public withy::Sensor {
  public:
   explicit Speed(std::string of) : of_(std::move(of)) {}
-  std::unique_ptr<withy::BoundSensor> bind(const withy::Model& model) const override {
+  std::unique_ptr<withy::BoundSensor> bind(const withy::Model& model,
+                                           std::span<const withy::SensorNode>) const override {
     const auto frame = model.find_frame(of_);
     if (!frame) throw std::invalid_argument("there is no frame '" + of_ + "'");
     return std::make_unique<BoundSpeed>(*frame);
