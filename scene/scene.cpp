@@ -153,7 +153,8 @@ class SceneBuilder {
 
   /// Sensors. Their names stand beside those of the tree in results and options.
   void add_outputs(const SceneTree& tree) {
-    for (const auto& [name, given] : part("outputs").members()) {
+    const Value* outputs = document_.root.find("outputs");
+    for (const auto& [name, given] : outputs != nullptr ? outputs->members() : std::vector<Value::Member>{}) {
       const char* taken = tree.names.hinges.has(name)   ? "hinge"
                           : tree.names.bodies.has(name) ? "body"
                           : is_default_column(name)     ? "column that every table has"

@@ -7,6 +7,7 @@ namespace withy {
 void enroll_angle(Enrollment& enrollment);
 void enroll_distance(Enrollment& enrollment);
 void enroll_effort(Enrollment& enrollment);
+void enroll_energy(Enrollment& enrollment);
 void enroll_expression(Enrollment& enrollment);
 void enroll_frame(Enrollment& enrollment);
 void enroll_hinge(Enrollment& enrollment);
@@ -21,6 +22,7 @@ void enroll(Enrollment& enrollment) {
   enroll_angle(enrollment);
   enroll_distance(enrollment);
   enroll_effort(enrollment);
+  enroll_energy(enrollment);
   enroll_expression(enrollment);
   enroll_frame(enrollment);
   enroll_hinge(enrollment);

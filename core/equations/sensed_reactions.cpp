@@ -55,7 +55,7 @@ void SensedReactions::find_inertia(Part<S>& part, const State& state, std::span<
   });
   part.pass.outward();
   for (std::size_t b = 0; b < plan_.bodies.size(); ++b)
-    part.total[b] = sensed::own_momentum(part.pass, b, plan_.bodies[b], plan_.bodies[b]);
+    part.total[b] = sensed::own_momentum(part.pass, b, plan_.bodies[b], plan_.bodies[b]).h;
   sensed::gather(part.pass, plan_, part.total);
   for (std::size_t b = 0; b < plan_.bodies.size(); ++b) {
     const sensed::BodyMotionOf<S>& body = part.pass.bodies[b];
@@ -69,7 +69,7 @@ void SensedReactions::find_inertia(Part<S>& part, const State& state, std::span<
     const sensed::CutPlan& cut = plan_.cuts[c];
     const sensed::StepOf<S>& section = part.pass.section(cut.body, cut.section);
     const sensed::TwistOf<S> h =
-        at_cut(part, cut, sensed::own_momentum(part.pass, cut.body, plan_.bodies[cut.body], cut));
+        at_cut(part, cut, sensed::own_momentum(part.pass, cut.body, plan_.bodies[cut.body], cut).h);
     const sensed::TwistOf<double> f = sensed::driving(h, section.X.to_child(part.pass.bodies[cut.body].V) + section.V);
     sections_[c].moment += f.w;
     sections_[c].force += f.v;

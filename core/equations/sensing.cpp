@@ -80,6 +80,27 @@ class Sensing final : public SensedState {
     load.elastic = Vector3::Zero() - cut.stiffness.cwiseProduct(load.curvature);  // no −0
     return load;
   }
+  BodyEnergies energies(int index) noexcept override {
+    find_motion();
+    const auto b = static_cast<std::size_t>(index);
+    const sensed::BodyPlan& body = plan_->bodies[b];
+    const sensed::BodyMotionOf<First>& B = pass_.bodies[b];
+    const sensed::MomentumOf<First> own = sensed::own_momentum(pass_, b, body, body);
+    const sensed::MassMoment<First> mass = sensed::mass_moment(pass_, body, body);
+    const Matrix3 R = B.WB.R.unaryExpr(&value);
+    const Vector3 p = sensed::now(B.WB.p), h = sensed::now(own.h.v);
+    BodyEnergies e;
+    e.kinetic = 0.5 * (value(B.V.w.dot(own.h.w)) + value(B.V.v.dot(own.h.v)) + value(own.along));
+    if (const Slot* slot = layout().modes(b)) {
+      const Eigen::Map<const Eigen::VectorXd> q(state_->y.data() + slot->position, body.modes);
+      const Eigen::MatrixXd& K = plan_->model.bodies()[b].body->shape().stiffness;
+      for (Eigen::Index i = 0; i < body.modes; ++i) e.strain += 0.5 * q[i] * K.col(i).dot(q);
+    }
+    e.weight = -gravity().dot(mass.mass * p + R * sensed::now(mass.moment));
+    e.linear = R * h;
+    e.angular = R * sensed::now(own.h.w) + p.cross(e.linear);
+    return e;
+  }
   const Energies& energies() noexcept override {
     if (!found_.energies) {
       seen_->observe(state_->y);
@@ -97,13 +118,15 @@ class Sensing final : public SensedState {
     found_.reactions = true;
   }
 
+  void find_motion() noexcept {
+    if (found_.motion) return;
+    sensed::set_pass(pass_, *plan_, state_->y, accelerations(), {}, &sensed::moving_mode);
+    pass_.outward();
+    found_.motion = true;
+  }
   /// Pose in the world and twist of a frame.
   sensed::StepOf<First> moving(FrameIndex frame) noexcept {
-    if (!found_.motion) {
-      sensed::set_pass(pass_, *plan_, state_->y, accelerations(), {}, &sensed::moving_mode);
-      pass_.outward();
-    }
-    found_.motion = true;
+    find_motion();
     const auto body = static_cast<std::size_t>(frame.body);
     sensed::StepOf<First> step = pass_.frame(body, static_cast<std::size_t>(frame.frame));
     step.X = pass_.bodies[body].WB * step.X;

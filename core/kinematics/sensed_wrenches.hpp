@@ -135,20 +135,28 @@ MassMoment<S> mass_moment(Pass<S>& pass, const BodyPlan& body, const Mass& part)
   return m;
 }
 
+/// Momentum of a body about its frame, in its axes, and what its relative velocities do along it: with V the twist of
+/// the frame, T = ½ (V · h + along).
+template <class S>
+struct MomentumOf {
+  TwistOf<S> h;
+  S along = S(0.0);
+};
+
 /// The momentum of a generalized particle about the body's frame, whose twist is V.
 template <class S>
-TwistOf<S> of_point(double c, const V3<S>& r, const V3<S>& relative, const TwistOf<S>& V) {
+MomentumOf<S> of_point(double c, const V3<S>& r, const V3<S>& relative, const TwistOf<S>& V) {
   V3<S> v = V.w.cross(r) + relative;
   if (c != 0) v += V.v * S(c);
-  return {r.cross(v), v * S(c)};
+  return {{r.cross(v), v * S(c)}, relative.dot(v)};
 }
 
 /// Rotary inertia of a rod's node about its axis t, with the angular velocity ω relative to the body.
-inline V3<First> rod_turning(Pass<First>& pass, const BodyPlan& body, int k, std::size_t lane,
-                             const TwistOf<First>& V) {
+inline MomentumOf<First> rod_turning(Pass<First>& pass, const BodyPlan& body, int k, std::size_t lane,
+                                     const TwistOf<First>& V) {
   using Rod = sweep::RodKinematics<Spatial>;
   const Rod& rod = body.rod->kinematics;
-  if (rod.inertia.empty()) return V3<First>::Zero();
+  if (rod.inertia.empty()) return {};
   const sweep::RodWork work = pass.rod_work(body);
   const int n = static_cast<int>(body.modes), packs = rod.integrals.packs;
   const auto at = [&](const Pack* first, int function) {
@@ -164,42 +172,49 @@ inline V3<First> rod_turning(Pass<First>& pass, const BodyPlan& body, int k, std
     slope += wi * rate(u);
   }
   const V3<First> axis = Pass<First>::with_rates(t, Vector3(w.cross(t)));
-  const V3<First> spin = V.w + Pass<First>::with_rates(w, slope);
-  return axis * First(axis.dot(spin) * rod.inertia[static_cast<std::size_t>(k)][lane]);
+  const V3<First> relative = Pass<First>::with_rates(w, slope);
+  const V3<First> h =
+      axis * First(axis.dot(V3<First>(V.w + relative)) * rod.inertia[static_cast<std::size_t>(k)][lane]);
+  return {{h, V3<First>::Zero()}, relative.dot(h)};
 }
 
 /// Momentum of a body's own mass, or of a part of it, about its frame, in its axes. `Mass`: BodyPlan or CutPlan.
 template <class S, class Mass>
-TwistOf<S> own_momentum(Pass<S>& pass, std::size_t index, const BodyPlan& body, const Mass& part) {
+MomentumOf<S> own_momentum(Pass<S>& pass, std::size_t index, const BodyPlan& body, const Mass& part) {
   const TwistOf<S>& V = pass.bodies[index].V;
-  TwistOf<S> h;
+  MomentumOf<S> sum;
   if (body.modes == 0) {
     const V3<S> moment = part.rigid.moment.template cast<S>();
-    return {part.rigid.inertia.template cast<S>() * V.w + moment.cross(V.v),
-            V.v * S(part.rigid.mass) + V.w.cross(moment)};
+    return {{part.rigid.inertia.template cast<S>() * V.w + moment.cross(V.v),
+             V.v * S(part.rigid.mass) + V.w.cross(moment)}};
   }
   if constexpr (std::is_same_v<S, First>) {
     if (body.rod != nullptr) {
       each_rod_node(pass, body, [&](double c, const V3<S>& r, const V3<S>& v, int k, std::size_t lane) {
         const S share(share_of(part, k, lane));
-        const TwistOf<S> own = of_point(c, r, v, V);
-        h += TwistOf<S>{V3<S>(own.w + rod_turning(pass, body, k, lane, V)) * share, own.v * share};
+        const MomentumOf<S> own = of_point(c, r, v, V), turning = rod_turning(pass, body, k, lane, V);
+        sum.h += TwistOf<S>{V3<S>(own.h.w + turning.h.w) * share, own.h.v * share};
+        sum.along += (own.along + turning.along) * share;
       });
-      return h;
+      return sum;
     }
   }
   const S* q = pass.q.data() + body.first_mode;
   const S* u = pass.u.data() + body.first_mode;
   for (const PointFields& fields : part.points) {
     const PointMotion<S> m(fields, static_cast<std::size_t>(body.modes), q, u);
-    h += of_point(fields.constant, m.r, m.rate, V);
+    const MomentumOf<S> own = of_point(fields.constant, m.r, m.rate, V);
+    sum.h += own.h;
+    sum.along += own.along;
   }
   for (const RotarySection& rotary : part.rotary) {
     const StepOf<S> step = Pass<S>::expanded(body, rotary.section, q, u);
     const V3<S> spin = step.X.R.transpose() * V.w + step.V.w;
-    h.w += step.X.R * V3<S>(rotary.inertia.cast<S>() * spin);
+    const V3<S> h = rotary.inertia.cast<S>() * spin;
+    sum.h.w += step.X.R * h;
+    sum.along += step.V.w.dot(h);
   }
-  return h;
+  return sum;
 }
 
 /// ḣ + V ×* h of a momentum about a frame with the twist V: what drives it, as far as a hinge's rows keep it.

@@ -28,6 +28,14 @@ struct SectionLoad {
   Vector3 elastic = Vector3::Zero();    ///< the moment that stiffness makes of κ, in the sense of `inner` [N m]
 };
 
+/// Energies and momenta of one body.
+struct BodyEnergies {
+  double kinetic = 0, strain = 0;     ///< [J]
+  double weight = 0;                  ///< potential energy of its weight, measured from the world origin [J]
+  Vector3 linear = Vector3::Zero();   ///< momentum, world axes [kg m/s]
+  Vector3 angular = Vector3::Zero();  ///< about the world origin, world axes [kg m²/s]
+};
+
 /// Accelerations of a frame, world axes.
 struct FrameAcceleration {
   Vector3 angular = Vector3::Zero();  ///< [rad/s²]
@@ -64,6 +72,8 @@ class SensedState {
   [[nodiscard]] virtual Wrench reaction(int hinge) noexcept = 0;
   /// At a section that make_sensed_state was told of, by its index there; truncated as a reaction.
   [[nodiscard]] virtual SectionLoad section(std::size_t index) noexcept = 0;
+  /// Of a body of the model, as those of the whole.
+  [[nodiscard]] virtual BodyEnergies energies(int body) noexcept = 0;
   [[nodiscard]] virtual const Energies& energies() noexcept = 0;
 };
 
