@@ -33,7 +33,7 @@ void AppliedLoads::add(double t, std::span<const double> y, std::span<double> ef
     const BoundLoad& load = *loads[i].load;
     if (wanted(i)) load.add(t, positions, speeds, efforts, {sweep::at<double>(work, scratch_offset_), load.scratch()});
   }
-  model_.add_discrete_efforts(y, efforts, only);
+  model_.add_discrete_efforts(t, y, efforts, only);
   if (paths_ != nullptr) paths_->add_efforts(wrenches(t, y, work, only), efforts, work + paths_offset_);
 }
 
@@ -47,11 +47,10 @@ std::span<const Wrench> AppliedLoads::wrenches(double t, std::span<const double>
   paths_->motions(positions, speeds, motions, work + paths_offset_);
   std::size_t first = 0;
   for (std::size_t i = 0; i < model_.loads().size(); ++i) {
-    const BoundLoad& load = *model_.loads()[i].load;
-    const std::size_t count = load.frames().size();
+    const std::size_t count = model_.loads()[i].load->frames().size();
     const auto own = all.subspan(first, count);
     if (only < 0 || i == static_cast<std::size_t>(only)) {
-      load.wrenches(t, motions.subspan(first, count), own);
+      model_.loads()[i].wrenches(t, y, motions.subspan(first, count), own);
     } else {
       std::fill(own.begin(), own.end(), Wrench{});
     }
