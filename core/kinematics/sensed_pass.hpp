@@ -19,6 +19,8 @@ using First = DualNumber<double, 1>;
 /// The same of these.
 using Second = DualNumber<First, 1>;
 
+constexpr int any_count = -1;  ///< of modes: not known when compiled
+
 inline double number(double x) { return x; }
 inline double number(const First& x) { return x.value(); }
 inline double number(const Second& x) { return x.value().value(); }
@@ -83,6 +85,56 @@ struct BodyMotionOf {
   TwistOf<S> V, V_M;  ///< of its frame and of M
 };
 
+/// Values with their rates in time.
+template <class S, int Columns>
+Eigen::Matrix<S, 3, Columns> with_rates(const Eigen::Matrix<double, 3, Columns>& value,
+                                        const Eigen::Matrix<double, 3, Columns>& rate) {
+  Eigen::Matrix<S, 3, Columns> both;
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    if constexpr (std::is_same_v<S, double>) {
+      both(i) = value(i);
+    } else if constexpr (std::is_same_v<S, First>) {
+      both(i) = first(value(i), rate(i));
+    } else {
+      both(i) = Second(First(value(i)), {First(rate(i))});
+    }
+  }
+  return both;
+}
+
+/// Theory (1), (2); the section's angular velocity in its own axes is the right Jacobian times θ̇.
+template <class S>
+StepOf<S> expanded(const BodyPlan& plan, const SectionFields& section, const S* q, const S* u) {
+  StepOf<S> step;
+  const PointExpansion& e = section.at;
+  step.X.p = e.X.cast<S>();
+  if (!section.moves) return step;
+  V3<S> theta = V3<S>::Zero(), theta_rate = V3<S>::Zero(), rate = V3<S>::Zero();
+  const bool second = plan.order != StrainOrder::linear;
+  for (Eigen::Index i = 0; i < plan.modes; ++i) {
+    V3<S> P = e.phi.col(i).cast<S>(), T = e.psi.col(i).cast<S>();
+    const V3<S> P_0 = P, T_0 = T;
+    for (Eigen::Index j = 0; second && j < plan.modes; ++j) {
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        P[c] += q[j] * e.gamma[static_cast<std::size_t>(c)](i, j);
+        T[c] += q[j] * e.theta[static_cast<std::size_t>(c)](i, j);
+      }
+    }
+    const S half = q[i] * 0.5;
+    step.X.p += (P_0 + P) * half;
+    theta += (T_0 + T) * half;
+    rate += P * u[i];
+    theta_rate += T * u[i];
+  }
+  const detail::ExponentialCoefficients<S> k(S(theta.squaredNorm()));
+  const M3<S> t = skew<S>(theta);
+  const M3<S> tt = t * t;
+  step.X.R += t * k.a + tt * k.b;
+  step.V.w = theta_rate - V3<S>(t * theta_rate) * k.b + V3<S>(tt * theta_rate) * k.c;
+  step.V.v = step.X.R.transpose() * rate;
+  return step;
+}
+
 /// Memory and kinematics of a pass. Whoever uses it sets q, u and the hinges' steps, then goes outward.
 template <class S>
 class Pass {
@@ -95,7 +147,7 @@ class Pass {
         plan_(plan),
         first_section_(plan.bodies.size()),
         sections_(plan.sections),
-        numbers_(3 * plan.most_modes),
+        numbers_(2 * plan.most_modes),
         partials_(plan.most_modes),
         rods_(std::is_same_v<S, Second> ? 0 : plan.rod_packs) {
     std::size_t next = 0;
@@ -146,36 +198,9 @@ class Pass {
     return {on.X * SF, SF.to_child(on.X.to_child(bodies[body].V) + on.V)};
   }
 
-  /// Theory (1), (2); the section's angular velocity in its own axes is the right Jacobian times θ̇.
-  static StepOf<S> expanded(const BodyPlan& plan, const SectionFields& section, const S* q, const S* u) {
-    StepOf<S> step;
-    const PointExpansion& e = section.at;
-    step.X.p = e.X.cast<S>();
-    if (!section.moves) return step;
-    V3<S> theta = V3<S>::Zero(), theta_rate = V3<S>::Zero(), rate = V3<S>::Zero();
-    const bool second = plan.order != StrainOrder::linear;
-    for (Eigen::Index i = 0; i < plan.modes; ++i) {
-      V3<S> P = e.phi.col(i).cast<S>(), T = e.psi.col(i).cast<S>();
-      const V3<S> P_0 = P, T_0 = T;
-      for (Eigen::Index j = 0; second && j < plan.modes; ++j) {
-        for (Eigen::Index c = 0; c < 3; ++c) {
-          P[c] += q[j] * e.gamma[static_cast<std::size_t>(c)](i, j);
-          T[c] += q[j] * e.theta[static_cast<std::size_t>(c)](i, j);
-        }
-      }
-      const S half = q[i] * 0.5;
-      step.X.p += (P_0 + P) * half;
-      theta += (T_0 + T) * half;
-      rate += P * u[i];
-      theta_rate += T * u[i];
-    }
-    const detail::ExponentialCoefficients<S> k(S(theta.squaredNorm()));
-    const M3<S> t = skew<S>(theta);
-    const M3<S> tt = t * t;
-    step.X.R += t * k.a + tt * k.b;
-    step.V.w = theta_rate - V3<S>(t * theta_rate) * k.b + V3<S>(tt * theta_rate) * k.c;
-    step.V.v = step.X.R.transpose() * rate;
-    return step;
+  /// At the state it is at.
+  [[nodiscard]] sweep::RodWork rod_work(const BodyPlan& plan) {
+    return sweep::rod_work_at(plan.rod->kinematics, static_cast<int>(plan.modes), rods_.data() + plan.rod->work);
   }
 
  private:
@@ -202,11 +227,11 @@ class Pass {
       x[i] = number(q[k]);
       rates[i] = number(u[k]);
     }
-    const sweep::RodWork work = this->rod_work(plan);
-    sweep::rod_motion<-1>(plan.rod->kinematics, n, x, rates, work);
+    const sweep::RodWork work = rod_work(plan);
+    sweep::rod_motion<any_count>(plan.rod->kinematics, n, x, rates, work);
     for (std::size_t s = 0; s < plan.sections.size(); ++s) {
       sweep::StationMotion<Spatial> m;
-      sweep::rod_station_motion<-1>(plan.rod->kinematics, s, work, n, x, rates, m, partials_.data());
+      sweep::rod_station_motion<any_count>(plan.rod->kinematics, s, work, n, x, rates, m, partials_.data());
       Matrix3 R;
       for (int c = 0; c < 3; ++c) R.col(c) = vector(m.frame.R.c[c]);
       const Vector3 p = vector(m.frame.p), w = vector(m.rate.w), v = vector(m.rate.v);
@@ -218,38 +243,16 @@ class Pass {
         for (int i = 0; i < n; ++i)
           slope += partials_[static_cast<std::size_t>(i)] *
                    u[plan.first_mode + static_cast<std::size_t>(i)].derivatives()[0];
-        step.X = {with_rates(R, Matrix3(R * skew<double>(w))), with_rates(p, Vector3(R * v))};
-        step.V = {with_rates(w, vector(slope.w)), with_rates(v, vector(slope.v))};
+        step.X = {with_rates<S>(R, Matrix3(R * skew<double>(w))), with_rates<S>(p, Vector3(R * v))};
+        step.V = {with_rates<S>(w, vector(slope.w)), with_rates<S>(v, vector(slope.v))};
       }
     }
   }
 
- public:
-  [[nodiscard]] sweep::RodWork rod_work(const BodyPlan& plan) {
-    return sweep::rod_work_at(plan.rod->kinematics, static_cast<int>(plan.modes), rods_.data() + plan.rod->work);
-  }
-  /// Values with their rates in time.
-  template <int Columns>
-  static Eigen::Matrix<S, 3, Columns> with_rates(const Eigen::Matrix<double, 3, Columns>& value,
-                                                 const Eigen::Matrix<double, 3, Columns>& rate) {
-    Eigen::Matrix<S, 3, Columns> both;
-    for (Eigen::Index i = 0; i < value.size(); ++i) {
-      if constexpr (std::is_same_v<S, double>) {
-        both(i) = value(i);
-      } else if constexpr (std::is_same_v<S, First>) {
-        both(i) = first(value(i), rate(i));
-      } else {
-        both(i) = Second(First(value(i)), {First(rate(i))});
-      }
-    }
-    return both;
-  }
-
- private:
   const Plan& plan_;
   std::vector<std::size_t> first_section_;
   std::vector<StepOf<S>> sections_;
-  std::vector<double> numbers_;
+  std::vector<double> numbers_;  ///< q, q̇ of a rod
   std::vector<Spatial::Twist> partials_;
   std::vector<Pack> rods_;
 };

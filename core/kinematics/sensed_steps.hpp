@@ -23,10 +23,9 @@ StepOf<S> hinge_step(const BodyPlan& body, std::span<const double> x, std::span<
     slope += m.H.col(static_cast<Eigen::Index>(i)) * accelerations[i];
   }
   const Vector3 w = V.head<3>(), v = V.tail<3>();
-  using P = Pass<S>;
   return {
-      {P::with_rates(m.pose.R, Matrix3(m.pose.R * skew<double>(w))), P::with_rates(m.pose.p, Vector3(m.pose.R * v))},
-      {P::with_rates(w, Vector3(slope.head<3>())), P::with_rates(v, Vector3(slope.tail<3>()))}};
+      {with_rates<S>(m.pose.R, Matrix3(m.pose.R * skew<double>(w))), with_rates<S>(m.pose.p, Vector3(m.pose.R * v))},
+      {with_rates<S>(w, Vector3(slope.head<3>())), with_rates<S>(v, Vector3(slope.tail<3>()))}};
 }
 
 /// A modal coordinate and its rate as a pass has them.

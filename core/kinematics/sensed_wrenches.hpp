@@ -100,7 +100,7 @@ void each_rod_node(Pass<S>& pass, const BodyPlan& body, Of&& of) {
           a += P * rate(u);
         }
       }
-      of(c, Pass<S>::with_rates(r, v), Pass<S>::with_rates(v, a), k, lane);
+      of(c, with_rates<S>(r, v), with_rates<S>(v, a), k, lane);
     }
   }
 }
@@ -171,8 +171,8 @@ inline MomentumOf<First> rod_turning(Pass<First>& pass, const BodyPlan& body, in
     w += wi * now(u);
     slope += wi * rate(u);
   }
-  const V3<First> axis = Pass<First>::with_rates(t, Vector3(w.cross(t)));
-  const V3<First> relative = Pass<First>::with_rates(w, slope);
+  const V3<First> axis = with_rates<First>(t, Vector3(w.cross(t)));
+  const V3<First> relative = with_rates<First>(w, slope);
   const V3<First> h =
       axis * First(axis.dot(V3<First>(V.w + relative)) * rod.inertia[static_cast<std::size_t>(k)][lane]);
   return {{h, V3<First>::Zero()}, relative.dot(h)};
@@ -208,7 +208,7 @@ MomentumOf<S> own_momentum(Pass<S>& pass, std::size_t index, const BodyPlan& bod
     sum.along += own.along;
   }
   for (const RotarySection& rotary : part.rotary) {
-    const StepOf<S> step = Pass<S>::expanded(body, rotary.section, q, u);
+    const StepOf<S> step = expanded(body, rotary.section, q, u);
     const V3<S> spin = step.X.R.transpose() * V.w + step.V.w;
     const V3<S> h = rotary.inertia.cast<S>() * spin;
     sum.h.w += step.X.R * h;
