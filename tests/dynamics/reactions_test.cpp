@@ -82,14 +82,21 @@ TEST_P(Reactions, a_reaction_is_what_the_equations_ask_for_where_the_hinge_is_fr
     const std::vector<double> rates = c.derivatives(c.state);
     const auto sensed = c.equations->make_sensed_state({});
     ASSERT_TRUE(sensed->observe(c.state));
+    // A sum cancels at the root of a free tree: errors are of the size of what goes through its hinges.
+    std::vector<Vector6> asked;
+    double size = 1;
     for (std::size_t h = 0; h < c.scene.model->hinges().size(); ++h) {
-      const std::string& name = c.scene.model->hinges()[h].name;
-      const Case freed(with_free(text, name), GetParam());
-      const Vector6 asked = asked_of_freed(c, freed, h, rates);
+      const Case freed(with_free(text, c.scene.model->hinges()[h].name), GetParam());
+      asked.push_back(asked_of_freed(c, freed, h, rates));
+      size = std::max(size, asked.back().norm());
+    }
+    // Sections of a rod are turned by another method than the reference's, to 1e-8; stiffness magnifies what they are
+    // apart in accelerations.
+    const double close = (GetParam() == "exact" ? 1e-6 : 1e-9) * size;
+    for (std::size_t h = 0; h < asked.size(); ++h) {
       const Wrench got = sensed->reaction(static_cast<int>(h));
-      const double close = (GetParam() == "exact" ? 1e-7 : 1e-9) * (1 + asked.norm());
-      EXPECT_LT((got.moment - asked.head<3>()).norm(), close) << "seed " << seed << " hinge " << name;
-      EXPECT_LT((got.force - asked.tail<3>()).norm(), close) << "seed " << seed << " hinge " << name;
+      EXPECT_LT((got.moment - asked[h].head<3>()).norm(), close) << "seed " << seed << " hinge " << h;
+      EXPECT_LT((got.force - asked[h].tail<3>()).norm(), close) << "seed " << seed << " hinge " << h;
     }
   }
 }
