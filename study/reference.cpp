@@ -9,10 +9,10 @@
 namespace withy::study {
 namespace {
 
-class Search {
+class ReferenceSearch {
  public:
-  Search(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry, const Outputs& outputs,
-         const Control& control)
+  ReferenceSearch(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
+                  const Outputs& outputs, const Control& control)
       : model_at_(model_at), registry_(registry), outputs_(outputs), control_(control) {}
 
   /// The coarsest level, in the richest formulation that comes to the end.
@@ -68,7 +68,7 @@ std::vector<std::string> reference_formulations(Registry& registry) {
 
 ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
                               const Outputs& outputs, const ReferenceGoal& goal, const Control& control) {
-  Search search(model_at, registry, outputs, control);
+  ReferenceSearch search(model_at, registry, outputs, control);
   std::optional<Reference> coarse = search.begin(goal.first);
   if (coarse) search.found.trouble.clear();
   for (int level = 0; coarse && level < goal.levels; ++level) {

@@ -7,7 +7,7 @@
 
 #include "withy/results/advice_json.hpp"
 
-namespace withy::app {
+namespace withy {
 
 /// Advice with what was chosen from and what the choice leaves out.
 struct AdviceReport {
@@ -21,4 +21,4 @@ std::string advice_text(const AdviceReport& report);
 /// Where there is no choice: why.
 std::string no_advice_text(const study::Advice& advice, const study::Accuracy& accuracy);
 
-}  // namespace withy::app
+}  // namespace withy
