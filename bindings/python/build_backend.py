@@ -46,7 +46,7 @@ def _install(settings, prefix):
     if not (ROOT / build / "CMakeCache.txt").exists():
         _cmake("--preset", "release", "-B", build, "-DWITHY_TESTS=OFF", "-DCMAKE_INSTALL_LIBDIR=lib",
                f"-DPython3_EXECUTABLE={sys.executable}")
-    _cmake("--build", build, "--parallel", os.cpu_count() or 1)
+    _cmake("--build", build, "--target", "withy-package", "--parallel", os.cpu_count() or 1)
     _cmake("--install", build, "--prefix", prefix)
     if not (prefix / PACKAGE / "withy").exists():
         raise SystemExit(f"The Python module was not built: ask cmake -B {build} what it lacks.")

@@ -7,10 +7,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <optional>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "withy/core/plugin/registry.hpp"
@@ -26,25 +28,35 @@ using namespace withy::host;
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// Lets Python handle signals while a call goes on, some twenty times a second: Ctrl-C ends the call, and what its
-/// handler raised is raised when the call is back.
+/// handler raised is raised when the call is back. The calling thread alone asks Python; others of a study follow it.
 class Signals {
  public:
+  /// By the thread that calls from now on.
+  void begin() {
+    caller_ = std::this_thread::get_id();
+    asked_ = Clock::now();
+  }
   bool pending() {
+    if (ended_ || std::this_thread::get_id() != caller_) return ended_;
     const auto now = Clock::now();
-    if (raised_ || now - asked_ < std::chrono::milliseconds(50)) return raised_.has_value();
+    if (now - asked_ < std::chrono::milliseconds(50)) return false;
     asked_ = now;
     const py::gil_scoped_acquire held;
-    if (PyErr_CheckSignals() != 0) raised_.emplace();
-    return raised_.has_value();
+    if (PyErr_CheckSignals() == 0) return false;
+    raised_.emplace();
+    return ended_ = true;
   }
   /// With the interpreter held.
   void raise() {
+    ended_ = false;
     if (auto raised = std::exchange(raised_, std::nullopt)) throw std::move(*raised);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-  Clock::time_point asked_ = Clock::now();
+  std::thread::id caller_;
+  Clock::time_point asked_;
+  std::atomic<bool> ended_ = false;
   std::optional<py::error_already_set> raised_;
 };
 
@@ -52,13 +64,14 @@ class Signals {
 template <class Act>
 auto followed(const py::object& progress, Act&& act) {
   Signals signals;
+  signals.begin();
   Follow follow;
   follow.interrupted = [&signals] { return signals.pending(); };
   std::optional<py::error_already_set> failed;
   if (!progress.is_none())
     follow.progress = [&](double done, double all) {
-      if (failed) return;
       const py::gil_scoped_acquire held;
+      if (failed) return;
       try {
         progress(done, all);
       } catch (py::error_already_set& e) {
@@ -151,6 +164,7 @@ struct SharedSimulation {
     try {
       const py::gil_scoped_release released;
       const std::lock_guard lock(busy);
+      signals.begin();
       return act(simulation);
     } catch (const SimulationStopped&) {
       signals.raise();
@@ -283,6 +297,7 @@ void bind_equations(py::module_& m) {
           },
           "Initial state of the scene [n], a copy.")
       .def("_input_names", [](const E& e) { return names_of(e.equations.inputs()); })
+      .def("_input_units", [](const E& e) { return units_of(e.equations.inputs()); })
       .def("_input", [](const E& e, std::size_t i) { return e.equations.input(i); })
       .def("_set_input", [](E& e, std::size_t i, double value) {
         const std::lock_guard lock(e.busy);

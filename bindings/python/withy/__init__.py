@@ -178,28 +178,40 @@ def _restored(text: str, name: str, plugins: tuple[str, ...], changes: list[str]
     return scene
 
 
-class _Ports(Mapping):
-    """Numbers of a simulation by their names."""
+class _Names:
+    """The names of a list of numbers, with their places in it and their units."""
 
-    def __init__(self, what: str, names: list[str], units: list[str], get: Callable[[int], float]) -> None:
-        self._what, self._get = what, get
-        self._index = {name: i for i, name in enumerate(names)}
+    def __init__(self, what: str, names: list[str], units: list[str]) -> None:
+        self.what = what
+        self.index = {name: i for i, name in enumerate(names)}
         self.units = dict(zip(names, units))
 
-    def _at(self, name: str) -> int:
-        index = self._index.get(name)
+    def at(self, name: str) -> int:
+        index = self.index.get(name)
         if index is None:
-            raise unknown(self._what, name, list(self._index))
+            raise unknown(self.what, name, list(self.index))
         return index
 
+
+class _Ports(Mapping):
+    """Numbers of a simulation by their names. Made at each access: a simulation that held it would hold itself."""
+
+    def __init__(self, names: _Names, get: Callable[[int], float]) -> None:
+        self._names, self._get = names, get
+
+    @property
+    def units(self) -> dict[str, str]:
+        """SI units by the names."""
+        return self._names.units
+
     def __getitem__(self, name: str) -> float:
-        return self._get(self._at(name))
+        return self._get(self._names.at(name))
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._index)
+        return iter(self._names.index)
 
     def __len__(self) -> int:
-        return len(self._index)
+        return len(self._names.index)
 
     def __repr__(self) -> str:
         return repr(dict(self))
@@ -208,48 +220,50 @@ class _Ports(Mapping):
 class _Inputs(_Ports, MutableMapping):
     """The same, to be set."""
 
-    def __init__(self, names: list[str], units: list[str], get: Callable[[int], float],
-                 set_: Callable[[int, float], None]) -> None:
-        super().__init__("input", names, units, get)
+    def __init__(self, names: _Names, get: Callable[[int], float], set_: Callable[[int, float], None]) -> None:
+        super().__init__(names, get)
         self._set = set_
 
     def __setitem__(self, name: str, value: float) -> None:
-        self._set(self._at(name), float(value))
+        self._set(self._names.at(name), float(value))
 
     def __delitem__(self, name: str) -> None:
         raise TypeError("inputs of a scene cannot be taken away")
 
 
 class Simulation(_withy.Simulation):
-    """A simulation in steps: ``sim.inputs["command"] = 2.0; sim.step(0.1); sim.outputs["shoulder"]``.
-
-    Attributes:
-        inputs: values of the loads of type ``input`` [N m, N], by their names; what is set acts from the next step on,
-            at once or with ``hold: linear`` in a straight line to the end of that step.
-        outputs: the columns of results.csv at the present state, by their names.
-    """
-
-    inputs: MutableMapping[str, float]
-    outputs: Mapping[str, float]
+    """A simulation in steps: ``sim.inputs["command"] = 2.0; sim.step(0.1); sim.outputs["shoulder"]``."""
 
     def __init__(self, scene: Scene) -> None:
         super().__init__(scene._made)
-        self.inputs = _Inputs(self._input_names(), self._input_units(), super()._input, super()._set_input)
-        self.outputs = _Ports("output", self._output_names(), self._output_units(), super()._output)
+        self._input_list = _Names("input", self._input_names(), self._input_units())
+        self._output_list = _Names("output", self._output_names(), self._output_units())
+
+    @property
+    def inputs(self) -> _Inputs:
+        """Values of the loads of type ``input`` [N m, N], by their names.
+
+        What is set acts from the next step on: at once, or with ``hold: linear`` in a straight line to its end.
+        """
+        return _Inputs(self._input_list, self._input, self._set_input)
+
+    @property
+    def outputs(self) -> _Ports:
+        """The columns of results.csv at the present state, by their names."""
+        return _Ports(self._output_list, self._output)
 
 
 class Equations(_withy.Equations):
     """Equations of motion y' = f(t, y); made by Scene.compile(). y holds positions, then speeds [n].
 
     As a right-hand side: ``scipy.integrate.solve_ivp(eq.derivatives, (0, 1), eq.y0, method="Radau", jac=eq.jacobian)``.
-
-    Attributes:
-        inputs: values of the loads of type ``input`` [N m, N], by their names, for the evaluations to come.
     """
-
-    inputs: MutableMapping[str, float]
 
     def __init__(self, made: Any, formulation: str = "") -> None:
         super().__init__(made, formulation)
-        names = self._input_names()
-        self.inputs = _Inputs(names, [""] * len(names), super()._input, super()._set_input)
+        self._input_list = _Names("input", self._input_names(), self._input_units())
+
+    @property
+    def inputs(self) -> _Inputs:
+        """Values of the loads of type ``input`` [N m, N], by their names, for the evaluations to come."""
+        return _Inputs(self._input_list, self._input, self._set_input)
