@@ -14,7 +14,7 @@ else()
     execute_process(COMMAND ${WITHY_NPM} ci --ignore-scripts --no-audit --no-fund WORKING_DIRECTORY ${web}
       RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE said TIMEOUT 120)
     if(failed)
-      string(REGEX REPLACE "\n.*" "" said "${said}")
+      string(REGEX MATCH "npm error[^\n]*" said "${said}")
       set(missing "npm ci failed in web/ (${said})")
     else()
       file(TOUCH ${web}/node_modules/.package-lock.json)

@@ -57,7 +57,8 @@ TEST(Compare, ReferenceIsRunWhereItIsNotListed) {
 
 TEST(Compare, KeepsResultsAndAWellFormedPicture) {
   const Folder folder;
-  const Finished f = compare(folder, {"--formulations", "inconsistent,quadratic", "--set", "time.output=0.01", "--out", "out"});
+  const Finished f =
+      compare(folder, {"--formulations", "inconsistent,quadratic", "--set", "time.output=0.01", "--out", "out"});
   ASSERT_EQ(f.status, 0) << f.err;
   for (const char* formulation : {"inconsistent", "quadratic"}) {
     const std::string at = std::string("out/") + formulation;
