@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/results/provenance.hpp"
 #include "withy/results/svg_plot.hpp"
+#include "withy/scene/scene_error.hpp"
 #include "withy/scene/sha256.hpp"
 
 namespace withy {
@@ -158,7 +160,30 @@ void TradeFolder::keep(const Kept& kept) {
   points_.keep(kept.result.point.key(), j);
 }
 
-std::string trade_fingerprint(const Scene& scene, const std::vector<study::Point>& points, Registry& registry) {
+namespace {
+
+/// Of the values and files of the scene at each value that is gone over, which may name files of its own.
+std::vector<std::string> subjects_over(const SceneValues& values, const std::vector<study::Point>& points,
+                                       Registry& registry) {
+  std::set<std::vector<std::string>> overs;
+  for (const study::Point& p : points) overs.insert(p.over);
+  std::vector<std::string> subjects;
+  for (const std::vector<std::string>& over : overs) {
+    SceneValues changed = values;
+    try {
+      for (const std::string& text : over) changed.set_text(text);
+      subjects.push_back(provenance_of(make_scene(changed, registry)).subject());
+    } catch (const SceneError&) {
+      subjects.emplace_back();  // the points there say what is wrong
+    }
+  }
+  return subjects;
+}
+
+}  // namespace
+
+std::string trade_fingerprint(const study::Prepared& prepared, const std::vector<study::Point>& points,
+                              Registry& registry) {
   int modes = 0;
   double tolerance = 1;
   std::map<std::string, std::string> builds;
@@ -175,7 +200,9 @@ std::string trade_fingerprint(const Scene& scene, const std::vector<study::Point
   }
   for (const char* reference : {"exact", "quadratic"}) build_of.operator()<Formulation>(reference);
   build_of.operator()<Integrator>("dopri5");
-  return sha256(Json::array({provenance_of(scene).fingerprint(), modes, tolerance, builds}).dump());
+  return sha256(Json::array({provenance_of(prepared.scene).fingerprint(), modes, tolerance, builds,
+                             subjects_over(prepared.values, points, registry)})
+                    .dump());
 }
 
 }  // namespace withy

@@ -42,6 +42,7 @@ class TradeFolder : public study::PointStore {
 };
 
 /// Of a study: the scene, what the points ask of a reference, and the builds of the plugins that they name.
-std::string trade_fingerprint(const Scene& scene, const std::vector<study::Point>& points, Registry& registry);
+std::string trade_fingerprint(const study::Prepared& prepared, const std::vector<study::Point>& points,
+                              Registry& registry);
 
 }  // namespace withy

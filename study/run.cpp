@@ -60,7 +60,7 @@ RunSummary run_plainly(const Prepared& prepared, const RunSettings& settings, co
     };
   options.resume = settings.resume;
   options.seen = settings.seen;
-  if (settings.checkpoint_seconds > 0) options.put_down = [&] { return timer.due(); };
+  if (settings.checkpoint_seconds > 0) options.checkpoint_due = [&] { return timer.due(); };
   return withy::simulate(*scene.model, *prepared.equations, *scene.integrator, scene.initial, options,
                          [&](const State& state) {
                            settings.control.tell(state.time, options.end);

@@ -38,7 +38,7 @@ struct CertifiedRun {
 
 /// Simulates from the scene's initial state to its end, measures what is left out on the way, and estimates its effect
 /// afterwards.
-/// \throws InputError where `auto` meets a load with discrete states, or is to be put down or resumed; SceneError where
+/// \throws InputError where `auto` meets a load with discrete states, or is to be saved or resumed; SceneError where
 /// the scene has no end.
 CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings = {});
 

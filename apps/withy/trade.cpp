@@ -107,7 +107,7 @@ ExitStatus trade(const TradeArguments& arguments) {
   std::optional<TradeFolder> store;
   const auto taken = take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()),
                                  {"trade.json", "trade.csv", "trade.svg"});
-  if (taken) store.emplace(arguments.out, trade_fingerprint(engine.scene(), points, engine.registry()));
+  if (taken) store.emplace(arguments.out, trade_fingerprint(engine.prepared(), points, engine.registry()));
   study::TradeStudy study(engine.prepared(), engine.registry(), points,
                           {arguments.jobs, store ? &*store : nullptr, study_control("trade")});
   const bool whole = study.run();

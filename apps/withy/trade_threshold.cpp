@@ -87,7 +87,7 @@ std::optional<study::Thresholds> found(const Engine& engine, const TradeArgument
   }
   std::optional<TradeFolder> store;
   if (!arguments.out.empty())
-    store.emplace(arguments.out, trade_fingerprint(engine.scene(), points, engine.registry()));
+    store.emplace(arguments.out, trade_fingerprint(engine.prepared(), points, engine.registry()));
   return study::thresholds_of_runs(engine.prepared(), engine.registry(), points, q.range, q.limit,
                                    {arguments.jobs, store ? &*store : nullptr, control});
 }

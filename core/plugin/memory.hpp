@@ -59,7 +59,7 @@ class Memory {
     rest_ = rest_.subspan(1);
     return value;
   }
-  [[noreturn]] static void fail() { throw std::invalid_argument("what was put down is not of what takes it up"); }
+  [[noreturn]] static void fail() { throw std::invalid_argument("what was saved is not of what is restored from it"); }
 
   bool reading_ = false;
   std::span<const double> rest_;

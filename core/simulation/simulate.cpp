@@ -60,7 +60,7 @@ class Run final : public SteppingObserver {
 
   bool before_step(const Stepper& stepper) override {
     const bool interrupted = options_.interrupted && options_.interrupted();
-    if (options_.checkpoint && (interrupted || (options_.put_down && options_.put_down()))) save();
+    if (options_.checkpoint && (interrupted || (options_.checkpoint_due && options_.checkpoint_due()))) save();
     if (interrupted) {
       stop_ = {RunStatus::interrupted, "interrupted", false};
     } else if (stepper.statistics().accepted >= options_.most_steps) {

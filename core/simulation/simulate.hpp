@@ -39,7 +39,7 @@ struct RunOptions {
   double most_seconds = 0;            ///< wall time; 0: unlimited
   std::function<bool()> interrupted;  ///< asked between steps
   std::vector<RunEvent> events;       ///< looked for on the dense output; those that do not stop do not change the run
-  std::function<bool()> put_down;     ///< asked between steps: whether `checkpoint` is to be called
+  std::function<bool()> checkpoint_due;               ///< asked between steps: whether `checkpoint` is to be called
   std::function<void(const Checkpoint&)> checkpoint;  ///< called then and when the run is interrupted
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: begin at the initial state
   /// Asked of each output before anything is made of it. Where it answers false the run ends, as interrupted, and that

@@ -59,9 +59,11 @@ TEST(Buckling, a_cantilever_tips_over_sideways) {
       EXPECT_NEAR(P, expected, 0.5e-4) << formulation << " " << modes;
     }
   }
-  for (const std::string formulation : {"ruthless", "inconsistent", "linear", "symmetric-linear"})
+  for (const std::string formulation : {"ruthless", "inconsistent", "linear"})
     EXPECT_EQ(critical_load([&](double x) { return lateral(x, 4); }, formulation, 2, 6), 0) << formulation;
-  EXPECT_NEAR(critical_load([&](double x) { return lateral(x, 4); }, "symmetric", 2, 6), 4.0154, 0.5e-4)
+  // Two modes: the dense equations of the energy's first order take long.
+  EXPECT_EQ(critical_load([&](double x) { return lateral(x, 2); }, "symmetric-linear", 2, 6), 0);
+  EXPECT_NEAR(critical_load([&](double x) { return lateral(x, 2); }, "symmetric", 2, 6), 4.0395, 0.5e-4)
       << "weight has a potential of second order";
 }
 

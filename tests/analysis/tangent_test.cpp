@@ -87,16 +87,19 @@ void expect_derivatives(const AnalysedScene& c, unsigned seed) {
   }
 }
 
+/// The dense equations of the kinetic energy's first order differentiate it twice, a hundred times the work: two trees.
+unsigned trees(const std::string& formulation, unsigned all) { return formulation.starts_with("symmetric") ? 2 : all; }
+
 class TangentsOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(TangentsOf, random_trees_in_space_are_the_derivatives_of_the_dense_equations) {
-  for (unsigned seed = 1; seed <= 8; ++seed)
+  for (unsigned seed = 1; seed <= trees(GetParam(), 8); ++seed)
     expect_derivatives(
         AnalysedScene(seed, {.bodies = 2 + static_cast<int>(seed % 5), .any_root = seed % 2 == 0}, GetParam()), seed);
 }
 
 TEST_P(TangentsOf, random_trees_in_a_plane_are_the_derivatives_of_the_dense_equations) {
-  for (unsigned seed = 1; seed <= 10; ++seed)
+  for (unsigned seed = 1; seed <= trees(GetParam(), 10); ++seed)
     expect_derivatives(AnalysedScene(seed, {.bodies = 2 + static_cast<int>(seed % 5), .planar = true}, GetParam()),
                        seed);
 }
@@ -105,7 +108,7 @@ TEST_P(TangentsOf, random_trees_in_a_plane_are_the_derivatives_of_the_dense_equa
 class TangentsOfEveryFamily : public testing::TestWithParam<std::string> {};
 
 TEST_P(TangentsOfEveryFamily, random_trees_are_the_derivatives_of_the_dense_equations) {
-  for (unsigned seed = 1; seed <= 6; ++seed)
+  for (unsigned seed = 1; seed <= trees(GetParam(), 6); ++seed)
     expect_derivatives(
         AnalysedScene(seed, {.bodies = 2 + static_cast<int>(seed % 4), .any_root = true, .any_family = true},
                       GetParam()),

@@ -1,5 +1,5 @@
 /// \file
-/// Runs put down and gone on with: whatever ended them, they leave what an uninterrupted run leaves.
+/// Runs saved and resumed: whatever ended them, they leave what an uninterrupted run leaves.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -81,6 +81,24 @@ TEST(Stale, ATradeDoesNotReusePointsOfAnotherFile) {
   EXPECT_EQ(steps({"--out", "T", "--force"}), fresh);
 }
 
+TEST(Stale, ATradeDoesNotReusePointsOfAChangedFileThatOnlyAValueGoneOverNames) {
+  const ImportedBoom boom;
+  boom.folder.write("other.SID_FEM", boom.folder.read("cantilever.SID_FEM"));
+  const auto steps = [&] {
+    const Finished f = withy(boom.folder, {"trade", "scene.yaml", "--modes", "1", "--formulations", "linear",
+                                           "--integrators", "dopri5", "--tolerances", "1e-3", "--set", "time.end=0.2",
+                                           "--over", "bodies.boom.file=other.SID_FEM", "--out", "T", "--json"});
+    EXPECT_EQ(f.status, 0) << f.err;
+    return json::parse(f.out).at("points").at(0).at("steps");
+  };
+  const auto soft = steps();
+  EXPECT_EQ(steps(), soft);
+  boom.stiffen();
+  boom.folder.write("other.SID_FEM", boom.folder.read("cantilever.SID_FEM"));
+  boom.soften();
+  EXPECT_NE(steps(), soft);
+}
+
 TEST(Stale, ARunIsNotResumedWithAnotherFile) {
   const ImportedBoom boom;
   const Arguments run = {"run", "scene.yaml", "--integrator", "dopri5", "--set", "time.end=20", "--out", "out"};

@@ -60,7 +60,7 @@ TEST_P(AdaptiveIntegratorSuite, error_is_proportional_to_the_tolerance) {
   EXPECT_NEAR(slope, 1, 0.2);
 }
 
-TEST_P(AdaptiveIntegratorSuite, goes_on_bit_by_bit_from_what_was_put_down) {
+TEST_P(AdaptiveIntegratorSuite, continues_bit_by_bit_from_a_checkpoint) {
   for (const double tolerance : {1e-4, 1e-8}) {
     const auto begin = [&](const EquationsOfMotion& e, const State& s) { return start(e, s, tolerance); };
     expect_the_same_when_resumed(begin, Duffing::equations(), Duffing::start());

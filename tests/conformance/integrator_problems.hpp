@@ -128,7 +128,7 @@ inline StepResult drive(Stepper& stepper, double t_limit, std::size_t most_steps
   return {};
 }
 
-/// One stepper goes on, another is put down and taken up anew after every step and restarted as often: their states and
+/// One stepper goes on, another is saved and restored after every step and restarted as often: their states and
 /// counts agree bit by bit.
 template <class Start>
 void expect_the_same_when_resumed(const Start& start, const EquationsOfMotion& equations, const State& initial) {

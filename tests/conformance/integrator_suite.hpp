@@ -224,7 +224,7 @@ TEST_P(IntegratorSuite, gives_the_same_bits_twice) {
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0);
 }
 
-TEST_P(IntegratorSuite, goes_on_bit_by_bit_from_what_was_put_down) {
+TEST_P(IntegratorSuite, continues_bit_by_bit_from_a_checkpoint) {
   const auto integrator = with_step(0.013);
   const auto start = [&](const EquationsOfMotion& e, const State& s) { return integrator->start(e, s); };
   expect_the_same_when_resumed(start, Duffing::equations(), Duffing::start());

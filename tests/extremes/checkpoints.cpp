@@ -1,5 +1,5 @@
 /// \file
-/// Runs put down at a hundred random steps and taken up anew, with every integrator: bit by bit the run that went on.
+/// Runs saved at a hundred random steps and resumed, with every integrator: bit by bit the run that went on.
 #include <algorithm>
 #include <optional>
 #include <random>
@@ -33,20 +33,20 @@ events:
 struct Ran {
   RunSummary summary;
   std::vector<State> outputs;
-  std::size_t asked = 0;  ///< times between steps at which the run could be put down
+  std::size_t asked = 0;  ///< times between steps at which the run could be saved
   std::optional<Checkpoint> checkpoint;
   std::size_t outputs_before = 0;  ///< the checkpoint
 };
 
-/// Runs; `put_down` counts the steps after which it is to be put down.
-Ran run(const Made& made, std::size_t put_down, const Checkpoint* resume) {
+/// Runs; `save_after` counts the steps after which it is saved.
+Ran run(const Made& made, std::size_t save_after, const Checkpoint* resume) {
   Ran r;
   RunOptions options;
   options.end = 2;
   options.output = made.scene.output;
   options.events = made.scene.events;
   options.resume = resume;
-  options.put_down = [&] { return ++r.asked == put_down; };
+  options.checkpoint_due = [&] { return ++r.asked == save_after; };
   options.checkpoint = [&](const Checkpoint& c) {
     r.checkpoint = c;
     r.outputs_before = r.outputs.size();
@@ -56,7 +56,7 @@ Ran run(const Made& made, std::size_t put_down, const Checkpoint* resume) {
   return r;
 }
 
-/// Empty where a run that was taken up agrees bit by bit, from the checkpoint on, with another.
+/// Empty where a run that was resumed agrees bit by bit, from the checkpoint on, with another.
 std::string differences(const Ran& resumed, std::size_t outputs_before, const Ran& other) {
   const RunSummary &a = resumed.summary, &b = other.summary;
   std::string text;
@@ -99,16 +99,16 @@ void checkpoints(Campaign& campaign) {
     for (const std::size_t step : steps) {
       const Ran through = run(made, step, nullptr);
       if (const std::string d = differences(through, 0, whole); !d.empty())
-        bad += fmt::format("put down at step {}: {}", step, d);
+        bad += fmt::format("saved at step {}: {}", step, d);
       if (!through.checkpoint) {
         bad += fmt::format("step {}: no checkpoint; ", step);
         continue;
       }
       const Ran resumed = run(made, 0, &*through.checkpoint);
       if (const std::string d = differences(resumed, through.outputs_before, whole); !d.empty())
-        bad += fmt::format("taken up at step {} of {}: {}", step, whole.asked, d);
+        bad += fmt::format("resumed at step {} of {}: {}", step, whole.asked, d);
     }
-    campaign.row(fmt::format("{}, put down at {} random steps of {} and taken up", id, steps.size(), whole.asked),
+    campaign.row(fmt::format("{}, saved at {} random steps of {} and resumed", id, steps.size(), whole.asked),
                  "the uninterrupted run", "bitwise: state, outputs, history, statistics, events",
                  bad.empty() ? "bitwise" : bad.substr(0, 200), bad.empty() && steps.size() == count);
   }

@@ -205,7 +205,7 @@ TEST(Events, of_hinges_that_are_not_there_are_bad_input) {
   EXPECT_THAT(test::problem_of(turntable + "events: {e: {hinge: axle, component: 1}}\n"), HasSubstr("no component 1"));
 }
 
-// Put down again and again and taken up anew, a run with samples, a relay, events and a beam gives the same bits.
+// Saved and resumed again and again, a run with samples, a relay, events and a beam gives the same bits.
 TEST(Checkpoints, let_a_run_go_on_bit_by_bit) {
   const std::string text = R"(format: withy/1
 time: {end: 2, output: 0.05}
@@ -234,12 +234,12 @@ events:
     const RunSummary uninterrupted = s.summary;
     EXPECT_FALSE(uninterrupted.events.empty());
     std::vector<State> outputs;
-    std::size_t put_down_at = 0, pieces = 0;
+    std::size_t saved_at = 0, pieces = 0;
     std::optional<Checkpoint> stored;
     RunSummary summary;
     do {
       const std::optional<Checkpoint> resumed = stored;
-      outputs.resize(put_down_at);  // without the last state of the interrupted piece, which is no output of the whole
+      outputs.resize(saved_at);  // without the last state of the interrupted piece, which is no output of the whole
       RunOptions options;
       options.end = end_of_run(s.scene);
       options.output = s.scene.output;
@@ -249,7 +249,7 @@ events:
       options.interrupted = [&] { return steps++ == 7; };
       options.checkpoint = [&](const Checkpoint& c) {
         stored = c;
-        put_down_at = outputs.size();
+        saved_at = outputs.size();
       };
       summary = simulate(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options,
                          [&](const State& state) { outputs.push_back(state); });

@@ -26,7 +26,7 @@ Ran run(const test::Made& made, const EquationsOfMotion* beyond, std::size_t sav
   options.events = made.scene.events;
   options.beyond = beyond;
   options.resume = resume;
-  options.put_down = [&] { return ++r.asked == save_at; };
+  options.checkpoint_due = [&] { return ++r.asked == save_at; };
   options.checkpoint = [&](const Checkpoint& c) { r.checkpoint = c; };
   r.summary = simulate(*made.scene.model, *made.equations, *made.scene.integrator, made.scene.initial, options,
                        [&](const State& s) { r.outputs.push_back(s); });
