@@ -60,6 +60,9 @@ Json estimate_json(const Certificate& c) {
   return {{"against", c.estimate->against},
           {"hinges", c.estimate->distances.hinges},
           {"tips", c.estimate->distances.tips},
+          {"deflections", c.estimate->distances.deflections},
+          {"moments", c.estimate->distances.moments},
+          {"forces", c.estimate->distances.forces},
           {"until", c.estimate->distances.until},
           {"cpu_seconds", c.estimate->cpu_seconds}};
 }

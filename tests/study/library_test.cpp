@@ -74,7 +74,7 @@ TEST(Measures, OneDistanceServesNamesAndMeasures) {
   turned.y[base.position + 1] = std::sin(0.1);
   turned.y[base.position + 4] += 0.05;
   Distances greatest = outputs.none();
-  outputs.raise(reader.read(prepared.scene.initial.y), reader.read(turned.y), greatest);
+  outputs.raise(reader.read(prepared.scene.initial), reader.read(turned), greatest);
   EXPECT_NEAR(outputs.per_measure(greatest)[static_cast<std::size_t>(Measure::angle)], 0.2, 1e-12);
   EXPECT_NEAR(outputs.per_measure(greatest)[static_cast<std::size_t>(Measure::slide)], 0.05, 1e-12);
   EXPECT_NEAR(named(outputs, greatest, 0).greatest_hinge(), 0.2, 1e-12) << "the greater of both";
@@ -82,7 +82,7 @@ TEST(Measures, OneDistanceServesNamesAndMeasures) {
   State mirrored = turned;
   for (std::size_t i = 0; i < 4; ++i) mirrored.y[base.position + i] *= -1;
   Distances none = outputs.none();
-  outputs.raise(reader.read(turned.y), reader.read(mirrored.y), none);
+  outputs.raise(reader.read(turned), reader.read(mirrored), none);
   for (const double d : none) EXPECT_NEAR(d, 0, 1e-7);
 }
 
@@ -93,7 +93,7 @@ TEST(Measures, WhatIsNoNumberIsInfinitelyFar) {
   State lost = prepared.scene.initial;
   lost.y[0] = std::nan("");
   Distances greatest = outputs.none();
-  outputs.raise(reader.read(prepared.scene.initial.y), reader.read(lost.y), greatest);
+  outputs.raise(reader.read(prepared.scene.initial), reader.read(lost), greatest);
   EXPECT_TRUE(std::isinf(greatest[0]));
 }
 
