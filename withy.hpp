@@ -2,6 +2,8 @@
 /// Everything a program needs that has scenes read, varied, run and studied: target withy::withy.
 #pragma once
 
+#include "withy/host/equations.hpp"
+#include "withy/host/simulation.hpp"
 #include "withy/plugins/host/plugins.hpp"
 #include "withy/scene/scene.hpp"
 #include "withy/study/advice.hpp"

@@ -12,6 +12,7 @@ void enroll_hinge_friction(Enrollment& enrollment);
 void enroll_hinge_limit(Enrollment& enrollment);
 void enroll_hinge_relay(Enrollment& enrollment);
 void enroll_hinge_spring(Enrollment& enrollment);
+void enroll_input(Enrollment& enrollment);
 void enroll_pd_controller(Enrollment& enrollment);
 void enroll_rigid_inverse_dynamics(Enrollment& enrollment);
 void enroll_spring_damper(Enrollment& enrollment);
@@ -29,6 +30,7 @@ void enroll(Enrollment& enrollment) {
   enroll_hinge_limit(enrollment);
   enroll_hinge_relay(enrollment);
   enroll_hinge_spring(enrollment);
+  enroll_input(enrollment);
   enroll_pd_controller(enrollment);
   enroll_rigid_inverse_dynamics(enrollment);
   enroll_spring_damper(enrollment);

@@ -59,7 +59,7 @@ class BoundHingeRelay final : public BoundLoad, public DiscretePart {
     if (crossing.function == falls_to_off && !rises && level < 0) level = 0;
     if (crossing.function == rises_to_off && rises && level > 0) level = 0;
   }
-  void add(std::span<const double> discrete, std::span<double> efforts) const noexcept override {
+  void add(double /*t*/, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
     efforts[speed_] += relay_.effort * discrete[0];
   }
 

@@ -54,7 +54,7 @@ class Sampled final : public BoundLoad, public DiscretePart {
     controller_->add(t, positions, speeds, efforts, scratch.subspan(all_speeds_));
     for (std::size_t i = 0; i < speeds_.size(); ++i) discrete[i] = efforts[speeds_[i]];
   }
-  void add(std::span<const double> discrete, std::span<double> efforts) const noexcept override {
+  void add(double /*t*/, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
     for (std::size_t i = 0; i < speeds_.size(); ++i) efforts[speeds_[i]] += discrete[i];
   }
 

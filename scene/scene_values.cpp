@@ -77,6 +77,7 @@ SceneValues SceneValues::read(const std::string& file) { return parse(read_bytes
 SceneValues SceneValues::parse(std::string_view text, const std::string& name) {
   SceneValues values;
   values.file_ = name;
+  values.text_ = text;
   values.sha256_ = withy::sha256(text);
   values.document_.directory = std::filesystem::path(name).parent_path().string();
   if (!read_document(text, {}, values.document_, values.diagnostics_))

@@ -54,7 +54,9 @@ class SceneValues {
   /// The value at a path as in set(); null where there is none.
   [[nodiscard]] const Value* find(std::string_view path) const;
   [[nodiscard]] const std::string& file() const { return file_; }
-  /// Of the text that was read: 64 hexadecimal digits.
+  /// The text that was read, comments and all.
+  [[nodiscard]] const std::string& text() const { return text_; }
+  /// Of that text: 64 hexadecimal digits.
   [[nodiscard]] const std::string& sha256() const { return sha256_; }
   /// The texts given to set_text, in their order.
   [[nodiscard]] const std::vector<std::string>& settings() const { return settings_; }
@@ -72,7 +74,7 @@ class SceneValues {
   void put_choice(const char* key, Value choice, const std::string& origin);
   void choose(const char* key, const std::string& id, const std::string& origin);
 
-  std::string file_, sha256_;
+  std::string file_, text_, sha256_;
   std::vector<std::string> settings_;
   Document document_;
   std::vector<std::string> origins_;

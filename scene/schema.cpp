@@ -236,6 +236,8 @@ class SchemaWriter {
             {"properties",
              {{"hinges", part("position", "rate")},
               {"bodies", part("modes", "rates")},
+              {"inputs",
+               {{"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", number}}},
               {"time", number},
               {"work", number}}}};
   }

@@ -39,11 +39,12 @@ class StateReader {
       : model_(model), checker_(checker), state_(state) {}
 
   bool read(const Value& value) {
-    if (!map_with(value, {"hinges", "bodies", "time", "work"})) return false;
+    if (!map_with(value, {"hinges", "bodies", "inputs", "time", "work"})) return false;
     scalar(value, number("time", "s", ""), state_.time);
     model_.prescribe(state_);  // what the state does not say of driven hinges, their motions do
     if (const Value* hinges = value.find("hinges")) read_hinges(*hinges);
     if (const Value* bodies = value.find("bodies")) read_bodies(*bodies);
+    if (const Value* inputs = value.find("inputs")) read_inputs(*inputs);
     scalar(value, number("work", "J", ""), state_.y.back());
     return good_;
   }
@@ -149,11 +150,43 @@ class StateReader {
     }
   }
 
+  void read_inputs(const Value& value) {
+    if (!checker_.is_map(value, "a map of names of loads of type input")) {
+      good_ = false;
+      return;
+    }
+    std::vector<std::string> names;
+    for (const LoadNode& load : model_.loads())
+      if (load.load->input() != nullptr) names.push_back(load.name);
+    for (const auto& [name, member] : value.members()) {
+      const auto named = [&](const LoadNode& load) { return load.name == name && load.load->input() != nullptr; };
+      const auto load = std::find_if(model_.loads().begin(), model_.loads().end(), named);
+      if (load == model_.loads().end()) {
+        key_error(member, fmt::format("no load of type 'input' {}{}", in_quotes(name), checker_.suggest(name, names)));
+        continue;
+      }
+      double given = 0;
+      scalar(value, number(name, load->load->input()->unit(), ""), given);
+      load->load->input()->set(state_.time, state_.time, given, load->discrete(std::span(state_.y)));
+    }
+  }
+
   const Model& model_;
   const Checker& checker_;
   State& state_;
   bool good_ = true;
 };
+
+/// The inputs that a host has set, with their values at the state.
+std::vector<std::pair<std::string, double>> inputs_of(const Model& model, const State& state) {
+  std::vector<std::pair<std::string, double>> inputs;
+  for (const LoadNode& load : model.loads()) {
+    const InputPort* input = load.load->input();
+    const auto discrete = load.discrete(std::span(state.y));
+    if (input != nullptr && input->is_set(discrete)) inputs.emplace_back(load.name, input->value(state.time, discrete));
+  }
+  return inputs;
+}
 
 }  // namespace
 
@@ -206,10 +239,14 @@ Value state_value(const Model& model, const State& state) {
     bodies.members().emplace_back(s.name, Value::map({{"modes", part(s.position, s.positions)},
                                                       {"rates", part(layout.positions + s.speed, s.speeds)}}));
   }
-  return Value::map({{"time", Value(state.time)},
-                     {"hinges", std::move(hinges)},
-                     {"bodies", std::move(bodies)},
-                     {"work", Value(state.y.back())}});
+  Value all = Value::map({{"time", Value(state.time)},
+                          {"hinges", std::move(hinges)},
+                          {"bodies", std::move(bodies)},
+                          {"work", Value(state.y.back())}});
+  Value inputs = Value::map({});
+  for (const auto& [name, value] : inputs_of(model, state)) inputs.members().emplace_back(name, Value(value));
+  if (!inputs.members().empty()) all.set("inputs", std::move(inputs));
+  return all;
 }
 
 std::string write_state(const Model& model, const State& state) {
@@ -231,6 +268,7 @@ std::string write_state(const Model& model, const State& state) {
     json["bodies"][s.name] = {{"modes", part(s.position, s.positions)},
                               {"rates", part(layout.positions + s.speed, s.speeds)}};
   }
+  for (const auto& [name, value] : inputs_of(model, state)) json["inputs"][name] = value;
   return json.dump();
 }
 

@@ -24,6 +24,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["scene"] = inner "|withy/scene/.*|yaml-cpp/.*|nlohmann/.*|fmt/.*|spdlog/.*"
     may["study"] = inner "|withy/(scene|study|plugins/host)/.*|fmt/.*|boost/math/.*"
     may["results"] = inner "|withy/(scene|study|results)/.*|nlohmann/.*|fmt/.*|boost/crc.hpp|(sys/)?[a-z]+[.]h"
+    may["host"] = inner "|withy/(scene|study|results|plugins/host|host)/.*|nlohmann/.*|fmt/.*"
     may["plugins/formulations"] = inner "|withy/plugins/formulations/.*|fmt/.*"
     may["plugins/kinematics"] = inner "|withy/plugins/kinematics/.*"
     may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"
@@ -33,7 +34,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["loads"] = inner "|withy/loads/.*|fmt/.*"
     may["fem"] = inner "|withy/fem/.*|withy/bodies/modal/.*|fmt/.*|Spectra/.*"
     may["cmake"] = inner "|withy/(scene|plugins/host)/.*|fmt/.*|nlohmann/.*|gmock/.*|gtest/.*"
-    may["withy.hpp"] = inner "|withy/(scene|study|results|plugins/host)/.*"
+    may["withy.hpp"] = inner "|withy/(scene|study|results|plugins/host|host)/.*"
     may["apps"] = ".*"
     may["tests"] = ".*"
 

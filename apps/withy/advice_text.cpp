@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "withy/apps/withy/certificate_text.hpp"
+#include "withy/results/certificate_text.hpp"
 #include "withy/results/scene_edit.hpp"
 
 namespace withy::app {

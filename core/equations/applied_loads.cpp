@@ -35,7 +35,7 @@ void AppliedLoads::add(double t, std::span<const double> y, std::span<double> ef
     const BoundLoad& load = *loads[i].load;
     if (wanted(i)) load.add(t, positions, speeds, efforts, {sweep::at<double>(work, scratch_offset_), load.scratch()});
   }
-  model_.add_discrete_efforts(y, efforts, only);
+  model_.add_discrete_efforts(t, y, efforts, only);
   if (paths_ == nullptr) return;
   const std::span<FrameMotion> motions(sweep::at<FrameMotion>(work, motions_offset_), frames_);
   const std::span<Wrench> wrenches(sweep::at<Wrench>(work, wrenches_offset_), frames_);
@@ -46,7 +46,7 @@ void AppliedLoads::add(double t, std::span<const double> y, std::span<double> ef
     const std::size_t count = load.frames().size();
     const auto own = wrenches.subspan(first, count);
     if (wanted(i)) {
-      load.wrenches(t, motions.subspan(first, count), own);
+      loads[i].wrenches(t, y, motions.subspan(first, count), own);
     } else {
       std::fill(own.begin(), own.end(), Wrench{});
     }

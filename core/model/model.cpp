@@ -299,18 +299,25 @@ void Model::add_motion(std::string name, const std::string& hinge_name, std::sha
   motions_.push_back({std::move(name), index, std::move(motion)});
 }
 
-void Model::add_discrete_efforts(std::span<const double> y, std::span<double> efforts, int only) const noexcept {
+void LoadNode::wrenches(double t, std::span<const double> y, std::span<const FrameMotion> motions,
+                        std::span<Wrench> wrenches) const noexcept {
+  load->wrenches(t, motions, wrenches);
+  if (slot.count > 0) load->discrete()->add_wrenches(t, discrete(y), motions, wrenches);
+}
+
+void Model::add_discrete_efforts(double t, std::span<const double> y, std::span<double> efforts,
+                                 int only) const noexcept {
   for (const DiscreteSlot& slot : layout_.discrete_slots) {
     if (only >= 0 && slot.load != static_cast<std::size_t>(only)) continue;
-    loads_[slot.load].load->discrete()->add(y.subspan(slot.first, slot.count), efforts);
+    loads_[slot.load].load->discrete()->add(t, y.subspan(slot.first, slot.count), efforts);
   }
 }
 
 void Model::add_load(std::string name, const Load& load) {
   loads_.push_back({std::move(name), load.bind(*this)});
   if (const DiscretePart* part = loads_.back().load->discrete(); part != nullptr && part->states() > 0) {
-    layout_.discrete_slots.push_back(
-        {loads_.size() - 1, layout_.positions + layout_.speeds + layout_.discrete, part->states()});
+    loads_.back().slot = {loads_.size() - 1, layout_.positions + layout_.speeds + layout_.discrete, part->states()};
+    layout_.discrete_slots.push_back(loads_.back().slot);
     layout_.discrete += part->states();
   }
 }

@@ -60,6 +60,16 @@ struct HingeNode {
 struct LoadNode {
   std::string name;
   std::shared_ptr<const BoundLoad> load;
+  DiscreteSlot slot = {};  ///< of its discrete states; count 0: it has none
+
+  /// Its discrete states in y, laid out as State::y.
+  template <class T>
+  [[nodiscard]] std::span<T> discrete(std::span<T> y) const {
+    return y.subspan(slot.first, slot.count);
+  }
+  /// Sets the wrench at each of the load's frames, with what its discrete states in y add.
+  void wrenches(double t, std::span<const double> y, std::span<const FrameMotion> motions,
+                std::span<Wrench> wrenches) const noexcept;
 };
 
 /// A prescribed motion in the tree.
@@ -103,8 +113,9 @@ class Model {
   void prescribe(State& state) const;
   /// Sets the accelerations of the driven speeds at time t [s] in u_dot, one a speed; leaves the others.
   void prescribe_accelerations(double t, std::span<double> u_dot) const noexcept;
-  /// Adds the efforts [N m, N] of the discrete states in y, of all loads or of one (index in loads()).
-  void add_discrete_efforts(std::span<const double> y, std::span<double> efforts, int only = -1) const noexcept;
+  /// Adds the efforts [N m, N] of the discrete states in y at time t, of all loads or of one (index in loads()).
+  void add_discrete_efforts(double t, std::span<const double> y, std::span<double> efforts,
+                            int only = -1) const noexcept;
   /// The same tree with every body rigid in its undeformed shape, without loads and motions.
   [[nodiscard]] Model rigidified() const;
 

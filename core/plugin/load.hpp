@@ -61,8 +61,29 @@ class DiscretePart {
   virtual void renew(double t, std::span<const double> positions, std::span<const double> speeds,
                      const Crossing& crossing, std::span<double> discrete,
                      std::span<double> scratch) const noexcept = 0;
-  /// Adds the efforts [N m, N] that belong to the discrete states.
-  virtual void add(std::span<const double> discrete, std::span<double> efforts) const noexcept = 0;
+  /// Adds the efforts [N m, N] that belong to the discrete states at time t [s].
+  virtual void add(double t, std::span<const double> discrete, std::span<double> efforts) const noexcept = 0;
+  /// Adds what belongs to them to the wrenches that BoundLoad::wrenches has set.
+  virtual void add_wrenches(double /*t*/, std::span<const double> /*discrete*/,
+                            std::span<const FrameMotion> /*motions*/, std::span<Wrench> /*wrenches*/) const noexcept {}
+};
+
+/// A value that a host sets between the steps of a simulation. It is kept in the discrete states of its load, so that
+/// a State knows it.
+class InputPort {
+ public:
+  virtual ~InputPort() = default;
+  /// SI unit of the value: "N m" or "N".
+  [[nodiscard]] virtual std::string unit() const = 0;
+  /// Whether a value that is set is reached in a straight line at the end of the next step; else it holds at once.
+  [[nodiscard]] virtual bool interpolates() const = 0;
+  /// The value at time t [s].
+  [[nodiscard]] virtual double value(double t, std::span<const double> discrete) const noexcept = 0;
+  /// Whether a host has set it; until then the scene says what it is.
+  [[nodiscard]] virtual bool is_set(std::span<const double> discrete) const noexcept = 0;
+  /// From time t [s] on the value holds; where the port interpolates, it is reached at the time `reached` [s], in a
+  /// straight line from the value at t.
+  virtual void set(double t, double reached, double value, std::span<double> discrete) const noexcept = 0;
 };
 
 /// A load fixed to one model: it knows which generalized speeds and frames it acts on. Immutable; scratch space is the
@@ -95,6 +116,8 @@ class BoundLoad {
   [[nodiscard]] virtual std::vector<double> discontinuities() const = 0;
   /// What of the load changes at instants alone, beside what `add` and `wrenches` give; null where nothing does.
   [[nodiscard]] virtual const DiscretePart* discrete() const { return nullptr; }
+  /// The value in the discrete states that a host sets; null where they are the load's own.
+  [[nodiscard]] virtual const InputPort* input() const { return nullptr; }
   /// Time [s] at which the load has done its work (a slew's end); 0 where it has no end of its own.
   [[nodiscard]] virtual double end() const = 0;
   /// Sets the hinge coordinates where the load wants the motion to begin (a slew starts at its `from`).

@@ -134,7 +134,7 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
     std::vector<double> scratch(node.load->scratch());
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), s.applied, scratch);
   }
-  model_->add_discrete_efforts(y, s.applied);
+  model_->add_discrete_efforts(t, y, s.applied);
   return s;
 }
 
@@ -151,7 +151,7 @@ std::vector<PlacedWrench> ReferenceDynamics::wrenches_at(double t, std::span<con
       motions.push_back({A.R, A.p, A.w, A.v});
     }
     std::vector<Wrench> wrenches(motions.size());
-    node.load->wrenches(t, motions, wrenches);
+    node.wrenches(t, y, motions, wrenches);
     for (std::size_t i = 0; i < wrenches.size(); ++i) all.push_back({node.load->frames()[i], wrenches[i]});
   }
   return all;

@@ -36,6 +36,11 @@ class Monitor {
   void audit_steps(const State& state, const StepStatistics& steps);
 
   [[nodiscard]] const std::optional<SignChange>& sign_change() const { return sign_change_; }
+  /// For a run that goes back to a state before its bad end.
+  void forget_bad_end() {
+    excess_.clear();
+    sign_change_.reset();
+  }
   /// What has been seen so far, with its part of the summary.
   void remember(Memory& memory);
 

@@ -20,19 +20,12 @@ inline double thread_cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Times strictly between start and end at which steps must end, then the end.
-inline std::vector<double> landings(const Model& model, double start, double end) {
-  std::vector<double> times{end};
-  for (const LoadNode& node : model.loads()) {
-    for (const double t : node.load->discontinuities()) {
-      if (t > start && t < end) times.push_back(t);
-    }
-  }
-  for (const MotionNode& node : model.motions()) {
-    for (const double t : node.motion->discontinuities()) {
-      if (t > start && t < end) times.push_back(t);
-    }
-  }
+/// Times [s] at which loads or motions jump, increasing: steps must end there.
+inline std::vector<double> discontinuities(const Model& model) {
+  std::vector<double> times;
+  const auto add = [&](const std::vector<double>& more) { times.insert(times.end(), more.begin(), more.end()); };
+  for (const LoadNode& node : model.loads()) add(node.load->discontinuities());
+  for (const MotionNode& node : model.motions()) add(node.motion->discontinuities());
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;

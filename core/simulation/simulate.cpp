@@ -8,36 +8,10 @@
 #include "withy/core/simulation/monitor.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/core/simulation/stepping.hpp"
+#include "withy/core/simulation/stop.hpp"
 
 namespace withy {
 namespace {
-
-/// Why stepping ended before the end.
-struct Stop {
-  RunStatus status = RunStatus::completed;
-  std::string reason;    ///< a clause without its full stop
-  bool physical = true;  ///< the equations are the reason, not the caller
-};
-
-Stop stop_of(const StepResult& result, const Model& model, const EquationsOfMotion& equations, const State& state,
-             const StepStatistics& steps) {
-  const std::string body =
-      result.body >= 0 ? " at body '" + model.bodies()[static_cast<std::size_t>(result.body)].name + "'" : "";
-  switch (result.outcome) {
-    case StepResult::Outcome::nonfinite: {
-      const std::string culprit = describe_nonfinite(model, equations, state, steps.largest_step);
-      return {RunStatus::diverged, "the derivatives are not finite, however small the step" + body +
-                                       (culprit.empty() ? culprit : ": " + culprit)};
-    }
-    case StepResult::Outcome::singular:
-      return {RunStatus::singular, "the mass matrix cannot be solved, however small the step" + body};
-    case StepResult::Outcome::step_underflow:
-      return {RunStatus::step_underflow, "the accuracy asked for needs steps below the resolution of time"};
-    case StepResult::Outcome::ok:
-      break;
-  }
-  return {};
-}
 
 /// What a run makes of its steps: checks, outputs, its summary.
 class Run final : public SteppingObserver {
@@ -63,18 +37,8 @@ class Run final : public SteppingObserver {
   Stop to_end() {
     if (left_) return stop_;
     const SteppingEnd end = loop_.run(*this);
-    switch (end.cause) {
-      case SteppingEnd::Cause::failed:
-        return stop_of(end.step, model_, equations_, loop_.state(), loop_.stepper().statistics());
-      case SteppingEnd::Cause::crowded:
-        return {RunStatus::step_underflow, "switches follow each other without time between them"};
-      case SteppingEnd::Cause::stopped:
-        return stop_;
-      case SteppingEnd::Cause::event:
-      case SteppingEnd::Cause::reached:
-        break;
-    }
-    return {};
+    if (end.cause == SteppingEnd::Cause::stopped) return stop_;
+    return stop_of(end, model_, equations_, loop_.state(), loop_.stepper().statistics());
   }
 
   /// The last state is an output, however the run ended.
@@ -267,13 +231,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
     summary.message = message_of_completed(run, summary);
   } else {
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end
-    // Steps that collapse where M loses rank collapse because of it.
-    if (stop.status == RunStatus::step_underflow && examined && history.lost_definiteness())
-      stop.status = RunStatus::singular;
-    summary.message = "t = " + brief(summary.final.time) + " s: " + stop.reason + ".";
-    if (stop.physical)
-      summary.message +=
-          examined ? " " + describe(history, model.layout()) : " The mass matrix, with so many rows, was not examined.";
+    summary.message = explain(stop, summary.final.time, examined ? &history : nullptr, model.layout());
   }
   summary.status = stop.status;
   summary.cpu_seconds = thread_cpu_seconds() - began;

@@ -11,6 +11,7 @@ Stepping::Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const S
     : model_(model),
       stepper_(std::move(stepper)),
       clocks_(model),
+      jumps_(discontinuities(model)),
       zeros_(model, options.events, stepper_->state()),
       times_(stepper_->state().time, options.output, options.end),
       end_(options.end),
@@ -21,12 +22,15 @@ Stepping::Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const S
 SteppingEnd Stepping::run(SteppingObserver& observer) {
   observer_ = &observer;
   ended_ = {};
-  for (const double landing : landings(model_, state().time, end_)) {
+  while (state().time < end_) {
+    const auto jump = std::upper_bound(jumps_.begin(), jumps_.end(), state().time);
+    const bool jumps = jump != jumps_.end() && *jump <= end_;
+    const double landing = jumps ? *jump : end_;
     while (state().time < landing) {
       if (!to(std::min(landing, clocks_.next()), true)) return ended_;
       if (state().time >= clocks_.next()) renew_clocks();
     }
-    stepper_->restart();
+    if (jumps) stepper_->restart();
   }
   return ended_;
 }

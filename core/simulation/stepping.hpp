@@ -67,6 +67,10 @@ class Stepping {
   /// Steps to the end. Steps land on discontinuities of loads and motions, on the instants of discrete states and on
   /// the end bit by bit. The states at the start and at the end are no outputs.
   SteppingEnd run(SteppingObserver& observer);
+  /// Moves the end, for `run` to go on. Where nothing jumps at the present end the stepper goes on as it was.
+  void move_end(double end) { end_ = end; }
+  /// Puts a state of the present time in the place of the present one: inputs have been set.
+  void replace(const State& state) { stepper_->jump(state); }
   [[nodiscard]] const Stepper& stepper() const { return *stepper_; }
   [[nodiscard]] const State& state() const { return stepper_->state(); }
   /// Goes on from a checkpoint's state and the numbers that Stepper::memory gave for it.
@@ -92,6 +96,7 @@ class Stepping {
   std::unique_ptr<Stepper> stepper_;
   SteppingObserver* observer_ = nullptr;  ///< of the run under way
   Clocks clocks_;
+  std::vector<double> jumps_;  ///< times [s] of discontinuities, increasing
   ZeroWatch zeros_;
   OutputTimes times_;
   double end_;

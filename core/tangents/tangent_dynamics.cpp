@@ -172,7 +172,7 @@ TangentDynamics::TangentDynamics(std::shared_ptr<const Model> model, Terms terms
 }
 
 template <class T>
-std::vector<AppliedWrench<T>> TangentDynamics::wrenches(double t, const Recursion<T>& shown,
+std::vector<AppliedWrench<T>> TangentDynamics::wrenches(double t, std::span<const double> y, const Recursion<T>& shown,
                                                         std::vector<bool>* differenced) const {
   std::vector<AppliedWrench<T>> all;
   for (std::size_t l = 0; l < model_->loads().size(); ++l) {
@@ -181,7 +181,8 @@ std::vector<AppliedWrench<T>> TangentDynamics::wrenches(double t, const Recursio
     std::vector<FrameState<T>> frames;
     for (const FrameIndex& at : load.frames()) frames.push_back(shown.frame_state(at));
     bool depends = false;
-    for (AppliedWrench<T>& w : analysis::wrenches_of(load, t, frames, depends)) all.push_back(std::move(w));
+    for (AppliedWrench<T>& w : analysis::wrenches_of(model_->loads()[l], t, y, frames, depends))
+      all.push_back(std::move(w));
     if (differenced != nullptr && depends) (*differenced)[l] = true;
   }
   return all;
@@ -193,7 +194,7 @@ VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen:
   const Builder<T> build{*this, y, a, seeds};
   const auto ruthless = [&](std::size_t b) { return terms_[b].truncation == Truncation::ruthless; };
   const Recursion<T> shown(*model_, build.hinges(), build.bodies(ruthless));
-  const std::vector<AppliedWrench<T>> wrenches = this->wrenches(t, shown, differenced);
+  const std::vector<AppliedWrench<T>> wrenches = this->wrenches(t, y, shown, differenced);
   if (!products_of_speeds_) {
     const Builder<T> still{*this, y, a, seeds, true};
     return Recursion<T>(*model_, still.hinges(), still.bodies(ruthless)).efforts(wrenches);
@@ -238,7 +239,7 @@ Eigen::VectorXd TangentDynamics::first_order_efforts(double t, std::span<const d
   const auto ruthless = [&](std::size_t b) { return terms_[b].truncation == Truncation::ruthless; };
   const Recursion<double> shown(*model_, build.hinges(), build.bodies(ruthless));
   std::vector<reference::PlacedWrench> placed;
-  for (const AppliedWrench<double>& w : wrenches(t, shown, nullptr)) placed.push_back({w.at, {w.moment, w.force}});
+  for (const AppliedWrench<double>& w : wrenches(t, y, shown, nullptr)) placed.push_back({w.at, {w.moment, w.force}});
   const reference::FirstOrderSystem s = reference::first_order_system(*model_, terms_, y, placed);
   return s.M * a - s.f - s.applied;
 }
@@ -271,7 +272,7 @@ void TangentDynamics::differentiate_first_order(double t, std::span<const double
   const auto ruthless = [&](std::size_t b) { return terms_[b].truncation == Truncation::ruthless; };
   for (std::size_t first = 0; first < 3 * speeds; first += jet_directions) {
     const Builder<Jet> build{*this, y, a, {first}};
-    wrenches(t, Recursion<Jet>(*model_, build.hinges(), build.bodies(ruthless)), differenced);
+    wrenches(t, y, Recursion<Jet>(*model_, build.hinges(), build.bodies(ruthless)), differenced);
   }
 }
 
@@ -295,7 +296,7 @@ Eigen::VectorXd TangentDynamics::load_efforts(double t, std::span<const double> 
     std::vector<double> scratch(node.load->scratch());
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), efforts, scratch);
   }
-  model_->add_discrete_efforts(y, efforts);
+  model_->add_discrete_efforts(t, y, efforts);
   return Eigen::Map<const Eigen::VectorXd>(efforts.data(), static_cast<Eigen::Index>(efforts.size()));
 }
 

@@ -81,7 +81,8 @@ class TangentDynamics {
   struct Builder;
   /// Wrenches of the loads at frames, `shown` being the tree at the deformation that the truncations keep.
   template <class T>
-  std::vector<analysis::AppliedWrench<T>> wrenches(double t, const analysis::Recursion<T>& shown,
+  std::vector<analysis::AppliedWrench<T>> wrenches(double t, std::span<const double> y,
+                                                   const analysis::Recursion<T>& shown,
                                                    std::vector<bool>* differenced) const;
   template <class T>
   [[nodiscard]] Eigen::Matrix<T, Eigen::Dynamic, 1> efforts(double t, std::span<const double> y,

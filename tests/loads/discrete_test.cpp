@@ -220,6 +220,9 @@ hinges:
 loads:
   control: {type: pd-controller, law: quintic, duration: 1.5, sample: 0.03, hinges: {axle: {to: 1, stiffness: 5, damping: 1}}}
   push: {type: hinge-effort, hinge: ball, component: 2, law: steps, table: [[0.2, 0.05], [0.9, 0]]}
+  given: {type: input, frame: boom.tip, direction: [0, 1, 0], following: true}
+  planned: {type: input, hinge: ball, component: 2, hold: linear, table: [[0.3, 0], [0.7, 0.02]]}
+initial: {inputs: {given: 0.1}}
 events:
   half: {hinge: axle, value: 0.5}
   back: {hinge: axle, of: rate, direction: down}

@@ -1,4 +1,4 @@
-#include "withy/apps/withy/certificate_text.hpp"
+#include "withy/results/certificate_text.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "withy/core/model/columns.hpp"
 
-namespace withy::app {
+namespace withy {
 namespace {
 
 std::string percent(double ratio) { return fmt::format("{:.2g} %", 100 * ratio); }
@@ -114,4 +114,4 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
   return out;
 }
 
-}  // namespace withy::app
+}  // namespace withy

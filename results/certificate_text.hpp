@@ -6,11 +6,11 @@
 
 #include "withy/study/certificate.hpp"
 
-namespace withy::app {
+namespace withy {
 
 /// The certificate in plain words, ending its last line.
 std::string certificate_text(const Model& model, const RunSummary& summary, const study::Certificate& certificate);
 /// "limited by accuracy: mean step times fastest mode 0.11, stable to 1.73".
 std::string step_limit_text(const study::StepLimit& s);
 
-}  // namespace withy::app
+}  // namespace withy

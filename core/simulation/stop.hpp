@@ -1,0 +1,30 @@
+/// \file
+/// Why a simulation cannot go on.
+#pragma once
+
+#include <string>
+
+#include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/simulate.hpp"
+#include "withy/core/simulation/stepping.hpp"
+
+namespace withy {
+
+/// Why stepping ended before its end.
+struct Stop {
+  RunStatus status = RunStatus::completed;
+  std::string reason;    ///< a clause without its full stop
+  bool physical = true;  ///< the equations are the reason, not the caller
+};
+
+/// The reason that stepping itself gives: no step can be made, or switches follow each other without time between.
+/// Completed where it gives none.
+Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion& equations, const State& state,
+             const StepStatistics& steps);
+
+/// "t = 0.0523 s: <reason>. <what the mass matrix is like>". Steps that collapse where M loses rank collapse because of
+/// it: the status then becomes singular.
+/// \param history of the mass matrix; null where it has too many rows to be examined
+std::string explain(Stop& stop, double time, const MassMatrixHistory* history, const Layout& layout);
+
+}  // namespace withy

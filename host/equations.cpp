@@ -1,0 +1,179 @@
+#include "withy/host/equations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "withy/core/model/columns.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+#include "withy/host/names.hpp"
+#include "withy/host/stopped.hpp"
+#include "withy/study/input_error.hpp"
+#include "withy/study/prepared.hpp"
+
+namespace withy::host {
+namespace {
+
+/// The elements of y by the names of the result columns, positions and then speeds.
+std::vector<Port> state_ports(const Model& model) {
+  const Layout& layout = model.layout();
+  std::vector<Port> ports(layout.positions + layout.speeds);
+  const auto put = [&](std::size_t first, const std::vector<Column>& columns) {
+    for (std::size_t i = 0; i < columns.size(); ++i) ports[first + i] = {columns[i].name, columns[i].unit};
+  };
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    put(layout.hinges[h].position, coordinate_columns(model.hinges()[h]));
+    put(layout.positions + layout.hinges[h].speed, rate_columns(model.hinges()[h]));
+  }
+  for (const Slot& body : layout.bodies) {
+    for (std::size_t i = 0; i < body.speeds; ++i) {
+      const std::string& mode = layout.speed_names[body.speed + i];
+      ports[body.position + i] = {mode, ""};
+      ports[layout.positions + body.speed + i] = {mode + ".rate", ""};
+    }
+  }
+  return ports;
+}
+
+std::shared_ptr<const study::Prepared> continuous(const Scene& scene, const std::string& formulation) {
+  std::shared_ptr<const study::Prepared> prepared =
+      formulation.empty() ? scene.prepare() : Scene(scene).formulation(formulation).prepare();
+  for (const LoadNode& load : prepared->model().loads())
+    if (load.slot.count > 0 && load.load->input() == nullptr)
+      throw study::InputError(
+          fmt::format("{}: load '{}' changes at instants (sampled, or a relay), which an integrator of your own does "
+                      "not know; step "
+                      "a Simulation, or leave out its 'sample', or the load",
+                      prepared->scene.file, load.name));
+  return prepared;
+}
+
+}  // namespace
+
+struct Equations::Parts {
+  explicit Parts(std::shared_ptr<const study::Prepared> from)
+      : prepared(std::move(from)),
+        equations(*prepared->equations),
+        size(equations.layout().positions + equations.layout().speeds),
+        full(prepared->scene.initial.y),
+        full_dot(full.size()),
+        work(equations.make_work()) {}
+  Parts(const Parts& other) : Parts(other.prepared) {
+    full = other.full;
+    states = other.states;
+    y0 = other.y0;
+    inputs = other.inputs;
+    input_loads = other.input_loads;
+  }
+
+  /// \throws std::invalid_argument where the host's array has another size.
+  static void expect(std::size_t got, std::size_t needed, const char* what) {
+    if (got != needed) throw std::invalid_argument(fmt::format("{}: got {} numbers; need {}", what, got, needed));
+  }
+  Evaluation evaluate(double t, std::span<const double> y) {
+    expect(y.size(), size, "y");
+    std::copy(y.begin(), y.end(), full.begin());
+    return equations.derivatives(t, full, full_dot, work);
+  }
+  [[nodiscard]] const LoadNode& load_of_input(std::size_t index) const {
+    return prepared->model().loads()[input_loads.at(index)];
+  }
+
+  std::shared_ptr<const study::Prepared> prepared;
+  const EquationsOfMotion& equations;
+  std::size_t size;                    ///< of the host's y
+  std::vector<double> full, full_dot;  ///< as State::y, with the inputs
+  Work work;
+  std::vector<Port> states, inputs;
+  std::vector<double> y0;
+  std::vector<std::size_t> input_loads;
+};
+
+Equations::Equations(const Scene& scene, const std::string& formulation)
+    : parts_(std::make_unique<Parts>(continuous(scene, formulation))) {
+  Parts& p = *parts_;
+  const Model& model = p.prepared->model();
+  p.states = state_ports(model);
+  p.y0.assign(p.full.begin(), p.full.begin() + static_cast<std::ptrdiff_t>(p.size));
+  for (std::size_t l = 0; l < model.loads().size(); ++l) {
+    const InputPort* input = model.loads()[l].load->input();
+    if (input == nullptr) continue;
+    p.inputs.push_back({model.loads()[l].name, input->unit()});
+    p.input_loads.push_back(l);
+  }
+}
+
+Equations::Equations(const Equations& other) : parts_(std::make_unique<Parts>(*other.parts_)) {}
+Equations& Equations::operator=(const Equations& other) {
+  if (this != &other) parts_ = std::make_unique<Parts>(*other.parts_);
+  return *this;
+}
+Equations::Equations(Equations&&) noexcept = default;
+Equations& Equations::operator=(Equations&&) noexcept = default;
+Equations::~Equations() = default;
+
+std::size_t Equations::size() const { return parts_->size; }
+const std::vector<Port>& Equations::states() const { return parts_->states; }
+const std::vector<double>& Equations::y0() const { return parts_->y0; }
+double Equations::t0() const { return parts_->prepared->scene.initial.time; }
+const std::vector<Port>& Equations::inputs() const { return parts_->inputs; }
+
+double Equations::input(std::size_t index) const {
+  const LoadNode& load = parts_->load_of_input(index);
+  return load.load->input()->value(t0(), load.discrete(std::span<const double>(parts_->full)));
+}
+
+void Equations::set_input(std::size_t index, double value) {
+  const LoadNode& load = parts_->load_of_input(index);
+  if (!std::isfinite(value))
+    throw std::invalid_argument(fmt::format("input '{}': got {}; need a finite number", load.name, value));
+  load.load->input()->set(t0(), t0(), value, load.discrete(std::span(parts_->full)));
+}
+
+void Equations::set_input(std::string_view name, double value) { set_input(index_of(inputs(), name, "input"), value); }
+
+Evaluation Equations::derivatives(double t, std::span<const double> y, std::span<double> y_dot) {
+  Parts& p = *parts_;
+  Parts::expect(y_dot.size(), p.size, "y_dot");
+  const Evaluation evaluation = p.evaluate(t, y);
+  std::copy_n(p.full_dot.begin(), p.size, y_dot.begin());
+  return evaluation;
+}
+
+void Equations::jacobian(double t, std::span<const double> y, std::span<double> jacobian) {
+  Parts& p = *parts_;
+  Parts::expect(jacobian.size(), p.size * p.size, "jacobian");
+  const Linearization* linearization = p.equations.linearization();
+  if (linearization == nullptr)
+    throw study::InputError("formulation '" + p.prepared->scene.formulation_name + "' has no derivatives");
+  Evaluation evaluation = p.evaluate(t, y);
+  if (evaluation.ok()) evaluation = linearization->jacobian(t, p.full, p.full_dot, jacobian);
+  if (!evaluation.ok()) throw SimulationStopped("singular", reason(t, evaluation), t);
+  for (std::size_t i = 0; i < p.size; ++i)  // column after column as it comes
+    for (std::size_t j = 0; j < i; ++j) std::swap(jacobian[i * p.size + j], jacobian[j * p.size + i]);
+}
+
+void Equations::normalize(std::span<double> y) {
+  Parts& p = *parts_;
+  Parts::expect(y.size(), p.size, "y");
+  std::copy(y.begin(), y.end(), p.full.begin());
+  p.equations.normalize(p.full);
+  std::copy_n(p.full.begin(), p.size, y.begin());
+}
+
+std::string Equations::reason(double t, const Evaluation& evaluation) const {
+  if (evaluation.ok()) return {};
+  std::string text = "t = " + brief(t) + " s: ";
+  if (evaluation.outcome == Evaluation::Outcome::nonfinite) {
+    text += "the derivatives are not finite";
+  } else {
+    text += "the mass matrix cannot be solved";
+  }
+  if (evaluation.body >= 0)
+    text += " at body '" + parts_->prepared->model().bodies()[static_cast<std::size_t>(evaluation.body)].name + "'";
+  return text + ".";
+}
+
+}  // namespace withy::host

@@ -1,0 +1,114 @@
+#include "withy/host/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "withy/host/names.hpp"
+#include "withy/results/certificate_json.hpp"
+#include "withy/results/recorded_run.hpp"
+#include "withy/scene/document.hpp"
+#include "withy/scene/scene_values.hpp"
+#include "withy/study/run.hpp"
+
+namespace withy::host {
+namespace {
+
+/// Rows one behind the other.
+class FlatRecorder final : public Recorder {
+ public:
+  explicit FlatRecorder(Result& result) : result_(result) {}
+  void begin(const std::vector<Column>& columns) override {
+    for (const Column& column : columns) result_.columns.push_back({column.name, column.unit});
+  }
+  void row(std::span<const double> numbers) override {
+    result_.values.insert(result_.values.end(), numbers.begin(), numbers.end());
+  }
+  RecordMark mark() override { return {}; }
+  void end() override {}
+
+ private:
+  Result& result_;
+};
+
+}  // namespace
+
+struct Scene::Parts {
+  Library library;
+  std::string text, name;
+  SceneValues values;
+  std::vector<std::string> changes = {};
+};
+
+Scene::Scene(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Scene::Scene(const Scene& other) : parts_(std::make_unique<Parts>(*other.parts_)) {}
+Scene& Scene::operator=(const Scene& other) {
+  if (this != &other) parts_ = std::make_unique<Parts>(*other.parts_);
+  return *this;
+}
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
+Scene Scene::read(const Library& library, const std::string& file) { return parse(library, read_bytes(file), file); }
+
+Scene Scene::parse(const Library& library, std::string_view text, const std::string& name) {
+  return Scene(std::make_unique<Parts>(Parts{library, std::string(text), name, SceneValues::parse(text, name)}));
+}
+
+Scene& Scene::set(std::string_view path, double value) { return set(path, std::string_view(fmt::format("{}", value))); }
+
+Scene& Scene::set(std::string_view path, std::string_view text) {
+  parts_->changes.push_back(fmt::format("{}={}", path, text));
+  parts_->values.set_text(parts_->changes.back(), fmt::format("set({})", parts_->changes.back()));
+  return *this;
+}
+
+Scene& Scene::formulation(const std::string& id) { return set("formulation", std::string_view(id)); }
+Scene& Scene::integrator(const std::string& id) { return set("integrator", std::string_view(id)); }
+
+void Scene::check() const { static_cast<void>(make_scene(parts_->values, library().registry())); }
+
+const std::string& Scene::text() const { return parts_->text; }
+const std::string& Scene::name() const { return parts_->name; }
+const std::vector<std::string>& Scene::changes() const { return parts_->changes; }
+const Library& Scene::library() const { return parts_->library; }
+
+std::shared_ptr<const study::Prepared> Scene::prepare() const {
+  return std::make_shared<const study::Prepared>(study::prepare(parts_->values, library().registry()));
+}
+
+Result Scene::run(const Follow& follow) const {
+  const std::shared_ptr<const study::Prepared> prepared = prepare();
+  Result result;
+  FlatRecorder recorder(result);
+  RunTable table(*prepared, recorder);
+  study::RunSettings settings;
+  settings.control = {follow.interrupted, follow.progress};
+  const bool seen = !prepared->escalates();
+  if (seen) settings.seen = &table.seen();
+  settings.output = [&](const State& state, std::size_t rung) {
+    if (seen) {
+      table.add_seen(state);
+    } else {
+      table.add(state, rung);
+    }
+  };
+  const auto [summary, certificate] = study::run(*prepared, library().registry(), settings);
+  result.status = withy::name(summary.status);
+  result.message = summary.message;
+  result.json = run_json(prepared->scene, summary, certificate).dump();
+  if (!summary.message.empty()) library().log(summary.message);
+  return result;
+}
+
+std::vector<double> Result::column(std::string_view name) const {
+  const std::size_t index = index_of(columns, name, "column");
+  std::vector<double> numbers;
+  numbers.reserve(rows());
+  for (std::size_t at = index; at < values.size(); at += columns.size()) numbers.push_back(values[at]);
+  return numbers;
+}
+
+}  // namespace withy::host

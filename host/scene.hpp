@@ -1,0 +1,102 @@
+/// \file
+/// A scene in a program: read, varied, run, and studied.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "withy/host/library.hpp"
+#include "withy/scene/scene_error.hpp"
+
+namespace withy::study {
+struct Prepared;
+}
+
+namespace withy::host {
+
+/// How a call that takes long is followed; both may be empty. They are called by the thread of the caller, but for
+/// `trade`, where they are called by one thread at a time.
+struct Follow {
+  std::function<bool()> interrupted;                      ///< asked often: true ends the call soon
+  std::function<void(double done, double all)> progress;  ///< time [s] of a run, or points of a study
+};
+
+/// What a run gave. The columns are those of results.csv.
+struct Result {
+  std::string status;   ///< "completed", "diverged", "singular", "step-underflow", "interrupted"
+  std::string message;  ///< the physical reason of a bad end; else what a completed run should not keep to itself
+  std::vector<Port> columns;
+  std::vector<double> values;  ///< row after row, as many numbers in each as there are columns, SI units
+  std::string json;            ///< the content of run.json: peaks, events, final state, certificate
+
+  [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
+  /// The numbers of a column. \throws std::out_of_range with the nearest name where there is none of this.
+  [[nodiscard]] std::vector<double> column(std::string_view name) const;
+};
+
+/// A scene as a value: a copy is a scene of its own. Functions that need it made report every problem of the text and
+/// of `set` at once. \throws SceneError; study::InputError where a choice cannot be; PluginError where a library is
+/// refused: all of them std::runtime_error with the located text.
+class Scene {
+ public:
+  /// \throws SceneError where the text cannot be read; std::system_error where the file cannot.
+  static Scene read(const Library& library, const std::string& file);
+  /// \param name stands for the file in messages; relative names of other files begin at its folder
+  static Scene parse(const Library& library, std::string_view text, const std::string& name = "scene");
+  Scene(const Scene& other);
+  Scene& operator=(const Scene& other);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
+  /// Sets a value by its path of keys, as "loads.slew.time_scale" or "gravity.1".
+  Scene& set(std::string_view path, double value);
+  /// The same with the value as a file has it: "25 mm", "[0, 0, 1]", "{name: rk4, step: 0.01}", "true".
+  Scene& set(std::string_view path, std::string_view text);
+  Scene& set(std::string_view path, const char* text) { return set(path, std::string_view(text)); }
+  Scene& formulation(const std::string& id);
+  Scene& integrator(const std::string& id);
+  /// Checks it. \throws as above.
+  void check() const;
+
+  /// What the scene was read from, and what was changed since, in its order: to make the same scene elsewhere.
+  [[nodiscard]] const std::string& text() const;
+  [[nodiscard]] const std::string& name() const;
+  [[nodiscard]] const std::vector<std::string>& changes() const;  ///< "path=value"
+
+  /// Simulates to the end of the scene. A bad end is a status, not an exception.
+  [[nodiscard]] Result run(const Follow& follow = {}) const;
+
+  /// Studies as JSON text, in the form that the program's `--json` has.
+  /// Runs in several formulations and the distances of each from the reference.
+  [[nodiscard]] std::string compare(const std::vector<std::string>& formulations, const std::string& reference,
+                                    const Follow& follow = {}) const;
+  /// What `trade` and `advise` go over; empty: what the commands go over.
+  struct Axes {
+    std::vector<std::string> formulations, families;
+    std::vector<int> modes;
+    std::vector<std::string> integrators;
+    std::vector<double> tolerances;
+  };
+  /// Error against cost; every point with whether it is on the front.
+  [[nodiscard]] std::string trade(const Axes& axes, std::size_t jobs = 0, const Follow& follow = {}) const;
+  /// The cheapest model that holds an accuracy, "1%" or "1 mm, 0.1 deg"; "advice" is null where none does.
+  [[nodiscard]] std::string advise(const std::string& accuracy, const std::vector<std::string>& outputs = {},
+                                   const Axes& axes = {}, const Follow& follow = {}) const;
+  /// Modes about the steady state of the scene's initial state, hinges in `lock` held.
+  [[nodiscard]] std::string modes(const std::vector<std::string>& lock = {}, const Follow& follow = {}) const;
+
+  [[nodiscard]] const Library& library() const;
+  /// Made and compiled, for Simulation, Equations and the functions of `withy::study`.
+  [[nodiscard]] std::shared_ptr<const study::Prepared> prepare() const;
+
+ private:
+  struct Parts;
+  explicit Scene(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace withy::host

@@ -1,0 +1,110 @@
+/// \file
+/// Studies of a scene, as JSON text.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "withy/core/plugin/formulation_ladder.hpp"
+#include "withy/host/scene.hpp"
+#include "withy/results/advice_json.hpp"
+#include "withy/results/certificate_json.hpp"
+#include "withy/results/modes_files.hpp"
+#include "withy/results/scene_edit.hpp"
+#include "withy/results/trade_files.hpp"
+#include "withy/study/comparison.hpp"
+#include "withy/study/left_out.hpp"
+
+namespace withy::host {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+study::Control control_of(const Follow& follow) { return {follow.interrupted, follow.progress}; }
+
+/// The axes asked for, those of `usual` where nothing is.
+study::Axes axes_of(const Scene::Axes& asked, study::Axes usual) {
+  const auto take = [](const auto& given, auto& target) {
+    if (!given.empty()) target.assign(given.begin(), given.end());
+  };
+  take(asked.formulations, usual.formulations);
+  take(asked.families, usual.families);
+  take(asked.modes, usual.modes);
+  take(asked.integrators, usual.integrators);
+  take(asked.tolerances, usual.tolerances);
+  study::check_axes(usual);
+  return usual;
+}
+
+std::string advice_text(const study::Prepared& prepared, const study::Outputs& outputs, const study::Accuracy& accuracy,
+                        const study::Advice& advice, study::Evaluator& evaluator) {
+  const AdviceQuestion question{prepared, outputs, accuracy};
+  if (!advice.choice) {
+    const std::string why = advice.interrupted       ? "interrupted"
+                            : advice.trouble.empty() ? "no candidate holds " + accuracy.text()
+                                                     : advice.trouble;
+    return search_json(question, advice, why).dump();
+  }
+  std::vector<std::string> changes;
+  for (const study::Change& change : study::new_changes(prepared.scene, advice.choice->point))
+    changes.push_back(change.text());
+  return advice_json(question, advice, study::left_out(evaluator.model(advice.choice->point)), changes,
+                     scene_lines(changes))
+      .dump();
+}
+
+}  // namespace
+
+std::string Scene::compare(const std::vector<std::string>& formulations, const std::string& reference,
+                           const Follow& follow) const {
+  const std::shared_ptr<const study::Prepared> base = prepare();
+  const study::Comparison comparison =
+      study::compare(base->values, library().registry(), formulations, reference,
+                     [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
+                       return study::simulate(prepared, output, control_of(follow));
+                     });
+  Json runs = Json::array();
+  for (const study::ComparedRun& run : comparison.runs) {
+    Json j = run_json(run.prepared.scene, run.summary,
+                      study::certify(run.prepared, {&run.summary, nullptr, nullptr, {}}, library().registry()));
+    if (comparison.has_reference()) {
+      const study::NamedDistances d = comparison.distances(run);
+      j["distance"] = {{"hinges", d.hinges}, {"tips", d.tips}, {"until", d.until}};
+    }
+    runs.push_back(std::move(j));
+  }
+  return Json{{"scene", base->scene.file}, {"name", base->scene.name}, {"reference", reference}, {"runs", runs}}.dump();
+}
+
+std::string Scene::trade(const Axes& axes, std::size_t jobs, const Follow& follow) const {
+  const std::shared_ptr<const study::Prepared> base = prepare();
+  const study::Axes usual{
+      studied_formulations(library().registry()), {""}, {1, 2, 3}, {"dopri5", "imex"}, {1e-4, 1e-6}, {}};
+  study::TradeStudy study(*base, library().registry(), study::points_of(axes_of(axes, usual)),
+                          {jobs, nullptr, control_of(follow)});
+  study.run();
+  const auto results = study.results();
+  return trade_json(base->scene, study, results, study::pareto_front(results)).dump();
+}
+
+std::string Scene::advise(const std::string& accuracy, const std::vector<std::string>& outputs, const Axes& axes,
+                          const Follow& follow) const {
+  const std::shared_ptr<const study::Prepared> base = prepare();
+  const study::Accuracy asked = study::Accuracy::parse(accuracy);
+  const study::Outputs measured(base->model(), outputs);
+  const study::Candidates candidates =
+      study::candidates_for(*base, library().registry(), axes_of(axes, study::usual_axes()));
+  study::Evaluator evaluator(*base, library().registry(), measured, control_of(follow));
+  const study::Advice advice = study::advise(evaluator, candidates, asked);
+  return advice_text(*base, measured, asked, advice, evaluator);
+}
+
+std::string Scene::modes(const std::vector<std::string>& lock, const Follow& follow) const {
+  const std::shared_ptr<const study::Prepared> base = prepare();
+  const study::ModesOf found = study::sweep_modes(
+      base->values, library().registry(), [](const study::Prepared& prepared) { return prepared.scene.initial; },
+      {lock, {}}, {}, false, {}, control_of(follow));
+  return modes_json(found).dump();
+}
+
+}  // namespace withy::host

@@ -1,0 +1,116 @@
+// Equations of motion for integrators of the host's own.
+#include "withy/host/equations.hpp"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <thread>
+
+#include "withy/core/plugin/central_difference.hpp"
+#include "withy/host/simulation.hpp"
+#include "withy/tests/host/arm.hpp"
+
+namespace withy {
+namespace {
+
+using host::Equations;
+using host::Scene;
+using test::smooth_arm;
+using testing::HasSubstr;
+
+/// The classical Runge-Kutta method: what a host may bring.
+void rk4(Equations& f, double t, double h, std::vector<double>& y) {
+  const std::size_t n = y.size();
+  std::vector<double> k1(n), k2(n), k3(n), k4(n), at(n);
+  const auto stage = [&](double part, const std::vector<double>& k) {
+    for (std::size_t i = 0; i < n; ++i) at[i] = y[i] + part * h * k[i];
+    return std::span<const double>(at);
+  };
+  EXPECT_TRUE(f.derivatives(t, y, k1).ok());
+  EXPECT_TRUE(f.derivatives(t + h / 2, stage(0.5, k1), k2).ok());
+  EXPECT_TRUE(f.derivatives(t + h / 2, stage(0.5, k2), k3).ok());
+  EXPECT_TRUE(f.derivatives(t + h, stage(1, k3), k4).ok());
+  for (std::size_t i = 0; i < n; ++i) y[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+  f.normalize(y);
+}
+
+// A host's integrator and that of withy find the same motion; each number of y is the column of its name.
+TEST(HostedEquations, integrated_by_a_host_are_the_simulation) {
+  Scene scene = smooth_arm();
+  scene.set("integrator", "{name: dop853, rtol: 1e-11, atol: 1e-13}");
+  Equations equations(scene);
+  host::Simulation simulation(scene);
+  equations.set_input("torque", 0.1);
+  equations.set_input("jet", 0.2);
+  simulation.set_input("torque", 0.1);
+  simulation.set_input("jet", 0.2);
+  std::vector<double> y = equations.y0();
+  for (int k = 0; k < 1000; ++k) rk4(equations, 0.0002 * k, 0.0002, y);
+  simulation.step(0.2);
+  for (std::size_t i = 0; i < y.size(); ++i)
+    EXPECT_NEAR(y[i], simulation.output(equations.states()[i].name), 3e-8) << equations.states()[i].name;
+}
+
+TEST(HostedEquations, have_an_exact_jacobian) {
+  Equations equations(smooth_arm(), "quadratic");
+  equations.set_input("ramp", 0.3);
+  equations.set_input("jet", 0.2);
+  std::vector<double> y = equations.y0();
+  for (std::size_t i = 4; i < y.size(); ++i) y[i] += 0.02 * std::sin(1.0 + 2.0 * static_cast<double>(i));
+  const std::size_t n = equations.size();
+  std::vector<double> jacobian(n * n), y_dot(n);
+  equations.jacobian(0.1, y, jacobian);
+  for (std::size_t j = 4; j < n; ++j) {
+    const Eigen::VectorXd numeric = central_difference(
+        [&](double h) {
+          std::vector<double> moved = y;
+          moved[j] += h;
+          EXPECT_TRUE(equations.derivatives(0.1, moved, y_dot).ok());
+          return Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(y_dot.data(), static_cast<Eigen::Index>(n)));
+        },
+        1e-3);
+    for (std::size_t i = 0; i < n; ++i)
+      EXPECT_NEAR(jacobian[i * n + j], numeric[static_cast<Eigen::Index>(i)],
+                  1e-7 * (1 + std::abs(jacobian[i * n + j])))
+          << equations.states()[i].name << " by " << equations.states()[j].name;
+  }
+}
+
+TEST(HostedEquations, are_copied_for_other_threads) {
+  Equations equations(smooth_arm());
+  equations.set_input("torque", 0.4);
+  const auto walk = [](Equations f) {
+    std::vector<double> y = f.y0();
+    for (int k = 0; k < 50; ++k) rk4(f, 0.01 * k, 0.01, y);
+    return y;
+  };
+  const std::vector<double> expected = walk(equations);
+  std::vector<std::vector<double>> got(6);
+  std::vector<std::thread> threads;
+  for (std::vector<double>& y : got) threads.emplace_back([&y, &walk, own = equations] { y = walk(own); });
+  for (std::thread& thread : threads) thread.join();
+  for (const std::vector<double>& y : got) EXPECT_EQ(y, expected);
+}
+
+TEST(HostedEquations, refuse_what_they_do_not_know) {
+  try {
+    const Equations sampled(Scene::parse(test::library(), test::busy_arm));
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("load 'hold' changes at instants"));
+  }
+  Equations equations(smooth_arm());
+  std::vector<double> y = equations.y0(), y_dot(y.size() - 1);
+  EXPECT_THROW(static_cast<void>(equations.derivatives(0, y, y_dot)), std::invalid_argument);
+  EXPECT_THROW(equations.jacobian(0, y, y_dot), std::invalid_argument);
+  EXPECT_THROW(equations.set_input("torque", INFINITY), std::invalid_argument);
+  y_dot.resize(y.size());
+  y[7] = std::nan("");
+  const Evaluation evaluation = equations.derivatives(0, y, y_dot);
+  EXPECT_FALSE(evaluation.ok());
+  EXPECT_THAT(equations.reason(0, evaluation), HasSubstr("t = 0 s: "));
+}
+
+}  // namespace
+}  // namespace withy

@@ -1,0 +1,85 @@
+// Scenes in a program.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "withy/core/simulation/simulate.hpp"
+#include "withy/tests/host/arm.hpp"
+
+namespace withy {
+namespace {
+
+using host::Scene;
+using nlohmann::json;
+using test::library;
+using testing::HasSubstr;
+
+Scene slew() { return Scene::read(library(), WITHY_SOURCES "/scenes/two-link-slew.yaml"); }
+
+TEST(HostedScene, is_varied_as_a_value) {
+  const Scene original = slew();
+  Scene fast = original;
+  fast.set("loads.slew.time_scale", 1.2).set("integrator.rtol", "1e-5").formulation("ruthless");
+  const host::Result slow = original.run(), quick = fast.run();
+  EXPECT_EQ(quick.status, "completed");
+  EXPECT_LT(quick.column("t").back(), slow.column("t").back());
+  EXPECT_EQ(json::parse(quick.json)["formulation"], "ruthless");
+  EXPECT_EQ(json::parse(slow.json)["final"]["hinges"]["shoulder"]["position"][0].get<double>(),
+            slow.column("shoulder").back());
+  // What text and changes say is the same scene.
+  Scene again = Scene::parse(library(), fast.text(), fast.name());
+  for (const std::string& change : fast.changes())
+    again.set(change.substr(0, change.find('=')), std::string_view(change).substr(change.find('=') + 1));
+  EXPECT_EQ(again.run().values, quick.values);
+}
+
+TEST(HostedScene, reports_every_problem_with_its_place) {
+  Scene scene = Scene::parse(library(), "format: withy/1\nbodies: {b: {type: rigd}}\nhinges: {}\n", "mine.yaml");
+  scene.set("time.end", "soon");
+  try {
+    scene.check();
+    FAIL();
+  } catch (const SceneError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("mine.yaml:2:"));
+    EXPECT_THAT(e.what(), HasSubstr("did you mean 'rigid'"));
+    EXPECT_THAT(e.what(), HasSubstr("set(time.end=soon)"));
+  }
+  EXPECT_THROW(static_cast<void>(Scene::parse(library(), "a: [")), SceneError);
+  EXPECT_THROW(static_cast<void>(Scene::read(library(), "no-such-file.yaml")), std::system_error);
+  EXPECT_THROW(static_cast<void>(slew().formulation("quadratc").run()), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(slew().run().column("shouldr")), std::out_of_range);
+}
+
+TEST(HostedScene, is_interrupted_and_tells_its_progress) {
+  double seen = 0;
+  host::Follow follow;
+  follow.progress = [&](double done, double all) { seen = std::max(seen, done / all); };
+  follow.interrupted = [&] { return seen > 0.3; };
+  const host::Result part = slew().run(follow);
+  EXPECT_EQ(part.status, "interrupted");
+  EXPECT_GT(part.rows(), 2U);
+  EXPECT_LT(part.column("t").back(), 3.8);
+}
+
+TEST(HostedScene, is_studied) {
+  const Scene scene = Scene(slew()).set("time.end", 0.3);
+  const json compared = json::parse(scene.compare({"ruthless", "linear"}, "quadratic"));
+  ASSERT_EQ(compared["runs"].size(), 3U);
+  EXPECT_GT(compared["runs"][0]["distance"]["hinges"]["shoulder"], 0);
+  const json modes = json::parse(scene.modes({"shoulder", "elbow"}));
+  EXPECT_GT(modes["points"][0]["modes"][0]["hertz"], 0);
+  Scene::Axes axes{{"ruthless", "quadratic"}, {}, {1}, {"dopri5"}, {1e-4}};
+  const json trade = json::parse(scene.trade(axes, 1));
+  EXPECT_EQ(trade["points"].size(), 2U);
+  const json advice = json::parse(scene.advise("10%", {}, axes));
+  EXPECT_TRUE(advice["advice"].is_object()) << advice.dump();
+}
+
+TEST(HostedScene, hears_the_remarks_of_the_library) {
+  std::vector<std::string> remarks;
+  const host::Library own({{"no/such/folder"}, [&](std::string_view remark) { remarks.emplace_back(remark); }});
+  EXPECT_THAT(remarks, testing::Contains(HasSubstr("no/such/folder")));
+}
+
+}  // namespace
+}  // namespace withy

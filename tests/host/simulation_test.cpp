@@ -1,0 +1,203 @@
+// Simulations that a host steps.
+#include "withy/host/simulation.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <thread>
+
+#include "withy/tests/host/arm.hpp"
+
+namespace withy {
+namespace {
+
+using host::Scene;
+using host::Simulation;
+using host::Snapshot;
+using test::library;
+using testing::HasSubstr;
+
+Scene busy_scene() { return Scene::parse(library(), test::busy_arm); }
+
+/// Steps with inputs that depend on nothing but the step: all outputs after each, one row behind the other.
+std::vector<double> drive(Simulation& simulation, int first, int last) {
+  std::vector<double> rows;
+  for (int k = first; k < last; ++k) {
+    simulation.set_input("torque", 0.2 * std::sin(0.7 * k));
+    if (k % 2 == 0) simulation.set_input("ramp", 3 + 0.5 * std::cos(k));
+    if (k == 4) simulation.set_input("jet", -0.3);
+    simulation.step(0.04 * (k + 1));
+    const auto now = simulation.output_values();
+    rows.insert(rows.end(), now.begin(), now.end());
+  }
+  return rows;
+}
+
+// x'' = τ/J with τ held, then a ramp: polynomials, whatever the steps.
+TEST(HostedSimulation, moves_as_its_inputs_say) {
+  for (const bool linear : {false, true}) {
+    Scene scene = Scene::parse(library(), R"(format: withy/1
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+loads: {command: {type: input, hinge: axle, hold: constant}}
+)");
+    if (linear) scene.set("loads.command.hold", "linear");
+    Simulation simulation(scene);
+    EXPECT_EQ(simulation.inputs().at(0).unit, "N m");
+    const double J = 0.2;
+    double x = 0, v = 0, before = 0;
+    for (const auto& [t, h, tau] :
+         std::vector<std::array<double, 3>>{{0.5, 0.5, 0.4}, {0.75, 0.25, 0.4}, {2, 1.25, -1}}) {
+      simulation.set_input("command", tau);
+      EXPECT_EQ(simulation.input("command"), tau);
+      simulation.step(t);
+      EXPECT_EQ(simulation.time(), t);
+      const double from = linear ? before : tau;
+      x += h * v + h * h / J * (from / 3 + tau / 6);
+      v += h / J * (from + tau) / 2;
+      before = tau;
+      EXPECT_NEAR(simulation.output("axle"), x, 1e-9);
+      EXPECT_NEAR(simulation.output("axle.rate"), v, 1e-9);
+      EXPECT_EQ(simulation.output("t"), t);
+    }
+  }
+}
+
+// Communication points change nothing but where steps end: the run of the scene is met within its tolerance.
+TEST(HostedSimulation, without_inputs_is_the_run_of_the_scene) {
+  const Scene scene = Scene::read(library(), WITHY_SOURCES "/scenes/two-link-slew.yaml");
+  const host::Result run = scene.run();
+  ASSERT_EQ(run.status, "completed") << run.message;
+  Simulation simulation(scene);
+  ASSERT_EQ(simulation.outputs().size(), run.columns.size());
+  for (std::size_t i = 0; i < run.columns.size(); ++i) {
+    EXPECT_EQ(simulation.outputs()[i].name, run.columns[i].name);
+    EXPECT_EQ(simulation.outputs()[i].unit, run.columns[i].unit);
+  }
+  const std::vector<double> t = run.column("t"), shoulder = run.column("shoulder"), tip = run.column("link2.tip.x");
+  for (std::size_t i = 1; i < t.size(); i += 7) {
+    simulation.step(t[i]);
+    EXPECT_NEAR(simulation.output("shoulder"), shoulder[i], 1e-5);
+    EXPECT_NEAR(simulation.output("link2.tip.x"), tip[i], 1e-5);
+  }
+}
+
+TEST(HostedSimulation, replays_from_a_snapshot_bit_by_bit) {
+  for (const char* integrator : {"dopri5", "{name: rk4, step: 0.007}", "rosenbrock-w"}) {
+    const Scene scene = busy_scene().set("integrator", integrator);
+    Simulation first(scene);
+    drive(first, 0, 6);
+    first.set_input("torque", 0.05);  // waiting when the snapshot is taken
+    const Snapshot middle = first.snapshot();
+    EXPECT_EQ(middle.time(), first.time());
+    first.step(0.25);
+    const std::vector<double> went_on = drive(first, 6, 20);
+    const auto again = [&](Simulation& simulation) {
+      EXPECT_EQ(simulation.input("torque"), 0.05);
+      simulation.step(0.25);
+      return drive(simulation, 6, 20);
+    };
+    first.restore(middle);
+    EXPECT_EQ(again(first), went_on) << integrator;
+    Simulation other(scene);
+    other.restore(Snapshot::of_numbers(middle.numbers()));
+    EXPECT_EQ(again(other), went_on) << integrator;
+  }
+}
+
+TEST(HostedSimulation, gives_the_same_bits_on_many_threads) {
+  const Scene scene = busy_scene();
+  Simulation alone(scene);
+  const std::vector<double> expected = drive(alone, 0, 20);
+  std::vector<std::vector<double>> got(8);
+  std::vector<std::thread> threads;
+  for (std::vector<double>& rows : got) {
+    threads.emplace_back([&] {
+      for (int times = 0; times < 3; ++times) {
+        Simulation simulation(Scene::parse(library(), test::busy_arm));
+        rows = drive(simulation, 0, 20);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::vector<double>& rows : got) EXPECT_EQ(rows, expected);
+}
+
+TEST(HostedSimulation, passes_events_or_halts_at_them) {
+  Simulation passing(busy_scene()), halting(busy_scene());
+  for (Simulation* s : {&passing, &halting}) s->set_input("torque", 0.2);
+  passing.step(1);
+  std::vector<std::string> names;
+  for (const host::Event& e : passing.events()) names.push_back(e.name);
+  ASSERT_THAT(names, testing::IsSupersetOf({"forth", "halt"}));
+  EXPECT_FALSE(halting.advance_to(1));
+  EXPECT_LT(halting.time(), 1);
+  EXPECT_EQ(halting.events().back().name, "halt");
+  EXPECT_NEAR(halting.output("axle"), 0.1, 1e-9);
+  halting.step(1);
+  EXPECT_NEAR(halting.output("axle"), passing.output("axle"), 1e-5);
+}
+
+TEST(HostedSimulation, that_cannot_go_on_says_why_and_may_go_back) {
+  Scene scene = Scene::read(library(), WITHY_SOURCES "/scenes/two-link-slew.yaml");
+  Simulation simulation(scene.set("loads.slew.time_scale", 1.2).formulation("consistent"));
+  simulation.step(0.01);
+  const Snapshot good = simulation.snapshot();
+  try {
+    simulation.step(3);
+    FAIL();
+  } catch (const host::SimulationStopped& e) {
+    EXPECT_EQ(e.status(), "singular");
+    EXPECT_THAT(e.what(), HasSubstr("The mass matrix of this formulation became singular"));
+    EXPECT_EQ(e.time(), simulation.time());
+    EXPECT_LT(e.time(), 3);
+  }
+  EXPECT_THROW(simulation.step(3), std::logic_error);
+  simulation.restore(good);
+  simulation.step(0.02);
+  EXPECT_EQ(simulation.time(), 0.02);
+}
+
+TEST(HostedSimulation, that_is_interrupted_goes_on) {
+  int asked = 0;
+  Simulation simulation(busy_scene(), [&] { return ++asked == 5; });
+  EXPECT_THROW(simulation.step(1), host::SimulationStopped);
+  EXPECT_LT(simulation.time(), 1);
+  simulation.step(1);
+  EXPECT_EQ(simulation.time(), 1);
+}
+
+TEST(HostedSimulation, refuses_bad_use_and_lives_on) {
+  Simulation simulation(busy_scene());
+  const auto text_of = [](auto&& act) -> std::string {
+    try {
+      act();
+    } catch (const std::exception& e) {
+      return e.what();
+    }
+    return {};
+  };
+  EXPECT_THAT(text_of([&] { simulation.set_input("torqe", 1); }), HasSubstr("did you mean 'torque'"));
+  EXPECT_THAT(text_of([&] { simulation.set_input("torque", std::nan("")); }), HasSubstr("need a finite number"));
+  EXPECT_THAT(text_of([&] { static_cast<void>(simulation.output("axel")); }), HasSubstr("did you mean 'axle'"));
+  EXPECT_THROW(static_cast<void>(simulation.output(1000)), std::out_of_range);
+  EXPECT_THROW(simulation.restore(Snapshot()), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(Snapshot::of_numbers(std::vector<double>{1, 2, 3})), std::invalid_argument);
+  Simulation pendulum(Scene::read(library(), WITHY_SOURCES "/scenes/pendulum.yaml"));
+  EXPECT_THAT(text_of([&] { simulation.restore(pendulum.snapshot()); }), HasSubstr("of another scene"));
+  simulation.step(0.1);
+  EXPECT_THAT(text_of([&] { simulation.step(0.05); }), HasSubstr("before the present one"));
+  EXPECT_THROW(simulation.step(std::nan("")), std::invalid_argument);
+  EXPECT_THROW(simulation.step(INFINITY), std::invalid_argument);
+  EXPECT_THAT(text_of([] { const Simulation automatic(busy_scene().formulation("auto")); }), HasSubstr("got 'auto'"));
+  Simulation fresh(busy_scene());
+  fresh.step(0.1);
+  simulation.step(0.2);
+  fresh.step(0.2);
+  EXPECT_EQ(std::vector<double>(simulation.output_values().begin(), simulation.output_values().end()),
+            std::vector<double>(fresh.output_values().begin(), fresh.output_values().end()));
+}
+
+}  // namespace
+}  // namespace withy
