@@ -57,14 +57,10 @@ Json stretches_json(const Certificate& c) {
 
 Json estimate_json(const Certificate& c) {
   if (!c.estimate) return {};
-  return {{"against", c.estimate->against},
-          {"hinges", c.estimate->distances.hinges},
-          {"tips", c.estimate->distances.tips},
-          {"deflections", c.estimate->distances.deflections},
-          {"moments", c.estimate->distances.moments},
-          {"forces", c.estimate->distances.forces},
-          {"until", c.estimate->distances.until},
-          {"cpu_seconds", c.estimate->cpu_seconds}};
+  return {{"against", c.estimate->against},           {"hinges", c.estimate->distances.hinges},
+          {"tips", c.estimate->distances.tips},       {"deflections", c.estimate->distances.deflections},
+          {"moments", c.estimate->distances.moments}, {"forces", c.estimate->distances.forces},
+          {"until", c.estimate->distances.until},     {"cpu_seconds", c.estimate->cpu_seconds}};
 }
 
 Json steps_json(const study::StepLimit& s) {

@@ -27,8 +27,10 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model) {
   }
   for (const auto* const lengths : {&e.distances.tips, &e.distances.deflections})
     for (const auto& [name, d] : *lengths) out += fmt::format("{}{} {:.2g} mm", out.empty() ? "" : ", ", name, 1e3 * d);
-  for (const auto& [name, d] : e.distances.moments) out += fmt::format("{}{} {:.2g} N m", out.empty() ? "" : ", ", name, d);
-  for (const auto& [name, d] : e.distances.forces) out += fmt::format("{}{} {:.2g} N", out.empty() ? "" : ", ", name, d);
+  for (const auto& [name, d] : e.distances.moments)
+    out += fmt::format("{}{} {:.2g} N m", out.empty() ? "" : ", ", name, d);
+  for (const auto& [name, d] : e.distances.forces)
+    out += fmt::format("{}{} {:.2g} N", out.empty() ? "" : ", ", name, d);
   if (out.empty()) return "no hinge moves and no body has a tip";
   out = fmt::format("against {}, estimated by a coarse run of both: {}", e.against, out);
   if (e.distances.until < e.end)

@@ -176,8 +176,8 @@ bool Search::model_holds(const Point& model) {
   run(point, {policy::clearly_inaccurate, policy::model_allowance * best_cost()});
   Probe& p = advice_.probes.back();
   if (!candidate && p.passed()) p.outcome = Probe::Outcome::no_candidate;
-  const double left = p.walk.end == Walk::End::reached ? policy::hardly_inaccurate - yardstick().own_use()
-                                                       : policy::clearly_inaccurate;
+  const double left =
+      p.walk.end == Walk::End::reached ? policy::hardly_inaccurate - yardstick().own_use() : policy::clearly_inaccurate;
   return !(p.outcome == Probe::Outcome::inaccurate && p.use > left);
 }
 
@@ -196,7 +196,8 @@ void Search::try_model(const Point& model) {
 /// Implicit steps pay where stability, not accuracy, limits explicit ones: there the loosest tolerance is exact enough
 /// already, or costs too much. `imex` costs little more than an explicit step and is always tried.
 bool Search::worth_trying(const std::string& integrator, const Point& model) const {
-  const auto limit = make_integrator(evaluator_.registry(), integrator, candidates_.tolerances.front())->stability_limit();
+  const auto limit =
+      make_integrator(evaluator_.registry(), integrator, candidates_.tolerances.front())->stability_limit();
   if (integrator == "imex" || (limit && std::isfinite(*limit))) return true;
   bool tried = false;
   for (const Probe& p : advice_.probes) {

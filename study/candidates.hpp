@@ -17,8 +17,9 @@ struct Candidates : Axes {
   std::vector<int> more_modes;  ///< tried where none of `modes` will do; empty where the user says which
 };
 
-/// What is chosen from where nothing else is asked; no modes: 1 to 4, and to 8 where these will not do; no formulations: those that take part in studies; no integrators:
-/// `dopri5`, `dop853`, and `imex`, `radau` and `cvode` where they are installed.
+/// What is chosen from where nothing else is asked; no modes: 1 to 4, and to 8 where these will not do; no
+/// formulations: those that take part in studies; no integrators: `dopri5`, `dop853`, and `imex`, `radau` and `cvode`
+/// where they are installed.
 Axes usual_axes();
 
 /// The axes without what means nothing for the scene, families of bending added where they mean the same beams.

@@ -90,8 +90,7 @@ Outputs::Outputs(const Model& model, const std::vector<std::string>& names) : le
   const std::vector<Tip> all_tips = tips(model);
   if (names.empty()) add_all(model, all_tips, false);
   for (const std::string& name : names) add_named(model, all_tips, name);
-  if (outputs_.empty())
-    throw InputError("no hinge of the scene moves and no body has a tip: nothing to measure");
+  if (outputs_.empty()) throw InputError("no hinge of the scene moves and no body has a tip: nothing to measure");
 }
 
 Outputs Outputs::all(const Model& model) {

@@ -18,12 +18,12 @@ namespace withy::study {
 
 /// What an output is a distance of.
 enum class Measure {
-  angle,      ///< of a hinge [rad]; of orientations the angle between them
-  slide,      ///< of a hinge [m]
-  place,      ///< of a tip, in the world [m]
-  deflection, ///< of a tip, in the frame of its body's root [m]
-  moment,     ///< that a motion needs on a speed it prescribes [N m]
-  force       ///< the same [N]
+  angle,       ///< of a hinge [rad]; of orientations the angle between them
+  slide,       ///< of a hinge [m]
+  place,       ///< of a tip, in the world [m]
+  deflection,  ///< of a tip, in the frame of its body's root [m]
+  moment,      ///< that a motion needs on a speed it prescribes [N m]
+  force        ///< the same [N]
 };
 inline constexpr std::size_t measures = 6;
 /// One number for each measure.
@@ -119,7 +119,7 @@ struct NamedDistances {
   std::map<std::string, double> deflections;  ///< of tips, in the frame of their body's root [m]
   std::map<std::string, double> moments;      ///< that motions need [N m]
   std::map<std::string, double> forces;       ///< the same [N]
-  double until = 0;                    ///< time [s] of the last output both have
+  double until = 0;                           ///< time [s] of the last output both have
   [[nodiscard]] std::map<std::string, double>& of(Measure measure);
   [[nodiscard]] double greatest_hinge() const;
   [[nodiscard]] double greatest_tip() const;

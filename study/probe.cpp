@@ -70,11 +70,7 @@ const char* outcome_name(Probe::Outcome outcome) {
 }
 
 Evaluator::Evaluator(const Prepared& base, Registry& registry, const Outputs& outputs, Control control)
-    : base_(base),
-      registry_(registry),
-      outputs_(outputs),
-      control_(std::move(control)),
-      began_(thread_cpu_seconds()) {}
+    : base_(base), registry_(registry), outputs_(outputs), control_(std::move(control)), began_(thread_cpu_seconds()) {}
 
 double Evaluator::spent() const { return thread_cpu_seconds() - began_; }
 

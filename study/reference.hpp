@@ -30,7 +30,8 @@ struct Reference {
 /// Where a search begins and when it ends.
 struct ReferenceGoal {
   Point first;  ///< the coarsest; its formulation means nothing
-  /// Finer ones that are looked at: a mode more where the first has any, the tolerance times `finer` down to `tightest`.
+  /// Finer ones that are looked at: a mode more where the first has any, the tolerance times `finer` down to
+  /// `tightest`.
   int levels = 1;
   double finer = 0.1;
   double tightest = 1e-9;

@@ -201,12 +201,12 @@ std::string advice_text(const AdviceReport& report) {
   for (const study::Probe& p : a.above)
     lines.add("next up",
               fmt::format("{}: {} off, {}", p.point.text(), use_text(accuracy, p.use), milliseconds(p.cost)));
-  lines.add("measured", fmt::format("{} probes, {:.2g} s of CPU time of the {:.2g} allowed, against {}",
-                                    a.probes.size(), a.cpu_seconds, a.limit_seconds,
-                                    a.yardstick->reference.point.text()));
+  lines.add("measured",
+            fmt::format("{} probes, {:.2g} s of CPU time of the {:.2g} allowed, against {}", a.probes.size(),
+                        a.cpu_seconds, a.limit_seconds, a.yardstick->reference.point.text()));
   if (a.models_tried < a.models)
-    lines.add("measured", fmt::format("{} of {} models: the time was over, there may be a cheaper one", a.models_tried,
-                                      a.models));
+    lines.add("measured",
+              fmt::format("{} of {} models: the time was over, there may be a cheaper one", a.models_tried, a.models));
   return fmt::format("{}\n\n{}\nin the scene:\n\n{}", question_text(report.question), lines.str(),
                      scene_lines(report.changes));
 }

@@ -77,9 +77,8 @@ std::function<ExitStatus()> add_advise(CLI::App& c) {
   const auto axis = [&](const char* name, auto& values, const char* type, const char* meaning) {
     c.add_option(name, values, meaning)->type_name(type)->delimiter(',');
   };
-  c.add_option(
-       "--accuracy", a.accuracy,
-       "Greatest error of the outputs: a share of each one's own range, a length, an angle, or several")
+  c.add_option("--accuracy", a.accuracy,
+               "Greatest error of the outputs: a share of each one's own range, a length, an angle, or several")
       ->type_name("A,...")
       ->capture_default_str();
   axis("--outputs,--output", a.outputs, "NAME,...",
@@ -90,7 +89,8 @@ std::function<ExitStatus()> add_advise(CLI::App& c) {
   axis("--families,--family", a.axes.families, "ID,...",
        "Mode families of bending to choose from; default: the scene's, and orthogonal-polynomials where they are the "
        "same beams");
-  axis("--modes", a.axes.modes, "N,...", "Modes of each family of a beam to choose from; default: 1,2,3,4 and, where these will not do, to 8");
+  axis("--modes", a.axes.modes, "N,...",
+       "Modes of each family of a beam to choose from; default: 1,2,3,4 and, where these will not do, to 8");
   axis("--integrators", a.axes.integrators, "ID,...",
        "Integrators to choose from, with a relative tolerance; default: dopri5,dop853 and, where installed, "
        "imex,radau,cvode");

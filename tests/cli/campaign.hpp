@@ -18,8 +18,9 @@
 
 namespace withy::test {
 
-/// Which seeds: WITHY_TEST_SEEDS=N is 1 to N, not given: 1 to `usual`; WITHY_TEST_AFTER=K begins after K. WITHY_TEST_FILE=F keeps a line of JSON a seed in
-/// F; seeds that are there are not measured again. Remove F when the program has changed.
+/// Which seeds: WITHY_TEST_SEEDS=N is 1 to N, not given: 1 to `usual`; WITHY_TEST_AFTER=K begins after K.
+/// WITHY_TEST_FILE=F keeps a line of JSON a seed in F; seeds that are there are not measured again. Remove F when the
+/// program has changed.
 class Campaign {
  public:
   /// \param name what a line of the file belongs to

@@ -44,9 +44,7 @@ TEST(Accuracy, OfOutputsThatStandStillIsNotZero) {
   EXPECT_EQ(relative_error(outputs.none(), outputs.none()), 0);
 }
 
-Prepared blade() {
-  return prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spin-up.yaml"), plugins());
-}
+Prepared blade() { return prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spin-up.yaml"), plugins()); }
 
 TEST(Accuracy, IsOfEachOutputsOwnRange) {
   const Prepared scene = blade();
