@@ -12,10 +12,12 @@
 # with one eigenvalue problem instantiates all that this calls: core/simulation/diagnosis.cpp takes 10 s instead of 24 s.
 # That asks for arguments that are matrices: a decomposition of an expression is instantiated anew.
 #
-# All but the core is compiled twelve sources at a time: a room's sources instantiate the same, apps took 292 s of CPU
-# time and take 150 s, tests/cli 231 s and 76 s. The core's share too little: core/analysis takes longer as one source.
-# Names in unnamed namespaces must then differ within a room. Everything is optimized alike: -O1 would take 2 to 7 %
-# off the tests' compilation.
+# All but the core is compiled twelve sources at a time, programs as many as a room has: a room's sources instantiate
+# the same, apps took 292 s of CPU time and take 150 s, tests/cli 231 s and 76 s. The core's share too little:
+# core/analysis takes longer as one source. Names in unnamed namespaces must then differ within a room.
+#
+# Programs and tests hold no loop that time is spent in: a release build compiles them at -O1. Precompiled headers keep
+# the level that they were compiled at and impose it on all who use them, whatever their own flags say: a group has one.
 #
 # The sweeps are compiled without precompiled headers, which two sets of flags would need twice; benchmarks and the zoo
 # file by file. A build with a cache of objects (ccache, which passes by sources with precompiled headers) goes without:
@@ -45,12 +47,18 @@ if(precompile)
   target_compile_features(withy-eigen-instances PRIVATE cxx_std_20)
 endif()
 
-# withy_unite(TARGET): compiles its sources twelve at a time.
+# withy_unite(TARGET [COUNT]): compiles its sources twelve (COUNT) at a time.
 function(withy_unite target)
   if(precompile)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    set(count 12)
+    if(ARGC GREATER 1)
+      set(count ${ARGV1})
+    endif()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${count})
   endif()
 endfunction()
+
+set(optimized_little $<$<CONFIG:Release>:-O1>)
 
 # withy_precompile(GROUP TARGET...): these targets use the headers of the group. The core makes them for
 # itself; the other groups share those of an empty library with the same flags.
@@ -65,8 +73,13 @@ function(withy_precompile group)
     else()
       target_precompile_headers(${target} REUSE_FROM withy-precompiled-${group})
     endif()
-    if(NOT group STREQUAL "core")
+    if(group STREQUAL "programs")
+      withy_unite(${target} 30)
+    elseif(NOT group STREQUAL "core")
       withy_unite(${target})
+    endif()
+    if(group MATCHES "programs|tests")
+      target_compile_options(${target} PRIVATE ${optimized_little})
     endif()
     target_link_libraries(${target} PRIVATE withy-eigen-instances)
   endforeach()
@@ -87,6 +100,7 @@ endfunction()
 withy_precompiled_group(plugins engine.hpp)
 withy_precompiled_group(programs programs.hpp fmt::fmt nlohmann_json::nlohmann_json)
 if(TARGET withy-precompiled-programs)
+  target_compile_options(withy-precompiled-programs PRIVATE ${optimized_little})
   # Libraries of hosts show their names: types of precompiled headers must not hide theirs.
   set_target_properties(withy-precompiled-programs PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
 endif()
@@ -96,5 +110,5 @@ endif()
 if(TARGET withy-precompiled-tests)
   # As programs are, not libraries: the headers are those of one kind of code.
   set_target_properties(withy-precompiled-tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-  target_compile_options(withy-precompiled-tests PRIVATE -fPIE)
+  target_compile_options(withy-precompiled-tests PRIVATE -fPIE ${optimized_little})
 endif()

@@ -10,10 +10,10 @@
 namespace withy::study {
 namespace {
 
-class Search {
+class ReferenceSearch {
  public:
-  Search(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry, const Outputs& outputs,
-         const std::function<bool(const Walk&)>& afford, const Control& control)
+  ReferenceSearch(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
+                  const Outputs& outputs, const std::function<bool(const Walk&)>& afford, const Control& control)
       : model_at_(model_at), registry_(registry), outputs_(outputs), afford_(afford), control_(control) {}
 
   /// The coarsest level, in the richest formulation that comes to the end.
@@ -78,7 +78,7 @@ std::vector<std::string> reference_formulations(Registry& registry) {
 
 ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
                               const Outputs& outputs, const ReferenceGoal& goal, const Control& control) {
-  Search search(model_at, registry, outputs, goal.afford, control);
+  ReferenceSearch search(model_at, registry, outputs, goal.afford, control);
   std::optional<Reference> coarse = search.begin(goal.first);
   if (coarse) {
     search.found.trouble.clear();

@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/advice_text.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/results/advice_text.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/scene_edit.hpp"

@@ -6,12 +6,12 @@
 
 #include "withy/apps/withy/configuration.hpp"
 #include "withy/apps/withy/output.hpp"
-#include "withy/apps/withy/text_table.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/modes_files.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/text_table.hpp"
 
 namespace withy::app {
 namespace {

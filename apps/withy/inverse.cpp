@@ -7,11 +7,11 @@
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
-#include "withy/apps/withy/text_table.hpp"
 #include "withy/results/inverse_files.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/recorded_run.hpp"
+#include "withy/results/text_table.hpp"
 #include "withy/study/recorded_motion.hpp"
 
 namespace withy::app {

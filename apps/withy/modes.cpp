@@ -7,13 +7,13 @@
 #include <optional>
 
 #include "withy/apps/withy/configuration.hpp"
-#include "withy/apps/withy/modes_text.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/progress.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/variation.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/modes_files.hpp"
+#include "withy/results/modes_text.hpp"
 #include "withy/results/output_file.hpp"
 
 namespace withy::app {

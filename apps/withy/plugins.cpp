@@ -10,7 +10,6 @@
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
-#include "withy/apps/withy/text_table.hpp"
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/plugin/load.hpp"
@@ -18,6 +17,7 @@
 #include "withy/core/plugin/motion.hpp"
 #include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/text_table.hpp"
 
 namespace withy::app {
 namespace {

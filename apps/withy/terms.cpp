@@ -7,10 +7,10 @@
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
-#include "withy/apps/withy/text_table.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/terms_files.hpp"
+#include "withy/results/text_table.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy::app {

@@ -11,11 +11,11 @@
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
-#include "withy/apps/withy/text_table.hpp"
 #include "withy/apps/withy/trade_axes.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/text_table.hpp"
 #include "withy/results/trade_files.hpp"
 
 namespace withy::app {

@@ -119,7 +119,8 @@ FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, co
   const auto m = static_cast<Eigen::Index>(free.size());
   const Eigen::VectorXd masses = t.mass.diagonal()(free).cwiseAbs();
   const Eigen::VectorXd units = balancing_units(A, masses);
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(units.asDiagonal() * A * units.cwiseInverse().asDiagonal(), false);
+  const Eigen::MatrixXd balanced = units.asDiagonal() * A * units.cwiseInverse().asDiagonal();
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(balanced, false);
   if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
   for (const Complex& pole : solver.eigenvalues()) {
     if (pole.imag() >= 0 && std::abs(pole) > std::abs(result.value)) result.value = pole;

@@ -241,7 +241,8 @@ std::vector<CharacteristicMode> constant_modes(const Eigen::MatrixXd& A, const E
   const Eigen::Index m = masses.size();
   if (m == 0) return {};
   const Eigen::VectorXd units = balancing_units(A, masses);
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(units.asDiagonal() * A * units.cwiseInverse().asDiagonal());
+  const Eigen::MatrixXd balanced = units.asDiagonal() * A * units.cwiseInverse().asDiagonal();
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(balanced);
   if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
   std::vector<CharacteristicMode> modes;
   for (Eigen::Index i = 0; i < 2 * m; ++i) {

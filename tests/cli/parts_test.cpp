@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "withy/apps/withy/allocations.hpp"
-#include "withy/apps/withy/text_table.hpp"
 #include "withy/results/svg_plot.hpp"
+#include "withy/results/text_table.hpp"
 
 namespace withy::app {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "withy/results/advice_json.hpp"
 
-namespace withy::app {
+namespace withy {
 
 /// Advice with what was chosen from and what the choice leaves out.
 struct AdviceReport {
@@ -23,4 +23,4 @@ std::string question_text(const AdviceQuestion& question);
 /// Where there is no choice: why, and what was measured.
 std::string no_advice_text(const study::Advice& advice, const AdviceQuestion& question);
 
-}  // namespace withy::app
+}  // namespace withy

@@ -1,8 +1,8 @@
-#include "withy/apps/withy/text_table.hpp"
+#include "withy/results/text_table.hpp"
 
 #include <algorithm>
 
-namespace withy::app {
+namespace withy {
 namespace {
 
 /// Characters, not bytes: those of UTF-8 that continue a character are not counted.
@@ -49,4 +49,4 @@ std::string TextTable::str() const {
   return out;
 }
 
-}  // namespace withy::app
+}  // namespace withy

@@ -6,7 +6,7 @@
 
 #include "withy/study/modes.hpp"
 
-namespace withy::app {
+namespace withy {
 
 /// Frequencies, damping, growth and shapes of one configuration.
 std::string modes_text(const study::ModesOf& run, std::size_t count);
@@ -17,4 +17,4 @@ std::string turning_text(const study::TurningModes& turn, const std::string& lab
 /// A row a value, a column a branch; unstable ones marked.
 std::string sweep_text(const study::ModesOf& run, const std::string& label, std::size_t count);
 
-}  // namespace withy::app
+}  // namespace withy

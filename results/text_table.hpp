@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace withy::app {
+namespace withy {
 
 class TextTable {
  public:
@@ -24,4 +24,4 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-}  // namespace withy::app
+}  // namespace withy

@@ -1,4 +1,4 @@
-#include "withy/apps/withy/advice_text.hpp"
+#include "withy/results/advice_text.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "withy/results/certificate_text.hpp"
 #include "withy/results/scene_edit.hpp"
 
-namespace withy::app {
+namespace withy {
 namespace {
 
 std::string point_modes(const study::Point& p) {
@@ -211,4 +211,4 @@ std::string advice_text(const AdviceReport& report) {
                      scene_lines(report.changes));
 }
 
-}  // namespace withy::app
+}  // namespace withy

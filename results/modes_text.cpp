@@ -1,4 +1,4 @@
-#include "withy/apps/withy/modes_text.hpp"
+#include "withy/results/modes_text.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "withy/apps/withy/text_table.hpp"
+#include "withy/results/text_table.hpp"
 
-namespace withy::app {
+namespace withy {
 namespace {
 
 double hertz(const Mode& m) { return m.frequency() / (2 * std::numbers::pi); }
@@ -155,4 +155,4 @@ std::string turning_text(const study::TurningModes& turn, const std::string& lab
   return text;
 }
 
-}  // namespace withy::app
+}  // namespace withy

@@ -1,0 +1,76 @@
+#include "withy/fem/import.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace withy::fem {
+namespace {
+
+/// "TIP" or "17" names itself; "tip=17,18,19" gives nodes a name.
+Interface interface_of(const Mesh& mesh, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  Interface interface;
+  interface.name = text.substr(0, equals);
+  interface.nodes = nodes_of(mesh, equals == std::string::npos ? text : text.substr(equals + 1));
+  if (interface.name.find_first_of(",. \t=") != std::string::npos || interface.name.empty())
+    throw InputError(fmt::format("got '{}'; nodes without a set need a name, as tip=17,18,19", text));
+  return interface;
+}
+
+struct Files {
+  std::filesystem::path mesh, stiffness, mass;
+  bool calculix;
+};
+
+/// The files of a job of CalculiX, or those that the command line names.
+Files files_of(const ImportJob& a) {
+  const std::filesystem::path job = a.job;
+  const auto with = [&](const char* extension) { return std::filesystem::path(a.job + extension); };
+  Files f{a.mesh.empty() ? with(".inp") : std::filesystem::path(a.mesh), a.stiffness, a.mass_matrix, false};
+  if (f.stiffness.empty() != f.mass.empty()) throw InputError("need both --stiffness and --mass, or neither");
+  f.calculix = f.stiffness.empty();
+  if (f.calculix) {
+    f.stiffness = with(".sti");
+    f.mass = with(".mas");
+  }
+  return f;
+}
+
+Matrices matrices_of(const ImportJob& a, const Files& f, const Mesh& mesh) {
+  if (!f.calculix) return combined(read_abaqus(f.stiffness, mesh), read_abaqus(f.mass, mesh), mesh);
+  const std::filesystem::path freedoms = a.job + ".dof";
+  return combined(read_calculix(f.stiffness, freedoms), read_calculix(f.mass, freedoms), mesh);
+}
+
+SecondOrder second_order_of(const Mesh& mesh, const Matrices& matrices, const ReductionOptions& options,
+                            Reduction& body) {
+  try {
+    return {add_second_order(mesh, matrices, options, body), ""};
+  } catch (const InputError& e) {
+    return {0, e.what()};
+  }
+}
+
+}  // namespace
+
+Imported import(const ImportJob& job) {
+  const Files files = files_of(job);
+  const Mesh mesh = read_mesh(files.mesh);
+  const Matrices matrices = matrices_of(job, files, mesh);
+  ReductionOptions options;
+  options.root = nodes_of(mesh, job.root);
+  options.modes = job.modes;
+  options.highest = job.highest;
+  for (const std::string& text : job.interfaces) options.interfaces.push_back(interface_of(mesh, text));
+  for (const std::string& text : job.stations) options.stations.push_back(interface_of(mesh, text));
+  Imported result;
+  result.body = reduce(matrices, options);
+  result.second_order = second_order_of(mesh, matrices, options, result.body);
+  result.data = sid_of(result.body);
+  static_cast<void>(body_of(result.data, {}, result.as_body));
+  result.summary = summary_of(matrices, result.body, result.data);
+  return result;
+}
+
+}  // namespace withy::fem

@@ -1,0 +1,99 @@
+#include "withy/results/comparison_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "withy/core/model/columns.hpp"
+#include "withy/results/certificate_json.hpp"
+#include "withy/results/text_table.hpp"
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+TextTable table_for(const Model& model, const RunSummary& summary, const std::string& label) {
+  std::vector<std::string> head = {"<formulation"};
+  if (!label.empty()) head.push_back(label);
+  head.push_back("<outcome");
+  for (const HingeNode& h : model.hinges()) {
+    const auto columns = coordinate_columns(h);
+    if (columns.size() != 1) continue;
+    head.push_back(fmt::format("{}\n[{}]", h.name, columns[0].unit == "rad" ? "deg" : columns[0].unit));
+  }
+  for (const auto& [body, peak] : summary.peak_deflection) head.push_back("peak " + body + "\n[mm]");
+  for (const char* text : {"evaluations", "CPU\n[ms]", "hinge\nerror", "tip error\n[mm]"}) head.emplace_back(text);
+  return TextTable(head);
+}
+
+void add_row(TextTable& table, const ComparisonAt& group, const study::ComparedRun& run, const std::string& label) {
+  const Model& model = run.prepared.model();
+  const RunSummary& s = run.summary;
+  std::vector<std::string> row = {run.formulation()};
+  if (!label.empty()) row.push_back(group.value);
+  row.push_back(study::outcome_text(s));
+  const bool completed = s.status == RunStatus::completed;
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const auto columns = coordinate_columns(model.hinges()[h]);
+    if (columns.size() != 1) continue;
+    const double x = s.final.y[model.layout().hinges[h].position];
+    const double shown = columns[0].unit == "rad" ? x * 180 / std::numbers::pi : x;
+    row.push_back(completed ? fmt::format("{:.4f}", shown) : "-");
+  }
+  for (const auto& [body, d] : s.peak_deflection)
+    row.push_back(completed ? fmt::format("{:.3f}", 1e3 * std::hypot(d[1], d[2])) : "-");
+  row.push_back(std::to_string(s.steps.evaluations));
+  row.push_back(fmt::format("{:.2f}", 1e3 * s.cpu_seconds));
+  const study::Comparison& c = group.comparison;
+  if (c.has_reference() && &run != &c.runs[c.reference]) {
+    const study::NamedDistances d = c.distances(run);
+    row.push_back(fmt::format("{:.2g}", d.greatest_hinge()));
+    row.push_back(fmt::format("{:.3g}", 1e3 * d.greatest_tip()));
+  } else {
+    row.insert(row.end(), 2, "-");
+  }
+  table.add(std::move(row));
+}
+
+}  // namespace
+
+Json comparison_json(const ComparisonAt& group, Registry& registry, bool varied) {
+  Json runs = Json::array();
+  for (const study::ComparedRun& run : group.comparison.runs) {
+    Json j;
+    if (varied) j["value"] = group.value;
+    j.update(run_json(run.prepared.scene, run.summary,
+                      study::certify(run.prepared, {&run.summary, nullptr, nullptr, {}}, registry)));
+    if (group.comparison.has_reference()) {
+      const study::NamedDistances d = group.comparison.distances(run);
+      j["distance"] = {{"hinges", d.hinges}, {"tips", d.tips}, {"deflections", d.deflections}, {"moments", d.moments}, {"forces", d.forces}, {"until", d.until}};
+    }
+    runs.push_back(std::move(j));
+  }
+  return runs;
+}
+
+std::string comparison_text(const std::vector<ComparisonAt>& groups, const std::string& reference,
+                            const std::string& label) {
+  const study::ComparedRun& first = groups.front().comparison.runs.front();
+  TextTable table = table_for(first.prepared.model(), first.summary, label);
+  std::string reasons;
+  for (const ComparisonAt& group : groups) {
+    for (std::size_t i = 0; i < group.comparison.listed; ++i) {
+      const study::ComparedRun& run = group.comparison.runs[i];
+      add_row(table, group, run, label);
+      if (run.summary.status == RunStatus::completed) continue;
+      reasons += fmt::format("\n{}{}: {}\n", run.formulation(), label.empty() ? "" : " at " + label + " " + group.value,
+                             run.summary.message);
+    }
+  }
+  return fmt::format(
+      "{} ({})\n\n{}\nErrors are greatest distances from {}, in rad or m of hinges and mm of tips, "
+      "while both ran.\n{}",
+      first.prepared.title(), first.prepared.scene.integrator_name, table.str(), reference, reasons);
+}
+
+}  // namespace withy

@@ -1,0 +1,26 @@
+/// \file
+/// A comparison of formulations as JSON and in words.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "withy/study/comparison.hpp"
+
+namespace withy {
+
+/// A comparison at one value of what is gone over.
+struct ComparisonAt {
+  std::string value;  ///< empty where none is gone over
+  study::Comparison comparison;
+};
+
+/// The runs, as run.json has them, each with its greatest distances from the reference. \param varied write the value
+nlohmann::ordered_json comparison_json(const ComparisonAt& group, Registry& registry, bool varied);
+/// A row a run: outcome, hinges at the end, peaks, cost, greatest errors; below, why runs stopped.
+/// \param label of what is gone over; may be empty
+std::string comparison_text(const std::vector<ComparisonAt>& groups, const std::string& reference,
+                            const std::string& label);
+
+}  // namespace withy

@@ -1,0 +1,257 @@
+#include "withy/results/inspection.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "withy/core/simulation/accuracy.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+#include "withy/results/json_text.hpp"
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What the scene says of one of its bodies, hinges or loads under `key`; empty where it says nothing.
+std::string said(const Scene& scene, const char* group, const std::string& name, const char* key) {
+  const Value* const all = scene.source.find(group);
+  const Value* const one = all != nullptr ? all->find(name) : nullptr;
+  const Value* const text = one != nullptr ? one->find(key) : nullptr;
+  return text != nullptr ? text->text() : std::string();
+}
+
+/// Plugin id of a body, hinge or load: "beam".
+std::string type_of(const Scene& scene, const char* group, const std::string& name) {
+  return said(scene, group, name, "type");
+}
+
+/// The name that the scene has for a body: the whole's for a segment.
+const std::string& scene_name(const BodyNode& body) { return body.segment ? body.segment->whole : body.name; }
+
+double mass_of(const Body& body) {
+  double mass = 0;
+  for (const Particle& p : body.shape().particles) mass += p.mass;
+  return mass;
+}
+
+/// Where a hinge is fixed on its parent: "world", "link1.tip". A weld between segments names the segment.
+std::string parent_of(const Model& model, const HingeNode& hinge) {
+  if (hinge.parent < 0) return "world";
+  const BodyNode& parent = model.bodies()[static_cast<std::size_t>(hinge.parent)];
+  const BodyNode& child = model.bodies()[static_cast<std::size_t>(hinge.child)];
+  const bool inside = parent.segment && child.segment && parent.segment->whole == child.segment->whole;
+  return (inside ? parent.name : scene_name(parent)) + '.' +
+         parent.frames[static_cast<std::size_t>(hinge.parent_frame)].name;
+}
+
+Json bodies_json(const Scene& scene) {
+  const Model& model = *scene.model;
+  Json bodies = Json::array();
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const BodyNode& body = model.bodies()[b];
+    const HingeNode& hinge = model.hinges()[b];
+    const std::string own = said(scene, "bodies", scene_name(body), "formulation");
+    // The welds between segments are not in the scene.
+    const std::string hinge_type = type_of(scene, "hinges", hinge.name);
+    bodies.push_back({{"name", body.name},
+                      {"type", type_of(scene, "bodies", scene_name(body))},
+                      {"mass", mass_of(*body.body)},
+                      {"modes", body.body->shape().mode_names},
+                      {"remarks", body.body->remarks()},
+                      {"formulation", own.empty() ? scene.formulation_name : own},
+                      {"hinge",
+                       {{"name", hinge.name},
+                        {"type", hinge_type.empty() ? "weld" : hinge_type},
+                        {"parent", parent_of(model, hinge)},
+                        {"child_frame", body.frames[static_cast<std::size_t>(hinge.child_frame)].name},
+                        {"speeds", hinge.hinge->speeds()}}}});
+  }
+  return bodies;
+}
+
+/// Directions along which less than this of the coordinates' own inertia is left are shown.
+constexpr double nearly_massless = 1e-2;
+
+/// Null where there is no matrix, or a larger one than runs look at.
+Json mass_matrix_json(const study::Prepared& prepared, const State& state) {
+  const std::size_t size = prepared.model().layout().speeds;
+  if (size == 0 || size > largest_examined) return {};
+  const DenseSystem system = prepared.equations->system(state.time, state.y);
+  const Conditioning c = conditioning(system);
+  const AttainableAccuracy a = attainable_accuracy(system);
+  Json massless = Json::array();
+  for (const MasslessDirection& d : massless_directions(prepared.model(), system, nearly_massless))
+    massless.push_back({{"made_up_of", d.owners}, {"inertia_left", d.share}, {"frequency", d.frequency}});
+  const std::optional<Removal> removal =
+      massless.empty() ? std::optional<Removal>() : best_removal(prepared.model(), system);
+  return {{"condition", c.condition},
+          {"condition_times_epsilon", c.condition * std::numeric_limits<double>::epsilon()},
+          {"scaled_condition", a.condition},
+          {"attainable_accuracy", a.accuracy},
+          {"determinant_sign", c.determinant_sign},
+          {"smallest_eigenvalue", c.smallest_eigenvalue},
+          {"nearly_massless", std::move(massless)},
+          {"without_mode", removal ? Json{{"mode", removal->mode}, {"scaled_condition", removal->condition}} : Json()}};
+}
+
+}  // namespace
+
+Json inspection_json(const study::Prepared& prepared, const State& state, const std::string& meaning,
+                     const std::vector<LoadedPlugin>& plugins) {
+  const Scene& scene = prepared.scene;
+  Json j;
+  j["scene"] = scene.file;
+  j["name"] = scene.name;
+  j["formulation"] = {{"name", scene.formulation_name}, {"meaning", meaning}};
+  j["integrator"] = value_json(scene.source.at("integrator"));
+  j["bodies"] = bodies_json(scene);
+  j["loads"] = Json::array();
+  for (const LoadNode& load : prepared.model().loads())
+    j["loads"].push_back({{"name", load.name}, {"type", type_of(scene, "loads", load.name)}});
+  j["motions"] = Json::array();
+  for (const MotionNode& motion : prepared.model().motions())
+    j["motions"].push_back({{"name", motion.name},
+                            {"type", type_of(scene, "motions", motion.name)},
+                            {"hinge", prepared.model().hinges()[static_cast<std::size_t>(motion.hinge)].name}});
+  j["coordinates"] = prepared.model().layout().speed_names;
+  j["compiled"] = prepared.equations->savings();
+  j["mass_matrix"] = mass_matrix_json(prepared, state);
+  j["plugins"] = Json::array();
+  for (const LoadedPlugin& p : plugins) j["plugins"].push_back({{"name", p.name}, {"file", p.file}});
+  return j;
+}
+
+namespace {
+
+/// What a line of the tree stands for: a body, or all segments of one that was cut.
+struct Branch {
+  int held = 0;  ///< the body that the scene's hinge holds
+  std::size_t segments = 1;
+  double mass = 0;
+  std::size_t modes = 0;
+};
+
+/// Branches by the index of the body held, and of which branch each body is part.
+std::map<int, Branch> branches(const Model& model, std::vector<int>& branch_of) {
+  std::map<int, Branch> all;
+  branch_of.resize(model.bodies().size());
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const BodyNode& body = model.bodies()[b];
+    // Parents come first: the first segment seen is the one that the others hang on.
+    int held = static_cast<int>(b);
+    for (const int other : body.segment ? model.segments(body.segment->whole) : std::vector<int>{})
+      held = std::min(held, other);
+    branch_of[b] = held;
+    Branch& branch = all[held];
+    branch.held = held;
+    branch.segments = body.segment ? body.segment->count : 1;
+    branch.mass += mass_of(*body.body);
+    branch.modes += body.body->shape().mode_names.size();
+  }
+  return all;
+}
+
+/// The tree without recursion: chains may be long.
+std::string tree_text(const Scene& scene) {
+  const Model& model = *scene.model;
+  std::vector<int> branch_of;
+  const std::map<int, Branch> all = branches(model, branch_of);
+  std::map<int, std::vector<int>> children;
+  for (const auto& [held, branch] : all) {
+    const int parent = model.hinges()[static_cast<std::size_t>(held)].parent;
+    children[parent < 0 ? -1 : branch_of[static_cast<std::size_t>(parent)]].push_back(held);
+  }
+  struct Entry {
+    int body;
+    std::size_t level;
+    std::string indent;
+    bool last;
+  };
+  // Deeper levels are numbered instead of indented: a line is a line, however long the chain.
+  constexpr std::size_t most_indented = 16;
+  std::vector<Entry> open;
+  const auto push_children = [&](int parent, std::size_t level, const std::string& indent) {
+    const auto& below = children[parent];
+    for (std::size_t i = below.size(); i-- > 0;) open.push_back({below[i], level, indent, i + 1 == below.size()});
+  };
+  std::string out = "world\n";
+  push_children(-1, 1, "");
+  while (!open.empty()) {
+    const Entry e = open.back();
+    open.pop_back();
+    const Branch& branch = all.at(e.body);
+    const BodyNode& body = model.bodies()[static_cast<std::size_t>(e.body)];
+    const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(e.body)];
+    const std::string own = said(scene, "bodies", scene_name(body), "formulation");
+    out += fmt::format("{}{} {}{}: {}{}, {:.6g} kg{}   [{}: {} at {}{}]\n", e.indent, e.last ? "└─" : "├─",
+                       e.level > most_indented ? fmt::format("(level {}) ", e.level) : "", scene_name(body),
+                       type_of(scene, "bodies", scene_name(body)),
+                       branch.segments > 1 ? fmt::format(" in {} segments", branch.segments) : "", branch.mass,
+                       branch.modes > 0 ? fmt::format(", {} mode{}", branch.modes, branch.modes > 1 ? "s" : "") : "",
+                       hinge.name, type_of(scene, "hinges", hinge.name), parent_of(model, hinge),
+                       own.empty() ? "" : ", formulation " + own);
+    push_children(e.body, e.level + 1, e.level < most_indented ? e.indent + (e.last ? "   " : "│  ") : e.indent);
+  }
+  return out;
+}
+
+/// "dopri5, rtol 1e-06, atol 1e-09".
+std::string integrator_text(const Json& integrator) {
+  std::string out;
+  for (const auto& [key, value] : integrator.items()) {
+    const std::string text = plain_text(value);
+    out += key == "name" ? text : ", " + key + ' ' + text;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string inspection_text(const Scene& scene, const Json& j) {
+  const Json& formulation = j["formulation"];
+  std::string out = fmt::format("{} ({})\nformulation {}: {}\nintegrator {}\n\n", j["name"].get<std::string>(),
+                                j["scene"].get<std::string>(), formulation["name"].get<std::string>(),
+                                formulation["meaning"].get<std::string>(), integrator_text(j["integrator"]));
+  out += tree_text(scene);
+  const auto list = [&](const std::string& head, const char* key) {
+    out += '\n' + head + '\n';
+    for (const Json& item : j[key]) out += "  " + item.get<std::string>() + '\n';
+  };
+  list(fmt::format("{} coordinates", j["coordinates"].size()), "coordinates");
+  list("compiled", "compiled");
+  for (const Json& body : j["bodies"]) {
+    if (body["remarks"].empty()) continue;
+    out += fmt::format("\nof body {}\n", body["name"].get<std::string>());
+    for (const Json& remark : body["remarks"]) out += "  " + remark.get<std::string>() + '\n';
+  }
+  for (const Json& load : j["loads"])
+    out += fmt::format("\nload {}: {}\n", load["name"].get<std::string>(), load["type"].get<std::string>());
+  const Json& m = j["mass_matrix"];
+  if (!m.is_null()) {
+    const int sign = m["determinant_sign"].get<int>();
+    out += fmt::format(
+        "\nmass matrix M at this state\n  condition {:.4g}, with each coordinate in the unit of its own inertia "
+        "{:.4g}; digits "
+        "lost: accelerations are good to {:.1g}\n  det M is {}; smallest eigenvalue of its symmetric part {:.4g}\n",
+        m["condition"].get<double>(), m["scaled_condition"].get<double>(), m["attainable_accuracy"].get<double>(),
+        sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"), m["smallest_eigenvalue"].get<double>());
+    for (const Json& d : m["nearly_massless"])
+      out += fmt::format("  nearly massless: {}; {:.2g} of their inertia is left, {:.4g} rad/s\n",
+                         d["made_up_of"].get<std::string>(), d["inertia_left"].get<double>(),
+                         d["frequency"].get<double>());
+    if (!m["without_mode"].is_null())
+      out += fmt::format("  without {} the condition is {:.2g}; modes that know the load: docs/ill-conditioning.md\n",
+                         m["without_mode"]["mode"].get<std::string>(),
+                         m["without_mode"]["scaled_condition"].get<double>());
+  }
+  out += "\nplugins loaded\n";
+  for (const Json& p : j["plugins"])
+    out += fmt::format("  {}  {}\n", p["name"].get<std::string>(), p["file"].get<std::string>());
+  return out;
+}
+
+}  // namespace withy

@@ -1,0 +1,26 @@
+/// \file
+/// What an evaluation of the equations of motion costs.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/state.hpp"
+
+namespace withy::study {
+
+/// CPU times of one evaluation [s]: batches of at least ten milliseconds, long against the clock's resolution.
+struct EvaluationTimes {
+  double median = 0, fastest = 0, slowest = 0;  ///< of the batches
+  std::size_t evaluations = 0;                  ///< that were timed
+  double allocations = 0;                       ///< an evaluation, by the counter
+};
+
+/// Evaluates one state again and again, warm.
+/// \param allocations of the process so far; may be empty
+/// \throws InputError where the equations cannot be evaluated at the state.
+EvaluationTimes time_evaluations(const EquationsOfMotion& equations, const State& state,
+                                 const std::function<std::size_t()>& allocations);
+
+}  // namespace withy::study
