@@ -21,9 +21,10 @@ class Monitor {
   Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
           Observation* seen, RunSummary& summary);
 
-  /// Peaks of deflections and efforts: for every accepted step and output. Those of bodies in segments are left to the
-  /// outputs. At an output the observation is left at its state.
-  void observe(const State& state, bool output);
+  /// Peaks of deflections and efforts: for every accepted step, and what lies between it and the one before.
+  void observe(const State& state);
+  /// Brings the observation to an output. Nothing that a run reports of itself comes from there.
+  void show(const State& state) { seen_.observe(state.y); }
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
   /// Energy against the work done.
@@ -63,8 +64,10 @@ class Monitor {
     double* ratio;
     std::array<double, 3> rough{};  ///< greatest |deflection| by the expansion
   };
-  void observe_end(End& end, const State& state, bool output, bool& seen);
+  void observe_end(End& end, const State& state, bool& seen);
+  void observe_within(End& end, const State& state);
   void raise_efforts(const State& state);
+  void go_to_middle(const State& state);
   void note(const std::string& name, double length, const std::array<double, 3>& d, std::array<double, 3>* peak);
   /// Sign of det M by one evaluation; 0 where it cannot be solved.
   [[nodiscard]] int mass_matrix_sign(const State& state);
@@ -78,7 +81,9 @@ class Monitor {
   std::vector<Tip> wholes_;  ///< of bodies in segments
   double deflection_limit_;
   std::string excess_;
-  std::vector<double> efforts_, rates_;
+  State last_;     ///< the accepted state before
+  State between_;  ///< a state within the last step
+  std::vector<double> efforts_, rates_, rates_before_;
   Work work_;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;

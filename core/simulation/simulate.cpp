@@ -47,10 +47,10 @@ class Run final : public SteppingObserver {
     if (state.time > emitted_ && !left_) {
       output_at(state);
     } else {
-      monitor_.observe(state, true);
+      monitor_.show(state);
     }
     monitor_.audit_energy(state);
-    validity_.finish(state, loop_.stepper().statistics().evaluations, status == RunStatus::completed);
+    validity_.finish(state, loop_.step_evaluations(), status == RunStatus::completed);
   }
 
   [[nodiscard]] const Stepper& stepper() const { return loop_.stepper(); }
@@ -72,12 +72,12 @@ class Run final : public SteppingObserver {
     return stop_.status == RunStatus::completed;
   }
   bool output(const State& state) override { return output_at(state); }
-  bool after_step(const Stepper& stepper, bool outputs) override {
+  bool after_step(const Stepper& stepper, bool /*outputs*/) override {
     const State& state = stepper.state();
     monitor_.audit_steps(state, stepper.statistics());
-    if (outputs) monitor_.audit_energy(state);
-    monitor_.observe(state, false);
-    validity_.observe(state, stepper.statistics().evaluations);
+    monitor_.observe(state);
+    if (audited(stepper.statistics().accepted)) monitor_.audit_energy(state);
+    validity_.observe(state, loop_.step_evaluations());
     monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
     if (monitor_.sign_change()) {
@@ -97,6 +97,11 @@ class Run final : public SteppingObserver {
   void jumped() override { monitor_.pass_instant(); }
 
  private:
+  /// Energy is looked at after each of the first steps, then after every fourth, whatever the output interval.
+  static bool audited(std::size_t accepted) {
+    constexpr std::size_t first = 256, interval = 4;
+    return accepted <= first || accepted % interval == 0;
+  }
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   }
@@ -108,7 +113,7 @@ class Run final : public SteppingObserver {
       stop_ = {RunStatus::interrupted, "stopped by its caller", false};
       return false;
     }
-    monitor_.observe(state, true);
+    monitor_.show(state);
     emitted_ = state.time;
     if (output_) output_(state);
     return true;

@@ -57,17 +57,18 @@ struct RunSummary {
   RunStatus status = RunStatus::completed;
   std::string message;  ///< the physical reason, or what a completed run should not keep to itself; else empty
   State final;          ///< the last accepted state
-  /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and outputs,
-  /// body axes x, y, z [m]; of a body in segments under its own name, over the outputs.
+  /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and, between
+  /// them, along the cubic through their coordinates and rates; body axes x, y, z [m]. Of a body in segments under its
+  /// own name, over the accepted steps. No peak depends on the output interval.
   std::map<std::string, std::array<double, 3>> peak_deflection;
   /// Of each of them, the greatest distance of the tip from its undeformed place, over the body's length.
   std::map<std::string, double> peak_deflection_ratio;
-  /// Greatest |effort| of the loads on each generalized speed over all accepted steps and outputs [N m, N].
+  /// Greatest |effort| of the loads on each generalized speed over all accepted steps and their middles [N m, N].
   std::vector<double> peak_effort;
   /// The same of the efforts that motions need.
   std::vector<double> peak_motion_effort;
-  /// Greatest |E(t) − E(0) − work| over the accepted states that follow the outputs, relative to the greatest of |E|,
-  /// |work| and kinetic energy seen.
+  /// Greatest |E(t) − E(0) − work| over the first 256 accepted states, every fourth of the others and the last,
+  /// relative to the greatest of |E|, |work| and kinetic energy seen.
   double energy_drift = 0;
   std::vector<EventTime> events;  ///< in their order
   std::size_t switchings = 0;     ///< of loads, at zeros of their switching functions
