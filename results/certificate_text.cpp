@@ -100,6 +100,15 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
     line("",
          "a mix conserves no more than each of its formulations does, and may be further off than any of them alone");
   for (const std::string& text : stretches_text(certificate)) line("", text);
+  line("energy", fmt::format("off by {} of the greatest{}", percent(certificate.energy_drift),
+                             certificate.untruncated_drift > 2 * certificate.energy_drift
+                                 ? fmt::format("; the energy without truncation by {}, which the model leaves out",
+                                               percent(certificate.untruncated_drift))
+                                 : ""));
+  if (certificate.momentum.conserved)
+    line("momentum", fmt::format("linear off by {}, angular by {}: nothing outside acts on the tree, and it is to be "
+                                 "conserved",
+                                 percent(certificate.momentum.linear), percent(certificate.momentum.angular)));
   const NeglectedAcceleration& n = certificate.neglected;
   if (!certificate.against.empty() && n.samples > 0) {
     line("left out", fmt::format("{} of the accelerations in the mean, {} at the peaks, against {} ({} samples)",

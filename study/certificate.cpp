@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/core/simulation/accuracy.hpp"
 #include "withy/study/candidates.hpp"
 
 namespace withy::study {
@@ -46,9 +47,14 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   }
   c.compiled = (last != nullptr ? *last->equations : *prepared.equations).savings();
   c.energy_drift = summary.energy_drift;
-  // Digits lost in solving for accelerations: no result is better than this, whatever the integrator's tolerance.
-  if (const double condition = summary.conditioning.condition; condition > 0)
-    c.rounding = condition * std::numeric_limits<double>::epsilon();
+  c.untruncated_drift = summary.untruncated_drift;
+  c.momentum = summary.momentum;
+  for (const BodyModes& body : scene.modes)
+    for (const ModeCount& count : body.counts)
+      if (count.modes > 0) c.families.push_back({body.body, count.family_id(), static_cast<std::size_t>(count.modes)});
+  const EquationsOfMotion& equations = last != nullptr ? *last->equations : *prepared.equations;
+  const double rounding = rounding_error(prepared.model(), equations, summary.final).relative;
+  if (std::isfinite(rounding)) c.rounding = rounding;
   c.samples = summary.validity.samples;
   c.bodies = summary.validity.bodies;
   if (evidence.beyond != nullptr) c.against = evidence.beyond->formulation;

@@ -42,6 +42,7 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       deflection_limit_(deflection_limit),
       last_(initial),
       between_(initial),
+      trusted_(initial),
       efforts_(model.layout().speeds),
       rates_(equations.size()),
       rates_before_(equations.size()),
@@ -71,8 +72,9 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
   summary.peak_effort.assign(model.layout().speeds, 0.0);
   summary.peak_motion_effort.assign(model.layout().speeds, 0.0);
   seen_.observe(initial.y);
-  const Energies e = seen_.energies();
-  initial_energy_ = e.kinetic + e.potential;
+  initial_energies_ = seen_.energies();
+  initial_energy_ = initial_energies_.kinetic + initial_energies_.potential;
+  audit_momenta(initial_energies_);
   initial_sign_ = mass_matrix_sign(initial);
   observe(initial);
 }
@@ -183,14 +185,72 @@ void Monitor::raise_efforts(const State& state) {
     raise(summary_.peak_motion_effort);
 }
 
+double Monitor::kinetic(const State& state, const Energies& energies) {
+  if (!own_energy_) return energies.kinetic;
+  const auto speeds = std::span<const double>(state.y).subspan(model_.layout().positions, efforts_.size());
+  equations_.mass_times(state.y, speeds, efforts_, work_);
+  double twice = 0;
+  for (std::size_t i = 0; i < speeds.size(); ++i) twice += speeds[i] * efforts_[i];
+  return 0.5 * twice;
+}
+
+void Monitor::use_own_energy(const State& initial) {
+  own_energy_ = true;
+  initial_energy_ = kinetic(initial, initial_energies_) + initial_energies_.potential;
+}
+
+void Monitor::audit_momenta(const Energies& e) {
+  const auto apart = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+  };
+  greatest_linear_ = std::max(greatest_linear_, apart(e.linear_momentum, {}));
+  greatest_angular_ = std::max(greatest_angular_, apart(e.angular_momentum, {}));
+  linear_error_ = std::max(linear_error_, apart(e.linear_momentum, initial_energies_.linear_momentum));
+  angular_error_ = std::max(angular_error_, apart(e.angular_momentum, initial_energies_.angular_momentum));
+}
+
+void Monitor::finish_momenta() {
+  double outside = 0, all = 0;
+  bool floats = model_.gravity().isZero(0);
+  for (std::size_t h = 0; h < model_.hinges().size(); ++h) {
+    const HingeNode& hinge = model_.hinges()[h];
+    const Slot& slot = model_.layout().hinges[h];
+    const auto kernel = hinge.hinge->kernel();
+    const bool root = hinge.parent < 0;
+    floats = floats && (!root || (kernel && kernel->kind == HingeKernel::Kind::free && !model_.driven(h)));
+    for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) {
+      all = std::max(all, summary_.peak_effort[i]);
+      if (root) outside = std::max(outside, summary_.peak_effort[i]);
+    }
+  }
+  // On the rates of a free hinge acts what comes from outside the tree; what its bodies do to each other cancels there.
+  constexpr double rounding = 1e-12;
+  MomentumDrift& m = summary_.momentum;
+  m.conserved = floats && outside <= rounding * all;
+  if (!m.conserved) return;
+  m.linear = greatest_linear_ > 0 ? linear_error_ / greatest_linear_ : 0;
+  m.angular = greatest_angular_ > 0 ? angular_error_ / greatest_angular_ : 0;
+}
+
 void Monitor::audit_energy(const State& state) {
   seen_.observe(state.y);
   const Energies e = seen_.energies();
-  const double energy = e.kinetic + e.potential;
+  audit_momenta(e);
+  const double kinetic_energy = kinetic(state, e);
+  const double energy = kinetic_energy + e.potential;
   const double work = state.y.back() - initial_work_;
-  energy_error_ = std::max(energy_error_, std::abs(energy - initial_energy_ - work));
-  energy_scale_ = std::max({energy_scale_, std::abs(energy), std::abs(initial_energy_), std::abs(work), e.kinetic});
-  summary_.energy_drift = energy_scale_ > 0 ? energy_error_ / energy_scale_ : 0;
+  const double error = std::abs(energy - initial_energy_ - work);
+  energy_error_ = std::max(energy_error_, error);
+  energy_scale_ =
+      std::max({energy_scale_, std::abs(energy), std::abs(initial_energy_), std::abs(work), kinetic_energy});
+  const double untruncated = e.kinetic + e.potential - initial_energies_.kinetic - initial_energies_.potential - work;
+  untruncated_error_ = std::max(untruncated_error_, std::abs(untruncated));
+  const auto relative = [&](double x) { return energy_scale_ > 0 ? x / energy_scale_ : 0; };
+  summary_.energy_drift = relative(energy_error_);
+  summary_.untruncated_drift = relative(untruncated_error_);
+  for (std::size_t i = 0; i < model_.layout().speeds; ++i)
+    greatest_speed_ = std::max(greatest_speed_, std::abs(state.y[model_.layout().positions + i]));
+  if (!sign_change_ && error <= trust_limit_ * energy_scale_) trusted_ = state;
 }
 
 int Monitor::mass_matrix_sign(const State& state) {
@@ -222,6 +282,15 @@ void Monitor::remember(Memory& memory) {
   memory(last_.y);
   memory(energy_error_);
   memory(energy_scale_);
+  memory(summary_.untruncated_drift);
+  memory(greatest_linear_);
+  memory(greatest_angular_);
+  memory(linear_error_);
+  memory(angular_error_);
+  memory(untruncated_error_);
+  memory(trusted_.time);
+  memory(trusted_.y);
+  memory(greatest_speed_);
   memory(checked_);
   memory(rejected_);
   memory(burst_);

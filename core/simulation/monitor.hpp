@@ -27,8 +27,18 @@ class Monitor {
   void show(const State& state) { seen_.observe(state.y); }
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
-  /// Energy against the work done.
+  /// Energy against the work done. A state where they balance is to be trusted.
   void audit_energy(const State& state);
+  /// The kinetic energy is that of the equations' mass matrix (RunOptions::own_energy).
+  void use_own_energy(const State& initial);
+  /// To be called at the end: what the loads have done on the way decides whether momenta are conserved.
+  void finish_momenta();
+  /// What of the greatest energy may be missing from a state that is to be trusted.
+  void trust(double limit) { trust_limit_ = limit; }
+  /// The last state audited that can be trusted.
+  [[nodiscard]] const State& trusted() const { return trusted_; }
+  /// Greatest |speed| in the states audited [rad/s, m/s].
+  [[nodiscard]] double greatest_speed() const { return greatest_speed_; }
   /// Sign of det M at an accepted state against that of the start.
   void audit_mass_matrix(const State& state, int sign);
   /// Says that a load has changed at an instant known beforehand: rejections after it are no sign of another.
@@ -83,8 +93,17 @@ class Monitor {
   std::string excess_;
   State last_;     ///< the accepted state before
   State between_;  ///< a state within the last step
+  State trusted_;
+  double trust_limit_ = 0.5, greatest_speed_ = 0;
   std::vector<double> efforts_, rates_, rates_before_;
   Work work_;
+  [[nodiscard]] double kinetic(const State& state, const Energies& energies);
+  void audit_momenta(const Energies& energies);
+
+  bool own_energy_ = false;
+  Energies initial_energies_;
+  double greatest_linear_ = 0, greatest_angular_ = 0;
+  double linear_error_ = 0, angular_error_ = 0, untruncated_error_ = 0;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;
   int initial_sign_ = 0;  ///< of det M

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 
 #include "withy/core/simulation/instants.hpp"
@@ -26,6 +27,8 @@ class Run final : public SteppingObserver {
         loop_(model, integrator.start(equations, begun(model, initial)), {options.end, options.output, options.events}),
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.seen, summary),
         validity_(model, equations, options.beyond, summary.validity) {
+    if (options.own_energy) monitor_.use_own_energy(loop_.state());
+    if (std::isfinite(options.drift_limit)) monitor_.trust(options.drift_limit);
     if (options.resume != nullptr) {
       restore(*options.resume);
       return;
@@ -50,6 +53,7 @@ class Run final : public SteppingObserver {
       monitor_.show(state);
     }
     monitor_.audit_energy(state);
+    monitor_.finish_momenta();
     validity_.finish(state, loop_.step_evaluations(), status == RunStatus::completed);
   }
 
@@ -76,9 +80,9 @@ class Run final : public SteppingObserver {
     const State& state = stepper.state();
     monitor_.audit_steps(state, stepper.statistics());
     monitor_.observe(state);
+    monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
     if (audited(stepper.statistics().accepted)) monitor_.audit_energy(state);
     validity_.observe(state, loop_.step_evaluations());
-    monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
     if (monitor_.sign_change()) {
       stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
@@ -170,6 +174,15 @@ std::string note_on_jumps(const std::vector<double>& times) {
   return text + " s: does a load jump there without declaring it?";
 }
 
+/// The last state that can be trusted takes the place of the last one.
+void go_back(const Monitor& monitor, RunSummary& summary) {
+  if (monitor.trusted().time >= summary.final.time) return;
+  summary.final = monitor.trusted();
+  summary.message +=
+      " The last state that can be trusted, the final one of the results, is that at t = " + brief(summary.final.time) +
+      " s.";
+}
+
 /// Looks at the mass matrix at the end of a run, and why a run that ended badly did.
 MassMatrixHistory look_at_mass_matrix(const Run& run, const Model& model, const EquationsOfMotion& equations,
                                       const State& initial, const Stop& stop, RunSummary& summary) {
@@ -207,6 +220,8 @@ std::string_view name(RunStatus status) {
   switch (status) {
     case RunStatus::completed:
       return "completed";
+    case RunStatus::inaccurate:
+      return "inaccurate";
     case RunStatus::diverged:
       return "diverged";
     case RunStatus::singular:
@@ -229,15 +244,26 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   Stop stop = run.to_end();
   run.finish(stop.status);
   summary.final = run.stepper().state();
+  summary.reached = summary.final.time;
   summary.steps = run.stepper().statistics();
   const MassMatrixHistory history = look_at_mass_matrix(run, model, equations, initial, stop, summary);
   const bool examined = equations.layout().speeds <= largest_examined;
   if (stop.status == RunStatus::completed) {
     summary.message = message_of_completed(run, summary);
+    const double steps = static_cast<double>(std::max<std::size_t>(summary.steps.accepted, 1));
+    const std::string imbalanced =
+        run.monitor().greatest_speed() > options.least_speed
+            ? imbalance(summary, options, integrator, (summary.reached - initial.time) / steps)
+            : std::string();
+    if (!imbalanced.empty()) {
+      stop.status = RunStatus::inaccurate;
+      summary.message = imbalanced + (summary.message.empty() ? "" : " ") + summary.message;
+    }
   } else {
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end
     summary.message = explain(stop, summary.final.time, examined ? &history : nullptr, model.layout());
   }
+  if (stop.status != RunStatus::completed && stop.status != RunStatus::interrupted) go_back(run.monitor(), summary);
   summary.status = stop.status;
   summary.cpu_seconds = thread_cpu_seconds() - began;
   return summary;
