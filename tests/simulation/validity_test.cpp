@@ -329,7 +329,7 @@ TEST(RunSummaries, peaks_drift_and_samples_do_not_depend_on_the_output_interval)
       "  motor: {type: hinge-effort, hinge: elbow, law: sine, amplitude: 0.6, period: 0.7}\nmotions:\n"
       "  spin: {type: spin-up, hinge: axle, rate: 3, duration: 1}\n";
   for (const char* formulation : {"ruthless", "quadratic", "exact"}) {
-    const Made m(text, formulation);
+    Made m(text, formulation);
     const auto beyond = m.in("exact");
     const auto summary_of = [&](double interval) {
       RunOptions options;
