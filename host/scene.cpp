@@ -99,7 +99,7 @@ Result Scene::run(const Follow& follow) const {
   result.status = withy::name(summary.status);
   result.message = summary.message;
   result.json = run_json(prepared->scene, summary, certificate).dump();
-  if (!summary.message.empty()) library().log(summary.message);
+  if (summary.status == RunStatus::completed && !summary.message.empty()) library().log(summary.message);
   return result;
 }
 

@@ -1,14 +1,12 @@
 /// \file
 /// Studies of a scene, as JSON text.
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/host/scene.hpp"
 #include "withy/results/advice_json.hpp"
-#include "withy/results/certificate_json.hpp"
+#include "withy/results/advice_text.hpp"
+#include "withy/results/comparison_report.hpp"
 #include "withy/results/modes_files.hpp"
 #include "withy/results/scene_edit.hpp"
 #include "withy/results/trade_files.hpp"
@@ -36,13 +34,11 @@ study::Axes axes_of(const Scene::Axes& asked, study::Axes usual) {
   return usual;
 }
 
-std::string advice_text(const study::Prepared& prepared, const study::Outputs& outputs, const study::Accuracy& accuracy,
-                        const study::Advice& advice, study::Evaluator& evaluator) {
+std::string advice_of(const study::Prepared& prepared, const study::Outputs& outputs, const study::Accuracy& accuracy,
+                      const study::Advice& advice, study::Evaluator& evaluator) {
   const AdviceQuestion question{prepared, outputs, accuracy};
   if (!advice.choice) {
-    const std::string why = advice.interrupted       ? "interrupted"
-                            : advice.trouble.empty() ? "no candidate holds " + accuracy.text()
-                                                     : advice.trouble;
+    const std::string why = advice.interrupted ? "interrupted" : no_advice_text(advice, accuracy);
     return search_json(question, advice, why).dump();
   }
   std::vector<std::string> changes;
@@ -58,22 +54,17 @@ std::string advice_text(const study::Prepared& prepared, const study::Outputs& o
 std::string Scene::compare(const std::vector<std::string>& formulations, const std::string& reference,
                            const Follow& follow) const {
   const std::shared_ptr<const study::Prepared> base = prepare();
-  const study::Comparison comparison =
+  const ComparisonAt compared{
+      {},
       study::compare(base->values, library().registry(), formulations, reference,
                      [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
                        return study::simulate(prepared, output, control_of(follow));
-                     });
-  Json runs = Json::array();
-  for (const study::ComparedRun& run : comparison.runs) {
-    Json j = run_json(run.prepared.scene, run.summary,
-                      study::certify(run.prepared, {&run.summary, nullptr, nullptr, {}}, library().registry()));
-    if (comparison.has_reference()) {
-      const study::NamedDistances d = comparison.distances(run);
-      j["distance"] = {{"hinges", d.hinges}, {"tips", d.tips}, {"until", d.until}};
-    }
-    runs.push_back(std::move(j));
-  }
-  return Json{{"scene", base->scene.file}, {"name", base->scene.name}, {"reference", reference}, {"runs", runs}}.dump();
+                     })};
+  return Json{{"scene", base->scene.file},
+              {"name", base->scene.name},
+              {"reference", reference},
+              {"runs", comparison_json(compared, library().registry(), false)}}
+      .dump();
 }
 
 std::string Scene::trade(const Axes& axes, std::size_t jobs, const Follow& follow) const {
@@ -96,7 +87,7 @@ std::string Scene::advise(const std::string& accuracy, const std::vector<std::st
       study::candidates_for(*base, library().registry(), axes_of(axes, study::usual_axes()));
   study::Evaluator evaluator(*base, library().registry(), measured, control_of(follow));
   const study::Advice advice = study::advise(evaluator, candidates, asked);
-  return advice_text(*base, measured, asked, advice, evaluator);
+  return advice_of(*base, measured, asked, advice, evaluator);
 }
 
 std::string Scene::modes(const std::vector<std::string>& lock, const Follow& follow) const {

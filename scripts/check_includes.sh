@@ -25,6 +25,8 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["study"] = inner "|withy/(scene|study|plugins/host)/.*|fmt/.*|boost/math/.*"
     may["results"] = inner "|withy/(scene|study|results)/.*|nlohmann/.*|fmt/.*|boost/crc.hpp|(sys/)?[a-z]+[.]h"
     may["host"] = inner "|withy/(scene|study|results|plugins/host|host)/.*|nlohmann/.*|fmt/.*"
+    may["bindings/c"] = inner "|withy/(scene|study|host)/.*|withy/bindings/c/.*|stddef[.]h"
+    may["bindings/python"] = inner "|withy/(scene|study|host)/.*|pybind11/.*"
     may["plugins/formulations"] = inner "|withy/plugins/formulations/.*|fmt/.*"
     may["plugins/kinematics"] = inner "|withy/plugins/kinematics/.*"
     may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"
@@ -43,6 +45,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     only["CLI/"] = "apps"
     only["boost/dll"] = "plugins/host"
     only["Spectra/"] = "fem"
+    only["pybind11/"] = "bindings/python"
     only["cvode/"] = "integrators"
   }
   function room_of(file,   parts) {
@@ -51,7 +54,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
       sub("/[^/]*$", "", file)
       return file
     }
-    return parts[1] == "plugins" ? parts[1] "/" parts[2] : parts[1]
+    return parts[1] == "plugins" || parts[1] == "bindings" ? parts[1] "/" parts[2] : parts[1]
   }
   # A file of the same folder, and so of the same room.
   function is_neighbour(target,   path, line, found) {

@@ -1,0 +1,375 @@
+/// \file
+/// The extension module withy._withy: what the Python package shows of withy::host. Everything that needs no speed is
+/// in the package's own sources beside this file.
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "withy/core/plugin/registry.hpp"
+#include "withy/host/equations.hpp"
+#include "withy/host/simulation.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace py = pybind11;
+
+namespace {
+
+using namespace withy::host;
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Lets Python handle signals while a call goes on, some twenty times a second: Ctrl-C ends the call, and what its
+/// handler raised is raised when the call is back. The calling thread alone asks Python; others of a study follow it.
+class Signals {
+ public:
+  /// By the thread that calls from now on.
+  void begin() {
+    caller_ = std::this_thread::get_id();
+    asked_ = Clock::now();
+  }
+  bool pending() {
+    if (ended_ || std::this_thread::get_id() != caller_) return ended_;
+    const auto now = Clock::now();
+    if (now - asked_ < std::chrono::milliseconds(50)) return false;
+    asked_ = now;
+    const py::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() == 0) return false;
+    raised_.emplace();
+    return ended_ = true;
+  }
+  /// With the interpreter held.
+  void raise() {
+    ended_ = false;
+    if (auto raised = std::exchange(raised_, std::nullopt)) throw std::move(*raised);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::thread::id caller_;
+  Clock::time_point asked_;
+  std::atomic<bool> ended_ = false;
+  std::optional<py::error_already_set> raised_;
+};
+
+/// Calls `act` without the interpreter, which Ctrl-C ends.
+template <class Act>
+auto followed(const py::object& progress, Act&& act) {
+  Signals signals;
+  signals.begin();
+  Follow follow;
+  follow.interrupted = [&signals] { return signals.pending(); };
+  std::optional<py::error_already_set> failed;
+  if (!progress.is_none())
+    follow.progress = [&](double done, double all) {
+      const py::gil_scoped_acquire held;
+      if (failed) return;
+      try {
+        progress(done, all);
+      } catch (py::error_already_set& e) {
+        failed.emplace(std::move(e));
+      }
+    };
+  auto result = [&] {
+    const py::gil_scoped_release released;
+    return act(follow);
+  }();
+  signals.raise();
+  if (failed) throw std::move(*failed);
+  return result;
+}
+
+py::list names_of(const std::vector<Port>& ports) {
+  py::list names;
+  for (const Port& port : ports) names.append(port.name);
+  return names;
+}
+py::list units_of(const std::vector<Port>& ports) {
+  py::list units;
+  for (const Port& port : ports) units.append(port.unit);
+  return units;
+}
+
+/// A vector as an array, without a copy.
+Array array_of(std::vector<double> numbers, std::vector<py::ssize_t> shape) {
+  auto* kept = new std::vector<double>(std::move(numbers));
+  const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<double>*>(p); });
+  return Array(std::move(shape), kept->data(), owner);
+}
+
+std::span<const double> span_of(const Array& a, std::size_t size, const char* what) {
+  if (a.ndim() != 1 || static_cast<std::size_t>(a.size()) != size)
+    throw py::value_error(std::string(what) + ": need an array of " + std::to_string(size) + " numbers");
+  return {a.data(), size};
+}
+
+/// Equations that Python's threads share, one evaluation at a time.
+struct SharedEquations {
+  SharedEquations(const Scene& scene, const std::string& formulation) : equations(scene, formulation) {}
+
+  Array derivatives(double t, const Array& y) {
+    const std::span<const double> at = span_of(y, equations.size(), "y");
+    Array y_dot(static_cast<py::ssize_t>(at.size()));
+    evaluate(t, at, {y_dot.mutable_data(), at.size()});
+    return y_dot;
+  }
+  Array jacobian(double t, const Array& y) {
+    const std::span<const double> at = span_of(y, equations.size(), "y");
+    const auto n = static_cast<py::ssize_t>(at.size());
+    Array J({n, n});
+    const std::span<double> out(J.mutable_data(), at.size() * at.size());
+    const py::gil_scoped_release released;
+    const std::lock_guard lock(busy);
+    equations.jacobian(t, at, out);
+    return J;
+  }
+  Array normalized(const Array& y) {
+    const std::span<const double> at = span_of(y, equations.size(), "y");
+    Array scaled(static_cast<py::ssize_t>(at.size()));
+    std::copy(at.begin(), at.end(), scaled.mutable_data());
+    const std::lock_guard lock(busy);
+    equations.normalize({scaled.mutable_data(), at.size()});
+    return scaled;
+  }
+  void evaluate(double t, std::span<const double> y, std::span<double> y_dot) {
+    std::string why;
+    {
+      const py::gil_scoped_release released;
+      const std::lock_guard lock(busy);
+      const withy::Evaluation evaluation = equations.derivatives(t, y, y_dot);
+      if (evaluation.ok()) return;
+      why = equations.reason(t, evaluation);
+    }
+    throw SimulationStopped("singular", why, t);
+  }
+
+  Equations equations;
+  std::mutex busy;
+};
+
+/// A simulation that Python's threads share, one step at a time.
+struct SharedSimulation {
+  explicit SharedSimulation(const Scene& scene) : simulation(scene, [this] { return signals.pending(); }) {}
+
+  template <class Act>
+  auto call(Act&& act) {
+    try {
+      const py::gil_scoped_release released;
+      const std::lock_guard lock(busy);
+      signals.begin();
+      return act(simulation);
+    } catch (const SimulationStopped&) {
+      signals.raise();
+      throw;
+    }
+  }
+
+  Signals signals;
+  Simulation simulation;
+  std::mutex busy;
+};
+
+/// Raises an exception of the package.
+template <class... Arguments>
+void raise(const char* name, Arguments&&... arguments) {
+  const py::object type = py::module_::import("withy._errors").attr(name);
+  const py::object error = type(std::forward<Arguments>(arguments)...);
+  PyErr_SetObject(type.ptr(), error.ptr());
+}
+
+void translate(std::exception_ptr pointer) {
+  try {
+    if (pointer) std::rethrow_exception(pointer);
+  } catch (const withy::SceneError& e) {
+    raise("SceneError", e.what());
+  } catch (const withy::study::InputError& e) {
+    raise("SceneError", e.what());
+  } catch (const withy::PluginError& e) {
+    raise("PluginError", e.what());
+  } catch (const SimulationStopped& e) {
+    raise("SimulationStopped", e.what(), e.status(), e.time());
+  } catch (const std::out_of_range& e) {
+    PyErr_SetObject(PyExc_KeyError, py::str(e.what()).ptr());
+  } catch (const std::system_error& e) {
+    const py::object error = py::reinterpret_borrow<py::object>(PyExc_OSError)(e.code().value(), e.what());
+    PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
+  }
+}
+
+py::tuple run(const Scene& scene, const py::object& progress) {
+  Result result = followed(progress, [&](const Follow& follow) { return scene.run(follow); });
+  const auto rows = static_cast<py::ssize_t>(result.rows()), columns = static_cast<py::ssize_t>(result.columns.size());
+  return py::make_tuple(result.status, result.message, names_of(result.columns), units_of(result.columns),
+                        array_of(std::move(result.values), {rows, columns}), result.json);
+}
+
+void bind_scene(py::module_& m) {
+  py::class_<Library>(m, "Library")
+      .def(py::init([](std::vector<std::filesystem::path> plugins, const py::object& log) {
+             LibraryOptions options{std::move(plugins), {}};
+             if (!log.is_none())
+               options.log = [log](std::string_view remark) {
+                 const py::gil_scoped_acquire held;
+                 try {
+                   log(py::str(remark.data(), remark.size()));
+                 } catch (py::error_already_set& e) {
+                   e.discard_as_unraisable("withy's log");
+                 }
+               };
+             return Library(std::move(options));
+           }),
+           py::arg("plugins"), py::arg("log"));
+  const auto axes = [](const std::vector<std::string>& formulations, const std::vector<std::string>& families,
+                       const std::vector<int>& modes, const std::vector<std::string>& integrators,
+                       const std::vector<double>& tolerances) {
+    return Scene::Axes{formulations, families, modes, integrators, tolerances};
+  };
+  using Names = std::vector<std::string>;
+  py::class_<Scene>(m, "Scene")
+      .def_static("read", &Scene::read)
+      .def_static("parse", [](const Library& l, const std::string& text,
+                              const std::string& name) { return Scene::parse(l, text, name); })
+      .def("copy", [](const Scene& s) { return Scene(s); })
+      .def("set", [](Scene& s, const std::string& path, const std::string& text) { s.set(path, text); })
+      .def("check", &Scene::check)
+      .def_property_readonly("text", &Scene::text)
+      .def_property_readonly("name", &Scene::name)
+      .def_property_readonly("changes", &Scene::changes)
+      .def("run", &run)
+      .def("compare",
+           [](const Scene& s, const Names& formulations, const std::string& reference, const py::object& progress) {
+             return followed(progress, [&](const Follow& f) { return s.compare(formulations, reference, f); });
+           })
+      .def("trade",
+           [axes](const Scene& s, const Names& formulations, const Names& families, const std::vector<int>& modes,
+                  const Names& integrators, const std::vector<double>& tolerances, std::size_t jobs,
+                  const py::object& progress) {
+             return followed(progress, [&](const Follow& f) {
+               return s.trade(axes(formulations, families, modes, integrators, tolerances), jobs, f);
+             });
+           })
+      .def("advise",
+           [axes](const Scene& s, const std::string& accuracy, const Names& outputs, const Names& formulations,
+                  const Names& families, const std::vector<int>& modes, const Names& integrators,
+                  const std::vector<double>& tolerances, const py::object& progress) {
+             return followed(progress, [&](const Follow& f) {
+               return s.advise(accuracy, outputs, axes(formulations, families, modes, integrators, tolerances), f);
+             });
+           })
+      .def("modes", [](const Scene& s, const Names& lock, const py::object& progress) {
+        return followed(progress, [&](const Follow& f) { return s.modes(lock, f); });
+      });
+}
+
+void bind_equations(py::module_& m) {
+  using E = SharedEquations;
+  py::class_<E>(m, "Equations")
+      .def(py::init<const Scene&, const std::string&>())
+      .def("derivatives", &E::derivatives, py::arg("t"), py::arg("y"),
+           "derivatives(t, y) -> numpy.ndarray\n\nTime derivative of y [n] at the time t [s]; the interpreter is free "
+           "meanwhile. Raises SimulationStopped where the mass matrix cannot be solved or something is not finite.")
+      .def("jacobian", &E::jacobian, py::arg("t"), py::arg("y"),
+           "jacobian(t, y) -> numpy.ndarray\n\nDerivatives [n, n] of derivatives(t, y) with respect to y; exact, but "
+           "for parts that loads leave to differences; with respect to a quaternion along its unit sphere.")
+      .def("normalize", &E::normalized, py::arg("y"),
+           "normalize(y) -> numpy.ndarray\n\ny with its quaternions scaled to unit length.")
+      .def_property_readonly(
+          "names", [](const E& e) { return names_of(e.equations.states()); },
+          "Names of the numbers of y, as those of the result columns.")
+      .def_property_readonly(
+          "units", [](const E& e) { return units_of(e.equations.states()); },
+          "Their SI units; empty for modal coordinates.")
+      .def_property_readonly(
+          "t0", [](const E& e) { return e.equations.t0(); }, "Initial time [s].")
+      .def_property_readonly(
+          "y0",
+          [](const E& e) {
+            const std::vector<double>& y0 = e.equations.y0();
+            return array_of(y0, {static_cast<py::ssize_t>(y0.size())});
+          },
+          "Initial state of the scene [n], a copy.")
+      .def("_input_names", [](const E& e) { return names_of(e.equations.inputs()); })
+      .def("_input_units", [](const E& e) { return units_of(e.equations.inputs()); })
+      .def("_input", [](const E& e, std::size_t i) { return e.equations.input(i); })
+      .def("_set_input", [](E& e, std::size_t i, double value) {
+        const std::lock_guard lock(e.busy);
+        e.equations.set_input(i, value);
+      });
+}
+
+void bind_simulation(py::module_& m) {
+  py::class_<Snapshot>(m, "Snapshot", "Everything that the steps of a Simulation to come depend on. Can be pickled.")
+      .def_property_readonly("time", &Snapshot::time, "[s]")
+      .def(py::pickle(
+          [](const Snapshot& s) { return py::make_tuple(s.numbers()); },
+          [](const py::tuple& state) { return Snapshot::of_numbers(state[0].cast<std::vector<double>>()); }));
+  using S = SharedSimulation;
+  py::class_<S>(m, "Simulation")
+      .def(py::init<const Scene&>())
+      .def_property_readonly(
+          "time", [](const S& s) { return s.simulation.time(); }, "Present time [s].")
+      .def(
+          "step", [](S& s, double t) { s.call([t](Simulation& own) { own.step(t); }); }, py::arg("t"),
+          "step(t) -> None\n\nIntegrates to the time t [s] and lands on it exactly, passing events on the way. Raises "
+          "SimulationStopped with the physical reason where it cannot go on.")
+      .def(
+          "advance_to", [](S& s, double t) { return s.call([t](Simulation& own) { return own.advance_to(t); }); },
+          py::arg("t"),
+          "advance_to(t) -> bool\n\nAs step, but halts at an event with `stop: true` that comes first. Returns whether "
+          "t is reached.")
+      .def(
+          "snapshot", [](S& s) { return s.call([](Simulation& own) { return own.snapshot(); }); },
+          "snapshot() -> Snapshot\n\nWhat restore() goes back to.")
+      .def(
+          "restore", [](S& s, const Snapshot& to) { s.call([&to](Simulation& own) { own.restore(to); }); },
+          py::arg("snapshot"),
+          "restore(snapshot) -> None\n\nGoes on from there bit by bit as the simulation did that made it, with the "
+          "same inputs and times.")
+      .def_property_readonly(
+          "state", [](S& s) { return s.call([](Simulation& own) { return own.state(); }); },
+          "The present state as JSON text, in the form of `initial` in a scene.")
+      .def_property_readonly(
+          "evaluations", [](const S& s) { return s.simulation.evaluations(); },
+          "Evaluations of the equations of motion so far.")
+      .def_property_readonly(
+          "events",
+          [](const S& s) {
+            py::list events;
+            for (const Event& e : s.simulation.events()) events.append(py::make_tuple(e.name, e.time, e.direction));
+            return events;
+          },
+          "Events of the last step: tuples of name, time [s] and direction (+1 from below, -1 from "
+          "above).")
+      .def("_input_names", [](const S& s) { return names_of(s.simulation.inputs()); })
+      .def("_input_units", [](const S& s) { return units_of(s.simulation.inputs()); })
+      .def("_output_names", [](const S& s) { return names_of(s.simulation.outputs()); })
+      .def("_output_units", [](const S& s) { return units_of(s.simulation.outputs()); })
+      .def("_input", [](S& s, std::size_t i) { return s.call([i](Simulation& own) { return own.input(i); }); })
+      .def("_set_input",
+           [](S& s, std::size_t i, double x) { s.call([i, x](Simulation& own) { own.set_input(i, x); }); })
+      .def("_output", [](S& s, std::size_t i) { return s.call([i](Simulation& own) { return own.output(i); }); })
+      .def("_outputs", [](S& s) {
+        return s.call([](Simulation& own) {
+          const auto now = own.output_values();
+          return std::vector<double>(now.begin(), now.end());
+        });
+      });
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_withy, m) {
+  m.doc() = "The engine of the package withy.";
+  py::register_exception_translator(&translate);
+  bind_scene(m);
+  bind_equations(m);
+  bind_simulation(m);
+}

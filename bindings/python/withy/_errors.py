@@ -1,0 +1,29 @@
+"""The exceptions of the package."""
+
+
+class SceneError(ValueError):
+    """A scene, a value set in it, or what is asked of a study cannot be.
+
+    The text names every problem with its place, as ``arm.yaml:66:14: /bodies/boom/length: got -1 m; need > 0``.
+    """
+
+
+class PluginError(RuntimeError):
+    """A library of plugins that a scene names is refused; the text says which and why."""
+
+
+class SimulationStopped(RuntimeError):
+    """A simulation cannot go on; the text is the physical reason.
+
+    Attributes:
+        status: as in run.json: ``diverged``, ``singular``, ``step-underflow`` or ``interrupted``.
+        time: of the last accepted state [s], where the simulation stands.
+    """
+
+    def __init__(self, message: str, status: str = "", time: float = 0.0) -> None:
+        super().__init__(message)
+        self.status = status
+        self.time = time
+
+    def __reduce__(self):  # pickled with its attributes
+        return type(self), (str(self), self.status, self.time)

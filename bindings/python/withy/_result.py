@@ -1,0 +1,111 @@
+"""What a run gave."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy
+
+
+def unknown(what: str, name: object, known: list[str]) -> KeyError:
+    """The error for a name that is not there, with the nearest one."""
+    near = difflib.get_close_matches(str(name), known, 1)
+    return KeyError(f"no {what} {name!r}" + (f"; did you mean {near[0]!r}?" if near else f"; known: {', '.join(known)}"))
+
+
+class Result(Mapping):
+    """The table of a run by the names of its columns, those of results.csv: ``result["shoulder"]``.
+
+    Attributes:
+        status: ``completed``, ``diverged``, ``singular``, ``step-underflow`` or ``interrupted``.
+        message: the physical reason of a bad end, or what a completed run should not keep to itself; else empty.
+        units: SI unit of each column by its name; empty for modal coordinates.
+        table: all numbers [rows, columns], in SI units.
+        summary: the content of run.json: peaks, events, steps, certificate.
+    """
+
+    def __init__(self, status: str, message: str, names: list[str], units: list[str], table: numpy.ndarray,
+                 text: str) -> None:
+        self.status = status
+        self.message = message
+        self.units = dict(zip(names, units))
+        self.table = table
+        self.summary: dict[str, Any] = json.loads(text)
+        self._index = {name: i for i, name in enumerate(names)}
+
+    @property
+    def t(self) -> numpy.ndarray:
+        """Times of the rows [s]."""
+        return self["t"]
+
+    @property
+    def final(self) -> dict[str, Any]:
+        """The last accepted state, in the form of ``initial`` in a scene."""
+        return self.summary["final"]
+
+    @property
+    def certificate(self) -> dict[str, Any]:
+        """What was modelled, what was left out, and how large that was."""
+        return self.summary["certificate"]
+
+    def __getitem__(self, name: str) -> numpy.ndarray:
+        """The numbers of a column [rows], a view of the table. KeyError with the nearest name where there is none."""
+        if name not in self._index:
+            raise unknown("column", name, list(self._index))
+        return self.table[:, self._index[name]]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._index)
+
+    def __len__(self) -> int:
+        return len(self._index)
+
+    def __repr__(self) -> str:
+        end = f"{self.t[-1]:.6g} s" if len(self.table) else "nothing"
+        return f"<withy.Result {self.status}, {end}, {len(self.table)} rows of {len(self)} columns>"
+
+    def to_pandas(self):
+        """The table as a pandas.DataFrame with the times as its index."""
+        import pandas
+
+        return pandas.DataFrame(self.table, columns=list(self)).set_index("t")
+
+    def plot(self, *names: str, axes=None):
+        """Draws columns over time with matplotlib, angles in degrees.
+
+        Args:
+            names: of columns, or their beginnings up to a dot (``"link1.tip"``); none: the coordinates of hinges.
+            axes: of matplotlib, to draw into; new ones where left out.
+
+        Returns:
+            The axes. In a script, ``axes.figure.savefig("run.svg")`` or ``matplotlib.pyplot.show()`` comes next.
+        """
+        import matplotlib.pyplot
+
+        columns = self._chosen(names)
+        if axes is None:
+            _, axes = matplotlib.pyplot.subplots(layout="constrained")
+        units = []
+        for name in columns:
+            angle = self.units[name] == "rad"
+            units.append("deg" if angle else self.units[name] or "modal coordinate")
+            axes.plot(self.t, numpy.degrees(self[name]) if angle else self[name], label=name)
+        axes.set_xlabel("t [s]")
+        axes.set_ylabel(" / ".join(dict.fromkeys(units)))
+        axes.legend()
+        return axes
+
+    def _chosen(self, names: tuple[str, ...]) -> list[str]:
+        if not names:
+            hinges = self.final["hinges"]
+            return [n for n in self if n in hinges or (n.split(".")[0] in hinges and self.units[n] in ("m", "rad"))]
+        chosen = []
+        for name in names:
+            found = [name] if name in self else [n for n in self if n.startswith(name + ".")]
+            if not found:
+                raise unknown("column", name, list(self))
+            chosen += found
+        return chosen

@@ -1,0 +1,259 @@
+"""The Python package, as its users call it."""
+
+import concurrent.futures
+import copy
+import math
+import os
+import pathlib
+import pickle
+import re
+import signal
+import threading
+
+import numpy
+import pytest
+
+import withy
+
+SCENES = pathlib.Path(__file__).parents[2] / "scenes"
+
+TURNTABLE = """
+format: withy/1
+time: {end: 2, output: 0.5}
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+loads: {command: {type: input, hinge: axle}}
+"""
+
+
+@pytest.fixture
+def slew():
+    return withy.load(SCENES / "two-link-slew.yaml")
+
+
+def rk4(f, t, y, h):
+    k1 = f(t, y)
+    k2 = f(t + h / 2, y + h / 2 * k1)
+    k3 = f(t + h / 2, y + h / 2 * k2)
+    k4 = f(t + h, y + h * k3)
+    return y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+
+
+def test_a_run_is_a_table_by_names(slew):
+    result = slew.run()
+    assert result.status == "completed" and result.message == ""
+    # docs/theory.md: where the arm comes to rest
+    assert math.degrees(result["shoulder"][-1]) == pytest.approx(60, abs=0.5)
+    assert result.t[-1] == result["t"][-1] == result.final["time"]
+    assert result.final["hinges"]["shoulder"]["position"][0] == result["shoulder"][-1]
+    assert result.units["shoulder"] == "rad" and "link2.tip.x" in result
+    assert numpy.shares_memory(result["shoulder"], result.table)
+    assert result.certificate["formulation"]["name"] == "quadratic"
+    with pytest.raises(KeyError, match="did you mean 'shoulder'"):
+        result["shoulde"]
+
+
+def test_scenes_are_values(slew):
+    fast = slew.copy().set("loads.slew.time_scale", 1.2).set("integrator.rtol", 1e-5)
+    assert slew.run().t[-1] > fast.run(formulation="ruthless").t[-1]
+    again = pickle.loads(pickle.dumps(fast))
+    assert numpy.array_equal(again.run().table, fast.run().table)
+    assert numpy.array_equal(copy.deepcopy(fast).run().table, fast.run().table)
+    turned = withy.loads(TURNTABLE).set("gravity", numpy.array([0, 0, -9.81])).set("initial", {"inputs": {"command": 0.2}})
+    assert turned.run(time={"end": 1})["axle.rate"][-1] == pytest.approx(1, abs=1e-9)
+
+
+def test_errors_have_their_places(slew, tmp_path):
+    broken = withy.loads("format: withy/1\nbodies: {b: {type: rigd}}\nhinges: {}\n", "mine.yaml").set("time.end", "soon")
+    with pytest.raises(withy.SceneError, match=r"(?s)(?=.*mine.yaml:2:)(?=.*did you mean 'rigid')(?=.*set\(time.end=soon\))"):
+        broken.run()
+    with pytest.raises(withy.SceneError):
+        withy.loads("a: [")
+    with pytest.raises(withy.SceneError, match="quadratic"):
+        slew.run(formulation="quadratc")
+    with pytest.raises(withy.SceneError, match="got NaN; need finite"):
+        slew.run(gravity=[0, float("nan"), 0])
+    with pytest.raises(FileNotFoundError):
+        withy.load(tmp_path / "none.yaml")
+
+
+def test_a_simulation_is_stepped():
+    simulation = withy.Simulation(withy.loads(TURNTABLE))
+    assert list(simulation.inputs) == ["command"] and simulation.inputs.units["command"] == "N m"
+    x = v = 0.0
+    for t, effort in ((0.5, 0.4), (0.75, -0.2), (2.0, 0.1)):
+        h, a = t - simulation.time, effort / 0.2
+        simulation.inputs["command"] = effort
+        simulation.step(t)
+        x, v = x + h * v + h * h / 2 * a, v + h * a
+        assert simulation.time == t
+        assert simulation.outputs["axle"] == pytest.approx(x, abs=1e-9)
+        assert simulation.outputs["axle.rate"] == pytest.approx(v, abs=1e-9)
+    with pytest.raises(KeyError, match="did you mean 'command'"):
+        simulation.inputs["comand"] = 1
+    with pytest.raises(KeyError, match="did you mean 'axle'"):
+        simulation.outputs["axel"]
+    with pytest.raises(ValueError):
+        simulation.inputs["command"] = float("nan")
+    with pytest.raises(ValueError, match="before the present one"):
+        simulation.step(1.0)
+
+
+def test_snapshots_replay_bit_by_bit():
+    simulation = withy.Simulation(withy.loads(TURNTABLE).set("loads.command.hold", "linear"))
+
+    def drive(s, first, last):
+        rows = []
+        for k in range(first, last):
+            s.inputs["command"] = math.sin(k)
+            s.step(0.1 * (k + 1))
+            rows.append(dict(s.outputs))
+        return rows
+
+    drive(simulation, 0, 5)
+    snapshot = simulation.snapshot()
+    went_on = drive(simulation, 5, 12)
+    simulation.restore(snapshot)
+    assert drive(simulation, 5, 12) == went_on
+    other = withy.Simulation(withy.loads(TURNTABLE).set("loads.command.hold", "linear"))
+    other.restore(pickle.loads(pickle.dumps(snapshot)))
+    assert drive(other, 5, 12) == went_on
+
+
+def test_events_halt_a_simulation():
+    scene = withy.loads(TURNTABLE + "events: {there: {hinge: axle, value: 0.5, stop: true}}\n")
+    simulation = withy.Simulation(scene)
+    simulation.inputs["command"] = 0.2
+    assert not simulation.advance_to(2.0)
+    assert simulation.time == pytest.approx(1, abs=1e-9)
+    assert simulation.events[0][0] == "there" and simulation.events[0][2] == 1
+    simulation.step(2.0)
+    assert simulation.outputs["axle"] == pytest.approx(2, abs=1e-9)
+
+
+def test_what_cannot_go_on_says_why(slew):
+    simulation = withy.Simulation(slew.set("loads.slew.time_scale", 1.2).set("formulation", "consistent"))
+    with pytest.raises(withy.SimulationStopped, match="mass matrix") as stopped:
+        simulation.step(3.0)
+    assert stopped.value.status == "singular"
+    assert stopped.value.time == simulation.time < 3
+    assert pickle.loads(pickle.dumps(stopped.value)).time == stopped.value.time
+
+
+def test_equations_are_for_any_integrator(slew):
+    scene = slew.set("integrator", {"name": "dop853", "rtol": 1e-11, "atol": 1e-13})
+    equations = scene.compile("quadratic")
+    y = equations.y0
+    assert len(equations.names) == len(y) == len(equations.units)
+    for k in range(400):
+        y = rk4(equations.derivatives, 0.00025 * k, y, 0.00025)
+    simulation = withy.Simulation(scene)
+    simulation.step(0.1)
+    for name, value in zip(equations.names, y):
+        assert value == pytest.approx(simulation.outputs[name], abs=1e-7), name
+    jacobian = equations.jacobian(0.1, y)
+    for j in range(len(y)):
+        h = 1e-5
+        moved = [y + s * h * numpy.eye(len(y))[j] for s in (1, -1)]
+        column = (equations.derivatives(0.1, moved[0]) - equations.derivatives(0.1, moved[1])) / (2 * h)
+        assert numpy.abs(column - jacobian[:, j]).max() < 1e-5 * (1 + numpy.abs(jacobian).max())
+    with pytest.raises(ValueError, match="need an array of"):
+        equations.derivatives(0.0, y[:-1])
+    with pytest.raises(withy.SimulationStopped):
+        equations.derivatives(0.0, numpy.full(len(y), numpy.nan))
+
+
+def test_scipy_integrates_the_equations():
+    integrate = pytest.importorskip("scipy.integrate")
+    equations = withy.loads(TURNTABLE).compile()
+    equations.inputs["command"] = 0.2
+    for method in ("RK45", "Radau"):
+        jac = {} if method == "RK45" else {"jac": equations.jacobian}
+        solution = integrate.solve_ivp(equations.derivatives, (0, 1), equations.y0, method, rtol=1e-8, **jac)
+        assert solution.y[:, -1] == pytest.approx([0.5, 1], abs=1e-6)
+
+
+def test_threads_give_the_bits_of_one(slew):
+    equations = slew.compile()
+
+    def walk(_):
+        y = equations.y0
+        for k in range(300):
+            y = rk4(equations.derivatives, 0.001 * k, y, 0.001)
+        return y
+
+    def run(_):
+        return slew.copy().run(time={"end": 0.3}).table
+
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        for job in (walk, run):
+            first, *others = pool.map(job, range(4))
+            assert all(numpy.array_equal(first, other) for other in others)
+
+
+def test_ctrl_c_ends_a_run(slew):
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        slew.run(time={"end": 1e5})
+    timer.join()
+    simulation = withy.Simulation(slew)
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        simulation.step(1e5)
+    timer.join()
+    simulation.step(simulation.time + 0.01)  # it goes on
+
+
+def test_progress_is_told_and_its_errors_are_raised(slew):
+    told = []
+    slew.run(progress=lambda done, end: told.append(done / end))
+    assert told and told == sorted(told) and told[-1] == 1
+
+    def fail(done, end):
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        slew.run(progress=fail)
+
+
+def test_studies_give_what_the_program_prints(slew):
+    scene = slew.set("time.end", 0.3)
+    compared = scene.compare(["ruthless", "linear"])
+    assert [r["formulation"] for r in compared["runs"]] == ["ruthless", "linear", "quadratic"]
+    assert compared["runs"][0]["distance"]["hinges"]["shoulder"] > 0
+    assert scene.modes(["shoulder", "elbow"])["points"][0]["modes"][0]["hertz"] > 0
+    axes = dict(formulations=["ruthless"], modes=[1], integrators=["dopri5"], tolerances=[1e-4])
+    assert len(scene.trade(**axes)["points"]) == 1
+    assert scene.advise("10%", **axes)["advice"]["formulation"] == "ruthless"
+    with pytest.raises(withy.SceneError):
+        scene.advise("3 kg")
+
+
+def test_results_are_drawn(slew, tmp_path):
+    pytest.importorskip("matplotlib")
+    axes = slew.run().plot("shoulder", "elbow")
+    assert axes.get_ylabel() == "deg" and len(axes.lines) == 2
+    axes.figure.savefig(tmp_path / "run.svg")
+
+
+def test_everything_is_documented():
+    for name in withy.__all__:
+        thing = getattr(withy, name)
+        assert thing.__doc__, name
+        for member, value in vars(thing).items() if isinstance(thing, type) else ():
+            if not member.startswith("_") and callable(value):
+                assert value.__doc__, f"{name}.{member}"
+
+
+def test_the_example_of_the_documentation_runs(tmp_path, monkeypatch):
+    pytest.importorskip("matplotlib")
+    text = (SCENES.parent / "docs" / "python.md").read_text()
+    example = re.search(r"```python\n(.*?)```", text, re.DOTALL).group(1)
+    assert len(example.strip().splitlines()) <= 10
+    monkeypatch.chdir(tmp_path)
+    os.symlink(SCENES, tmp_path / "scenes")
+    exec(compile(example, "docs/python.md", "exec"), {})
+    assert (tmp_path / "tip.png").stat().st_size > 1000
