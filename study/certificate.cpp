@@ -1,7 +1,7 @@
 #include "withy/study/certificate.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/simulation/accuracy.hpp"
@@ -29,6 +29,17 @@ std::vector<OwnFormulation> own_formulations(const Scene& scene, Registry& regis
 void add_stretches(Certificate& c, const Prepared& prepared, const EscalatedRun& run) {
   for (const Stretch& s : run.stretches) c.stretches.push_back({prepared.rungs[s.rung].name, s});
   c.discarded_evaluations = run.discarded_evaluations;
+}
+
+/// Among the indicators, in its place.
+void add_rounding(Certificate& c) {
+  constexpr double limit = 1e-6;
+  if (!c.rounding) return;
+  const Indicator rounding{"error that rounding leaves the accelerations", *c.rounding, limit,
+                           "accelerations have fewer than six digits"};
+  const auto after = std::find_if(c.indicators.begin(), c.indicators.end(),
+                                  [&](const Indicator& i) { return i.use() < rounding.use(); });
+  c.indicators.insert(after, rounding);
 }
 
 }  // namespace
@@ -62,6 +73,7 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.estimate = std::move(evidence.estimate);
   c.steps = step_limit(prepared, summary, registry);
   c.indicators = indicators(scene, summary, last != nullptr ? std::optional(last->terms) : std::nullopt);
+  add_rounding(c);
   return c;
 }
 
