@@ -93,7 +93,7 @@ TEST(StudyRun, NamesBuckling) {
 }
 
 TEST(StudyRun, OneStepOfAnyLengthIsInaccurateAndNamedFirst) {
-  const Value rk4 = Value::map({{"name", Value("rk4")}, {"step", Value(1e300)}});
+  const Value rk4 = Value::map({{"name", Value(std::string("rk4"))}, {"step", Value(1e300)}});
   const CertifiedRun r = run_of("two-link-slew", {{"integrator", rk4}}, "quadratic");
   EXPECT_NE(r.summary.status, RunStatus::completed);
   EXPECT_EQ(r.summary.status, RunStatus::inaccurate) << r.summary.message;
