@@ -31,8 +31,8 @@ std::string use_text(const study::Accuracy& accuracy, double use) {
 /// "3.4 mm", "2 deg", "0.5 N m".
 std::string quantity(double value, study::Measure measure) {
   const std::string unit = study::measure_unit(static_cast<std::size_t>(measure));
-  if (unit == "rad") return fmt::format("{:.2g} deg", value * 180 / std::numbers::pi);
-  return unit == "m" ? fmt::format("{:.2g} mm", 1e3 * value) : fmt::format("{:.2g} {}", value, unit);
+  if (unit == "rad") return fmt::format("{:.3g} deg", value * 180 / std::numbers::pi);
+  return unit == "m" ? fmt::format("{:.3g} mm", 1e3 * value) : fmt::format("{:.3g} {}", value, unit);
 }
 
 /// The output that is furthest off, of what it goes: "most in blade.tip.deflection, 3.4 mm of 540 mm".
