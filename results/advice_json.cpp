@@ -11,11 +11,19 @@ using Json = nlohmann::ordered_json;
 
 Json distances_json(const study::Outputs& outputs, const study::Distances& distances) {
   Json j = Json::object();
-  if (distances.empty()) return j;
-  const study::PerMeasure d = outputs.per_measure(distances);
-  for (std::size_t m = 0; m < study::measures; ++m)
-    if (outputs.has(static_cast<study::Measure>(m))) j[study::measure_name(m)] = d[m];
+  for (std::size_t i = 0; i < distances.size(); ++i) j[outputs.list()[i].label] = distances[i];
   return j;
+}
+
+/// What the accuracy is asked of.
+Json measure_json(const study::Outputs& outputs) {
+  Json all = Json::array();
+  for (const study::Output& o : outputs.list()) {
+    const auto measure = static_cast<std::size_t>(o.measure);
+    all.push_back(
+        {{"output", o.label}, {"measure", study::measure_name(measure)}, {"unit", study::measure_unit(measure)}});
+  }
+  return all;
 }
 
 Json point_json(const study::Point& p) {
@@ -46,7 +54,8 @@ Json probe_json(const study::Outputs& outputs, const study::Probe& p) {
 Json reference_json(const study::Outputs& outputs, const study::Yardstick& yardstick) {
   const study::Reference& r = yardstick.reference;
   Json j = point_json(r.point);
-  j["ways"] = distances_json(outputs, r.ways);
+  j["ranges"] = distances_json(outputs, r.ranges);
+  j["counted_ranges"] = distances_json(outputs, r.scales);
   j["allowed"] = distances_json(outputs, yardstick.limits);
   j["own_error"] = distances_json(outputs, r.own);
   j["own_error_of_accuracy"] = yardstick.own_use();
@@ -63,12 +72,16 @@ Json search_json(const AdviceQuestion& question, const study::Advice& advice, co
                    {"length", number(question.accuracy.length)},
                    {"angle", number(question.accuracy.angle)}};
   j["outputs"] = question.outputs.names();
+  j["measures"] = measure_json(question.outputs);
+  j["floors"] = study::floors_text();
   if (advice.yardstick) j["reference"] = reference_json(question.outputs, *advice.yardstick);
   j["advice"] = nullptr;
   if (!reason.empty()) j["reason"] = reason;
   j["probes"] = Json::array();
   for (const study::Probe& p : advice.probes) j["probes"].push_back(probe_json(question.outputs, p));
   j["cpu_seconds"] = advice.cpu_seconds;
+  j["limit_seconds"] = advice.limit_seconds;
+  j["models"] = {{"all", advice.models}, {"tried", advice.models_tried}};
   return j;
 }
 

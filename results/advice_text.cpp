@@ -28,17 +28,39 @@ std::string use_text(const study::Accuracy& accuracy, double use) {
   return fmt::format("{:.2g} of the accuracy", use);
 }
 
-std::string distances_text(const study::Outputs& outputs, const study::Distances& distances) {
-  const study::PerMeasure d = outputs.per_measure(distances);
+/// "3.4 mm", "2 deg", "0.5 N m".
+std::string quantity(double value, study::Measure measure) {
+  const std::string unit = study::measure_unit(static_cast<std::size_t>(measure));
+  if (unit == "rad") return fmt::format("{:.3g} deg", value * 180 / std::numbers::pi);
+  return unit == "m" ? fmt::format("{:.3g} mm", 1e3 * value) : fmt::format("{:.3g} {}", value, unit);
+}
+
+/// The output that is furthest off, of what it goes: "most in blade.tip.deflection, 3.4 mm of 540 mm".
+std::string worst_text(const AdviceReport& report, const study::Probe& p) {
+  const study::Yardstick& yardstick = *report.advice.yardstick;
+  const std::size_t i = yardstick.worst(p.distances);
+  const study::Output& o = report.question.outputs.list()[i];
+  return fmt::format("most in {}, {} of {}", o.label, quantity(p.distances[i], o.measure),
+                     quantity(yardstick.reference.ranges[i], o.measure));
+}
+
+/// Outputs that hardly move, and what their ranges count as.
+std::string floors_text(const AdviceReport& report) {
+  const study::Reference& r = report.advice.yardstick->reference;
   std::string out;
-  constexpr std::array<const char*, study::measures> nouns = {"angles", "slides", "places", "deflections"};
-  for (std::size_t m = 0; m < study::measures; ++m) {
-    if (!outputs.has(static_cast<study::Measure>(m))) continue;
-    out += fmt::format(
-        "{}{} {}", out.empty() ? "" : ", ", nouns.at(m),
-        m == 0 ? fmt::format("{:.2g} deg", d[m] * 180 / std::numbers::pi) : fmt::format("{:.2g} mm", 1e3 * d[m]));
+  for (std::size_t i = 0; i < r.scales.size(); ++i) {
+    if (!(r.ranges[i] < r.scales[i])) continue;
+    const study::Output& o = report.question.outputs.list()[i];
+    out += fmt::format("{}{} ({} counts as {})", out.empty() ? "" : ", ", o.label, quantity(r.ranges[i], o.measure),
+                       quantity(r.scales[i], o.measure));
   }
   return out;
+}
+
+std::string names_text(const study::Outputs& outputs) {
+  std::string names;
+  for (const std::string& n : outputs.names()) names += (names.empty() ? "" : ", ") + n;
+  return names;
 }
 
 std::string milliseconds(double seconds) { return fmt::format("{:.3g} ms", 1e3 * seconds); }
@@ -124,10 +146,22 @@ void add_reasons(Lines& lines, const AdviceReport& report) {
 
 }  // namespace
 
-std::string no_advice_text(const study::Advice& a, const study::Accuracy& accuracy) {
-  if (!a.trouble.empty()) return a.trouble;
-  std::string text = "none of the candidates holds " + accuracy.text();
-  if (!a.yardstick) return text;
+std::string question_text(const AdviceQuestion& question) {
+  const study::Accuracy& accuracy = question.accuracy;
+  return fmt::format("{}: {}{} {}", question.prepared.title(), accuracy.text(),
+                     accuracy.share ? " of its own range for each of" : " for each of", names_text(question.outputs));
+}
+
+std::string no_advice_text(const study::Advice& a, const AdviceQuestion& question) {
+  const study::Accuracy& accuracy = question.accuracy;
+  const std::string measured = fmt::format(" Measured: {:.2g} s of CPU time of the {:.2g} allowed, {} of {} models.",
+                                           a.cpu_seconds, a.limit_seconds, a.models_tried, a.models);
+  const auto ended = [](std::string text) { return text.ends_with('.') ? text : text + '.'; };
+  if (!a.trouble.empty()) return ended(a.trouble) + measured;
+  std::string text = a.models_tried < a.models ? "the time for the search was over before a model was found that holds "
+                                               : "none of the candidates holds ";
+  text += accuracy.text();
+  if (!a.yardstick) return text + '.' + measured;
   text += fmt::format("; the reference ({}) is known to {}.", a.yardstick->reference.point.text(),
                       use_text(accuracy, a.yardstick->own_use()));
   const study::Probe* nearest = nullptr;
@@ -136,9 +170,10 @@ std::string no_advice_text(const study::Advice& a, const study::Accuracy& accura
         (nearest == nullptr || p.use < nearest->use))
       nearest = &p;
   if (nearest != nullptr)
-    text += fmt::format(" Nearest: {}, {} off. Allow more --modes or tighter --tolerances.", nearest->point.text(),
-                        use_text(accuracy, nearest->use));
-  return text;
+    text += fmt::format(" Nearest: {}, {} off, most in {}. Allow more --modes or tighter --tolerances.",
+                        nearest->point.text(), use_text(accuracy, nearest->use),
+                        question.outputs.list()[a.yardstick->worst(nearest->distances)].label);
+  return text + measured;
 }
 
 std::string advice_text(const AdviceReport& report) {
@@ -148,9 +183,10 @@ std::string advice_text(const AdviceReport& report) {
   Lines lines;
   lines.add("advice", fmt::format("{}, {}, {}", choice.point.formulation_text(), point_modes(choice.point),
                                   integration_text(choice.point)));
-  lines.add("error", fmt::format("{} ({}); the reference itself is known to {}", use_text(accuracy, choice.use),
-                                 distances_text(report.question.outputs, choice.distances),
-                                 use_text(accuracy, a.yardstick->own_use())));
+  lines.add("error", fmt::format("{}, {}; the reference itself is known to {}", use_text(accuracy, choice.use),
+                                 worst_text(report, choice), use_text(accuracy, a.yardstick->own_use())));
+  if (const std::string floors = floors_text(report); accuracy.share && !floors.empty())
+    lines.add("hardly move", floors);
   lines.add("cost", fmt::format("{} of CPU time: {} steps, {} evaluations", milliseconds(choice.cost),
                                 choice.walk.steps, choice.walk.evaluations));
   if (a.steps.product > 0) lines.add("steps", step_limit_text(a.steps));
@@ -165,12 +201,14 @@ std::string advice_text(const AdviceReport& report) {
   for (const study::Probe& p : a.above)
     lines.add("next up",
               fmt::format("{}: {} off, {}", p.point.text(), use_text(accuracy, p.use), milliseconds(p.cost)));
-  lines.add("measured", fmt::format("{} probes, {:.2g} s of CPU time, against {}", a.probes.size(), a.cpu_seconds,
-                                    a.yardstick->reference.point.text()));
-  std::string names;
-  for (const std::string& n : report.question.outputs.names()) names += (names.empty() ? "" : ", ") + n;
-  return fmt::format("{}: {}{} of {}\n\n{}\nin the scene:\n\n{}", report.question.prepared.title(), accuracy.text(),
-                     accuracy.share ? " of the greatest way" : "", names, lines.str(), scene_lines(report.changes));
+  lines.add("measured",
+            fmt::format("{} probes, {:.2g} s of CPU time of the {:.2g} allowed, against {}", a.probes.size(),
+                        a.cpu_seconds, a.limit_seconds, a.yardstick->reference.point.text()));
+  if (a.models_tried < a.models)
+    lines.add("measured",
+              fmt::format("{} of {} models: the time was over, there may be a cheaper one", a.models_tried, a.models));
+  return fmt::format("{}\n\n{}\nin the scene:\n\n{}", question_text(report.question), lines.str(),
+                     scene_lines(report.changes));
 }
 
 }  // namespace withy

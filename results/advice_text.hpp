@@ -18,7 +18,9 @@ struct AdviceReport {
   std::vector<std::string> changes;  ///< `path=value` texts that make the scene what is advised
 };
 std::string advice_text(const AdviceReport& report);
-/// Where there is no choice: why.
-std::string no_advice_text(const study::Advice& advice, const study::Accuracy& accuracy);
+/// What was asked: the accuracy, and what it is of.
+std::string question_text(const AdviceQuestion& question);
+/// Where there is no choice: why, and what was measured.
+std::string no_advice_text(const study::Advice& advice, const AdviceQuestion& question);
 
 }  // namespace withy

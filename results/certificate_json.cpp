@@ -57,11 +57,10 @@ Json stretches_json(const Certificate& c) {
 
 Json estimate_json(const Certificate& c) {
   if (!c.estimate) return {};
-  return {{"against", c.estimate->against},
-          {"hinges", c.estimate->distances.hinges},
-          {"tips", c.estimate->distances.tips},
-          {"until", c.estimate->distances.until},
-          {"cpu_seconds", c.estimate->cpu_seconds}};
+  return {{"against", c.estimate->against},           {"hinges", c.estimate->distances.hinges},
+          {"tips", c.estimate->distances.tips},       {"deflections", c.estimate->distances.deflections},
+          {"moments", c.estimate->distances.moments}, {"forces", c.estimate->distances.forces},
+          {"until", c.estimate->distances.until},     {"cpu_seconds", c.estimate->cpu_seconds}};
 }
 
 Json steps_json(const study::StepLimit& s) {
@@ -96,7 +95,14 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
   c["output_interval"] = scene.output;
   c["compiled"] = certificate.compiled;
   c["energy_drift"] = certificate.energy_drift;
-  c["condition_times_epsilon"] = certificate.rounding ? Json(*certificate.rounding) : Json();
+  c["energy_drift_without_truncation"] = certificate.untruncated_drift;
+  c["momentum_drift"] = certificate.momentum.conserved
+                            ? Json{{"linear", certificate.momentum.linear}, {"angular", certificate.momentum.angular}}
+                            : Json();
+  c["families"] = Json::array();
+  for (const study::BodyFamilies& f : certificate.families)
+    c["families"].push_back({{"body", f.body}, {"family", f.family}, {"modes", f.modes}});
+  c["acceleration_rounding"] = certificate.rounding ? Json(*certificate.rounding) : Json();
   c["samples"] = certificate.samples;
   c["bodies"] = Json::array();
   for (const BodyValidity& b : certificate.bodies) c["bodies"].push_back(body_json(b, summary));

@@ -25,8 +25,12 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model) {
     out += unit == "rad" ? fmt::format("{:.2g} deg", found->second * 180 / std::numbers::pi)
                          : fmt::format("{:.2g}{}", found->second, unit.empty() ? "" : ' ' + unit);
   }
-  for (const auto& [tip, d] : e.distances.tips)
-    out += fmt::format("{}{} {:.2g} mm", out.empty() ? "" : ", ", tip, 1e3 * d);
+  for (const auto* const lengths : {&e.distances.tips, &e.distances.deflections})
+    for (const auto& [name, d] : *lengths) out += fmt::format("{}{} {:.2g} mm", out.empty() ? "" : ", ", name, 1e3 * d);
+  for (const auto& [name, d] : e.distances.moments)
+    out += fmt::format("{}{} {:.2g} N m", out.empty() ? "" : ", ", name, d);
+  for (const auto& [name, d] : e.distances.forces)
+    out += fmt::format("{}{} {:.2g} N", out.empty() ? "" : ", ", name, d);
   if (out.empty()) return "no hinge moves and no body has a tip";
   out = fmt::format("against {}, estimated by a coarse run of both: {}", e.against, out);
   if (e.distances.until < e.end)
@@ -96,6 +100,15 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
     line("",
          "a mix conserves no more than each of its formulations does, and may be further off than any of them alone");
   for (const std::string& text : stretches_text(certificate)) line("", text);
+  line("energy", fmt::format("off by {} of the greatest{}", percent(certificate.energy_drift),
+                             certificate.untruncated_drift > 2 * certificate.energy_drift
+                                 ? fmt::format("; the energy without truncation by {}, which the model leaves out",
+                                               percent(certificate.untruncated_drift))
+                                 : ""));
+  if (certificate.momentum.conserved)
+    line("momentum", fmt::format("linear off by {}, angular by {}: nothing outside acts on the tree, and it is to be "
+                                 "conserved",
+                                 percent(certificate.momentum.linear), percent(certificate.momentum.angular)));
   const NeglectedAcceleration& n = certificate.neglected;
   if (!certificate.against.empty() && n.samples > 0) {
     line("left out", fmt::format("{} of the accelerations in the mean, {} at the peaks, against {} ({} samples)",

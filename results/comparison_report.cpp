@@ -69,7 +69,8 @@ Json comparison_json(const ComparisonAt& group, Registry& registry, bool varied)
                       study::certify(run.prepared, {&run.summary, nullptr, nullptr, {}}, registry)));
     if (group.comparison.has_reference()) {
       const study::NamedDistances d = group.comparison.distances(run);
-      j["distance"] = {{"hinges", d.hinges}, {"tips", d.tips}, {"until", d.until}};
+      j["distance"] = {{"hinges", d.hinges},   {"tips", d.tips},     {"deflections", d.deflections},
+                       {"moments", d.moments}, {"forces", d.forces}, {"until", d.until}};
     }
     runs.push_back(std::move(j));
   }

@@ -89,6 +89,15 @@ Json steady_json(const Model& model, const SteadyState& steady, const Held& held
   return j;
 }
 
+Json against_json(const std::optional<study::AgainstNext>& against) {
+  if (!against) return {};
+  return {{"formulation", against->formulation},
+          {"most", against->problem.empty() ? Json(against->most) : Json()},
+          {"of", against->of},
+          {"compared", against->compared},
+          {"problem", against->problem}};
+}
+
 Json modes_json(const study::ModesOf& run) {
   Json points = Json::array();
   for (const study::ModesAt& at : run.points) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "withy/study/against_next.hpp"
 #include "withy/study/linear_model.hpp"
 #include "withy/study/modes.hpp"
 
@@ -15,6 +17,8 @@ namespace withy {
 nlohmann::ordered_json steady_json(const Model& model, const SteadyState& steady, const Held& held);
 /// An element of "runs" in modes.json.
 nlohmann::ordered_json modes_json(const study::ModesOf& run);
+/// How far a result is from that of the next model up; null where there is none.
+nlohmann::ordered_json against_json(const std::optional<study::AgainstNext>& against);
 /// A line a formulation, value and branch.
 std::string modes_csv(const std::vector<study::ModesOf>& runs, const std::string& label);
 /// Frequencies, and where something grows the rates of growth, over the value.

@@ -59,7 +59,7 @@ Json run_json(const Scene& scene, const RunSummary& summary) {
   j["integrator"] = scene.integrator_name;
   j["status"] = name(summary.status);
   j["message"] = summary.message;
-  j["t_end"] = summary.final.time;
+  j["t_end"] = summary.reached;
   j["final"] = state_json(*scene.model, summary.final);
   j["peaks"] = {{"tip_deflection", tip_peaks(summary)}, {"effort", effort_peaks(*scene.model, summary)}};
   if (!scene.model->motions().empty()) j["peaks"]["motion_effort"] = motion_effort_peaks(*scene.model, summary);

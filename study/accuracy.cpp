@@ -12,7 +12,8 @@
 namespace withy::study {
 namespace {
 
-constexpr double least_distance = 1e-9;  // rad or m; what outputs that stand still may move by
+constexpr double least_distance = 1e-9;  // of its unit; what outputs without a scale may move by
+constexpr double least_effort = 1e-3;    // of the kinetic energy over a radian or the longest body
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(' ');
@@ -49,28 +50,37 @@ Accuracy Accuracy::parse(const std::string& text) {
   return a;
 }
 
-Distances scales(const Outputs& outputs, const Distances& ways) {
-  const PerMeasure greatest = outputs.per_measure(ways);
-  Distances scales;
-  for (const Output& o : outputs.list()) scales.push_back(greatest.at(static_cast<std::size_t>(o.measure)));
+Distances scales(const Outputs& outputs, const Distances& ranges, double energy) {
+  Distances scales = ranges;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    const Output& o = outputs.list()[i];
+    double floor = o.floor;
+    if (o.measure == Measure::moment) floor = least_effort * energy;
+    if (o.measure == Measure::force && outputs.length() > 0) floor = least_effort * energy / outputs.length();
+    scales[i] = std::max(scales[i], floor);
+  }
   return scales;
 }
 
-double relative_error(const Outputs& outputs, const Distances& distances, const Distances& ways) {
-  const Distances scale = scales(outputs, ways);
+double relative_error(const Distances& distances, const Distances& scales) {
   double most = 0;
-  for (std::size_t i = 0; i < scale.size(); ++i)
-    if (scale[i] > 0) most = std::max(most, distances[i] / scale[i]);
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    if (scales[i] > 0) most = std::max(most, distances[i] / scales[i]);
   return most;
 }
 
-Distances Accuracy::limits(const Outputs& outputs, const Distances& ways) const {
-  const Distances scale = scales(outputs, ways);
-  Distances limits(ways.size(), std::numeric_limits<double>::infinity());
+const char* floors_text() {
+  return "a range below a thousandth of a radian, of the body's length (deflections), of the longest body (places, "
+         "slides), or of the kinetic energy over a radian or that length (efforts) counts as that";
+}
+
+Distances Accuracy::limits(const Outputs& outputs, const Distances& scales) const {
+  Distances limits(scales.size(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    const std::optional<double>& distance = outputs.list()[i].measure == Measure::angle ? angle : length;
-    if (distance) limits[i] = *distance;
-    if (share) limits[i] = std::min(limits[i], std::max(*share * scale[i], least_distance));
+    const std::string unit = measure_unit(static_cast<std::size_t>(outputs.list()[i].measure));
+    if (unit == "rad" && angle) limits[i] = *angle;
+    if (unit == "m" && length) limits[i] = *length;
+    if (share) limits[i] = std::min(limits[i], std::max(*share * scales[i], least_distance));
   }
   return limits;
 }
@@ -79,7 +89,9 @@ void Accuracy::require_something_of(const Outputs& outputs) const {
   const bool lengths = outputs.has(Measure::slide) || outputs.has(Measure::place) || outputs.has(Measure::deflection);
   if (share || (length && lengths) || (angle && outputs.has(Measure::angle))) return;
   throw OptionError("accuracy", "'" + text() + "' asks nothing of the outputs, which are " +
-                                    std::string(lengths ? "lengths" : "angles"));
+                                    std::string(lengths                       ? "lengths"
+                                                : outputs.has(Measure::angle) ? "angles"
+                                                                              : "efforts"));
 }
 
 std::string Accuracy::text() const {

@@ -9,22 +9,27 @@
 
 namespace withy::study {
 
-/// What a relative error of each output is a share of: the greatest way of the outputs of its measure [rad, m].
-Distances scales(const Outputs& outputs, const Distances& ways);
-/// The greatest error over its scale; what does not move has none.
-double relative_error(const Outputs& outputs, const Distances& distances, const Distances& ways);
+/// What a relative error of each output is a share of: its own range, or where it hardly moves its floor. An effort's
+/// floor is a thousandth of the greatest kinetic energy over a radian, or over the length of the longest body.
+/// \param ranges greatest distances of the outputs from their start
+/// \param energy greatest kinetic energy of the same run [J]
+Distances scales(const Outputs& outputs, const Distances& ranges, double energy);
+/// The greatest error over its scale; what has none does not count.
+double relative_error(const Distances& distances, const Distances& scales);
+/// What the floors are, in a sentence.
+const char* floors_text();
 
-/// A share of the greatest way, or a distance, or one of each.
+/// A share of each output's own range, or a distance, or one of each.
 struct Accuracy {
-  std::optional<double> share;   ///< of the greatest way of a measure's outputs
+  std::optional<double> share;   ///< of each output's scale
   std::optional<double> angle;   ///< [rad]
   std::optional<double> length;  ///< [m]
 
   /// Reads "1%", "0.01", "2 mm", "0.1 deg", or several of them with commas between. \throws InputError
   static Accuracy parse(const std::string& text);
-  /// Greatest distance allowed of each output, given the ways that outputs go from their start; infinite where nothing
-  /// is asked of it. What does not move may be off by 1e-9 of its unit.
-  [[nodiscard]] Distances limits(const Outputs& outputs, const Distances& ways) const;
+  /// Greatest distance allowed of each output, given what shares are of; infinite where nothing is asked of it. What
+  /// has no scale may be off by 1e-9 of its unit.
+  [[nodiscard]] Distances limits(const Outputs& outputs, const Distances& scales) const;
   /// \throws InputError where it asks nothing of any output
   void require_something_of(const Outputs& outputs) const;
   /// "1 %, 2 mm".

@@ -1,6 +1,7 @@
 #include "withy/study/advice.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "withy/core/simulation/instants.hpp"
 #include "withy/study/advice_search.hpp"
@@ -8,6 +9,9 @@
 
 namespace withy::study {
 namespace {
+
+/// Of the time allowed: the rest is for running what is chosen as a scene that says so is.
+constexpr double search_share = 0.9;
 
 /// The choice, run as a scene that says so is: a deflection past the scene's limit shows there alone.
 RunSummary confirm(Evaluator& evaluator, const Point& choice) {
@@ -17,6 +21,21 @@ RunSummary confirm(Evaluator& evaluator, const Point& choice) {
   return simulate(model.model(), *model.equations,
                   *make_integrator(evaluator.registry(), choice.integrator, choice.tolerance), model.scene.initial,
                   options, {});
+}
+
+/// 20 times the CPU time of the scene's run in `quadratic` [s], or 10 s if that is more. A run that is clearly longer
+/// than the share of it that is looked at is judged by that share.
+double time_limit(Evaluator& evaluator) {
+  constexpr double runs = 20, least = 10;
+  const ModelAt& quadratic = evaluator.model({"quadratic", "", 0, "", 0, {}, {}});
+  if (quadratic.refused()) return least;
+  const Prepared& model = *quadratic.prepared;
+  const auto on = [](const State&) { return true; };
+  const auto afford = [](const Walk& so_far) { return so_far.seconds <= least / runs; };
+  const Walk w = walk(model, *evaluator.base().scene.integrator, {on, afford, evaluator.control().interrupted});
+  if (w.end != Walk::End::cut) return std::max(least, runs * w.seconds);
+  const double start = model.scene.initial.time, gone = w.time - start;
+  return gone > 0 ? std::max(least, runs * w.seconds * (end_of_run(model.scene) - start) / gone) : least;
 }
 
 /// Fills the advice of a search that has a choice.
@@ -54,6 +73,8 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
                      "runs that are measured against each other need common ones");
   accuracy.require_something_of(evaluator.outputs());
   Advice advice;
+  advice.limit_seconds = time_limit(evaluator);
+  evaluator.limit(search_share * advice.limit_seconds);
   Search search(evaluator, candidates, accuracy, advice);
   search.find_yardstick();
   if (advice.yardstick && !search.stopped()) {
@@ -65,6 +86,7 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   advice.interrupted = search.stopped();
   if (advice.interrupted) advice.choice.reset();
   advice.cpu_seconds = evaluator.spent();
+  evaluator.limit(std::numeric_limits<double>::infinity());
   return advice;
 }
 

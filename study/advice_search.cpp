@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
+#include "withy/scene/scene.hpp"
 
 namespace withy::study {
 namespace {
@@ -13,12 +14,22 @@ namespace {
 /// The numbers of the search. Costs are CPU times, which other work on the machine makes longer by some tens of per
 /// cent: what is within such a margin is not told apart by one run.
 namespace policy {
-/// Of the accuracy: what a reference's own error may be, so that three quarters are left to what is chosen.
-constexpr double most_reference_use = 0.25;
+/// Of the accuracy: what a reference's own error is to be, since nothing is chosen that needs this part of it.
+constexpr double good_reference_use = 0.1;
+/// The same where the search for a better one has taken this share of the time allowed.
+constexpr double most_reference_use = 0.25, reference_patience = 0.1;
 /// The same of a reference that has fewer modes than the richest candidate: what its next mode changes is then known.
 constexpr double most_poor_reference_use = 0.25 * most_reference_use;
+/// The same of the finest one there is where none of the levels is as good: less is left to what is chosen.
+constexpr double last_reference_use = 0.7;
+/// Of the time allowed: what the search for a reference may take.
+constexpr double reference_time = 0.6;
+/// Of the time allowed: how much of a reference's run is looked at before its whole cost is judged by it.
+constexpr double first_look = 0.02;
 /// Of the accuracy: an error beyond this in an integration that is much more exact is the model's.
 constexpr double clearly_inaccurate = 1.5;
+/// The same of one that came to the end, the reference's own error on top: no other integration makes up for that.
+constexpr double hardly_inaccurate = 1.05;
 /// Of the accuracy: the tolerance at which an integration adds next to nothing.
 constexpr double exact_enough = 1e-2;
 /// Times the best cost so far: what finding out about a model may cost, since a looser integration of it may cost less.
@@ -29,8 +40,9 @@ constexpr double candidate_allowance = 1.25;
 constexpr double nearly_as_cheap = 1.3;
 /// Runs that last longer [s] are timed once, shorter ones twice.
 constexpr double long_run = 0.2;
-/// Levels of a reference, and its tightest tolerance.
-constexpr int reference_levels = 5;
+/// Levels of a reference, the tolerance of each over that of the one before, and the tightest.
+constexpr int reference_levels = 9;
+constexpr double finer_level = 0.3;
 constexpr double tightest = 1e-9;
 }  // namespace policy
 
@@ -62,41 +74,65 @@ void Search::find_yardstick() {
                 {},
                 {}};
   goal.levels = policy::reference_levels;
+  goal.finer = policy::finer_level;
   goal.tightest = policy::tightest;
   goal.enough = [&](const Reference& r) {
-    const double use = Yardstick{r, accuracy_.limits(evaluator_.outputs(), r.ways)}.own_use();
+    const double use = own_use(r);
     // Candidates are not to have more modes than the truth.
     const bool rich = !modal || r.point.modes >= candidates_.modes.back() || use < policy::most_poor_reference_use;
-    return use <= policy::most_reference_use && rich;
+    const bool late = evaluator_.spent() > policy::reference_patience * evaluator_.limit();
+    return use <= (late ? policy::most_reference_use : policy::good_reference_use) && rich;
   };
-  const ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); },
-                                              evaluator_.registry(), evaluator_.outputs(), goal, evaluator_.control());
-  evaluator_.spend(found.cpu_seconds);
+  goal.afford = [&](const Walk& so_far) { return affordable(so_far); };
+  ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); },
+                                        evaluator_.registry(), evaluator_.outputs(), goal, evaluator_.control());
   advice_.interrupted = found.interrupted;
+  if (!found.reference && found.nearest && own_use(*found.nearest) <= policy::last_reference_use)
+    found.reference = std::move(found.nearest);
   if (found.reference)
-    advice_.yardstick = Yardstick{*found.reference, accuracy_.limits(evaluator_.outputs(), found.reference->ways)};
+    advice_.yardstick = Yardstick{*found.reference, accuracy_.limits(evaluator_.outputs(), found.reference->scales)};
   else
     explain(found);
 }
 
-void Search::explain(const ReferenceFound& found) {
-  if (!found.trouble.empty()) {
-    advice_.trouble = "no reference to measure against: " + found.trouble;
-  } else if (found.nearest) {
-    const Reference& r = *found.nearest;
-    const double use = Yardstick{r, accuracy_.limits(evaluator_.outputs(), r.ways)}.own_use();
-    advice_.trouble = fmt::format(
-        "no reference is exact enough: two runs that differ by a mode and a digit, the finer {}, are still {:.2g} of "
-        "the accuracy apart. Ask for {:.2g} times that accuracy, a shorter time (--set time.end=…) or fewer outputs",
-        r.point.text(), use, std::ceil(10 * use / policy::most_reference_use) / 10);
-  }
+/// Whether the reference's runs, this one gone on with at its pace, keep within their share of the time.
+bool Search::affordable(const Walk& so_far) const {
+  const Scene& scene = evaluator_.base().scene;
+  const double spent = evaluator_.spent(), all = policy::reference_time * evaluator_.limit();
+  evaluator_.control().tell(spent, evaluator_.limit());
+  if (spent > all) return false;
+  const double gone = so_far.time - scene.initial.time, whole = end_of_run(scene) - scene.initial.time;
+  if (so_far.seconds < policy::first_look * all || !(gone > 0)) return true;
+  return spent + so_far.seconds * (whole / gone - 1) <= all;
 }
 
-std::vector<Point> Search::models_by_cost() const {
+double Search::own_use(const Reference& r) const {
+  return Yardstick{r, accuracy_.limits(evaluator_.outputs(), r.scales)}.own_use();
+}
+
+void Search::explain(const ReferenceFound& found) {
+  advice_.nearest = found.nearest;
+  if (!found.nearest) {
+    advice_.trouble = "no reference to measure against";
+    if (!found.trouble.empty()) advice_.trouble += ": " + found.trouble;
+    return;
+  }
+  const Reference& r = *found.nearest;
+  const Yardstick yardstick{r, accuracy_.limits(evaluator_.outputs(), r.scales)};
+  advice_.trouble = fmt::format(
+      "no reference is exact enough: two runs that differ by a mode and a digit, the finer {}, are {:.2g} of the "
+      "accuracy apart, most in {}. Ask for {:.2g} times that accuracy, a shorter time (--set time.end=…) or other "
+      "outputs (--output)",
+      r.point.text(), yardstick.own_use(), evaluator_.outputs().list()[yardstick.worst(r.own)].label,
+      std::ceil(10 * yardstick.own_use() / policy::last_reference_use) / 10);
+  if (found.unaffordable) advice_.trouble += ". A finer one costs too much: " + found.trouble;
+}
+
+std::vector<Point> Search::models_by_cost(const std::vector<int>& all_modes) const {
   std::vector<std::pair<double, Point>> order;
   for (const std::string& formulation : candidates_.formulations)
     for (const std::string& family : candidates_.families)
-      for (const int modes : candidates_.modes) {
+      for (const int modes : all_modes) {
         const ModelAt& m = evaluator_.model({formulation, family, modes, "", 0, {}, {}});
         // Explicit steps are as many as the fastest mode makes them.
         order.emplace_back(m.seconds * std::max(m.fastest, 1.0), m.point);
@@ -122,8 +158,8 @@ const Probe& Search::run(const Point& point, const Allowance& allowance) {
 double Search::exact_enough_tolerance() const {
   double share = policy::exact_enough;
   const Reference& r = yardstick().reference;
-  for (std::size_t i = 0; i < r.ways.size(); ++i)
-    if (r.ways[i] > 0) share = std::min(share, yardstick().limits[i] / r.ways[i]);
+  for (std::size_t i = 0; i < r.scales.size(); ++i)
+    if (r.scales[i] > 0) share = std::min(share, yardstick().limits[i] / r.scales[i]);
   const double wanted = policy::exact_enough * share * (1 + 1e-9);
   for (const double t : candidates_.tolerances)
     if (t <= wanted) return t;
@@ -140,7 +176,9 @@ bool Search::model_holds(const Point& model) {
   run(point, {policy::clearly_inaccurate, policy::model_allowance * best_cost()});
   Probe& p = advice_.probes.back();
   if (!candidate && p.passed()) p.outcome = Probe::Outcome::no_candidate;
-  return !(p.outcome == Probe::Outcome::inaccurate && p.use > policy::clearly_inaccurate);
+  const double left =
+      p.walk.end == Walk::End::reached ? policy::hardly_inaccurate - yardstick().own_use() : policy::clearly_inaccurate;
+  return !(p.outcome == Probe::Outcome::inaccurate && p.use > left);
 }
 
 void Search::try_model(const Point& model) {
@@ -149,31 +187,66 @@ void Search::try_model(const Point& model) {
     return;
   }
   if (!model_holds(model)) return;
-  const double known = exact_enough_tolerance();
   for (const std::string& integrator : candidates_.integrators) {
-    for (const double tolerance : candidates_.tolerances) {
-      if (stopped()) return;
-      if (integrator == "dop853" && tolerance <= known && contains(candidates_.tolerances, known)) break;
-      Point point = model;
-      point.integrator = integrator;
-      point.tolerance = tolerance;
-      const Probe& p = run(point, {1, policy::candidate_allowance * best_cost()});
-      // Tighter ones cost more.
-      if (p.passed() || p.outcome == Probe::Outcome::too_costly || p.outcome == Probe::Outcome::refused) break;
-    }
+    if (over()) return;
+    if (worth_trying(integrator, model)) try_integrations(model, integrator);
+  }
+}
+
+/// Implicit steps pay where stability, not accuracy, limits explicit ones: there the loosest tolerance is exact enough
+/// already, or costs too much. `imex` costs little more than an explicit step and is always tried.
+bool Search::worth_trying(const std::string& integrator, const Point& model) const {
+  const auto limit =
+      make_integrator(evaluator_.registry(), integrator, candidates_.tolerances.front())->stability_limit();
+  if (integrator == "imex" || (limit && std::isfinite(*limit))) return true;
+  bool tried = false;
+  for (const Probe& p : advice_.probes) {
+    if (!p.point.same_model(model) || p.point.tolerance != candidates_.tolerances.front()) continue;
+    if (p.passed() || p.outcome == Probe::Outcome::too_costly) return true;
+    tried = true;
+  }
+  return !tried;
+}
+
+/// From the loosest tolerance on, until one passes or costs more than the best so far.
+void Search::try_integrations(const Point& model, const std::string& integrator) {
+  const double known = exact_enough_tolerance();
+  for (const double tolerance : candidates_.tolerances) {
+    if (over()) return;
+    if (integrator == "dop853" && tolerance <= known && contains(candidates_.tolerances, known)) return;
+    Point point = model;
+    point.integrator = integrator;
+    point.tolerance = tolerance;
+    const Probe& p = run(point, {1, policy::candidate_allowance * best_cost()});
+    // Tighter ones cost more.
+    if (p.passed() || p.outcome == Probe::Outcome::too_costly || p.outcome == Probe::Outcome::refused) return;
   }
 }
 
 void Search::try_models() {
-  for (const Point& model : models_by_cost()) {
-    if (stopped()) return;
+  try_models(candidates_.modes);
+  const auto passed = [](const Probe& p) { return p.passed(); };
+  for (const int modes : candidates_.more_modes) {
+    // More than the reference has would be measured against less.
+    if (over() || modes > yardstick().reference.point.modes) return;
+    if (std::any_of(advice_.probes.begin(), advice_.probes.end(), passed)) return;
+    try_models({modes});
+  }
+}
+
+void Search::try_models(const std::vector<int>& modes) {
+  const std::vector<Point> models = models_by_cost(modes);
+  advice_.models += models.size();
+  for (const Point& model : models) {
+    if (over()) return;
     try_model(model);
+    ++advice_.models_tried;
   }
 }
 
 /// Another whole run, from which the cost of an evaluation may be seen to be less.
 void Search::time_again(const Probe& probe) {
-  for (int i = 0; i < 2 && !stopped(); ++i)
+  for (int i = 0; i < 2 && !over(); ++i)
     if (evaluator_.run(probe.point, yardstick()).walk.seconds > policy::long_run) return;
 }
 
@@ -197,7 +270,7 @@ void Search::simplify_bodies() {
   const std::vector<std::string> bodies = flexible_bodies(evaluator_.base().scene);
   if (bodies.size() < 2) return;  // all of them were tried
   for (const std::string& body : bodies) {
-    if (stopped() || choice->point.bodies.size() + 1 == bodies.size()) return;
+    if (over() || choice->point.bodies.size() + 1 == bodies.size()) return;
     Point point = choice->point;
     point.bodies.emplace_back(body, least);
     if (evaluator_.model(point).refused()) continue;
@@ -208,27 +281,32 @@ void Search::simplify_bodies() {
   }
 }
 
-/// Measures what stands one step above the choice, by whole runs.
+/// Measures a model above the choice by a whole run; what does not hold the accuracy is nothing to go up to.
+bool Search::hold(const Point& above) {
+  Probe p = evaluator_.run(above, yardstick());
+  if (p.passed()) advice_.above.push_back(p);
+  return p.passed();
+}
+
+/// The next formulation and the next number of modes above the choice that hold the accuracy.
 void Search::look_up() {
   if (!flexible(evaluator_.base().model())) return;
-  const Point& choice = advice_.choice->point;
-  std::vector<Point> points;
-  const std::optional<std::string> above = next_rung(evaluator_.registry(), choice.formulation);
-  if (!choice.bodies.empty() || above) {
-    points.push_back(choice);
-    if (choice.bodies.empty()) points.back().formulation = *above;
-    points.back().bodies.clear();
+  Point up = advice_.choice->point;
+  if (!up.bodies.empty()) {
+    up.bodies.clear();
+    if (over() || hold(up)) up.formulation.clear();
   }
-  if (choice.modes > 0) {
-    points.push_back(choice);
-    ++points.back().modes;
+  while (!up.formulation.empty() && !over()) {
+    const std::optional<std::string> above = next_rung(evaluator_.registry(), up.formulation);
+    if (!above) break;
+    up.formulation = *above;
+    if (hold(up)) break;
   }
-  for (const Point& point : points) {
-    if (stopped()) return;
-    Probe p = evaluator_.run(point, yardstick());
-    // A model that does not come to the end is nothing to go up to.
-    if (p.outcome != Probe::Outcome::stopped && p.outcome != Probe::Outcome::refused)
-      advice_.above.push_back(std::move(p));
+  constexpr int most_more = 2;
+  Point more = advice_.choice->point;
+  for (int i = 0; i < most_more && more.modes > 0 && !over(); ++i) {
+    ++more.modes;
+    if (hold(more)) break;
   }
 }
 

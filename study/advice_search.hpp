@@ -18,10 +18,18 @@ class Search {
   void simplify_bodies();
   void look_up();
   [[nodiscard]] bool stopped() const { return advice_.interrupted || evaluator_.control().stop(); }
+  /// So too where there is no time left.
+  [[nodiscard]] bool over() const { return stopped() || evaluator_.out_of_time(); }
 
  private:
   void explain(const ReferenceFound& found);
-  [[nodiscard]] std::vector<Point> models_by_cost() const;
+  [[nodiscard]] bool affordable(const Walk& so_far) const;
+  [[nodiscard]] double own_use(const Reference& r) const;
+  [[nodiscard]] bool worth_trying(const std::string& integrator, const Point& model) const;
+  void try_integrations(const Point& model, const std::string& integrator);
+  [[nodiscard]] bool hold(const Point& above);
+  [[nodiscard]] std::vector<Point> models_by_cost(const std::vector<int>& modes) const;
+  void try_models(const std::vector<int>& modes);
   void try_model(const Point& model);
   bool model_holds(const Point& model);
   [[nodiscard]] double exact_enough_tolerance() const;

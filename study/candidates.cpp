@@ -44,6 +44,19 @@ bool families_are_exchangeable(const Scene& scene, Registry& registry) {
   return fit;
 }
 
+/// Those that there are: some come with libraries that need not be installed.
+std::vector<std::string> usual_integrators(Registry& registry) {
+  std::vector<std::string> ids = {"dopri5", "dop853", "imex", "radau", "cvode"};
+  std::erase_if(ids, [&](const std::string& id) {
+    try {
+      return registry.find<Integrator>(id) == nullptr;
+    } catch (const PluginError&) {
+      return true;
+    }
+  });
+  return ids;
+}
+
 void check(const Axes& axes, Registry& registry) {
   check_axes(axes);
   for (const std::string& f : axes.formulations) {
@@ -57,10 +70,16 @@ void check(const Axes& axes, Registry& registry) {
 
 }  // namespace
 
-Axes usual_axes() { return {{}, {}, {1, 2, 3, 4}, {"dopri5", "dop853", "imex"}, {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, {}}; }
+Axes usual_axes() { return {{}, {}, {}, {}, {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, {}}; }
 
-Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes c) {
+Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes asked) {
+  Candidates c{std::move(asked), {}};
+  if (c.modes.empty()) {
+    c.modes = {1, 2, 3, 4};
+    c.more_modes = {5, 6, 7, 8};
+  }
   if (c.formulations.empty()) c.formulations = studied_formulations(registry);
+  if (c.integrators.empty()) c.integrators = usual_integrators(registry);
   check(c, registry);
   const Scene& scene = prepared.scene;
   if (!flexible(prepared.model())) c.formulations = {plain_formulation};  // without modes all are the same
@@ -69,7 +88,10 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes c) 
     bending = true;
     polynomial_already = polynomial_already && count.family_id() == polynomials;
   });
-  if (scene.modes.empty()) c.modes = {0};
+  if (scene.modes.empty()) {
+    c.modes = {0};
+    c.more_modes.clear();
+  }
   if (!bending) c.families = {""};
   if (c.families.empty()) {
     c.families = {""};

@@ -13,9 +13,13 @@ namespace withy::study {
 
 /// Values of each axis as asked for, and as they make sense for the scene: formulations cost less before more, modes
 /// fewer before more (0 where no body has a number of them), tolerances loosest first.
-using Candidates = Axes;
+struct Candidates : Axes {
+  std::vector<int> more_modes;  ///< tried where none of `modes` will do; empty where the user says which
+};
 
-/// What is chosen from where nothing else is asked; no formulations: those that take part in studies.
+/// What is chosen from where nothing else is asked; no modes: 1 to 4, and to 8 where these will not do; no
+/// formulations: those that take part in studies; no integrators: `dopri5`, `dop853`, and `imex`, `radau` and `cvode`
+/// where they are installed.
 Axes usual_axes();
 
 /// The axes without what means nothing for the scene, families of bending added where they mean the same beams.

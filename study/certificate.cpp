@@ -1,9 +1,10 @@
 #include "withy/study/certificate.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "withy/core/plugin/formulation.hpp"
+#include "withy/core/simulation/accuracy.hpp"
 #include "withy/study/candidates.hpp"
 
 namespace withy::study {
@@ -30,6 +31,17 @@ void add_stretches(Certificate& c, const Prepared& prepared, const EscalatedRun&
   c.discarded_evaluations = run.discarded_evaluations;
 }
 
+/// Among the indicators, in its place.
+void add_rounding(Certificate& c) {
+  constexpr double limit = 1e-6;
+  if (!c.rounding) return;
+  const Indicator rounding{"error that rounding leaves the accelerations", *c.rounding, limit,
+                           "accelerations have fewer than six digits"};
+  const auto after = std::find_if(c.indicators.begin(), c.indicators.end(),
+                                  [&](const Indicator& i) { return i.use() < rounding.use(); });
+  c.indicators.insert(after, rounding);
+}
+
 }  // namespace
 
 Certificate certify(const Prepared& prepared, Evidence evidence, Registry& registry) {
@@ -46,9 +58,14 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   }
   c.compiled = (last != nullptr ? *last->equations : *prepared.equations).savings();
   c.energy_drift = summary.energy_drift;
-  // Digits lost in solving for accelerations: no result is better than this, whatever the integrator's tolerance.
-  if (const double condition = summary.conditioning.condition; condition > 0)
-    c.rounding = condition * std::numeric_limits<double>::epsilon();
+  c.untruncated_drift = summary.untruncated_drift;
+  c.momentum = summary.momentum;
+  for (const BodyModes& body : scene.modes)
+    for (const ModeCount& count : body.counts)
+      if (count.modes > 0) c.families.push_back({body.body, count.family_id(), static_cast<std::size_t>(count.modes)});
+  const EquationsOfMotion& equations = last != nullptr ? *last->equations : *prepared.equations;
+  const double rounding = rounding_error(prepared.model(), equations, summary.final).relative;
+  if (std::isfinite(rounding)) c.rounding = rounding;
   c.samples = summary.validity.samples;
   c.bodies = summary.validity.bodies;
   if (evidence.beyond != nullptr) c.against = evidence.beyond->formulation;
@@ -56,6 +73,7 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.estimate = std::move(evidence.estimate);
   c.steps = step_limit(prepared, summary, registry);
   c.indicators = indicators(scene, summary, last != nullptr ? std::optional(last->terms) : std::nullopt);
+  add_rounding(c);
   return c;
 }
 

@@ -25,6 +25,13 @@ struct OwnFormulation {
   std::string meaning;  ///< in a sentence
 };
 
+/// The mode families of a body with their numbers of modes and the ends they are made for.
+struct BodyFamilies {
+  std::string body;
+  std::string family;
+  std::size_t modes = 0;
+};
+
 struct Certificate {
   std::string formulation;                ///< of the scene
   std::string meaning;                    ///< the formulation in a sentence
@@ -33,7 +40,10 @@ struct Certificate {
   std::size_t discarded_evaluations = 0;  ///< the same
   std::vector<std::string> compiled;      ///< what the compiled equations save
   double energy_drift = 0;                ///< RunSummary::energy_drift
-  std::optional<double> rounding;         ///< relative error of accelerations that rounding may leave at the end
+  double untruncated_drift = 0;           ///< RunSummary::untruncated_drift
+  MomentumDrift momentum;                 ///< RunSummary::momentum
+  std::vector<BodyFamilies> families;     ///< of every body that has modes
+  std::optional<double> rounding;         ///< relative error that rounding leaves the final accelerations; none: no digit
   std::size_t samples = 0;                ///< of validity
   std::vector<BodyValidity> bodies;       ///< of every flexible body
   std::string against;                    ///< formulation that accelerations were compared with; empty: none

@@ -12,7 +12,7 @@ Readings read(const Outputs& outputs, const ComparedRun& run) {
   Readings readings;
   for (const State& s : run.outputs) {
     readings.times.push_back(s.time);
-    readings.values.push_back(reader.read(s.y));
+    readings.values.push_back(reader.read(s));
   }
   return readings;
 }

@@ -19,7 +19,7 @@ ErrorEstimate estimate_error(const Scene& scene, const EquationsOfMotion& used, 
   Distances greatest = outputs.none();
   const PairedRun run =
       run_paired(*scene.model, used, *beyond.equations, *integrator, scene.initial, options,
-                 [&](const State& a, const State& b) { outputs.raise(ours.read(a.y), theirs.read(b.y), greatest); });
+                 [&](const State& a, const State& b) { outputs.raise(ours.read(a), theirs.read(b), greatest); });
   return {beyond.formulation, named(outputs, greatest, run.until), summary.final.time, run.cpu_seconds};
 }
 

@@ -1,7 +1,6 @@
 #include "withy/study/indicators.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/simulation/validity_limits.hpp"
@@ -11,8 +10,6 @@ namespace {
 
 /// Of the elastic energy of a family: what its highest mode may have before the next one is missed.
 constexpr double highest_mode_limit = 0.1;
-/// Relative error of accelerations by rounding that leaves six digits.
-constexpr double rounding_limit = 1e-6;
 
 /// Modes in one direction alone: taken as the plane of rotation.
 bool one_direction(const BodyValidity& body) { return body.highest.size() == 1; }
@@ -43,11 +40,6 @@ std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary,
   for (const BodyValidity& b : summary.validity.bodies) {
     const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(b.name))];
     add_body(all, b, node.terms.value_or(terms), summary);
-  }
-  if (summary.conditioning.condition > 0) {
-    all.push_back({"condition of the mass matrix times the rounding unit",
-                   summary.conditioning.condition * std::numeric_limits<double>::epsilon(), rounding_limit,
-                   "accelerations have fewer than six digits"});
   }
   std::stable_sort(all.begin(), all.end(), [](const Indicator& a, const Indicator& b) { return a.use() > b.use(); });
   return all;

@@ -6,16 +6,34 @@
 #include <limits>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
 namespace {
+
+/// Of its own unit of length or of a radian: what moves less hardly moves.
+constexpr double hardly = 1e-3;
 
 Eigen::Quaterniond quaternion(std::span<const double> v) {
   return Eigen::Quaterniond(v[0], v[1], v[2], v[3]).normalized();
 }
 
 std::string tip_name(const Tip& tip, bool deflection) { return tip.body + (deflection ? ".tip.deflection" : ".tip"); }
+
+std::string effort_name(const HingeNode& hinge) { return hinge.name + ".motion_effort"; }
+
+/// "cross.1" of several, the name of one.
+std::string numbered(const std::string& name, std::size_t i, std::size_t count) {
+  return count > 1 ? name + '.' + std::to_string(i) : name;
+}
+
+double longest_body(const Model& model) {
+  double longest = 0;
+  for (const BodyNode& body : model.bodies()) longest = std::max(longest, body.body->shape().length);
+  for (const Tip& tip : tips(model)) longest = std::max(longest, tip.length);
+  return longest;
+}
 
 std::size_t numbers_of(Output::Shape shape) {
   constexpr std::array<std::size_t, 3> numbers = {1, 3, 4};
@@ -45,6 +63,8 @@ std::string known_names(const Model& model, const std::vector<Tip>& tips) {
     add(tip_name(tip, false));
     if (tip.flexible) add(tip_name(tip, true));
   }
+  for (std::size_t h = 0; h < model.hinges().size(); ++h)
+    if (model.driven(h)) add(effort_name(model.hinges()[h]));
   return list;
 }
 
@@ -57,30 +77,37 @@ double greatest(const std::map<std::string, double>& values) {
 }  // namespace
 
 const char* measure_name(std::size_t measure) {
-  constexpr std::array<const char*, measures> names = {"angle", "slide", "place", "deflection"};
+  constexpr std::array<const char*, measures> names = {"angle", "slide", "place", "deflection", "moment", "force"};
   return names.at(measure);
 }
 
-const char* measure_unit(std::size_t measure) { return measure == 0 ? "rad" : "m"; }
+const char* measure_unit(std::size_t measure) {
+  constexpr std::array<const char*, measures> units = {"rad", "m", "m", "m", "N m", "N"};
+  return units.at(measure);
+}
 
-Outputs::Outputs(const Model& model, const std::vector<std::string>& names) {
+Outputs::Outputs(const Model& model, const std::vector<std::string>& names) : length_(longest_body(model)) {
   const std::vector<Tip> all_tips = tips(model);
-  if (names.empty()) {
-    for (std::size_t h = 0; h < model.hinges().size(); ++h)
-      if (!model.driven(h)) add_hinge(model, h);
-    for (std::size_t i = 0; i < all_tips.size(); ++i) add_tip(all_tips[i], i, false);
-  }
+  if (names.empty()) add_all(model, all_tips, false);
   for (const std::string& name : names) add_named(model, all_tips, name);
-  if (outputs_.empty())
-    throw InputError("no hinge of the scene moves freely and no body has a tip: nothing to measure");
+  if (outputs_.empty()) throw InputError("no hinge of the scene moves and no body has a tip: nothing to measure");
 }
 
 Outputs Outputs::all(const Model& model) {
-  Outputs outputs;
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) outputs.add_hinge(model, h);
-  const std::vector<Tip> all_tips = tips(model);
-  for (std::size_t i = 0; i < all_tips.size(); ++i) outputs.add_tip(all_tips[i], i, false);
+  Outputs outputs(longest_body(model));
+  outputs.add_all(model, tips(model), true);
   return outputs;
+}
+
+void Outputs::add_all(const Model& model, const std::vector<Tip>& tips, bool driven) {
+  for (std::size_t h = 0; h < model.hinges().size(); ++h)
+    if (driven || !model.driven(h)) add_hinge(model, h);
+  for (std::size_t i = 0; i < tips.size(); ++i) {
+    add_tip(tips[i], i, false);
+    if (tips[i].flexible) add_tip(tips[i], i, true);
+  }
+  for (std::size_t h = 0; h < model.hinges().size(); ++h)
+    if (model.driven(h)) add_effort(model, h);
 }
 
 void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const std::string& name) {
@@ -90,18 +117,25 @@ void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const 
     if (name == tip_name(tips[i], false)) add_tip(tips[i], i, false);
     if (name == tip_name(tips[i], true) && tips[i].flexible) add_tip(tips[i], i, true);
   }
+  for (std::size_t h = 0; h < model.hinges().size(); ++h)
+    if (model.driven(h) && name == effort_name(model.hinges()[h])) add_effort(model, h);
   if (outputs_.size() == before)
     throw OptionError("outputs", "got '" + name + "'; need one of: " + known_names(model, tips));
 }
 
 void Outputs::add(Output output) {
+  if (output.label.empty()) output.label = output.name;
   output.at = size_;
   size_ += numbers_of(output.shape);
   outputs_.push_back(std::move(output));
 }
 
 void Outputs::add_tip(const Tip& tip, std::size_t index, bool deflection) {
-  add({tip_name(tip, deflection), deflection ? Measure::deflection : Measure::place, Output::Shape::vector, index});
+  add({.name = tip_name(tip, deflection),
+       .measure = deflection ? Measure::deflection : Measure::place,
+       .shape = Output::Shape::vector,
+       .index = index,
+       .floor = hardly * (deflection ? tip.length : length_)});
 }
 
 void Outputs::add_hinge(const Model& model, std::size_t hinge) {
@@ -109,13 +143,43 @@ void Outputs::add_hinge(const Model& model, std::size_t hinge) {
   const auto kernel = node.hinge->kernel();
   const bool free = kernel && kernel->kind == HingeKernel::Kind::free;
   if (free || (kernel && kernel->kind == HingeKernel::Kind::spherical)) {
-    add({node.name, Measure::angle, Output::Shape::orientation, hinge});
-    if (free) add({node.name, Measure::slide, Output::Shape::vector, hinge, 4});
+    add({.name = node.name,
+         .measure = Measure::angle,
+         .shape = Output::Shape::orientation,
+         .index = hinge,
+         .floor = hardly,
+         .label = node.name + (free ? ".angle" : "")});
+    if (free)
+      add({.name = node.name,
+           .measure = Measure::slide,
+           .shape = Output::Shape::vector,
+           .index = hinge,
+           .coordinate = 4,
+           .floor = hardly * length_,
+           .label = node.name + ".slide"});
     return;
   }
   const auto columns = coordinate_columns(node);
-  for (std::size_t c = 0; c < columns.size(); ++c)
-    add({node.name, columns[c].unit == "m" ? Measure::slide : Measure::angle, Output::Shape::number, hinge, c});
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const bool slides = columns[c].unit == "m";
+    add({.name = node.name,
+         .measure = slides ? Measure::slide : Measure::angle,
+         .index = hinge,
+         .coordinate = c,
+         .floor = hardly * (slides ? length_ : 1),
+         .label = numbered(node.name, c, columns.size())});
+  }
+}
+
+void Outputs::add_effort(const Model& model, std::size_t hinge) {
+  const HingeNode& node = model.hinges()[hinge];
+  const std::vector<HingeRate> rates = hinge_rates(*node.hinge);
+  for (std::size_t i = 0; i < rates.size(); ++i)
+    add({.name = effort_name(node),
+         .measure = rates[i].angular ? Measure::moment : Measure::force,
+         .index = hinge,
+         .coordinate = model.layout().hinges[hinge].speed + i,
+         .label = numbered(effort_name(node), i, rates.size())});
 }
 
 std::vector<std::string> Outputs::names() const {
@@ -148,22 +212,46 @@ PerMeasure Outputs::per_measure(const Distances& distances) const {
 }
 
 OutputReader::OutputReader(const Outputs& outputs, const Model& model, const EquationsOfMotion& equations)
-    : outputs_(outputs), model_(model), seen_(equations.make_observation()), tips_(tips(model)) {}
+    : outputs_(outputs),
+      model_(model),
+      equations_(equations),
+      seen_(equations.make_observation()),
+      tips_(tips(model)),
+      work_(0) {
+  if (!outputs.has(Measure::moment) && !outputs.has(Measure::force)) return;
+  work_ = equations.make_work();
+  efforts_.resize(model.layout().speeds);
+}
 
-std::vector<double> OutputReader::read(std::span<const double> y) {
+std::vector<double> OutputReader::read(const State& state) {
+  const std::span<const double> y(state.y);
   std::vector<double> values;
   values.reserve(outputs_.size());
   seen_->observe(y);
+  if (!efforts_.empty() && !equations_.motion_efforts(state.time, y, efforts_, work_).ok())
+    std::fill(efforts_.begin(), efforts_.end(), std::numeric_limits<double>::quiet_NaN());
   for (const Output& o : outputs_.list()) {
-    if (o.measure == Measure::place) {
-      const auto p = seen_->frame_pose(tips_[o.index].tip.body, tips_[o.index].tip.frame).position;
-      values.insert(values.end(), p.begin(), p.end());
-    } else if (o.measure == Measure::deflection) {
-      const auto d = deflection(*seen_, tips_[o.index]);
-      values.insert(values.end(), d.begin(), d.end());
-    } else {
-      const auto x = y.subspan(model_.layout().hinges[o.index].position + o.coordinate, numbers_of(o.shape));
-      values.insert(values.end(), x.begin(), x.end());
+    switch (o.measure) {
+      case Measure::place: {
+        const auto p = seen_->frame_pose(tips_[o.index].tip.body, tips_[o.index].tip.frame).position;
+        values.insert(values.end(), p.begin(), p.end());
+        break;
+      }
+      case Measure::deflection: {
+        const auto d = deflection(*seen_, tips_[o.index]);
+        values.insert(values.end(), d.begin(), d.end());
+        break;
+      }
+      case Measure::moment:
+      case Measure::force:
+        values.push_back(efforts_[o.coordinate]);
+        break;
+      case Measure::angle:
+      case Measure::slide: {
+        const auto x = y.subspan(model_.layout().hinges[o.index].position + o.coordinate, numbers_of(o.shape));
+        values.insert(values.end(), x.begin(), x.end());
+        break;
+      }
     }
   }
   return values;
@@ -172,13 +260,29 @@ std::vector<double> OutputReader::read(std::span<const double> y) {
 double NamedDistances::greatest_hinge() const { return greatest(hinges); }
 double NamedDistances::greatest_tip() const { return greatest(tips); }
 
+std::map<std::string, double>& NamedDistances::of(Measure measure) {
+  switch (measure) {
+    case Measure::place:
+      return tips;
+    case Measure::deflection:
+      return deflections;
+    case Measure::moment:
+      return moments;
+    case Measure::force:
+      return forces;
+    case Measure::angle:
+    case Measure::slide:
+      break;
+  }
+  return hinges;
+}
+
 NamedDistances named(const Outputs& outputs, const Distances& distances, double until) {
   NamedDistances d;
   d.until = until;
   for (std::size_t i = 0; i < distances.size(); ++i) {
     const Output& o = outputs.list()[i];
-    const bool hinge = o.measure == Measure::angle || o.measure == Measure::slide;
-    double& most = (hinge ? d.hinges : d.tips)[o.name];
+    double& most = d.of(o.measure)[o.name];
     most = std::max(most, distances[i]);
   }
   return d;

@@ -18,44 +18,51 @@ namespace withy::study {
 
 /// What an output is a distance of.
 enum class Measure {
-  angle,      ///< of a hinge [rad]; of orientations the angle between them
-  slide,      ///< of a hinge [m]
-  place,      ///< of a tip, in the world [m]
-  deflection  ///< of a tip, in the frame of its body's root [m]
+  angle,       ///< of a hinge [rad]; of orientations the angle between them
+  slide,       ///< of a hinge [m]
+  place,       ///< of a tip, in the world [m]
+  deflection,  ///< of a tip, in the frame of its body's root [m]
+  moment,      ///< that a motion needs on a speed it prescribes [N m]
+  force        ///< the same [N]
 };
-inline constexpr std::size_t measures = 4;
+inline constexpr std::size_t measures = 6;
 /// One number for each measure.
 using PerMeasure = std::array<double, measures>;
-/// "angle", "slide", "place", "deflection".
+/// "angle", "slide", "place", "deflection", "moment", "force".
 const char* measure_name(std::size_t measure);
-/// "rad" or "m".
+/// "rad", "m", "N m" or "N".
 const char* measure_unit(std::size_t measure);
 
-/// One number for each output, in the order of Outputs::list() [rad, m].
+/// One number for each output, in the order of Outputs::list() [rad, m, N m, N].
 using Distances = std::vector<double>;
 
 /// Something that a run gives at each of its outputs: a number, a vector or an orientation.
 struct Output {
   enum class Shape { number, vector, orientation };
-  std::string name;  ///< of the hinge, or as "link2.tip", "link2.tip.deflection"
+  std::string name;  ///< of the hinge, or as "link2.tip", "link2.tip.deflection", "axle.motion_effort"
   Measure measure = Measure::angle;
   Shape shape = Shape::number;
   std::size_t index = 0;       ///< of the hinge, or of the tip among tips(model)
-  std::size_t coordinate = 0;  ///< first one among the hinge's
-  std::size_t at = 0;          ///< first of its numbers in a reading
+  std::size_t coordinate = 0;  ///< first one among the hinge's; of efforts its speed
+  /// A range below this counts as this: a thousandth of a radian, of the body's length for deflections, of the longest
+  /// body for slides and places. Efforts have none of their own: see `scales`.
+  double floor = 0;
+  std::string label = {};  ///< the name, told apart from others of that name: "float.slide", "cross.1"
+  std::size_t at = 0;      ///< first of its numbers in a reading
 };
 
 /// Outputs of a scene. Those of models with the same hinges and tips can be compared, whatever their modes.
 class Outputs {
  public:
-  /// Every hinge that no motion drives and the place of every tip; with names, what these name: hinges, `body.tip`,
-  /// `body.tip.deflection`. \throws InputError where there is no such output, or nothing to measure.
+  /// Every hinge that no motion drives, place and deflection of every tip, and the efforts that motions need; with
+  /// names, what these name: hinges, `body.tip`, `body.tip.deflection`, `hinge.motion_effort`.
+  /// \throws InputError where there is no such output, or nothing to measure.
   explicit Outputs(const Model& model, const std::vector<std::string>& names = {});
-  /// Every hinge that has coordinates, driven or not, and the place of every tip; there may be none.
+  /// The same with the hinges that motions drive; there may be none.
   static Outputs all(const Model& model);
 
   [[nodiscard]] const std::vector<Output>& list() const { return outputs_; }
-  /// Each hinge and tip once.
+  /// Each name once.
   [[nodiscard]] std::vector<std::string> names() const;
   [[nodiscard]] bool has(Measure measure) const;
   /// Numbers of a reading.
@@ -67,39 +74,53 @@ class Outputs {
   [[nodiscard]] Distances none() const { return Distances(outputs_.size(), 0.0); }
   /// The greatest of each measure.
   [[nodiscard]] PerMeasure per_measure(const Distances& distances) const;
+  /// Length of the longest body [m]; 0 where none has a length.
+  [[nodiscard]] double length() const { return length_; }
 
  private:
-  Outputs() = default;
+  explicit Outputs(double length) : length_(length) {}
   void add(Output output);
   void add_hinge(const Model& model, std::size_t hinge);
+  void add_effort(const Model& model, std::size_t hinge);
+  void add_all(const Model& model, const std::vector<Tip>& tips, bool driven);
   void add_tip(const Tip& tip, std::size_t index, bool deflection);
   void add_named(const Model& model, const std::vector<Tip>& tips, const std::string& name);
 
   std::vector<Output> outputs_;
   std::size_t size_ = 0;
+  double length_ = 0;
 };
 
 /// Reads outputs from states of one model. What is given must outlive it.
 class OutputReader {
  public:
   OutputReader(const Outputs& outputs, const Model& model, const EquationsOfMotion& equations);
-  /// The numbers of all outputs at y, as in State.
-  [[nodiscard]] std::vector<double> read(std::span<const double> y);
+  /// The numbers of all outputs; an effort that cannot be found is no number.
+  [[nodiscard]] std::vector<double> read(const State& state);
+  /// At the state read last [J].
+  [[nodiscard]] double kinetic_energy() const { return seen_->energies().kinetic; }
 
  private:
   const Outputs& outputs_;
   const Model& model_;
+  const EquationsOfMotion& equations_;
   std::unique_ptr<Observation> seen_;
   std::vector<Tip> tips_;
+  Work work_;
+  std::vector<double> efforts_;
 };
 
-/// Greatest distances between two runs, by hinge and by tip.
+/// Greatest distances between two runs, by name.
 struct NamedDistances {
   /// Difference of coordinates [rad, m]; of orientations the angle [rad] between them, of a free hinge the greater of
   /// that and the distance [m].
   std::map<std::string, double> hinges;
-  std::map<std::string, double> tips;  ///< distance in the world [m]
-  double until = 0;                    ///< time [s] of the last output both have
+  std::map<std::string, double> tips;         ///< distance in the world [m]
+  std::map<std::string, double> deflections;  ///< of tips, in the frame of their body's root [m]
+  std::map<std::string, double> moments;      ///< that motions need [N m]
+  std::map<std::string, double> forces;       ///< the same [N]
+  double until = 0;                           ///< time [s] of the last output both have
+  [[nodiscard]] std::map<std::string, double>& of(Measure measure);
   [[nodiscard]] double greatest_hinge() const;
   [[nodiscard]] double greatest_tip() const;
 };

@@ -1,6 +1,7 @@
 #include "withy/study/prepared.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
@@ -36,6 +37,25 @@ int least_rank(const Scene& scene) {
   return rank;
 }
 
+/// What energy may be off where every body conserves it: hundredths by steps of any length that is chosen well, and
+/// what a loose tolerance leaves.
+double drift_limit(const Scene& scene) {
+  constexpr double least = 0.05, most = 0.5, of_tolerance = 50;
+  // The symmetric truncation conserves an energy whose weight has no terms of third order: drift is looked at without.
+  const bool weightless = scene.model->gravity().isZero(0);
+  const auto conserves = [&](const Terms& t) {
+    return (t.truncation == Truncation::none || (t.truncation == Truncation::symmetric && weightless)) &&
+           t.products_of_speeds;
+  };
+  const auto& bodies = scene.model->bodies();
+  const bool all =
+      scene.formulation_name != "auto" && conserves(scene.formulation->terms()) &&
+      std::all_of(bodies.begin(), bodies.end(), [&](const BodyNode& b) { return !b.terms || conserves(*b.terms); });
+  if (!all && flexible(*scene.model)) return std::numeric_limits<double>::infinity();
+  const Value* rtol = scene.source.at("integrator").find("rtol");
+  return rtol != nullptr ? std::clamp(of_tolerance * rtol->number(), least, most) : least;
+}
+
 void make_rungs(Prepared& prepared, Registry& registry) {
   for (const RankedFormulation& rung : formulation_rungs(registry)) {
     try {
@@ -67,6 +87,11 @@ RunOptions run_options(const Scene& scene) {
   options.output = scene.output;
   options.deflection_limit = scene.deflection_limit;
   options.events = scene.events;
+  options.drift_limit = drift_limit(scene);
+  options.own_energy = scene.formulation->terms().truncation == Truncation::symmetric;
+  const Value* atol = scene.source.at("integrator").find("atol");
+  constexpr double of_atol = 1e3;
+  if (atol != nullptr) options.least_speed = std::max(options.least_speed, of_atol * atol->number());
   return options;
 }
 

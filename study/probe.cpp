@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "withy/core/simulation/run_times.hpp"
+
 namespace withy::study {
 namespace {
 
@@ -30,10 +32,21 @@ Probe::Outcome outcome_of(const Probe& p, const Yardstick& yardstick, bool affor
 }  // namespace
 
 double Yardstick::use(const Distances& distances) const {
-  double most = 0;
-  for (std::size_t i = 0; i < distances.size(); ++i)
-    if (std::isfinite(limits[i])) most = std::max(most, distances[i] / limits[i]);
-  return most;
+  if (distances.empty()) return 0;
+  const std::size_t i = worst(distances);
+  return std::isfinite(limits[i]) ? distances[i] / limits[i] : 0;
+}
+
+std::size_t Yardstick::worst(const Distances& distances) const {
+  std::size_t worst = 0;
+  double most = -1;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const double use = std::isfinite(limits[i]) ? distances[i] / limits[i] : -1;
+    if (use <= most) continue;
+    most = use;
+    worst = i;
+  }
+  return worst;
 }
 
 const char* outcome_name(Probe::Outcome outcome) {
@@ -57,7 +70,9 @@ const char* outcome_name(Probe::Outcome outcome) {
 }
 
 Evaluator::Evaluator(const Prepared& base, Registry& registry, const Outputs& outputs, Control control)
-    : base_(base), registry_(registry), outputs_(outputs), control_(std::move(control)) {}
+    : base_(base), registry_(registry), outputs_(outputs), control_(std::move(control)), began_(thread_cpu_seconds()) {}
+
+double Evaluator::spent() const { return thread_cpu_seconds() - began_; }
 
 const ModelAt& Evaluator::model(const Point& point) {
   for (const auto& m : models_)
@@ -81,11 +96,14 @@ Probe Evaluator::run(const Point& point, const Yardstick& yardstick, const Allow
   bool afforded = true;
   const auto measure = [&](const State& s) {
     if (next >= truth.values.size()) return false;
-    outputs_.raise(reader.read(s.y), truth.values[next++], p.distances);
+    outputs_.raise(reader.read(s), truth.values[next++], p.distances);
     p.use = yardstick.use(p.distances);
     return p.use <= allowance.use;
   };
-  const auto afford = [&](const Walk& so_far) { return afforded = so_far.seconds <= allowance.seconds; };
+  const auto afford = [&](const Walk& so_far) {
+    control_.tell(spent(), limit_);
+    return afforded = so_far.seconds <= allowance.seconds && !out_of_time();
+  };
   try {
     p.walk = walk(*at.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
                   {measure, afford, control_.interrupted});
@@ -95,7 +113,6 @@ Probe Evaluator::run(const Point& point, const Yardstick& yardstick, const Allow
   }
   p.reason = p.walk.reason;
   p.outcome = outcome_of(p, yardstick, afforded);
-  spent_ += p.walk.seconds;
   note_cost(p);
   return p;
 }

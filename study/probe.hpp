@@ -19,6 +19,8 @@ struct Yardstick {
   Distances limits;  ///< infinite where nothing is asked
   /// Greatest share of what is allowed.
   [[nodiscard]] double use(const Distances& distances) const;
+  /// Index of the output of which that is so.
+  [[nodiscard]] std::size_t worst(const Distances& distances) const;
   /// That of the reference itself.
   [[nodiscard]] double own_use() const { return use(reference.own); }
 };
@@ -69,9 +71,12 @@ class Evaluator {
   /// Evaluations times their least CPU time in this model and integrator [s]: what a run costs without the noise of
   /// other work on the machine.
   [[nodiscard]] double cost(const Probe& probe) const;
-  /// Takes what a search for a reference has cost.
-  void spend(double seconds) { spent_ += seconds; }
-  [[nodiscard]] double spent() const { return spent_; }  ///< CPU time of all runs [s]
+  /// CPU time since this was made [s], of the thread that made it.
+  [[nodiscard]] double spent() const;
+  /// Runs are cut where that passes the limit, as too costly. Without one, never.
+  void limit(double seconds) { limit_ = seconds; }
+  [[nodiscard]] double limit() const { return limit_; }
+  [[nodiscard]] bool out_of_time() const { return spent() > limit_; }
 
  private:
   void note_cost(const Probe& probe);
@@ -82,7 +87,8 @@ class Evaluator {
   Control control_;
   std::vector<std::unique_ptr<ModelAt>> models_;
   std::map<std::string, double> unit_costs_;  ///< by model and integrator [s an evaluation]
-  double spent_ = 0;
+  double began_;
+  double limit_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace withy::study

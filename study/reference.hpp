@@ -20,18 +20,23 @@ std::vector<std::string> reference_formulations(Registry& registry);
 struct Reference {
   Point point;
   Readings readings;
-  Distances ways;  ///< greatest distances of outputs from their start
-  Distances own;   ///< from a run with one mode and one digit less; empty: not known
+  Distances ranges;   ///< greatest distances of outputs from their start
+  double energy = 0;  ///< greatest kinetic energy at an output [J]
+  Distances scales;   ///< what relative errors are shares of
+  Distances own;      ///< from the run with one mode less and the tolerance before; empty: not known
   Walk walk;
 };
 
 /// Where a search begins and when it ends.
 struct ReferenceGoal {
   Point first;  ///< the coarsest; its formulation means nothing
-  /// Finer ones that are looked at: a mode more where the first has any, a digit more down to `tightest`.
+  /// Finer ones that are looked at: a mode more where the first has any, the tolerance times `finer` down to
+  /// `tightest`.
   int levels = 1;
+  double finer = 0.1;
   double tightest = 1e-9;
   std::function<bool(const Reference&)> enough;  ///< empty: one level is
+  std::function<bool(const Walk&)> afford;       ///< asked along each run; false ends the search; empty: always
 };
 
 struct ReferenceFound {
@@ -40,6 +45,7 @@ struct ReferenceFound {
   std::string trouble;               ///< why a run did not come to its end; may be empty
   double cpu_seconds = 0;            ///< of all runs
   bool interrupted = false;
+  bool unaffordable = false;  ///< `afford` ended the search
 };
 
 /// Runs level after level until two in a row agree.

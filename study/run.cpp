@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "withy/core/simulation/instants.hpp"
+#include "withy/study/growth.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -99,6 +100,7 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
     if (settings.look_beyond) beyond = next_model_up(prepared, registry);
     result.summary = run_plainly(prepared, settings, beyond ? beyond->equations.get() : nullptr);
   }
+  result.summary.message += growth_text(prepared, result.summary);
   std::optional<ErrorEstimate> estimate;
   if (beyond && used != nullptr && wanted(settings.estimate, *beyond) && !has_switches(prepared.model()) &&
       result.summary.status != RunStatus::interrupted)
@@ -111,7 +113,7 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
 
 std::string outcome_text(const RunSummary& summary) {
   if (summary.status == RunStatus::completed) return "completed";
-  return fmt::format("{} at {:.4g} s", name(summary.status), summary.final.time);
+  return fmt::format("{} at {:.4g} s", name(summary.status), summary.reached);
 }
 
 RunSummary simulate(const Prepared& prepared, const std::function<void(const State&)>& output, const Control& control) {

@@ -39,7 +39,7 @@ StepLimit step_limit(const Integrator& integrator, double start, const RunSummar
   StepLimit s;
   s.limit = integrator.stability_limit();
   if (summary.steps.accepted == 0) return s;
-  s.mean = (summary.final.time - start) / static_cast<double>(summary.steps.accepted);
+  s.mean = (summary.reached - start) / static_cast<double>(summary.steps.accepted);
   s.fastest = summary.fastest_mode;
   s.product = s.mean * s.fastest;
   return s;

@@ -46,7 +46,7 @@ TimedRun timed_run(const Prepared& model, const Outputs& outputs, const Control&
   OutputReader reader(outputs, model.model(), *model.equations);
   for (const State& s : states) {
     run.readings.times.push_back(s.time);
-    run.readings.values.push_back(reader.read(s.y));
+    run.readings.values.push_back(reader.read(s));
   }
   return run;
 }
@@ -113,8 +113,8 @@ void TradeStudy::find_reference_for(const Point& point) {
   if (found.interrupted) return;
   if (!found.reference) throw InputError("no reference to measure against: " + found.trouble);
   const Reference& r = *found.reference;
-  const double relative = relative_error(outputs_, r.own, r.ways);
-  const NamedDistances ways = named(outputs_, r.ways, 0), own = named(outputs_, r.own, 0);
+  const double relative = relative_error(r.own, r.scales);
+  const NamedDistances ways = named(outputs_, r.ranges, 0), own = named(outputs_, r.own, 0);
   told_[key] = {r.point, ways.greatest_hinge(), ways.greatest_tip(), own.greatest_hinge(), own.greatest_tip(),
                 relative};
   known_.emplace(key, Known{std::move(*found.reference), relative});
@@ -140,7 +140,7 @@ TradeResult TradeStudy::run_point(const Point& point) const {
     const NamedDistances by_name = named(outputs_, distance, until);
     result.hinge_error = by_name.greatest_hinge();
     result.tip_error = by_name.greatest_tip();
-    result.relative_error = relative_error(outputs_, distance, known.reference.ways);
+    result.relative_error = relative_error(distance, known.reference.scales);
     result.reference_error = known.relative_error;
   } catch (const SceneError& e) {
     refused(e);

@@ -17,7 +17,7 @@ namespace {
 /// What is advised is the cheapest of these that holds the accuracy.
 struct AdviseArguments : SceneArguments {
   std::string accuracy = "1%";
-  std::vector<std::string> outputs;        ///< that errors are measured on; empty: hinges and tips
+  std::vector<std::string> outputs;        ///< that errors are measured on; empty: all of the usual ones
   study::Axes axes = study::usual_axes();  ///< families empty: the scene's, and another where it means the same beams
   std::string write;                       ///< file for the scene as advised; empty: none
 };
@@ -49,14 +49,14 @@ ExitStatus advise(const AdviseArguments& arguments) {
   const study::Accuracy accuracy = study::Accuracy::parse(arguments.accuracy);
   const study::Outputs outputs(engine.model(), arguments.outputs);
   const study::Candidates candidates = study::candidates_for(engine.prepared(), engine.registry(), arguments.axes);
-  study::Evaluator evaluator(engine.prepared(), engine.registry(), outputs, study_control("advise"));
+  study::Evaluator evaluator(engine.prepared(), engine.registry(), outputs, study_control("advise, s of CPU time"));
   const study::Advice advice = study::advise(evaluator, candidates, accuracy);
   const AdviceQuestion question{engine.prepared(), outputs, accuracy};
   if (advice.interrupted) return ExitStatus::interrupted;
   if (!advice.choice) {
-    const std::string why = no_advice_text(advice, accuracy);
+    const std::string why = no_advice_text(advice, question);
     if (arguments.json) print(json_text(search_json(question, advice, why)));
-    complain(why);
+    complain(question_text(question) + ": no advice: " + why);
     return ExitStatus::stopped;
   }
   const std::string left_out = study::left_out(evaluator.model(advice.choice->point));
@@ -77,21 +77,23 @@ std::function<ExitStatus()> add_advise(CLI::App& c) {
   const auto axis = [&](const char* name, auto& values, const char* type, const char* meaning) {
     c.add_option(name, values, meaning)->type_name(type)->delimiter(',');
   };
-  c.add_option(
-       "--accuracy", a.accuracy,
-       "Greatest error of the outputs: a share of the greatest way of any of them, a length, an angle, or several")
+  c.add_option("--accuracy", a.accuracy,
+               "Greatest error of the outputs: a share of each one's own range, a length, an angle, or several")
       ->type_name("A,...")
       ->capture_default_str();
   axis("--outputs,--output", a.outputs, "NAME,...",
-       "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection; default: all free hinges and tips");
+       "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection, HINGE.motion_effort; default: all of "
+       "these, but hinges that motions drive");
   axis("--formulations,--formulation", a.axes.formulations, "ID,...",
        "Formulations to choose from; default: all that take part in studies, plugins' too");
   axis("--families,--family", a.axes.families, "ID,...",
        "Mode families of bending to choose from; default: the scene's, and orthogonal-polynomials where they are the "
        "same beams");
-  axis("--modes", a.axes.modes, "N,...", "Modes of each family of a beam to choose from; default: 1,2,3,4");
+  axis("--modes", a.axes.modes, "N,...",
+       "Modes of each family of a beam to choose from; default: 1,2,3,4 and, where these will not do, to 8");
   axis("--integrators", a.axes.integrators, "ID,...",
-       "Integrators to choose from, with a relative tolerance; default: dopri5,dop853,imex");
+       "Integrators to choose from, with a relative tolerance; default: dopri5,dop853 and, where installed, "
+       "imex,radau,cvode");
   axis("--tolerances", a.axes.tolerances, "R,...",
        "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
   c.add_option("--write", a.write, "File for the scene with what is advised; comments are kept")->type_name("FILE");

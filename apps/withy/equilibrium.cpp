@@ -12,6 +12,7 @@
 #include "withy/results/modes_files.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/text_table.hpp"
+#include "withy/study/against_next.hpp"
 
 namespace withy::app {
 namespace {
@@ -58,6 +59,8 @@ ExitStatus equilibrium(const EquilibriumArguments& arguments) {
   for (const Tip& tip : tips(c.prepared().model())) {
     if (tip.flexible) deflections[tip.body + ".tip"] = deflection(*c.prepared().equations, steady.state.y, tip);
   }
+  const study::Holding holding = holding_of(c.prepared().model(), arguments.lock, arguments.spin);
+  const auto against = study::deflections_against_next(c, steady, holding, engine.registry());
   const std::string changing =
       steady_for_good
           ? ""
@@ -70,6 +73,7 @@ ExitStatus equilibrium(const EquilibriumArguments& arguments) {
     j.update(steady_json(engine.model(), steady, c.held()));
     j["tip_deflections"] = deflections;
     j["stays_steady"] = steady_for_good;
+    j["against_next"] = against_json(against);
     j["derivatives"] = study::derivatives_text(tangents);
     j["message"] = problem.empty() ? changing : problem;
     print(json_text(j));
@@ -85,6 +89,8 @@ ExitStatus equilibrium(const EquilibriumArguments& arguments) {
       }
       text += '\n' + table.str();
     }
+    if (const std::string words = study::against_next_text(against, "deflections"); !words.empty())
+      text += '\n' + words + '\n';
     if (!changing.empty()) text += '\n' + changing + '\n';
     text += arguments.out.empty() ? "\nThe state is in the output of --json, or kept with --out FILE.\n"
                                   : "\nState: " + arguments.out + '\n';

@@ -4,6 +4,7 @@
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/core/simulation/accuracy.hpp"
 
 namespace withy::app {
 
@@ -35,11 +36,16 @@ ExitStatus eval(const StateArguments& arguments) {
   j["mass_matrix"] = std::move(rows);
   j["force"] = system.force;
   j["applied"] = system.applied;
-  if (evaluation.ok())
+  // Pivots of a singular matrix may be rounding and not zero: then what comes of it is no acceleration.
+  constexpr double no_digits = 1e-3;
+  const bool lost =
+      evaluation.ok() && rounding_error(engine.model(), equations, state, Probing::any).relative > no_digits;
+  const bool found = evaluation.ok() && !lost;
+  if (found)
     j["accelerations"] = std::vector<double>(first, first + static_cast<std::ptrdiff_t>(layout.speeds));
   else
     j["accelerations"] = nullptr;
-  if (evaluation.ok() && !engine.model().motions().empty()) {
+  if (found && !engine.model().motions().empty()) {
     std::vector<double> efforts(layout.speeds);
     equations.motion_efforts(state.time, state.y, efforts, work);
     j["motion_efforts"] = efforts;
@@ -50,10 +56,11 @@ ExitStatus eval(const StateArguments& arguments) {
   j["angular_momentum"] = energies.angular_momentum;
   j["condition"] = conditioning(system).condition;
   print(j.dump() + '\n');
-  if (evaluation.ok()) return ExitStatus::done;
+  if (found) return ExitStatus::done;
   complain(std::string("there are no accelerations at this state: ") +
-           (evaluation.outcome == Evaluation::Outcome::singular ? "the mass matrix cannot be solved"
-                                                                : "they are not finite") +
+           (lost                                                  ? "the mass matrix is singular to working accuracy"
+            : evaluation.outcome == Evaluation::Outcome::singular ? "the mass matrix cannot be solved"
+                                                                  : "they are not finite") +
            (evaluation.body >= 0
                 ? " at body '" + engine.model().bodies()[static_cast<std::size_t>(evaluation.body)].name + "'"
                 : ""));

@@ -64,7 +64,7 @@ ExitStatus inverse(const InverseArguments& given) {
                      {"formulation", scene.formulation_name},
                      {"status", name(summary.status)},
                      {"message", summary.message},
-                     {"t_end", summary.final.time},
+                     {"t_end", summary.reached},
                      {"drives", drives_json(study)}}));
   } else {
     print(fmt::format("{} ({}, {}, {} outputs, {})\n\n{}\nresults.csv, run.json and inverse.svg in {}\n", title,

@@ -15,6 +15,7 @@
 #include "withy/results/modes_files.hpp"
 #include "withy/results/modes_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/study/against_next.hpp"
 
 namespace withy::app {
 namespace {
@@ -45,8 +46,9 @@ study::TurningWish wish_of(const ModesArguments& arguments) {
   return wish;
 }
 
-/// One run a formulation.
-std::vector<study::ModesOf> runs_of(const Engine& engine, const ModesArguments& arguments, const study::Sweep& sweep) {
+/// One run a formulation, and at one configuration how far each is from the next.
+std::vector<study::ModesOf> runs_of(const Engine& engine, const ModesArguments& arguments, const study::Sweep& sweep,
+                                    std::vector<std::optional<study::AgainstNext>>& against) {
   const study::Holding holding = holding_of(engine.model(), arguments.lock, arguments.spin);
   const auto start = [&](const study::Prepared& prepared) { return read_state(prepared, arguments.state); };
   std::vector<std::string> formulations = arguments.formulations;
@@ -57,14 +59,23 @@ std::vector<study::ModesOf> runs_of(const Engine& engine, const ModesArguments& 
     values.choose_formulation(formulation, "--formulations " + formulation);
     runs.push_back(study::sweep_modes(values, engine.registry(), start, holding, sweep, arguments.as_is,
                                       wish_of(arguments), study_control(formulation)));
+    against.emplace_back();
+    if (sweep.none() && !interrupted())
+      against.back() = study::frequencies_against_next(runs.back(), values, engine.registry(), start, holding,
+                                                       arguments.as_is, arguments.count, study_control(formulation));
   }
   return runs;
 }
 
-std::string run_text(const study::ModesOf& run, const ModesArguments& arguments, const study::Sweep& sweep) {
+std::string run_text(const study::ModesOf& run, const ModesArguments& arguments, const study::Sweep& sweep,
+                     const std::optional<study::AgainstNext>& against) {
   std::string text = fmt::format("{} in {}\n", arguments.scene, run.formulation);
   if (!run.points.front().modes.empty() || !sweep.none())
     text += '\n' + (sweep.none() ? modes_text(run, arguments.count) : sweep_text(run, sweep.path, arguments.count));
+  if (const std::string words =
+          study::against_next_text(against, fmt::format("the {} lowest frequencies", against ? against->compared : 0));
+      !words.empty())
+    text += '\n' + words + '\n';
   // Of a sweep the first value at which the equations are periodic speaks for all.
   const auto frozen = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return at.frozen(); });
   const study::ModesAt& spoken_of = frozen != run.points.end() ? *frozen : run.points.back();
@@ -115,18 +126,23 @@ ExitStatus modes(const ModesArguments& arguments) {
   const Engine engine(arguments);
   const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
                                   {"modes.json", "modes.csv", "modes.svg"});
-  const std::vector<study::ModesOf> runs = runs_of(engine, arguments, sweep);
+  std::vector<std::optional<study::AgainstNext>> against;
+  const std::vector<study::ModesOf> runs = runs_of(engine, arguments, sweep, against);
   if (interrupted()) return ExitStatus::interrupted;
   Json j;
   j["scene"] = arguments.scene;
   j["sweep"] = sweep.none() ? Json() : Json(sweep.path);
   j["runs"] = Json::array();
-  for (const study::ModesOf& run : runs) j["runs"].push_back(modes_json(run));
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    j["runs"].push_back(modes_json(runs[i]));
+    j["runs"].back()["against_next"] = against_json(against[i]);
+  }
   if (!arguments.out.empty()) write_files(runs, j, arguments, sweep);
   if (arguments.json) {
     print(json_text(j));
   } else {
-    for (const study::ModesOf& run : runs) print((&run == &runs.front() ? "" : "\n") + run_text(run, arguments, sweep));
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      print((i == 0 ? "" : "\n") + run_text(runs[i], arguments, sweep, against[i]));
     if (!arguments.out.empty()) print("\nResults: " + arguments.out + '\n');
   }
   return complain_of(runs, sweep) ? ExitStatus::stopped : ExitStatus::done;

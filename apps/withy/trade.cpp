@@ -120,7 +120,7 @@ ExitStatus trade(const TradeArguments& arguments) {
           ? json_text(j)
           : title + "\n\n" + table_text(results, front) +
                 "\n*: no other point is both more accurate, as far as the reference can tell, and cheaper. Error "
-                "in % of the greatest way of a hinge or tip.\n" +
+                "in % of each output's own range, the greatest of all.\n" +
                 references_text(study) + reasons_text(results);
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;

@@ -110,7 +110,11 @@ Held driven_speeds(const Model& model) {
   return held;
 }
 
-FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, const Held& held) {
+namespace {
+
+/// The eigenvalue that is greatest by a measure of it.
+template <class Measure>
+FastestPole pole_by(const TangentDynamics& dynamics, const State& state, const Held& held, Measure&& measure) {
   FastestPole result;
   const std::vector<Eigen::Index> free = free_speeds(held);
   if (free.empty()) return result;
@@ -122,8 +126,10 @@ FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, co
   const Eigen::MatrixXd balanced = units.asDiagonal() * A * units.cwiseInverse().asDiagonal();
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(balanced, false);
   if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+  bool any = false;
   for (const Complex& pole : solver.eigenvalues()) {
-    if (pole.imag() >= 0 && std::abs(pole) > std::abs(result.value)) result.value = pole;
+    if (pole.imag() >= 0 && (!any || measure(pole) > measure(result.value))) result.value = pole;
+    any = true;
   }
   if (result.value == 0.0) return result;
 
@@ -145,6 +151,16 @@ FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, co
   result.alone = masses[cause.at];
   result.inertia = std::abs(inertia) / (std::abs(left[cause.at]) * std::abs(right[cause.at]));
   return result;
+}
+
+}  // namespace
+
+FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, const Held& held) {
+  return pole_by(dynamics, state, held, [](Complex pole) { return std::abs(pole); });
+}
+
+FastestPole growing_pole(const TangentDynamics& dynamics, const State& state, const Held& held) {
+  return pole_by(dynamics, state, held, [](Complex pole) { return pole.real(); });
 }
 
 std::string describe(const FastestPole& pole, const Layout& layout) {

@@ -29,6 +29,9 @@ Held driven_speeds(const Model& model);
 /// \throws std::domain_error where the mass matrix of the free speeds is singular or anything is not finite.
 FastestPole fastest_pole(const TangentDynamics& dynamics, const State& state, const Held& held);
 
+/// The same of the one with the greatest real part: what grows fastest; its cause is what pushes it most.
+FastestPole growing_pole(const TangentDynamics& dynamics, const State& state, const Held& held);
+
 /// In words: "-26911/s: damping of load 'servo' on shoulder.0, behind which there is little inertia (0.011 of 5.3)".
 std::string describe(const FastestPole& pole, const Layout& layout);
 

@@ -17,6 +17,7 @@
 #include "withy/core/equations/sensing.hpp"
 #include "withy/core/equations/work_slices.hpp"
 #include "withy/core/kinematics/observation.hpp"
+#include "withy/core/plugin/forward_dynamics.hpp"
 #include "withy/core/reference/reference.hpp"
 #include "withy/core/tangents/state_jacobian.hpp"
 #include "withy/core/tree/tree.hpp"
@@ -61,7 +62,7 @@ class Lazy {
 
 /// A sweep with its loads; for everything that is not hot, the reference, tangents and observations.
 template <class Sweep>
-class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
+class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, public ForwardDynamics {
  public:
   SweepEquations(std::shared_ptr<const Model> model, Terms terms, const NodeTree& tree,
                  const std::vector<Terms>& node_terms)
@@ -109,6 +110,20 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
     const auto u = speeds_of(base);
     for (std::size_t i = 0; i < order.speeds; ++i) implicit[i] = u[i] + delta * y_dot[order.positions + i];
     return finish(y.first(order.positions), implicit, efforts, y_dot, evaluation);
+  }
+
+  Evaluation forward_dynamics(std::span<const double> y, std::span<const double> efforts, std::span<double> u_dot,
+                              Work& work) const noexcept override {
+    const std::span<double> given = efforts_.in(work);
+    std::copy(efforts.begin(), efforts.end(), given.begin());
+    const auto speeds = speeds_of(y);
+    if (!terms_.products_of_speeds) elastic_.add_damping(speeds, given);
+    const double* inertial_speeds = inertial(speeds, work);
+    if constexpr (has_modal_solver<Sweep>) {
+      return sweep_.accelerations(y.data(), inertial_speeds, given.data(), 0, u_dot.data(), of_sweep_.in(work));
+    } else {
+      return sweep_.accelerations(y.data(), inertial_speeds, given.data(), u_dot.data(), of_sweep_.in(work));
+    }
   }
 
   void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,

@@ -3,9 +3,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/plugin/forward_dynamics.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/elastic_modes.hpp"
 
@@ -112,7 +114,101 @@ void without_highest_modes(const Model& model, const DenseSystem& system, Act&& 
   }
 }
 
+/// Accelerations there and back.
+class RoundTrip {
+ public:
+  RoundTrip(const Model& model, const EquationsOfMotion& equations, const State& state)
+      : equations_(equations),
+        forward_(dynamic_cast<const ForwardDynamics*>(&equations)),
+        y_(state.y),
+        work_(equations.make_work()),
+        there_(model.layout().speeds),
+        efforts_(there_),
+        back_(there_) {
+    const auto speeds = y_.begin() + static_cast<std::ptrdiff_t>(model.layout().positions);
+    std::fill(speeds, speeds + static_cast<std::ptrdiff_t>(there_.size()), 0.0);
+    prescribed_.assign(there_.size(), false);
+    for (const MotionNode& motion : model.motions()) {
+      const Slot& slot = model.layout().hinges[static_cast<std::size_t>(motion.hinge)];
+      for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) prescribed_[i] = true;
+    }
+    find_units();
+  }
+  [[nodiscard]] bool possible() const { return forward_ != nullptr; }
+
+  /// False where nothing is accelerated.
+  bool of(std::span<const double> accelerations, RoundingError& error) {
+    std::copy(accelerations.begin(), accelerations.end(), there_.begin());
+    double most = 0;
+    for (std::size_t i = 0; i < there_.size(); ++i) most = std::max(most, units_[i] * std::abs(there_[i]));
+    if (!(most > 0)) return false;
+    equations_.inverse_dynamics(y_, there_, efforts_, work_);
+    std::copy(there_.begin(), there_.end(), back_.begin());  // what motions prescribe
+    if (!forward_->forward_dynamics(y_, efforts_, back_, work_).ok()) {
+      error.relative = std::numeric_limits<double>::infinity();
+      return true;
+    }
+    for (std::size_t i = 0; i < there_.size(); ++i) {
+      const double off = units_[i] * std::abs(back_[i] - there_[i]) / most;
+      if (off <= error.relative) continue;
+      error.relative = std::isfinite(off) ? off : std::numeric_limits<double>::infinity();
+      error.speed = i;
+    }
+    return true;
+  }
+  /// Accelerations of the same size in all coordinates, of alternating signs in no simple order.
+  [[nodiscard]] std::vector<double> everywhere() const {
+    std::vector<double> a(units_.size());
+    std::uint32_t bits = 1;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      bits = 1664525 * bits + 1013904223;
+      if (units_[i] > 0 && !prescribed_[i]) a[i] = ((bits >> 31U) != 0 ? 1 : -1) / units_[i];
+    }
+    return a;
+  }
+
+ private:
+  /// √M_ii of every coordinate or, of many, of some between which the others have no unit and do not count.
+  void find_units() {
+    constexpr std::size_t most = 256;
+    units_.assign(there_.size(), 0);
+    const std::size_t stride = (there_.size() + most - 1) / most;
+    for (std::size_t i = 0; i < there_.size(); i += stride) {
+      there_[i] = 1;
+      equations_.mass_times(y_, there_, efforts_, work_);
+      units_[i] = std::sqrt(std::abs(efforts_[i]));
+      there_[i] = 0;
+    }
+  }
+
+  const EquationsOfMotion& equations_;
+  const ForwardDynamics* forward_;
+  std::vector<double> y_;  ///< at rest
+  Work work_;
+  std::vector<double> there_, efforts_, back_, units_;
+  std::vector<bool> prescribed_;
+};
+
 }  // namespace
+
+RoundingError rounding_error(const Model& model, const EquationsOfMotion& equations, const State& state,
+                             Probing probing) {
+  const Layout& layout = model.layout();
+  RoundingError error;
+  if (layout.speeds == 0) return error;
+  RoundTrip trip(model, equations, state);
+  if (!trip.possible()) {
+    if (layout.speeds <= largest_examined)
+      error.relative = attainable_accuracy(equations.system(state.time, state.y)).accuracy;
+    return error;
+  }
+  std::vector<double> rates(equations.size());
+  Work work = equations.make_work();
+  const bool solved = equations.derivatives(state.time, state.y, rates, work).ok();
+  const bool seen = solved && trip.of(std::span(rates).subspan(layout.positions, layout.speeds), error);
+  if (!seen || probing == Probing::any) static_cast<void>(trip.of(trip.everywhere(), error));
+  return error;
+}
 
 AttainableAccuracy attainable_accuracy(const DenseSystem& system) {
   AttainableAccuracy a;
@@ -178,20 +274,27 @@ std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& syste
 
 std::string unattainable(const Model& model, const EquationsOfMotion& equations, const State& state, double tolerance) {
   const Layout& layout = model.layout();
-  if (layout.speeds == 0 || layout.speeds > largest_examined) return {};
-  const DenseSystem system = equations.system(state.time, state.y);
-  if (const int rate = rate_without_inertia(model, equations, state, system); rate >= 0) {
-    const auto i = static_cast<std::size_t>(rate);
-    return "the mass matrix is singular: " + layout.speed_names[i] + " moves no mass beyond rounding; give body '" +
-           body_of_speed(model, i) + "', or what hangs on it, mass or inertia there, or lock the hinge";
+  if (layout.speeds == 0) return {};
+  const bool small = layout.speeds <= largest_examined;
+  DenseSystem system;
+  if (small) {
+    system = equations.system(state.time, state.y);
+    if (const int rate = rate_without_inertia(model, equations, state, system); rate >= 0) {
+      const auto i = static_cast<std::size_t>(rate);
+      return "the mass matrix is singular: " + layout.speed_names[i] + " moves no mass beyond rounding; give body '" +
+             body_of_speed(model, i) + "', or what hangs on it, mass or inertia there, or lock the hinge";
+    }
   }
+  const RoundingError error = rounding_error(model, equations, state);
+  if (tolerance >= error.relative) return {};
+  std::string text = "rounding leaves accelerations an error of " + brief(error.relative) + ", most in " +
+                     layout.speed_names[error.speed];
+  if (!small) return text;
   const AttainableAccuracy a = attainable_accuracy(system);
-  if (tolerance >= a.accuracy) return {};
-  std::string text =
-      "the condition of the mass matrix, " + brief(a.condition) +
-      " with each coordinate in the unit of its own inertia, leaves accelerations an error of κ·2⁻⁵² = " +
-      brief(a.accuracy) + "; the direction that moves least mass, " + brief(a.share) + " of its coordinates' own, is " +
-      (a.weakest.empty() ? "not known" : owners_of(layout, a.weakest));
+  text += "; the condition of the mass matrix is " + brief(a.condition) +
+          " with each coordinate in the unit of its own inertia, and the direction that moves least mass, " +
+          brief(a.share) + " of its coordinates' own, is " +
+          (a.weakest.empty() ? "not known" : owners_of(layout, a.weakest));
   if (const std::optional<Removal> removal = best_removal(model, system))
     text += "; without " + removal->mode + " the condition is " + brief(removal->condition);
   return text;

@@ -1,6 +1,6 @@
 /// \file
-/// What accuracy the mass matrix leaves to be had, and which direction takes the rest: nearly massless ones are found,
-/// named and valued before a run.
+/// What accuracy rounding leaves the accelerations, and which direction of the mass matrix takes the rest: nearly
+/// massless ones are found, named and valued before a run.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ namespace withy {
 /// and deflections are measured in. Prescribed speeds do not take part.
 struct AttainableAccuracy {
   double condition = 0;  ///< κ of M so scaled; infinite where a coordinate has no inertia of its own
-  double accuracy = 0;   ///< κ·2⁻⁵²: relative error of the accelerations that rounding alone may leave
+  double accuracy = 0;  ///< κ·2⁻⁵²: a bound of what rounding may do; recursions stay far below it on long chains
   /// Unit vector of the scaled coordinates, all speeds, along which M acts least, and how much of the coordinates' own
   /// inertia is left along it, > 0 where M is positive definite.
   std::vector<double> weakest;
@@ -25,6 +25,21 @@ struct AttainableAccuracy {
 };
 
 AttainableAccuracy attainable_accuracy(const DenseSystem& system);
+
+/// What rounding does to the accelerations at a state.
+struct RoundingError {
+  double relative = 0;    ///< greatest error of a coordinate over the greatest acceleration, by their own inertia
+  std::size_t speed = 0;  ///< where it is greatest
+};
+
+/// Estimated by taking accelerations to efforts and back, by the two recursions that a run uses: the first multiplies
+/// with M and the second solves, so that what comes back lacks what rounding takes in this tree, of whatever size.
+/// The accelerations are those at the state and, where there are none or `any`, others of equal size in all
+/// coordinates. Where the equations take no efforts it is κ·2⁻⁵², of at most `largest_examined` speeds. Infinite where
+/// M is singular. In time proportional to the number of speeds.
+enum class Probing { these, any };
+RoundingError rounding_error(const Model& model, const EquationsOfMotion& equations, const State& state,
+                             Probing probing = Probing::these);
 
 /// A direction of the modes that moves nearly no mass and therefore vibrates fast.
 struct MasslessDirection {
@@ -55,8 +70,8 @@ struct Slowing {
 /// The highest mode of a body without which the fastest vibration is slowest; nothing where there are no modes.
 std::optional<Slowing> best_slowing(const Model& model, const DenseSystem& system);
 
-/// Why a relative tolerance cannot be had at a state: κ·2⁻⁵², the coordinate without inertia or the direction with
-/// least, what may be done. Empty where it can, or where there are more than `largest_examined` speeds.
+/// Why a relative tolerance cannot be had at a state: the error of its accelerations, the coordinate without inertia or
+/// the direction with least (of at most `largest_examined` speeds), what may be done. Empty where it can.
 std::string unattainable(const Model& model, const EquationsOfMotion& equations, const State& state, double tolerance);
 
 }  // namespace withy

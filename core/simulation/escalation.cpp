@@ -48,6 +48,10 @@ void join(RunSummary& all, const RunSummary& next, bool first) {
   raise(all.peak_effort, before.peak_effort);
   raise(all.peak_motion_effort, before.peak_motion_effort);
   all.energy_drift = std::max(all.energy_drift, before.energy_drift);
+  all.untruncated_drift = std::max(all.untruncated_drift, before.untruncated_drift);
+  all.momentum.conserved = all.momentum.conserved && before.momentum.conserved;
+  all.momentum.linear = std::max(all.momentum.linear, before.momentum.linear);
+  all.momentum.angular = std::max(all.momentum.angular, before.momentum.angular);
   all.suspected_jumps.insert(all.suspected_jumps.begin(), before.suspected_jumps.begin(), before.suspected_jumps.end());
   all.events.insert(all.events.begin(), before.events.begin(), before.events.end());
   all.fastest_mode = std::max(all.fastest_mode, before.fastest_mode);
@@ -190,7 +194,7 @@ class Escalation {
     // A formulation that cannot go on is past its validity, whatever the indicators said.
     const RunStatus status = a.summary.status;
     if (a.excess.empty() && !is_last() && status != RunStatus::completed && status != RunStatus::interrupted) {
-      a.excess.push_back({"", "it stopped: " + a.summary.message, 0, 0, a.summary.final.time});
+      a.excess.push_back({"", "it stopped: " + a.summary.message, 0, 0, a.summary.reached});
       a.next = rung_ + 1;
     }
     seconds_ += a.summary.cpu_seconds;
@@ -217,7 +221,7 @@ class Escalation {
   }
 
   static Stretch stretch_of(std::size_t rung, double start, const RunSummary& summary) {
-    return {rung, start, summary.final.time, summary.steps.accepted, summary.steps.evaluations, summary.energy_drift,
+    return {rung, start, summary.reached, summary.steps.accepted, summary.steps.evaluations, summary.energy_drift,
             {},   0};
   }
 
@@ -245,7 +249,7 @@ class Escalation {
     Stretch stretch = stretch_of(rung_, from_.time, summary);
     from_ = summary.final;
     // An event that ends the run, up to rounding where the stretch does, ends it all the same.
-    const bool stopped = summary.final.time < held;
+    const bool stopped = summary.reached < held;
     const bool done = stopped || summary.status != RunStatus::completed;
     if (!stopped) stretch.excess = tried.excess;
     if (!done) go_over(stretch, tried.next);

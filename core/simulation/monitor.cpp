@@ -4,6 +4,15 @@
 #include <cmath>
 
 namespace withy {
+namespace {
+
+/// Value at s = 0 … 1 of the cubic that has these values and derivatives with respect to s at 0 and 1.
+double cubic(double s, double x0, double v0, double x1, double v1) {
+  const double r = 1 - s;
+  return x0 * r * r * (1 + 2 * s) + x1 * s * s * (1 + 2 * r) + v0 * s * r * r - v1 * s * s * r;
+}
+
+}  // namespace
 
 Monitor::SectionExpansion::SectionExpansion(const PointExpansion& e) {
   for (Eigen::Index i = 0; i < e.phi.cols(); ++i) {
@@ -31,8 +40,12 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       own_(seen != nullptr ? nullptr : equations.make_observation()),
       seen_(seen != nullptr ? *seen : *own_),
       deflection_limit_(deflection_limit),
+      last_(initial),
+      between_(initial),
+      trusted_(initial),
       efforts_(model.layout().speeds),
       rates_(equations.size()),
+      rates_before_(equations.size()),
       work_(equations.make_work()),
       initial_work_(initial.y.back()),
       checked_(initial.time) {
@@ -59,9 +72,11 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
   summary.peak_effort.assign(model.layout().speeds, 0.0);
   summary.peak_motion_effort.assign(model.layout().speeds, 0.0);
   seen_.observe(initial.y);
-  const Energies e = seen_.energies();
-  initial_energy_ = e.kinetic + e.potential;
+  initial_energies_ = seen_.energies();
+  initial_energy_ = initial_energies_.kinetic + initial_energies_.potential;
+  audit_momenta(initial_energies_);
   initial_sign_ = mass_matrix_sign(initial);
+  observe(initial);
 }
 
 void Monitor::note(const std::string& name, double length, const std::array<double, 3>& d,
@@ -73,9 +88,9 @@ void Monitor::note(const std::string& name, double length, const std::array<doub
             " times its length (limit " + brief(deflection_limit_) + ")";
 }
 
-/// Exact kinematics integrates along the body, at the cost of an evaluation: between outputs only where the expansion
-/// says that the deflection has not been so great before.
-void Monitor::observe_end(End& end, const State& state, bool output, bool& seen) {
+/// Exact kinematics integrates along the body, at the cost of an evaluation: only where the expansion says that the
+/// deflection has not been so great before.
+void Monitor::observe_end(End& end, const State& state, bool& seen) {
   const Vector3 rough = end.section.displacement(state.y.data() + end.slot->position);
   bool greater = false;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -83,7 +98,7 @@ void Monitor::observe_end(End& end, const State& state, bool output, bool& seen)
     greater = greater || size > end.rough[k];
     end.rough[k] = std::max(end.rough[k], size);
   }
-  if (!output && !greater) return;
+  if (!greater) return;
   std::array<double, 3> d{rough.x(), rough.y(), rough.z()};
   if (end.frame >= 0) {
     if (!seen) seen_.observe(state.y);
@@ -94,15 +109,68 @@ void Monitor::observe_end(End& end, const State& state, bool output, bool& seen)
   note(end.slot->name, end.length, d, end.peak);
 }
 
-void Monitor::observe(const State& state, bool output) {
-  bool seen = output;
-  if (output) seen_.observe(state.y);
-  for (End& end : ends_) observe_end(end, state, output, seen);
-  if (output) {
+/// Where a component of the deflection has its greatest size within the last step: along the cubic through the
+/// coordinates and rates at its ends.
+void Monitor::observe_within(End& end, const State& state) {
+  const double h = state.time - last_.time;
+  const std::size_t q = end.slot->position, u = model_.layout().positions + end.slot->speed;
+  const auto at = [&](double s) {
+    for (std::size_t i = 0; i < end.slot->positions; ++i)
+      between_.y[q + i] = cubic(s, last_.y[q + i], h * last_.y[u + i], state.y[q + i], h * state.y[u + i]);
+    return end.section.displacement(between_.y.data() + q);
+  };
+  constexpr int parts = 16;
+  const Vector3 first = end.section.displacement(last_.y.data() + q);
+  const Vector3 after_first = at(1.0 / parts), before_last = at(1 - 1.0 / parts);
+  const Vector3 last = end.section.displacement(state.y.data() + q);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (std::abs(after_first[k]) <= std::abs(first[k]) || std::abs(before_last[k]) <= std::abs(last[k])) continue;
+    double greatest = 0, where = 0;
+    for (int i = 1; i < parts; ++i) {
+      const double size = std::abs(at(static_cast<double>(i) / parts)[k]);
+      if (size <= greatest) continue;
+      greatest = size;
+      where = static_cast<double>(i) / parts;
+    }
+    if (greatest <= end.rough[static_cast<std::size_t>(k)]) continue;
+    static_cast<void>(at(where));
+    bool seen = false;
+    observe_end(end, between_, seen);
+  }
+}
+
+void Monitor::observe(const State& state) {
+  if (state.time > last_.time) {
+    between_.y = state.y;
+    for (End& end : ends_) observe_within(end, state);
+    if (!model_.loads().empty() || !model_.motions().empty()) {
+      go_to_middle(state);
+      raise_efforts(between_);
+    }
+  }
+  bool seen = false;
+  for (End& end : ends_) observe_end(end, state, seen);
+  if (!wholes_.empty()) {
+    if (!seen) seen_.observe(state.y);
     for (const Tip& tip : wholes_)
       note(tip.body, tip.length, deflection(seen_, tip), &summary_.peak_deflection[tip.body]);
   }
   raise_efforts(state);
+  last_ = state;
+}
+
+/// The middle of the last step: positions on the cubic through those at its ends and their rates, speeds on the line.
+void Monitor::go_to_middle(const State& state) {
+  const std::size_t positions = model_.layout().positions, speeds = model_.layout().speeds;
+  const double h = state.time - last_.time;
+  between_.time = last_.time + 0.5 * h;
+  const bool smooth = equations_.position_rates(last_.time, last_.y, rates_before_, work_).ok() &&
+                      equations_.position_rates(state.time, state.y, rates_, work_).ok();
+  for (std::size_t i = 0; i < positions; ++i)
+    between_.y[i] = smooth ? cubic(0.5, last_.y[i], h * rates_before_[i], state.y[i], h * rates_[i])
+                           : 0.5 * (last_.y[i] + state.y[i]);
+  for (std::size_t i = positions; i < positions + speeds; ++i) between_.y[i] = 0.5 * (last_.y[i] + state.y[i]);
+  equations_.normalize(between_.y);
 }
 
 void Monitor::raise_efforts(const State& state) {
@@ -117,14 +185,72 @@ void Monitor::raise_efforts(const State& state) {
     raise(summary_.peak_motion_effort);
 }
 
+double Monitor::kinetic(const State& state, const Energies& energies) {
+  if (!own_energy_) return energies.kinetic;
+  const auto speeds = std::span<const double>(state.y).subspan(model_.layout().positions, efforts_.size());
+  equations_.mass_times(state.y, speeds, efforts_, work_);
+  double twice = 0;
+  for (std::size_t i = 0; i < speeds.size(); ++i) twice += speeds[i] * efforts_[i];
+  return 0.5 * twice;
+}
+
+void Monitor::use_own_energy(const State& initial) {
+  own_energy_ = true;
+  initial_energy_ = kinetic(initial, initial_energies_) + initial_energies_.potential;
+}
+
+void Monitor::audit_momenta(const Energies& e) {
+  const auto apart = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+  };
+  greatest_linear_ = std::max(greatest_linear_, apart(e.linear_momentum, {}));
+  greatest_angular_ = std::max(greatest_angular_, apart(e.angular_momentum, {}));
+  linear_error_ = std::max(linear_error_, apart(e.linear_momentum, initial_energies_.linear_momentum));
+  angular_error_ = std::max(angular_error_, apart(e.angular_momentum, initial_energies_.angular_momentum));
+}
+
+void Monitor::finish_momenta() {
+  double outside = 0, all = 0;
+  bool floats = model_.gravity().isZero(0);
+  for (std::size_t h = 0; h < model_.hinges().size(); ++h) {
+    const HingeNode& hinge = model_.hinges()[h];
+    const Slot& slot = model_.layout().hinges[h];
+    const auto kernel = hinge.hinge->kernel();
+    const bool root = hinge.parent < 0;
+    floats = floats && (!root || (kernel && kernel->kind == HingeKernel::Kind::free && !model_.driven(h)));
+    for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) {
+      all = std::max(all, summary_.peak_effort[i]);
+      if (root) outside = std::max(outside, summary_.peak_effort[i]);
+    }
+  }
+  // On the rates of a free hinge acts what comes from outside the tree; what its bodies do to each other cancels there.
+  constexpr double rounding = 1e-12;
+  MomentumDrift& m = summary_.momentum;
+  m.conserved = floats && outside <= rounding * all;
+  if (!m.conserved) return;
+  m.linear = greatest_linear_ > 0 ? linear_error_ / greatest_linear_ : 0;
+  m.angular = greatest_angular_ > 0 ? angular_error_ / greatest_angular_ : 0;
+}
+
 void Monitor::audit_energy(const State& state) {
   seen_.observe(state.y);
   const Energies e = seen_.energies();
-  const double energy = e.kinetic + e.potential;
+  audit_momenta(e);
+  const double kinetic_energy = kinetic(state, e);
+  const double energy = kinetic_energy + e.potential;
   const double work = state.y.back() - initial_work_;
-  energy_error_ = std::max(energy_error_, std::abs(energy - initial_energy_ - work));
-  energy_scale_ = std::max({energy_scale_, std::abs(energy), std::abs(initial_energy_), std::abs(work), e.kinetic});
-  summary_.energy_drift = energy_scale_ > 0 ? energy_error_ / energy_scale_ : 0;
+  const double error = std::abs(energy - initial_energy_ - work);
+  energy_error_ = std::max(energy_error_, error);
+  energy_scale_ =
+      std::max({energy_scale_, std::abs(energy), std::abs(initial_energy_), std::abs(work), kinetic_energy});
+  const double untruncated = e.kinetic + e.potential - initial_energies_.kinetic - initial_energies_.potential - work;
+  untruncated_error_ = std::max(untruncated_error_, std::abs(untruncated));
+  const auto relative = [&](double x) { return energy_scale_ > 0 ? x / energy_scale_ : 0; };
+  summary_.energy_drift = relative(energy_error_);
+  summary_.untruncated_drift = relative(untruncated_error_);
+  for (std::size_t i = 0; i < model_.layout().speeds; ++i)
+    greatest_speed_ = std::max(greatest_speed_, std::abs(state.y[model_.layout().positions + i]));
+  if (!sign_change_ && error <= trust_limit_ * energy_scale_) trusted_ = state;
 }
 
 int Monitor::mass_matrix_sign(const State& state) {
@@ -152,8 +278,19 @@ void Monitor::remember(Memory& memory) {
   memory(summary_.peak_motion_effort);
   memory(summary_.energy_drift);
   memory(summary_.suspected_jumps);
+  memory(last_.time);
+  memory(last_.y);
   memory(energy_error_);
   memory(energy_scale_);
+  memory(summary_.untruncated_drift);
+  memory(greatest_linear_);
+  memory(greatest_angular_);
+  memory(linear_error_);
+  memory(angular_error_);
+  memory(untruncated_error_);
+  memory(trusted_.time);
+  memory(trusted_.y);
+  memory(greatest_speed_);
   memory(checked_);
   memory(rejected_);
   memory(burst_);

@@ -21,13 +21,24 @@ class Monitor {
   Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
           Observation* seen, RunSummary& summary);
 
-  /// Peaks of deflections and efforts: for every accepted step and output. Those of bodies in segments are left to the
-  /// outputs. At an output the observation is left at its state.
-  void observe(const State& state, bool output);
+  /// Peaks of deflections and efforts: for every accepted step, and what lies between it and the one before.
+  void observe(const State& state);
+  /// Brings the observation to an output. Nothing that a run reports of itself comes from there.
+  void show(const State& state) { seen_.observe(state.y); }
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
-  /// Energy against the work done.
+  /// Energy against the work done. A state where they balance is to be trusted.
   void audit_energy(const State& state);
+  /// The kinetic energy is that of the equations' mass matrix (RunOptions::own_energy).
+  void use_own_energy(const State& initial);
+  /// To be called at the end: what the loads have done on the way decides whether momenta are conserved.
+  void finish_momenta();
+  /// What of the greatest energy may be missing from a state that is to be trusted.
+  void trust(double limit) { trust_limit_ = limit; }
+  /// The last state audited that can be trusted.
+  [[nodiscard]] const State& trusted() const { return trusted_; }
+  /// Greatest |speed| in the states audited [rad/s, m/s].
+  [[nodiscard]] double greatest_speed() const { return greatest_speed_; }
   /// Sign of det M at an accepted state against that of the start.
   void audit_mass_matrix(const State& state, int sign);
   /// Says that a load has changed at an instant known beforehand: rejections after it are no sign of another.
@@ -63,8 +74,10 @@ class Monitor {
     double* ratio;
     std::array<double, 3> rough{};  ///< greatest |deflection| by the expansion
   };
-  void observe_end(End& end, const State& state, bool output, bool& seen);
+  void observe_end(End& end, const State& state, bool& seen);
+  void observe_within(End& end, const State& state);
   void raise_efforts(const State& state);
+  void go_to_middle(const State& state);
   void note(const std::string& name, double length, const std::array<double, 3>& d, std::array<double, 3>* peak);
   /// Sign of det M by one evaluation; 0 where it cannot be solved.
   [[nodiscard]] int mass_matrix_sign(const State& state);
@@ -78,8 +91,19 @@ class Monitor {
   std::vector<Tip> wholes_;  ///< of bodies in segments
   double deflection_limit_;
   std::string excess_;
-  std::vector<double> efforts_, rates_;
+  State last_;     ///< the accepted state before
+  State between_;  ///< a state within the last step
+  State trusted_;
+  double trust_limit_ = 0.5, greatest_speed_ = 0;
+  std::vector<double> efforts_, rates_, rates_before_;
   Work work_;
+  [[nodiscard]] double kinetic(const State& state, const Energies& energies);
+  void audit_momenta(const Energies& energies);
+
+  bool own_energy_ = false;
+  Energies initial_energies_;
+  double greatest_linear_ = 0, greatest_angular_ = 0;
+  double linear_error_ = 0, angular_error_ = 0, untruncated_error_ = 0;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;
   int initial_sign_ = 0;  ///< of det M

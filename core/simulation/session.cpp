@@ -125,7 +125,7 @@ bool Session::before_step(const Stepper& /*stepper*/) {
 bool Session::output(const State& /*state*/) { return true; }
 
 bool Session::after_step(const Stepper& stepper, bool /*outputs*/) {
-  monitor_.observe(stepper.state(), false);
+  monitor_.observe(stepper.state());
   monitor_.audit_mass_matrix(stepper.state(), stepper.statistics().determinant_sign);
   if (monitor_.sign_change()) {
     stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};

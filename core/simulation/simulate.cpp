@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 
 #include "withy/core/simulation/instants.hpp"
@@ -26,6 +27,8 @@ class Run final : public SteppingObserver {
         loop_(model, integrator.start(equations, begun(model, initial)), {options.end, options.output, options.events}),
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.seen, summary),
         validity_(model, equations, options.beyond, summary.validity) {
+    if (options.own_energy) monitor_.use_own_energy(loop_.state());
+    if (std::isfinite(options.drift_limit)) monitor_.trust(options.drift_limit);
     if (options.resume != nullptr) {
       restore(*options.resume);
       return;
@@ -47,10 +50,11 @@ class Run final : public SteppingObserver {
     if (state.time > emitted_ && !left_) {
       output_at(state);
     } else {
-      monitor_.observe(state, true);
+      monitor_.show(state);
     }
     monitor_.audit_energy(state);
-    validity_.finish(state, loop_.stepper().statistics().evaluations, status == RunStatus::completed);
+    monitor_.finish_momenta();
+    validity_.finish(state, loop_.step_evaluations(), status == RunStatus::completed);
   }
 
   [[nodiscard]] const Stepper& stepper() const { return loop_.stepper(); }
@@ -72,13 +76,13 @@ class Run final : public SteppingObserver {
     return stop_.status == RunStatus::completed;
   }
   bool output(const State& state) override { return output_at(state); }
-  bool after_step(const Stepper& stepper, bool outputs) override {
+  bool after_step(const Stepper& stepper, bool /*outputs*/) override {
     const State& state = stepper.state();
     monitor_.audit_steps(state, stepper.statistics());
-    if (outputs) monitor_.audit_energy(state);
-    monitor_.observe(state, false);
-    validity_.observe(state, stepper.statistics().evaluations);
+    monitor_.observe(state);
     monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
+    if (audited(stepper.statistics().accepted)) monitor_.audit_energy(state);
+    validity_.observe(state, loop_.step_evaluations());
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
     if (monitor_.sign_change()) {
       stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
@@ -97,6 +101,11 @@ class Run final : public SteppingObserver {
   void jumped() override { monitor_.pass_instant(); }
 
  private:
+  /// Energy is looked at after each of the first steps, then after every fourth, whatever the output interval.
+  static bool audited(std::size_t accepted) {
+    constexpr std::size_t first = 256, interval = 4;
+    return accepted <= first || accepted % interval == 0;
+  }
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   }
@@ -108,7 +117,7 @@ class Run final : public SteppingObserver {
       stop_ = {RunStatus::interrupted, "stopped by its caller", false};
       return false;
     }
-    monitor_.observe(state, true);
+    monitor_.show(state);
     emitted_ = state.time;
     if (output_) output_(state);
     return true;
@@ -165,6 +174,15 @@ std::string note_on_jumps(const std::vector<double>& times) {
   return text + " s: does a load jump there without declaring it?";
 }
 
+/// The last state that can be trusted takes the place of the last one.
+void go_back(const Monitor& monitor, RunSummary& summary) {
+  if (monitor.trusted().time >= summary.final.time) return;
+  summary.final = monitor.trusted();
+  summary.message +=
+      " The last state that can be trusted, the final one of the results, is that at t = " + brief(summary.final.time) +
+      " s.";
+}
+
 /// Looks at the mass matrix at the end of a run, and why a run that ended badly did.
 MassMatrixHistory look_at_mass_matrix(const Run& run, const Model& model, const EquationsOfMotion& equations,
                                       const State& initial, const Stop& stop, RunSummary& summary) {
@@ -202,6 +220,8 @@ std::string_view name(RunStatus status) {
   switch (status) {
     case RunStatus::completed:
       return "completed";
+    case RunStatus::inaccurate:
+      return "inaccurate";
     case RunStatus::diverged:
       return "diverged";
     case RunStatus::singular:
@@ -224,15 +244,26 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   Stop stop = run.to_end();
   run.finish(stop.status);
   summary.final = run.stepper().state();
+  summary.reached = summary.final.time;
   summary.steps = run.stepper().statistics();
   const MassMatrixHistory history = look_at_mass_matrix(run, model, equations, initial, stop, summary);
   const bool examined = equations.layout().speeds <= largest_examined;
   if (stop.status == RunStatus::completed) {
     summary.message = message_of_completed(run, summary);
+    const double steps = static_cast<double>(std::max<std::size_t>(summary.steps.accepted, 1));
+    const std::string imbalanced =
+        run.monitor().greatest_speed() > options.least_speed
+            ? imbalance(summary, options, integrator, (summary.reached - initial.time) / steps)
+            : std::string();
+    if (!imbalanced.empty()) {
+      stop.status = RunStatus::inaccurate;
+      summary.message = imbalanced + (summary.message.empty() ? "" : " ") + summary.message;
+    }
   } else {
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end
     summary.message = explain(stop, summary.final.time, examined ? &history : nullptr, model.layout());
   }
+  if (stop.status != RunStatus::completed && stop.status != RunStatus::interrupted) go_back(run.monitor(), summary);
   summary.status = stop.status;
   summary.cpu_seconds = thread_cpu_seconds() - began;
   return summary;

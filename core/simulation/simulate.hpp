@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -19,8 +20,15 @@
 namespace withy {
 
 /// How a run ended.
-enum class RunStatus { completed, diverged, singular, step_underflow, interrupted };
-/// "completed", "diverged", "singular", "step-underflow", "interrupted".
+enum class RunStatus {
+  completed,
+  inaccurate,  ///< it came to the end, but energy and work do not balance
+  diverged,
+  singular,
+  step_underflow,
+  interrupted
+};
+/// "completed", "inaccurate", "diverged", "singular", "step-underflow", "interrupted".
 std::string_view name(RunStatus status);
 
 /// A run between two steps: `simulate` restores it and, with the same arguments otherwise, goes on as if it had not
@@ -35,6 +43,14 @@ struct RunOptions {
   double end = 0;                 ///< [s]
   double output = 0.01;           ///< interval of outputs [s]; the end is always one
   double deflection_limit = 1.0;  ///< a deflection past this many lengths of its body is divergence
+  /// Greatest RunSummary::energy_drift that the formulation and the tolerance explain; a run that comes to the end with
+  /// more is inaccurate. Infinite where the formulation does not conserve energy.
+  double drift_limit = std::numeric_limits<double>::infinity();
+  /// The energy whose drift is looked at has ½ uᵀ M u of the equations' own mass matrix in the place of the kinetic
+  /// energy without truncation: that is what a symmetric truncation conserves.
+  bool own_energy = false;
+  /// Motion with no speed above this [m/s, rad/s] is rounding, and its energy balances or not.
+  double least_speed = 1e-12;
   std::size_t most_steps = 100'000'000;
   double most_seconds = 0;            ///< wall time; 0: unlimited
   std::function<bool()> interrupted;  ///< asked between steps
@@ -52,23 +68,38 @@ struct RunOptions {
   const EquationsOfMotion* beyond = nullptr;
 };
 
+/// Greatest change of the momenta of a tree that nothing outside acts on, over the states that energy is looked at in.
+struct MomentumDrift {
+  bool conserved = false;  ///< the tree floats freely: no weight, and no load pushes or turns its free hinges
+  double linear = 0;       ///< |P(t) − P(0)| over the greatest |P|; 0 where there is none
+  double angular = 0;      ///< |L(t) − L(0)| about the world origin over the greatest |L|
+};
+
 /// What a run leaves behind, whatever its end.
 struct RunSummary {
   RunStatus status = RunStatus::completed;
   std::string message;  ///< the physical reason, or what a completed run should not keep to itself; else empty
-  State final;          ///< the last accepted state
-  /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and outputs,
-  /// body axes x, y, z [m]; of a body in segments under its own name, over the outputs.
+  /// The last accepted state. Of a run that ended badly or is inaccurate: the last one that can be trusted, at which M
+  /// had not changed the sign of its determinant and energy and work balanced to within the limit or half of the
+  /// energy.
+  State final;
+  double reached = 0;  ///< time of the last accepted state [s]
+  /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and, between
+  /// them, along the cubic through their coordinates and rates; body axes x, y, z [m]. Of a body in segments under its
+  /// own name, over the accepted steps. No peak depends on the output interval.
   std::map<std::string, std::array<double, 3>> peak_deflection;
   /// Of each of them, the greatest distance of the tip from its undeformed place, over the body's length.
   std::map<std::string, double> peak_deflection_ratio;
-  /// Greatest |effort| of the loads on each generalized speed over all accepted steps and outputs [N m, N].
+  /// Greatest |effort| of the loads on each generalized speed over all accepted steps and their middles [N m, N].
   std::vector<double> peak_effort;
   /// The same of the efforts that motions need.
   std::vector<double> peak_motion_effort;
-  /// Greatest |E(t) − E(0) − work| over the accepted states that follow the outputs, relative to the greatest of |E|,
-  /// |work| and kinetic energy seen.
+  /// Greatest |E(t) − E(0) − work| over the first 256 accepted states, every fourth of the others and the last,
+  /// relative to the greatest of |E|, |work| and kinetic energy seen.
   double energy_drift = 0;
+  /// The same of the energy without truncation: what a formulation with an energy of its own leaves out shows there.
+  double untruncated_drift = 0;
+  MomentumDrift momentum;
   std::vector<EventTime> events;  ///< in their order
   std::size_t switchings = 0;     ///< of loads, at zeros of their switching functions
   /// Times [s] at which steps were rejected as they are where a load jumps without having declared it.

@@ -57,7 +57,9 @@ bool Stepping::to(double limit, bool watching) {
       if (!observer_->before_step(*stepper_)) return end(Cause::stopped);
       if (!zeros_.empty()) before_ = state();
     }
+    const std::size_t made = stepper_->statistics().evaluations;
     ended_.step = stepper_->step(limit);
+    step_evaluations_ += stepper_->statistics().evaluations - made;
     if (ended_.step.outcome != StepResult::Outcome::ok) return end(Cause::failed);
     if (watching && !zeros_.empty()) {
       handled_ = zeros_.find(*stepper_, before_.time);
@@ -154,6 +156,7 @@ void Stepping::remember(Memory& memory) {
   times_.remember(memory);
   memory(last_zero_);
   memory(zeros_at_once_);
+  memory(step_evaluations_);
 }
 
 }  // namespace withy

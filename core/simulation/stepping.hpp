@@ -73,6 +73,8 @@ class Stepping {
   void replace(const State& state) { stepper_->jump(state); }
   [[nodiscard]] const Stepper& stepper() const { return *stepper_; }
   [[nodiscard]] const State& state() const { return stepper_->state(); }
+  /// Evaluations made by steps alone: those of outputs and events in between do not count.
+  [[nodiscard]] std::size_t step_evaluations() const { return step_evaluations_; }
   /// Goes on from a checkpoint's state and the numbers that Stepper::memory gave for it.
   /// \throws std::invalid_argument as Stepper::resume.
   void resume(const State& state, std::span<const double> memory);
@@ -106,6 +108,7 @@ class Stepping {
   SteppingEnd ended_;
   double last_zero_ = -std::numeric_limits<double>::infinity();  ///< time of the last one that changed the run
   int zeros_at_once_ = 0;
+  std::size_t step_evaluations_ = 0;
 };
 
 }  // namespace withy

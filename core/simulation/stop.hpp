@@ -22,6 +22,12 @@ struct Stop {
 Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion& equations, const State& state,
              const StepStatistics& steps);
 
+/// Why a run that came to its end is not to be believed, with the steps first where they are beyond what the integrator
+/// is stable to; empty where it is.
+/// \param mean_step [s] of the accepted steps
+std::string imbalance(const RunSummary& summary, const RunOptions& options, const Integrator& integrator,
+                      double mean_step);
+
 /// "t = 0.0523 s: <reason>. <what the mass matrix is like>". Steps that collapse where M loses rank collapse because of
 /// it: the status then becomes singular.
 /// \param history of the mass matrix; null where it has too many rows to be examined

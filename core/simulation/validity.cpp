@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t motion_cost = 20;
 constexpr std::size_t comparison_cost = 20;
 constexpr std::size_t samples_per_cost = 50;  ///< 2 %
+// Short runs are sampled more often, at intervals that grow with the run: a dozen samples by 1000 evaluations.
+constexpr std::size_t growth = 4, least_interval = 20;
 
 }  // namespace
 
@@ -56,7 +58,7 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
 }
 
 void ValidityWatch::sample(const State& state, std::size_t evaluations) {
-  next_ = evaluations + samples_per_cost * cost_;
+  next_ = evaluations + std::clamp(evaluations / growth, least_interval, samples_per_cost * cost_);
   if (!equations_.derivatives(state.time, state.y, rates_, work_).ok()) return;
   ++validity_.samples;
   const Layout& layout = model_.layout();

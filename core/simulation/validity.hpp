@@ -46,14 +46,15 @@ struct Validity {
   NeglectedAcceleration neglected;  ///< no samples where there was nothing to compare with
 };
 
-/// Samples one run. The interval is counted in evaluations of the equations of motion, which makes the samples the same
-/// on every machine, and is such that samples take about 2 % of the run. Allocates nothing after construction.
+/// Samples one run. The interval is counted in evaluations of the equations of motion that steps make, which makes the
+/// samples the same on every machine and at every output interval, and is such that samples take about 2 % of a long
+/// run. Allocates nothing after construction.
 class ValidityWatch {
  public:
   /// `beyond`: equations of the same model that neglect less, or null.
   ValidityWatch(const Model& model, const EquationsOfMotion& equations, const EquationsOfMotion* beyond,
                 Validity& validity);
-  /// At an accepted state, with the evaluations made so far.
+  /// At an accepted state, with the evaluations that steps have made so far.
   void observe(const State& state, std::size_t evaluations) {
     if (!bodies_.empty() && evaluations >= next_) sample(state, evaluations);
   }

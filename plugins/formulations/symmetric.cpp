@@ -5,7 +5,7 @@
 namespace withy {
 
 void enroll_symmetric(Enrollment& enrollment) {
-  enroll_terms<StrainOrder::quadratic, Truncation::symmetric, InStudies::aside>(
+  enroll_terms<StrainOrder::quadratic, Truncation::symmetric>(
       enrollment, "symmetric",
       "Kinetic energy to first order in the elastic coordinates, from nonlinear strain-displacement relations, and all "
       "equations from it");

@@ -54,7 +54,7 @@ Yardstick truth_of(Evaluator& evaluator, const Yardstick& known) {
   OutputReader reader(evaluator.outputs(), model.prepared->model(), *model.prepared->equations);
   const auto keep = [&](const State& s) {
     r.readings.times.push_back(s.time);
-    r.readings.values.push_back(reader.read(s.y));
+    r.readings.values.push_back(reader.read(s));
     return true;
   };
   const Walk w =
@@ -99,7 +99,7 @@ Verdict judge(const std::string& scene, const std::string& accuracy_text) {
   const Prepared prepared = prepare(SceneValues::read(scene), plugins());
   const Outputs outputs(prepared.model());
   const Accuracy accuracy = Accuracy::parse(accuracy_text);
-  const Candidates all = candidates_for(prepared, plugins(), usual_axes());
+  Candidates all = candidates_for(prepared, plugins(), usual_axes());
   Evaluator evaluator(prepared, plugins(), outputs, {});
   const Advice advice = advise(evaluator, all, accuracy);
   Verdict v;
@@ -113,6 +113,7 @@ Verdict judge(const std::string& scene, const std::string& accuracy_text) {
   v.choice = choice.point.text() + " for " + accuracy_text;
   v.own_use = advice.yardstick->own_use();
   v.probing = advice.cpu_seconds / choice.cost;
+  if (choice.point.modes > all.modes.back()) all.modes = all.more_modes;  // none of fewer would do
   const Yardstick truth = truth_of(evaluator, *advice.yardstick);
   Costs costs;
   double best = 0;

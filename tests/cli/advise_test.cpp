@@ -19,10 +19,10 @@ Finished advise(const Folder& folder, std::vector<std::string> more, std::vector
   return withy(folder, first);
 }
 
-/// The two-link arm driven hard: 1 % of its way is not to be had without the stiffening of link 2.
+/// The two-link arm driven hard: 10 % of a deflection is not to be had without the stiffening of link 2.
 TEST(Advise, PicksAModelWhoseErrorHoldsTheAccuracyAsCompareMeasuresIt) {
   const Folder folder;
-  const Finished f = advise(folder, {"--accuracy", "1%", "--modes", "1,2", "--json"});
+  const Finished f = advise(folder, {"--accuracy", "10%", "--modes", "1,2", "--json"});
   ASSERT_EQ(f.status, 0) << f.err;
   const json j = json::parse(f.out);
   const json& advice = j.at("advice");
@@ -36,16 +36,56 @@ TEST(Advise, PicksAModelWhoseErrorHoldsTheAccuracyAsCompareMeasuresIt) {
     compare.push_back(o);
   }
   const json runs = json::parse(withy(folder, compare).out).at("runs");
-  const double allowed = j.at("reference").at("allowed").at("place");
+  const double allowed = j.at("reference").at("allowed").at("payload.tip");
   for (const json& run : runs) {
     if (run.at("formulation") != "exact") continue;
     EXPECT_LE(run.at("distance").at("tips").at("payload.tip").get<double>(), 1.5 * allowed) << "modes are the same";
   }
 }
 
+/// The tip of the blade goes around 16 m and is bent by half a metre: a share of that way would be a sixth of the
+/// bending.
+TEST(Advise, HoldsTheAccuracyInDeflectionsAndEffortsToo) {
+  const Folder folder;
+  const Finished f = advise(folder, {"--json"}, {"advise", "scenes/spin-up.yaml"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json j = json::parse(f.out);
+  EXPECT_EQ(j.at("outputs"), json({"blade.tip", "blade.tip.deflection", "axle.motion_effort"}));
+  const json &ranges = j.at("reference").at("ranges"), &off = j.at("advice").at("distances");
+  for (const std::string output : j.at("outputs"))
+    EXPECT_LE(off.at(output).get<double>(), 0.01 * ranges.at(output).get<double>()) << output;
+  EXPECT_LT(ranges.at("blade.tip.deflection").get<double>(), 0.6);
+  EXPECT_NE(j.at("advice").at("formulation"), "ruthless");
+  EXPECT_NE(j.at("advice").at("formulation"), "linear");
+}
+
+TEST(Advise, WhatIsNextUpHoldsTheAccuracy) {
+  const Folder folder;
+  const json j = json::parse(advise(folder, {"--json"}, {"advise", "scenes/spin-up.yaml"}).out);
+  const double own = j.at("reference").at("own_error_of_accuracy");
+  ASSERT_FALSE(j.at("next_up").empty());
+  for (const json& up : j.at("next_up")) EXPECT_LE(up.at("of_accuracy").get<double>() + own, 1);
+}
+
+TEST(Advise, BeginsWithWhatTheAccuracyIsOf) {
+  const Folder folder;
+  const std::string out = advise(folder, {"--modes", "1,2", "--accuracy", "20%"}).out;
+  EXPECT_EQ(
+      out.substr(0, out.find('\n')),
+      "driven arm: 20 % of its own range for each of shoulder, elbow, link1.tip, link1.tip.deflection, link2.tip, "
+      "link2.tip.deflection, payload.tip");
+}
+
+TEST(Advise, WhereThereIsNoneItSaysWhatWasMeasured) {
+  const Folder folder;
+  const Finished f = advise(folder, {"--formulations", "ruthless", "--modes", "1", "--accuracy", "3%"});
+  EXPECT_EQ(f.status, 1);
+  EXPECT_THAT(f.err, testing::ContainsRegex("Measured: .* s of CPU time of the 10 allowed"));
+}
+
 TEST(Advise, NothingCheaperAmongItsProbesPasses) {
   const Folder folder;
-  const json j = json::parse(advise(folder, {"--accuracy", "0.5%", "--modes", "1,2", "--json"}).out);
+  const json j = json::parse(advise(folder, {"--accuracy", "10%", "--modes", "1,2", "--json"}).out);
   const double cost = j.at("advice").at("cost_seconds");
   for (const json& p : j.at("probes")) {
     EXPECT_NE(p.at("formulation"), "inconsistent");
@@ -62,7 +102,7 @@ TEST(Advise, AskedForLessItGivesAModelThatCostsLess) {
         .at("cost_seconds")
         .get<double>();
   };
-  EXPECT_LT(evaluations("20%"), evaluations("0.1%"));
+  EXPECT_LT(evaluations("60%"), evaluations("8%"));
 }
 
 /// A blade that spins up needs stiffening, an idle mast with many coordinates nothing at all.
@@ -114,9 +154,9 @@ TEST(Advise, AnAbsoluteAccuracyOfNamedOutputs) {
   ASSERT_EQ(f.status, 0) << f.err;
   const json j = json::parse(f.out);
   EXPECT_EQ(j.at("outputs"), json({"payload.tip", "elbow"}));
-  EXPECT_DOUBLE_EQ(j.at("reference").at("allowed").at("place").get<double>(), 2e-3);
-  EXPECT_LE(j.at("advice").at("distances").at("place").get<double>(), 2e-3);
-  EXPECT_LE(j.at("advice").at("distances").at("angle").get<double>(), 0.5 * 3.14159266 / 180);
+  EXPECT_DOUBLE_EQ(j.at("reference").at("allowed").at("payload.tip").get<double>(), 2e-3);
+  EXPECT_LE(j.at("advice").at("distances").at("payload.tip").get<double>(), 2e-3);
+  EXPECT_LE(j.at("advice").at("distances").at("elbow").get<double>(), 0.5 * 3.14159266 / 180);
 }
 
 TEST(Advise, WhatCannotBeAskedIsBadInputAndSaysWhatCan) {
@@ -133,15 +173,15 @@ TEST(Advise, WhatCannotBeAskedIsBadInputAndSaysWhatCan) {
 
 TEST(Advise, WhereNoCandidateHoldsTheAccuracyItSaysWhichIsNearest) {
   const Folder folder;
-  const Finished f = advise(folder, {"--formulations", "ruthless", "--modes", "1", "--accuracy", "0.01%"});
+  const Finished f = advise(folder, {"--formulations", "ruthless", "--modes", "1", "--accuracy", "2%"});
   EXPECT_EQ(f.status, 1);
   EXPECT_EQ(f.out, "");
-  EXPECT_THAT(f.err, HasSubstr("none of the candidates holds 0.01 %"));
+  EXPECT_THAT(f.err, HasSubstr("none of the candidates holds 2 %"));
 }
 
 TEST(Advise, SaysInWordsWhyAndWhatIsLeftOut) {
   const Folder folder;
-  const std::string out = advise(folder, {"--modes", "1,2"}).out;
+  const std::string out = advise(folder, {"--modes", "1,2", "--accuracy", "10%"}).out;
   for (const char* part : {"\nadvice ", "\nerror ", "\nwhy ", "ruthless: ", "\nleft out ", "\nnext up ", "\nmeasured ",
                            "\nformulation: ", "\nintegrator: {name: "})
     EXPECT_THAT(out, HasSubstr(part));
@@ -171,7 +211,7 @@ TEST(Advise, WritesWhatTheSceneDoesNotSayYet) {
                "gravity: [0, -9.81, 0]\nbodies:\n  rod:\n    type: beam\n    length: 1\n    mass_per_length: 1\n"
                "    bending_y:\n      stiffness: 20\n      modes: 3\nhinges:\n"
                "  pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: rod}\n");
-  const Finished f = advise(folder, {"--write", "new.yaml", "--json"}, {"advise", "bare.yaml"});
+  const Finished f = advise(folder, {"--write", "new.yaml", "--accuracy", "10%", "--json"}, {"advise", "bare.yaml"});
   ASSERT_EQ(f.status, 0) << f.err;
   const json advice = json::parse(f.out).at("advice");
   const json run = json::parse(withy(folder, {"run", "new.yaml", "--json", "--estimate", "never"}).out);

@@ -18,8 +18,9 @@
 
 namespace withy::test {
 
-/// Which seeds: WITHY_TEST_SEEDS=N is 1 to N, not given: 1 to `usual`. WITHY_TEST_FILE=F keeps a line of JSON a seed in
-/// F; seeds that are there are not measured again. Remove F when the program has changed.
+/// Which seeds: WITHY_TEST_SEEDS=N is 1 to N, not given: 1 to `usual`; WITHY_TEST_AFTER=K begins after K.
+/// WITHY_TEST_FILE=F keeps a line of JSON a seed in F; seeds that are there are not measured again. Remove F when the
+/// program has changed.
 class Campaign {
  public:
   /// \param name what a line of the file belongs to
@@ -27,6 +28,8 @@ class Campaign {
     const char* const wanted = std::getenv("WITHY_TEST_SEEDS");
     seeds_ = wanted != nullptr ? static_cast<unsigned>(std::atoi(wanted)) : usual;
     seeds_ = std::min(seeds_, most);
+    const char* const after = std::getenv("WITHY_TEST_AFTER");
+    after_ = after != nullptr ? static_cast<unsigned>(std::atoi(after)) : 0;
     const char* const file = std::getenv("WITHY_TEST_FILE");
     file_ = file != nullptr ? file : "";
     std::ifstream in(file_);
@@ -49,7 +52,7 @@ class Campaign {
   template <class Finding>
   std::vector<Finding> run(const std::function<Finding(unsigned, const std::string& scene)>& measure) const {
     std::vector<Finding> all;
-    for (unsigned seed = 1; seed <= seeds_; ++seed) {
+    for (unsigned seed = after_ + 1; seed <= after_ + seeds_; ++seed) {
       const auto known = known_.find(seed);
       if (known != known_.end()) {
         all.push_back(known->second.template get<Finding>());
@@ -68,7 +71,7 @@ class Campaign {
 
  private:
   std::string name_;
-  unsigned seeds_ = 0;
+  unsigned seeds_ = 0, after_ = 0;
   std::string file_;
   std::map<unsigned, nlohmann::json> known_;
   std::filesystem::path folder_;

@@ -54,7 +54,7 @@ TEST(MassMatrix, a_change_of_sign_ends_the_run_where_the_motion_would_go_through
   EXPECT_LE(before, 0.25);
   EXPECT_GE(after, 0.25);
   EXPECT_LE(after - before, 0.01 + 1e-9) << "a step";
-  EXPECT_NEAR(summary.final.time, after, 1e-4) << "printed with four digits";
+  EXPECT_NEAR(summary.reached, after, 1e-4) << "printed with four digits";
 }
 
 TEST(MassMatrix, definiteness_is_lost_by_sign_eigenvalue_or_condition) {

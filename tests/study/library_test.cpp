@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "withy/study/advice.hpp"
+#include "withy/study/against_next.hpp"
 #include "withy/study/comparison.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/linear_model.hpp"
@@ -53,6 +54,88 @@ TEST(StudyRun, OutputsDoNotDependOnWhatIsMeasuredBeside) {
   for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_EQ(alone[i].y, beside[i].y);
 }
 
+CertifiedRun run_of(const std::string& name, const std::vector<std::pair<std::string, Value>>& changes,
+                    const std::string& formulation) {
+  SceneValues values = scene(name);
+  for (const auto& [path, value] : changes) values.set(path, value, "the test");
+  const Prepared prepared = prepare(values.choose_formulation(formulation, "the test"), plugins());
+  RunSettings settings;
+  settings.estimate = Estimate::never;
+  return run(prepared, plugins(), settings);
+}
+
+/// The inconsistent blade softens as it spins: past its own fundamental frequency nothing holds it.
+TEST(StudyRun, NamesWhatGrowsWhereABodySpinsPastItsFundamentalFrequency) {
+  const CertifiedRun r = run_of("spin-up", {}, "inconsistent");
+  ASSERT_EQ(r.summary.status, RunStatus::diverged) << r.summary.message;
+  EXPECT_NE(r.summary.message.find("'blade' turns at"), std::string::npos) << r.summary.message;
+  EXPECT_NE(r.summary.message.find("its stiffness is negative from there on"), std::string::npos);
+  EXPECT_NE(r.summary.message.find("small motions grow by"), std::string::npos) << r.summary.message;
+  EXPECT_NE(r.summary.message.find("blade.bending_y["), std::string::npos) << r.summary.message;
+  EXPECT_LT(r.summary.final.time, r.summary.reached) << "the last state is none to be trusted";
+  EXPECT_GT(r.summary.final.time, 0.5 * r.summary.reached);
+}
+
+/// 4 kg on a column that buckles under 2.5.
+TEST(StudyRun, NamesBuckling) {
+  const SceneValues column = SceneValues::parse(
+      "format: withy/1\ngravity: [-9.81, 0, 0]\ntime: {end: 5}\nlimits: {deflection: 0.3}\nbodies:\n"
+      "  column: {type: beam, length: 1, mass_per_length: 0.1, bending_y: {stiffness: 10, modes: 2}}\n"
+      "  load: {type: rigid, mass: 4, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}\nhinges:\n"
+      "  foot: {type: weld, parent: world, child: column}\n  top: {type: weld, parent: column.tip, child: load}\n"
+      "initial: {bodies: {column: {modes: [0.01, 0]}}}\n",
+      "column");
+  const CertifiedRun r = run(prepare(column, plugins()), plugins());
+  ASSERT_EQ(r.summary.status, RunStatus::diverged) << r.summary.message;
+  EXPECT_NE(r.summary.message.find("'column' is compressed by 1."), std::string::npos) << r.summary.message;
+  EXPECT_NE(r.summary.message.find("small motions grow by"), std::string::npos) << r.summary.message;
+  EXPECT_NE(r.summary.message.find("column.bending_y[1]"), std::string::npos) << r.summary.message;
+}
+
+TEST(StudyRun, OneStepOfAnyLengthIsInaccurateAndNamedFirst) {
+  const Value rk4 = Value::map({{"name", Value(std::string("rk4"))}, {"step", Value(1e300)}});
+  const CertifiedRun r = run_of("two-link-slew", {{"integrator", rk4}}, "quadratic");
+  EXPECT_NE(r.summary.status, RunStatus::completed);
+  EXPECT_EQ(r.summary.status, RunStatus::inaccurate) << r.summary.message;
+  EXPECT_EQ(r.summary.message.find("Steps of"), 0U) << r.summary.message;
+  EXPECT_NE(r.summary.message.find("Energy and work do not balance"), std::string::npos);
+}
+
+TEST(StudyRun, SoundRunsOfEveryFormulationAreNotInaccurate) {
+  for (const char* formulation : {"linear", "quadratic", "symmetric", "exact", "ruthless"}) {
+    const CertifiedRun r = run_of("two-link-slew", {}, formulation);
+    EXPECT_EQ(r.summary.status, RunStatus::completed) << formulation << ": " << r.summary.message;
+  }
+}
+
+/// A free body keeps its momenta; a truncated formulation does not, which is no error of the integration.
+TEST(StudyRun, CertificatesHaveTheMomentaOfFreeTrees) {
+  const CertifiedRun sound = run_of("beam-on-base", {}, "quadratic"), cut = run_of("beam-on-base", {}, "ruthless");
+  ASSERT_TRUE(sound.certificate.momentum.conserved);
+  EXPECT_LT(sound.certificate.momentum.angular, 1e-5);
+  EXPECT_GT(cut.certificate.momentum.angular, 0.01);
+  EXPECT_FALSE(run_of("pendulum", {}, "quadratic").certificate.momentum.conserved) << "it hangs on the world";
+}
+
+TEST(StudyRun, TheSymmetricTruncationConservesItsOwnEnergy) {
+  const CertifiedRun r = run_of("two-link-slew", {}, "symmetric");
+  EXPECT_LT(r.certificate.energy_drift, 1e-4);
+  EXPECT_GT(r.certificate.untruncated_drift, 10 * r.certificate.energy_drift);
+}
+
+TEST(StudyModes, SayHowFarTheyAreFromTheNextModelUp) {
+  const Prepared prepared = prepare(scene("two-link-slew"), plugins());
+  const Holding holding{{"shoulder", "elbow"}, {}};
+  const StartState start = [](const Prepared& p) { return p.scene.initial; };
+  const ModesOf run = sweep_modes(prepared.values, plugins(), start, holding, {}, false, {}, {});
+  const auto against = frequencies_against_next(run, prepared.values, plugins(), start, holding, false, 4, {});
+  ASSERT_TRUE(against);
+  EXPECT_EQ(against->formulation, "exact");
+  EXPECT_EQ(against->problem, "");
+  EXPECT_EQ(against->compared, 4U);
+  EXPECT_LT(against->most, 1e-6) << "straight and at rest both are the same";
+}
+
 TEST(StudyPrepare, SaysWhichFormulationCannotTreatAModel) {
   SceneValues values = scene("solar-panel");
   try {
@@ -74,7 +157,7 @@ TEST(Measures, OneDistanceServesNamesAndMeasures) {
   turned.y[base.position + 1] = std::sin(0.1);
   turned.y[base.position + 4] += 0.05;
   Distances greatest = outputs.none();
-  outputs.raise(reader.read(prepared.scene.initial.y), reader.read(turned.y), greatest);
+  outputs.raise(reader.read(prepared.scene.initial), reader.read(turned), greatest);
   EXPECT_NEAR(outputs.per_measure(greatest)[static_cast<std::size_t>(Measure::angle)], 0.2, 1e-12);
   EXPECT_NEAR(outputs.per_measure(greatest)[static_cast<std::size_t>(Measure::slide)], 0.05, 1e-12);
   EXPECT_NEAR(named(outputs, greatest, 0).greatest_hinge(), 0.2, 1e-12) << "the greater of both";
@@ -82,7 +165,7 @@ TEST(Measures, OneDistanceServesNamesAndMeasures) {
   State mirrored = turned;
   for (std::size_t i = 0; i < 4; ++i) mirrored.y[base.position + i] *= -1;
   Distances none = outputs.none();
-  outputs.raise(reader.read(turned.y), reader.read(mirrored.y), none);
+  outputs.raise(reader.read(turned), reader.read(mirrored), none);
   for (const double d : none) EXPECT_NEAR(d, 0, 1e-7);
 }
 
@@ -93,7 +176,7 @@ TEST(Measures, WhatIsNoNumberIsInfinitelyFar) {
   State lost = prepared.scene.initial;
   lost.y[0] = std::nan("");
   Distances greatest = outputs.none();
-  outputs.raise(reader.read(prepared.scene.initial.y), reader.read(lost.y), greatest);
+  outputs.raise(reader.read(prepared.scene.initial), reader.read(lost), greatest);
   EXPECT_TRUE(std::isinf(greatest[0]));
 }
 

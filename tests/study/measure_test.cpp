@@ -41,7 +41,45 @@ TEST(Accuracy, OfOutputsThatStandStillIsNotZero) {
   const Outputs outputs(scene.model());
   const Distances limits = Accuracy::parse("1%").limits(outputs, outputs.none());
   for (const double limit : limits) EXPECT_GT(limit, 0);
-  EXPECT_EQ(relative_error(outputs, outputs.none(), outputs.none()), 0);
+  EXPECT_EQ(relative_error(outputs.none(), outputs.none()), 0);
+}
+
+Prepared blade() { return prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spin-up.yaml"), plugins()); }
+
+TEST(Accuracy, IsOfEachOutputsOwnRange) {
+  const Prepared scene = blade();
+  const Outputs outputs(scene.model());
+  EXPECT_EQ(outputs.names(), (std::vector<std::string>{"blade.tip", "blade.tip.deflection", "axle.motion_effort"}));
+  const Distances ranges = {16.0, 0.5, 20.0};
+  const Distances limits = Accuracy::parse("1%").limits(outputs, scales(outputs, ranges, 100.0));
+  for (std::size_t i = 0; i < ranges.size(); ++i) EXPECT_DOUBLE_EQ(limits[i], 0.01 * ranges[i]);
+}
+
+/// 8 m of blade: a deflection of a tenth of a millimetre does not rule.
+TEST(Accuracy, OfWhatHardlyMovesIsOfAFloorThatTheSceneGives) {
+  const Prepared scene = blade();
+  const Outputs outputs(scene.model());
+  const Distances counted = scales(outputs, {1e-5, 1e-4, 1e-3}, 100.0);
+  EXPECT_DOUBLE_EQ(counted[0], 8e-3);
+  EXPECT_DOUBLE_EQ(counted[1], 8e-3);
+  EXPECT_DOUBLE_EQ(counted[2], 0.1) << "of 100 J over a radian";
+}
+
+/// A blade whose axle is driven: its moment is what inverse dynamics says, and an output as the tip is.
+TEST(Outputs, HaveTheEffortsThatMotionsNeed) {
+  const Prepared scene = blade();
+  const Outputs outputs(scene.model(), {"axle.motion_effort"});
+  OutputReader reader(outputs, scene.model(), *scene.equations);
+  State state = scene.scene.initial;
+  state.time = 5;
+  scene.model().prescribe(state);
+  std::vector<double> efforts(scene.model().layout().speeds);
+  Work work = scene.equations->make_work();
+  ASSERT_TRUE(scene.equations->motion_efforts(5, state.y, efforts, work).ok());
+  const std::vector<double> read = reader.read(state);
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0], efforts[scene.model().layout().hinge("axle")->speed]);
+  EXPECT_GT(read[0], 0.1);
 }
 
 /// A pendulum's own run at a tight tolerance.
@@ -51,7 +89,7 @@ Yardstick yardstick_of(Evaluator& evaluator) {
   const ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator.model(p); },
                                               evaluator.registry(), evaluator.outputs(), goal, {});
   EXPECT_TRUE(found.reference) << found.trouble;
-  return {*found.reference, Accuracy::parse("1%").limits(evaluator.outputs(), found.reference->ways)};
+  return {*found.reference, Accuracy::parse("1%").limits(evaluator.outputs(), found.reference->scales)};
 }
 
 TEST(Probe, PassesOnlyWithTheReferencesOwnErrorOnTop) {

@@ -1,0 +1,92 @@
+#include "withy/study/against_next.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "withy/core/simulation/tips.hpp"
+
+namespace withy::study {
+namespace {
+
+/// Every body in one formulation.
+SceneValues values_in(const Prepared& prepared, const std::string& formulation) {
+  constexpr const char* origin = "the next model up";
+  SceneValues values = prepared.values;
+  for (const BodyNode& body : prepared.model().bodies())
+    if (body.terms) values.body_formulation(body.segment ? body.segment->whole : body.name, formulation, origin);
+  values.choose_formulation(formulation, origin);
+  return values;
+}
+
+void raise(AgainstNext& against, double difference, const std::string& of) {
+  ++against.compared;
+  if (difference <= against.most && against.compared > 1) return;
+  against.most = difference;
+  against.of = of;
+}
+
+}  // namespace
+
+std::optional<AgainstNext> frequencies_against_next(const ModesOf& run, const SceneValues& values, Registry& registry,
+                                                    const StartState& start, const Holding& holding, bool as_is,
+                                                    std::size_t count, const Control& control) {
+  const Prepared prepared = prepare(values, registry);
+  const std::optional<Beyond> beyond = next_model_up(prepared, registry);
+  if (!beyond || run.points.front().modes.empty()) return {};
+  AgainstNext against{.formulation = beyond->formulation, .of = {}, .problem = {}};
+  const ModesOf next =
+      sweep_modes(values_in(prepared, beyond->formulation), registry, start, holding, {}, as_is, {}, control);
+  const ModesAt &ours = run.points.front(), &theirs = next.points.front();
+  if (!theirs.problem.empty() || theirs.modes.size() != ours.modes.size()) {
+    against.problem = theirs.problem.empty() ? "it has another number of modes" : theirs.problem;
+    return against;
+  }
+  for (std::size_t i = 0; i < std::min(count, ours.modes.size()); ++i) {
+    const double frequency = theirs.modes[i].frequency();
+    if (ours.modes[i].rigid || theirs.modes[i].rigid || !(frequency > 0)) continue;
+    raise(against, std::abs(ours.modes[i].frequency() - frequency) / frequency, dominating(ours, ours.modes[i]));
+  }
+  return against;
+}
+
+std::optional<AgainstNext> deflections_against_next(const Configuration& configuration, const SteadyState& steady,
+                                                    const Holding& holding, Registry& registry) {
+  const Prepared& prepared = configuration.prepared();
+  const std::optional<Beyond> beyond = next_model_up(prepared, registry);
+  if (!beyond || !steady.converged) return {};
+  AgainstNext against{.formulation = beyond->formulation, .of = {}, .problem = {}};
+  const Prepared up = prepare(values_in(prepared, beyond->formulation), registry);
+  Configuration there(up, configuration.state(), holding);
+  there.begin_at(steady.state);
+  const SteadyState found = find_steady_state(there.dynamics(), there.state(), there.held());
+  if (!found.converged) {
+    against.problem = no_steady_state(there, found);
+    return against;
+  }
+  double greatest = 0;
+  std::vector<std::pair<double, std::string>> differences;
+  for (const Tip& tip : tips(prepared.model())) {
+    if (!tip.flexible) continue;
+    const auto ours = deflection(*prepared.equations, steady.state.y, tip);
+    const auto theirs = deflection(*up.equations, found.state.y, tip);
+    greatest = std::max(greatest, std::hypot(theirs[0], theirs[1], theirs[2]));
+    differences.emplace_back(std::hypot(ours[0] - theirs[0], ours[1] - theirs[1], ours[2] - theirs[2]),
+                             tip.body + ".tip");
+  }
+  for (const auto& [difference, tip] : differences) raise(against, greatest > 0 ? difference / greatest : 0, tip);
+  return against;
+}
+
+std::string against_next_text(const std::optional<AgainstNext>& against, const std::string& what) {
+  if (!against) return {};
+  if (!against->problem.empty())
+    return fmt::format("How far {} are from those in {} is not known: {}.", what, against->formulation,
+                       against->problem);
+  if (against->compared == 0) return {};
+  return fmt::format("Against {}, {} are off by up to {:.2g} %, most {}.", against->formulation, what,
+                     100 * against->most, against->of);
+}
+
+}  // namespace withy::study

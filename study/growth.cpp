@@ -1,0 +1,65 @@
+#include "withy/study/growth.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "withy/core/analysis/fastest_pole.hpp"
+#include "withy/core/plugin/formulation.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/motion_stiffness.hpp"
+#include "withy/core/simulation/tree_motion.hpp"
+
+namespace withy::study {
+namespace {
+
+/// What the motion of the bodies explains, at the last trusted state or where the run's samples saw more of it.
+std::string physical_cause(const Prepared& prepared, const RunSummary& summary) {
+  const Model& model = prepared.model();
+  const EquationsOfMotion& equations = *prepared.equations;
+  const State& state = summary.final;
+  std::vector<double> rates(equations.size());
+  Work work = equations.make_work();
+  TreeMotion motion(model);
+  if (equations.derivatives(state.time, state.y, rates, work).ok())
+    motion.update(state.y, std::span<const double>(rates).subspan(model.layout().positions, model.layout().speeds));
+  std::string text;
+  for (const BodyValidity& b : summary.validity.bodies) {
+    const auto index = static_cast<std::size_t>(model.body(b.name));
+    const double rate = std::max(b.rate_ratio, motion.bodies()[index].rate.norm() / b.fundamental);
+    const double buckling = std::max(b.buckling, -MotionStiffness(model, index).evaluate(motion.bodies()).least);
+    if (rate >= 1)
+      text += fmt::format(
+          " '{}' turns at {:.3g} times its fundamental frequency of {:.4g} rad/s: where a formulation knows the "
+          "inertia "
+          "of rotation and not the stiffening it causes, its stiffness is negative from there on.",
+          b.name, rate, b.fundamental);
+    if (buckling >= 1) text += fmt::format(" '{}' is compressed by {:.3g} times its buckling load.", b.name, buckling);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string growth_text(const Prepared& prepared, const RunSummary& summary) {
+  const Model& model = prepared.model();
+  const bool may_grow = summary.status == RunStatus::diverged || summary.status == RunStatus::step_underflow ||
+                        summary.status == RunStatus::inaccurate;
+  if (!may_grow || model.layout().speeds > largest_examined) return {};
+  try {
+    const TangentDynamics dynamics(prepared.scene.model, prepared.scene.formulation->terms());
+    const FastestPole pole = growing_pole(dynamics, summary.final, driven_speeds(model));
+    const double lasted = summary.reached - prepared.scene.initial.time;
+    if (!(pole.value.real() * lasted > 1)) return physical_cause(prepared, summary);
+    return fmt::format(" About the state at t = {:.4g} s small motions grow by {:.3g}/s{}, most by {} on {}.{}",
+                       summary.final.time, pole.value.real(),
+                       pole.value.imag() > 0 ? fmt::format(", vibrating at {:.3g} rad/s", pole.value.imag()) : "",
+                       pole.cause.empty() ? "forces" : pole.cause, model.layout().speed_names[pole.speed],
+                       physical_cause(prepared, summary));
+  } catch (const std::domain_error&) {
+    return physical_cause(prepared, summary);  // there are no derivatives at that state
+  }
+}
+
+}  // namespace withy::study
