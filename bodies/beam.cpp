@@ -135,6 +135,35 @@ class Beam final : public Body, private Rod {
     all.insert(all.end(), material_.remarks.begin(), material_.remarks.end());
     return all;
   }
+  std::optional<BodyCut> cut(double x) const override {
+    const std::optional<PointExpansion> at = station(x);
+    if (!at) return {};
+    BodyCut cut;
+    cut.at = *at;
+    cut.curvature = linear_fields(x).psi_slope;
+    for (const Strain& s : strains_) {
+      if (s.kind != BeamData::Strain::elongation) cut.stiffness += s.stiffness(x) * s.direction.cwiseAbs();
+    }
+    if (!(x < length_)) return cut;
+    std::vector<double> beyond;
+    for (const double kink : kinks(material_, strains_)) {
+      if (kink > x && kink < length_) beyond.push_back(kink - x);
+    }
+    const BeamQuadrature mass(length_ - x, wave_number(strains_), beyond);
+    for (std::size_t k = 0; k < mass.nodes().size(); ++k) {
+      const double s = x + mass.nodes()[k];
+      cut.particles.push_back({mass.weights()[k] * material_.mass_per_length(s), *station(s)});
+    }
+    const SectionQuadrature along(length_ - x, wave_number(strains_), beyond);
+    for (std::size_t k = 0; k < along.nodes().size(); ++k) {
+      const double s = x + along.nodes()[k];
+      Matrix3 inertia = Matrix3::Zero();
+      for (const auto& [axis, per_length] : material_.inertias)
+        inertia += along.weights()[k] * per_length(s) * axis * axis.transpose();
+      if (!inertia.isZero(0)) cut.sections.push_back({inertia, *station(s)});
+    }
+    return cut;
+  }
   const Rod* rod() const override {
     // The exact rod is inextensible, without rotary inertia in bending, and clamped at x = 0. Shape functions that
     // vanish there leave rounding, at most 1e-12 of a mode's size.

@@ -57,7 +57,7 @@ struct Simulation::Parts {
         prepared(with_one_formulation(scene)),
         session(prepared->model(), *prepared->equations, *prepared->scene.integrator, prepared->scene.initial,
                 {prepared->scene.deflection_limit, prepared->scene.events, std::move(interrupted)}),
-        table(prepared->model(), *prepared->equations) {
+        table(prepared->model(), *prepared->equations, prepared->scene.outputs) {
     for (std::size_t l = 0; l < prepared->model().loads().size(); ++l) {
       const LoadNode& load = prepared->model().loads()[l];
       if (load.load->input() == nullptr) continue;

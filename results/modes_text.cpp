@@ -11,7 +11,7 @@
 namespace withy {
 namespace {
 
-double hertz(const Mode& m) { return m.frequency() / (2 * std::numbers::pi); }
+double in_hertz(const Mode& m) { return m.frequency() / (2 * std::numbers::pi); }
 
 std::string component(const std::complex<double>& x) {
   if (std::abs(x) < 5e-5) return "·";
@@ -27,7 +27,7 @@ std::string modes_text(const study::ModesOf& run, std::size_t count) {
   TextTable table({"mode", "frequency\n[rad/s]", "\n[Hz]", "damping\nratio", "growth\n[1/s]", "<", "<dominated by"});
   for (std::size_t i = 0; i < count; ++i) {
     const Mode& m = at.modes[i];
-    table.add({std::to_string(i + 1), fmt::format("{:.6g}", m.frequency()), fmt::format("{:.6g}", hertz(m)),
+    table.add({std::to_string(i + 1), fmt::format("{:.6g}", m.frequency()), fmt::format("{:.6g}", in_hertz(m)),
                m.rigid ? "-" : fmt::format("{:.3g}", -study::resolved_growth(at, m) / m.frequency() + 0.0),
                fmt::format("{:.3g}", study::resolved_growth(at, m)), study::behaviour(at, m),
                study::dominating(at, m)});

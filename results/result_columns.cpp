@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
+#include <limits>
 
 #include "withy/core/model/hinge_rates.hpp"
 
@@ -23,11 +25,13 @@ std::string numbered(const std::string& name, std::size_t index, std::size_t cou
 
 }  // namespace
 
-ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equations)
+ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equations,
+                             const std::vector<SensorNode>& sensors)
     : model_(model),
       equations_(equations),
       tips_(tips(model)),
       seen_(equations.make_observation()),
+      sensors_(sensors, equations),
       work_(equations.make_work()),
       efforts_(model.layout().speeds) {
   const Layout& layout = model.layout();
@@ -56,6 +60,7 @@ ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equati
   add(columns_, "", {"kinetic_energy", "potential_energy", "work"}, "J");
   add(columns_, "linear_momentum", {".x", ".y", ".z"}, "kg m/s");
   add(columns_, "angular_momentum", {".x", ".y", ".z"}, "kg m^2/s");
+  append(sensors_.columns());
 }
 
 const std::vector<double>& ResultColumns::row(const State& state) {
@@ -79,6 +84,7 @@ const std::vector<double>& ResultColumns::row_of_seen(const State& state) {
   row_.insert(row_.end(), {e.kinetic, e.potential, state.y.back()});
   append(e.linear_momentum);
   append(e.angular_momentum);
+  append_sensors(state);
   return row_;
 }
 
@@ -89,6 +95,13 @@ void ResultColumns::append(const State& state, std::size_t first, std::size_t co
 
 void ResultColumns::append(const std::array<double, 3>& vector) {
   row_.insert(row_.end(), vector.begin(), vector.end());
+}
+
+void ResultColumns::append_sensors(const State& state) {
+  const std::size_t first = row_.size();
+  row_.resize(columns_.size());
+  const std::span<double> values = std::span(row_).subspan(first);
+  if (!sensors_.read(state, values)) std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
 }
 
 void ResultColumns::append_motion_efforts(const State& state) {

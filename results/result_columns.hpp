@@ -10,18 +10,20 @@
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/equations.hpp"
+#include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/core/simulation/tips.hpp"
 
 namespace withy {
 
 /// What `results.csv` holds: time, hinge and modal coordinates and their rates, deflections and world positions of the
-/// tips, energies, work and momenta.
+/// tips, energies, work and momenta; then what the scene's sensors give.
 class ResultColumns {
  public:
-  /// Both must outlive the object.
-  ResultColumns(const Model& model, const EquationsOfMotion& equations);
+  /// Model and equations must outlive the object. The sensors are bound to this model.
+  ResultColumns(const Model& model, const EquationsOfMotion& equations, const std::vector<SensorNode>& sensors = {});
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
-  /// As many numbers as there are columns, until the next row. Allocates nothing.
+  /// As many numbers as there are columns, until the next row. Those of sensors are NaN, as which tables have an empty
+  /// cell, where the state has no finite accelerations. Allocates nothing.
   const std::vector<double>& row(const State& state);
   /// The same where `seen()` is at that state already.
   const std::vector<double>& row_of_seen(const State& state);
@@ -32,12 +34,14 @@ class ResultColumns {
   void append(const State& state, std::size_t first, std::size_t count);
   void append(const std::array<double, 3>& vector);
   void append_motion_efforts(const State& state);
+  void append_sensors(const State& state);
 
   const Model& model_;
   const EquationsOfMotion& equations_;
   std::vector<Tip> tips_;
   std::vector<Column> columns_;
   std::unique_ptr<Observation> seen_;
+  SensorReader sensors_;
   Work work_;  ///< for the efforts of motions
   std::vector<double> efforts_, row_;
 };

@@ -90,7 +90,10 @@ bool Checker::refers(const Place& place, const std::string& name, ParameterSpec:
   if (what == nothing) return true;
   if (names_ == nullptr) return true;
   if (what == frame && !names_->frames_complete) return true;
-  const NameList& known = what == body ? names_->bodies : what == hinge ? names_->hinges : names_->frames;
+  const NameList& known = what == body    ? names_->bodies
+                          : what == hinge ? names_->hinges
+                          : what == load  ? names_->loads
+                                          : names_->frames;
   if (known.has(name)) return true;
   diagnostics_.error(place, fmt::format("no {} {}{}", referent(what), in_quotes(name), suggest(name, known.names())));
   return false;
@@ -143,8 +146,9 @@ std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec
     got(value, spec, value.kind() == Value::Kind::number ? "put text that looks like a number in quotes" : "");
     return {};
   }
-  if (!spec.choices.empty() &&
-      std::find(spec.choices.begin(), spec.choices.end(), value.text()) == spec.choices.end()) {
+  const bool chosen = std::find(spec.choices.begin(), spec.choices.end(), value.text()) != spec.choices.end();
+  if (chosen) return value;
+  if (!spec.choices.empty() && spec.refers == ParameterSpec::Refers::nothing) {
     const std::string guess = nearest(value.text(), spec.choices);
     got(value, spec, guess.empty() ? "" : fmt::format("did you mean '{}'?", guess));
     return {};

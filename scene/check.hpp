@@ -34,6 +34,7 @@ struct SceneNames {
   NameList bodies;
   NameList hinges;
   NameList frames;              ///< "body" and "body.frame"
+  NameList loads;
   bool frames_complete = true;  ///< false where a body could not be made: any frame name is taken then
 };
 

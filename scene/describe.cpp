@@ -35,6 +35,8 @@ const char* referent(ParameterSpec::Refers what) {
       return "hinge";
     case frame:
       return "frame";
+    case load:
+      return "load";
     case mode_family:
       return "mode family";
     case strain_kinematics:
@@ -60,6 +62,8 @@ std::string expectation(const ParameterSpec& spec) {
     case boolean:
       return "true or false";
     case text:
+      if (!spec.choices.empty() && spec.refers != ParameterSpec::Refers::nothing)
+        return fmt::format("the name of a {}, or one of: {}", referent(spec.refers), listed(spec.choices));
       if (!spec.choices.empty()) return "one of: " + listed(spec.choices);
       if (!spec.unit.empty()) return "a name, or a number" + range(spec) + bracketed(spec.unit);
       if (spec.refers == ParameterSpec::Refers::mode_family) {

@@ -16,14 +16,15 @@ inline constexpr std::string_view default_integrator = "dopri5";
 
 /// Members of a scene that hold plain values: format, name, gravity, time, limits, events.
 std::vector<ParameterSpec> scene_members();
-/// Keys of a scene that hold plugins, states or nothing yet.
+/// Keys of a scene that hold plugins or states.
 std::vector<std::string> special_keys();
 
-/// Members that every body, hinge, load and motion has beside its plugin's own.
+/// Members that every body, hinge, load, motion and sensor has beside its plugin's own.
 std::vector<ParameterSpec> body_members();
 std::vector<ParameterSpec> hinge_members();
 std::vector<ParameterSpec> load_members();
 std::vector<ParameterSpec> motion_members();
+std::vector<ParameterSpec> sensor_members();
 /// The name of a chosen formulation or integrator beside the plugin's own options.
 ParameterSpec choice_name(std::string_view kind, std::string_view otherwise);
 /// The name of a mode family beside the plugin's own options.

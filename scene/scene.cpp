@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "withy/core/model/hinge_rates.hpp"
@@ -41,8 +42,6 @@ class SceneBuilder {
     read_plain_values();
     scene_.formulation = choose<Formulation>("formulation", grammar::default_formulation, scene_.formulation_name);
     scene_.integrator = choose<Integrator>("integrator", grammar::default_integrator, scene_.integrator_name);
-    refuse("outputs", "outputs cannot be chosen in this version; leave them out");
-
     SceneTree tree = build_tree(part("bodies"), part("hinges"), gravity_, checker_);
     scene_.source.set("bodies", std::move(tree.bodies));
     scene_.source.set("hinges", std::move(tree.hinges));
@@ -50,6 +49,9 @@ class SceneBuilder {
     checker_.know(&tree.names);
     add_motions(tree.model.get());
     add_loads(tree.model.get());
+    for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
+      tree.names.loads.add(load.name);
+    add_outputs(tree);
     if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model);
     if (tree.model != nullptr && diagnostics_.ok()) set_span(*tree.model);
     if (tree.model != nullptr && diagnostics_.ok()) set_events(*tree.model);
@@ -96,13 +98,6 @@ class SceneBuilder {
     if (given == nullptr || !checker_.is_map(*given, "a map of names")) return Value::map({}, place);
     if (key == "bodies" && given->members().empty()) diagnostics_.error(place, "got none; need at least one body");
     return given->kind() == Value::Kind::map ? *given : Value::map({}, place);
-  }
-
-  void refuse(const std::string& key, const std::string& message) {
-    const Value* given = document_.root.find(key);
-    if (given == nullptr || given->kind() == Value::Kind::null) return;
-    if (given->kind() == Value::Kind::map && given->members().empty()) return;
-    checker_.key_error("/" + key, message);
   }
 
   template <class Interface>
@@ -154,6 +149,29 @@ class SceneBuilder {
                       [&](const std::string& name, const Value& value, std::unique_ptr<Motion> motion) {
                         model->add_motion(name, value.text_at("hinge"), std::move(motion));
                       });
+  }
+
+  /// Sensors. Their names stand beside those of the tree in results and options.
+  void add_outputs(const SceneTree& tree) {
+    const Value* outputs = document_.root.find("outputs");
+    for (const auto& [name, given] : outputs != nullptr ? outputs->members() : std::vector<Value::Member>{}) {
+      const char* taken = tree.names.hinges.has(name)   ? "hinge"
+                          : tree.names.bodies.has(name) ? "body"
+                          : is_default_column(name)     ? "column that every table has"
+                                                        : nullptr;
+      if (taken == nullptr) continue;
+      checker_.key_error("/outputs/" + name, fmt::format("got name {}, which is that of a {}; outputs need their own",
+                                                         in_quotes(name), taken));
+    }
+    add_parts<Sensor>("outputs", grammar::sensor_members(), tree.model != nullptr,
+                      [&](const std::string& name, const Value&, const std::unique_ptr<Sensor>& sensor) {
+                        scene_.outputs.push_back({name, sensor->bind(*tree.model, scene_.outputs)});
+                      });
+  }
+  static bool is_default_column(std::string_view name) {
+    constexpr std::array<std::string_view, 6> names = {
+        "t", "work", "kinetic_energy", "potential_energy", "linear_momentum", "angular_momentum"};
+    return std::find(names.begin(), names.end(), name) != names.end();
   }
 
   /// The functions that the scene's events watch.

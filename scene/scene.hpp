@@ -13,6 +13,7 @@
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/mode_parameters.hpp"
 #include "withy/core/plugin/registry.hpp"
+#include "withy/core/plugin/sensor.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/scene/scene_values.hpp"
 #include "withy/scene/sources.hpp"
@@ -46,10 +47,11 @@ struct Scene {
   std::shared_ptr<const Formulation> formulation;
   std::string integrator_name;
   std::shared_ptr<const Integrator> integrator;
-  std::optional<double> end;      ///< [s]; where the scene gives none, the latest end of a load, if one has an end
-  double output = 0.01;           ///< [s]
-  double deflection_limit = 1.0;  ///< lengths of a body
-  std::vector<RunEvent> events;   ///< for RunOptions
+  std::optional<double> end;        ///< [s]; where the scene gives none, the latest end of a load, if one has an end
+  double output = 0.01;             ///< [s]
+  double deflection_limit = 1.0;    ///< lengths of a body
+  std::vector<RunEvent> events;     ///< for RunOptions
+  std::vector<SensorNode> outputs;  ///< in the order of the file
   State initial;
 };
 

@@ -59,7 +59,7 @@ class SchemaWriter {
     properties["loads"] = plugins<Load>(grammar::load_members(), "loads on the tree");
     properties["motions"] = plugins<Motion>(grammar::motion_members(), "prescribed motions of hinges");
     properties["initial"] = state();
-    properties["outputs"] = {{"type", "object"}, {"maxProperties", 0}, {"description", "not part of this version"}};
+    properties["outputs"] = plugins<Sensor>(grammar::sensor_members(), "sensors, whose numbers are results");
     return {
         {"$schema", "https://json-schema.org/draft/2020-12/schema"},
         {"title", "Withy scene"},
@@ -95,7 +95,7 @@ class SchemaWriter {
     if (spec.refers == ParameterSpec::Refers::motion) return reference("motion");
     Json json = {{"type", "string"}};
     if (spec.refers == ParameterSpec::Refers::strain_kinematics) json["enum"] = registry_.ids<StrainKinematics>();
-    if (!spec.choices.empty()) json["enum"] = spec.choices;
+    if (!spec.choices.empty() && spec.refers == ParameterSpec::Refers::nothing) json["enum"] = spec.choices;
     return json;
   }
 

@@ -34,6 +34,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["bodies"] = inner "|withy/bodies/.*|fmt/.*|boost/math/.*"
     may["integrators"] = inner "|withy/integrators/.*|fmt/.*|boost/multiprecision/.*|(cvode|nvector|sunmatrix|sunlinsol)/.*"
     may["loads"] = inner "|withy/loads/.*|fmt/.*"
+    may["sensors"] = inner "|withy/sensors/.*|fmt/.*"
     may["fem"] = inner "|withy/fem/.*|withy/bodies/modal/.*|fmt/.*|nlohmann/.*|Spectra/.*"
     may["cmake"] = inner "|withy/(scene|plugins/host)/.*|fmt/.*|nlohmann/.*|gmock/.*|gtest/.*"
     may["withy.hpp"] = inner "|withy/(scene|study|results|plugins/host|host)/.*"

@@ -15,6 +15,7 @@
 #include "withy/core/plugin/load.hpp"
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/core/plugin/motion.hpp"
+#include "withy/core/plugin/sensor.hpp"
 #include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/text_table.hpp"
@@ -48,7 +49,8 @@ Description describe(Registry& registry, const PluginRecord& r) {
   static_cast<void>(describe_as<Body>(registry, r, d) || describe_as<Hinge>(registry, r, d) ||
                     describe_as<ModeFamily>(registry, r, d) || describe_as<Formulation>(registry, r, d) ||
                     describe_as<Integrator>(registry, r, d) || describe_as<Load>(registry, r, d) ||
-                    describe_as<Motion>(registry, r, d) || describe_as<StrainKinematics>(registry, r, d));
+                    describe_as<Motion>(registry, r, d) || describe_as<StrainKinematics>(registry, r, d) ||
+                    describe_as<Sensor>(registry, r, d));
   return d;
 }
 

@@ -7,19 +7,17 @@
 namespace withy {
 
 AppliedLoads::AppliedLoads(const Model& model, Terms terms) : model_(model) {
-  std::vector<FrameIndex> frames;
   std::size_t scratch = 0;
   for (const LoadNode& node : model.loads()) {
     scratch = std::max(scratch, node.load->scratch());
-    frames.insert(frames.end(), node.load->frames().begin(), node.load->frames().end());
+    frames_.insert(frames_.end(), node.load->frames().begin(), node.load->frames().end());
   }
   sweep::WorkLayout memory;
   scratch_offset_ = memory.take<double>(scratch);
-  if (!frames.empty()) {
-    frames_ = frames.size();
-    paths_ = std::make_unique<const FramePaths>(model, terms, frames);
-    motions_offset_ = memory.take<FrameMotion>(frames_);
-    wrenches_offset_ = memory.take<Wrench>(frames_);
+  if (!frames_.empty()) {
+    paths_ = std::make_unique<const FramePaths>(model, terms, frames_);
+    motions_offset_ = memory.take<FrameMotion>(frames_.size());
+    wrenches_offset_ = memory.take<Wrench>(frames_.size());
     paths_offset_ = memory.size();
   }
   work_size_ = memory.size() + (paths_ != nullptr ? paths_->work_size() : 0);
@@ -36,23 +34,29 @@ void AppliedLoads::add(double t, std::span<const double> y, std::span<double> ef
     if (wanted(i)) load.add(t, positions, speeds, efforts, {sweep::at<double>(work, scratch_offset_), load.scratch()});
   }
   model_.add_discrete_efforts(t, y, efforts, only);
-  if (paths_ == nullptr) return;
-  const std::span<FrameMotion> motions(sweep::at<FrameMotion>(work, motions_offset_), frames_);
-  const std::span<Wrench> wrenches(sweep::at<Wrench>(work, wrenches_offset_), frames_);
+  if (paths_ != nullptr) paths_->add_efforts(wrenches(t, y, work, only), efforts, work + paths_offset_);
+}
+
+std::span<const Wrench> AppliedLoads::wrenches(double t, std::span<const double> y, std::byte* work,
+                                               int only) const noexcept {
+  if (paths_ == nullptr) return {};
+  const auto positions = y.first(model_.layout().positions);
+  const auto speeds = y.subspan(model_.layout().positions, model_.layout().speeds);
+  const std::span<FrameMotion> motions(sweep::at<FrameMotion>(work, motions_offset_), frames_.size());
+  const std::span<Wrench> all(sweep::at<Wrench>(work, wrenches_offset_), frames_.size());
   paths_->motions(positions, speeds, motions, work + paths_offset_);
   std::size_t first = 0;
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    const BoundLoad& load = *loads[i].load;
-    const std::size_t count = load.frames().size();
-    const auto own = wrenches.subspan(first, count);
-    if (wanted(i)) {
-      loads[i].wrenches(t, y, motions.subspan(first, count), own);
+  for (std::size_t i = 0; i < model_.loads().size(); ++i) {
+    const std::size_t count = model_.loads()[i].load->frames().size();
+    const auto own = all.subspan(first, count);
+    if (only < 0 || i == static_cast<std::size_t>(only)) {
+      model_.loads()[i].wrenches(t, y, motions.subspan(first, count), own);
     } else {
       std::fill(own.begin(), own.end(), Wrench{});
     }
     first += count;
   }
-  paths_->add_efforts(wrenches, efforts, work + paths_offset_);
+  return all;
 }
 
 }  // namespace withy

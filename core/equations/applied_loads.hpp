@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "withy/core/kinematics/frame_paths.hpp"
 #include "withy/core/model/model.hpp"
@@ -21,11 +22,15 @@ class AppliedLoads {
   /// Adds the efforts at time t [s], y as in State, of all loads or of one (index in Model::loads()).
   void add(double t, std::span<const double> y, std::span<double> efforts, std::byte* work,
            int only = -1) const noexcept;
+  /// Frames at which loads act, load after load.
+  [[nodiscard]] const std::vector<FrameIndex>& frames() const { return frames_; }
+  /// The wrenches there at (t, y), world axes, in the work memory.
+  std::span<const Wrench> wrenches(double t, std::span<const double> y, std::byte* work, int only = -1) const noexcept;
 
  private:
   const Model& model_;
   std::unique_ptr<const FramePaths> paths_;  ///< of the loads' frames, load after load; null: none acts at a frame
-  std::size_t frames_ = 0;
+  std::vector<FrameIndex> frames_;
   std::size_t scratch_offset_ = 0, motions_offset_ = 0, wrenches_offset_ = 0, paths_offset_ = 0, work_size_ = 0;
 };
 

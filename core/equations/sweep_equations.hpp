@@ -14,6 +14,7 @@
 #include "withy/core/equations/denormals.hpp"
 #include "withy/core/equations/elastic_part.hpp"
 #include "withy/core/equations/rate_map.hpp"
+#include "withy/core/equations/sensing.hpp"
 #include "withy/core/equations/work_slices.hpp"
 #include "withy/core/kinematics/observation.hpp"
 #include "withy/core/reference/reference.hpp"
@@ -193,6 +194,9 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit {
 
   std::unique_ptr<Observation> make_observation() const override {
     return observed_([this] { return observed_model(*model_, terms_); }).make_observation();
+  }
+  std::unique_ptr<SensedState> make_sensed_state(std::span<const SectionPlace> sections) const override {
+    return make_sensing(std::make_unique<const sensed::Plan>(*model_, terms_, sections), *this, loads_);
   }
   DenseSystem system(double t, std::span<const double> y) const override { return reference().system(t, y); }
   Energies energies(std::span<const double> y) const override { return reference().energies(y); }

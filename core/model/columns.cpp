@@ -40,6 +40,13 @@ std::vector<Column> coordinate_columns(const HingeNode& hinge) {
   return c;
 }
 
+std::vector<Column> columns_of(const SensorNode& sensor) {
+  std::vector<Column> columns;
+  for (const SensorColumn& c : sensor.sensor->columns())
+    columns.push_back({c.component.empty() ? sensor.name : sensor.name + '.' + c.component, c.unit});
+  return columns;
+}
+
 std::vector<Column> rate_columns(const HingeNode& hinge) {
   const auto kernel = hinge.hinge->kernel();
   std::vector<Column> c;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/sensor.hpp"
 
 namespace withy {
 
@@ -20,5 +21,8 @@ struct Column {
 std::vector<Column> coordinate_columns(const HingeNode& hinge);
 /// Their rates: `shoulder.rate` [rad/s], `base.wx` [rad/s] … `base.vz` [m/s], `joint.rate.0` [rad/s] ….
 std::vector<Column> rate_columns(const HingeNode& hinge);
+
+/// What a sensor gives, as `tip.x` [m]; `drive` [N m] where a number has no name of its own.
+std::vector<Column> columns_of(const SensorNode& sensor);
 
 }  // namespace withy

@@ -41,6 +41,9 @@ class Body {
   /// the tip of one is joined rigidly to the root of the next. A model is made of them in place of the body; shape() is
   /// then of the whole as if it were one piece. Empty where it is one.
   [[nodiscard]] virtual std::span<const std::shared_ptr<const Body>> segments() const { return {}; }
+  /// The body cut at x [m] along itself; nothing where it is not slender or does not reach there. Of a body in segments
+  /// the segments are asked.
+  [[nodiscard]] virtual std::optional<BodyCut> cut(double /*x*/) const { return {}; }
   /// What a user should know of the body beyond its numbers, such as what its data lack: each a sentence.
   [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
 };

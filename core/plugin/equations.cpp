@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "withy/core/plugin/sensor.hpp"
+
 namespace withy {
 namespace {
 
@@ -36,6 +38,10 @@ std::vector<double> of_all_speeds(const DenseSystem& system, const std::vector<d
 Work::Work(std::size_t bytes) : storage_(bytes + 64), size_(bytes) {
   const auto address = reinterpret_cast<std::uintptr_t>(storage_.data());
   data_ = storage_.data() + (64 - address % 64) % 64;
+}
+
+std::unique_ptr<SensedState> EquationsOfMotion::make_sensed_state(std::span<const SectionPlace>) const {
+  return nullptr;
 }
 
 void Work::poison() { std::memset(data_, 0xff, size_); }

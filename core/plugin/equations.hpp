@@ -13,6 +13,9 @@
 
 namespace withy {
 
+class SensedState;
+struct SectionPlace;
+
 /// How an evaluation ended.
 struct Evaluation {
   enum class Outcome { ok, singular, nonfinite };
@@ -178,6 +181,10 @@ class EquationsOfMotion {
 
   /// For what a run reports: energies, poses and deflections of many states.
   [[nodiscard]] virtual std::unique_ptr<Observation> make_observation() const = 0;
+  /// For the outputs that a scene names (sensor.hpp); the equations must outlive it. Null where they are no model's.
+  /// \param sections where inner forces will be asked for
+  /// \throws std::invalid_argument where a body cannot be cut there.
+  [[nodiscard]] virtual std::unique_ptr<SensedState> make_sensed_state(std::span<const SectionPlace> sections) const;
 
   /// M, f and applied efforts, assembled by an algorithm independent of `derivatives`; with the three below it is the
   /// dense reference, for eyes and tests: O(bodies · speeds) memory and more time.

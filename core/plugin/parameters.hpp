@@ -21,7 +21,8 @@ struct ParameterSpec {
     number,   ///< finite number in `unit`; with `columns` a table of it as well (`or_table`)
     integer,  ///< whole number
     boolean,  ///< true or false
-    text,     ///< a name; with `choices` one of them; with `refers` the name of a hinge, body, frame or plugin
+    text,     ///< a name; with `choices` one of them; with `refers` the name of a hinge, body, frame, load or plugin;
+              ///< with both either
     vector,   ///< `count` numbers in `unit`
     table,    ///< rows of `count` numbers, the first column strictly increasing; column units are `columns`; ranges are
               ///< of the other columns
@@ -29,7 +30,7 @@ struct ParameterSpec {
     named,    ///< any number of named maps, each with `members`; the names refer as `refers` says
   };
   /// What a name must be the name of; the reader reports dangling names.
-  enum class Refers { nothing, body, hinge, frame, mode_family, motion, strain_kinematics, formulation };
+  enum class Refers { nothing, body, hinge, frame, load, mode_family, motion, strain_kinematics, formulation };
   /// What a parameter is to studies, whatever its key: they vary those that have a role (mode_parameters.hpp).
   enum class Role {
     none,

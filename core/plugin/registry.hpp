@@ -26,6 +26,7 @@ class Integrator;
 class Load;
 class Motion;
 class StrainKinematics;
+class Sensor;
 class Registry;
 
 /// What a plugin is told when it makes something: where other plugins are found, where to report, for which object.
@@ -84,9 +85,15 @@ constexpr std::string_view kind_name<StrainKinematics>() {
   return "strain-kinematics";
 }
 
-inline constexpr std::array<std::string_view, 8> plugin_kinds = {
+template <>
+constexpr std::string_view kind_name<Sensor>() {
+  return "sensor";
+}
+
+inline constexpr std::array<std::string_view, 9> plugin_kinds = {
     kind_name<Body>(),       kind_name<Hinge>(), kind_name<ModeFamily>(), kind_name<Formulation>(),
-    kind_name<Integrator>(), kind_name<Load>(),  kind_name<Motion>(),     kind_name<StrainKinematics>()};
+    kind_name<Integrator>(), kind_name<Load>(),  kind_name<Motion>(),     kind_name<StrainKinematics>(),
+    kind_name<Sensor>()};
 
 /// Whether a text can be a plugin's id: 1 to 64 of a-z, 0-9 and '-'.
 bool is_plugin_id(std::string_view text);
@@ -115,7 +122,7 @@ class Enrollment {
   friend class Registry;
   std::tuple<std::vector<Plugin<Body>>, std::vector<Plugin<Hinge>>, std::vector<Plugin<ModeFamily>>,
              std::vector<Plugin<Formulation>>, std::vector<Plugin<Integrator>>, std::vector<Plugin<Load>>,
-             std::vector<Plugin<Motion>>, std::vector<Plugin<StrainKinematics>>>
+             std::vector<Plugin<Motion>>, std::vector<Plugin<StrainKinematics>>, std::vector<Plugin<Sensor>>>
       plugins_;
 };
 
@@ -156,7 +163,7 @@ class Registry {
   static std::vector<std::string> sorted_unique(std::vector<std::string> names);
 
   std::tuple<Map<Body>, Map<Hinge>, Map<ModeFamily>, Map<Formulation>, Map<Integrator>, Map<Load>, Map<Motion>,
-             Map<StrainKinematics>>
+             Map<StrainKinematics>, Map<Sensor>>
       maps_;
   /// A loader admits what it loads: recursive. On the heap, so that a registry can be moved before it is shared.
   std::unique_ptr<std::recursive_mutex> mutex_ = std::make_unique<std::recursive_mutex>();

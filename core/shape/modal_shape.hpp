@@ -49,4 +49,13 @@ struct ModalShape {
   [[nodiscard]] Eigen::Index modes() const { return static_cast<Eigen::Index>(mode_names.size()); }
 };
 
+/// A slender body cut across at a section: what lies beyond it, and how the section is strained.
+struct BodyCut {
+  PointExpansion at;                ///< motion of the section
+  std::vector<Particle> particles;  ///< quadrature of the mass beyond
+  std::vector<Section> sections;    ///< rotary inertia beyond
+  Matrix3X curvature;               ///< κ of each coordinate [1/m], section axes: twist rate, then the two curvatures
+  Vector3 stiffness = Vector3::Zero();  ///< GJ, EI_y, EI_z [N m²]; zero where the body has no such strain
+};
+
 }  // namespace withy

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -39,6 +40,38 @@ std::vector<std::string> all_cells(const std::string& table) {
     all.insert(all.end(), row.begin(), row.end());
   }
   return all;
+}
+
+/// Sensors look at accepted states: a run goes the same way with and without them, to the last digit.
+TEST(Run, OutputsAreColumnsAndChangeNothingElse) {
+  const Folder folder;
+  const std::vector<std::string> first_second = {"--set", "time.end=1", "--set", "time.output=0.02", "--out"};
+  const auto table_of = [&](const std::string& scene) {
+    std::vector<std::string> arguments = {"run", "scenes/" + scene + ".yaml"};
+    arguments.insert(arguments.end(), first_second.begin(), first_second.end());
+    arguments.push_back(scene);
+    const Finished f = withy(folder, arguments);
+    EXPECT_EQ(f.status, 0) << f.err;
+    return lines(folder.read(scene + "/results.csv"));
+  };
+  const auto without = table_of("two-link-slew"), with = table_of("loads-of-the-slew");
+  ASSERT_EQ(without.size(), with.size());
+  for (std::size_t i = 0; i < with.size(); ++i) EXPECT_EQ(with[i].substr(0, without[i].size() + 1), without[i] + ",");
+  EXPECT_THAT(with[0], HasSubstr(",shoulder_torque[N m],elbow_torque[N m],elbow_load.fx[N],"));
+  EXPECT_THAT(with[0], HasSubstr(",root.stress_z[Pa],middle.fx[N],"));
+  EXPECT_THAT(with[0], testing::EndsWith(",tip.wz[rad/s],box.x[m/s^2],box.y[m/s^2],box.z[m/s^2]"));
+  const auto head = cells(with[0]);
+  const auto at = [&](const std::string& name, std::size_t row) {
+    const auto found = std::find(head.begin(), head.end(), name);
+    EXPECT_NE(found, head.end()) << name;
+    return std::stod(cells(with[row])[static_cast<std::size_t>(found - head.begin())]);
+  };
+  for (const std::size_t row : {std::size_t{5}, std::size_t{20}, with.size() - 1}) {
+    // Through the elbow goes what its motor does, and the root of link 1 carries what the weld there does.
+    EXPECT_NEAR(at("elbow_load.mz[N m]", row), at("elbow_torque[N m]", row), 1e-9);
+    EXPECT_NEAR(at("root.mz[N m]", row), at("root_load.mz[N m]", row), 1e-9);
+    EXPECT_NEAR(at("root_load.fz[N]", row), 0, 1e-9);
+  }
 }
 
 TEST(Run, RunJsonHoldsWhatTheContractNames) {

@@ -8,6 +8,7 @@ namespace {
 void enroll(withy::Enrollment& enrollment) {
   enrollment.add(example::slow_linear());
   enrollment.add(example::cycloid());
+  enrollment.add(example::speed());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The formulation and the motion of this project.
+// The formulation, the motion and the sensor of this project.
 #pragma once
 
 #include <withy/core/plugin/registry.hpp>
@@ -7,5 +7,6 @@ namespace example {
 
 withy::Plugin<withy::Formulation> slow_linear();
 withy::Plugin<withy::Motion> cycloid();
+withy::Plugin<withy::Sensor> speed();
 
 }  // namespace example

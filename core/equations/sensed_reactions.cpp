@@ -1,0 +1,128 @@
+#include "withy/core/equations/sensed_reactions.hpp"
+
+#include <algorithm>
+
+#include "withy/core/kinematics/sensed_steps.hpp"
+
+namespace withy::equations {
+
+using sensed::First;
+using sensed::Mode;
+using sensed::Second;
+
+SensedReactions::SensedReactions(const sensed::Plan& plan, const AppliedLoads& loads)
+    : plan_(plan),
+      loads_(loads),
+      work_(loads.work_size()),
+      reactions_(plan.bodies.size()),
+      sections_(plan.cuts.size()),
+      no_accelerations_(plan.model.layout().speeds) {
+  const bool first_order = plan.truncation == Truncation::strict || plan.truncation == Truncation::symmetric;
+  if (first_order) {
+    second_.emplace(plan);
+  } else {
+    first_.emplace(plan);
+  }
+  if (plan.truncation == Truncation::strict) {
+    applied_first_.emplace(plan);
+  } else if (plan.truncation == Truncation::symmetric) {
+    applied_second_.emplace(plan);
+  } else {
+    plain_.emplace(plan);
+  }
+}
+
+void SensedReactions::observe(const State& state, std::span<const double> accelerations) noexcept {
+  std::fill(reactions_.begin(), reactions_.end(), Wrench{});
+  std::fill(sections_.begin(), sections_.end(), Wrench{});
+  if (first_) find_inertia(*first_, state, accelerations);
+  if (second_) find_inertia(*second_, state, accelerations);
+  if (plain_) find_applied(*plain_, state);
+  if (applied_first_) find_applied(*applied_first_, state);
+  if (applied_second_) find_applied(*applied_second_, state);
+}
+
+template <class S>
+void SensedReactions::find_inertia(Part<S>& part, const State& state, std::span<const double> accelerations) noexcept {
+  const bool strict = plan_.truncation == Truncation::strict;
+  const sensed::Kept kept{.ruthless = false, .speeds = plan_.products_of_speeds};
+  sensed::set_pass(part.pass, plan_, state.y, accelerations, kept, [&](double q, double q_dot, double q_ddot) {
+    if constexpr (std::is_same_v<S, First>) {
+      return sensed::moving_mode(q, q_dot, q_ddot);
+    } else {
+      return strict ? sensed::strict_mode(q, q_dot, q_ddot) : sensed::symmetric_mode(q, q_dot, q_ddot);
+    }
+  });
+  part.pass.outward();
+  for (std::size_t b = 0; b < plan_.bodies.size(); ++b)
+    part.total[b] = sensed::own_momentum(part.pass, b, plan_.bodies[b], plan_.bodies[b]).h;
+  sensed::gather(part.pass, plan_, part.total);
+  for (std::size_t b = 0; b < plan_.bodies.size(); ++b) {
+    const sensed::BodyMotionOf<S>& body = part.pass.bodies[b];
+    const sensed::TwistOf<double> f = sensed::driving(body.BM.from_parent(part.total[b]), body.V_M);
+    Matrix3 R;
+    for (Eigen::Index i = 0; i < R.size(); ++i) R(i) = sensed::number(part.pass.hinges[b].X.R(i));
+    reactions_[b].moment += R * f.w;
+    reactions_[b].force += R * f.v;
+  }
+  for (std::size_t c = 0; c < plan_.cuts.size(); ++c) {
+    const sensed::CutPlan& cut = plan_.cuts[c];
+    const sensed::StepOf<S>& section = part.pass.section(cut.body, cut.section);
+    const sensed::TwistOf<S> h =
+        at_cut(part, cut, sensed::own_momentum(part.pass, cut.body, plan_.bodies[cut.body], cut).h);
+    const sensed::TwistOf<double> f = sensed::driving(h, section.X.to_child(part.pass.bodies[cut.body].V) + section.V);
+    sections_[c].moment += f.w;
+    sections_[c].force += f.v;
+  }
+}
+
+template <class S>
+void SensedReactions::find_applied(Part<S>& part, const State& state) noexcept {
+  const sensed::Kept kept{.ruthless = false, .speeds = false};
+  sensed::set_pass(part.pass, plan_, state.y, no_accelerations_, kept, [](double q, double, double) {
+    const S value = frame_pass::elastic<S>(q);
+    return Mode<S>{value, S(0.0)};
+  });
+  part.pass.outward();
+  for (std::size_t b = 0; b < plan_.bodies.size(); ++b)
+    part.total[b] = sensed::weight(part.pass, b, plan_, plan_.bodies[b]);
+  const std::span<const Wrench> wrenches = loads_.wrenches(state.time, state.y, work_.data());
+  for (std::size_t i = 0; i < wrenches.size(); ++i) {
+    const FrameIndex& at = loads_.frames()[i];
+    part.total[static_cast<std::size_t>(at.body)] += sensed::on_body(part.pass, at, wrenches[i]);
+  }
+  sensed::gather(part.pass, plan_, part.total);
+  for (std::size_t b = 0; b < plan_.bodies.size(); ++b) {
+    const sensed::TwistOf<S> f = part.pass.bodies[b].BM.from_parent(part.total[b]);
+    Matrix3 R;
+    for (Eigen::Index i = 0; i < R.size(); ++i) R(i) = sensed::number(part.pass.hinges[b].X.R(i));
+    reactions_[b].moment -= R * sensed::on_hinge(f.w);
+    reactions_[b].force -= R * sensed::on_hinge(f.v);
+  }
+  for (std::size_t c = 0; c < plan_.cuts.size(); ++c) {
+    const sensed::CutPlan& cut = plan_.cuts[c];
+    sensed::TwistOf<S> own = sensed::weight(part.pass, cut.body, plan_, cut);
+    for (std::size_t i = 0; i < wrenches.size(); ++i) {
+      const FrameIndex& at = loads_.frames()[i];
+      if (static_cast<std::size_t>(at.body) == cut.body && cut.frames[static_cast<std::size_t>(at.frame)])
+        own += sensed::on_body(part.pass, at, wrenches[i]);
+    }
+    const sensed::TwistOf<S> f = at_cut(part, cut, own);
+    sections_[c].moment -= sensed::on_hinge(f.w);
+    sections_[c].force -= sensed::on_hinge(f.v);
+  }
+}
+
+template <class S>
+sensed::TwistOf<S> SensedReactions::at_cut(const Part<S>& part, const sensed::CutPlan& cut,
+                                           sensed::TwistOf<S> own) const noexcept {
+  for (const std::size_t h : cut.hinges) {
+    const sensed::BodyMotionOf<S>& child = part.pass.bodies[h];
+    own += child.PM.to_parent(child.BM.from_parent(part.total[h]));
+  }
+  // Where the body's own hinge holds the part beyond, the other part is free: it bears what is inside alone.
+  if (cut.inboard) own = own - part.total[cut.body];
+  return part.pass.section(cut.body, cut.section).X.from_parent(own);
+}
+
+}  // namespace withy::equations

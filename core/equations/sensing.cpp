@@ -1,0 +1,155 @@
+#include "withy/core/equations/sensing.hpp"
+
+#include "withy/core/equations/sensed_reactions.hpp"
+#include "withy/core/kinematics/sensed_steps.hpp"
+
+namespace withy::equations {
+namespace {
+
+using sensed::First;
+
+/// What of a state has been found.
+struct Found {
+  bool motion = false, motion_efforts = false, energies = false, reactions = false;
+};
+
+class Sensing final : public SensedState {
+ public:
+  Sensing(std::unique_ptr<const sensed::Plan> plan, const EquationsOfMotion& equations, const AppliedLoads& loads)
+      : plan_(std::move(plan)),
+        equations_(equations),
+        work_(equations.make_work()),
+        seen_(equations.make_observation()),
+        rates_(equations.size()),
+        load_efforts_(layout().speeds),
+        motion_efforts_(layout().speeds),
+        pass_(*plan_),
+        reactions_(*plan_, loads) {}
+
+  bool observe(const State& state) noexcept override {
+    state_ = &state;
+    found_ = {};
+    return equations_.derivatives(state.time, state.y, rates_, work_).ok();
+  }
+  const Layout& layout() const noexcept override { return equations_.layout(); }
+  double time() const noexcept override { return state_->time; }
+  std::span<const double> y() const noexcept override { return state_->y; }
+  std::span<const double> accelerations() noexcept override {
+    return std::span<const double>(rates_).subspan(layout().positions, layout().speeds);
+  }
+  Vector3 gravity() const noexcept override { return plan_->model.gravity(); }
+
+  FrameMotion motion(FrameIndex frame) noexcept override {
+    FrameMotion motion;
+    if (frame.body < 0) return motion;
+    const sensed::StepOf<First> at = moving(frame);
+    motion.R = at.X.R.unaryExpr(&value);
+    motion.position = sensed::now(at.X.p);
+    motion.angular_velocity = motion.R * sensed::now(at.V.w);
+    motion.velocity = motion.R * sensed::now(at.V.v);
+    return motion;
+  }
+  FrameAcceleration acceleration(FrameIndex frame) noexcept override {
+    if (frame.body < 0) return {};
+    const sensed::StepOf<First> at = moving(frame);
+    const Matrix3 R = at.X.R.unaryExpr(&value);
+    const Vector3 w = sensed::now(at.V.w), v = sensed::now(at.V.v);
+    return {R * sensed::rate(at.V.w), R * (sensed::rate(at.V.v) + w.cross(v))};
+  }
+
+  std::span<const double> load_efforts(int load) noexcept override {
+    equations_.load_efforts(state_->time, state_->y, load, load_efforts_, work_);
+    return load_efforts_;
+  }
+  std::span<const double> motion_efforts() noexcept override {
+    if (!found_.motion_efforts) equations_.motion_efforts(state_->time, state_->y, motion_efforts_, work_);
+    found_.motion_efforts = true;
+    return motion_efforts_;
+  }
+  Wrench reaction(int hinge) noexcept override {
+    find_reactions();
+    return reactions_.of_hinge(static_cast<std::size_t>(hinge));
+  }
+  SectionLoad section(std::size_t index) noexcept override {
+    find_reactions();
+    const sensed::CutPlan& cut = plan_->cuts[index];
+    const sensed::BodyPlan& body = plan_->bodies[cut.body];
+    SectionLoad load{.inner = reactions_.of_section(index)};
+    for (Eigen::Index i = 0; i < body.modes; ++i)
+      load.curvature += cut.curvature.col(i) * state_->y[body.modal.position + static_cast<std::size_t>(i)];
+    load.elastic = Vector3::Zero() - cut.stiffness.cwiseProduct(load.curvature);  // no −0
+    return load;
+  }
+  BodyEnergies energies(int index) noexcept override {
+    find_motion();
+    const auto b = static_cast<std::size_t>(index);
+    const sensed::BodyPlan& body = plan_->bodies[b];
+    const sensed::BodyMotionOf<First>& B = pass_.bodies[b];
+    const sensed::MomentumOf<First> own = sensed::own_momentum(pass_, b, body, body);
+    const sensed::MassMoment<First> mass = sensed::mass_moment(pass_, body, body);
+    const Matrix3 R = B.WB.R.unaryExpr(&value);
+    const Vector3 p = sensed::now(B.WB.p), h = sensed::now(own.h.v);
+    BodyEnergies e;
+    e.kinetic = 0.5 * (value(B.V.w.dot(own.h.w)) + value(B.V.v.dot(own.h.v)) + value(own.along));
+    if (const Slot* slot = layout().modes(b)) {
+      const Eigen::Map<const Eigen::VectorXd> q(state_->y.data() + slot->position, body.modes);
+      const Eigen::MatrixXd& K = plan_->model.bodies()[b].body->shape().stiffness;
+      for (Eigen::Index i = 0; i < body.modes; ++i) e.strain += 0.5 * q[i] * K.col(i).dot(q);
+    }
+    e.weight = -gravity().dot(mass.mass * p + R * sensed::now(mass.moment));
+    e.linear = R * h;
+    e.angular = R * sensed::now(own.h.w) + p.cross(e.linear);
+    return e;
+  }
+  const Energies& energies() noexcept override {
+    if (!found_.energies) {
+      seen_->observe(state_->y);
+      energies_ = seen_->energies();
+    }
+    found_.energies = true;
+    return energies_;
+  }
+
+ private:
+  static double value(const First& x) { return x.value(); }
+
+  void find_reactions() noexcept {
+    if (!found_.reactions) reactions_.observe(*state_, accelerations());
+    found_.reactions = true;
+  }
+
+  void find_motion() noexcept {
+    if (found_.motion) return;
+    sensed::set_pass(pass_, *plan_, state_->y, accelerations(), {}, &sensed::moving_mode);
+    pass_.outward();
+    found_.motion = true;
+  }
+  /// Pose in the world and twist of a frame.
+  sensed::StepOf<First> moving(FrameIndex frame) noexcept {
+    find_motion();
+    const auto body = static_cast<std::size_t>(frame.body);
+    sensed::StepOf<First> step = pass_.frame(body, static_cast<std::size_t>(frame.frame));
+    step.X = pass_.bodies[body].WB * step.X;
+    return step;
+  }
+
+  std::unique_ptr<const sensed::Plan> plan_;
+  const EquationsOfMotion& equations_;
+  Work work_;
+  std::unique_ptr<Observation> seen_;
+  const State* state_ = nullptr;
+  Found found_;
+  std::vector<double> rates_, load_efforts_, motion_efforts_;
+  Energies energies_;
+  sensed::Pass<First> pass_;
+  SensedReactions reactions_;
+};
+
+}  // namespace
+
+std::unique_ptr<SensedState> make_sensing(std::unique_ptr<const sensed::Plan> plan, const EquationsOfMotion& equations,
+                                          const AppliedLoads& loads) {
+  return std::make_unique<Sensing>(std::move(plan), equations, loads);
+}
+
+}  // namespace withy::equations

@@ -1,0 +1,169 @@
+#include "withy/core/kinematics/sensed_plan.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "withy/core/sweep/mass_table.hpp"
+#include "withy/core/tree/invariants.hpp"
+
+namespace withy::sensed {
+namespace {
+
+bool same_section(const PointExpansion& a, const PointExpansion& b) {
+  bool equal = a.X == b.X && a.phi == b.phi && a.psi == b.psi;
+  for (std::size_t c = 0; c < 3; ++c) equal = equal && a.gamma[c] == b.gamma[c] && a.theta[c] == b.theta[c];
+  return equal;
+}
+
+bool is_moved(const PointExpansion& e) {
+  bool still = e.phi.isZero(0) && e.psi.isZero(0);
+  for (std::size_t c = 0; c < 3; ++c) still = still && e.gamma[c].isZero(0) && e.theta[c].isZero(0);
+  return !still;
+}
+
+SectionFrame placed_at(BodyPlan& body, const PointExpansion& section, const Pose& pose) {
+  const auto found = std::find_if(body.sections.begin(), body.sections.end(),
+                                  [&](const SectionFields& s) { return same_section(s.at, section); });
+  const auto index = static_cast<std::size_t>(found - body.sections.begin());
+  if (found == body.sections.end()) body.sections.push_back({section, is_moved(section)});
+  return {index, pose};
+}
+
+/// The mass of a flexible body as generalized particles.
+std::vector<PointFields> points_of(const ModalShape& shape, StrainOrder order) {
+  NodeSpec node;
+  node.modes = static_cast<std::size_t>(shape.modes());
+  node.particles = shape.particles;
+  const sweep::MassTable<Spatial> table(in_strain_order(std::move(node), order));
+  const auto n = static_cast<std::size_t>(shape.modes());
+  std::vector<PointFields> points(table.rank);
+  for (std::size_t k = 0; k < table.rank; ++k) {
+    const Pack* data = table.data.data() + (k / lanes) * table.stride;
+    const auto field = [&](std::size_t at) {
+      return Vector3(data[3 * at][k % lanes], data[3 * at + 1][k % lanes], data[3 * at + 2][k % lanes]);
+    };
+    points[k].constant = k == 0 ? table.root_mass : 0;
+    for (std::size_t i = 0; i <= n; ++i) points[k].first.push_back(field(i));
+    for (std::size_t i = 0; table.second_order && i < n * (n + 1) / 2; ++i)
+      points[k].second.push_back(field(n + 1 + i));
+  }
+  return points;
+}
+
+RigidInertia inertia_of_rigid(const ModalShape& shape) {
+  RigidInertia I;
+  for (const Particle& p : shape.particles) {
+    I.mass += p.mass;
+    I.moment += p.mass * p.at.X;
+    I.inertia += p.mass * (p.at.X.squaredNorm() * Matrix3::Identity() - p.at.X * p.at.X.transpose());
+  }
+  for (const Section& s : shape.sections) I.inertia += s.inertia;
+  return I;
+}
+
+}  // namespace
+
+Plan::Plan(const Model& m, Terms terms, std::span<const SectionPlace> places)
+    : model(m), products_of_speeds(terms.products_of_speeds) {
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) add_body(b, terms);
+  for (const SectionPlace& place : places) add_cut(place);
+  add_rods();
+}
+
+void Plan::add_cut(const SectionPlace& place) {
+  CutPlan cut;
+  cut.body = static_cast<std::size_t>(place.body);
+  const BodyNode& node = model.bodies()[cut.body];
+  const std::optional<BodyCut> given = node.body->cut(place.x);
+  if (!given) {
+    throw std::invalid_argument("body '" + node.name + "' cannot be cut at x = " + std::to_string(place.x) +
+                                " m; need a slender body and a place on it");
+  }
+  BodyPlan& body = bodies[cut.body];
+  cut.section = placed_at(body, given->at, Pose{}).section;
+  cut.curvature = given->curvature;
+  cut.stiffness = given->stiffness;
+  ModalShape beyond;
+  beyond.mode_names.resize(static_cast<std::size_t>(body.modes));
+  beyond.particles = given->particles;
+  beyond.sections = given->sections;
+  if (body.rod != nullptr) {
+    const RodTable table(*node.body->rod());
+    const Eigen::RowVectorXd before = table.quadrature.weights_to(place.x);
+    for (std::size_t k = 0; k < table.quadrature.weights().size(); ++k)
+      cut.rod_share.push_back(1 - before[static_cast<Eigen::Index>(k)] / table.quadrature.weights()[k]);
+  } else if (body.modes > 0) {
+    cut.points = points_of(beyond, body.order);
+    for (const Section& s : beyond.sections) cut.rotary.push_back({s.inertia, {s.at, true}});
+  } else {
+    cut.rigid = inertia_of_rigid(beyond);
+  }
+  // What is at the section is beyond it, but for the body's own hinge.
+  const double close = 1e-9 * node.body->shape().length;
+  const auto x_of = [&](std::size_t frame) { return body.sections[body.frames[frame].section].at.X.x(); };
+  for (std::size_t f = 0; f < body.frames.size(); ++f) cut.frames.push_back(x_of(f) >= place.x - close);
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const HingeNode& hinge = model.hinges()[h];
+    if (hinge.parent == place.body && cut.frames[static_cast<std::size_t>(hinge.parent_frame)]) cut.hinges.push_back(h);
+  }
+  cut.inboard = x_of(body.M) > place.x + close;
+  cuts.push_back(std::move(cut));
+}
+
+void Plan::add_rods() {
+  for (BodyPlan& body : bodies) {
+    sections += body.sections.size();
+    if (body.rod == nullptr) continue;
+    // The rod wants its sections as stations of a node.
+    NodeSpec node;
+    node.modes = static_cast<std::size_t>(body.modes);
+    node.rod = model.bodies()[static_cast<std::size_t>(body.hinge->child)].body->rod();
+    for (const SectionFields& s : body.sections) node.stations.push_back({s.at, {}});
+    auto rod = std::make_shared<RodPlan>();
+    rod->kinematics = sweep::RodKinematics<Spatial>(node);
+    rod->work = rod_packs;
+    rod_packs += sweep::rod_work(rod->kinematics, static_cast<int>(body.modes));
+    body.rod = std::move(rod);
+  }
+}
+
+void Plan::add_body(std::size_t index, Terms terms) {
+  const BodyNode& node = model.bodies()[index];
+  const HingeNode& hinge = model.hinges()[index];
+  const ModalShape& shape = node.body->shape();
+  const Terms own = node.terms.value_or(terms);
+  BodyPlan body;
+  body.hinge = &hinge;
+  body.slot = model.layout().hinges[index];
+  body.modes = shape.modes();
+  body.order = own.strain;
+  body.truncation = own.truncation;
+  for (const Frame& frame : node.frames) body.frames.push_back(placed_at(body, frame.section, frame.pose));
+  body.M = static_cast<std::size_t>(hinge.child_frame);
+  body.F.pose = hinge.offset;
+  if (hinge.parent >= 0) {
+    const SectionFrame& on =
+        bodies[static_cast<std::size_t>(hinge.parent)].frames[static_cast<std::size_t>(hinge.parent_frame)];
+    body.F = {on.section, on.pose * hinge.offset};
+  }
+  if (body.modes > 0) {
+    body.modal = *model.layout().modes(index);
+    body.first_mode = modes;
+    modes += static_cast<std::size_t>(body.modes);
+    most_modes = std::max(most_modes, static_cast<std::size_t>(body.modes));
+    if (own.truncation != Truncation::ruthless) truncation = own.truncation;
+    const bool exact = own.strain == StrainOrder::exact && own.truncation == Truncation::none;
+    if (exact) body.rod = std::make_shared<RodPlan>();
+    if (!exact) {
+      body.points = points_of(shape, body.order);
+      for (const Section& s : shape.sections) body.rotary.push_back({s.inertia, {s.at, true}});
+    }
+  } else {
+    body.rigid = inertia_of_rigid(shape);
+  }
+  bodies.push_back(std::move(body));
+}
+
+}  // namespace withy::sensed

@@ -1,0 +1,213 @@
+#include "formula.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace withy {
+namespace {
+
+using Numbers = std::span<const double>;
+
+struct Function {
+  std::string_view name;
+  std::size_t least, most;  ///< numbers that it takes
+  double (*of)(Numbers x);
+};
+
+constexpr std::size_t any_number = Formula::most_pending;
+
+constexpr std::array functions = {
+    Function{"sqrt", 1, 1, [](Numbers x) { return std::sqrt(x[0]); }},
+    Function{"abs", 1, 1, [](Numbers x) { return std::abs(x[0]); }},
+    Function{"sin", 1, 1, [](Numbers x) { return std::sin(x[0]); }},
+    Function{"cos", 1, 1, [](Numbers x) { return std::cos(x[0]); }},
+    Function{"tan", 1, 1, [](Numbers x) { return std::tan(x[0]); }},
+    Function{"atan", 1, 1, [](Numbers x) { return std::atan(x[0]); }},
+    Function{"exp", 1, 1, [](Numbers x) { return std::exp(x[0]); }},
+    Function{"log", 1, 1, [](Numbers x) { return std::log(x[0]); }},
+    Function{"atan2", 2, 2, [](Numbers x) { return std::atan2(x[0], x[1]); }},
+    Function{"min", 1, any_number, [](Numbers x) { return *std::min_element(x.begin(), x.end()); }},
+    Function{"max", 1, any_number, [](Numbers x) { return *std::max_element(x.begin(), x.end()); }},
+    Function{"norm", 1, any_number,
+             [](Numbers x) {
+               double size = 0;
+               for (const double value : x) size = std::hypot(size, value);
+               return size;
+             }},
+};
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+}  // namespace
+
+/// Recursive descent; every step is written behind those of its operands.
+class FormulaReader {
+ public:
+  FormulaReader(std::string_view text, Formula& formula) : text_(text), formula_(formula) {}
+  void read() {
+    sum();
+    if (peek() != '\0') fail("expected an operator or the end");
+  }
+
+ private:
+  using Operation = Formula::Operation;
+
+  char peek() {
+    while (at_ < text_.size() && text_[at_] == ' ') ++at_;
+    return at_ < text_.size() ? text_[at_] : '\0';
+  }
+  bool take(char c) {
+    if (peek() != c) return false;
+    ++at_;
+    return true;
+  }
+  [[noreturn]] void fail(const std::string& why) const {
+    throw std::invalid_argument(fmt::format("{} at character {}", why, at_ + 1));
+  }
+  void put(Formula::Step step, std::size_t operands) {
+    pending_ += 1;
+    pending_ -= operands;
+    if (pending_ > Formula::most_pending) fail("too deep");
+    formula_.steps_.push_back(step);
+  }
+
+  void sum() {
+    if (++depth_ > Formula::most_pending) fail("too deep");
+    product();
+    for (;;) {
+      const bool plus = take('+');
+      if (!plus && !take('-')) break;
+      product();
+      put({.operation = plus ? Operation::add : Operation::subtract}, 2);
+    }
+    --depth_;
+  }
+  void product() {
+    signed_power();
+    for (;;) {
+      const bool times = take('*');
+      if (!times && !take('/')) break;
+      signed_power();
+      put({.operation = times ? Operation::multiply : Operation::divide}, 2);
+    }
+  }
+  /// −a^b is −(a^b), and a^−b is a^(−b).
+  void signed_power() {
+    if (++depth_ > Formula::most_pending) fail("too deep");
+    if (take('-')) {
+      signed_power();
+      put({.operation = Operation::negate}, 1);
+    } else {
+      operand();
+      if (take('^')) {
+        signed_power();
+        put({.operation = Operation::power}, 2);
+      }
+    }
+    --depth_;
+  }
+  void operand() {
+    if (take('(')) {
+      sum();
+      if (!take(')')) fail("expected ')'");
+    } else if (is_letter(peek())) {
+      named();
+    } else {
+      number();
+    }
+  }
+  void number() {
+    peek();
+    double value = 0;
+    const char* first = text_.data() + at_;
+    const auto [end, error] = std::from_chars(first, text_.data() + text_.size(), value);
+    if (error != std::errc() || !std::isfinite(value) || !(is_digit(*first) || *first == '.'))
+      fail("expected a number, a name or '('");
+    at_ += static_cast<std::size_t>(end - first);
+    put({.operation = Operation::number, .number = value}, 0);
+  }
+  void named() {
+    const std::size_t first = at_;
+    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]) || text_[at_] == '.')) ++at_;
+    const std::string name(text_.substr(first, at_ - first));
+    if (peek() == '(') return call(name);
+    if (name == "pi") return put({.operation = Operation::number, .number = std::numbers::pi}, 0);
+    std::vector<std::string>& names = formula_.names_;
+    auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      if (names.size() == Formula::most_names) fail("too many names");
+      found = names.insert(names.end(), name);
+    }
+    put({.operation = Operation::name, .index = static_cast<std::size_t>(found - names.begin())}, 0);
+  }
+  void call(const std::string& name) {
+    const auto* function =
+        std::find_if(functions.begin(), functions.end(), [&](const Function& f) { return f.name == name; });
+    if (function == functions.end()) {
+      std::string known;
+      for (const Function& f : functions) known += (known.empty() ? "" : ", ") + std::string(f.name);
+      fail(fmt::format("no function '{}'; known: {}", name, known));
+    }
+    take('(');
+    std::size_t count = 0;
+    do {
+      sum();
+      ++count;
+    } while (take(','));
+    if (!take(')')) fail("expected ',' or ')'");
+    if (count < function->least || count > function->most)
+      fail(fmt::format("{} takes {} number{}, got {}", name, function->least, function->least == 1 ? "" : "s", count));
+    put({.operation = Operation::function,
+         .index = static_cast<std::size_t>(function - functions.begin()),
+         .count = count},
+        count);
+  }
+
+  std::string_view text_;
+  Formula& formula_;
+  std::size_t at_ = 0, pending_ = 0, depth_ = 0;
+};
+
+Formula::Formula(std::string_view text) { FormulaReader(text, *this).read(); }
+
+double Formula::operator()(std::span<const double> values) const noexcept {
+  std::array<double, most_pending + 1> stack{};
+  std::size_t size = 0;
+  for (const Step& step : steps_) {
+    switch (step.operation) {
+      case Operation::number:
+        stack[size++] = step.number;
+        continue;
+      case Operation::name:
+        stack[size++] = values[step.index];
+        continue;
+      case Operation::negate:
+        stack[size - 1] = -stack[size - 1];
+        continue;
+      case Operation::function:
+        size -= step.count;
+        stack[size] = functions[step.index].of(Numbers(stack).subspan(size, step.count));
+        ++size;
+        continue;
+      default:
+        break;
+    }
+    double& a = stack[size - 2];
+    const double b = stack[--size];
+    if (step.operation == Operation::add) a += b;
+    if (step.operation == Operation::subtract) a -= b;
+    if (step.operation == Operation::multiply) a *= b;
+    if (step.operation == Operation::divide) a /= b;
+    if (step.operation == Operation::power) a = std::pow(a, b);
+  }
+  return stack[0];
+}
+
+}  // namespace withy

@@ -1,0 +1,41 @@
+/// \file
+/// Formulas of named numbers.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace withy {
+
+/// A formula such as "norm(tip.vx, tip.vy) / 2", read once and evaluated often. It has + − * / ^ with the usual
+/// precedence, parentheses, numbers, `pi`, names, and functions: sqrt, abs, sin, cos, tan, atan, exp, log of one
+/// number, atan2 of two, min, max and norm (√Σx²) of any.
+class Formula {
+ public:
+  /// \throws std::invalid_argument with what is wrong, and at which character.
+  explicit Formula(std::string_view text);
+  /// Each name once.
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// \param values of the names, in their order
+  [[nodiscard]] double operator()(std::span<const double> values) const noexcept;
+
+  static constexpr std::size_t most_pending = 64;  ///< numbers that wait for an operation
+  static constexpr std::size_t most_names = 64;
+
+ private:
+  friend class FormulaReader;
+  enum class Operation { number, name, negate, add, subtract, multiply, divide, power, function };
+  struct Step {
+    Operation operation = Operation::number;
+    double number = 0;
+    std::size_t index = 0;  ///< of a name or a function
+    std::size_t count = 0;  ///< arguments of a function
+  };
+  std::vector<Step> steps_;  ///< in postfix order
+  std::vector<std::string> names_;
+};
+
+}  // namespace withy

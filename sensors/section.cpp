@@ -1,0 +1,102 @@
+/// \file
+/// What is inside a slender body at a section.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "frame_sensor.hpp"
+
+namespace withy {
+namespace {
+
+/// Section moduli [m³], for stresses of bending.
+struct Moduli {
+  double y, z;
+};
+
+class BoundSection final : public BoundSensor {
+ public:
+  BoundSection(SectionPlace place, std::optional<Moduli> moduli) : place_(place), moduli_(moduli) {}
+  std::vector<SensorColumn> columns() const override {
+    std::vector<SensorColumn> c;
+    add_columns(c, "f", "N");
+    add_columns(c, "m", "N m");
+    add_columns(c, "k", "1/m");
+    add_columns(c, "elastic_m", "N m");
+    if (moduli_) c.push_back({"stress_y", "Pa"});
+    if (moduli_) c.push_back({"stress_z", "Pa"});
+    return c;
+  }
+  std::vector<SectionPlace> sections() const override { return {place_}; }
+  void read(SensedState& state, const SensorInputs& inputs, std::span<double> values) const noexcept override {
+    const SectionLoad load = state.section(inputs.first_section);
+    put(load.inner.force, values);
+    put(load.inner.moment, values);
+    put(load.curvature, values);
+    put(load.elastic, values);
+    if (!moduli_) return;
+    values[0] = load.inner.moment.y() / moduli_->y;
+    values[1] = load.inner.moment.z() / moduli_->z;
+  }
+
+ private:
+  SectionPlace place_;
+  std::optional<Moduli> moduli_;
+};
+
+class SectionSensor final : public Sensor {
+ public:
+  SectionSensor(std::string of, double at, std::optional<Moduli> moduli)
+      : of_(std::move(of)), at_(at), moduli_(moduli) {}
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
+    const std::vector<int> pieces = model.segments(of_);
+    if (pieces.empty()) throw std::invalid_argument("there is no body '" + of_ + "'");
+    double x = at_, length = 0;
+    for (const int piece : pieces) {
+      const Body& body = *model.bodies()[static_cast<std::size_t>(piece)].body;
+      if (!body.cut(0)) throw std::invalid_argument("body '" + of_ + "' is not slender; it has no section");
+      const double own = body.shape().length;
+      length += own;
+      const bool last = piece == pieces.back();
+      // A place between two segments belongs to the outer one; the sum of their lengths may be off by rounding.
+      if (x < own || (last && x <= own * (1 + 1e-9))) {
+        const SectionPlace place{piece, std::min(x, own)};
+        return std::make_unique<BoundSection>(place, moduli_);
+      }
+      x -= own;
+    }
+    throw std::invalid_argument(
+        fmt::format("body '{}' ends at x = {} m; there is no section at {} m", of_, length, at_));
+  }
+
+ private:
+  std::string of_;
+  double at_;
+  std::optional<Moduli> moduli_;
+};
+
+std::unique_ptr<Sensor> make_section(const Value& p, const MakeContext& /*context*/) {
+  std::optional<Moduli> moduli;
+  if (const Value* given = p.find("moduli")) moduli = {given->number_at("y"), given->number_at("z")};
+  return std::make_unique<SectionSensor>(p.text_at("of"), p.number_at("at"), moduli);
+}
+
+}  // namespace
+
+void enroll_section(Enrollment& enrollment) {
+  enrollment.add<Sensor>(
+      {.id = "section",
+       .summary = "Inner force and moment of a beam on the part beyond x, in the section's axes, with its curvature",
+       .parameters = {text("of", "beam that is cut").naming(ParameterSpec::Refers::body),
+                      number("at", "m", "coordinate along the beam").least(0),
+                      map("moduli",
+                          {number("y", "m^3", "section modulus about y").above(0),
+                           number("z", "m^3", "section modulus about z").above(0)},
+                          "for the bending stresses m/W at the outermost fibres")
+                          .optional()},
+       .make = &make_section});
+}
+
+}  // namespace withy

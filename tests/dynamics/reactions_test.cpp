@@ -1,0 +1,314 @@
+/// \file
+/// Reactions of hinges and inner forces of beams against the dense reference of a tree whose hinge is freed, Newton's
+/// and Euler's laws, and closed forms.
+#include <Eigen/Geometry>
+
+#include "sensed_case.hpp"
+#include "withy/core/reference/reference_tree.hpp"
+
+namespace withy::test {
+namespace {
+
+class Reactions : public testing::TestWithParam<std::string> {};
+
+/// The tree with one hinge of six free speeds in the place of another.
+std::string with_free(const std::string& text, const std::string& hinge) {
+  const std::size_t line = text.find("\n  " + hinge + ": {");
+  const std::size_t type = text.find(", type: ", line), end = text.find("}\n", type);
+  return text.substr(0, type) + ", type: free" + text.substr(end);
+}
+
+/// Row by row what the dense reference of the freed tree asks for there: M u̇ − f. Without `products` of speeds the
+/// accelerations of the freed hinge are those of the hinge's own alone.
+Vector6 asked_of_freed(const Case& c, const Case& freed, std::size_t hinge, const std::vector<double>& rates,
+                       bool products) {
+  const Layout& from = c.scene.model->layout();
+  const Layout& to = freed.scene.model->layout();
+  State s = freed.scene.initial;
+  std::vector<double> u_dot(to.speeds);
+  const auto copy = [&](const Slot& a, const Slot& b) {
+    for (std::size_t i = 0; i < a.positions; ++i) s.y[b.position + i] = c.state.y[a.position + i];
+    for (std::size_t i = 0; i < a.speeds; ++i) {
+      s.y[to.positions + b.speed + i] = c.state.y[from.positions + a.speed + i];
+      u_dot[b.speed + i] = rates[from.positions + a.speed + i];
+    }
+  };
+  for (const Slot& slot : from.bodies) copy(slot, *to.body(slot.name));
+  for (const Slot& slot : from.hinges) {
+    if (slot.name != from.hinges[hinge].name) copy(slot, *to.hinge(slot.name));
+  }
+  const Slot& own = from.hinges[hinge];
+  const Slot& six = *to.hinge(own.name);
+  HingeMotion m;
+  m.H.resize(6, static_cast<Eigen::Index>(own.speeds));
+  const std::span<const double> y(c.state.y);
+  c.scene.model->hinges()[hinge].hinge->motion(y.subspan(own.position, own.positions),
+                                               y.subspan(from.positions + own.speed, own.speeds), m);
+  Vector6 V = Vector6::Zero(), slope = products ? m.bias : Vector6(Vector6::Zero());
+  for (std::size_t i = 0; i < own.speeds; ++i) {
+    V += m.H.col(static_cast<Eigen::Index>(i)) * c.state.y[from.positions + own.speed + i];
+    slope += m.H.col(static_cast<Eigen::Index>(i)) * rates[from.positions + own.speed + i];
+  }
+  const Eigen::Quaterniond q(m.pose.R);
+  const Matrix3& R = m.pose.R;
+  const Vector3 w = R * V.head<3>(), v = R * V.tail<3>(), alpha = R * slope.head<3>();
+  const Vector3 a = R * (slope.tail<3>() + (products ? 1 : 0) * V.head<3>().cross(V.tail<3>()));
+  const std::array<double, 7> x{q.w(), q.x(), q.y(), q.z(), m.pose.p.x(), m.pose.p.y(), m.pose.p.z()};
+  std::copy(x.begin(), x.end(), s.y.begin() + static_cast<std::ptrdiff_t>(six.position));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    s.y[to.positions + six.speed + i] = w[k];
+    s.y[to.positions + six.speed + 3 + i] = v[k];
+    u_dot[six.speed + i] = alpha[k];
+    u_dot[six.speed + 3 + i] = a[k];
+  }
+  const DenseSystem system = freed.equations->system(c.state.time, s.y);
+  Vector6 rows;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const std::size_t row = six.speed + i;
+    double sum = -system.force[row] - system.applied[row];
+    for (std::size_t j = 0; j < system.size; ++j) sum += system.mass[row * system.size + j] * u_dot[j];
+    rows[static_cast<Eigen::Index>(i)] = sum;
+  }
+  return rows;
+}
+
+/// In every formulation, of every hinge, welds that compilation merges among them.
+TEST_P(Reactions, a_reaction_is_what_the_equations_ask_for_where_the_hinge_is_freed) {
+  for (unsigned seed = 1; seed <= 14; ++seed) {
+    const int bodies = 3 + static_cast<int>(seed % 4);
+    RandomScene random(seed, {.bodies = bodies, .any_root = seed % 2 == 0 && GetParam() != "exact"});
+    const std::string text = random.text() + frame_loads(seed, bodies);
+    Case c(text, GetParam());
+    c.state = random.state(*c.scene.model, c.scene.initial);
+    const std::vector<double> rates = c.derivatives(c.state);
+    const auto sensed = c.equations->make_sensed_state({});
+    ASSERT_TRUE(sensed->observe(c.state));
+    // A sum cancels at the root of a free tree: errors are of the size of what goes through its hinges.
+    std::vector<Vector6> asked;
+    double size = 1;
+    for (std::size_t h = 0; h < c.scene.model->hinges().size(); ++h) {
+      const Case freed(with_free(text, c.scene.model->hinges()[h].name), GetParam());
+      asked.push_back(asked_of_freed(c, freed, h, rates, GetParam() != "rate-linear"));
+      size = std::max(size, asked.back().norm());
+    }
+    // Sections of a rod are turned by another method than the reference's, to 1e-8; stiffness magnifies what they are
+    // apart in accelerations.
+    const double close = (GetParam() == "exact" ? 1e-6 : 1e-9) * size;
+    for (std::size_t h = 0; h < asked.size(); ++h) {
+      const Wrench got = sensed->reaction(static_cast<int>(h));
+      EXPECT_LT((got.moment - asked[h].head<3>()).norm(), close) << "seed " << seed << " hinge " << h;
+      EXPECT_LT((got.force - asked[h].tail<3>()).norm(), close) << "seed " << seed << " hinge " << h;
+    }
+  }
+}
+
+/// A beam's hinge at its root holds the section there: they carry the same, in every formulation.
+TEST_P(Reactions, the_section_at_a_beams_root_carries_what_its_hinge_carries) {
+  int compared = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const int bodies = 4 + static_cast<int>(seed % 4);
+    RandomScene random(seed, {.bodies = bodies, .any_family = seed % 2 == 0 && GetParam() != "exact"});
+    Case c(random.text() + frame_loads(seed, bodies), GetParam());
+    c.state = random.state(*c.scene.model, c.scene.initial);
+    const Model& model = *c.scene.model;
+    std::vector<SectionPlace> roots;
+    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+      if (model.hinges()[b].child_frame == 0 && model.bodies()[b].body->cut(0))
+        roots.push_back({static_cast<int>(b), 0});
+    }
+    const auto sensed = c.equations->make_sensed_state(roots);
+    ASSERT_TRUE(sensed->observe(c.state));
+    for (std::size_t i = 0; i < roots.size(); ++i, ++compared) {
+      const auto h = static_cast<std::size_t>(roots[i].body);
+      const Slot& slot = model.layout().hinges[h];
+      HingeMotion m;
+      m.H.resize(6, static_cast<Eigen::Index>(slot.speeds));
+      const std::span<const double> y(c.state.y);
+      model.hinges()[h].hinge->motion(y.subspan(slot.position, slot.positions),
+                                      y.subspan(model.layout().positions + slot.speed, slot.speeds), m);
+      const Wrench a = sensed->reaction(roots[i].body), b = sensed->section(i).inner;
+      const double close = 1e-9 * (1 + a.force.norm() + a.moment.norm());
+      EXPECT_LT((a.force - m.pose.R * b.force).norm(), close) << "seed " << seed << " body " << h;
+      EXPECT_LT((a.moment - m.pose.R * b.moment).norm(), close) << "seed " << seed << " body " << h;
+    }
+  }
+  EXPECT_GT(compared, 15);
+}
+
+/// Held at its root or at its tip, spinning or not: N = ∫ ρ ω² x, M = ½ ρ g (L − x)² + P (L − x).
+TEST(Sections, of_a_stiff_beam_carry_its_weight_its_load_and_its_spin) {
+  constexpr double x = 0.7, L = 2, rho = 1.5, g = 9.81, P = 4, w = 3;
+  for (const bool at_tip : {false, true}) {
+    const std::string end = at_tip ? "root" : "tip";
+    Case c(
+        "format: withy/1\ntime: {end: 1}\ngravity: [0, 0, -9.81]\nbodies: {boom: {type: beam, length: 2, "
+        "mass_per_length: 1.5}}\nhinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: boom" +
+            std::string(at_tip ? ".tip" : "") + "}}\nloads: {push: {type: force, frame: boom." + end +
+            ", law: constant, value: [0, 0, -4]}}\n",
+        "quadratic");
+    c.state.y[1] = w;
+    const std::vector<SectionPlace> places = {{0, x}};
+    const auto sensed = c.equations->make_sensed_state(places);
+    ASSERT_TRUE(sensed->observe(c.state));
+    const Wrench in = sensed->section(0).inner;
+    // The part beyond x, or where the tip is held the part before it, which is free.
+    const double free = at_tip ? x : L - x, sense = at_tip ? -1 : 1;
+    const double pull = 0.5 * rho * w * w * (L * L - (L - free) * (L - free));
+    EXPECT_NEAR(in.force.x(), -pull, 1e-10);
+    EXPECT_NEAR(in.force.z(), sense * (rho * g * free + P), 1e-10);
+    EXPECT_NEAR(in.moment.y(), -(0.5 * rho * g * free * free + P * free), 1e-10);
+  }
+}
+
+/// At deflections of no order but the first the two kinematics are one; they gather mass in different ways.
+TEST(Sections, of_a_rod_and_of_its_expansion_agree_at_small_deflections) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    std::vector<SectionLoad> loads;
+    for (const char* formulation : {"quadratic", "exact"}) {
+      Case c(seed, {.bodies = 5, .planar = seed % 3 == 0}, formulation);
+      const Model& model = *c.scene.model;
+      for (const Slot& b : model.layout().bodies) {
+        for (std::size_t i = 0; i < b.positions; ++i) c.state.y[b.position + i] *= 1e-5;
+      }
+      std::vector<SectionPlace> places;
+      for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+        if (model.bodies()[b].body->cut(0))
+          places.push_back({static_cast<int>(b), 0.2 * (1 + static_cast<double>(b % 2))});
+      }
+      const auto sensed = c.equations->make_sensed_state(places);
+      ASSERT_TRUE(sensed->observe(c.state));
+      for (std::size_t i = 0; i < places.size(); ++i) loads.push_back(sensed->section(i));
+    }
+    const std::size_t half = loads.size() / 2;
+    for (std::size_t i = 0; i < half; ++i) {
+      const SectionLoad &a = loads[i], &b = loads[half + i];
+      const double close = 1e-6 * (1 + a.inner.force.norm() + a.inner.moment.norm());
+      EXPECT_LT((a.inner.force - b.inner.force).norm(), close) << "seed " << seed;
+      EXPECT_LT((a.inner.moment - b.inner.moment).norm(), close) << "seed " << seed;
+      EXPECT_LT((a.elastic - b.elastic).norm(), close) << "seed " << seed;
+    }
+  }
+}
+
+/// What a motion does to hold a revolute hinge is what the weld in its place carries about its axis.
+TEST_P(Reactions, the_effort_that_locks_a_revolute_hinge_is_the_reaction_of_the_weld_in_its_place) {
+  const std::string before =
+      "format: withy/1\ntime: {end: 1}\ngravity: [0.3, -9.81, 1]\nbodies:\n"
+      "  hub: {type: rigid, mass: 2, inertia: [0.1, 0.2, 0.3, 0, 0, 0], frames: {out: {position: [0.2, 0.1, 0]}}}\n"
+      "  arm: {type: beam, length: 1.2, mass_per_length: 0.8, bending_y: {stiffness: 40, modes: 2}, bending_z: "
+      "{stiffness: 60, modes: 1}}\n"
+      "  bob: {type: rigid, mass: 0.5, center_of_mass: [0.1, 0.2, 0], inertia: [0.02, 0.03, 0.04, 0, 0, 0]}\n"
+      "hinges:\n  base: {type: spherical, parent: world, child: hub}\n  end: {type: weld, parent: arm.tip, child: "
+      "bob}\n"
+      "  elbow: {parent: hub.out, child: arm, ";
+  const Case locked(before + "type: revolute, axis: [0, 0.6, 0.8]}\nmotions: {hold: {type: locked, hinge: elbow}}\n",
+                    GetParam());
+  const Case welded(before + "type: weld}\n", GetParam());
+  const auto state_of = [](const Case& c) {
+    State s = c.state;
+    const Layout& layout = c.scene.model->layout();
+    const Slot &base = *layout.hinge("base"), &arm = *layout.body("arm");
+    const std::array<double, 3> spin{0.4, -0.9, 1.3}, q{0.02, -0.003, 0.015}, q_dot{0.3, 0.1, -0.2};
+    for (std::size_t i = 0; i < 3; ++i) {
+      s.y[layout.positions + base.speed + i] = spin[i];
+      s.y[arm.position + i] = q[i];
+      s.y[layout.positions + arm.speed + i] = q_dot[i];
+    }
+    return s;
+  };
+  const State a = state_of(locked), b = state_of(welded);
+  const auto one = locked.equations->make_sensed_state({}), other = welded.equations->make_sensed_state({});
+  ASSERT_TRUE(one->observe(a));
+  ASSERT_TRUE(other->observe(b));
+  const int h = locked.scene.model->hinge("elbow");
+  const double effort = one->motion_efforts()[locked.scene.model->layout().hinge("elbow")->speed];
+  const Wrench weld = other->reaction(welded.scene.model->hinge("elbow")), held = one->reaction(h);
+  const double along = Vector3(0, 0.6, 0.8).dot(weld.moment);
+  EXPECT_GT(std::abs(effort), 0.1);
+  EXPECT_NEAR(effort, along, 1e-9 * std::abs(effort));
+  EXPECT_LT((weld.moment - held.moment).norm() + (weld.force - held.force).norm(), 1e-9 * weld.force.norm());
+}
+
+/// Of one body, from the motion of all its mass: linear momentum, angular momentum about the world's origin, and the
+/// first moment of its mass.
+using MassSums = Eigen::Matrix<double, 9, 1>;
+MassSums sums_of(const Case& c, std::size_t body, StrainOrder order, const State& s) {
+  const Model& model = *c.scene.model;
+  std::vector<RodTable> tables;
+  tables.reserve(model.bodies().size());
+  std::vector<reference::BodyTerms<double>> terms;
+  for (const BodyNode& node : model.bodies()) {
+    const bool rod = order == StrainOrder::exact && node.body->shape().modes() > 0;
+    if (rod) tables.emplace_back(*node.body->rod());
+    terms.push_back({order, 1.0, rod ? &tables.back() : nullptr});
+  }
+  const reference::ReferenceTree<double> tree(model, terms, s.y);
+  MassSums sum = MassSums::Zero();
+  using Motion = reference::WorldMotion<double>;
+  tree.each(
+      body,
+      [&](double mass, const Motion& A) {
+        sum.head<3>() += mass * A.v;
+        sum.segment<3>(3) += mass * A.p.cross(A.v);
+        sum.tail<3>() += mass * A.p;
+      },
+      [&](const Matrix3& inertia, const Motion& A) { sum.segment<3>(3) += A.R * inertia * A.R.transpose() * A.w; });
+  return sum;
+}
+
+/// The wrench of a hinge on its child in the world, about its origin.
+Vector6 in_world(SensedState& sensed, const Model& model, std::size_t hinge) {
+  const HingeNode& node = model.hinges()[hinge];
+  const Matrix3 R = sensed.motion({node.parent, node.parent_frame}).R * node.offset.R;
+  const Wrench w = sensed.reaction(static_cast<int>(hinge));
+  const Vector3 force = R * w.force;
+  Vector6 both;
+  both << force, R * w.moment + sensed.motion({node.child, node.child_frame}).position.cross(force);
+  return both;
+}
+
+/// Rate of momentum of every body = what its hinge and the hinges on it exert + weight + loads.
+TEST(Balances, close_newtons_and_eulers_laws_for_every_body) {
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    const std::vector<std::pair<std::string, StrainOrder>> untruncated = {
+        {"linear", StrainOrder::linear}, {"quadratic", StrainOrder::quadratic}, {"exact", StrainOrder::exact}};
+    const auto& [formulation, order] = untruncated[seed % 3];
+    const int bodies = 3 + static_cast<int>(seed % 5);
+    RandomScene random(seed, {.bodies = bodies, .planar = seed % 4 == 0});
+    const std::string last = "b" + std::to_string(bodies - 1);
+    const bool loaded = seed % 4 != 0;
+    Case c(
+        random.text() +
+            (loaded ? "loads: {dead: {type: force, frame: " + last + ".m, law: constant, value: [1, 2, -3]}}\n" : ""),
+        formulation);
+    c.state = random.state(*c.scene.model, c.scene.initial);
+    const Model& model = *c.scene.model;
+    const auto sensed = c.equations->make_sensed_state({});
+    ASSERT_TRUE(sensed->observe(c.state));
+    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+      const Vector6 rate = central_difference(
+          [&, order = order](double h) -> Vector6 { return sums_of(c, b, order, moved(c, h)).head<6>(); }, 2e-3);
+      Vector6 sum = in_world(*sensed, model, b);
+      for (std::size_t child = 0; child < model.hinges().size(); ++child) {
+        if (model.hinges()[child].parent == static_cast<int>(b)) sum -= in_world(*sensed, model, child);
+      }
+      if (loaded && model.bodies()[b].name == last) {
+        const Vector3 force(1, 2, -3);
+        sum.head<3>() += force;
+        sum.tail<3>() += sensed->motion(*model.find_frame(last + ".m")).position.cross(force);
+      }
+      double mass = 0;
+      for (const Particle& p : model.bodies()[b].body->shape().particles) mass += p.mass;
+      sum.head<3>() += mass * model.gravity();
+      sum.tail<3>() += sums_of(c, b, order, c.state).tail<3>().cross(model.gravity());
+      const double close = (formulation == "exact" ? 1e-7 : 1e-9) * (1 + rate.norm());
+      EXPECT_LT((rate - sum).norm(), close) << "seed " << seed << " " << formulation << " body " << b;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formulations, Reactions, testing::ValuesIn(formulations), formulation_name);
+
+}  // namespace
+}  // namespace withy::test

@@ -1,0 +1,95 @@
+/// \file
+/// What sensors see – motion and accelerations of frames, energies of bodies – against differences along the motion and
+/// the dense reference.
+#include "sensed_case.hpp"
+#include "withy/tests/conformance/allocations.hpp"
+
+namespace withy::test {
+namespace {
+
+class SensedStates : public testing::TestWithParam<std::string> {};
+
+TEST_P(SensedStates, frames_move_as_observations_say_and_their_accelerations_are_the_rates_of_velocities) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const Case c(seed, {.bodies = 5, .planar = seed % 3 == 0, .any_root = seed % 2 == 0}, GetParam());
+    const auto sensed = c.equations->make_sensed_state({});
+    ASSERT_TRUE(sensed->observe(c.state));
+    const auto seen = c.equations->make_observation();
+    const Model& model = *c.scene.model;
+    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+      for (std::size_t f = 0; f < model.bodies()[b].frames.size(); ++f) {
+        const FrameIndex at{static_cast<int>(b), static_cast<int>(f)};
+        seen->observe(c.state.y);
+        const FrameMotion m = sensed->motion(at);
+        const WorldPose X = seen->frame_pose(at.body, at.frame);
+        const WorldVelocity V = seen->frame_velocity(at.body, at.frame);
+        const std::string where = "seed " + std::to_string(seed) + " " + model.bodies()[b].name;
+        EXPECT_LT((m.position - arrow(X.position)).norm(), 1e-11) << where;
+        EXPECT_LT((m.angular_velocity - arrow(V.angular)).norm(), 1e-11) << where;
+        EXPECT_LT((m.velocity - arrow(V.linear)).norm(), 1e-11) << where;
+        const Vector6 slope = central_difference(
+            [&](double h) -> Vector6 {
+              seen->observe(moved(c, h).y);
+              const WorldVelocity at_h = seen->frame_velocity(at.body, at.frame);
+              Vector6 both;
+              both << arrow(at_h.angular), arrow(at_h.linear);
+              return both;
+            },
+            1e-3);
+        const FrameAcceleration a = sensed->acceleration(at);
+        const double size = 1 + slope.norm();
+        EXPECT_LT((a.angular - slope.head<3>()).norm(), 1e-7 * size) << where;
+        EXPECT_LT((a.linear - slope.tail<3>()).norm(), 1e-7 * size) << where;
+      }
+    }
+  }
+}
+
+TEST_P(SensedStates, energies_and_momenta_of_the_bodies_add_up_to_those_of_the_reference) {
+  for (unsigned seed = 1; seed <= 15; ++seed) {
+    const Case c(seed, {.bodies = 5, .planar = seed % 3 == 0, .any_root = seed % 2 == 0 && GetParam() != "exact"},
+                 GetParam());
+    const auto sensed = c.equations->make_sensed_state({});
+    ASSERT_TRUE(sensed->observe(c.state));
+    BodyEnergies sum;
+    for (int b = 0; b < 5; ++b) {
+      const BodyEnergies own = sensed->energies(b);
+      sum.kinetic += own.kinetic;
+      sum.strain += own.strain + own.weight;
+      sum.linear += own.linear;
+      sum.angular += own.angular;
+    }
+    const Energies whole = c.equations->energies(c.state.y);
+    const double close = GetParam() == "exact" ? 1e-7 : 1e-10;
+    EXPECT_NEAR(sum.kinetic, whole.kinetic, close * (1 + whole.kinetic)) << "seed " << seed;
+    EXPECT_NEAR(sum.strain, whole.potential, 10 * close * (1 + std::abs(whole.potential))) << "seed " << seed;
+    EXPECT_LT((sum.linear - arrow(whole.linear_momentum)).norm(), close * (1 + sum.linear.norm())) << "seed " << seed;
+    EXPECT_LT((sum.angular - arrow(whole.angular_momentum)).norm(), close * (10 + sum.angular.norm()))
+        << "seed " << seed;
+  }
+}
+
+/// What stands in the memory from another state does not matter, and nothing is allocated.
+TEST_P(SensedStates, allocate_nothing_and_do_not_remember_another_state) {
+  const Case c(5, {.bodies = 6, .any_root = GetParam() != "exact"}, GetParam());
+  const auto one = c.equations->make_sensed_state({}), other = c.equations->make_sensed_state({});
+  ASSERT_TRUE(other->observe(c.state));
+  const Vector3 first = other->reaction(1).moment, a = other->acceleration({3, 0}).linear;
+  ASSERT_TRUE(one->observe(c.scene.initial));
+  static_cast<void>(one->reaction(1));
+  const std::size_t before = allocations();
+  ASSERT_TRUE(one->observe(c.state));
+  const Vector3 second = one->reaction(1).moment, b = one->acceleration({3, 0}).linear;
+  static_cast<void>(one->motion({2, 0}));
+  static_cast<void>(one->load_efforts(EquationsOfMotion::all_loads));
+  static_cast<void>(one->motion_efforts());
+  static_cast<void>(one->energies());
+  EXPECT_EQ(allocations(), before);
+  EXPECT_EQ(first, second);
+  EXPECT_EQ(a, b);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formulations, SensedStates, testing::ValuesIn(formulations), formulation_name);
+
+}  // namespace
+}  // namespace withy::test
