@@ -41,7 +41,8 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
 
 RunTable::RunTable(const study::Prepared& prepared, Recorder& recorder) : recorder_(recorder) {
   if (!prepared.escalates()) columns_.emplace_back(prepared.model(), *prepared.equations, prepared.scene.outputs);
-  for (const Rung& rung : prepared.rungs) columns_.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
+  for (const Rung& rung : prepared.rungs)
+    columns_.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
   recorder_.begin(columns_.front().columns());
 }
 
