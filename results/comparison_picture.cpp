@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/results/report/drawing.hpp"
 #include "withy/results/svg_plot.hpp"
 
 namespace withy {
@@ -37,17 +39,106 @@ Panel panel_of(const std::string& label, const std::vector<const study::Compared
   return panel;
 }
 
+/// The directions in which the points of a tree are furthest apart, in the order x, y, z.
+std::pair<Eigen::Index, Eigen::Index> plane_of(const std::vector<std::vector<Vector3>>& lines) {
+  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const auto& line : lines) {
+    for (const Vector3& p : line) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  }
+  Eigen::Index thinnest = 0;
+  (high - low).minCoeff(&thinnest);
+  return {thinnest == 0 ? 1 : 0, thinnest == 2 ? 1 : 2};
+}
+
+/// The tree of every run in the middle of the longest of them, or where the run ended before.
+Panel tree_panel(const std::vector<const study::ComparedRun*>& runs) {
+  double end = 0;
+  for (const study::ComparedRun* run : runs) end = std::max(end, run->outputs.back().time);
+  Panel panel{"", "", {std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()}, {}, 380};
+  panel.equal = true;
+  std::pair<Eigen::Index, Eigen::Index> plane{-1, -1};
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const Scene& scene = runs[k]->prepared.scene;
+    Drawing drawing(scene.model, scene.formulation->terms());
+    const auto& outputs = runs[k]->outputs;
+    const auto shown =
+        std::find_if(outputs.begin(), outputs.end(), [end](const State& s) { return s.time >= end / 2 * (1 - 1e-9); });
+    const auto lines = drawing.lines(shown != outputs.end() ? shown->y : outputs.back().y);
+    if (plane.first < 0) plane = plane_of(lines);
+    for (const std::vector<Vector3>& line : lines) {
+      Curve curve;
+      curve.pen = k;
+      curve.ends_early = shown == outputs.end() && &line == &lines.back();
+      for (const Vector3& p : line) {
+        curve.x.push_back(p[plane.first]);
+        curve.y.push_back(p[plane.second]);
+        panel.y_range.first = std::min(panel.y_range.first, curve.y.back());
+        panel.y_range.second = std::max(panel.y_range.second, curve.y.back());
+      }
+      panel.curves.push_back(std::move(curve));
+    }
+  }
+  const char axes[] = "xyz";
+  panel.x_label = std::string(1, axes[plane.first]) + " [m], at " + brief(end / 2) + " s or where the run stopped";
+  panel.y_label = std::string(1, axes[plane.second]) + " [m]";
+  return panel;
+}
+
+/// Distance of a tip from where the reference has it, at outputs of both.
+Panel error_panel(const study::Comparison& comparison, const std::vector<const study::ComparedRun*>& runs,
+                  const Tip& tip) {
+  const study::ComparedRun& reference = comparison.runs[comparison.reference];
+  const auto place = [&tip](Observation& seen, const State& s) {
+    seen.observe(s.y);
+    const WorldPose pose = seen.frame_pose(tip.tip.body, tip.tip.frame);
+    return Vector3(Eigen::Map<const Vector3>(pose.position.data()));
+  };
+  Panel panel{"time [s]", tip.body + ".tip off " + reference.formulation() + " [m]", {1, 1}, {}, 260};
+  panel.log_y = true;
+  double least = std::numeric_limits<double>::infinity(), greatest = 0;
+  const auto of_reference = reference.prepared.equations->make_observation();
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (runs[k] == &reference) continue;
+    const auto seen = runs[k]->prepared.equations->make_observation();
+    Curve curve;
+    curve.pen = k;
+    curve.ends_early = runs[k]->summary.status != RunStatus::completed;
+    const std::size_t both = std::min(runs[k]->outputs.size(), reference.outputs.size());
+    for (std::size_t i = 0; i < both; ++i) {
+      const State &a = runs[k]->outputs[i], &b = reference.outputs[i];
+      if (a.time != b.time) break;
+      const double error = (place(*seen, a) - place(*of_reference, b)).norm();
+      if (!(error > 1e-12) || !std::isfinite(error)) continue;
+      curve.x.push_back(a.time);
+      curve.y.push_back(error);
+      if (a.time < 0.02 * reference.outputs.back().time && !curve.ends_early) continue;
+      least = std::min(least, error);
+      greatest = std::max(greatest, error);
+    }
+    panel.curves.push_back(std::move(curve));
+  }
+  if (greatest > 0) panel.y_range = {std::max(least, greatest * 1e-7), greatest};
+  return panel;
+}
+
 }  // namespace
 
-std::string comparison_picture(const std::string& title, const std::vector<const study::ComparedRun*>& runs) {
+std::string comparison_picture(const std::string& title, const study::Comparison& comparison) {
+  std::vector<const study::ComparedRun*> runs;
+  for (std::size_t i = 0; i < comparison.listed; ++i) runs.push_back(&comparison.runs[i]);
   std::vector<std::string> legend;
   for (const study::ComparedRun* run : runs) {
     const bool completed = run->summary.status == RunStatus::completed;
     legend.push_back(run->formulation() + (completed ? "" : " (" + study::outcome_text(run->summary) + ")"));
   }
   const Model& model = runs.front()->prepared.model();
-  std::vector<Panel> panels;
-  for (const Tip& tip : tips(model)) {
+  std::vector<Panel> panels = {tree_panel(runs)};
+  const std::vector<Tip> ends = tips(model);
+  if (comparison.has_reference() && !ends.empty()) panels.push_back(error_panel(comparison, runs, ends.back()));
+  for (const Tip& tip : ends) {
     if (!tip.flexible) continue;
     for (const std::size_t axis : {std::size_t{1}, std::size_t{2}}) {
       Panel panel = panel_of(tip.body + ".tip deflection " + "xyz"[axis] + " [m]", runs,

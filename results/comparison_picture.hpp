@@ -3,14 +3,14 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "withy/study/comparison.hpp"
 
 namespace withy {
 
-/// Tip deflections and the coordinates of one-coordinate hinges over time, as SVG. The axes fit the runs that were
-/// completed; one that diverged leaves the frame.
-std::string comparison_picture(const std::string& title, const std::vector<const study::ComparedRun*>& runs);
+/// As SVG: the tree in every run halfway, or where the run stopped, in the plane it takes up most of; how far the last
+/// tip is from where the reference has it; tip deflections and the coordinates of one-coordinate hinges over time. The
+/// axes fit the runs that were completed; one that diverged leaves the frame, and ends at a cross.
+std::string comparison_picture(const std::string& title, const study::Comparison& comparison);
 
 }  // namespace withy

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
+#include <string>
+#include <system_error>
 
 #include "withy/results/csv.hpp"
 #include "withy/results/results_error.hpp"
@@ -78,6 +81,32 @@ void CsvRecorder::write(const std::string& text) {
   if (now - flushed_ < std::chrono::milliseconds(200)) return;
   file_.flush();
   flushed_ = now;
+}
+
+void read_csv(const std::filesystem::path& path, Recorder& recorder) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::system_error(errno, std::generic_category(), path.string());
+  std::string line;
+  std::size_t number = 0, columns = 0;
+  std::vector<double> numbers;
+  try {
+    // Where the end comes before that of the line, the line was not written whole.
+    while (std::getline(in, line) && !in.eof()) {
+      if (++number == 1) {
+        const std::vector<Column> head = read_csv_head(line);
+        columns = head.size();
+        recorder.begin(head);
+        continue;
+      }
+      read_csv_line(line, numbers);
+      if (numbers.size() != columns)
+        throw std::invalid_argument("expected " + std::to_string(columns) + " numbers, as there are columns, got " +
+                                    std::to_string(numbers.size()));
+      recorder.row(numbers);
+    }
+  } catch (const std::invalid_argument& e) {
+    throw ResultsError(path.string() + ':' + std::to_string(number) + ": " + e.what());
+  }
 }
 
 }  // namespace withy

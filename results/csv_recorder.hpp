@@ -37,4 +37,8 @@ class CsvRecorder final : public Recorder {
   std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
 };
 
+/// Gives a recorder the table of such a file, whole lines alone: the last of a run that was killed may be cut. It is
+/// not ended. \throws ResultsError naming the line where it is no such file; std::system_error where it cannot be read
+void read_csv(const std::filesystem::path& path, Recorder& recorder);
+
 }  // namespace withy

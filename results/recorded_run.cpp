@@ -7,17 +7,23 @@
 #include "withy/results/csv_recorder.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/report/report_page.hpp"
+#include "withy/results/report/run_report.hpp"
 
 namespace withy {
 namespace {
 
 constexpr const char* table_name = "results.csv";
 constexpr const char* summary_name = "run.json";
+constexpr const char* picture_name = "results.svg";  ///< in the place of a report
 
 RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder, const study::Prepared& prepared,
                           Registry& registry, const Provenance& provenance, study::RunSettings settings) {
-  std::filesystem::remove(folder / summary_name);
-  RunTable table(prepared, csv);
+  for (const char* old : {summary_name, report_name, picture_name}) std::filesystem::remove(folder / old);
+  RunReport report(prepared);
+  if (settings.resume != nullptr) read_csv(folder / table_name, report.table());
+  SharedRecorder recorders({&csv, &report.table()});
+  RunTable table(prepared, recorders);
   const bool seen = !prepared.escalates();
   if (seen) settings.seen = &table.seen();
   settings.output = [&table, seen, also = settings.output](const State& state, std::size_t rung) {
@@ -30,10 +36,16 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
   };
   RecordedRun recorded;
   recorded.run = study::run(prepared, registry, settings);
-  csv.end();
+  recorders.end();
   recorded.json = run_json(prepared.scene, recorded.run.summary, recorded.run.certificate);
   recorded.json.update(provenance_json(provenance));
   write_file(folder / summary_name, json_text(recorded.json));
+  if (has_report_page()) {
+    recorded.report = report.text(recorded.run, recorded.json);
+    write_report(folder / report_name, {prepared.title(), {recorded.report}});
+  } else {
+    write_file(folder / picture_name, report.picture());
+  }
   return recorded;
 }
 
@@ -47,7 +59,7 @@ RunTable::RunTable(const study::Prepared& prepared, Recorder& recorder) : record
 }
 
 std::vector<std::string> run_content() {
-  return {table_name, summary_name, "checkpoint.cbor", "checkpoint.previous.cbor"};
+  return {table_name, summary_name, "checkpoint.cbor", "checkpoint.previous.cbor", report_name, picture_name};
 }
 
 RecordedRun record_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,

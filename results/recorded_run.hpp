@@ -1,5 +1,5 @@
 /// \file
-/// Runs that leave a folder behind: results.csv as they go, run.json when they have ended.
+/// Runs that leave a folder behind: results.csv as they go, run.json and report.html when they have ended.
 #pragma once
 
 #include <filesystem>
@@ -34,6 +34,7 @@ class RunTable {
 struct RecordedRun {
   study::CertifiedRun run;
   nlohmann::ordered_json json;  ///< the content of run.json
+  std::string report;           ///< its part of a page, RunReport::text; empty where this build holds no page
 };
 
 /// What a run leaves in its folder, checkpoints included.

@@ -5,6 +5,24 @@
 
 namespace withy {
 
+void SharedRecorder::begin(const std::vector<Column>& columns) {
+  for (Recorder* r : recorders_) r->begin(columns);
+}
+
+void SharedRecorder::row(std::span<const double> numbers) {
+  for (Recorder* r : recorders_) r->row(numbers);
+}
+
+RecordMark SharedRecorder::mark() {
+  const RecordMark first = recorders_.front()->mark();
+  for (std::size_t i = 1; i < recorders_.size(); ++i) static_cast<void>(recorders_[i]->mark());
+  return first;
+}
+
+void SharedRecorder::end() {
+  for (Recorder* r : recorders_) r->end();
+}
+
 std::vector<double> MemoryRecorder::column(const std::string& name) const {
   const auto at = std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
   if (at == columns_.end()) throw std::out_of_range("no column '" + name + "'");

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "withy/core/model/columns.hpp"
@@ -35,6 +36,20 @@ class Recorder {
   virtual RecordMark mark() = 0;
   /// Once, after the last row: everything is known to be written.
   virtual void end() = 0;
+};
+
+/// Gives a table to several recorders. Its mark is that of the first.
+class SharedRecorder final : public Recorder {
+ public:
+  /// They must outlive it; at least one.
+  explicit SharedRecorder(std::vector<Recorder*> recorders) : recorders_(std::move(recorders)) {}
+  void begin(const std::vector<Column>& columns) override;
+  void row(std::span<const double> numbers) override;
+  RecordMark mark() override;
+  void end() override;
+
+ private:
+  std::vector<Recorder*> recorders_;
 };
 
 /// Keeps a table in memory.

@@ -88,6 +88,21 @@ const std::vector<double>& ResultColumns::row_of_seen(const State& state) {
   return row_;
 }
 
+State state_of_row(const Layout& layout, std::span<const double> row) {
+  State state;
+  state.time = row[0];
+  state.y.assign(layout.size(), 0.0);
+  std::size_t next = 1;
+  const auto take = [&](std::size_t first, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) state.y[first + i] = row[next++];
+  };
+  for (const Slot& s : layout.hinges) take(s.position, s.positions);
+  for (const Slot& s : layout.bodies) take(s.position, s.positions);
+  for (const Slot& s : layout.hinges) take(layout.positions + s.speed, s.speeds);
+  for (const Slot& s : layout.bodies) take(layout.positions + s.speed, s.speeds);
+  return state;
+}
+
 void ResultColumns::append(const State& state, std::size_t first, std::size_t count) {
   const auto begin = state.y.begin() + static_cast<std::ptrdiff_t>(first);
   row_.insert(row_.end(), begin, begin + static_cast<std::ptrdiff_t>(count));

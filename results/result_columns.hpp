@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,5 +46,8 @@ class ResultColumns {
   Work work_;  ///< for the efforts of motions
   std::vector<double> efforts_, row_;
 };
+
+/// The state that a row tells of: time, coordinates and rates; discrete states and work are zero.
+State state_of_row(const Layout& layout, std::span<const double> row);
 
 }  // namespace withy

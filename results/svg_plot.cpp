@@ -78,7 +78,7 @@ Scale scale_of(const Panel& panel, double top) {
   const auto y = [&](double v) { return Scale::place(v, panel.log_y); };
   Scale s{0, 0, y(panel.y_range.first), y(panel.y_range.second), top, panel.height, panel.log_x, panel.log_y};
   // An axis of values begins at 0, one in decades a little before the least.
-  if (panel.log_x) s.x0 = std::numeric_limits<double>::infinity(), s.x1 = -s.x0;
+  if (panel.log_x || panel.equal) s.x0 = std::numeric_limits<double>::infinity(), s.x1 = -s.x0;
   for (const Curve& c : panel.curves) {
     for (const double v : c.x) {
       s.x0 = std::min(s.x0, Scale::place(v, panel.log_x));
@@ -94,6 +94,16 @@ Scale scale_of(const Panel& panel, double top) {
   const double margin = s.y1 > s.y0 ? 0.06 * (s.y1 - s.y0) : std::max(1e-9, 0.06 * std::abs(s.y0));
   s.y0 -= margin;
   s.y1 += margin;
+  if (panel.equal) {
+    const double x_unit = (s.x1 - s.x0) * 1.08 / (width - left - right), y_unit = (s.y1 - s.y0) / s.height;
+    const auto stretch = [unit = std::max(x_unit, y_unit)](double& low, double& high, double pixels) {
+      const double middle = (low + high) / 2;
+      low = middle - unit * pixels / 2;
+      high = middle + unit * pixels / 2;
+    };
+    stretch(s.x0, s.x1, width - left - right);
+    stretch(s.y0, s.y1, s.height);
+  }
   return s;
 }
 

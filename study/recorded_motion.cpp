@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/scene/names.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 
@@ -72,6 +73,22 @@ Extended extended(const std::vector<double>& times, const std::vector<double>& v
   return {c[0], c[1] / scale};
 }
 
+/// Refuses a column that is hardly meant to be left out: its name is near that of a hinge which has no column.
+void refuse_misspelt(const std::vector<std::string>& head, const Model& model, const std::string& file,
+                     const RecordedMotion& motion) {
+  std::vector<std::string> missing;
+  for (const HingeNode& hinge : model.hinges())
+    if (coordinate_columns(hinge).size() == 1 && !motion.coordinates.contains(hinge.name))
+      missing.push_back(hinge.name);
+  for (const std::string& text : head) {
+    const Head h(text);
+    const bool other = h.name == "t" || h.name.find('.') != std::string::npos || motion.coordinates.contains(h.name);
+    const std::string guess = other ? "" : nearest(h.name, missing);
+    if (!guess.empty())
+      throw InputError(fmt::format("{}:1: no hinge is named '{}'; did you mean '{}'?", file, h.name, guess));
+  }
+}
+
 /// The columns of the head that are read, time first.
 std::vector<Source> sources_of(const std::vector<std::string>& head, const Model& model, const std::string& file,
                                RecordedMotion& motion) {
@@ -88,7 +105,10 @@ std::vector<Source> sources_of(const std::vector<std::string>& head, const Model
     }
   }
   const bool timed = !sources.empty() && sources.front().values == &motion.times;
-  if (timed && !motion.coordinates.empty()) return sources;
+  if (timed && !motion.coordinates.empty()) {
+    refuse_misspelt(head, model, file, motion);
+    return sources;
+  }
   std::string known;
   for (const HingeNode& hinge : model.hinges())
     if (coordinate_columns(hinge).size() == 1) known += (known.empty() ? "" : ", ") + hinge.name;

@@ -15,7 +15,8 @@ namespace withy::app {
 namespace {
 
 /// In the order of the help.
-const std::array commands = {&run_command,         &compare_command,   &inverse_command, &terms_command,
+const std::array commands = {&new_command,         &check_command,     &run_command,     &report_command,
+                             &plot_command,        &compare_command,   &inverse_command, &terms_command,
                              &trade_command,       &advise_command,    &eval_command,    &inspect_command,
                              &equilibrium_command, &linearize_command, &modes_command,   &bench_command,
                              &import_command,      &plugins_command,   &schema_command};

@@ -14,6 +14,7 @@
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/recorded_run.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/study/comparison.hpp"
 
 namespace withy::app {
@@ -30,7 +31,8 @@ namespace fs = std::filesystem;
 
 /// The runs at one value, and where they are kept.
 struct Group : ComparisonAt {
-  fs::path folder;  ///< empty: nowhere
+  fs::path folder;                   ///< empty: nowhere
+  std::vector<std::string> reports;  ///< parts of a page, one a run
 };
 
 /// The folder of one value in that of the results.
@@ -46,7 +48,7 @@ std::vector<std::string> content_of(const CompareArguments& arguments, const stu
   std::vector<std::string> names = {"compare.json"};
   for (const std::string& value : variation.values) {
     const fs::path folder = below(variation.path, value);
-    names.push_back((folder / "compare.svg").string());
+    for (const char* name : {"compare.svg", report_name}) names.push_back((folder / name).string());
     std::vector<std::string> formulations = arguments.formulations;
     formulations.push_back(arguments.reference);
     for (const std::string& formulation : formulations)
@@ -59,7 +61,7 @@ std::vector<std::string> content_of(const CompareArguments& arguments, const stu
 Group group_at(const CompareArguments& arguments, const Plugins& plugins, const std::string& path,
                const std::string& value) {
   Registry& registry = plugins.registry();
-  Group group{{value, {}}, arguments.out.empty() ? "" : fs::path(arguments.out) / below(path, value)};
+  Group group{{value, {}}, arguments.out.empty() ? "" : fs::path(arguments.out) / below(path, value), {}};
   SceneValues values = read_values(arguments);
   if (!path.empty()) values.set_text(path + '=' + value);
   const auto simulator = [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
@@ -69,8 +71,10 @@ Group group_at(const CompareArguments& arguments, const Plugins& plugins, const 
     settings.look_beyond = false;
     settings.control = run_control(formulation);
     settings.output = [&](const State& state, std::size_t) { output(state); };
-    return record_run(group.folder / formulation, prepared, registry, provenance_of(prepared.scene, plugins), settings)
-        .run.summary;
+    RecordedRun recorded =
+        record_run(group.folder / formulation, prepared, registry, provenance_of(prepared.scene, plugins), settings);
+    group.reports.push_back(std::move(recorded.report));
+    return recorded.run.summary;
   };
   group.comparison = study::compare(values, registry, arguments.formulations, arguments.reference, simulator);
   return group;
@@ -78,11 +82,12 @@ Group group_at(const CompareArguments& arguments, const Plugins& plugins, const 
 
 void write_picture(const Group& group, const std::string& label) {
   const study::Comparison& c = group.comparison;
-  std::vector<const study::ComparedRun*> shown;
-  for (std::size_t i = 0; i < c.listed; ++i) shown.push_back(&c.runs[i]);
   std::string title = c.runs.front().prepared.title();
   if (!label.empty()) title += ", " + label + " = " + group.value;
-  write_file(group.folder / "compare.svg", comparison_picture(title, shown));
+  write_file(group.folder / "compare.svg", comparison_picture(title, c));
+  if (!has_report_page()) return;
+  write_report(group.folder / report_name,
+               {title, group.reports, c.has_reference() ? static_cast<int>(c.reference) : -1});
 }
 
 ExitStatus compare(const CompareArguments& arguments) {
@@ -112,7 +117,9 @@ ExitStatus compare(const CompareArguments& arguments) {
   std::string text = arguments.json ? json_text(j) : comparison_text(groups, arguments.reference, label);
   if (!arguments.out.empty()) {
     write_file(fs::path(arguments.out) / "compare.json", json_text(j));
-    if (!arguments.json) text += "\nresults and pictures (compare.svg) in " + arguments.out + '\n';
+    if (!arguments.json)
+      text += std::string("\nresults and pictures (") + (has_report_page() ? "report.html" : "compare.svg") + ") in " +
+              arguments.out + '\n';
   }
   print(text);
   return interrupted ? ExitStatus::interrupted : ExitStatus::done;

@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "withy/results/certificate_text.hpp"
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
@@ -10,9 +9,11 @@
 #include "withy/apps/withy/run_report.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/results/certificate_text.hpp"
 #include "withy/results/checkpoint_files.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/recorded_run.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/scene/units.hpp"
 
@@ -88,7 +89,8 @@ ExitStatus run(const RunArguments& given) {
   print(arguments.json
             ? json_text(ended.json)
             : run_table(engine.prepared(), summary) + certificate_text(engine.model(), summary, ended.run.certificate) +
-                  "\nresults in " + arguments.out + '\n');
+                  "\nresults in " + arguments.out +
+                  (has_report_page() ? ", to look at in its report.html\n" : ", drawn in its results.svg\n"));
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
   if (summary.status == RunStatus::interrupted && !engine.prepared().escalates())
     complain("the same command with --resume goes on from there");

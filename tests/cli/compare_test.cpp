@@ -57,7 +57,8 @@ TEST(Compare, ReferenceIsRunWhereItIsNotListed) {
 
 TEST(Compare, KeepsResultsAndAWellFormedPicture) {
   const Folder folder;
-  const Finished f = compare(folder, {"--formulations", "inconsistent,quadratic", "--out", "out"});
+  const Finished f =
+      compare(folder, {"--formulations", "inconsistent,quadratic", "--set", "time.output=0.01", "--out", "out"});
   ASSERT_EQ(f.status, 0) << f.err;
   for (const char* formulation : {"inconsistent", "quadratic"}) {
     const std::string at = std::string("out/") + formulation;
@@ -76,8 +77,9 @@ TEST(Compare, KeepsResultsAndAWellFormedPicture) {
     ++panels;
     curves += child.count("polyline");
   }
-  EXPECT_EQ(panels, 4U) << "deflections along y of two links, two angles";
-  EXPECT_EQ(curves, 2 * panels) << "a curve a formulation";
+  EXPECT_EQ(panels, 6U) << "the arm, the error, deflections along y of two links, two angles";
+  const std::size_t bodies = 5;
+  EXPECT_EQ(curves, 2 * bodies + 1 + 2 * 4) << "of the arm, of all but the reference, a curve a formulation";
 }
 
 TEST(Compare, AMalformedVariationIsBadInput) {

@@ -9,9 +9,9 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::vector<std::string> commands = {"run",    "compare", "inverse", "terms",       "trade",
-                                           "advise", "eval",    "inspect", "equilibrium", "linearize",
-                                           "modes",  "import",  "bench",   "plugins",     "schema"};
+const std::vector<std::string> commands = {
+    "run",   "compare", "inverse", "terms",   "trade",  "advise", "eval",  "inspect", "equilibrium", "linearize",
+    "modes", "import",  "bench",   "plugins", "schema", "new",    "check", "report",  "plot"};
 
 /// The command lines under "Examples:" in a help text, without the program's name.
 std::vector<std::vector<std::string>> examples(const std::string& help) {
@@ -46,7 +46,7 @@ TEST(Help, AnUnknownCommandIsCalledThatWithTheNearest) {
   EXPECT_EQ(near.status, 2);
   EXPECT_EQ(near.out, "");
   EXPECT_THAT(near.err, HasSubstr("\"comparre\" is no command; did you mean 'compare'?"));
-  const Finished far = withy(folder, {"plot"});
+  const Finished far = withy(folder, {"fly"});
   EXPECT_EQ(far.status, 2);
   for (const std::string& c : commands) EXPECT_THAT(far.err, HasSubstr(c));
   EXPECT_EQ(withy(folder, {}).status, 2);

@@ -148,6 +148,7 @@ TEST(Inverse, WhatIsNoMotionIsBadInput) {
   refused("shoulder[rad]\n0\n1\n", "need a column t[s]");
   refused("t[s],sholder[rad]\n0,0\n1,1\n", "there are shoulder, elbow");
   refused("t[s],shoulder[m]\n0,0\n1,1\n", "path.csv:1: column 'shoulder'");
+  refused("t[s],shoulder[rad],elbw[rad]\n0,0,0\n1,1,1\n", "no hinge is named 'elbw'; did you mean 'elbow'?");
   refused("t[s],shoulder,shoulder\n0,0,0\n1,1,1\n", "there twice");
   refused("t[s],shoulder[rad]\n0,0\n1,one\n", "path.csv:3: column 2");
   refused("t[s],shoulder[rad]\n0,0\n1\n", "path.csv:3: column 2");

@@ -141,12 +141,46 @@ TEST(Run, ResultsNameArmColumnsWithUnits) {
   ASSERT_EQ(withy(folder, {"run", "scenes/two-link-slew.yaml", "--set", "time.end=0.02", "--out", "out"}).status, 0);
   const auto head = cells(lines(folder.read("out/results.csv")).at(0));
   EXPECT_THAT(std::vector<std::string>(head.begin(), head.begin() + 7),
-              testing::ElementsAre("t[s]", "shoulder[rad]", "elbow[rad]", "link1.bending_y[1]", "link1.bending_y[2]",
-                                   "link2.bending_y[1]", "link2.bending_y[2]"));
+              testing::ElementsAre("t[s]", "shoulder[rad]", "elbow[rad]", "link1.bending_y.1[1]",
+                                   "link1.bending_y.2[1]", "link2.bending_y.1[1]", "link2.bending_y.2[1]"));
   for (const std::string column :
-       {"shoulder.rate[rad/s]", "link2.bending_y[2].rate", "link1.tip.deflection_y[m]", "link2.tip.x[m]"}) {
+       {"shoulder.rate[rad/s]", "link2.bending_y.2.rate[1]", "link1.tip.deflection_y[m]", "link2.tip.x[m]"}) {
     EXPECT_THAT(head, testing::Contains(column));
   }
+}
+
+TEST(Run, LeavesAPictureThatPlotAndReportMakeAnew) {
+  const Folder folder;
+  const auto run = [&](const std::string& formulation) {
+    return withy(folder, {"run", "scenes/two-link-slew.yaml", "--formulation", formulation, "--set", "time.end=0.2",
+                          "--out", formulation});
+  };
+  ASSERT_EQ(run("ruthless").status, 0);
+  ASSERT_EQ(run("quadratic").status, 0);
+  Finished f =
+      withy(folder, {"plot", "ruthless", "quadratic", "shoulder", "link2.tip.deflection_y", "--out", "two.svg"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const std::string picture = folder.read("two.svg");
+  for (const char* text : {"shoulder [deg]", "link2.tip.deflection_y [m]", "t [s]", ">ruthless<", ">quadratic<"})
+    EXPECT_THAT(picture, HasSubstr(text));
+  f = withy(folder, {"plot", "ruthless", "elbow", "--terminal"});
+  EXPECT_THAT(f.out, HasSubstr("elbow [deg]"));
+  f = withy(folder, {"plot", "ruthless", "elbw"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("there is no column \"elbw\"; did you mean \"elbow\"?"));
+  const std::string page = folder.read("quadratic/report.html");
+  f = withy(folder, {"report", "ruthless", "quadratic", "--out", "both.html"});
+  if (page.empty()) {
+    EXPECT_THAT(folder.read("quadratic/results.svg"), HasSubstr("shoulder [deg]")) << "a build without the page";
+    EXPECT_EQ(f.status, 3);
+    return;
+  }
+  ASSERT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("2 runs in both.html"));
+  EXPECT_GT(folder.read("both.html").size(), page.size());
+  f = withy(folder, {"report", "scenes"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("it is no folder of a run or a comparison"));
 }
 
 TEST(Run, WithoutOutTheFolderIsNamedAfterSceneAndFormulation) {

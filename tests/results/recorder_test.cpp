@@ -32,7 +32,7 @@ TEST(Recorder, CsvAndMemoryTakeTheSameTable) {
     recorder->end();
   }
   EXPECT_EQ(folder.read("t.csv"),
-            "t[s],shoulder[rad],boom.bending_y[1]\n0,1,-0\n0.1,0.5,-1e-300\n0.2,0.3333333333333333,\n");
+            "t[s],shoulder[rad],boom.bending_y.1[1]\n0,1,-0\n0.1,0.5,-1e-300\n0.2,0.3333333333333333,\n");
   EXPECT_EQ(memory.columns().size(), 3U);
   EXPECT_THAT(memory.column("shoulder"), testing::ElementsAre(1.0, 0.5, 1.0 / 3));
   EXPECT_TRUE(std::isnan(memory.rows()[2][2]));

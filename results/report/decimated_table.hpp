@@ -1,0 +1,53 @@
+/// \file
+/// As much of a table as a picture can show.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "withy/results/recorder.hpp"
+
+namespace withy {
+
+/// Keeps of a table of any length the least and the greatest number of each column over stretches of rows, so that no
+/// peak is lost, and whole rows at regular intervals. Memory does not grow with the rows.
+class DecimatedTable final : public Recorder {
+ public:
+  /// \param stretches kept at most; half as many at least where there are more rows
+  /// \param samples the same of whole rows
+  DecimatedTable(std::size_t stretches, std::size_t samples);
+
+  void begin(const std::vector<Column>& columns) override;
+  void row(std::span<const double> numbers) override;
+  RecordMark mark() override { return {rows_, 0, {}}; }
+  void end() override {}
+
+  [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+  /// Rows that were given.
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+  /// How many of them a stretch is.
+  [[nodiscard]] std::size_t stride() const { return stride_; }
+  /// A column: of each stretch one number where it is one row, or else the least and the greatest in their order. The
+  /// first column, the time, has the stretch's first and last.
+  [[nodiscard]] std::vector<double> column(std::size_t index) const;
+  /// Whole rows, the first and the last among them.
+  [[nodiscard]] std::vector<std::vector<double>> samples() const;
+
+ private:
+  /// One column over one stretch.
+  struct Range {
+    double low, high;
+    bool falls;  ///< the greatest number comes before the least
+  };
+  static void widen(Range& range, const Range& next);
+  void halve();
+
+  std::size_t most_stretches_, most_samples_;
+  std::vector<Column> columns_;
+  std::size_t rows_ = 0, stride_ = 1, sample_stride_ = 1;
+  std::vector<Range> ranges_;  ///< of every column, stretch by stretch
+  std::vector<std::vector<double>> samples_;
+  std::vector<double> last_;
+};
+
+}  // namespace withy

@@ -1,0 +1,70 @@
+/// \file
+/// What there is to draw of a model, and where it is at a state: for animations.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+#include "withy/core/plugin/equations.hpp"
+#include "withy/core/simulation/tips.hpp"
+
+namespace withy {
+
+/// A model's bodies as boxes, lines, strips and points, each body in its own strain kinematics. A moment is one pass
+/// over the tree: time and memory in proportion to bodies and points.
+class Drawing {
+ public:
+  /// \param terms of the formulation, for bodies that have none of their own
+  Drawing(const std::shared_ptr<const Model>& model, const Terms& terms);
+
+  /// What stays: of each body its name, its parent, kind, points at rest [m, body axes]; of a rigid one the box that
+  /// has its mass and inertia; where its children hang on it.
+  [[nodiscard]] nlohmann::ordered_json parts() const;
+  /// Of a state, y as in State, appended: of each body position [m] and quaternion w x y z in the world; of a flexible
+  /// one displacement of each point [m] and the poses on which its children hang, body axes.
+  void append(std::span<const double> y, std::vector<float>& numbers);
+  /// Of a state, each body as a line in the world [m]: along a flexible body, or from a rigid body's root to what hangs
+  /// on it.
+  [[nodiscard]] std::vector<std::vector<Vector3>> lines(std::span<const double> y);
+  /// How many numbers `append` adds.
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+  /// Names of what is measured against limits of validity, as the certificate has them, and the values at the state
+  /// last appended: of each flexible body its rate [rad/s], to be divided by its fundamental frequency, and of each
+  /// that has a tip its deflection over its length.
+  [[nodiscard]] std::vector<std::string> rates() const;
+  [[nodiscard]] std::vector<std::string> deflections() const;
+  void append_rates(std::vector<double>& numbers) const;
+  void append_deflections(std::vector<double>& numbers) const;
+
+ private:
+  enum class Kind { box, line, strip, points };
+  struct Part {
+    Kind kind = Kind::box;
+    bool flexible = false;
+    int frame = 0;                 ///< of the body
+    std::vector<int> points;       ///< frames
+    std::vector<Vector3> at_rest;  ///< of the points
+    std::vector<int> children;     ///< bodies that hang on a flexible body
+    std::vector<int> hung;         ///< frames of these, one a child
+    std::vector<Pose> offsets;     ///< of the hinges in them
+    std::size_t columns = 1;       ///< points across a strip
+  };
+  [[nodiscard]] std::span<const double> without_discrete(std::span<const double> y) const;
+  void add_points(BodyNode& node, Part& part) const;
+  bool add_strip(BodyNode& node, Part& part) const;
+  [[nodiscard]] bool add_line(BodyNode& node, Part& part) const;
+  [[nodiscard]] nlohmann::ordered_json part_json(std::size_t body) const;
+
+  std::shared_ptr<const Model> model_;  ///< with a frame at each point
+  std::vector<Part> parts_;
+  std::vector<Tip> tips_;
+  std::unique_ptr<Observation> seen_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace withy

@@ -1,0 +1,82 @@
+#include "withy/results/report/report_page.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+#include "withy/results/output_file.hpp"
+#include "withy/results/results_error.hpp"
+
+// The page without data, from report_page.S; empty where it was not built.
+extern "C" const char withy_report_page[], withy_report_page_end[];
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string_view page() { return {withy_report_page, withy_report_page_end}; }
+
+constexpr std::string_view place = "/* data of withy */";
+// Each run stands on a line of its own between these.
+constexpr std::string_view before = R"(<script type="application/json" id="withy-data">{"format":"withy-report/1")";
+constexpr std::string_view first_run = ",\"runs\":[\n", between = ",\n", after = "\n]}</script>";
+
+/// Adds JSON so that it cannot end the element it stands in.
+void add_guarded(std::string_view json, std::string& text) {
+  for (std::size_t at = 0; at < json.size();) {
+    const std::size_t stop = std::min(json.find('<', at), json.size());
+    text += json.substr(at, stop - at);
+    if (stop < json.size()) text += "\\u003c";
+    at = stop + 1;
+  }
+}
+
+}  // namespace
+
+bool has_report_page() { return !page().empty(); }
+
+void write_report(const std::filesystem::path& file, const ReportContent& content) {
+  const std::string_view empty = page();
+  const std::size_t at = empty.find(place);
+  if (at == std::string_view::npos) throw std::logic_error("this build holds no page for reports");
+  std::string text;
+  std::size_t size = empty.size();
+  for (const std::string& run : content.runs) size += run.size() + run.size() / 16;
+  text.reserve(size + 1000);
+  text += empty.substr(0, at);
+  text += before;
+  add_guarded(",\"title\":" + Json(content.title).dump(-1, ' ', true, Json::error_handler_t::replace), text);
+  text += ",\"reference\":" + std::to_string(content.reference);
+  text += first_run;
+  for (std::size_t i = 0; i < content.runs.size(); ++i) {
+    if (i > 0) text += between;
+    add_guarded(content.runs[i], text);
+  }
+  text += after;
+  text += empty.substr(at + place.size());
+  write_file(file, text);
+}
+
+std::vector<std::string> read_report(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::system_error(errno, std::generic_category(), file.string());
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::size_t begin = text.find(before), first = text.find(first_run, begin), end = text.find(after, first);
+  if (begin == std::string::npos || first == std::string::npos || end == std::string::npos)
+    throw ResultsError(file.string() + " is no report of this program");
+  std::vector<std::string> runs;
+  for (std::size_t at = first + first_run.size(); at < end;) {
+    const std::size_t stop = std::min(text.find(between, at), end);
+    runs.push_back(text.substr(at, stop - at));
+    at = stop + between.size();
+  }
+  return runs;
+}
+
+}  // namespace withy

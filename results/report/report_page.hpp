@@ -1,0 +1,27 @@
+/// \file
+/// The page that shows runs: one file that needs no network.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace withy {
+
+/// Whether this build holds the page. It is made with npm; a build without it has none.
+bool has_report_page();
+/// Where the page is in a folder of results.
+inline constexpr const char* report_name = "report.html";
+
+/// What a page shows.
+struct ReportContent {
+  std::string title;
+  std::vector<std::string> runs;  ///< RunReport::text of each
+  int reference = -1;             ///< index of the run that the others are measured against; −1: none
+};
+/// Writes the page, whole or not at all. \throws std::system_error; std::logic_error where the build holds no page
+void write_report(const std::filesystem::path& file, const ReportContent& content);
+/// The runs on a page. \throws ResultsError where it is none; std::system_error where it cannot be read
+std::vector<std::string> read_report(const std::filesystem::path& file);
+
+}  // namespace withy

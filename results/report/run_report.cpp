@@ -1,0 +1,125 @@
+#include "withy/results/report/run_report.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "withy/results/certificate_text.hpp"
+#include "withy/results/csv.hpp"
+#include "withy/results/report/base64.hpp"
+#include "withy/results/report/drawing.hpp"
+#include "withy/results/result_columns.hpp"
+#include "withy/results/table_picture.hpp"
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Numbers of a report's table, about, and moments of its animation: 1 MB of data is soon opened.
+constexpr std::size_t most_numbers = 60'000;
+constexpr std::size_t most_moments = 400;
+
+/// Arrays of numbers, which stand as text at the end of what refers to them by their index.
+class Arrays {
+ public:
+  template <class Number>
+  std::size_t add(const std::vector<Number>& numbers) {
+    text_ += (count_ == 0 ? "\"" : ",\"") + base64_of(numbers) + '"';
+    return count_++;
+  }
+  /// An object's text with the arrays as its last member.
+  [[nodiscard]] std::string behind(std::string object) const {
+    object.pop_back();
+    return object + ",\"arrays\":[" + text_ + "]}";
+  }
+
+ private:
+  std::size_t count_ = 0;
+  std::string text_;
+};
+
+std::size_t stretches(std::size_t columns) {
+  return std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(columns, 1), 200, 2000);
+}
+
+/// Where rows are drawn together each column also has its numbers at the moments of the animation: what is computed of
+/// several columns needs numbers of one time.
+Json table_json(const DecimatedTable& table, const std::vector<std::vector<double>>& samples, Arrays& data) {
+  Json columns = Json::array();
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    const Column& column = table.columns()[c];
+    Json j{{"name", column_name(column.name)}, {"unit", column.unit}, {"data", data.add(table.column(c))}};
+    if (table.stride() > 1) {
+      std::vector<double> own;
+      for (const std::vector<double>& row : samples) own.push_back(row[c]);
+      j["samples"] = data.add(own);
+    }
+    columns.push_back(std::move(j));
+  }
+  return {{"rows", table.rows()}, {"stride", table.stride()}, {"columns", std::move(columns)}};
+}
+
+/// What was measured of one kind, moment by moment; each series has the limit of the indicator of its name.
+void add_validity(const std::vector<std::string>& bodies, const std::vector<double>& values, const char* before,
+                  const char* after, const study::Certificate& certificate, Json& series, Arrays& data) {
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const std::string name = before + bodies[k] + after;
+    const auto indicator = std::find_if(certificate.indicators.begin(), certificate.indicators.end(),
+                                        [&](const study::Indicator& i) { return i.text == name; });
+    if (indicator == certificate.indicators.end()) continue;
+    double scale = 1;
+    for (const BodyValidity& b : certificate.bodies)
+      if (indicator->text.starts_with("rate") && b.name == bodies[k]) scale = 1 / b.fundamental;
+    std::vector<double> own;
+    for (std::size_t i = k; i < values.size(); i += bodies.size()) own.push_back(scale * values[i]);
+    series.push_back({{"name", name}, {"limit", indicator->limit}, {"data", data.add(own)}});
+  }
+}
+
+}  // namespace
+
+RunReport::RunReport(const study::Prepared& prepared)
+    : prepared_(prepared), table_(stretches(prepared.model().layout().size()), most_moments) {}
+
+std::string RunReport::picture() const {
+  const std::string& formulation = prepared_.scene.formulation_name;
+  return svg_plot(prepared_.title(), {formulation}, table_panels({{formulation, &table_}}, {}));
+}
+
+std::string RunReport::text(const study::CertifiedRun& ended, const Json& run) const {
+  const Model& model = prepared_.model();
+  Drawing drawing(prepared_.scene.model, prepared_.scene.formulation->terms());
+  std::vector<double> times, rates, deflections;
+  std::vector<float> numbers;
+  const std::vector<std::vector<double>> samples = table_.samples();
+  for (const std::vector<double>& row : samples) {
+    const State state = state_of_row(model.layout(), row);
+    times.push_back(state.time);
+    drawing.append(state.y, numbers);
+    drawing.append_rates(rates);
+    drawing.append_deflections(deflections);
+  }
+  Arrays data;
+  Json validity = Json::array();
+  add_validity(drawing.rates(), rates, "rate of '", "' over its fundamental frequency", ended.certificate, validity,
+               data);
+  add_validity(drawing.deflections(), deflections, "tip deflection of '", "' over its length", ended.certificate,
+               validity, data);
+  const Vector3& g = model.gravity();
+  const Json part{{"title", prepared_.title()},
+                  {"outcome", study::outcome_text(ended.summary)},
+                  {"scene", prepared_.values.text()},
+                  {"run", run},
+                  {"certificate", certificate_text(model, ended.summary, ended.certificate)},
+                  {"table", table_json(table_, samples, data)},
+                  {"animation",
+                   {{"gravity", {g.x(), g.y(), g.z()}},
+                    {"parts", drawing.parts()},
+                    {"size", drawing.size()},
+                    {"times", data.add(times)},
+                    {"numbers", data.add(numbers)}}},
+                  {"validity", std::move(validity)}};
+  return data.behind(part.dump(-1, ' ', true, Json::error_handler_t::replace));
+}
+
+}  // namespace withy

@@ -1,0 +1,25 @@
+/// \file
+/// Pictures of the tables of runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/results/report/decimated_table.hpp"
+#include "withy/results/svg_plot.hpp"
+
+namespace withy {
+
+/// A run's table under the name that a legend has for it.
+struct NamedTable {
+  std::string name;
+  const DecimatedTable* table;
+};
+
+/// A panel a column over time, a curve a run in each that has the column; angles in degrees.
+/// \param names of columns, or what stands before a dot in them: "link1.tip" is all of that tip; empty: the coordinates
+/// of hinges and the deflections of tips that change, or whatever changes where none of these does
+/// \throws ResultsError where no run has such a column: it names the nearest
+std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::vector<std::string>& names);
+
+}  // namespace withy

@@ -1,0 +1,98 @@
+#include "withy/results/terminal_plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace withy {
+namespace {
+
+constexpr int columns = 66, rows = 10;  ///< characters of a panel; each is two by four dots
+
+/// Dots of one panel. A character with dots of one curve is a Braille pattern; with several curves all are letters.
+class Canvas {
+ public:
+  explicit Canvas(bool letters) : letters_(letters), patterns_(columns * rows), owners_(columns * rows, ' ') {}
+  /// \param x, y dots from the lower left corner
+  void dot(int x, int y, char owner) {
+    if (x < 0 || x >= 2 * columns || y < 0 || y >= 4 * rows) return;
+    static constexpr unsigned bits[4][2] = {{0x40, 0x80}, {0x04, 0x20}, {0x02, 0x10}, {0x01, 0x08}};
+    const auto at = static_cast<std::size_t>((rows - 1 - y / 4) * columns + x / 2);
+    patterns_[at] |= bits[y % 4][x % 2];
+    owners_[at] = owner;
+  }
+  [[nodiscard]] std::string line(int row) const {
+    std::string text;
+    for (int c = 0; c < columns; ++c) {
+      const auto at = static_cast<std::size_t>(row * columns + c);
+      const unsigned code = 0x2800 + patterns_[at];
+      if (patterns_[at] == 0)
+        text += ' ';
+      else if (letters_)
+        text += owners_[at];
+      else
+        text += {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 0x3F)),
+                 static_cast<char>(0x80 | (code & 0x3F))};
+    }
+    return text;
+  }
+
+ private:
+  bool letters_;
+  std::vector<unsigned> patterns_;
+  std::vector<char> owners_;
+};
+
+void draw(Canvas& canvas, const Curve& curve, char owner, double x0, double x1, double y0, double y1) {
+  const auto place = [](double v, double low, double high, int dots) {
+    return high > low ? static_cast<int>(std::lround((v - low) / (high - low) * (dots - 1))) : dots / 2;
+  };
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    const int x = place(curve.x[i], x0, x1, 2 * columns), y = place(curve.y[i], y0, y1, 4 * rows);
+    const std::size_t before = i > 0 ? i - 1 : 0;
+    const int px = place(curve.x[before], x0, x1, 2 * columns), py = place(curve.y[before], y0, y1, 4 * rows);
+    const int steps = std::max({std::abs(x - px), std::abs(y - py), 1});
+    for (int s = 0; s <= steps; ++s) canvas.dot(px + (x - px) * s / steps, py + (y - py) * s / steps, owner);
+  }
+}
+
+std::string panel_text(const Panel& panel) {
+  double x0 = std::numeric_limits<double>::infinity(), x1 = -x0;
+  for (const Curve& curve : panel.curves) {
+    for (const double x : curve.x) {
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+    }
+  }
+  const auto [y0, y1] = panel.y_range;
+  const bool several = panel.curves.size() > 1;
+  Canvas canvas(several);
+  for (std::size_t c = 0; c < panel.curves.size(); ++c)
+    draw(canvas, panel.curves[c], static_cast<char>('a' + c % 26), x0, x1, y0, y1);
+  std::string out = panel.y_label + '\n';
+  for (int r = 0; r < rows; ++r) {
+    const std::string mark =
+        r == 0 ? fmt::format("{:.4g}", y1) : (r == rows - 1 ? fmt::format("{:.4g}", y0) : std::string());
+    out += fmt::format("{:>10} |{}\n", mark, canvas.line(r));
+  }
+  const std::string first = fmt::format("{:.4g}", x0), last = fmt::format("{:.4g} s", x1);
+  return out + fmt::format("{:>11}+{:-<{}}\n{:>12}{}{:>{}}\n", "", "", columns, "", first, last,
+                           columns - static_cast<int>(first.size()));
+}
+
+}  // namespace
+
+std::string terminal_plot(const std::vector<std::string>& legend, const std::vector<Panel>& panels) {
+  std::string out;
+  for (std::size_t i = 0; legend.size() > 1 && i < legend.size(); ++i)
+    out += fmt::format("{} {}\n", static_cast<char>('a' + i % 26), legend[i]);
+  for (const Panel& panel : panels) {
+    if (!out.empty()) out += '\n';
+    out += panel_text(panel);
+  }
+  return out;
+}
+
+}  // namespace withy

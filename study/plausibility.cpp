@@ -1,0 +1,182 @@
+#include "withy/study/plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/tips.hpp"
+
+namespace withy::study {
+namespace {
+
+/// A flexible body this many times shorter than the greatest distance in the scene, or with this many times its own
+/// mass on it, is remarked on.
+constexpr double short_enough = 100, heavy_enough = 1e4;
+/// Damping ratio of a servo over what it drives beyond which the inertia is remarked on.
+constexpr double stiff_enough = 10;
+
+/// The place of a member of a member of the scene, or of the scene.
+Place place_of(const Scene& scene, const char* group, const std::string& name) {
+  const Value* all = scene.source.find(group);
+  const Value* one = all != nullptr ? all->find(name) : nullptr;
+  return one != nullptr ? one->place() : scene.source.place();
+}
+
+double mass_of_body(const Body& body) {
+  double mass = 0;
+  for (const Particle& p : body.shape().particles) mass += p.mass;
+  return mass;
+}
+
+/// Of each body, the mass of all that hangs on it, without itself.
+std::vector<double> carried(const Model& model) {
+  std::vector<double> masses(model.bodies().size());
+  for (std::size_t b = masses.size(); b-- > 0;) {
+    const int parent = model.hinges()[b].parent;
+    if (parent >= 0) masses[static_cast<std::size_t>(parent)] += masses[b] + mass_of_body(*model.bodies()[b].body);
+  }
+  return masses;
+}
+
+/// The greatest distance between frames at the initial state.
+double extent(const Prepared& prepared) {
+  const auto seen = prepared.equations->make_observation();
+  seen->observe(prepared.scene.initial.y);
+  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (std::size_t b = 0; b < prepared.model().bodies().size(); ++b) {
+    for (std::size_t f = 0; f < prepared.model().bodies()[b].frames.size(); ++f) {
+      const WorldPose pose = seen->frame_pose(static_cast<int>(b), static_cast<int>(f));
+      const Vector3 p = Eigen::Map<const Vector3>(pose.position.data());
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  }
+  return (high - low).norm();
+}
+
+void look_at_bodies(const Prepared& prepared, std::vector<Remark>& all) {
+  const Model& model = prepared.model();
+  const double greatest = extent(prepared);
+  const std::vector<double> masses = carried(model);
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const BodyNode& node = model.bodies()[b];
+    if (node.segment && node.segment->index > 0) continue;
+    const std::string& name = node.segment ? node.segment->whole : node.name;
+    const Place place = place_of(prepared.scene, "bodies", name);
+    for (const std::string& remark : node.body->remarks()) all.push_back({place, remark});
+    const ModalShape& shape = node.body->shape();
+    if (shape.modes() == 0 || !(shape.length > 0) || node.segment) continue;
+    const double own = mass_of_body(*node.body);
+    if (shape.length * short_enough < greatest)
+      all.push_back({place, fmt::format("a flexible body {} m long in a tree of {} m: its vibrations are so fast that "
+                                        "they may cost all of the time of a run; is the length in metres? If it does "
+                                        "not bend, make it rigid",
+                                        brief(shape.length), brief(greatest))});
+    if (own * heavy_enough < masses[b])
+      all.push_back({place, fmt::format("a flexible body of {} kg carries {} kg: are its length and its mass meant?",
+                                        brief(own), brief(masses[b]))});
+  }
+}
+
+/// The inertia [kg m², kg] that an effort on each speed accelerates where all else is free: 1 / (M⁻¹)_ii. 0 on speeds
+/// that motions prescribe, and everywhere where M cannot be inverted.
+std::vector<double> driven_inertia(const Prepared& prepared) {
+  const State& initial = prepared.scene.initial;
+  const DenseSystem system = prepared.equations->system(initial.time, initial.y);
+  const DenseSystem free = free_part(system);
+  const auto n = static_cast<Eigen::Index>(free.size);
+  std::vector<double> inertia(system.size, 0.0);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::FullPivLU<Eigen::MatrixXd> M(Eigen::Map<const RowMajor>(free.mass.data(), n, n));
+  if (n == 0 || !M.isInvertible()) return inertia;
+  const Eigen::MatrixXd inverse = M.inverse();
+  Eigen::Index next = 0;
+  for (std::size_t i = 0; i < system.size; ++i) {
+    const bool prescribed = std::any_of(system.prescribed.begin(), system.prescribed.end(),
+                                        [i](const PrescribedRate& p) { return p.speed == i; });
+    if (prescribed) continue;
+    inertia[i] = 1 / inverse(next, next);
+    ++next;
+  }
+  return inertia;
+}
+
+/// Feedback d on a rate and k on its coordinate: the pole −d/h where the inertia h is far below that which the gains
+/// are for, d ≈ 2 √(k h).
+void look_at_servo(const Prepared& prepared, const std::vector<double>& inertia, const std::string& hinge,
+                   const Value& gains, std::vector<Remark>& all) {
+  const Value *stiffness = gains.find("stiffness"), *damping = gains.find("damping");
+  const Slot* slot = prepared.model().layout().hinge(hinge);
+  if (stiffness == nullptr || damping == nullptr || slot == nullptr || slot->speeds != 1) return;
+  const double h = inertia[slot->speed], k = stiffness->number(), d = damping->number();
+  if (!(h > 0) || !(k > 0) || d < 2 * stiff_enough * std::sqrt(k * h)) return;
+  all.push_back(
+      {gains.place(), fmt::format("the servo on '{}' drives an inertia of {} alone: damping {} over it makes a pole "
+                                  "at about -{}/s, which explicit integrators follow in steps of its "
+                                  "reciprocal; a motor has a rotor: give the body at the hinge its inertia, "
+                                  "times the square of the gear ratio, or use radau",
+                                  hinge, brief(h), brief(d), brief(d / h))});
+}
+
+void look_at_servos(const Prepared& prepared, std::vector<Remark>& all) {
+  const Value* loads = prepared.scene.source.find("loads");
+  if (loads == nullptr || prepared.model().layout().speeds > 400) return;
+  const std::vector<double> inertia = driven_inertia(prepared);
+  for (const auto& [name, load] : loads->members()) {
+    const Value* type = load.find("type");
+    const Value* hinges = load.find("hinges");
+    if (type == nullptr || (type->text() != "pd-controller" && type->text() != "pid")) continue;
+    if (const Value* hinge = load.find("hinge")) look_at_servo(prepared, inertia, hinge->text(), load, all);
+    if (hinges == nullptr) continue;
+    for (const auto& [hinge, gains] : hinges->members()) look_at_servo(prepared, inertia, hinge, gains, all);
+  }
+}
+
+/// Every text of a value but the names of members.
+void add_texts(const Value& value, std::set<std::string>& texts) {
+  if (value.kind() == Value::Kind::text) texts.insert(value.text());
+  for (const Value& item : value.items()) add_texts(item, texts);
+  for (const auto& [name, member] : value.members()) add_texts(member, texts);
+}
+
+void look_at_frames(const Prepared& prepared, std::vector<Remark>& all) {
+  std::set<std::string> texts;
+  for (const auto& [name, member] : prepared.scene.source.members())
+    if (name != "bodies") add_texts(member, texts);
+  const Value* bodies = prepared.scene.source.find("bodies");
+  if (bodies == nullptr) return;
+  for (const auto& [body, values] : bodies->members()) {
+    const Value* frames = values.find("frames");
+    if (frames == nullptr) continue;
+    for (const auto& [frame, pose] : frames->members()) {
+      const std::string name = body + '.' + frame;
+      // Results tell of every frame "tip".
+      const bool used = frame == "tip" || std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
+                          return text == name || text.starts_with(name + '.');
+                        });
+      if (!used)
+        all.push_back({pose.place(), fmt::format("nothing uses the frame '{}'; a frame named tip would stand in the "
+                                                 "results",
+                                                 name)});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Remark> implausible(const Prepared& prepared) {
+  std::vector<Remark> all;
+  look_at_bodies(prepared, all);
+  look_at_servos(prepared, all);
+  look_at_frames(prepared, all);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Remark& a, const Remark& b) { return a.place.line < b.place.line; });
+  return all;
+}
+
+}  // namespace withy::study

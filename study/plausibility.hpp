@@ -1,0 +1,23 @@
+/// \file
+/// What in a scene is allowed, yet hardly meant.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/study/prepared.hpp"
+
+namespace withy::study {
+
+/// Something implausible, with its place in the file.
+struct Remark {
+  Place place;
+  std::string text;  ///< what is odd, by which number, and what may have been meant
+};
+
+/// In the order of the file: what bodies remark on (damping ratios above 1, strains without modes, what data lack);
+/// flexible bodies far shorter than the rest, or that carry far more than their own mass; servos that drive next to no
+/// inertia; frames and bodies without a use.
+std::vector<Remark> implausible(const Prepared& prepared);
+
+}  // namespace withy::study

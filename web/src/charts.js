@@ -1,0 +1,213 @@
+// Plots over time: a panel for each group of columns, made when it comes into sight.
+import uPlot from 'uplot';
+import { dashes, palette, resampled } from './data.js';
+
+const most_shown = 8; // curves of a panel at first
+
+const number = v => v == null ? '–' : v === 0 ? '0' : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(3) : v.toPrecision(5);
+
+class Panel {
+  constructor(owner, group) {
+    this.owner = owner;
+    this.group = group;
+    this.log = false;
+    const lively = group.series.filter(s => !s.flat);
+    // What never changes is there to be switched on.
+    for (const s of group.series) s.on = (lively.length ? lively : group.series).slice(0, most_shown).includes(s);
+    this.element = document.createElement('figure');
+    this.element.innerHTML = `<figcaption><span class="name"></span><button class="log" aria-pressed="false" title="Logarithms of magnitudes (L)">log</button></figcaption><div class="chart"></div><div class="more"></div>`;
+    this.element.querySelector('.name').textContent = `${group.title}${group.title.endsWith(group.unit) ? '' : `  [${group.unit}]`}`;
+    this.button = this.element.querySelector('.log');
+    this.button.onclick = () => this.toggle_log();
+    this.element.addEventListener('pointerenter', () => { owner.under = this; });
+    this.chips();
+  }
+
+  // A button for each column that is not shown at first; the legend takes away the others.
+  chips() {
+    const more = this.element.querySelector('.more');
+    more.replaceChildren();
+    for (const series of this.group.series.filter(s => !s.on)) {
+      const chip = document.createElement('button');
+      chip.textContent = series.name + (series.flat ? ` = ${number(series.of[0].y[0])}` : '');
+      chip.className = 'chip';
+      chip.setAttribute('aria-pressed', series.on);
+      chip.onclick = () => { series.on = !series.on; chip.setAttribute('aria-pressed', series.on); this.draw(); };
+      more.append(chip);
+    }
+  }
+
+  toggle_log() {
+    this.log = !this.log;
+    this.button.setAttribute('aria-pressed', this.log);
+    this.draw();
+  }
+
+  curves() {
+    const { differences, reference, runs } = this.owner;
+    const shown = this.group.series.filter(s => s.on);
+    const out = [];
+    shown.forEach((series, k) => {
+      const of = series.of.find(o => o.run === runs[reference]);
+      for (const { run, t, y } of series.of) {
+        if (run.hidden) continue;
+        const lean = shown.length === 1 && runs.length > 1;
+        const pen = { color: lean ? run.index : k, dash: runs.length > 1 ? run.index : 0 };
+        let label = runs.length > 1 ? (shown.length === 1 ? run.label : `${series.name} (${run.label})`) : series.name;
+        let values = y, times = t;
+        if (differences && !this.group.limit) {
+          if (!of || of.run === run) continue;
+          times = of.t;
+          values = resampled(t, y, of.t).map((v, i) => v == null ? null : v - of.y[i]);
+          label += ' − reference';
+        }
+        out.push({ pen, label, t: times, y: this.log ? Array.from(values, v => v == null || v === 0 ? null : Math.abs(v)) : values });
+      }
+    });
+    return out;
+  }
+
+  aligned(curves) {
+    if (curves.length === 0) return [[0, 1], [null, null]];
+    const same = curves.every(c => c.t === curves[0].t || (c.t.length === curves[0].t.length && c.t.every((v, i) => v === curves[0].t[i])));
+    if (same) return [curves[0].t, ...curves.map(c => c.y)];
+    return uPlot.join(curves.map(c => [Array.from(c.t), Array.from(c.y)]));
+  }
+
+  draw() {
+    const holder = this.element.querySelector('.chart'), curves = this.curves(), dark = this.owner.dark;
+    const colours = palette(dark), ink = dark ? '#c9d1d9' : '#24292f', faint = dark ? '#2d333b' : '#e3e7eb';
+    const [least, most] = this.chart ? [this.chart.scales.x.min, this.chart.scales.x.max] : [];
+    this.chart?.destroy();
+    const axis = { stroke: ink, grid: { stroke: faint, width: 1 }, ticks: { stroke: faint }, font: '12px system-ui, sans-serif' };
+    const limit = this.group.limit && !this.log ? this.group.limit : null;
+    this.chart = new uPlot({
+      width: Math.max(260, holder.clientWidth),
+      height: 230,
+      cursor: { sync: { key: 'withy' }, drag: { x: true, y: false } },
+      scales: { x: { time: false }, y: this.log ? { distr: 3 } : { range: (_, low, high) => range(low, high, limit) } },
+      legend: { live: true },
+      axes: [
+        { ...axis, label: 't [s]', labelSize: 18, labelFont: '12px system-ui, sans-serif', size: 32 },
+        { ...axis, size: 66, values: (u, ticks) => ticks.map(v => v == null ? '' : label_of(v, ticks, this.log)) },
+      ],
+      series: [
+        { label: 't [s]', value: (_, v) => number(v) },
+        ...curves.map(c => ({
+          label: c.label,
+          stroke: colours[c.pen.color % colours.length],
+          dash: dashes[c.pen.dash % dashes.length],
+          width: 1.75,
+          points: { show: false },
+          spanGaps: true,
+          value: (_, v) => number(v),
+        })),
+      ],
+      hooks: {
+        draw: [u => this.mark(u, ink, limit)],
+        ready: [u => u.over.addEventListener('click', () => { if (!this.dragged(u)) this.owner.seek(u.posToVal(u.cursor.left, 'x')); })],
+      },
+    }, this.aligned(curves), holder);
+    this.tell();
+    if (least != null && this.zoomed(least, most)) this.chart.setScale('x', { min: least, max: most });
+  }
+
+  zoomed(least, most) {
+    const t = this.chart.data[0];
+    return least > t[0] || most < t[t.length - 1];
+  }
+  dragged(u) { return u.select.width > 3; }
+
+  // The time of the animation, and a limit.
+  mark(u, ink, limit) {
+    const { ctx, bbox } = u, ratio = uPlot.pxRatio;
+    const line = (x0, y0, x1, y1, color, dash) => {
+      ctx.strokeStyle = color;
+      ctx.setLineDash(dash.map(d => d * ratio));
+      ctx.lineWidth = ratio;
+      ctx.beginPath();
+      ctx.moveTo(x0, y0);
+      ctx.lineTo(x1, y1);
+      ctx.stroke();
+      ctx.setLineDash([]);
+    };
+    if (limit) {
+      const y = u.valToPos(limit, 'y', true);
+      if (y >= bbox.top && y <= bbox.top + bbox.height) line(bbox.left, y, bbox.left + bbox.width, y, '#d55e00', [6, 4]);
+    }
+    const x = u.valToPos(this.owner.time, 'x', true);
+    if (x >= bbox.left && x <= bbox.left + bbox.width) line(x, bbox.top, x, bbox.top + bbox.height, ink, [2, 3]);
+  }
+
+  // The numbers at the time of the animation, where the pointer asks for no others.
+  tell() {
+    const t = this.chart.data[0];
+    if (this.chart.cursor.idx != null || t.length === 0) return;
+    let low = 0, high = t.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (t[middle] <= this.owner.time) low = middle; else high = middle - 1;
+    }
+    this.chart.setLegend({ idx: low }, false);
+  }
+
+  resize() {
+    const width = this.element.querySelector('.chart').clientWidth;
+    if (this.chart && width > 0 && width !== this.chart.width) this.chart.setSize({ width, height: this.chart.height });
+  }
+}
+
+// Ends of an axis: a limit is in sight where values come near it; what never changes stands in the middle.
+function range(low, high, limit) {
+  if (low == null) return [0, 1];
+  if (limit && high > 0.05 * limit) high = Math.max(high, limit);
+  if (limit) low = Math.min(low, 0);
+  const room = high > low ? 0.06 * (high - low) : Math.max(1e-12, 0.1 * Math.abs(low));
+  return [low - room, high + room];
+}
+
+function label_of(v, ticks, log) {
+  if (v === 0) return '0';
+  if (log) return Math.log10(Math.abs(v)) % 1 === 0 || ticks.length < 12 ? v.toExponential(0).replace('e+', 'e') : '';
+  const step = ticks.length > 1 ? Math.abs(ticks[1] - ticks[0]) : Math.abs(v);
+  const most = Math.max(...ticks.map(Math.abs));
+  if (most >= 1e5 || most < 1e-3) return v.toExponential(Math.max(0, Math.min(6, Math.ceil(Math.log10(Math.abs(v) / step)))));
+  let digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  while (digits < 9 && Math.abs(step * 10 ** digits - Math.round(step * 10 ** digits)) > 1e-6) ++digits;
+  return v.toFixed(digits);
+}
+
+export class Charts {
+  constructor(element, runs, groups, seek) {
+    Object.assign(this, { element, runs, seek, time: 0, dark: false, differences: false, reference: 0, under: null });
+    this.panels = groups.map(group => new Panel(this, group));
+    element.append(...this.panels.map(p => p.element));
+    this.watch = new IntersectionObserver(entries => {
+      for (const entry of entries) {
+        const panel = this.panels.find(p => p.element === entry.target);
+        panel.seen = entry.isIntersecting || panel.seen;
+        if (entry.isIntersecting && !panel.chart) panel.draw();
+      }
+    }, { rootMargin: '400px' });
+    for (const panel of this.panels) this.watch.observe(panel.element);
+    new ResizeObserver(() => this.panels.forEach(p => p.resize())).observe(element);
+  }
+  redraw() { for (const panel of this.panels) if (panel.chart) panel.draw(); }
+  all() { for (const panel of this.panels) if (!panel.chart) panel.draw(); }
+  at(time) {
+    this.time = time;
+    for (const panel of this.panels) {
+      if (!panel.chart || panel.element.hidden) continue;
+      panel.chart.redraw(false, false);
+      panel.tell();
+    }
+  }
+  filter(text) {
+    const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+    for (const panel of this.panels) {
+      const { group } = panel;
+      const all = [group.title, group.unit, ...group.series.map(s => s.name)].join(' ').toLowerCase();
+      panel.element.hidden = !words.every(w => all.includes(w));
+    }
+  }
+}

@@ -1,0 +1,161 @@
+// What the program wrote into the page, as arrays, and what is computed of it.
+
+const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
+
+// Puts arrays of numbers in the place of their indices.
+export function unpack(run) {
+  const doubles = index => new Float64Array(bytes(run.arrays[index]));
+  for (const column of run.table.columns) {
+    column.data = doubles(column.data);
+    if (column.samples != null) column.samples = doubles(column.samples);
+  }
+  const { animation } = run;
+  animation.times = doubles(animation.times);
+  animation.numbers = new Float32Array(bytes(run.arrays[animation.numbers]));
+  for (const series of run.validity) series.data = doubles(series.data);
+  run.time = run.table.columns[0].data;
+  delete run.arrays;
+  return run;
+}
+
+export function readData() {
+  const data = JSON.parse(document.getElementById('withy-data').textContent);
+  data.runs.forEach((run, index) => { unpack(run).index = index; });
+  nameRuns(data.runs);
+  return data;
+}
+
+// By what tells them apart: formulation, integrator, what was set, scene; or their number.
+function nameRuns(runs) {
+  const features = [
+    run => run.run.formulation,
+    run => run.run.integrator,
+    run => (run.run.set ?? []).join(' '),
+    run => run.title,
+  ];
+  const told = features.filter(f => new Set(runs.map(f)).size > 1);
+  for (const run of runs) run.label = (told.length ? told : [features[0]]).map(f => f(run)).filter(Boolean).join(', ') || 'as the scene';
+  const seen = new Map();
+  for (const run of runs) {
+    const n = (seen.get(run.label) ?? 0) + 1;
+    seen.set(run.label, n);
+    if (n > 1) run.label += ` (${n})`;
+  }
+}
+
+const degrees = 180 / Math.PI;
+
+// Of whole turns an angle may be off by between two moments, none is left.
+function unwrapped(angles) {
+  const out = angles.slice();
+  for (let i = 1; i < out.length; ++i) out[i] -= 360 * Math.round((out[i] - out[i - 1]) / 360);
+  return out;
+}
+
+// Intrinsic rotations about x, y, z [deg]: R = Rx(a) Ry(b) Rz(c).
+function attitude(w, x, y, z) {
+  const a = new Float64Array(w.length), b = a.slice(), c = a.slice();
+  for (let i = 0; i < w.length; ++i) {
+    const n = Math.hypot(w[i], x[i], y[i], z[i]) || 1;
+    const [W, X, Y, Z] = [w[i] / n, x[i] / n, y[i] / n, z[i] / n];
+    a[i] = degrees * Math.atan2(2 * (W * X - Y * Z), 1 - 2 * (X * X + Y * Y));
+    b[i] = degrees * Math.asin(Math.max(-1, Math.min(1, 2 * (X * Z + W * Y))));
+    c[i] = degrees * Math.atan2(2 * (W * Z - X * Y), 1 - 2 * (Y * Y + Z * Z));
+  }
+  return [unwrapped(a), b, unwrapped(c)];
+}
+
+// Numbers of several columns at the same times.
+function together(run, names) {
+  const columns = names.map(name => run.table.columns.find(c => c.name === name));
+  if (columns.some(c => !c)) return null;
+  return columns[0].samples
+    ? { t: run.animation.times, values: columns.map(c => c.samples) }
+    : { t: run.time, values: columns.map(c => c.data) };
+}
+
+// The quantities of a run: {group, name, unit, t, y, limit?}, groups in the order of the page.
+export function quantities(run) {
+  const out = [];
+  const add = (group, name, unit, t, y, more = {}) => out.push({ group, name, unit, t, y, ...more });
+  const bodies = new Map();
+  for (const column of run.table.columns.slice(1)) {
+    const { name, unit, data } = column;
+    const last = name.slice(name.lastIndexOf('.') + 1);
+    const quaternion = /^(.*)\.q([wxyz])$/.exec(name);
+    if (quaternion) {
+      if (quaternion[2] !== 'w') continue;
+      const base = quaternion[1];
+      const parts = together(run, ['qw', 'qx', 'qy', 'qz'].map(q => `${base}.${q}`));
+      if (!parts) continue;
+      attitude(...parts.values).forEach((y, i) => add(`Attitude of ${base}: turns about x, y, z in this order`, `${base}.${'xyz'[i]}`, 'deg', parts.t, y));
+    } else if (name.endsWith('_energy') || name === 'work') add('Energies', name, unit, run.time, data);
+    else if (/^(linear|angular)_momentum\./.test(name)) add(name.startsWith('linear') ? 'Linear momentum' : 'Angular momentum', name, unit, run.time, data);
+    else if (/\.tip\.deflection_[xyz]$/.test(name)) add('Deflection of tips', name, unit, run.time, data);
+    else if (/\.tip\.[xyz]$/.test(name)) add('Position of tips', name, unit, run.time, data);
+    else if (/\.motion_effort(\.\d+)?$/.test(name)) add(`Effort of motions, ${unit}`, name, unit, run.time, data);
+    else if (/\.rate(\.\d+)?$/.test(name)) add(unit === 'rad/s' ? 'Rates of hinges' : unit === 'm/s' ? 'Speeds of hinges' : 'Rates of modal coordinates', name, unit && unit !== '1' ? unit : '1/s', run.time, data);
+    else if (unit === 'rad') add('Angles of hinges', name, 'deg', run.time, data.map(v => v * degrees));
+    else if (unit === '' || unit === '1') add('Modal coordinates', name, '1', run.time, data);
+    else if (name.includes('.')) add(`${name.slice(0, -last.length - 1)}, ${unit}`, name, unit, run.time, data);
+    else add(unit === 'm' ? 'Travel of hinges' : `${name}, ${unit}`, name, unit, run.time, data);
+  }
+  const energy = together(run, ['kinetic_energy', 'potential_energy', 'work']);
+  if (energy) {
+    const [T, V, W] = energy.values;
+    const drift = T.map((v, i) => v + V[i] - W[i] - (T[0] + V[0] - W[0]));
+    add('Drift of energy: kinetic + potential − work, less its first value', 'drift', 'J', energy.t, drift);
+  }
+  for (const series of run.validity)
+    add('Validity: each over its limit, which is 1', series.name, '1', run.animation.times, series.data.map(v => v / series.limit), { limit: 1 });
+  return out;
+}
+
+// Groups over all runs: [{title, unit, series: [{name, of: [{run, t, y}]}]}].
+const first = ['Angles of hinges', 'Travel of hinges', 'Attitude', 'Deflection of tips', 'Validity', 'Energies', 'Drift'];
+const last = ['Position of tips', 'Modal coordinates', 'Rates of modal', 'Rates of hinges', 'Speeds of hinges', 'Linear momentum', 'Angular momentum'];
+const rank = title => {
+  const a = first.findIndex(f => title.startsWith(f));
+  if (a >= 0) return a;
+  const b = last.findIndex(f => title.startsWith(f));
+  return b >= 0 ? 100 + b : 50;
+};
+export function grouped(runs) {
+  const groups = new Map();
+  for (const run of runs) {
+    for (const q of quantities(run)) {
+      const group = groups.get(q.group) ?? { title: q.group, unit: q.unit, limit: q.limit, series: new Map() };
+      groups.set(q.group, group);
+      const series = group.series.get(q.name) ?? { name: q.name, of: [] };
+      group.series.set(q.name, series);
+      series.of.push({ run, t: q.t, y: q.y });
+    }
+  }
+  const all = [...groups.values()];
+  for (const group of all) {
+    group.series = [...group.series.values()];
+    const flat = s => s.of.every(({ y }) => y.every(v => v === y[0]));
+    for (const s of group.series) s.flat = flat(s);
+  }
+  return all.sort((a, b) => rank(a.title) - rank(b.title));
+}
+
+// y of a run at the times of another, between its own linearly; nothing outside.
+export function resampled(t, y, at) {
+  const out = new Array(at.length);
+  let i = 0;
+  for (let k = 0; k < at.length; ++k) {
+    while (i + 1 < t.length && t[i + 1] < at[k]) ++i;
+    if (t.length === 0 || at[k] < t[0] || at[k] > t[t.length - 1]) out[k] = null;
+    else if (t[i] === at[k] || i + 1 >= t.length) out[k] = y[i];
+    else if (t[i + 1] === at[k]) out[k] = y[i + 1];
+    else out[k] = y[i] + (y[i + 1] - y[i]) * (at[k] - t[i]) / (t[i + 1] - t[i]);
+  }
+  return out;
+}
+
+// Okabe and Ito's colours, told apart by those who do not see colours too; by theme.
+export const palette = dark => dark
+  ? ['#56b4e9', '#e69f00', '#2fc79a', '#e58fc0', '#f0e442', '#ff7f3f', '#b8c4d6', '#7fa8ff']
+  : ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#b8860b', '#56b4e9', '#444444', '#7f3c8d'];
+export const dashes = [[], [8, 4], [2, 3], [10, 4, 2, 4], [4, 4], [14, 5]];

@@ -1,0 +1,140 @@
+// Where bodies are at a time: the recorded moments, in between, and with deformation drawn larger than it is.
+import { Quaternion, Vector3 } from 'three';
+
+class Pose {
+  p = new Vector3();
+  q = new Quaternion();
+  read(a, at) {
+    this.p.set(a[at], a[at + 1], a[at + 2]);
+    this.q.set(a[at + 4], a[at + 5], a[at + 6], a[at + 3]);
+    return this;
+  }
+  copy(o) {
+    this.p.copy(o.p);
+    this.q.copy(o.q);
+    return this;
+  }
+  // this = this · o
+  times(o) {
+    this.p.add(scratch.copy(o.p).applyQuaternion(this.q));
+    this.q.multiply(o.q);
+    return this;
+  }
+  invert() {
+    this.q.invert();
+    this.p.applyQuaternion(this.q).negate();
+    return this;
+  }
+}
+const scratch = new Vector3();
+const identity = new Quaternion();
+
+function mixed(pose, a, i, j, w, other) {
+  pose.read(a, i);
+  if (w === 0) return pose;
+  other.read(a, j);
+  pose.p.lerp(other.p, w);
+  pose.q.slerp(other.q, w);
+  return pose;
+}
+
+// A rotation by `s` times the angle of q.
+function scaled(q, s) {
+  if (q.w < 0) q.set(-q.x, -q.y, -q.z, -q.w);
+  const sin = Math.hypot(q.x, q.y, q.z);
+  if (sin < 1e-12) return q.copy(identity);
+  const half = Math.min(Math.PI, Math.atan2(sin, q.w) * s), f = Math.sin(half) / sin;
+  return q.set(q.x * f, q.y * f, q.z * f, Math.cos(half));
+}
+
+export class Motion {
+  constructor(animation) {
+    this.times = animation.times;
+    this.numbers = animation.numbers;
+    this.size = animation.size;
+    let at = 0;
+    this.bodies = animation.parts.map(part => {
+      const body = { ...part, at, pose: new Pose(), recorded: new Pose(), count: part.points.length / 3 };
+      at += 7;
+      body.displacements = new Float32Array(part.points.length);
+      body.pointsAt = at;
+      if (part.flexible) at += part.points.length;
+      body.hung = part.hung.map((numbers, i) => {
+        const hung = { child: part.children[i], rest: new Pose().read(numbers, 0), now: new Pose(), drawn: new Pose(), at };
+        if (part.flexible) at += 7;
+        return hung;
+      });
+      return body;
+    });
+    if (at !== this.size) throw new Error('the animation does not have the numbers that it says');
+  }
+  get start() { return this.times[0] ?? 0; }
+  get end() { return this.times[this.times.length - 1] ?? 0; }
+
+  // The moment at or before t.
+  index(t) {
+    let low = 0, high = this.times.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.times[middle] <= t) low = middle; else high = middle - 1;
+    }
+    return low;
+  }
+
+  // Brings every body's pose and displacements to time t. At scale 1 they are those computed; at others what hangs on a
+  // flexible body goes along with what it hangs on.
+  go(t, scale) {
+    const i = this.index(t), j = Math.min(i + 1, this.times.length - 1);
+    const span = this.times[j] - this.times[i];
+    const w = span > 0 ? Math.min(1, Math.max(0, (t - this.times[i]) / span)) : 0;
+    const a = this.numbers, I = i * this.size, J = j * this.size;
+    const other = new Pose(), relative = new Pose();
+    for (const body of this.bodies) {
+      mixed(body.recorded, a, I + body.at, J + body.at, w, other);
+      if (body.flexible) {
+        for (let k = 0; k < body.displacements.length; ++k)
+          body.displacements[k] = a[I + body.pointsAt + k] * (1 - w) + a[J + body.pointsAt + k] * w;
+        for (const hung of body.hung) {
+          mixed(hung.now, a, I + hung.at, J + hung.at, w, other);
+          hung.drawn.p.copy(hung.now.p).sub(hung.rest.p).multiplyScalar(scale).add(hung.rest.p);
+          hung.drawn.q.copy(hung.rest.q).invert().multiply(hung.now.q);
+          scaled(hung.drawn.q, scale);
+          hung.drawn.q.premultiply(hung.rest.q);
+        }
+      }
+    }
+    this.bodies.forEach((body, index) => {
+      body.pose.copy(body.recorded);
+      const parent = this.bodies[body.parent];
+      if (scale === 1 || !parent) return;
+      // X_WC = X_WP · X_PC, with the deformed section's pose A in X_PC replaced by the one drawn: D · A⁻¹ · X_PC.
+      relative.copy(parent.recorded).invert().times(body.recorded);
+      const hung = parent.flexible ? parent.hung.find(h => h.child === index) : null;
+      if (hung) {
+        const inverse = new Pose().copy(hung.now).invert();
+        relative.copy(new Pose().copy(hung.drawn).times(inverse).times(new Pose().copy(relative)));
+      }
+      body.pose.copy(parent.pose).times(relative);
+    });
+  }
+
+  // A point k of a body in the world, drawn at `scale`.
+  point(body, k, scale, out) {
+    const X = body.points, u = body.displacements;
+    out.set(X[3 * k] + scale * u[3 * k], X[3 * k + 1] + scale * u[3 * k + 1], X[3 * k + 2] + scale * u[3 * k + 2]);
+    return out.applyQuaternion(body.pose.q).add(body.pose.p);
+  }
+
+  // The outermost point of a body at a recorded moment, as computed: for trails and the room the motion takes.
+  end_of(body, i, out) {
+    const a = this.numbers, I = i * this.size, k = body.count - 1;
+    const pose = new Pose().read(a, I + body.at);
+    if (body.kind === 'strip' || body.kind === 'line' || (body.kind === 'points' && k >= 0)) {
+      const row = body.kind === 'strip' ? k - 1 : k;
+      for (let c = 0; c < 3; ++c) out.setComponent(c, body.points[3 * row + c] + a[I + body.pointsAt + 3 * row + c]);
+    } else if (body.tip) out.fromArray(body.tip);
+    else if (body.box) out.fromArray(body.box.pose);
+    else out.set(0, 0, 0);
+    return out.applyQuaternion(pose.q).add(pose.p);
+  }
+}

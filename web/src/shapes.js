@@ -1,0 +1,194 @@
+// The bodies of a run as meshes, brought to where they are at a time.
+import {
+  BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, DoubleSide, Group, InstancedMesh, Line, LineBasicMaterial,
+  LineDashedMaterial, LineSegments, Matrix4, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
+} from 'three';
+
+const around = 12; // points around a tube
+const a = new Vector3(), b = new Vector3(), c = new Vector3(), normal = new Vector3(), side = new Vector3();
+
+function geometry_of(count, index) {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * count), 3));
+  if (index) geometry.setIndex(index);
+  return geometry;
+}
+
+// Quadrilaterals between rows of points; `closed` where a row is a ring.
+function grid(rows, columns, closed) {
+  const index = [];
+  for (let r = 0; r + 1 < rows; ++r) {
+    for (let k = 0; k < (closed ? columns : columns - 1); ++k) {
+      const n = (k + 1) % columns, p = r * columns, q = p + columns;
+      index.push(p + k, q + k, p + n, p + n, q + k, q + n);
+    }
+  }
+  return index;
+}
+
+export class Shapes {
+  // size: of the whole system [m]; colours: of flexible and rigid bodies
+  constructor(motion, size, colours, faint) {
+    this.motion = motion;
+    this.size = size;
+    this.group = new Group();
+    const solid = (color, more = {}) => new MeshStandardMaterial({ color, roughness: 0.55, metalness: 0.05, transparent: faint, opacity: faint ? 0.55 : 1, ...more });
+    this.flexible = solid(colours.flexible, { side: DoubleSide });
+    this.rigid = solid(colours.rigid, { transparent: true, opacity: faint ? 0.45 : 0.8 });
+    this.joint = solid(colours.joint);
+    this.ghost = new LineDashedMaterial({ color: colours.ghost, dashSize: size * 0.02, gapSize: size * 0.015 });
+    this.radius = size * 0.011;
+    this.items = motion.bodies.map(body => this.make(body));
+    const joints = motion.bodies.filter(body => body.moves && body.parent >= 0);
+    this.joints = new InstancedMesh(new SphereGeometry(this.radius * 1.35, 16, 12), this.joint, joints.length);
+    this.joints.frustumCulled = false;
+    this.jointed = joints;
+    this.group.add(this.joints);
+    // From where a hinge is on the parent to the child: what a sliding hinge has drawn out.
+    this.links = new LineSegments(geometry_of(2 * joints.length), new LineBasicMaterial({ color: colours.joint }));
+    this.links.frustumCulled = false;
+    this.group.add(this.links);
+    this.axes = this.frames(motion.bodies.length);
+    this.group.add(this.axes);
+  }
+
+  make(body) {
+    const item = { body, group: new Group() };
+    if (body.kind === 'line') {
+      item.tube = new Mesh(geometry_of(body.count * around + 2, grid(body.count, around, true)), this.flexible);
+      item.tube.frustumCulled = false;
+      this.group.add(item.tube);
+    } else if (body.kind === 'strip') {
+      item.surface = new Mesh(geometry_of(body.count, grid(body.count / body.columns, body.columns, false)), this.flexible);
+      item.surface.frustumCulled = false;
+      this.group.add(item.surface);
+    } else if (body.kind === 'points') {
+      item.dots = new InstancedMesh(new SphereGeometry(this.radius * 0.8, 10, 8), this.flexible, body.count);
+      item.dots.frustumCulled = false;
+      this.group.add(item.dots);
+    } else this.make_box(body, item);
+    if (body.flexible && body.kind !== 'points') {
+      item.ghost = new Line(new BufferGeometry().setFromPoints(this.middle(body)), this.ghost);
+      item.ghost.computeLineDistances();
+      item.group.add(item.ghost);
+    }
+    this.group.add(item.group);
+    return item;
+  }
+
+  // The line in the middle of a body at rest.
+  middle(body) {
+    const columns = body.columns ?? 1, out = [];
+    for (let k = (columns - 1) / 2; k < body.count; k += columns) out.push(new Vector3().fromArray(body.points, 3 * k));
+    return out;
+  }
+
+  // The box of a rigid body's mass and inertia, and rods to where its children hang.
+  make_box(body, item) {
+    const least = this.radius * 1.6;
+    if (body.box) {
+      const [x, y, z] = body.box.edges.map(e => Math.max(e, least));
+      const box = new Mesh(new BoxGeometry(x, y, z), this.rigid);
+      const p = body.box.pose;
+      box.position.set(p[0], p[1], p[2]);
+      box.quaternion.set(p[4], p[5], p[6], p[3]);
+      item.group.add(box);
+    }
+    const from = body.box ? new Vector3().fromArray(body.box.pose) : new Vector3();
+    const ends = [new Vector3(), ...body.hung.map(h => h.rest.p)];
+    if (body.tip) ends.push(new Vector3().fromArray(body.tip));
+    for (const end of ends) {
+      const length = end.distanceTo(from);
+      if (length < this.radius) continue;
+      const rod = new Mesh(new CylinderGeometry(this.radius * 0.5, this.radius * 0.5, length, 10), this.rigid);
+      rod.position.copy(from).add(end).multiplyScalar(0.5);
+      rod.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), a.copy(end).sub(from).normalize());
+      item.group.add(rod);
+    }
+  }
+
+  // Three short lines for each body: x red, y green, z blue.
+  frames(count) {
+    const geometry = geometry_of(6 * count);
+    const colors = new Float32Array(18 * count);
+    const axis = [new Color('#d55e00'), new Color('#009e73'), new Color('#0072b2')];
+    for (let i = 0; i < 6 * count; ++i) axis[(i >> 1) % 3].toArray(colors, 3 * i);
+    geometry.setAttribute('color', new BufferAttribute(colors, 3));
+    const lines = new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true, depthTest: false }));
+    lines.frustumCulled = false;
+    return lines;
+  }
+
+  update(scale, show) {
+    for (const item of this.items) {
+      const { body } = item;
+      item.group.position.copy(body.pose.p);
+      item.group.quaternion.copy(body.pose.q);
+      if (item.ghost) item.ghost.visible = show.ghosts;
+      if (item.tube) this.bend(item, scale);
+      if (item.surface) this.warp(item, scale);
+      if (item.dots) this.scatter(item, scale);
+    }
+    const matrix = new Matrix4();
+    this.jointed.forEach((body, i) => {
+      const parent = this.motion.bodies[body.parent], hung = parent.hung.find(h => h.child === this.motion.bodies.indexOf(body));
+      a.copy(parent.flexible ? hung.drawn.p : hung.rest.p).applyQuaternion(parent.pose.q).add(parent.pose.p);
+      this.joints.setMatrixAt(i, matrix.makeTranslation(a));
+      this.links.geometry.attributes.position.setXYZ(2 * i, a.x, a.y, a.z).setXYZ(2 * i + 1, body.pose.p.x, body.pose.p.y, body.pose.p.z);
+    });
+    this.links.geometry.attributes.position.needsUpdate = true;
+    this.joints.instanceMatrix.needsUpdate = true;
+    this.axes.visible = show.axes;
+    if (show.axes) this.turn_axes();
+  }
+
+  // A tube around the deformed middle line.
+  bend({ body, tube }, scale) {
+    const position = tube.geometry.attributes.position, n = body.count;
+    const radius = this.radius;
+    side.set(0, 0, 1).applyQuaternion(body.pose.q);
+    for (let k = 0; k < n; ++k) {
+      this.motion.point(body, Math.max(0, k - 1), scale, a);
+      this.motion.point(body, Math.min(n - 1, k + 1), scale, b);
+      this.motion.point(body, k, scale, c);
+      b.sub(a).normalize();
+      side.addScaledVector(b, -side.dot(b)).normalize();
+      normal.crossVectors(side, b);
+      for (let j = 0; j < around; ++j) {
+        const angle = 2 * Math.PI * j / around, u = radius * Math.cos(angle), v = radius * Math.sin(angle);
+        position.setXYZ(k * around + j, c.x + u * side.x + v * normal.x, c.y + u * side.y + v * normal.y, c.z + u * side.z + v * normal.z);
+      }
+    }
+    position.needsUpdate = true;
+    tube.geometry.computeVertexNormals();
+  }
+
+  warp({ body, surface }, scale) {
+    const position = surface.geometry.attributes.position;
+    for (let k = 0; k < body.count; ++k) {
+      this.motion.point(body, k, scale, a);
+      position.setXYZ(k, a.x, a.y, a.z);
+    }
+    position.needsUpdate = true;
+    surface.geometry.computeVertexNormals();
+  }
+
+  scatter({ body, dots }, scale) {
+    const matrix = new Matrix4();
+    for (let k = 0; k < body.count; ++k) dots.setMatrixAt(k, matrix.makeTranslation(this.motion.point(body, k, scale, a)));
+    dots.instanceMatrix.needsUpdate = true;
+  }
+
+  turn_axes() {
+    const position = this.axes.geometry.attributes.position, q = new Quaternion(), length = this.size * 0.07;
+    this.motion.bodies.forEach((body, i) => {
+      q.copy(body.pose.q);
+      for (let k = 0; k < 3; ++k) {
+        a.set(0, 0, 0).setComponent(k, length).applyQuaternion(q).add(body.pose.p);
+        position.setXYZ(6 * i + 2 * k, body.pose.p.x, body.pose.p.y, body.pose.p.z);
+        position.setXYZ(6 * i + 2 * k + 1, a.x, a.y, a.z);
+      }
+    });
+    position.needsUpdate = true;
+  }
+}

@@ -1,0 +1,69 @@
+// What is said in words: the certificate, the numbers of each run, its scene, and what it was made with.
+
+const element = (name, text, attributes = {}) => {
+  const e = document.createElement(name);
+  if (text != null) e.textContent = text;
+  for (const [key, value] of Object.entries(attributes)) e.setAttribute(key, value);
+  return e;
+};
+export { element };
+
+// "modelled    what it is": the program's two columns, where a line without the first belongs to the one before.
+function certificate_rows(text) {
+  const rows = [];
+  for (const line of text.split('\n')) {
+    if (!line.trim() || line === 'certificate') continue;
+    const name = line.slice(0, 24).trim(), rest = line.slice(24).trim();
+    if (name) rows.push([name, [rest]]); else rows[rows.length - 1]?.[1].push(rest);
+  }
+  return rows;
+}
+
+function table_of(rows) {
+  const table = element('table');
+  for (const [name, values] of rows) {
+    const row = element('tr'), cell = element('td');
+    for (const value of [values].flat()) cell.append(element('div', value));
+    row.append(element('th', name, { scope: 'row' }), cell);
+    table.append(row);
+  }
+  return table;
+}
+
+const plain = v => typeof v === 'number' ? (v !== 0 && (Math.abs(v) < 1e-3 || Math.abs(v) >= 1e6) ? v.toExponential(2) : `${+v.toPrecision(6)}`) : `${v}`;
+
+export function write_words(holder, runs) {
+  for (const run of runs) {
+    const r = run.run, part = element('article');
+    part.append(element('h2', runs.length > 1 ? run.label : 'Certificate'));
+    if (runs.length > 1) part.append(element('p', run.outcome, { class: `state ${r.status}` }));
+    if (r.message) part.append(element('p', r.message, { class: 'message' }));
+    part.append(table_of(certificate_rows(run.certificate)));
+    const rows = [['integrator', r.integrator], ['energy drift', plain(r.energy_drift)],
+      ['steps', `${r.steps} (${r.rejected_steps} rejected), ${r.evaluations} evaluations`], ['CPU time', `${plain(r.cpu_seconds)} s`]];
+    for (const [body, d] of Object.entries(r.peaks?.tip_deflection ?? {}))
+      rows.push([`peak deflection ${body}`, `y ${plain(d.y)} m, z ${plain(d.z)} m`]);
+    for (const e of r.events ?? []) rows.push([`event ${e.name}`, `${plain(e.time)} s, ${e.direction}wards`]);
+    const more = element('details');
+    more.append(element('summary', 'Numbers of the run'), table_of(rows));
+    part.append(more);
+    holder.append(part);
+  }
+}
+
+export function write_sources(holder, runs) {
+  holder.append(element('h2', 'Scene and versions'));
+  for (const run of runs) {
+    const r = run.run, part = element('details');
+    part.append(element('summary', `${runs.length > 1 ? `${run.label}: ` : ''}${r.scene}`));
+    const program = r.program ?? {};
+    const rows = [['formulation', r.formulation], ['integrator', r.integrator]];
+    if (r.set?.length) rows.push(['set', r.set]);
+    rows.push(['program', `withy ${program.version ?? ''} ${program.git ?? ''}`], ['scene, SHA-256', r.scene_sha256], ['fingerprint', r.fingerprint]);
+    if (r.files?.length) rows.push(['files', r.files.map(f => `${f.path}  ${f.sha256}`)]);
+    if (r.plugins?.length) rows.push(['plugins', r.plugins.map(p => `${p.id ?? ''}  ${p.version ?? ''}`)]);
+    rows.push(['table', `${run.table.rows} rows, ${run.table.columns.length} columns` + (run.table.stride > 1 ? `; drawn here by the least and the greatest of each ${run.table.stride} rows` : '')]);
+    part.append(table_of(rows.filter(([, v]) => v)), element('pre', run.scene, { class: 'scene' }));
+    holder.append(part);
+  }
+}

@@ -1,0 +1,135 @@
+// The page in a browser: it shows what the program computed, asks for nothing, and its controls work.
+//   node page_test.mjs WITHY SCENES CHROMIUM
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { chromium } from 'playwright-core';
+import { unpack } from '../src/data.js';
+import { Motion } from '../src/motion.js';
+
+const [withy, scenes, browser_path] = process.argv.slice(2);
+const folder = mkdtempSync(join(tmpdir(), 'withy-page-'));
+const run = (...words) => execFileSync(withy, words, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] });
+const simulate = (scene, out, ...more) => run('run', join(scenes, scene), '--out', join(folder, out), ...more);
+const data_of = file => JSON.parse(/<script type="application\/json" id="withy-data">([^]*?)<\/script>/.exec(readFileSync(file, 'utf8'))[1]);
+
+// Where deformation is drawn otherwise than it is, bodies hang on each other by the poses of hinges and deformed
+// sections; as near to 1 as can be, that must give what was computed.
+function check_motion(file) {
+  for (const run of data_of(file).runs) {
+    const motion = new Motion(unpack(run).animation);
+    assert.ok(motion.end > motion.start);
+    for (const i of [1, motion.times.length >> 1, motion.times.length - 1]) {
+      motion.go(motion.times[i], 1);
+      const computed = motion.bodies.map(b => b.pose.p.clone());
+      motion.go(motion.times[i], 1 + 1e-9);
+      motion.bodies.forEach((b, k) => assert.ok(b.pose.p.distanceTo(computed[k]) < 1e-4 * (1 + computed[k].length()), `${b.name} at ${motion.times[i]}`));
+      motion.go(motion.times[i], 30);
+    }
+  }
+}
+
+async function opened(browser, file, hash, troubles) {
+  const page = await browser.newPage({ viewport: { width: 1200, height: 900 } });
+  page.on('console', m => troubles.push(`console: ${m.text()}`));
+  page.on('pageerror', e => troubles.push(`error: ${e.stack}`));
+  page.on('request', r => { if (!/^(file|data):/.test(r.url())) troubles.push(`request: ${r.url()}`); });
+  await page.goto(`file://${file}#${hash}`);
+  await page.waitForSelector('body[data-ready]', { timeout: 60000 });
+  return page;
+}
+const picture = page => page.evaluate(() => document.querySelector('#view canvas').toDataURL());
+const text = (page, selector) => page.textContent(selector);
+
+async function check_controls(browser, troubles) {
+  const page = await opened(browser, join(folder, 'arm/report.html'), 't=1&theme=light', troubles);
+  const begin = await picture(page);
+  assert.match(await text(page, '#words'), /Second-order kinematics/);
+  assert.match(await text(page, '#sources'), /Padilla and von Flotow/, 'the scene stands on the page, comments and all');
+  assert.equal(await text(page, '#clock'), '1.000 s');
+  await page.focus('#view');
+  await page.keyboard.press('End');
+  assert.equal(await text(page, '#clock'), '3.800 s');
+  const end = await picture(page);
+  assert.notEqual(end, begin, 'the arm is elsewhere');
+  await page.keyboard.press('+');
+  assert.equal(await text(page, '#scale-value'), '1.3');
+  await page.keyboard.press('-');
+  await page.keyboard.press('Home');
+  await page.keyboard.press('Space');
+  await page.waitForFunction(() => parseFloat(document.getElementById('clock').textContent) > 0.05);
+  await page.keyboard.press('Space');
+  const stopped = await text(page, '#clock');
+  await page.waitForTimeout(200);
+  assert.equal(await text(page, '#clock'), stopped, 'it pauses');
+  await page.click('[data-view=z]');
+  await page.fill('#filter', 'energy');
+  const shown = await page.$$eval('figure', all => all.filter(f => !f.hidden).map(f => f.querySelector('.name').textContent));
+  assert.ok(shown.length >= 2 && shown.every(name => /energ/i.test(name)), shown.join());
+  await page.fill('#filter', '');
+  await page.click('figure .log');
+  assert.equal(await page.getAttribute('figure .log', 'aria-pressed'), 'true');
+  await page.click('#theme');
+  assert.equal(await page.getAttribute('html', 'data-theme'), 'dark');
+  await page.keyboard.press('?');
+  assert.ok(await page.isVisible('#keys'));
+  await page.keyboard.press('Escape');
+  const sheet = await page.pdf({ printBackground: true });
+  assert.ok(sheet.length > 50000, 'it prints');
+  await page.close();
+}
+
+// Every column is on the page: attitudes as angles.
+async function check_columns(browser, troubles) {
+  const page = await opened(browser, join(folder, 'craft/report.html'), 't=2', troubles);
+  const names = data_of(join(folder, 'craft/report.html')).runs[0].table.columns.map(c => c.name).slice(1);
+  await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
+  const all = await page.$$eval('figure', f => f.map(e => e.textContent).join(' '));
+  for (const name of names) {
+    if (/\.q[wxyz]$/.test(name)) assert.ok(!all.includes(name));
+    else assert.ok(all.includes(name), name);
+  }
+  assert.match(all, /Attitude of float/);
+  await page.close();
+}
+
+async function check_several(browser, troubles) {
+  const file = join(folder, 'both.html');
+  run('report', join(folder, 'arm'), join(folder, 'arm-ruthless'), '--reference', '1', '--out', file);
+  const page = await opened(browser, file, 't=1.9&theme=light', troubles);
+  const both = await picture(page);
+  assert.deepEqual(await page.$$eval('#reference option', o => o.map(e => e.textContent)), ['quadratic', 'ruthless']);
+  assert.equal(await page.inputValue('#reference'), '0');
+  await page.check('#differences');
+  assert.match(await text(page, 'figure'), /ruthless\) − reference/);
+  assert.doesNotMatch(await text(page, 'figure'), /quadratic\) − reference/);
+  await page.uncheck('#runs label:nth-child(2) input');
+  assert.notEqual(await picture(page), both, 'a run that is taken away is not drawn');
+  await page.close();
+}
+
+let browser;
+try {
+  simulate('two-link-slew.yaml', 'arm');
+  simulate('two-link-slew.yaml', 'arm-ruthless', '--formulation', 'ruthless');
+  simulate('spacecraft.yaml', 'craft', '--set', 'time.end=4');
+  simulate('solar-panel.yaml', 'panel');
+  for (const name of ['arm', 'craft', 'panel']) check_motion(join(folder, name, 'report.html'));
+  const troubles = [];
+  browser = await chromium.launch({
+    executablePath: browser_path,
+    args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
+      '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  });
+  await check_controls(browser, troubles);
+  await check_columns(browser, troubles);
+  await check_several(browser, troubles);
+  await (await opened(browser, join(folder, 'panel/report.html'), 'theme=dark', troubles)).close();
+  assert.deepEqual(troubles, []);
+  console.log('the page shows, moves, compares and asks for nothing');
+} finally {
+  await browser?.close();
+  rmSync(folder, { recursive: true });
+}
