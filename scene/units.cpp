@@ -239,22 +239,31 @@ std::optional<double> plain_number(std::string_view text) {
   return value;
 }
 
-QuantityReading read_quantity(std::string_view text, std::string_view si_unit) {
+AnyQuantity read_any_quantity(std::string_view text) {
   double number = 0;
   const std::size_t length = leading_number(text, number);
   if (length == 0) {
-    if (!looks_like_number(text)) return {{}, ""};
-    return {{}, "numbers are decimal, without leading zeros, ':' or '_', and within the range of doubles"};
+    if (!looks_like_number(text)) return {{}, {}, ""};
+    return {{}, {}, "numbers are decimal, without leading zeros, ':' or '_', and within the range of doubles"};
   }
   std::string_view rest = text.substr(length);
   while (rest.starts_with(' ')) rest.remove_prefix(1);
-  if (rest.empty()) return {{}, "a number in quotes is text; write it without quotes or with its unit"};
+  if (rest.empty()) return {{}, {}, "a number in quotes is text; write it without quotes or with its unit"};
   const UnitReading unit = read_unit(rest);
-  if (!unit.unit) return {{}, unit.problem};
+  if (!unit.unit) return {{}, {}, unit.problem};
+  return {unit.unit->to_si(number), unit.unit->dimension, {}};
+}
+
+QuantityReading read_quantity(std::string_view text, std::string_view si_unit) {
+  const AnyQuantity read = read_any_quantity(text);
+  if (!read.value) return {{}, read.problem};
   const UnitReading expected = read_unit(si_unit.empty() ? "1" : si_unit);
   if (!expected.unit) return {{}, fmt::format("units are not known here: write a number in {}", si_unit)};
-  if (unit.unit->dimension != expected.unit->dimension) return {{}, fmt::format("'{}' is a wrong unit here", rest)};
-  return {unit.unit->to_si(number), {}};
+  if (read.dimension == expected.unit->dimension) return {read.value, {}};
+  double number = 0;
+  std::string_view unit = text.substr(leading_number(text, number));
+  while (unit.starts_with(' ')) unit.remove_prefix(1);
+  return {{}, fmt::format("'{}' is a wrong unit here", unit)};
 }
 
 }  // namespace withy

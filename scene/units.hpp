@@ -41,6 +41,14 @@ struct QuantityReading {
 /// Reads a number and its unit, which must have the dimension of `si_unit` (as "N m^2"; "1" or "": a ratio).
 QuantityReading read_quantity(std::string_view text, std::string_view si_unit);
 
+/// A number with a unit of any kind, in SI units.
+struct AnyQuantity {
+  std::optional<double> value;
+  Dimension dimension{};
+  std::string problem;
+};
+AnyQuantity read_any_quantity(std::string_view text);
+
 /// True where the text begins as a number does, so that it is meant as a quantity and not as a name.
 bool looks_like_number(std::string_view text);
 

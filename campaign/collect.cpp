@@ -1,0 +1,231 @@
+#include "withy/campaign/collect.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "withy/campaign/cases.hpp"
+#include "withy/results/csv.hpp"
+#include "withy/results/output_file.hpp"
+
+namespace withy::campaign {
+namespace {
+
+constexpr std::size_t most_numbers = 8'000'000;  // in memory
+
+/// A file that takes its name when it is whole.
+class Table {
+ public:
+  explicit Table(std::filesystem::path path) : path_(std::move(path)), part_(path_.string() + ".part"), file_(part_) {}
+  void line(const std::string& text) { file_.write(text + '\n'); }
+  void finish() {
+    file_.close();
+    std::filesystem::rename(part_, path_);
+  }
+
+ private:
+  std::filesystem::path path_, part_;
+  OutputFile file_;
+};
+
+std::string cell(const Value& value) {
+  if (value.kind() == Value::Kind::number) return fmt::format("{}", value.number());
+  return value.kind() == Value::Kind::text ? csv_text(value.text()) : "";
+}
+
+std::string joined(const std::vector<std::string>& cells) {
+  std::string text;
+  for (const std::string& c : cells) text += (text.empty() ? "" : ",") + csv_text(c);
+  return text;
+}
+
+std::string cells_of(const Estimate& e) { return fmt::format("{},{},{}", e.value, e.low, e.high); }
+
+class Collector {
+ public:
+  Collector(const std::filesystem::path& store)
+      : store_(store), about_(read_description(store)), index_(store, about_) {}
+
+  Collected collect() {
+    Collected all{about_.size, index_.done(), index_.failed(), index_.lost(), false, false, {}};
+    if (all.done > 0) all.failed_share = share(all.failed, all.done);
+    write_rows();
+    all.statistics = about_.design == Design::product && about_.drawn && about_.draws > 1 && !about_.columns.empty();
+    remove_unless(all.statistics, "statistics.csv");
+    if (all.statistics) write_statistics();
+    all.indices = about_.design != Design::product && !about_.columns.empty();
+    remove_unless(all.indices, "indices.csv");
+    if (about_.design == Design::one_at_a_time && all.indices) write_differences();
+    if (about_.design == Design::morris && all.indices) write_morris();
+    if (about_.design == Design::saltelli && all.indices) write_sobol();
+    return all;
+  }
+
+ private:
+  void remove_unless(bool kept, const char* name) const {
+    if (!kept) std::filesystem::remove(store_ / name);
+  }
+
+  void write_rows() {
+    Table table(store_ / "table.csv"), failed(store_ / "failed.csv");
+    std::vector<std::string> head = {"case", "status"};
+    head.insert(head.end(), about_.paths.begin(), about_.paths.end());
+    head.insert(head.end(), about_.derived.begin(), about_.derived.end());
+    head.insert(head.end(), about_.columns.begin(), about_.columns.end());
+    table.line(joined(head));
+    failed.line("case,status,message,command");
+    for (std::uint64_t i = 0; i < about_.size; ++i) {
+      const auto result = index_.read(i);
+      std::string row = fmt::format("{},{}", i, result ? result->status : "missing");
+      for (std::size_t a = 0; a < about_.paths.size() + about_.derived.size(); ++a)
+        row += ',' + (result ? cell(result->values.at(a)) : "");
+      for (std::size_t c = 0; c < about_.columns.size(); ++c)
+        row += result && result->completed() ? fmt::format(",{}", result->numbers.at(c)) : ",";
+      table.line(row);
+      if (result && !result->completed())
+        failed.line(fmt::format("{},{},{},{}", i, result->status, csv_text(result->message),
+                                csv_text(fmt::format("withy sweep case {} {}", about_.plan, i))));
+    }
+    table.finish();
+    failed.finish();
+  }
+
+  /// The numbers of some columns of the completed cases of a point of the grids.
+  std::vector<std::vector<double>> samples(std::uint64_t point, std::size_t first, std::size_t count) {
+    std::vector<std::vector<double>> all(count);
+    for (std::uint64_t i = point * about_.draws; i < (point + 1) * about_.draws; ++i) {
+      const auto result = index_.read(i);
+      if (!result || !result->completed()) continue;
+      for (std::size_t c = 0; c < count; ++c) all[c].push_back(result->numbers.at(first + c));
+    }
+    return all;
+  }
+
+  /// "loads.slew.time_scale=0.5": the values that all cases of a point share, empty where they share none.
+  std::string point_cells(std::uint64_t point) {
+    const auto first = index_.read(point * about_.draws), second = index_.read(point * about_.draws + 1);
+    std::string text;
+    for (std::size_t a = 0; a < about_.paths.size(); ++a) {
+      const std::string value = first ? cell(first->values.at(a)) : "";
+      const bool shared = second && value == cell(second->values.at(a));
+      text += ',' + (shared ? value : std::string());
+    }
+    return text;
+  }
+
+  void write_statistics() {
+    Table table(store_ / "statistics.csv");
+    table.line("point," + joined(about_.paths) +
+               ",result,cases,mean,mean.low,mean.high,deviation,least,greatest,p05,p05.low,p05.high,median,median.low,"
+               "median.high,p95,p95.low,p95.high");
+    const std::size_t at_once = std::clamp<std::size_t>(most_numbers / about_.draws, 1, about_.columns.size());
+    for (std::uint64_t point = 0; point < about_.size / about_.draws; ++point) {
+      const std::string where = fmt::format("{}{}", point, point_cells(point));
+      for (std::size_t first = 0; first < about_.columns.size(); first += at_once) {
+        auto columns = samples(point, first, std::min(at_once, about_.columns.size() - first));
+        for (std::size_t c = 0; c < columns.size(); ++c)
+          table.line(where + ',' + csv_text(about_.columns[first + c]) + ',' + statistics_cells(std::move(columns[c])));
+      }
+    }
+    table.finish();
+  }
+
+  static std::string statistics_cells(std::vector<double> sample) {
+    if (sample.empty()) return "0,,,,,,,,,,,,,,,";
+    const Statistics s = statistics(std::move(sample));
+    std::string text = fmt::format("{},{},", s.count, s.mean);
+    text += s.mean_interval ? fmt::format("{},{},", s.mean_interval->low, s.mean_interval->high) : ",,";
+    text += fmt::format("{},{},{}", s.deviation, s.least, s.greatest);
+    for (const Estimate& q : s.quantiles) text += ',' + cells_of(q);
+    return text;
+  }
+
+  void write_differences() {
+    Table table(store_ / "indices.csv");
+    table.line("result,parameter,value,at,difference");
+    const auto base = index_.read(0);
+    for (std::size_t c = 0; c < about_.columns.size(); ++c)
+      for (std::uint64_t i = 1; i < about_.size; ++i) {
+        const auto result = index_.read(i);
+        if (!result || !base || !base->completed() || !result->completed()) continue;
+        for (std::size_t a = 0; a < about_.paths.size(); ++a)
+          if (result->values.at(a).kind() != Value::Kind::null)
+            table.line(fmt::format("{},{},{},{},{}", csv_text(about_.columns[c]), csv_text(about_.paths[a]),
+                                   cell(result->values[a]), result->numbers.at(c),
+                                   result->numbers[c] - base->numbers.at(c)));
+      }
+    table.finish();
+  }
+
+  /// The results of a block of cases that belong together; nothing where one is missing or failed.
+  std::vector<CaseResult> block(std::uint64_t number, std::size_t size) {
+    std::vector<CaseResult> all;
+    for (std::uint64_t i = number * size; i < (number + 1) * size; ++i) {
+      auto result = index_.read(i);
+      if (!result || !result->completed()) return {};
+      all.push_back(std::move(*result));
+    }
+    return all;
+  }
+
+  void write_morris() {
+    Table table(store_ / "indices.csv");
+    table.line("result,parameter,mu,mu_star,mu_star.low,mu_star.high,sigma,trajectories");
+    Plan plan;
+    plan.seed = about_.seed;
+    plan.levels = about_.levels;
+    for (const std::string& path : about_.paths) plan.axes.emplace_back().path = path;
+    const std::size_t n = about_.paths.size();
+    // effects[column][axis]
+    std::vector effects(about_.columns.size(), std::vector<std::vector<double>>(n));
+    for (std::uint64_t t = 0; t < about_.draws; ++t) {
+      const std::vector<CaseResult> results = block(t, n + 1);
+      if (results.empty()) continue;
+      const MorrisTrajectory trajectory = morris_trajectory(plan, t);
+      for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t c = 0; c < effects.size(); ++c)
+          effects[c][trajectory.steps[k].axis].push_back((results[k + 1].numbers.at(c) - results[k].numbers.at(c)) /
+                                                         trajectory.steps[k].step);
+    }
+    for (std::size_t c = 0; c < effects.size(); ++c)
+      for (std::size_t a = 0; a < n; ++a) {
+        const MorrisMeasure m = morris_measure(effects[c][a]);
+        table.line(fmt::format("{},{},{},{},{},{}", csv_text(about_.columns[c]), csv_text(about_.paths[a]), m.mean,
+                               cells_of(m.mean_size), m.deviation, m.count));
+      }
+    table.finish();
+  }
+
+  void write_sobol() {
+    Table table(store_ / "indices.csv");
+    table.line("result,parameter,first,first.low,first.high,total,total.low,total.high,samples");
+    const std::size_t n = about_.paths.size();
+    for (std::size_t c = 0; c < about_.columns.size(); ++c) {
+      std::vector<SaltelliSample> samples;
+      for (std::uint64_t s = 0; s < about_.draws; ++s) {
+        const std::vector<CaseResult> results = block(s, n + 2);
+        if (results.empty()) continue;
+        SaltelliSample sample{results.front().numbers.at(c), results.back().numbers.at(c), {}};
+        for (std::size_t a = 0; a < n; ++a) sample.mixed.push_back(results[a + 1].numbers.at(c));
+        samples.push_back(std::move(sample));
+      }
+      const std::vector<SobolIndex> indices = sobol_indices(samples);
+      for (std::size_t a = 0; a < indices.size(); ++a)
+        table.line(fmt::format("{},{},{},{},{}", csv_text(about_.columns[c]), csv_text(about_.paths[a]),
+                               cells_of(indices[a].first), cells_of(indices[a].total), samples.size()));
+    }
+    table.finish();
+  }
+
+  std::filesystem::path store_;
+  StoreDescription about_;
+  StoreIndex index_;
+};
+
+}  // namespace
+
+Collected collect(const std::filesystem::path& store) { return Collector(store).collect(); }
+
+}  // namespace withy::campaign

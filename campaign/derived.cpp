@@ -1,0 +1,110 @@
+#include "withy/campaign/derived.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <stdexcept>
+
+#include "withy/campaign/cases.hpp"
+#include "withy/scene/describe.hpp"
+#include "withy/scene/names.hpp"
+#include "withy/sensors/formula.hpp"
+
+namespace withy::campaign {
+namespace {
+
+/// The member or item of that name.
+const Value* part_of(const Value& whole, const std::string& key) {
+  if (whole.kind() != Value::Kind::list) return whole.find(key);
+  std::size_t index = 0;
+  const auto [end, problem] = std::from_chars(key.data(), key.data() + key.size(), index);
+  const bool good = problem == std::errc() && end == key.data() + key.size() && index < whole.items().size();
+  return good ? &whole.items()[index] : nullptr;
+}
+
+/// The scene's own number at a path, in SI units; nothing where there is none.
+std::optional<double> own_number(const study::Prepared& base, const std::string& path) {
+  const Value* at = &base.scene.source;
+  for (std::size_t start = 0; at != nullptr && start <= path.size();) {
+    const std::size_t stop = std::min(path.find('.', start), path.size());
+    at = part_of(*at, path.substr(start, stop - start));
+    start = stop + 1;
+  }
+  if (at == nullptr || at->kind() != Value::Kind::number) return {};
+  return at->number();
+}
+
+/// Why a name cannot be used; empty where it can.
+std::string name_trouble(const Plan& plan, const std::string& name, int axis) {
+  const bool own = axis < 0 || plan.design == Design::one_at_a_time;
+  if (own && !own_number(*plan.base, name))
+    return fmt::format("{} {} a number of the scene", in_quotes(name), axis < 0 ? "neither varies nor is" : "is not");
+  if (axis < 0) return {};
+  const Axis& varied = plan.axes[static_cast<std::size_t>(axis)];
+  if (varied.drawn() || !varied.levels.numbers.empty()) return {};
+  return fmt::format("{} varies, but not as plain numbers", in_quotes(name));
+}
+
+}  // namespace
+
+std::vector<std::string> varied_paths(const Plan& plan) {
+  std::vector<std::string> paths;
+  for (const Axis& axis : plan.axes) paths.push_back(axis.path);
+  for (const Derived& d : plan.derived) paths.push_back(d.path);
+  return paths;
+}
+
+void read_derived(const Value& given, const PlanReader& reader, Plan& plan) {
+  if (given.kind() != Value::Kind::map)
+    return reader.error(given.place(), fmt::format("got {}; need a map of paths to formulas", shown(given)));
+  const std::vector<std::string> varied = varied_paths(plan);
+  for (const auto& [path, value] : given.members()) {
+    const auto formula = reader.text(value);
+    if (!formula) continue;
+    if (std::find(varied.begin(), varied.end(), path) != varied.end())
+      reader.error(value.place(), in_quotes(path) + " varies already");
+    try {
+      Derived d{path, *formula, value.place(), {}};
+      for (const std::string& name : Formula(*formula).names()) {
+        const auto axis = std::find(varied.begin(), varied.end(), name);
+        d.names.emplace_back(name, axis == varied.end() ? -1 : static_cast<int>(axis - varied.begin()));
+      }
+      plan.derived.push_back(std::move(d));
+    } catch (const std::invalid_argument& e) {
+      reader.error(value.place(), e.what());
+    }
+  }
+}
+
+void check_derived(const Plan& plan, Registry& registry, Problems& problems) {
+  for (const Derived& d : plan.derived)
+    for (const auto& [name, axis] : d.names)
+      if (const std::string why = name_trouble(plan, name, axis); !why.empty()) problems.of_plan().error(d.place, why);
+  if (!problems.none() || plan.derived.empty()) return;
+  const std::vector<Value> first = Cases(plan).values(0);
+  const std::vector<std::string> paths = varied_paths(plan);
+  SceneValues values = plan.base->values;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const Place& place = i < plan.axes.size() ? plan.axes[i].place : plan.derived[i - plan.axes.size()].place;
+    if (first[i].kind() != Value::Kind::null) values.set(paths[i], first[i], origin_of(plan.file, place));
+  }
+  try {
+    static_cast<void>(make_scene(values, registry));
+  } catch (const SceneError& e) {
+    problems.add(e, values);
+  }
+}
+
+double value_of(const Derived& derived, const study::Prepared& base, const std::vector<Value>& values) {
+  std::vector<double> named;
+  for (const auto& [name, axis] : derived.names) {
+    const Value* varied = axis < 0 ? nullptr : &values[static_cast<std::size_t>(axis)];
+    named.push_back(varied != nullptr && varied->kind() == Value::Kind::number ? varied->number()
+                                                                               : *own_number(base, name));
+  }
+  return Formula(derived.formula)(named);
+}
+
+}  // namespace withy::campaign

@@ -1,0 +1,24 @@
+/// \file
+/// Values that follow from others of a case.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/campaign/plan_reader.hpp"
+#include "withy/campaign/trials.hpp"
+
+namespace withy::campaign {
+
+/// Reads `derived` of a plan whose axes are known; what is wrong goes to the reader's diagnostics.
+void read_derived(const Value& given, const PlanReader& reader, Plan& plan);
+/// Whether every name is a number, and whether the scene takes what the first case derives.
+void check_derived(const Plan& plan, Registry& registry, Problems& problems);
+
+/// \param values of the axes; null where the scene's own stays
+double value_of(const Derived& derived, const study::Prepared& base, const std::vector<Value>& values);
+
+/// Of the axes, then of what is derived: what a case has values for.
+std::vector<std::string> varied_paths(const Plan& plan);
+
+}  // namespace withy::campaign

@@ -1,0 +1,116 @@
+#include "withy/campaign/kept.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "withy/results/csv.hpp"
+#include "withy/scene/describe.hpp"
+#include "withy/scene/names.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::campaign {
+namespace {
+
+std::vector<std::size_t> where(const std::vector<Column>& columns, const std::vector<std::string>& names) {
+  std::vector<std::size_t> found;
+  for (const std::string& name : names)
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      if (column_name(columns[i].name) == column_name(name)) found.push_back(i);
+  return found;
+}
+
+/// The columns that a name stands for: a hinge's coordinates, one column, a vector's components, or all that belong to
+/// it; none where it is no name.
+std::vector<std::size_t> select(const Model& model, const std::vector<Column>& columns, const std::string& name) {
+  if (const int hinge = model.hinge(name); hinge >= 0) {
+    std::vector<std::string> names;
+    for (const Column& c : coordinate_columns(model.hinges()[static_cast<std::size_t>(hinge)])) names.push_back(c.name);
+    return where(columns, names);
+  }
+  for (const std::vector<std::string>& names : {std::vector{name}, std::vector{name + ".x", name + ".y", name + ".z"},
+                                                std::vector{name + "_x", name + "_y", name + "_z"}})
+    if (std::vector<std::size_t> found = where(columns, names); !found.empty()) return found;
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (column_name(columns[i].name).starts_with(column_name(name) + ".")) found.push_back(i);
+  return found;
+}
+
+std::vector<std::size_t> selected(const study::Prepared& prepared, const std::vector<Column>& columns,
+                                  const std::string& name) {
+  std::vector<std::size_t> found = select(prepared.model(), columns, name);
+  if (found.empty()) throw study::InputError("the model of this case has no " + in_quotes(name));
+  return found;
+}
+
+/// Where the run's monitor has the greatest size of a column: the tip's deflection of a flexible body.
+std::optional<std::pair<std::string, std::size_t>> deflection_of(const std::string& column) {
+  constexpr std::string_view middle = ".tip.deflection_";
+  const std::size_t at = column.rfind(middle);
+  if (at == std::string::npos || at + middle.size() + 1 != column.size()) return {};
+  return std::pair(column.substr(0, at), static_cast<std::size_t>(column.back() - 'x'));
+}
+
+}  // namespace
+
+std::string kept_problem(const study::Prepared& prepared, const std::string& name) {
+  const ResultColumns columns(prepared.model(), *prepared.equations, prepared.scene.outputs);
+  if (!select(prepared.model(), columns.columns(), name).empty()) return {};
+  std::vector<std::string> names;
+  for (const HingeNode& h : prepared.model().hinges())
+    if (!coordinate_columns(h).empty()) names.push_back(h.name);
+  for (const Column& c : columns.columns()) names.push_back(c.name);
+  return fmt::format("no result {}{}", in_quotes(name), suggestion(name, names));
+}
+
+std::vector<std::string> kept_columns(const Plan& plan) {
+  const ResultColumns columns(plan.base->model(), *plan.base->equations, plan.base->scene.outputs);
+  std::vector<std::string> names;
+  const auto add = [&](const char* what, const std::vector<std::string>& asked) {
+    for (const std::string& name : asked)
+      for (const std::size_t i : selected(*plan.base, columns.columns(), name)) {
+        const Column& c = columns.columns()[i];
+        names.push_back(fmt::format("{}.{}[{}]", what, column_name(c.name), c.unit.empty() ? "1" : c.unit));
+      }
+  };
+  add("final", plan.final);
+  add("peak", plan.peak);
+  return names;
+}
+
+KeptNumbers::KeptNumbers(const Plan& plan, const study::Prepared& prepared) {
+  if (!prepared.escalates()) columns_.emplace_back(prepared.model(), *prepared.equations, prepared.scene.outputs);
+  for (const Rung& rung : prepared.rungs)
+    columns_.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
+  const std::vector<Column>& columns = columns_.front().columns();
+  for (const std::string& name : plan.final)
+    for (const std::size_t i : selected(prepared, columns, name)) final_.push_back(i);
+  numbers_.assign(final_.size(), 0.0);
+  for (const std::string& name : plan.peak)
+    for (const std::size_t i : selected(prepared, columns, name)) {
+      if (const auto d = deflection_of(columns[i].name))
+        deflections_.push_back({numbers_.size(), d->first, d->second});
+      else
+        peaks_.push_back({numbers_.size(), i});
+      numbers_.push_back(0.0);
+    }
+}
+
+void KeptNumbers::see(const State& state, std::size_t rung) {
+  rung_ = rung;
+  if (peaks_.empty()) return;
+  const std::vector<double>& row = columns_[rung].row(state);
+  for (const Peak& peak : peaks_) numbers_[peak.at] = std::max(numbers_[peak.at], std::abs(row[peak.column]));
+}
+
+std::vector<double> KeptNumbers::numbers(const RunSummary& summary) {
+  const std::vector<double>& last = columns_[rung_].row(summary.final);
+  for (std::size_t i = 0; i < final_.size(); ++i) numbers_[i] = last[final_[i]];
+  for (const Deflection& d : deflections_) numbers_[d.at] = summary.peak_deflection.at(d.body).at(d.axis);
+  return numbers_;
+}
+
+}  // namespace withy::campaign

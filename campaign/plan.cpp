@@ -1,0 +1,257 @@
+#include "withy/campaign/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "withy/campaign/correlation.hpp"
+#include "withy/campaign/derived.hpp"
+#include "withy/campaign/kept.hpp"
+#include "withy/campaign/list_file.hpp"
+#include "withy/campaign/plan_reader.hpp"
+#include "withy/campaign/random.hpp"
+#include "withy/campaign/trials.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/provenance.hpp"
+#include "withy/scene/describe.hpp"
+#include "withy/scene/names.hpp"
+#include "withy/scene/sha256.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::campaign {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A name in the plan, relative to its folder.
+std::string beside(const std::string& directory, const std::string& name) {
+  return (std::filesystem::path(directory) / name).string();
+}
+
+/// Makes a plan of one document.
+class PlanBuilder {
+ public:
+  PlanBuilder(const std::string& file, const Document& document, Registry& registry, Problems& problems)
+      : root_(document.root), registry_(registry), problems_(problems), reader_(document, problems.of_plan()) {
+    plan_.file = file;
+  }
+
+  Plan build() {
+    if (!reader_.is_map(root_, keys::plan) && root_.kind() != Value::Kind::map) return std::move(plan_);
+    if (reader_.choice(find("format"), {"withy-sweep/1"}) && find("format") == nullptr)
+      reader_.key_error("/format", "missing; need format: withy-sweep/1");
+    if (const Value* name = find("name")) plan_.name = reader_.text(*name).value_or("");
+    read_design();
+    read_axes();
+    plan_.seed = reader_.whole(find("seed"), 0, 0x1p53, 0);
+    if (const Value* given = find("derived")) read_derived(*given, reader_, plan_);
+    if (const Value* given = find("correlation")) read_correlation(*given, reader_, plan_);
+    plan_.stop_on_failure = reader_.choice(find("failures"), keys::failures).value_or(0) == 1;
+    if (const Value* keep = find("keep"); keep != nullptr && reader_.is_map(*keep, keys::keep)) {
+      plan_.final = reader_.texts(keep->find("final"));
+      plan_.peak = reader_.texts(keep->find("peak"));
+    }
+    std::optional<SceneValues> base = read_scene();
+    if (base) plan_.sources = try_values(*base, trials_, plan_.file, registry_, problems_);
+    if (!problems_.none()) return std::move(plan_);
+    plan_.base = std::make_shared<study::Prepared>(study::prepare(std::move(*base), registry_));
+    check_derived(plan_, registry_, problems_);
+    check_kept();
+    plan_.fingerprint = fingerprint();
+    return std::move(plan_);
+  }
+
+ private:
+  [[nodiscard]] const Value* find(std::string_view key) const { return root_.find(key); }
+
+  std::optional<SceneValues> read_scene() {
+    const Value* name = find("scene");
+    if (name == nullptr) {
+      reader_.key_error("/scene", "missing; need the file of a scene");
+      return {};
+    }
+    const auto file = reader_.text(*name);
+    if (!file) return {};
+    try {
+      SceneValues values = SceneValues::read(beside(reader_.directory(), *file));
+      if (const Value* set = find("set")) {
+        if (set->kind() != Value::Kind::map) {
+          reader_.error(set->place(),
+                        fmt::format("got {}; need a map of paths, as integrator.rtol: 1e-5", shown(*set)));
+          return {};
+        }
+        for (const auto& [path, value] : set->members())
+          values.set(path, value, origin_of(plan_.file, reader_.key_place("/set/" + path)));
+        plan_.set = set->members();
+      }
+      return values;
+    } catch (const std::system_error& e) {
+      reader_.error(name->place(), e.what());
+    }
+    return {};
+  }
+
+  void read_design() {
+    const Value* given = find("design");
+    const bool map = given != nullptr && given->kind() == Value::Kind::map;
+    if (map && !reader_.is_map(*given, keys::design)) return;
+    const auto design = reader_.choice(map ? given->find("type") : given, keys::designs);
+    plan_.design = static_cast<Design>(design.value_or(0));
+    if (map && given->has("levels")) {
+      if (plan_.design != Design::morris) reader_.key_error("/design/levels", "of the design morris alone");
+      plan_.levels = reader_.whole(given->find("levels"), 2, 1000, 4);
+      if (plan_.levels % 2 != 0) reader_.error(given->at("levels").place(), "need an even number");
+    }
+    plan_.cases = reader_.whole(find("cases"), 1, most_cases, 1);
+  }
+
+  void read_axes() {
+    const Value* vary = find("vary");
+    if (vary == nullptr || vary->kind() != Value::Kind::map || vary->members().empty()) {
+      reader_.key_error("/vary",
+                        "need at least one path of the scene that varies, as bodies.link1.length: {grid: [1, 2]}");
+      return;
+    }
+    for (const auto& [path, value] : vary->members()) {
+      Axis axis;
+      axis.path = path;
+      axis.place = reader_.key_place("/vary/" + path);
+      if (!reader_.is_map(value, keys::axis)) continue;
+      if (value.members().size() != 1) {
+        reader_.error(value.place(), "need one of: " + listed(keys::axis));
+        continue;
+      }
+      if (read_axis(axis, value.members().front().first, value.members().front().second))
+        plan_.axes.push_back(std::move(axis));
+    }
+    check_axes();
+  }
+
+  bool read_axis(Axis& axis, const std::string& kind, const Value& value) {
+    if (kind == "grid") {
+      axis.levels = reader_.grid(value);
+      if (axis.levels.size() == 0) return false;
+      axis.grid = plan_.grids.size();
+      plan_.grids.push_back(axis.levels.size());
+      const auto& tried =
+          value.kind() == Value::Kind::list ? value.items() : std::vector<Value>{value.at("from"), value.at("to")};
+      for (const Value& v : tried) add_trial(axis, v);
+      return true;
+    }
+    if (kind == "list") return read_list(axis, value);
+    if (kind == "latin" || kind == "sobol") {
+      axis.sampling = kind == "latin" ? Sampling::latin : Sampling::sobol;
+      const bool inner = value.members().size() == 1 && value.find("from") == nullptr && value.find("to") == nullptr;
+      if (!inner) return read_distribution(axis, "uniform", value);
+      if (!reader_.is_map(value, keys::distributions)) return false;
+      return read_distribution(axis, value.members().front().first, value.members().front().second);
+    }
+    return read_distribution(axis, kind, value);
+  }
+
+  bool read_distribution(Axis& axis, const std::string& kind, const Value& value) {
+    const auto distribution = reader_.distribution(kind, value);
+    if (!distribution) return false;
+    axis.distribution = *distribution;
+    for (const char* key : {"mean", "from", "to"})
+      if (const Value* v = value.find(key)) add_trial(axis, *v);
+    return true;
+  }
+
+  /// The column of a file; columns of one file make one grid.
+  bool read_list(Axis& axis, const Value& value) {
+    const bool map = value.kind() == Value::Kind::map;
+    if (map && !reader_.is_map(value, keys::list)) return false;
+    const Value* name = map ? value.find("file") : &value;
+    if (name == nullptr) {
+      reader_.key_error(value.place().path + "/file", "missing; need the name of a CSV file");
+      return false;
+    }
+    const auto text = reader_.text(*name);
+    const auto column = map && value.has("column") ? reader_.text(value.at("column")) : axis.path;
+    if (!text || !column) return false;
+    try {
+      const std::string file = beside(reader_.directory(), *text);
+      const ListColumn read = read_list_column(file, *column, map && value.has("column"));
+      axis.levels = read.levels;
+      lists_.push_back(read.sha256);
+      const auto [grid, is_new] = grid_of_file_.emplace(file, plan_.grids.size());
+      if (is_new) plan_.grids.push_back(axis.levels.size());
+      axis.grid = grid->second;
+      Value first = axis.levels.at(0);
+      first.set_place(name->place());
+      add_trial(axis, first);
+      return true;
+    } catch (const study::InputError& e) {
+      reader_.error(name->place(), e.what());
+      return false;
+    }
+  }
+
+  void add_trial(const Axis& axis, const Value& value) { trials_.push_back({plan_.axes.size(), axis.path, value}); }
+
+  void check_axes() {
+    const bool sampled = plan_.design == Design::morris || plan_.design == Design::saltelli;
+    bool drawn = sampled;
+    std::size_t sobol = 0;
+    for (const Axis& axis : plan_.axes) {
+      if (sampled && !axis.drawn())
+        reader_.error(axis.place, "this design draws every value: need a distribution, as uniform: {from: 1, to: 2}");
+      if (sampled && axis.sampling != Sampling::plain)
+        reader_.error(axis.place, "this design has a sampling of its own: need uniform, normal or lognormal");
+      drawn = drawn || axis.drawn();
+      sobol += axis.sampling == Sampling::sobol ? 1 : 0;
+    }
+    if (std::max(sobol, plan_.axes.size() * (plan_.design == Design::saltelli ? 2 : 0)) > most_sobol_dimensions)
+      reader_.key_error("/vary", fmt::format("a Sobol sequence has at most {} dimensions", most_sobol_dimensions));
+    if (find("cases") != nullptr && (!drawn || plan_.design == Design::one_at_a_time))
+      reader_.key_error("/cases", "nothing is drawn: leave it out");
+    double all = static_cast<double>(plan_.cases) * static_cast<double>(plan_.axes.size() + 2);
+    for (const std::size_t n : plan_.grids) all *= static_cast<double>(n);
+    if (all > most_cases * 1000) reader_.key_error("/cases", fmt::format("{:.3g} cases are too many", all));
+  }
+
+  void check_kept() {
+    for (const auto& [key, names] : {std::pair("final", &plan_.final), std::pair("peak", &plan_.peak)})
+      for (std::size_t i = 0; i < names->size(); ++i)
+        if (const std::string why = kept_problem(*plan_.base, (*names)[i]); !why.empty())
+          reader_.error(find("keep")->at(key).items()[i].place(), why);
+  }
+
+  [[nodiscard]] std::string fingerprint() const {
+    Json said = Json::object();
+    for (const auto& [key, value] : root_.members())
+      if (key != "name" && key != "scene" && key != "failures") said[key] = value_json(value);
+    Scene scene = plan_.base->scene;
+    scene.sources = plan_.sources;
+    return sha256(Json::array({said, lists_, withy::provenance_of(scene).fingerprint()}).dump());
+  }
+
+  const Value& root_;
+  Registry& registry_;
+  Problems& problems_;
+  PlanReader reader_;
+  Plan plan_;
+  std::vector<Trial> trials_;
+  std::vector<std::string> lists_;  ///< SHA-256 of each
+  std::map<std::string, std::size_t> grid_of_file_;
+};
+
+}  // namespace
+
+Plan read_plan(const std::string& file, Registry& registry) {
+  Problems problems(file);
+  Document document;
+  document.directory = std::filesystem::path(file).parent_path().string();
+  if (!read_document(read_bytes(file), {}, document, problems.of_plan())) problems.raise();
+  PlanBuilder builder(file, document, registry, problems);
+  Plan plan = builder.build();
+  problems.raise();
+  return plan;
+}
+
+}  // namespace withy::campaign

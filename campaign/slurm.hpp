@@ -1,0 +1,30 @@
+/// \file
+/// Sweeps as array jobs of Slurm.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace withy::campaign {
+
+struct SlurmJob {
+  std::filesystem::path program, plan, store;  ///< absolute
+  std::uint64_t tasks = 1;                     ///< of the array; each runs a shard
+  std::size_t cpus = 1;                        ///< of a task: its jobs
+  std::string time;                            ///< limit of a task, as sbatch has it; empty: the partition's
+  unsigned warning = 60;               ///< time before that at which a task ends its cases and asks to go on [s]
+  std::vector<std::string> options;    ///< more of sbatch's, as "--partition=short"
+  std::vector<std::string> arguments;  ///< more of `withy sweep run`'s
+};
+
+/// The batch script of the array. A task whose time runs out ends its cases, keeps what is done and is queued again; so
+/// is one whose node is lost or that is preempted. One that is cancelled is not.
+std::string array_script(const SlurmJob& job);
+/// The batch script that makes the tables when all tasks have ended.
+std::string collect_script(const SlurmJob& job);
+
+/// In single quotes, for a shell.
+std::string quoted(const std::string& text);
+
+}  // namespace withy::campaign

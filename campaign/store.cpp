@@ -1,0 +1,188 @@
+#include "withy/campaign/store.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "withy/campaign/cases.hpp"
+#include "withy/campaign/kept.hpp"
+#include "withy/campaign/plan_reader.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/results_error.hpp"
+#include "withy/results/results_folder.hpp"
+
+namespace withy::campaign {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* format_of_store = "withy-store/1";
+constexpr const char* name_of_description = "store.json";
+constexpr const char* name_of_segments = "segments";
+constexpr int place_bits = 44;  // of a place in a segment: 16 TiB; the rest counts segments, to a million
+
+Json json_of(const StoreDescription& d) {
+  return {{"format", format_of_store},
+          {"plan", d.plan},
+          {"name", d.name},
+          {"fingerprint", d.fingerprint},
+          {"cases", d.size},
+          {"draws", d.draws},
+          {"design", keys::designs.at(static_cast<std::size_t>(d.design))},
+          {"levels", d.levels},
+          {"seed", d.seed},
+          {"paths", d.paths},
+          {"derived", d.derived},
+          {"columns", d.columns},
+          {"drawn", d.drawn}};
+}
+
+Design design_of(const std::string& name) {
+  const auto at = std::find(keys::designs.begin(), keys::designs.end(), name);
+  return static_cast<Design>(at - keys::designs.begin());
+}
+
+/// The same, to be given back where a folder is none.
+std::optional<StoreDescription> described(const std::filesystem::path& store) {
+  std::ifstream in(store / name_of_description, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const Json j = Json::parse(text, nullptr, false);
+  try {
+    if (!j.is_object() || j.at("format") != format_of_store) return {};
+    return StoreDescription{
+        j.at("plan"),   j.at("name"), j.at("fingerprint"), j.at("cases"),   j.at("draws"),   design_of(j.at("design")),
+        j.at("levels"), j.at("seed"), j.at("paths"),       j.at("derived"), j.at("columns"), j.at("drawn")};
+  } catch (const Json::exception&) {
+    return {};
+  }
+}
+
+std::vector<std::filesystem::path> segments_of(const std::filesystem::path& store) {
+  std::vector<std::filesystem::path> all;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(store / name_of_segments, none))
+    if (entry.path().extension() == ".segment") all.push_back(entry.path());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+bool is_locked(const std::filesystem::path& segment) {
+  const int file = ::open(segment.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool locked = file >= 0 && ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (file >= 0) ::close(file);
+  return locked;
+}
+
+/// Several processes may begin a store at once: each writes the same, whole.
+void write_description(const std::filesystem::path& store, const StoreDescription& about) {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+  const std::filesystem::path own = store / fmt::format("store.{}-{}", ::getpid(), now);
+  write_lasting_file(own, json_text(json_of(about)));
+  std::filesystem::rename(own, store / name_of_description);
+}
+
+/// Two runs of one case differ in their times alone.
+bool same(CaseResult a, CaseResult b) {
+  a.seconds = b.seconds = 0;
+  return encode(a) == encode(b);
+}
+
+}  // namespace
+
+StoreDescription description_of(const Plan& plan) {
+  StoreDescription d;
+  d.plan = plan.file;
+  d.name = plan.name;
+  d.fingerprint = plan.fingerprint;
+  d.size = Cases(plan).size();
+  d.draws = plan.cases;
+  d.design = plan.design;
+  d.levels = plan.levels;
+  d.seed = plan.seed;
+  for (const Axis& axis : plan.axes) {
+    d.paths.push_back(axis.path);
+    d.drawn = d.drawn || axis.drawn();
+  }
+  for (const Derived& derived : plan.derived) d.derived.push_back(derived.path);
+  d.columns = kept_columns(plan);
+  return d;
+}
+
+StoreDescription read_description(const std::filesystem::path& store) {
+  if (auto about = described(store)) return *about;
+  throw ResultsError(store.string() + " is no store of a sweep");
+}
+
+Store::Store(std::filesystem::path path, const Plan& plan, bool anew)
+    : path_(std::move(path)), about_(description_of(plan)) {
+  const auto kept = described(path_);
+  if (kept && kept->fingerprint == about_.fingerprint && !anew) return;
+  const char* advice = "give another folder, or --force to begin anew";
+  if (!anew && kept)
+    throw ResultsError(
+        fmt::format("{} holds the cases of another plan, or the plan, its scene, a plugin or the program has "
+                    "changed since: {}",
+                    path_.string(), advice));
+  if (!anew && std::filesystem::exists(path_ / "result.json"))
+    throw ResultsError(fmt::format("{} holds the result of another command: {}", path_.string(), advice));
+  for (const std::filesystem::path& segment : segments_of(path_))
+    if (is_locked(segment))
+      throw FolderBusy(segment.string() + " is being written by another process; wait for its end");
+  for (const char* name :
+       {name_of_description, name_of_segments, "table.csv", "statistics.csv", "indices.csv", "failed.csv"})
+    std::filesystem::remove_all(path_ / name);
+  std::filesystem::create_directories(path_ / name_of_segments);
+  write_description(path_, about_);
+}
+
+std::filesystem::path Store::segment(std::uint64_t shard, std::uint64_t shards, std::size_t worker) const {
+  return path_ / name_of_segments / fmt::format("{}-of-{}.{}.segment", shard, shards, worker);
+}
+
+StoreIndex::StoreIndex(const std::filesystem::path& store, const StoreDescription& about)
+    : where_(about.size), paths_(segments_of(store)), fingerprint_(about.fingerprint) {
+  for (std::size_t s = 0; s < paths_.size(); ++s) add(s, about);
+}
+
+void StoreIndex::add(std::size_t segment, const StoreDescription& about) {
+  if (is_locked(paths_[segment])) ++writers_;
+  SegmentReader reader(paths_[segment], fingerprint_);
+  while (const auto record = reader.next()) {
+    const auto result = decode(*record);
+    if (!result || result->index >= about.size) continue;
+    if (has(result->index)) {
+      if (!same(*read(result->index), *result))
+        throw ResultsError(fmt::format("{}: case {} has two results that differ: it is not reproducible",
+                                       paths_[segment].string(), result->index));
+      continue;
+    }
+    where_[result->index] = (static_cast<std::uint64_t>(segment) << place_bits | reader.place()) + 1;
+    ++done_;
+    if (!result->completed()) ++failed_;
+    seconds_ += result->seconds;
+  }
+  lost_ += reader.lost();
+}
+
+std::optional<CaseResult> StoreIndex::read(std::uint64_t index) {
+  constexpr std::size_t most_open = 64;
+  if (!has(index)) return {};
+  const std::uint64_t at = where_[index] - 1;
+  const auto segment = static_cast<std::size_t>(at >> place_bits);
+  if (open_.size() >= most_open && !open_.contains(segment)) open_.clear();
+  const auto [reader, made] = open_.try_emplace(segment, paths_[segment], fingerprint_);
+  const auto record = reader->second.at(at & ((std::uint64_t{1} << place_bits) - 1));
+  if (!record) throw ResultsError(paths_[segment].string() + " has changed while it was read");
+  return decode(*record);
+}
+
+}  // namespace withy::campaign

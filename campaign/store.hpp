@@ -1,0 +1,83 @@
+/// \file
+/// The store of a sweep: a folder with a description and segments of results. An index is made from the segments
+/// whenever one is needed; there is none to go wrong.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "withy/campaign/segment.hpp"
+
+namespace withy::campaign {
+
+/// What a store says of itself: enough to make tables and indices without plan, scene or plugins.
+struct StoreDescription {
+  std::string plan;  ///< file of the plan, as the command had it
+  std::string name;
+  std::string fingerprint;  ///< of the plan
+  std::uint64_t size = 0;   ///< cases in all
+  std::uint64_t draws = 1;  ///< for each point of the grids
+  Design design = Design::product;
+  std::size_t levels = 4;
+  std::uint64_t seed = 0;
+  std::vector<std::string> paths;    ///< of what varies
+  std::vector<std::string> derived;  ///< of what follows from it
+  std::vector<std::string> columns;  ///< of what is kept
+  bool drawn = false;                ///< whether cases of a point of the grids differ by draws
+};
+StoreDescription description_of(const Plan& plan);
+
+/// What the segments of a store hold, by case. Eight bytes a case.
+class StoreIndex {
+ public:
+  /// Reads every segment once. \throws ResultsError where two records of one case differ; std::system_error
+  StoreIndex(const std::filesystem::path& store, const StoreDescription& about);
+  [[nodiscard]] bool has(std::uint64_t index) const { return where_[index] != 0; }
+  /// The case's result; nothing where it is missing.
+  [[nodiscard]] std::optional<CaseResult> read(std::uint64_t index);
+  [[nodiscard]] std::uint64_t done() const { return done_; }
+  [[nodiscard]] std::uint64_t failed() const { return failed_; }
+  /// Bytes that belong to no record: damage, or what was being written when a process ended.
+  [[nodiscard]] std::uint64_t lost() const { return lost_; }
+  [[nodiscard]] double seconds() const { return seconds_; }  ///< CPU time of all cases
+  /// Segments that a process is writing.
+  [[nodiscard]] std::size_t writers() const { return writers_; }
+
+ private:
+  void add(std::size_t segment, const StoreDescription& about);
+
+  std::vector<std::uint64_t> where_;  ///< segment and place; 0: nowhere
+  std::vector<std::filesystem::path> paths_;
+  std::string fingerprint_;
+  std::map<std::size_t, SegmentReader> open_;
+  std::uint64_t done_ = 0, failed_ = 0, lost_ = 0;
+  double seconds_ = 0;
+  std::size_t writers_ = 0;
+};
+
+/// A store that is written.
+class Store {
+ public:
+  /// Makes the folder, or goes on with one that has the same fingerprint.
+  /// \param anew what another plan left there is removed
+  /// \throws ResultsError where the folder holds something else; FolderBusy; std::system_error
+  Store(std::filesystem::path path, const Plan& plan, bool anew);
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] const StoreDescription& about() const { return about_; }
+  /// The file of a worker of a shard, from 1.
+  [[nodiscard]] std::filesystem::path segment(std::uint64_t shard, std::uint64_t shards, std::size_t worker) const;
+
+ private:
+  std::filesystem::path path_;
+  StoreDescription about_;
+};
+
+/// \throws ResultsError where the folder is no store.
+StoreDescription read_description(const std::filesystem::path& store);
+
+}  // namespace withy::campaign

@@ -1,0 +1,104 @@
+#include "withy/campaign/sweep_run.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "withy/campaign/cases.hpp"
+
+namespace withy::campaign {
+namespace {
+
+/// What the threads of a sweep share.
+class Workers {
+ public:
+  Workers(const Plan& plan, Registry& registry, const Store& store, const SweepSettings& settings)
+      : plan_(plan), registry_(registry), store_(store), settings_(settings), cases_(plan) {}
+
+  SweepOutcome run() {
+    const auto began = std::chrono::steady_clock::now();
+    look_up();
+    const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+    const std::size_t jobs = std::clamp<std::size_t>(settings_.jobs > 0 ? settings_.jobs : cores, 1,
+                                                     std::max<std::size_t>(1, outcome_.cases - outcome_.before));
+    // All segments are taken before the first case runs: another process then has none of them.
+    std::vector<std::unique_ptr<SegmentWriter>> segments;
+    for (std::size_t j = 0; j < jobs; ++j)
+      segments.push_back(
+          std::make_unique<SegmentWriter>(store_.segment(settings_.shard, settings_.shards, j), plan_.fingerprint));
+    {
+      std::vector<std::jthread> threads;
+      for (std::size_t j = 1; j < jobs; ++j) threads.emplace_back([this, &segments, j] { work(*segments[j], false); });
+      work(*segments[0], true);
+    }
+    if (error_) std::rethrow_exception(error_);
+    outcome_.ran = ran_;
+    outcome_.failed = failed_;
+    outcome_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    return outcome_;
+  }
+
+ private:
+  void look_up() {
+    const StoreIndex index(store_.path(), store_.about());
+    outcome_.lost = index.lost();
+    done_.resize(cases_.size());
+    for (std::uint64_t i = settings_.shard - 1; i < cases_.size(); i += settings_.shards) {
+      ++outcome_.cases;
+      done_[i] = index.has(i);
+      outcome_.before += done_[i] ? 1 : 0;
+    }
+  }
+
+  void work(SegmentWriter& segment, bool tells) {
+    try {
+      while (!stop_ && !settings_.control.stop()) {
+        const std::uint64_t index = settings_.shard - 1 + next_++ * settings_.shards;
+        if (index >= cases_.size()) break;
+        if (done_[index]) continue;
+        const CaseResult result = run_case(plan_, cases_, index, registry_, settings_.control);
+        if (result.status == name(RunStatus::interrupted)) break;
+        segment.append(result);
+        ++ran_;
+        if (!result.completed()) note(result);
+        if (tells)
+          settings_.control.tell(static_cast<double>(outcome_.before + ran_), static_cast<double>(outcome_.cases));
+      }
+      segment.close();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+      stop_ = true;
+    }
+  }
+
+  void note(const CaseResult& result) {
+    ++failed_;
+    if (plan_.stop_on_failure) stop_ = true;
+    const std::lock_guard lock(mutex_);
+    if (!outcome_.failure || result.index < outcome_.failure->index) outcome_.failure = result;
+  }
+
+  const Plan& plan_;
+  Registry& registry_;
+  const Store& store_;
+  const SweepSettings& settings_;
+  Cases cases_;
+  std::vector<bool> done_;  ///< only read while threads run
+  std::atomic<std::uint64_t> next_{0}, ran_{0}, failed_{0};
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;  ///< of what follows, while threads run
+  SweepOutcome outcome_;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+SweepOutcome run_sweep(const Plan& plan, Registry& registry, const Store& store, const SweepSettings& settings) {
+  return Workers(plan, registry, store, settings).run();
+}
+
+}  // namespace withy::campaign

@@ -1,0 +1,88 @@
+// Estimates against closed forms and published numbers.
+#include "withy/campaign/estimates.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "withy/campaign/random.hpp"
+
+namespace withy::campaign {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Ishigami and Homma (1990) with a = 7, b = 0.1.
+double ishigami(const std::vector<double>& u) {
+  const auto x = [&](std::size_t i) { return pi * (2 * u[i] - 1); };
+  return std::sin(x(0)) + 7 * std::sin(x(1)) * std::sin(x(1)) + 0.1 * std::pow(x(2), 4) * std::sin(x(0));
+}
+
+TEST(SobolIndices, OfIshigamisFunctionAreThePublishedOnes) {
+  std::vector<SaltelliSample> samples;
+  for (std::uint64_t i = 0; i < 4096; ++i) {
+    const std::vector<double> p = sobol_point(Key(5), i, 6);
+    const std::vector<double> a(p.begin(), p.begin() + 3), b(p.begin() + 3, p.end());
+    SaltelliSample s{ishigami(a), ishigami(b), {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::vector<double> mixed = a;
+      mixed[k] = b[k];
+      s.mixed.push_back(ishigami(mixed));
+    }
+    samples.push_back(std::move(s));
+  }
+  const std::vector<SobolIndex> found = sobol_indices(samples);
+  const double first[] = {0.3139, 0.4424, 0.0}, total[] = {0.5576, 0.4424, 0.2437};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(found[i].first.value, first[i], 0.01);
+    EXPECT_NEAR(found[i].total.value, total[i], 0.01);
+    EXPECT_LE(found[i].first.low, first[i]);
+    EXPECT_GE(found[i].first.high, first[i]);
+    EXPECT_LT(found[i].total.high - found[i].total.low, 0.1);
+  }
+}
+
+/// Intervals hold the truth in 95 of 100 samples: of a linear function of two parameters with weights 2 and 1 in random
+/// samples the first index is 0.8.
+TEST(SobolIndices, IntervalsHoldTheTruthAsOftenAsTheySay) {
+  int held = 0;
+  constexpr int trials = 400;
+  for (int trial = 0; trial < trials; ++trial) {
+    std::vector<SaltelliSample> samples;
+    for (std::uint64_t i = 0; i < 200; ++i) {
+      const Key key = Key(static_cast<std::uint64_t>(trial))[i];
+      const double a0 = key[0].uniform(), a1 = key[1].uniform(), b0 = key[2].uniform(), b1 = key[3].uniform();
+      samples.push_back({2 * a0 + a1, 2 * b0 + b1, {2 * b0 + a1, 2 * a0 + b1}});
+    }
+    const Estimate e = sobol_indices(samples)[0].first;
+    held += e.low <= 0.8 && 0.8 <= e.high ? 1 : 0;
+  }
+  EXPECT_NEAR(held, 0.95 * trials, 18);  // four deviations of the count
+}
+
+TEST(Morris, MeasuresOfEffects) {
+  const MorrisMeasure m = morris_measure({1, -3, 2, 4});
+  EXPECT_DOUBLE_EQ(m.mean, 1.0);
+  EXPECT_DOUBLE_EQ(m.mean_size.value, 2.5);
+  EXPECT_NEAR(m.deviation, std::sqrt(26.0 / 3), 1e-14);
+}
+
+TEST(Statistics, IntervalsAreThoseOfTheTables) {
+  std::vector<double> sample;
+  for (int i = 1; i <= 100; ++i) sample.push_back((i * 37) % 101);  // 1 to 100 in another order
+  const Statistics s = statistics(sample);
+  EXPECT_DOUBLE_EQ(s.mean, 50.5);
+  EXPECT_NEAR(s.deviation, std::sqrt(100.0 * 101 / 12), 1e-12);
+  ASSERT_TRUE(s.mean_interval);
+  EXPECT_NEAR(s.mean_interval->high - 50.5, 1.98422 * s.deviation / 10, 1e-3);  // t of 99 degrees of freedom
+  EXPECT_DOUBLE_EQ(s.quantiles[1].value, 50.5);
+  EXPECT_EQ(s.quantiles[1].low, 40) << "order statistics 40 and 61 hold the median of 100 (tables of the sign test)";
+  EXPECT_EQ(s.quantiles[1].high, 61);
+  EXPECT_NEAR(share(0, 10).high, 0.3085, 1e-4);  // Clopper and Pearson
+  EXPECT_NEAR(share(5, 10).low, 0.1871, 1e-4);
+  EXPECT_FALSE(statistics({3}).mean_interval);
+}
+
+}  // namespace
+}  // namespace withy::campaign

@@ -1,0 +1,110 @@
+// Plans: everything that is wrong is said at once, each at its place.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "withy/campaign/cases.hpp"
+#include "withy/campaign/kept.hpp"
+#include "withy/tests/campaign/plan_fixture.hpp"
+
+namespace withy::campaign {
+namespace {
+
+using test::PlanFolder;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(Plans, SayAllThatIsWrongAtItsPlace) {
+  const PlanFolder folder;
+  const std::string said = folder.errors(R"(vary:
+  bodies.rod.mass: {normal: {mean: 1.2, devation: 0.1}}
+  gravity.1: {uniform: {from: -9, to: -10}}
+  bodies.rodd.mass: {grid: [1, 2]}
+  time.end: {list: nowhere.csv}
+  integrator.rtol: {normal: {mean: "3 kg", deviation: 0.1}}
+cases: 2.5
+sede: 3
+keep: {final: pivot}
+correlation: {of: [gravity.2], matrix: [[1]]}
+)");
+  const std::string file = (folder / "plan.yaml").string();
+  for (const char* part :
+       {":5:41: /vary/bodies.rod.mass/normal/devation: unknown key \"devation\"; did you mean 'deviation'?",
+        ":6:24: /vary/gravity.1/uniform: 'from' is not below 'to'",
+        ":7:30: /bodies/rodd: no \"rodd\" here to change; did you mean 'rod'?",
+        ":8:20: /vary/time.end/list: cannot read", ":9:55: /vary/integrator.rtol/normal/deviation: its unit is another",
+        ":10:8: /cases: got 2.5; need a whole number", ":11:1: /sede: unknown key \"sede\"; did you mean 'seed'?",
+        ":12:15: /keep/final: got \"pivot\"; need a list", ":13:1: /correlation/of: \"gravity.2\" does not vary"})
+    EXPECT_THAT(said, HasSubstr(file + part)) << said;
+}
+
+TEST(Plans, TryEveryValueThatStandsInThemInTheScene) {
+  const PlanFolder folder;
+  const std::string said = folder.errors(R"(vary:
+  bodies.rod.mass: {grid: [1, 2, -3, "4 m"]}
+  integrator.name: {grid: [dopri5, dopri]}
+  gravity.1: {uniform: {from: "-10 kg", to: "-9 kg"}}
+)");
+  EXPECT_THAT(said, HasSubstr("plan.yaml:7:31: /gravity/1: got \"-10 kg\""));
+  const std::string later = folder.errors(R"(vary:
+  bodies.rod.mass: {grid: [1, 2, -3, "4 m"]}
+  integrator.name: {grid: [dopri5, dopri]}
+keep: {final: [pivot]}
+)");
+  EXPECT_THAT(later, AllOf(HasSubstr("plan.yaml:5:34: /bodies/rod/mass: got -3"),
+                           HasSubstr("plan.yaml:5:38: /bodies/rod/mass: got \"4 m\""),
+                           HasSubstr("plan.yaml:6:36: /integrator/name: no integrator plugin \"dopri\"")));
+  EXPECT_THAT(folder.errors("vary: {bodies.rod.mass: {grid: [1]}}\nkeep: {peak: [pivto]}\n"),
+              HasSubstr("plan.yaml:5:15: /keep/peak/0: no result \"pivto\"; did you mean 'pivot'?"));
+}
+
+TEST(Plans, RefuseWhatTheirDesignCannotBe) {
+  const PlanFolder folder;
+  EXPECT_THAT(folder.errors("vary: {bodies.rod.mass: {grid: [1, 2]}}\ncases: 3\n"), HasSubstr("nothing is drawn"));
+  EXPECT_THAT(folder.errors("vary: {bodies.rod.mass: {grid: [1, 2]}}\ndesign: morris\n"),
+              HasSubstr("draws every value"));
+  EXPECT_THAT(folder.errors("vary: {bodies.rod.mass: {latin: {from: 1, to: 2}}}\ndesign: saltelli\n"),
+              HasSubstr("a sampling of its own"));
+  const std::string two = "vary: {gravity.0: {uniform: {from: 1, to: 2}}, gravity.2: {uniform: {from: 1, to: 2}}}\n";
+  for (const char* matrix : {"[[1, 0.5], [0.4, 1]]", "[[1, 2], [2, 1]]", "[[1, 0.5]]", "[[2, 0], [0, 1]]"})
+    EXPECT_THAT(folder.errors(two + "correlation: {of: [gravity.0, gravity.2], matrix: " + matrix + "}\n"),
+                HasSubstr("need 2 rows of 2 correlations"));
+}
+
+TEST(Plans, KeepColumnsOfHingesVectorsAndSingleResults) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(
+      "vary: {bodies.rod.mass: {grid: [1, \"2 kg\"]}}\nkeep: {final: [pivot, rod.tip, t], peak: [pivot.rate]}\n");
+  EXPECT_THAT(kept_columns(plan), ElementsAre("final.pivot[rad]", "final.rod.tip.x[m]", "final.rod.tip.y[m]",
+                                              "final.rod.tip.z[m]", "final.t[s]", "peak.pivot.rate[rad/s]"));
+}
+
+TEST(Plans, DeriveValuesByFormulasOfWhatVariesAndOfTheScene) {
+  const PlanFolder folder;
+  const std::string vary = "vary: {bodies.rod.mass: {grid: [2, 4]}}\n";
+  const Plan plan = folder.plan(vary + "derived: {gravity.0: \"sqrt(bodies.rod.mass) * gravity.1 / 2\"}\n");
+  EXPECT_EQ(Cases(plan).values(1)[1].number(), 2 * -9.81 / 2);
+  EXPECT_THAT(folder.errors(vary + "derived: {gravity.0: \"2 *\"}\n"),
+              HasSubstr("plan.yaml:5:22: /derived/gravity.0: "));
+  EXPECT_THAT(folder.errors(vary + "derived: {gravity.0: \"2 * gravity.7\"}\n"),
+              HasSubstr("\"gravity.7\" neither varies nor is a number of the scene"));
+  EXPECT_THAT(folder.errors(vary + "derived: {bodies.rod.mas: \"2\"}\n"),
+              HasSubstr("plan.yaml:5:27: /bodies/rod/mas: unknown key"));
+}
+
+TEST(Plans, FingerprintsTellApartWhatChangesResultsAndNothingElse) {
+  const PlanFolder folder;
+  const auto of = [&](const std::string& more) { return folder.plan(more).fingerprint; };
+  const std::string plan = "vary: {bodies.rod.mass: {normal: {mean: 1, deviation: 0.1}}}\ncases: 3\n";
+  EXPECT_EQ(of(plan), of("# a comment\nname: other words\n" + plan + "failures: stop\n"));
+  EXPECT_NE(of(plan), of(plan + "seed: 1\n"));
+  EXPECT_NE(of(plan), of(plan + "keep: {final: [pivot]}\n"));
+  const std::string list = "vary: {bodies.rod.mass: {list: mass.csv}}\n";
+  folder.write("mass.csv", "mass\n1\n2\n");
+  const std::string before = of(list);
+  folder.write("mass.csv", "mass\n1\n3\n");
+  EXPECT_NE(before, of(list));
+}
+
+}  // namespace
+}  // namespace withy::campaign

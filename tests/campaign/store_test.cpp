@@ -1,0 +1,205 @@
+// The store: what was kept is found again to the last bit, what is damaged is made again, and nothing else.
+#include "withy/campaign/store.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+#include "withy/campaign/collect.hpp"
+#include "withy/campaign/sweep_run.hpp"
+#include "withy/results/results_error.hpp"
+#include "withy/results/results_folder.hpp"
+#include "withy/tests/campaign/plan_fixture.hpp"
+
+namespace withy::campaign {
+namespace {
+
+using test::PlanFolder;
+using test::plugins;
+using testing::HasSubstr;
+
+const std::string fingerprint(64, 'a');
+
+CaseResult made(std::uint64_t index) {
+  CaseResult r;
+  r.index = index;
+  r.status = index % 5 == 0 ? "diverged" : "completed";
+  r.message = index % 5 == 0 ? std::string("its \"tip\",\nfar") : "";
+  r.values = {Value(0.1 * static_cast<double>(index)), Value(std::string("quadratic")), Value()};
+  r.numbers = {1.0 / (1.0 + static_cast<double>(index)), -0.0};
+  r.seconds = 0.5;
+  return r;
+}
+
+std::map<std::uint64_t, std::string> records(const std::filesystem::path& path) {
+  SegmentReader reader(path, fingerprint);
+  std::map<std::uint64_t, std::string> all;
+  while (const auto record = reader.next()) all.emplace(decode(*record)->index, *record);
+  return all;
+}
+
+TEST(Segments, AnyDamageCostsTheRecordsItTouchesAndNoOther) {
+  const PlanFolder folder;
+  const std::filesystem::path path = folder / "a.segment";
+  std::vector<std::size_t> ends;
+  {
+    SegmentWriter writer(path, fingerprint);
+    for (std::uint64_t i = 0; i < 60; ++i) {
+      writer.append(made(i));
+      ends.push_back(std::filesystem::file_size(path));
+    }
+    writer.close();
+  }
+  const std::string whole = folder.read("a.segment");
+  std::mt19937 random(4);
+  const std::size_t head = ends[0] - (ends[1] - ends[0]);
+  for (int trial = 0; trial < 400; ++trial) {
+    std::string bytes = whole;
+    std::size_t from = random() % whole.size(), to = from + 1 + random() % 300;
+    to = std::min(to, whole.size());
+    std::size_t cut = whole.size();
+    if (trial % 3 == 0) {
+      for (std::size_t i = from; i < to; ++i) bytes[i] = static_cast<char>(random());
+    } else if (trial % 3 == 1) {
+      bytes.resize(cut = from);
+    } else {
+      bytes.erase(from, to - from);
+    }
+    folder.write("b.segment", bytes);
+    const auto found = records(folder / "b.segment");
+    for (const auto& [index, record] : found) EXPECT_EQ(record, encode(made(index)));
+    for (std::uint64_t i = 0; i < 60; ++i) {
+      const std::size_t begin = i == 0 ? head : ends[i - 1];
+      const bool touched = ends[i] > cut || (trial % 3 != 1 && begin < to && from < ends[i]);
+      if (!touched) {
+        EXPECT_TRUE(found.contains(i)) << trial << ' ' << i;
+      }
+    }
+  }
+}
+
+TEST(Segments, GoOnBehindATornRecordAndHaveOneWriter) {
+  const PlanFolder folder;
+  const std::filesystem::path path = folder / "a.segment";
+  {
+    SegmentWriter writer(path, fingerprint);
+    writer.append(made(1));
+    writer.append(made(2));
+    EXPECT_THROW(SegmentWriter(path, fingerprint), FolderBusy);
+  }
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 3);
+  {
+    SegmentWriter writer(path, fingerprint);
+    writer.append(made(3));
+  }
+  const auto found = records(path);
+  EXPECT_EQ(found.size(), 2U);
+  EXPECT_TRUE(found.contains(1));
+  EXPECT_TRUE(found.contains(3));
+  SegmentReader other(path, std::string(64, 'b'));
+  EXPECT_FALSE(other.next()) << "records of another plan are none";
+}
+
+/// Twelve cases, some of them refused for a tolerance below zero.
+constexpr const char* twelve = R"(vary:
+  bodies.rod.mass: {grid: [1, 2]}
+  integrator.rtol: {normal: {mean: 1e-6, deviation: 3e-6}}
+  initial.hinges.pivot.rate.0: {sobol: {from: 0, to: 3}}
+cases: 6
+seed: 3
+keep: {final: [pivot], peak: [pivot.rate, rod.tip]}
+)";
+
+std::string table_of(const PlanFolder& folder, const std::string& store) {
+  collect(folder / store);
+  return folder.read(store + "/table.csv");
+}
+
+SweepOutcome run(const PlanFolder& folder, const Plan& plan, const std::string& store, SweepSettings settings) {
+  return run_sweep(plan, plugins(), Store(folder / store, plan, false), settings);
+}
+
+TEST(Sweeps, AreTheSameToTheLastByteWhateverTheJobsShardsAndOrder) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(twelve);
+  EXPECT_TRUE(run(folder, plan, "one", {1, 1, 1, {}}).whole());
+  const std::string table = table_of(folder, "one");
+  EXPECT_THAT(table, HasSubstr("\n11,"));
+  EXPECT_THAT(table, HasSubstr(",refused,")) << "a tolerance below zero";
+  EXPECT_TRUE(run(folder, plan, "many", {5, 1, 1, {}}).whole());
+  EXPECT_EQ(table_of(folder, "many"), table);
+  for (const std::uint64_t shard : {3U, 1U, 2U}) EXPECT_TRUE(run(folder, plan, "parts", {2, shard, 3, {}}).whole());
+  EXPECT_EQ(table_of(folder, "parts"), table);
+  EXPECT_EQ(folder.read("parts/failed.csv"), folder.read("many/failed.csv"));
+  EXPECT_EQ(folder.read("parts/statistics.csv"), folder.read("many/statistics.csv"));
+  EXPECT_EQ(run(folder, plan, "parts", {2, 1, 1, {}}).ran, 0U) << "all is there, whatever the shards were";
+  // A case alone.
+  const Cases cases(plan);
+  StoreIndex index(folder / "many", read_description(folder / "many"));
+  for (const std::uint64_t i : {4U, 9U}) {
+    CaseResult alone = run_case(plan, cases, i, plugins(), {}), kept = *index.read(i);
+    alone.seconds = kept.seconds = 0;
+    EXPECT_EQ(encode(alone), encode(kept));
+  }
+}
+
+TEST(Sweeps, RepeatWhatIsDamagedAndNothingElse) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(twelve);
+  run(folder, plan, "store", {1, 1, 1, {}});
+  const std::string table = table_of(folder, "store");
+  const std::string segment = "store/segments/1-of-1.0.segment";
+  std::string bytes = folder.read(segment);
+  bytes[bytes.size() / 2] ^= 1;
+  bytes.resize(bytes.size() - 5);
+  folder.write(segment, bytes);
+  const SweepOutcome repeated = run(folder, plan, "store", {1, 1, 1, {}});
+  EXPECT_EQ(repeated.ran, 2U);
+  EXPECT_GT(repeated.lost, 0U);
+  EXPECT_EQ(table_of(folder, "store"), table);
+}
+
+TEST(Sweeps, AStoreOfAnotherPlanIsNotMixedWith) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(twelve);
+  run(folder, plan, "store", {1, 1, 1, {}});
+  std::string with_seed_4 = twelve;
+  with_seed_4.replace(with_seed_4.find("seed: 3"), 7, "seed: 4");
+  const Plan other = folder.plan(std::string(twelve) + "failures: stop\n"), another = folder.plan(with_seed_4);
+  EXPECT_EQ(run(folder, other, "store", {1, 1, 1, {}}).ran, 0U) << "its cases are the same";
+  EXPECT_THROW(Store(folder / "store", another, false), ResultsError);
+  Store(folder / "store", another, true);
+  EXPECT_EQ(run(folder, another, "store", {1, 1, 1, {}}).ran, 12U);
+}
+
+TEST(Sweeps, TwoResultsOfOneCaseThatDifferAreAnError) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(twelve);
+  const Store store(folder / "store", plan, false);
+  CaseResult one = made(3), another = made(3);
+  another.numbers[0] = std::nextafter(another.numbers[0], 1.0);
+  for (const auto& [worker, result] : {std::pair{0U, one}, {1U, another}}) {
+    SegmentWriter writer(store.segment(1, 1, worker), plan.fingerprint);
+    writer.append(result);
+  }
+  EXPECT_THROW(StoreIndex(store.path(), store.about()), ResultsError);
+}
+
+TEST(Peaks, AreFoundBetweenOutputs) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(R"(vary: {time.output: {grid: [0.01, 1]}, time.end: {grid: [1]}}
+keep: {peak: [pivot.rate, pivot]}
+)");
+  const Cases cases(plan);
+  const CaseResult fine = run_case(plan, cases, 0, plugins(), {}), coarse = run_case(plan, cases, 1, plugins(), {});
+  ASSERT_TRUE(fine.completed() && coarse.completed());
+  // The outputs of the second are its turning points: between them it passes the bottom.
+  EXPECT_GT(fine.numbers[0], 3);
+  EXPECT_NEAR(coarse.numbers[0], fine.numbers[0], 0.01 * fine.numbers[0]);
+  EXPECT_NEAR(coarse.numbers[1], fine.numbers[1], 1e-12) << "it starts at its peak";
+}
+
+}  // namespace
+}  // namespace withy::campaign
