@@ -18,7 +18,7 @@ std::vector<std::size_t> where(const std::vector<Column>& columns, const std::ve
   std::vector<std::size_t> found;
   for (const std::string& name : names)
     for (std::size_t i = 0; i < columns.size(); ++i)
-      if (table_name(columns[i].name) == table_name(name)) found.push_back(i);
+      if (column_name(columns[i].name) == column_name(name)) found.push_back(i);
   return found;
 }
 
@@ -35,7 +35,7 @@ std::vector<std::size_t> select(const Model& model, const std::vector<Column>& c
     if (std::vector<std::size_t> found = where(columns, names); !found.empty()) return found;
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < columns.size(); ++i)
-    if (table_name(columns[i].name).starts_with(table_name(name) + ".")) found.push_back(i);
+    if (column_name(columns[i].name).starts_with(column_name(name) + ".")) found.push_back(i);
   return found;
 }
 
@@ -73,7 +73,7 @@ std::vector<std::string> kept_columns(const Plan& plan) {
     for (const std::string& name : asked)
       for (const std::size_t i : selected(*plan.base, columns.columns(), name)) {
         const Column& c = columns.columns()[i];
-        names.push_back(fmt::format("{}.{}[{}]", what, table_name(c.name), c.unit.empty() ? "1" : c.unit));
+        names.push_back(fmt::format("{}.{}[{}]", what, column_name(c.name), c.unit.empty() ? "1" : c.unit));
       }
   };
   add("final", plan.final);

@@ -24,7 +24,7 @@ std::string csv_line(std::span<const double> numbers) {
   return line;
 }
 
-std::string table_name(const std::string& column) {
+std::string column_name(const std::string& column) {
   std::string name;
   for (const char c : column) {
     if (c == '[')
@@ -69,7 +69,7 @@ std::string csv_head(const std::vector<Column>& columns) {
   std::string line;
   for (const Column& c : columns) {
     if (!line.empty()) line += ',';
-    line += table_name(c.name) + '[' + (c.unit.empty() ? "1" : c.unit) + ']';
+    line += column_name(c.name) + '[' + (c.unit.empty() ? "1" : c.unit) + ']';
   }
   return line + '\n';
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t most_panels = 8;
 
 bool asked(const std::string& full, const std::string& given) {
-  const std::string column = table_name(full), name = table_name(given);
+  const std::string column = column_name(full), name = column_name(given);
   return column == name || (column.starts_with(name) && column[name.size()] == '.');
 }
 
@@ -34,7 +34,7 @@ Curve curve_of(const DecimatedTable& table, std::size_t column, double scale) {
 Panel panel_of_column(const std::vector<NamedTable>& runs, const Column& column) {
   const bool angle = column.unit == "rad";
   const std::string unit = angle ? "deg" : (column.unit.empty() ? "1" : column.unit);
-  Panel panel{"t [s]", table_name(column.name) + " [" + unit + "]", {}, {}};
+  Panel panel{"t [s]", column_name(column.name) + " [" + unit + "]", {}, {}};
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const NamedTable& run : runs) {
     const auto& columns = run.table->columns();
@@ -78,7 +78,7 @@ std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::
       if (asked(column.name, name)) panels.push_back(panel_of_column(runs, column));
     if (panels.size() > before) continue;
     std::vector<std::string> known;
-    for (const Column& column : all) known.push_back(table_name(column.name));
+    for (const Column& column : all) known.push_back(column_name(column.name));
     const std::string guess = nearest(name, known);
     throw ResultsError("there is no column " + in_quotes(name) +
                        (guess.empty() ? "" : "; did you mean " + in_quotes(guess) + "?"));

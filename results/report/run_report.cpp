@@ -48,7 +48,7 @@ Json table_json(const DecimatedTable& table, const std::vector<std::vector<doubl
   Json columns = Json::array();
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
     const Column& column = table.columns()[c];
-    Json j{{"name", table_name(column.name)}, {"unit", column.unit}, {"data", data.add(table.column(c))}};
+    Json j{{"name", column_name(column.name)}, {"unit", column.unit}, {"data", data.add(table.column(c))}};
     if (table.stride() > 1) {
       std::vector<double> own;
       for (const std::vector<double>& row : samples) own.push_back(row[c]);
