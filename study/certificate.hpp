@@ -43,11 +43,11 @@ struct Certificate {
   double untruncated_drift = 0;           ///< RunSummary::untruncated_drift
   MomentumDrift momentum;                 ///< RunSummary::momentum
   std::vector<BodyFamilies> families;     ///< of every body that has modes
-  std::optional<double> rounding;         ///< relative error that rounding leaves the final accelerations; none: no digit
-  std::size_t samples = 0;                ///< of validity
-  std::vector<BodyValidity> bodies;       ///< of every flexible body
-  std::string against;                    ///< formulation that accelerations were compared with; empty: none
-  NeglectedAcceleration neglected;        ///< no samples where there was nothing to compare with
+  std::optional<double> rounding;    ///< relative error that rounding leaves the final accelerations; none: no digit
+  std::size_t samples = 0;           ///< of validity
+  std::vector<BodyValidity> bodies;  ///< of every flexible body
+  std::string against;               ///< formulation that accelerations were compared with; empty: none
+  NeglectedAcceleration neglected;   ///< no samples where there was nothing to compare with
   std::optional<ErrorEstimate> estimate;  ///< none where there is no model up, or it was not asked for
   StepLimit steps;
   std::vector<Indicator> indicators;  ///< the one that binds first

@@ -357,10 +357,9 @@ TEST(RunSummaries, peaks_drift_and_samples_do_not_depend_on_the_output_interval)
     options.end = 1.5;
     options.output = 1e-3;
     const std::vector<Tip> ends = tips(*m.scene.model);
-    static_cast<void>(simulate(*m.scene.model, *m.equations, *make_plugin<Integrator>(m.registry, "dop853"),
-                               m.scene.initial, options, [&](const State& s) {
-                                 greatest = std::max(greatest, std::abs(deflection(*m.equations, s.y, ends[0])[1]));
-                               }));
+    static_cast<void>(simulate(
+        *m.scene.model, *m.equations, *make_plugin<Integrator>(m.registry, "dop853"), m.scene.initial, options,
+        [&](const State& s) { greatest = std::max(greatest, std::abs(deflection(*m.equations, s.y, ends[0])[1])); }));
     EXPECT_NEAR(a.peak_deflection.at("boom")[1], greatest, 2e-3 * greatest) << formulation;
   }
 }

@@ -1,8 +1,7 @@
 // A program of its own that closes a loop: it holds the shoulder of an arm at an angle, a hundred times a second.
-#include <withy/host/simulation.hpp>
-
 #include <cstdio>
 #include <exception>
+#include <withy/host/simulation.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
