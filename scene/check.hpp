@@ -33,7 +33,7 @@ class NameList {
 struct SceneNames {
   NameList bodies;
   NameList hinges;
-  NameList frames;              ///< "body" and "body.frame"
+  NameList frames;  ///< "body" and "body.frame"
   NameList loads;
   bool frames_complete = true;  ///< false where a body could not be made: any frame name is taken then
 };

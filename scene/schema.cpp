@@ -236,8 +236,7 @@ class SchemaWriter {
             {"properties",
              {{"hinges", part("position", "rate")},
               {"bodies", part("modes", "rates")},
-              {"inputs",
-               {{"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", number}}},
+              {"inputs", {{"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", number}}},
               {"time", number},
               {"work", number}}}};
   }

@@ -34,7 +34,7 @@ class Timer {
 EscalatedRun run_escalating(const Prepared& prepared, const RunSettings& settings) {
   const Scene& scene = prepared.scene;
   for (const LoadNode& load : scene.model->loads())
-    if (load.load->discrete() != nullptr)
+    if (load.load->discrete() != nullptr && load.load->input() == nullptr)
       throw InputError(scene.file + ": /formulation: got 'auto', which changes the equations along a run; load '" +
                        load.name + "' has discrete states, which do not go over: name a formulation");
   if (settings.checkpoint_seconds > 0 || settings.resume != nullptr)

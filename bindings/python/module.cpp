@@ -24,7 +24,17 @@ namespace py = pybind11;
 
 namespace {
 
-using namespace withy::host;
+using withy::host::Equations;
+using withy::host::Event;
+using withy::host::Follow;
+using withy::host::Library;
+using withy::host::LibraryOptions;
+using withy::host::Port;
+using withy::host::Result;
+using withy::host::Scene;
+using withy::host::Simulation;
+using withy::host::SimulationStopped;
+using withy::host::Snapshot;
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// Lets Python handle signals while a call goes on, some twenty times a second: Ctrl-C ends the call, and what its

@@ -66,6 +66,7 @@ class DampedSegment final : public Body {
   std::optional<PointExpansion> station(const StationName& name) const override { return segment_->station(name); }
   std::string stations() const override { return segment_->stations(); }
   const Rod* rod() const override { return segment_->rod(); }
+  std::optional<BodyCut> cut(double x) const override { return segment_->cut(x); }
   std::vector<std::string> remarks() const override { return segment_->remarks(); }
 
  private:

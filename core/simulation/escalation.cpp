@@ -278,8 +278,9 @@ EscalatedRun simulate_escalating(const Model& model, const std::vector<Rung>& ru
                                  const State& initial, const RunOptions& options,
                                  const std::function<void(const State&, std::size_t)>& output) {
   if (rungs.empty()) throw std::invalid_argument("no formulation to run in");
-  if (!model.layout().discrete_slots.empty())
-    throw std::invalid_argument("discrete states of loads do not go over from one formulation to the next");
+  for (const DiscreteSlot& slot : model.layout().discrete_slots)
+    if (model.loads()[slot.load].load->input() == nullptr)
+      throw std::invalid_argument("discrete states of loads do not go over from one formulation to the next");
   if (options.checkpoint || options.resume != nullptr)
     throw std::invalid_argument("a run that changes its formulation has no checkpoints");
   return Escalation(model, rungs, integrator, initial, options, output).run();

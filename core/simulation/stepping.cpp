@@ -8,8 +8,7 @@ namespace withy {
 using Cause = SteppingEnd::Cause;
 
 Stepping::Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const SteppingOptions& options)
-    : model_(model),
-      stepper_(std::move(stepper)),
+    : stepper_(std::move(stepper)),
       clocks_(model),
       jumps_(discontinuities(model)),
       zeros_(model, options.events, stepper_->state()),

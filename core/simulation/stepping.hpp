@@ -92,7 +92,6 @@ class Stepping {
 
   static constexpr int most_zeros_at_once = 20;
 
-  const Model& model_;
   std::unique_ptr<Stepper> stepper_;
   SteppingObserver* observer_ = nullptr;  ///< of the run under way
   Clocks clocks_;

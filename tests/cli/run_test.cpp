@@ -59,7 +59,7 @@ TEST(Run, OutputsAreColumnsAndChangeNothingElse) {
   for (std::size_t i = 0; i < with.size(); ++i) EXPECT_EQ(with[i].substr(0, without[i].size() + 1), without[i] + ",");
   EXPECT_THAT(with[0], HasSubstr(",shoulder_torque[N m],elbow_torque[N m],elbow_load.fx[N],"));
   EXPECT_THAT(with[0], HasSubstr(",root.stress_z[Pa],middle.fx[N],"));
-  EXPECT_THAT(with[0], testing::EndsWith(",tip.wz[rad/s],box.x[m/s^2],box.y[m/s^2],box.z[m/s^2]"));
+  EXPECT_THAT(with[0], testing::EndsWith(",tip.wz[rad/s],speed[m/s],box.x[m/s^2],box.y[m/s^2],box.z[m/s^2]"));
   const auto head = cells(with[0]);
   const auto at = [&](const std::string& name, std::size_t row) {
     const auto found = std::find(head.begin(), head.end(), name);

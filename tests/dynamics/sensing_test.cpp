@@ -1,7 +1,11 @@
 /// \file
 /// What sensors see – motion and accelerations of frames, energies of bodies – against differences along the motion and
 /// the dense reference.
+#include <Eigen/Geometry>
+#include <algorithm>
+
 #include "sensed_case.hpp"
+#include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/tests/conformance/allocations.hpp"
 
 namespace withy::test {
@@ -67,6 +71,71 @@ TEST_P(SensedStates, energies_and_momenta_of_the_bodies_add_up_to_those_of_the_r
     EXPECT_LT((sum.angular - arrow(whole.angular_momentum)).norm(), close * (10 + sum.angular.norm()))
         << "seed " << seed;
   }
+}
+
+/// The numbers of a scene's outputs at the state moved along its motion.
+Eigen::VectorXd outputs_at(const Case& c, SensorReader& reader, double by) {
+  Eigen::VectorXd values(static_cast<Eigen::Index>(reader.columns().size()));
+  EXPECT_TRUE(reader.read(moved(c, by), {values.data(), reader.columns().size()}));
+  return values;
+}
+
+/// Seen from a moving frame velocities are the rates of positions, and accelerations those of velocities.
+TEST(SensorsOfFrames, seen_from_a_moving_frame_are_rates_of_each_other) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    RandomScene random(seed, {.bodies = 4});
+    Case c(random.text() +
+               "outputs:\n  eye: {type: frame, of: b3.a, in: b1.m}\n  gap: {type: distance, from: b0.m, to: b3.a}\n",
+           "quadratic");
+    c.state = random.state(*c.scene.model, c.scene.initial);
+    SensorReader reader(c.scene.outputs, *c.equations);
+    const auto at = [&](const std::string& name) {
+      const auto found = std::find_if(reader.columns().begin(), reader.columns().end(),
+                                      [&](const Column& column) { return column.name == name; });
+      EXPECT_NE(found, reader.columns().end()) << name;
+      return found - reader.columns().begin();
+    };
+    const Eigen::VectorXd values = outputs_at(c, reader, 0);
+    const Eigen::VectorXd rates = central_difference([&](double h) { return outputs_at(c, reader, h); }, 1e-3);
+    const auto expect_rate = [&](const std::string& of, const std::string& is, Eigen::Index count) {
+      const Eigen::VectorXd slope = rates.segment(at(of), count);
+      EXPECT_LT((values.segment(at(is), count) - slope).norm(), 1e-7 * (1 + slope.norm())) << "seed " << seed << is;
+    };
+    expect_rate("eye.x", "eye.vx", 3);
+    expect_rate("eye.vx", "eye.ax", 3);
+    expect_rate("eye.wx", "eye.alphax", 3);
+    expect_rate("gap", "gap.rate", 1);
+    const auto q = values.segment<4>(at("eye.qw")), q_dot = rates.segment<4>(at("eye.qw"));
+    const Eigen::Quaterniond attitude(q[0], q[1], q[2], q[3]), turn(q_dot[0], q_dot[1], q_dot[2], q_dot[3]);
+    const Vector3 spin = 2 * (turn * attitude.conjugate()).vec();
+    EXPECT_LT((values.segment<3>(at("eye.wx")) - spin).norm(), 1e-7 * (1 + spin.norm()));
+    const Vector3 r = values.segment<3>(at("eye.rx"));
+    const Eigen::Quaterniond turned(Eigen::AngleAxisd(r.x(), Vector3::UnitX()) *
+                                    Eigen::AngleAxisd(r.y(), Vector3::UnitY()) *
+                                    Eigen::AngleAxisd(r.z(), Vector3::UnitZ()));
+    EXPECT_LT(turned.angularDistance(attitude), 1e-12);
+  }
+}
+
+TEST(SensorsOfExpressions, have_the_value_that_arithmetic_gives) {
+  const Case c(
+      "format: withy/1\ntime: {end: 1}\nbodies: {hub: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+      "hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}}\n"
+      "initial: {hinges: {axle: {position: [0.5], rate: [3]}}}\noutputs:\n"
+      "  turn: {type: hinge, hinge: axle}\n  motion: {type: energy}\n"
+      "  a: {type: expression, value: \"-2^2 + norm(3, 4) * max(1, 2, t) / 2 - 2^-1\", unit: m}\n"
+      "  b: {type: expression, value: \"sin(turn.position)^2 + cos(turn.position)^2 - (a - .5) * pi / pi\"}\n"
+      "  c: {type: expression, value: motion.kinetic - turn.rate^2 / 2}\n",
+      "quadratic");
+  SensorReader reader(c.scene.outputs, *c.equations);
+  std::vector<double> values(reader.columns().size());
+  ASSERT_TRUE(reader.read(c.state, values));
+  const std::size_t a = values.size() - 3;
+  EXPECT_EQ(reader.columns()[a].name, "a");
+  EXPECT_EQ(reader.columns()[a].unit, "m");
+  EXPECT_NEAR(values[a], 0.5, 1e-15);
+  EXPECT_NEAR(values[a + 1], 1, 1e-15);
+  EXPECT_NEAR(values[a + 2], 0, 1e-15);
 }
 
 /// What stands in the memory from another state does not matter, and nothing is allocated.

@@ -75,6 +75,16 @@ TEST(HostedScene, is_studied) {
   EXPECT_TRUE(advice["advice"].is_object()) << advice.dump();
 }
 
+// The values of inputs go over from one formulation to the next.
+TEST(HostedScene, with_inputs_runs_in_the_formulation_that_is_needed) {
+  Scene arm = Scene::read(library(), WITHY_SOURCES "/scenes/commanded-arm.yaml");
+  arm.set("initial", "{inputs: {command: 2}}").set("time.end", 1.5);
+  const host::Result quadratic = arm.run(), automatic = arm.formulation("auto").run();
+  ASSERT_EQ(automatic.status, "completed") << automatic.message;
+  EXPECT_GT(json::parse(automatic.json)["certificate"]["stretches"].size(), 1U);
+  EXPECT_NEAR(automatic.column("shoulder").back(), quadratic.column("shoulder").back(), 0.01);
+}
+
 TEST(HostedScene, hears_the_remarks_of_the_library) {
   std::vector<std::string> remarks;
   const host::Library own({{"no/such/folder"}, [&](std::string_view remark) { remarks.emplace_back(remark); }});

@@ -66,7 +66,9 @@ loads: {command: {type: input, hinge: axle, hold: constant}}
 
 // Communication points change nothing but where steps end: the run of the scene is met within its tolerance.
 TEST(HostedSimulation, without_inputs_is_the_run_of_the_scene) {
-  const Scene scene = Scene::read(library(), WITHY_SOURCES "/scenes/two-link-slew.yaml");
+  const Scene scene =
+      Scene::read(library(), WITHY_SOURCES "/scenes/two-link-slew.yaml")
+          .set("outputs", "{imu: {type: accelerometer, of: link2.tip}, drive: {type: effort, hinge: shoulder}}");
   const host::Result run = scene.run();
   ASSERT_EQ(run.status, "completed") << run.message;
   Simulation simulation(scene);
@@ -75,11 +77,14 @@ TEST(HostedSimulation, without_inputs_is_the_run_of_the_scene) {
     EXPECT_EQ(simulation.outputs()[i].name, run.columns[i].name);
     EXPECT_EQ(simulation.outputs()[i].unit, run.columns[i].unit);
   }
-  const std::vector<double> t = run.column("t"), shoulder = run.column("shoulder"), tip = run.column("link2.tip.x");
+  const std::vector<double> t = run.column("t"), shoulder = run.column("shoulder"), tip = run.column("link2.tip.x"),
+                            imu = run.column("imu.x"), drive = run.column("drive");
   for (std::size_t i = 1; i < t.size(); i += 7) {
     simulation.step(t[i]);
     EXPECT_NEAR(simulation.output("shoulder"), shoulder[i], 1e-5);
     EXPECT_NEAR(simulation.output("link2.tip.x"), tip[i], 1e-5);
+    EXPECT_NEAR(simulation.output("imu.x"), imu[i], 1e-3);
+    EXPECT_NEAR(simulation.output("drive"), drive[i], 1e-9);
   }
 }
 
