@@ -23,8 +23,12 @@ class Monitor {
 
   /// Peaks of deflections and efforts: for every accepted step, and what lies between it and the one before.
   void observe(const State& state);
-  /// Brings the observation to an output. Nothing that a run reports of itself comes from there.
-  void show(const State& state) { seen_.observe(state.y); }
+  /// Brings the observation to an output. Of what a run reports of itself only peaks of efforts look there too: a hinge
+  /// that is driven alone takes steps far longer than its efforts' changes.
+  void show(const State& state) {
+    seen_.observe(state.y);
+    raise_efforts(state);
+  }
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
   /// Energy against the work done. A state where they balance is to be trusted.

@@ -86,11 +86,11 @@ struct RunSummary {
   double reached = 0;  ///< time of the last accepted state [s]
   /// Greatest |deflection| of the tip of each body that has modes and a "tip", over all accepted steps and, between
   /// them, along the cubic through their coordinates and rates; body axes x, y, z [m]. Of a body in segments under its
-  /// own name, over the accepted steps. No peak depends on the output interval.
+  /// own name, over the accepted steps. None of these depends on the output interval.
   std::map<std::string, std::array<double, 3>> peak_deflection;
   /// Of each of them, the greatest distance of the tip from its undeformed place, over the body's length.
   std::map<std::string, double> peak_deflection_ratio;
-  /// Greatest |effort| of the loads on each generalized speed over all accepted steps and their middles [N m, N].
+  /// Greatest |effort| of the loads on each generalized speed over all accepted steps, their middles and the outputs.
   std::vector<double> peak_effort;
   /// The same of the efforts that motions need.
   std::vector<double> peak_motion_effort;
