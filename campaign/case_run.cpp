@@ -27,7 +27,7 @@ RunSummary simulate_case(const study::Prepared& prepared, KeptNumbers& kept, Reg
   options.interrupted = control.interrupted;
   if (kept.watches_steps()) {
     // A checkpoint after every step has its state, and changes nothing in a run.
-    options.put_down = [] { return true; };
+    options.checkpoint_due = [] { return true; };
     options.checkpoint = [&](const Checkpoint& checkpoint) { kept.see(checkpoint.state, 0); };
   }
   return withy::simulate(*scene.model, *prepared.equations, *scene.integrator, scene.initial, options,

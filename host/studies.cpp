@@ -38,7 +38,7 @@ std::string advice_of(const study::Prepared& prepared, const study::Outputs& out
                       const study::Advice& advice, study::Evaluator& evaluator) {
   const AdviceQuestion question{prepared, outputs, accuracy};
   if (!advice.choice) {
-    const std::string why = advice.interrupted ? "interrupted" : no_advice_text(advice, accuracy);
+    const std::string why = advice.interrupted ? "interrupted" : no_advice_text(advice, question);
     return search_json(question, advice, why).dump();
   }
   std::vector<std::string> changes;
