@@ -61,7 +61,7 @@ Claims claims_of(unsigned seed, const std::string& scene) {
     OutputReader ours(outputs, prepared.model(), *prepared.equations);
     OutputReader theirs(outputs, *beyond->model, *beyond->equations);
     Distances greatest = outputs.none();
-    for (std::size_t i = 0; i < used.size(); ++i) outputs.raise(ours.read(used[i].y), theirs.read(up[i].y), greatest);
+    for (std::size_t i = 0; i < used.size(); ++i) outputs.raise(ours.read(used[i]), theirs.read(up[i]), greatest);
     const NamedDistances truth = named(outputs, greatest, e.distances.until);
     claims.list.push_back({formulation, truth.greatest_hinge(), truth.greatest_tip(), e.distances.greatest_hinge(),
                            e.distances.greatest_tip(), e.distances.until, e.end});
