@@ -67,7 +67,8 @@ void read_derived(const Value& given, const PlanReader& reader, Plan& plan) {
       reader.error(value.place(), in_quotes(path) + " varies already");
     try {
       Derived d{path, *formula, value.place(), {}};
-      for (const std::string& name : Formula(*formula).names()) {
+      const Formula parsed(*formula);
+      for (const std::string& name : parsed.names()) {
         const auto axis = std::find(varied.begin(), varied.end(), name);
         d.names.emplace_back(name, axis == varied.end() ? -1 : static_cast<int>(axis - varied.begin()));
       }

@@ -39,6 +39,11 @@ Scaled scaled_mass(const DenseSystem& system) {
   return s;
 }
 
+std::size_t greatest_index(const std::vector<double>& v) {
+  const auto less = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  return static_cast<std::size_t>(std::max_element(v.begin(), v.end(), less) - v.begin());
+}
+
 std::vector<double> of_all(const Scaled& s, const Eigen::VectorXd& v, std::size_t size) {
   std::vector<double> all(size);
   for (std::size_t i = 0; i < s.free.size(); ++i)
@@ -207,6 +212,11 @@ RoundingError rounding_error(const Model& model, const EquationsOfMotion& equati
   const bool solved = equations.derivatives(state.time, state.y, rates, work).ok();
   const bool seen = solved && trip.of(std::span(rates).subspan(layout.positions, layout.speeds), error);
   if (!seen || probing == Probing::any) static_cast<void>(trip.of(trip.everywhere(), error));
+  if (layout.speeds <= largest_examined) {
+    // A way there and back along directions that M hardly moves may look well where no digit of M tells it from zero.
+    const AttainableAccuracy bound = attainable_accuracy(equations.system(state.time, state.y));
+    if (bound.accuracy >= 1) error = {bound.accuracy, bound.weakest.empty() ? 0 : greatest_index(bound.weakest)};
+  }
   return error;
 }
 

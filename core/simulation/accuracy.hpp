@@ -36,7 +36,9 @@ struct RoundingError {
 /// with M and the second solves, so that what comes back lacks what rounding takes in this tree, of whatever size.
 /// The accelerations are those at the state and, where there are none or `any`, others of equal size in all
 /// coordinates. Where the equations take no efforts it is κ·2⁻⁵², of at most `largest_examined` speeds. Infinite where
-/// M is singular. In time proportional to the number of speeds.
+/// M is singular, and κ·2⁻⁵² where that is 1 or more in a model of at most `largest_examined` speeds: M is singular to
+/// rounding. What making the tree's constants has lost already is not seen: of a hinged beam with a tip of its own mass
+/// the error is 30 times the estimate, a tenth of κ·2⁻⁵². In time proportional to the number of speeds beyond those.
 enum class Probing { these, any };
 RoundingError rounding_error(const Model& model, const EquationsOfMotion& equations, const State& state,
                              Probing probing = Probing::these);

@@ -248,13 +248,13 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   summary.steps = run.stepper().statistics();
   const MassMatrixHistory history = look_at_mass_matrix(run, model, equations, initial, stop, summary);
   const bool examined = equations.layout().speeds <= largest_examined;
+  const double mean_step =
+      (summary.reached - initial.time) / static_cast<double>(std::max<std::size_t>(summary.steps.accepted, 1));
   if (stop.status == RunStatus::completed) {
     summary.message = message_of_completed(run, summary);
-    const double steps = static_cast<double>(std::max<std::size_t>(summary.steps.accepted, 1));
-    const std::string imbalanced =
-        run.monitor().greatest_speed() > options.least_speed
-            ? imbalance(summary, options, integrator, (summary.reached - initial.time) / steps)
-            : std::string();
+    const std::string imbalanced = run.monitor().greatest_speed() > options.least_speed
+                                       ? imbalance(summary, options, integrator, mean_step)
+                                       : std::string();
     if (!imbalanced.empty()) {
       stop.status = RunStatus::inaccurate;
       summary.message = imbalanced + (summary.message.empty() ? "" : " ") + summary.message;
@@ -262,6 +262,8 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   } else {
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end
     summary.message = explain(stop, summary.final.time, examined ? &history : nullptr, model.layout());
+    if (stop.status == RunStatus::diverged)
+      summary.message = steps_too_long(summary, integrator, mean_step) + summary.message;
   }
   if (stop.status != RunStatus::completed && stop.status != RunStatus::interrupted) go_back(run.monitor(), summary);
   summary.status = stop.status;

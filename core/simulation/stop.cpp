@@ -30,22 +30,24 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
   return {};
 }
 
-std::string imbalance(const RunSummary& summary, const RunOptions& options, const Integrator& integrator,
-                      double mean_step) {
+std::string steps_too_long(const RunSummary& summary, const Integrator& integrator, double mean_step) {
   // Of the greatest stable step: a mean beyond this is no going to and fro about the limit.
   constexpr double beyond = 1.5;
-  // What no stable integration leaves, of a formulation that need not conserve energy.
-  constexpr double unstable_drift = 0.05;
   const double product = mean_step * summary.fastest_mode;
   const std::optional<double> limit = integrator.stability_limit();
-  const bool unstable = limit && std::isfinite(*limit) && product > beyond * *limit;
-  const double allowed = unstable ? std::min(unstable_drift, options.drift_limit) : options.drift_limit;
+  if (!limit || !std::isfinite(*limit) || !(product > beyond * *limit)) return {};
+  return "Steps of " + brief(mean_step) + " s are too long for the integrator: times the fastest mode, " +
+         brief(summary.fastest_mode) + " rad/s, they are " + brief(product) + ", and it is stable to " + brief(*limit) +
+         ". ";
+}
+
+std::string imbalance(const RunSummary& summary, const RunOptions& options, const Integrator& integrator,
+                      double mean_step) {
+  // What no stable integration leaves, of a formulation that need not conserve energy.
+  constexpr double unstable_drift = 0.05;
+  std::string text = steps_too_long(summary, integrator, mean_step);
+  const double allowed = !text.empty() ? std::min(unstable_drift, options.drift_limit) : options.drift_limit;
   if (!(summary.energy_drift > allowed)) return {};
-  std::string text;
-  if (unstable)
-    text = "Steps of " + brief(mean_step) + " s are too long for the integrator: times the fastest mode, " +
-           brief(summary.fastest_mode) + " rad/s, they are " + brief(product) + ", and it is stable to " +
-           brief(*limit) + ". ";
   text += "Energy and work do not balance: off by " + brief(summary.energy_drift) + " of the greatest energy";
   if (std::isfinite(options.drift_limit))
     text += ", where the formulation conserves energy and the tolerance explains at most " + brief(options.drift_limit);

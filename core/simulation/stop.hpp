@@ -22,6 +22,10 @@ struct Stop {
 Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion& equations, const State& state,
              const StepStatistics& steps);
 
+/// Says that steps are beyond what the integrator is stable to, and ends with a blank; empty where they are not.
+/// \param mean_step [s] of the accepted steps
+std::string steps_too_long(const RunSummary& summary, const Integrator& integrator, double mean_step);
+
 /// Why a run that came to its end is not to be believed, with the steps first where they are beyond what the integrator
 /// is stable to; empty where it is.
 /// \param mean_step [s] of the accepted steps

@@ -50,7 +50,7 @@ TEST_P(Formulations, approach_the_rigid_body_as_one_over_stiffness) {
   const Scene s = scene();
   expect_rigid_limit(
       *s.formulation, [&](double factor) { return scene(factor).model; }, &Formulations::moving, "pivot",
-      GetParam() == "ruthless" || GetParam() == "auto" ? RigidLimit::reached : RigidLimit::approached);
+      GetParam() == "ruthless" ? RigidLimit::reached : RigidLimit::approached);
 }
 
 TEST_P(Formulations, without_modes_are_bitwise_the_same_rigid_body) {

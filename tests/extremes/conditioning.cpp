@@ -75,10 +75,10 @@ void tip_mass(Campaign& campaign) {
     const AttainableAccuracy attainable = attainable_accuracy(system);
     const double estimated = rounding_error(*made.scene.model, *made.equations, state, Probing::any).relative;
     campaign.row(fmt::format("tip {:g} × beam, error of the accelerations", mass), "the arm's M in 330 digits",
-                 "≤ 10 times the estimate, which is ≤ 10 κ·2⁻⁵²",
+                 "≤ 10 κ·2⁻⁵², as the estimate",
                  fmt::format("{:.2g}; estimated {:.2g}; κ = {:.2g}, κ·2⁻⁵² = {:.2g}, residual {:.1g}", error, estimated,
                              attainable.condition, attainable.accuracy, residual(system, a)),
-                 error <= 10 * estimated && estimated <= 10 * attainable.accuracy);
+                 error <= 10 * attainable.accuracy && estimated <= 10 * attainable.accuracy);
     of_clamped_free = attainable.condition;
   }
   // The family that knows its load loses fewer digits; that the hinge moves the tip as its first mode does remains.

@@ -27,7 +27,7 @@ std::vector<std::string> load_all(Registry& registry) {
 
 std::vector<std::string> everything(Registry& registry) {
   return load_all<withy::Body, withy::Hinge, withy::ModeFamily, withy::Formulation, withy::Integrator, withy::Load,
-                  withy::Motion, withy::StrainKinematics>(registry);
+                  withy::Motion, withy::StrainKinematics, withy::Sensor>(registry);
 }
 
 TEST(StaticPlugins, are_the_plugins_of_the_libraries) {
