@@ -66,6 +66,9 @@ class Scaler {
     for (const auto& [name, part] : all->members()) {
       std::vector<ParameterSpec> specs = registry_.find<Interface>(part.text_at("type"))->parameters;
       specs.insert(specs.end(), common.begin(), common.end());
+      // What an input's table holds depends on where it acts; the scenes have torques alone.
+      for (ParameterSpec& spec : specs)
+        if (part.text_at("type") == "input" && spec.key == "table") spec.columns = {"s", "N m"};
       json[name] = members(part, specs);
     }
     return json;
