@@ -196,7 +196,10 @@ MassMatrixHistory look_at_mass_matrix(const Run& run, const Model& model, const 
     history.last = equations.system(summary.final.time, summary.final.y);
     summary.conditioning = conditioning(history.last);
   }
-  summary.fastest_mode = fastest_mode(model, history.last);
+  // Where a run has diverged nothing vibrates as it did on the way there.
+  const State& trusted = run.monitor().trusted();
+  summary.fastest_mode = fastest_mode(
+      model, stop.status == RunStatus::diverged ? equations.system(trusted.time, trusted.y) : history.last);
   return history;
 }
 
