@@ -31,8 +31,8 @@ correlation: {of: [gravity.2], matrix: [[1]]}
   for (const char* part :
        {":5:41: /vary/bodies.rod.mass/normal/devation: unknown key \"devation\"; did you mean 'deviation'?",
         ":6:24: /vary/gravity.1/uniform: 'from' is not below 'to'",
-        ":7:29: /bodies: no \"rodd\" here to change; did you mean 'rod'?",
-        ":8:20: /vary/time.end/list: cannot read", ":9:55: /vary/integrator.rtol/normal/deviation: its unit is another",
+        ":7:29: /bodies: no \"rodd\" here to change; did you mean 'rod'?", ":8:20: /vary/time.end/list: cannot read",
+        ":9:55: /vary/integrator.rtol/normal/deviation: its unit is another",
         ":10:8: /cases: got 2.5; need a whole number", ":11:1: /sede: unknown key \"sede\"; did you mean 'seed'?",
         ":12:15: /keep/final: got \"pivot\"; need a list", ":13:15: /correlation/of: \"gravity.2\" does not vary"})
     EXPECT_THAT(said, HasSubstr(file + part)) << said;
