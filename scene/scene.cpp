@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <list>
+#include <set>
 
+#include "withy/core/model/columns.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/file_notes.hpp"
+#include "withy/scene/control_order.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
@@ -48,7 +52,9 @@ class SceneBuilder {
     scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);
     add_motions(tree.model.get());
+    name_signals(tree);
     add_loads(tree.model.get());
+    tree.names.loads = {};
     for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
       tree.names.loads.add(load.name);
     add_outputs(tree);
@@ -138,11 +144,47 @@ class SceneBuilder {
     scene_.source.set(key, std::move(checked));
   }
 
+  /// What loads may measure and act through, by the names that the scene gives.
+  void name_signals(SceneTree& tree) {
+    const auto members = [&](const char* key) {
+      const Value* given = document_.root.find(key);
+      return given == nullptr || given->kind() != Value::Kind::map ? std::vector<Value::Member>{} : given->members();
+    };
+    for (const auto& [name, given] : members("loads")) tree.names.loads.add(name);
+    if (tree.model == nullptr) return;
+    for (const HingeNode& hinge : tree.model->hinges()) {
+      for (const Column& c : coordinate_columns(hinge)) tree.names.signals.add(c.name);
+      for (const Column& c : rate_columns(hinge)) tree.names.signals.add(c.name);
+    }
+    for (const char* key : {"outputs", "loads"})
+      for (const auto& [name, given] : members(key)) tree.names.signals.add(name);
+    const auto measures = [](const Value::Member& load) {
+      const Value* type = load.second.find("type");
+      return load.second.has("of") ||
+             (type != nullptr && type->kind() == Value::Kind::text && type->text() == "expression");
+    };
+    const std::vector<Value::Member> loads = members("loads");
+    const Value* outputs = document_.root.find("outputs");
+    if (outputs != nullptr && std::any_of(loads.begin(), loads.end(), measures))
+      tree.model->set_measured(measurable(*outputs, *tree.model, document_, tree.names, checker_.registry()));
+  }
+
   void add_loads(Model* model) {
+    std::list<PendingLoad> loads;
+    std::set<std::string> names;
+    if (const Value* given = document_.root.find("loads"))
+      for (const auto& [name, load] : given->members()) names.insert(name);
     add_parts<Load>("loads", grammar::load_members(), model != nullptr,
-                    [&](const std::string& name, const Value&, const std::unique_ptr<Load>& load) {
-                      model->add_load(name, *load);
+                    [&](const std::string& name, const Value& value, std::unique_ptr<Load> load) {
+                      loads.push_back({name, needed_loads(value, names), std::move(load)});
                     });
+    for (const PendingLoad& pending : in_order_of_need(std::move(loads), checker_)) {
+      try {
+        model->add_load(pending.name, *pending.load);
+      } catch (const std::invalid_argument& e) {
+        checker_.key_error("/loads/" + pending.name, e.what());
+      }
+    }
   }
   void add_motions(Model* model) {
     add_parts<Motion>("motions", grammar::motion_members(), model != nullptr,
@@ -224,6 +266,12 @@ class SceneBuilder {
       check_driven(model);
     }
     model.prescribe(scene_.initial);
+    if (model.layout().continuous == 0) return;
+    // Where the loads' own states begin depends on all else; what the scene says of them goes first.
+    model.begin_continuous(scene_.initial);
+    const Value* loads = given == nullptr ? nullptr : given->find("loads");
+    if (loads != nullptr && diagnostics_.ok())
+      set_state(Value::map({{"loads", *loads}}, given->place()), model, checker_, scene_.initial);
   }
 
   /// Reports what `initial` says of driven hinges against their motions.

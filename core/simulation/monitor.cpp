@@ -159,9 +159,10 @@ void Monitor::observe(const State& state) {
   last_ = state;
 }
 
-/// The middle of the last step: positions on the cubic through those at its ends and their rates, speeds on the line.
+/// The middle of the last step: positions on the cubic through those at its ends and their rates, the
+/// rest on the line.
 void Monitor::go_to_middle(const State& state) {
-  const std::size_t positions = model_.layout().positions, speeds = model_.layout().speeds;
+  const std::size_t positions = model_.layout().positions, moving = model_.layout().moving();
   const double h = state.time - last_.time;
   between_.time = last_.time + 0.5 * h;
   const bool smooth = equations_.position_rates(last_.time, last_.y, rates_before_, work_).ok() &&
@@ -169,7 +170,7 @@ void Monitor::go_to_middle(const State& state) {
   for (std::size_t i = 0; i < positions; ++i)
     between_.y[i] = smooth ? cubic(0.5, last_.y[i], h * rates_before_[i], state.y[i], h * rates_[i])
                            : 0.5 * (last_.y[i] + state.y[i]);
-  for (std::size_t i = positions; i < positions + speeds; ++i) between_.y[i] = 0.5 * (last_.y[i] + state.y[i]);
+  for (std::size_t i = positions; i < moving; ++i) between_.y[i] = 0.5 * (last_.y[i] + state.y[i]);
   equations_.normalize(between_.y);
 }
 
