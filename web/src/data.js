@@ -18,8 +18,7 @@ export function unpack(run) {
   return run;
 }
 
-export function readData() {
-  const data = JSON.parse(document.getElementById('withy-data').textContent);
+export function prepared(data) {
   data.runs.forEach((run, index) => { unpack(run).index = index; });
   nameRuns(data.runs);
   return data;
