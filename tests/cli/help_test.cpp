@@ -79,9 +79,6 @@ TEST_P(HelpOf, AnUnknownOptionIsBadInputAndLeavesStandardOutputAlone) {
   EXPECT_NE(f.err, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Commands, HelpOf, testing::ValuesIn(commands),
-                         [](const auto& parameter) { return parameter.param; });
-
 /// What bash offers behind the words.
 std::vector<std::string> completed(const Folder& folder, const std::string& typed) {
   const std::string script = withy(folder, {"completion", "bash"}).out;
@@ -112,14 +109,18 @@ TEST_P(HelpOf, NamesTheOptionsThatCompletionAndManualName) {
   std::string manual;
   for (const char c : withy(folder, {"manual"}).out)
     if (c != '\\') manual += c;  // roff writes \- for -
-  const std::string bash = withy(folder, {"completion", "bash"}).out, zsh = withy(folder, {"completion", "zsh"}).out;
-  EXPECT_TRUE(manual.find("withy " + GetParam()) != std::string::npos);
+  const std::vector<std::string> made = {manual, withy(folder, {"completion", "bash"}).out,
+                                         withy(folder, {"completion", "zsh"}).out};
+  EXPECT_NE(manual.find("withy " + GetParam()), std::string::npos);
   for (const std::string& word : words(withy(folder, {GetParam(), "--help"}).out)) {
-    if (word.rfind("--", 0) != 0) continue;
+    if (!word.starts_with("--")) continue;
     const std::string option = word.substr(0, word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-"));
-    for (const std::string* made : {&manual, &bash, &zsh}) EXPECT_NE(made->find(option), std::string::npos) << option;
+    for (const std::string& text : made) EXPECT_NE(text.find(option), std::string::npos) << option;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Commands, HelpOf, testing::ValuesIn(commands),
+                         [](const auto& parameter) { return parameter.param; });
 
 TEST(Help, NothingToDoOrAnUnknownCommandIsBadInput) {
   const Folder folder;
