@@ -12,6 +12,8 @@ export function unpack(run) {
   const { animation } = run;
   animation.times = doubles(animation.times);
   animation.numbers = new Float32Array(bytes(run.arrays[animation.numbers]));
+  // Pages of earlier versions have none.
+  for (const arrow of animation.arrows ??= []) arrow.numbers = new Float32Array(bytes(run.arrays[arrow.numbers]));
   for (const series of run.validity) series.data = doubles(series.data);
   run.time = run.table.columns[0].data;
   delete run.arrays;

@@ -90,8 +90,9 @@ export function show_runs(page) {
   }
 
   function set_up_view() {
+    $('sensors-label').hidden = !runs.some(run => run.animation.arrows.length);
     $('scale').oninput = () => set_scale(Number($('scale').value));
-    for (const name of ['trails', 'ghosts', 'axes', 'follow']) {
+    for (const name of ['trails', 'ghosts', 'axes', 'sensors', 'follow']) {
       if (view) $(name).checked = view.show[name];
       $(name).onchange = () => { if (view) view.show[name] = $(name).checked; seek(time); };
     }
