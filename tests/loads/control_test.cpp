@@ -208,7 +208,7 @@ TEST(Control, ActuatorFollowsItsCommandWithinItsLimits) {
   }
   LoadedScene limited(alone +
                           "type: actuator, frequency: 30, rate_limit: 2, limit: 1.5}, law: {type: expression, to: "
-                          "nothing, value: 5}}\n",
+                          "nothing, value: 5 + 0 * t}}\n",
                       {"loads.block.of=law", "initial.loads.block.effort=0"});
   double before = 0, greatest = 0;
   for (const State& state : limited.run()) {
