@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "withy/core/model/columns.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
@@ -39,7 +40,56 @@ std::string circle(const std::list<PendingLoad>& waiting) {
   }
 }
 
+/// The outputs in their order, without a sensor where it cannot be bound yet.
+std::shared_ptr<const std::vector<SensorNode>> measurable(const Value& outputs, const Model& model,
+                                                          const Document& document, const SceneNames& names,
+                                                          Registry& registry) {
+  auto all = std::make_shared<std::vector<SensorNode>>();
+  std::vector<SensorNode> bound;
+  for (const auto& [name, given] : outputs.members()) {
+    Diagnostics unheard;  // what is wrong is reported where outputs are read
+    Checker checker(document, registry, unheard);
+    checker.know(&names);
+    std::shared_ptr<const BoundSensor> sensor;
+    try {
+      Made<Sensor> made;
+      const auto value = check_plugin_map(given, "type", grammar::sensor_members(), checker, made);
+      const auto object = value ? make_object(*made.plugin, *value, checker) : nullptr;
+      if (object != nullptr) sensor = object->bind(model, bound);
+    } catch (const std::invalid_argument&) {
+      sensor = nullptr;
+    }
+    all->push_back({name, sensor});
+    if (sensor != nullptr) bound.push_back(all->back());
+  }
+  return all;
+}
+
+bool measures(const Value& load) {
+  const Value* type = load.find("type");
+  return load.has("of") || (type != nullptr && type->kind() == Value::Kind::text && type->text() == "expression");
+}
+
 }  // namespace
+
+void name_signals(const Document& document, Model* model, SceneNames& names, Registry& registry) {
+  const Value none = Value::map({});
+  const auto map_of = [&](const char* key) -> const Value& {
+    const Value* given = document.root.find(key);
+    return given == nullptr || given->kind() != Value::Kind::map ? none : *given;
+  };
+  const std::vector<Value::Member>& loads = map_of("loads").members();
+  for (const auto& [name, given] : loads) names.loads.add(name);
+  if (model == nullptr) return;
+  for (const HingeNode& hinge : model->hinges()) {
+    for (const Column& c : coordinate_columns(hinge)) names.signals.add(c.name);
+    for (const Column& c : rate_columns(hinge)) names.signals.add(c.name);
+  }
+  for (const char* key : {"outputs", "loads"})
+    for (const auto& [name, given] : map_of(key).members()) names.signals.add(name);
+  if (std::any_of(loads.begin(), loads.end(), [](const Value::Member& load) { return measures(load.second); }))
+    model->set_measured(measurable(map_of("outputs"), *model, document, names, registry));
+}
 
 std::set<std::string> needed_loads(const Value& load, const std::set<std::string>& loads) {
   std::set<std::string> found;
@@ -85,30 +135,6 @@ std::list<PendingLoad> in_order_of_need(std::list<PendingLoad> loads, const Chec
     break;
   }
   return ordered;
-}
-
-std::shared_ptr<const std::vector<SensorNode>> measurable(const Value& outputs, const Model& model,
-                                                          const Document& document, const SceneNames& names,
-                                                          Registry& registry) {
-  auto all = std::make_shared<std::vector<SensorNode>>();
-  std::vector<SensorNode> bound;
-  for (const auto& [name, given] : outputs.members()) {
-    Diagnostics unheard;  // what is wrong is reported where outputs are read
-    Checker checker(document, registry, unheard);
-    checker.know(&names);
-    std::shared_ptr<const BoundSensor> sensor;
-    try {
-      Made<Sensor> made;
-      const auto value = check_plugin_map(given, "type", grammar::sensor_members(), checker, made);
-      const auto object = value ? make_object(*made.plugin, *value, checker) : nullptr;
-      if (object != nullptr) sensor = object->bind(model, bound);
-    } catch (const std::invalid_argument&) {
-      sensor = nullptr;
-    }
-    all->push_back({name, sensor});
-    if (sensor != nullptr) bound.push_back(all->back());
-  }
-  return all;
 }
 
 }  // namespace withy

@@ -1,5 +1,5 @@
 /// \file
-/// The order in which loads are bound that name one another, and the outputs that they may measure.
+/// Loads that name one another and measure outputs: their order, and what they may measure.
 #pragma once
 
 #include <list>
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "withy/core/plugin/load.hpp"
-#include "withy/core/plugin/sensor.hpp"
 #include "withy/scene/check.hpp"
 
 namespace withy {
@@ -28,9 +27,9 @@ std::set<std::string> needed_loads(const Value& load, const std::set<std::string
 /// left out, and so are those that need a load which is not among them.
 std::list<PendingLoad> in_order_of_need(std::list<PendingLoad> loads, const Checker& checker);
 
-/// The scene's outputs, those without a sensor where it cannot be bound before the loads; reports nothing.
-std::shared_ptr<const std::vector<SensorNode>> measurable(const Value& outputs, const Model& model,
-                                                          const Document& document, const SceneNames& names,
-                                                          Registry& registry);
+/// Fills the names of loads and signals from what the scene says, and where a load measures anything gives the model
+/// its outputs: those without a sensor cannot be bound before the loads. Reports nothing. \param model null where the
+/// tree has faults
+void name_signals(const Document& document, Model* model, SceneNames& names, Registry& registry);
 
 }  // namespace withy

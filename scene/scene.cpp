@@ -8,7 +8,6 @@
 #include <list>
 #include <set>
 
-#include "withy/core/model/columns.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/file_notes.hpp"
 #include "withy/scene/control_order.hpp"
@@ -52,7 +51,7 @@ class SceneBuilder {
     scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);
     add_motions(tree.model.get());
-    name_signals(tree);
+    name_signals(document_, tree.model.get(), tree.names, checker_.registry());
     add_loads(tree.model.get());
     tree.names.loads = {};
     for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
@@ -142,31 +141,6 @@ class SceneBuilder {
       }
     }
     scene_.source.set(key, std::move(checked));
-  }
-
-  /// What loads may measure and act through, by the names that the scene gives.
-  void name_signals(SceneTree& tree) {
-    const auto members = [&](const char* key) {
-      const Value* given = document_.root.find(key);
-      return given == nullptr || given->kind() != Value::Kind::map ? std::vector<Value::Member>{} : given->members();
-    };
-    for (const auto& [name, given] : members("loads")) tree.names.loads.add(name);
-    if (tree.model == nullptr) return;
-    for (const HingeNode& hinge : tree.model->hinges()) {
-      for (const Column& c : coordinate_columns(hinge)) tree.names.signals.add(c.name);
-      for (const Column& c : rate_columns(hinge)) tree.names.signals.add(c.name);
-    }
-    for (const char* key : {"outputs", "loads"})
-      for (const auto& [name, given] : members(key)) tree.names.signals.add(name);
-    const auto measures = [](const Value::Member& load) {
-      const Value* type = load.second.find("type");
-      return load.second.has("of") ||
-             (type != nullptr && type->kind() == Value::Kind::text && type->text() == "expression");
-    };
-    const std::vector<Value::Member> loads = members("loads");
-    const Value* outputs = document_.root.find("outputs");
-    if (outputs != nullptr && std::any_of(loads.begin(), loads.end(), measures))
-      tree.model->set_measured(measurable(*outputs, *tree.model, document_, tree.names, checker_.registry()));
   }
 
   void add_loads(Model* model) {
