@@ -12,6 +12,7 @@
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/orientation.hpp"
 #include "withy/scene/units.hpp"
 
 namespace withy {
@@ -162,6 +163,7 @@ std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec
 }
 
 std::optional<Value> Checker::row(const Value& value, const ParameterSpec& spec) const {
+  if (value.kind() == Value::Kind::map && is_orientation(spec)) return orientation_of(value, *this);
   if (value.kind() != Value::Kind::list || (spec.count != 0 && value.items().size() != spec.count)) {
     got(value, spec);
     return {};

@@ -4,6 +4,7 @@
 
 #include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/scene/grammar.hpp"
+#include "withy/scene/orientation.hpp"
 #include "withy/scene/scene.hpp"
 
 namespace withy {
@@ -105,6 +106,22 @@ class SchemaWriter {
     return json;
   }
 
+  /// {axis, angle}, {xyz}: orientation_of.
+  static Json turn() {
+    const Json angle = number_or_quantity({{"type", "number"}});
+    return {{"type", "object"},
+            {"required", {"axis", "angle"}},
+            {"additionalProperties", false},
+            {"properties", {{"axis", row({{"type", "number"}}, 3)}, {"angle", angle}}}};
+  }
+  static Json turns() {
+    const Json angle = number_or_quantity({{"type", "number"}});
+    return {{"type", "object"},
+            {"required", {"xyz"}},
+            {"additionalProperties", false},
+            {"properties", {{"xyz", row(angle, 3)}}}};
+  }
+
   /// A table; the schema does not tell its columns apart, so that a range of the others is left to the reader.
   static Json rows(const ParameterSpec& spec) {
     return {{"type", "array"}, {"items", row(number_or_quantity({{"type", "number"}}), spec.count)}, {"minItems", 1}};
@@ -127,6 +144,7 @@ class SchemaWriter {
       case text:
         return word(spec);
       case vector:
+        if (is_orientation(spec)) return {{"anyOf", {row(quantity(), spec.count), turn(), turns()}}};
         return row(quantity(), spec.count);
       case table:
         return rows(spec);

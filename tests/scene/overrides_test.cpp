@@ -34,6 +34,22 @@ TEST_F(Overrides, AddWhatTheFormatKnowsAndTheFileLeavesOut) {
   EXPECT_NEAR(s.initial.y[0], 0.5235987755982988, 1e-16);  // π/6
 }
 
+TEST_F(Overrides, OrientationsAreQuaternionsAxesWithAnglesOrTurns) {
+  const auto frame = [&](const std::string& orientation) {
+    const Scene s = read({"bodies.hub.frames.out.orientation=" + orientation});
+    const BodyNode& hub = s.model->bodies()[static_cast<std::size_t>(s.model->body("hub"))];
+    return Matrix3(hub.frames[static_cast<std::size_t>(hub.frame("out"))].pose.R);
+  };
+  const double h = std::sqrt(0.5);
+  const Matrix3 quarter = frame("[" + std::to_string(h) + ", 0, 0, " + std::to_string(h) + "]");
+  EXPECT_LT((frame("{axis: [0, 0, 3], angle: 90 deg}") - quarter).norm(), 1e-6);
+  EXPECT_LT((frame("{xyz: [0, 0, 90 deg]}") - quarter).norm(), 1e-6);
+  // Intrinsic: x, then y as it is turned, then z as that is turned.
+  const auto turn = [](double a, const Vector3& axis) { return Eigen::AngleAxisd(a, axis).toRotationMatrix(); };
+  const Matrix3 turned = turn(0.3, Vector3::UnitX()) * turn(-0.5, Vector3::UnitY()) * turn(1.1, Vector3::UnitZ());
+  EXPECT_LT((frame("{xyz: [0.3, -0.5, 1.1]}") - turned).norm(), 1e-14);
+}
+
 TEST_F(Overrides, TakeEffectInTheirOrder) { EXPECT_EQ(read({"time.end=2", "time.end=3"}).end, 3); }
 
 TEST_F(Overrides, ReplaceWholeMaps) {
