@@ -12,6 +12,7 @@
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/orientation.hpp"
 #include "withy/scene/units.hpp"
 
 namespace withy {
@@ -288,6 +289,7 @@ std::optional<Value> Checker::check(const Value& value, const ParameterSpec& spe
     case ParameterSpec::Kind::text:
       return text(value, spec);
     case ParameterSpec::Kind::vector:
+      if (value.kind() == Value::Kind::map && is_orientation(spec)) return read_orientation(value, *this);
       return row(value, spec);
     case ParameterSpec::Kind::table:
       return table(value, spec);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "withy/scene/names.hpp"
+#include "withy/scene/orientation.hpp"
 
 namespace withy {
 namespace {
@@ -79,6 +80,8 @@ std::string expectation(const ParameterSpec& spec) {
       return "text";
     case vector: {
       const std::string item = range(spec).empty() ? "" : ", each" + range(spec);
+      if (is_orientation(spec))
+        return "a unit quaternion [w, x, y, z], {axis: [x, y, z], angle: a} or {xyz: [a, b, c]}";
       if (spec.count == 0) return "a list of finite numbers" + item + bracketed(spec.unit);
       return fmt::format("a list of {} finite numbers{}{}", spec.count, item, bracketed(spec.unit));
     }

@@ -7,7 +7,9 @@
 #include <unordered_map>
 
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/orientation.hpp"
 #include "withy/scene/scene.hpp"
 
 namespace withy {
@@ -75,9 +77,11 @@ class StateReader {
     target = checked->number();
   }
 
-  /// Reads the list under `key` into `count` numbers of y from `first` on.
+  /// Reads the list under `key` into the numbers of y from `first` on; null where there is none that is right.
   const Value* list(const Value& map, const char* key, std::size_t first, const std::vector<std::string>& units) {
-    const Value* given = map.find(key);
+    return numbers(map.find(key), first, units);
+  }
+  const Value* numbers(const Value* given, std::size_t first, const std::vector<std::string>& units) {
     if (given == nullptr) return nullptr;
     if (given->kind() != Value::Kind::list || given->items().size() != units.size()) {
       checker_.diagnostics().error(
@@ -111,13 +115,31 @@ class StateReader {
       if (!map_with(member, {"position", "rate"})) continue;
       const Hinge& hinge = *model_.hinges()[static_cast<std::size_t>(index)].hinge;
       const Slot& slot = model_.layout().hinges[static_cast<std::size_t>(index)];
-      const Value* position = list(member, "position", slot.position, hinge_units(hinge, false));
+      const Value* given = member.find("position");
+      std::optional<Value> coordinates;
+      if (given != nullptr && given->kind() == Value::Kind::map && has_quaternion(hinge)) {
+        coordinates = coordinates_of(*given, hinge);
+        good_ = good_ && coordinates.has_value();
+        given = coordinates ? &*coordinates : nullptr;
+      }
+      const Value* position = numbers(given, slot.position, hinge_units(hinge, false));
       if (position != nullptr && has_quaternion(hinge)) {
         const std::span<double> q(state_.y.data() + slot.position, 4);
         if (!accept_quaternion(q, position->place(), checker_.diagnostics())) good_ = false;
       }
       list(member, "rate", model_.layout().positions + slot.speed, hinge_units(hinge, true));
     }
+  }
+
+  /// The coordinates that a map says: an orientation of a spherical hinge, orientation and position of a free one.
+  [[nodiscard]] std::optional<Value> coordinates_of(const Value& map, const Hinge& hinge) const {
+    if (hinge.kernel()->kind == HingeKernel::Kind::spherical) return read_orientation(map, checker_);
+    const auto pose = checker_.check_members(map, grammar::pose_members());
+    if (!pose) return {};
+    Value all = Value::list({}, map.place());
+    for (const char* key : {"orientation", "position"})
+      for (const Value& x : pose->at(key).items()) all.items().push_back(x);
+    return all;
   }
 
   void read_bodies(const Value& value) {
