@@ -157,10 +157,10 @@ TEST_F(Schema, HoldsEveryPluginWithItsParameters) {
 }
 
 TEST_F(Schema, AcceptsEverySceneOfTheProject) {
-  for (const char* path :
-       {"scenes/pendulum.yaml", "scenes/two-link-slew.yaml", "scenes/driven-arm.yaml", "scenes/beam-on-base.yaml",
-        "scenes/spacecraft.yaml", "tests/reference/arm-1.yaml", "tests/reference/arm-2.yaml",
-        "tests/reference/arm-4.yaml", "tests/reference/beam-on-base.yaml", "tests/reference/spacecraft.yaml"}) {
+  for (const char* path : {"scenes/pendulum.yaml", "scenes/two-link-slew.yaml", "scenes/driven-arm.yaml",
+                           "scenes/beam-on-base.yaml", "scenes/spacecraft.yaml", "scenes/manipulator-pid.yaml",
+                           "tests/reference/arm-1.yaml", "tests/reference/arm-2.yaml", "tests/reference/arm-4.yaml",
+                           "tests/reference/beam-on-base.yaml", "tests/reference/spacecraft.yaml"}) {
     EXPECT_EQ(fault(file_text(path)), "") << path;
   }
   EXPECT_EQ(fault(good_scene), "");
