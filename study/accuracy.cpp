@@ -87,7 +87,8 @@ double relative_error(const Distances& distances, const Distances& scales) {
 
 const char* floors_text() {
   return "a range below a thousandth of a radian, of the body's length (deflections), of the longest body (places, "
-         "slides), or of the kinetic energy over a radian or that length (efforts) counts as that";
+         "slides), or of the kinetic energy over a radian or that length (efforts) counts as that; of an output of the "
+         "scene also one below a thousandth of its other components of that unit";
 }
 
 Distances Accuracy::limits(const Outputs& outputs, const Distances& scales) const {

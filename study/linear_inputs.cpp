@@ -52,7 +52,8 @@ std::vector<std::size_t> named_speeds(const Configuration& c, const std::string&
   } catch (const OptionError& e) {
     std::string inputs;
     for (const std::size_t l : input_loads(model)) inputs += (inputs.empty() ? "" : ", ") + model.loads()[l].name;
-    throw InputError(std::string(e.what()) + (inputs.empty() ? "" : "; inputs: " + inputs));
+    const std::string problem = std::string(e.what()).substr(std::string("inputs: ").size());
+    throw OptionError("inputs", problem + (inputs.empty() ? "" : "; loads of the type input: " + inputs));
   }
   for (const std::size_t s : speeds)
     if (c.held()[s]) throw OptionError("inputs", c.layout().speed_names[s] + " is held: no effort moves it");

@@ -53,11 +53,11 @@ std::function<ExitStatus()> add_response(CLI::App& c) {
   add_scene(c, a);
   add_formulation(c, a);
   add_configuration(c, a);
-  c.add_option("--input", a.question.input,
+  c.add_option("--input,--inputs", a.question.input,
                "A load of the type input, or a hinge; or a load that feeds back, or LOAD.HINGE, whose loop is opened")
       ->type_name("NAME")
       ->required();
-  c.add_option("--output", a.question.output,
+  c.add_option("--output,--outputs", a.question.output,
                "One component of an output of the scene (imu.x), a coordinate (elbow.0), or of a tip (link2.tip.y)")
       ->type_name("NAME");
   c.add_option("--from", a.question.from, "Lowest frequency; default: a decade below all poles")

@@ -172,6 +172,36 @@ TEST(Loop, OfASampledDamperIsUnstableAtTwiceTheInertiaOverTheDamping) {
   EXPECT_EQ(r.roots.poles.size(), 1);
 }
 
+/// Two wheels on one axis are linear; their controllers sample every 20 and every 30 ms.
+TEST(LinearModel, OfLoadsSampledAtTwoRatesIsTheMapOfARunOverTheirCommonPeriod) {
+  const std::string text = R"(
+time: {end: 0.6}
+integrator: {name: dopri5, rtol: 1e-12, atol: 1e-14}
+bodies:
+  inner: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}
+  outer: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  base: {type: revolute, axis: [0, 0, 1], parent: world, child: inner}
+  joint: {type: revolute, axis: [0, 0, 1], parent: inner, child: outer}
+loads:
+  slow: {type: pd-controller, law: constant, sample: 0.03, hinges: {base: {stiffness: 30, damping: 10}}}
+  fast: {type: pd-controller, law: constant, sample: 0.02, hinges: {joint: {stiffness: 20, damping: 5}}}
+initial: {hinges: {base: {position: [0.1], rate: [0.5]}, joint: {position: [-0.3]}}}
+)";
+  const Prepared prepared = prepare(SceneValues::parse("format: withy/1\n" + text, "text"), plugins());
+  const LinearModel m = linear_model(at_start(prepared), {{"base"}, {"base", "joint"}});
+  EXPECT_DOUBLE_EQ(m.system.period, 0.06);
+  EXPECT_EQ(m.states.back(), "fast.held[0]");
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(m.system.A.rows());
+  z.head(4) << 0.1, -0.3, 0.5, 0;
+  for (int k = 0; k < 10; ++k) z = m.system.A * z;
+  const RunSummary run = simulate(prepared, {});
+  ASSERT_EQ(run.status, RunStatus::completed);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(run.final.y[i], z[static_cast<Eigen::Index>(i)], 1e-10) << i;
+  EXPECT_THROW(static_cast<void>(open_loop(at_start(prepared), "fast")), InputError)
+      << "the slowest alone can be opened";
+}
+
 /// Greatest |coordinate| in the first and in the last fifth of a run with the controller's gains times `factor`.
 double growth_in_simulation(const SceneValues& scene, double factor, double stiffness, double damping) {
   SceneValues values = scene;
