@@ -16,6 +16,8 @@
 #include "withy/results/modes_files.hpp"
 #include "withy/results/modes_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/report/modes_page.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/study/against_next.hpp"
 
 namespace withy::app {
@@ -99,6 +101,9 @@ void write_files(const std::vector<study::ModesOf>& runs, const Json& j, const M
   write_file(folder / "modes.csv", modes_csv(runs, sweep.none() ? "value" : sweep.path));
   if (!sweep.none())
     write_file(folder / "modes.svg", modes_picture(runs, "Modes of " + arguments.scene, sweep.path, arguments.count));
+  if (has_report_page())
+    write_study_page(folder / report_name, "modes", "Modes of " + arguments.scene,
+                     modes_page(runs, sweep, arguments.count));
 }
 
 /// Says on standard error where there are no modes, and why. False where there are everywhere.
@@ -140,7 +145,7 @@ ExitStatus modes(const ModesArguments& arguments) {
         "--formulations, or --set formulation=ID");
   const Engine engine(arguments);
   const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
-                                  {"modes.json", "modes.csv", "modes.svg"});
+                                  {"modes.json", "modes.csv", "modes.svg", report_name});
   std::vector<std::optional<study::AgainstNext>> against;
   const std::vector<study::ModesOf> runs = runs_of(engine, arguments, sweep, against);
   if (interrupted()) return ExitStatus::interrupted;

@@ -15,6 +15,7 @@
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/text_table.hpp"
 #include "withy/results/trade_files.hpp"
 
@@ -109,7 +110,7 @@ ExitStatus trade(const TradeArguments& arguments) {
   const std::vector<study::Point> points = study::points_of(axes_of(arguments.axes, engine.registry()));
   std::optional<TradeFolder> store;
   const auto taken = take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()),
-                                 {"trade.json", "trade.csv", "trade.svg"});
+                                 {"trade.json", "trade.csv", "trade.svg", report_name});
   if (taken)
     store.emplace(arguments.out, trade_fingerprint(engine.prepared(), points, engine.registry(), arguments.outputs));
   study::TradeStudy study(engine.prepared(), engine.registry(), points,
@@ -131,7 +132,11 @@ ExitStatus trade(const TradeArguments& arguments) {
     write_file(folder / "trade.json", json_text(j));
     write_file(folder / "trade.csv", trade_csv(results, front));
     write_file(folder / "trade.svg", trade_picture(title, results, front));
-    if (!arguments.json) text += "\ntrade.csv, trade.svg and trade.json in " + arguments.out + '\n';
+    if (has_report_page())
+      write_study_page(folder / report_name, "trade", title, trade_page(engine.prepared(), j, results));
+    if (!arguments.json)
+      text += fmt::format("\ntrade.csv, trade.svg and trade.json in {}{}\n", arguments.out,
+                          has_report_page() ? ", to look at in its report.html" : "");
   }
   print(text);
   return whole ? ExitStatus::done : ExitStatus::interrupted;

@@ -29,7 +29,9 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
       if (!to(std::min(landing, clocks_.next()), true)) return ended_;
       if (state().time >= clocks_.next()) renew_clocks();
     }
-    if (jumps) stepper_->restart();
+    if (!jumps) continue;
+    stepper_->restart();
+    observer_->restarted();
   }
   return ended_;
 }
