@@ -46,6 +46,10 @@ const char* referent(ParameterSpec::Refers what) {
       return "formulation";
     case motion:
       return "motion";
+    case signal:
+      return "signal";
+    case input:
+      return "load of type input";
     case nothing:
       break;
   }
@@ -92,6 +96,12 @@ std::string expectation(const ParameterSpec& spec) {
       return "a map with " + listed(keys_of(spec.members));
     case named:
       return "a map of names, each with " + listed(keys_of(spec.members));
+    case matrix:
+      return "a list of rows of finite numbers, all of one length" + bracketed(spec.unit);
+    case texts:
+      return spec.refers == ParameterSpec::Refers::nothing
+                 ? "a text, or a list of them"
+                 : fmt::format("the name of a {}, or a list of names", referent(spec.refers));
   }
   return {};
 }

@@ -137,6 +137,15 @@ class SchemaWriter {
       case named:
         return {
             {"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", members(spec.members)}};
+      case matrix: {
+        Json line = row(quantity(), 0);
+        line["minItems"] = 1;
+        return {{"type", "array"}, {"items", std::move(line)}, {"minItems", 1}};
+      }
+      case texts: {
+        const Json one = word(spec);
+        return {{"anyOf", Json::array({one, {{"type", "array"}, {"items", one}, {"minItems", 1}}})}};
+      }
     }
     return {};
   }
@@ -253,6 +262,10 @@ class SchemaWriter {
             {"properties",
              {{"hinges", part("position", position(), "rate")},
               {"bodies", part("modes", reference("numbers"), "rates")},
+              {"loads",
+               {{"type", "object"},
+                {"propertyNames", reference("name")},
+                {"additionalProperties", {{"type", "object"}, {"additionalProperties", number}}}}},
               {"inputs", {{"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", number}}},
               {"time", number},
               {"work", number}}}};
