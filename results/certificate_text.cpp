@@ -55,19 +55,16 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
   return out;
 }
 
-std::vector<std::string> stretches_text(const study::Certificate& certificate) {
+std::vector<std::string> plan_text(const study::Certificate& certificate) {
   std::vector<std::string> lines;
-  for (const study::NamedStretch& named : certificate.stretches) {
-    const Stretch& s = named.stretch;
-    std::string text = fmt::format("{} from {:.4g} to {:.4g} s", named.formulation, s.start, s.end);
-    if (!s.excess.empty()) {
-      const Excess& e = s.excess.front();
-      text += e.limit > 0 ? fmt::format("; left since at {:.4g} s {} of '{}' is {:.3g}, limit {:.3g}", e.time,
-                                        e.indicator, e.body, e.value, e.limit)
-                          : "; left since " + e.indicator;
-    }
-    lines.push_back(std::move(text));
-  }
+  if (!certificate.plan) return lines;
+  const study::RungPlan& plan = *certificate.plan;
+  for (const study::PlannedStretch& s : plan.stretches)
+    lines.push_back(fmt::format("{} from {:.4g} to {:.4g} s", certificate.rungs[s.stretch.rung], s.stretch.start,
+                                s.stretch.end));
+  if (plan.estimate)
+    lines.push_back(fmt::format("asked {:.3g} % of each output's own range; estimated {:.2g} % of that of {}",
+                                100 * plan.accuracy, 100 * plan.accuracy * plan.use, plan.worst));
   return lines;
 }
 
@@ -99,7 +96,7 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
   if (!certificate.own.empty())
     line("",
          "a mix conserves no more than each of its formulations does, and may be further off than any of them alone");
-  for (const std::string& text : stretches_text(certificate)) line("", text);
+  for (const std::string& text : plan_text(certificate)) line("", text);
   line("energy", fmt::format("off by {} of the greatest{}", percent(certificate.energy_drift),
                              certificate.untruncated_drift > 2 * certificate.energy_drift
                                  ? fmt::format("; the energy without truncation by {}, which the model leaves out",

@@ -8,15 +8,10 @@
 
 #include "withy/study/error_estimate.hpp"
 #include "withy/study/indicators.hpp"
+#include "withy/study/rung_plan.hpp"
 #include "withy/study/step_limit.hpp"
 
 namespace withy::study {
-
-/// A stretch of a run of formulation `auto`, with the name of what it was in.
-struct NamedStretch {
-  std::string formulation;
-  Stretch stretch;
-};
 
 /// A body in a formulation of its own.
 struct OwnFormulation {
@@ -36,8 +31,8 @@ struct Certificate {
   std::string formulation;                ///< of the scene
   std::string meaning;                    ///< the formulation in a sentence
   std::vector<OwnFormulation> own;        ///< bodies whose formulation is another; the scene's does not hold for them
-  std::vector<NamedStretch> stretches;    ///< of formulation `auto`; else empty
-  std::size_t discarded_evaluations = 0;  ///< the same
+  std::optional<RungPlan> plan;           ///< of formulation `auto`, as far as the run went
+  std::vector<std::string> rungs;         ///< its formulations
   std::vector<std::string> compiled;      ///< what the compiled equations save
   double energy_drift = 0;                ///< RunSummary::energy_drift
   double untruncated_drift = 0;           ///< RunSummary::untruncated_drift
@@ -57,7 +52,7 @@ struct Certificate {
 struct Evidence {
   const RunSummary* summary = nullptr;
   const Beyond* beyond = nullptr;           ///< null: nothing to compare with
-  const EscalatedRun* escalated = nullptr;  ///< of formulation `auto`
+  std::optional<RungPlan> plan;             ///< of formulation `auto`
   std::optional<ErrorEstimate> estimate;
 };
 Certificate certify(const Prepared& prepared, Evidence evidence, Registry& registry);

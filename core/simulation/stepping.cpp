@@ -16,6 +16,9 @@ Stepping::Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const S
       end_(options.end),
       sample_(stepper_->state()) {
   clocks_.go_on_after(state().time);
+  jumps_.insert(jumps_.end(), options.hand_overs.begin(), options.hand_overs.end());
+  std::sort(jumps_.begin(), jumps_.end());
+  jumps_.erase(std::unique(jumps_.begin(), jumps_.end()), jumps_.end());
 }
 
 SteppingEnd Stepping::run(SteppingObserver& observer) {
@@ -29,7 +32,9 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
       if (!to(std::min(landing, clocks_.next()), true)) return ended_;
       if (state().time >= clocks_.next()) renew_clocks();
     }
-    if (jumps) stepper_->restart();
+    if (!jumps) continue;
+    observer_->landed(state());
+    stepper_->restart();
   }
   return ended_;
 }
