@@ -35,6 +35,7 @@ class OneStep : public Stepper {
 
   [[nodiscard]] const State& state() const final { return state_; }
   [[nodiscard]] const StepStatistics& statistics() const final { return statistics_; }
+  [[nodiscard]] Work* evaluated() const final { return last_ == Last::at_state ? &work_ : nullptr; }
   void restart() override { slope_known_ = false; }
   void jump(const State& state) final {
     place(state);
@@ -107,6 +108,7 @@ class OneStep : public Stepper {
   /// Const, so that interpolants may evaluate too: only memory for the work and counters change.
   Evaluation evaluate(double t, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) const {
     ++statistics_.evaluations;
+    last_ = Last::elsewhere;
     const auto n = static_cast<std::size_t>(size_);
     const Evaluation e = equations_.derivatives(std::min(t, latest_), {values.data(), n}, {slope.data(), n}, work_);
     sign_ = e.determinant_sign;
@@ -117,6 +119,7 @@ class OneStep : public Stepper {
   Evaluation evaluate_implicit(const LinearlyImplicit& linear, double t, const Eigen::ArrayXd& values,
                                const Eigen::ArrayXd& base, double delta, Eigen::ArrayXd& slope) const {
     ++statistics_.evaluations;
+    last_ = Last::implicit;
     const auto n = static_cast<std::size_t>(size_);
     return linear.implicit_derivatives(std::min(t, latest_), {values.data(), n}, {base.data(), n}, delta,
                                        {slope.data(), n}, work_);
@@ -127,6 +130,7 @@ class OneStep : public Stepper {
   /// Makes next_ and next_slope_ the state at t_new; the last evaluation was that of next_slope_.
   void accept(double t_new) {
     const double h = t_new - state_.time;
+    if (last_ == Last::elsewhere) last_ = Last::at_state;
     previous_time_ = state_.time;
     previous_ = y();
     state_.time = t_new;
@@ -172,6 +176,9 @@ class OneStep : public Stepper {
   mutable StepStatistics statistics_;
 
  private:
+  /// Where the last evaluation was.
+  enum class Last { elsewhere, at_state, implicit };
+
   void check_size(const State& state) const {
     if (state.y.size() != equations_.size())
       throw std::invalid_argument("the state has " + std::to_string(state.y.size()) + " numbers, the equations need " +
@@ -181,6 +188,7 @@ class OneStep : public Stepper {
   void place(const State& state) {
     check_size(state);
     state_ = state;
+    last_ = Last::elsewhere;
     previous_time_ = state.time;
     previous_ = y();
   }
@@ -190,6 +198,7 @@ class OneStep : public Stepper {
   Eigen::Index size_;
   double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which the step may evaluate
   mutable int sign_ = 1;                                     ///< of det M in the last evaluation
+  mutable Last last_ = Last::elsewhere;
   bool slope_known_ = false;
 };
 

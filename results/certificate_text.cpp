@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <vector>
 
@@ -13,24 +15,55 @@ namespace {
 
 std::string percent(double ratio) { return fmt::format("{:.2g} %", 100 * ratio); }
 
+/// Errors of one kind, in the order of the model; of many the greatest.
+class ErrorList {
+ public:
+  void add(double size, std::string text) { all_.push_back({size, std::move(text)}); }
+  void append_to(std::string& out) {
+    constexpr std::size_t most = 4;
+    const std::size_t left_out = all_.size() > most ? all_.size() - most : 0;
+    if (left_out > 0) {
+      std::stable_sort(all_.begin(), all_.end(), [](const Error& a, const Error& b) { return a.size > b.size; });
+      all_.resize(most);
+    }
+    for (const Error& error : all_) out += (out.empty() ? "" : ", ") + error.text;
+    if (left_out > 0) out += fmt::format(", {} others no more", left_out);
+  }
+
+ private:
+  struct Error {
+    double size = 0;
+    std::string text;
+  };
+  std::vector<Error> all_;
+};
+
 std::string error_text(const study::ErrorEstimate& e, const Model& model) {
   std::string out;
+  ErrorList angles, positions;
   for (const HingeNode& hinge : model.hinges()) {
     const auto found = e.distances.hinges.find(hinge.name);
     if (found == e.distances.hinges.end()) continue;
     const auto columns = coordinate_columns(hinge);
     const std::string unit = columns.size() == 1 ? columns[0].unit : "";
-    out += out.empty() ? "" : ", ";
-    out += hinge.name + ' ';
-    out += unit == "rad" ? fmt::format("{:.2g} deg", found->second * 180 / std::numbers::pi)
-                         : fmt::format("{:.2g}{}", found->second, unit.empty() ? "" : ' ' + unit);
+    const double d = found->second;
+    if (unit == "rad") {
+      angles.add(d, fmt::format("{} {:.2g} deg", hinge.name, d * 180 / std::numbers::pi));
+    } else {
+      positions.add(d, fmt::format("{} {:.2g}{}", hinge.name, d, unit.empty() ? "" : ' ' + unit));
+    }
   }
-  for (const auto* const lengths : {&e.distances.tips, &e.distances.deflections})
-    for (const auto& [name, d] : *lengths) out += fmt::format("{}{} {:.2g} mm", out.empty() ? "" : ", ", name, 1e3 * d);
-  for (const auto& [name, d] : e.distances.moments)
-    out += fmt::format("{}{} {:.2g} N m", out.empty() ? "" : ", ", name, d);
-  for (const auto& [name, d] : e.distances.forces)
-    out += fmt::format("{}{} {:.2g} N", out.empty() ? "" : ", ", name, d);
+  angles.append_to(out);
+  positions.append_to(out);
+  const auto append = [&out](const std::map<std::string, double>& distances, double factor, const char* unit) {
+    ErrorList list;
+    for (const auto& [name, d] : distances) list.add(d, fmt::format("{} {:.2g} {}", name, factor * d, unit));
+    list.append_to(out);
+  };
+  append(e.distances.tips, 1e3, "mm");
+  append(e.distances.deflections, 1e3, "mm");
+  append(e.distances.moments, 1, "N m");
+  append(e.distances.forces, 1, "N");
   if (out.empty()) return "no hinge moves and no body has a tip";
   out = fmt::format("against {}, estimated by a coarse run of both: {}", e.against, out);
   if (e.distances.until < e.end)

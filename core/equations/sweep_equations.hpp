@@ -136,17 +136,17 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
     std::fill(efforts.begin(), efforts.end(), 0.0);
     if (model_->motions().empty()) return {};
     const Evaluation evaluation = derivatives(t, y, of_rates_.in(work), work);
-    if (!evaluation.ok()) return evaluation;
-    // The evaluation leaves there all efforts on driven speeds.
-    const std::span<const double> all = efforts_.in(work);
-    load_efforts(t, y, all_loads, efforts, work);
-    std::size_t next = 0;  // the first speed not yet looked at
-    for (const Slot& slot : driven_) {
-      for (; next < slot.speed; ++next) efforts[next] = 0;
-      for (; next < slot.speed + slot.speeds; ++next) efforts[next] = all[next] - efforts[next];
-    }
-    for (; next < efforts.size(); ++next) efforts[next] = 0;
+    if (evaluation.ok()) find_motion_efforts(work, efforts);
     return evaluation;
+  }
+  bool found_efforts(Work& work, std::span<double> loads, std::span<double> motions) const noexcept override {
+    const std::span<const double> all = efforts_.in(work), on_driven = on_driven_.in(work);
+    std::copy(all.begin(), all.end(), loads.begin());
+    const double* of_loads = on_driven.data();
+    for (const Slot& slot : driven_) of_loads = copy_back(of_loads, slot, loads);
+    std::fill(motions.begin(), motions.end(), 0.0);
+    find_motion_efforts(work, motions);
+    return true;
   }
   void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
                         Work& work) const override {
@@ -228,6 +228,9 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
     sweep::WorkLayout memory;
     const std::size_t speeds = layout().speeds;
     efforts_ = {memory, speeds};
+    std::size_t driven = 0;
+    for (const Slot& slot : driven_) driven += slot.speeds;
+    on_driven_ = {memory, driven};
     of_loads_ = {memory, loads_.work_size()};
     of_rates_ = {memory, model_->motions().empty() ? 0 : size()};
     implicit_ = {memory, has_modal_solver<Sweep> ? speeds : 0};
@@ -254,9 +257,23 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
     const std::span<double> efforts = efforts_.in(work);
     for (double& e : efforts) e = 0;
     loads_.add(t, y, efforts, of_loads_.in(work));
+    // The sweep leaves all efforts on driven speeds in the place of the loads'.
+    double* on_driven = on_driven_.in(work).data();
+    for (const Slot& slot : driven_) on_driven = std::copy_n(efforts.data() + slot.speed, slot.speeds, on_driven);
     if (!model_->motions().empty())
       model_->prescribe_accelerations(t, {y_dot.data() + layout().positions, layout().speeds});
     return efforts;
+  }
+  /// Of the last evaluation, on driven speeds.
+  void find_motion_efforts(Work& work, std::span<double> efforts) const noexcept {
+    const std::span<const double> all = efforts_.in(work);
+    const double* of_loads = on_driven_.in(work).data();
+    for (const Slot& slot : driven_)
+      for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) efforts[i] = all[i] - *of_loads++;
+  }
+  static const double* copy_back(const double* of_loads, const Slot& slot, std::span<double> loads) noexcept {
+    std::copy_n(of_loads, slot.speeds, loads.data() + slot.speed);
+    return of_loads + slot.speeds;
   }
   /// The sweep, with M + δ D + δ² K where it can.
   Evaluation accelerations(std::span<const double> y, double* efforts, double delta, std::span<double> y_dot,
@@ -308,7 +325,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
   Lazy<StateJacobian> linearization_;
   Lazy<ObservedModel> observed_;
   // Work memory of an evaluation.
-  Slice<double> efforts_, of_rates_, implicit_, at_rest_;
+  Slice<double> efforts_, on_driven_, of_rates_, implicit_, at_rest_;
   Region of_loads_, of_sweep_;
   std::size_t work_size_ = 0;
   // Memory of factors.

@@ -159,6 +159,11 @@ class EquationsOfMotion {
   /// dynamics asks for there beyond the loads. For reports.
   virtual Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
                                     Work& work) const noexcept = 0;
+  /// The same two, of all loads and of the motions, as the last call of `derivatives` with this work memory has found
+  /// them on its way: for watching a run at the price of a copy. \returns false where these equations do not keep them.
+  virtual bool found_efforts(Work& /*work*/, std::span<double> /*loads*/, std::span<double> /*motions*/) const noexcept {
+    return false;
+  }
   /// Inverse dynamics: efforts [N m, N] on all speeds that, with weight, stiffness, damping and velocity terms, give
   /// the accelerations u_dot at y: M u_dot − f. In time proportional to the number of bodies where the mass matrix is
   /// symmetric; the strict forms assemble M. The loads' efforts are not taken off, and motions do not matter.

@@ -56,6 +56,9 @@ class Stepper {
   /// \throws std::invalid_argument where these numbers are no memory of such a stepper.
   virtual void resume(const State& state, std::span<const double> memory) = 0;
   [[nodiscard]] virtual const StepStatistics& statistics() const = 0;
+  /// Work memory in which the last evaluation was that of the derivatives at state(), at a jump those before it; null
+  /// where it was another. Reading what it holds spares an evaluation (EquationsOfMotion::found_efforts).
+  [[nodiscard]] virtual Work* evaluated() const { return nullptr; }
   /// What a user should know of how it integrates these equations, a sentence each: that it does without an exact
   /// Jacobian where one was asked for.
   [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }

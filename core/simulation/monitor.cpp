@@ -3,17 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/simulation/cubic.hpp"
+
 namespace withy {
-namespace {
-
-/// Value at s = 0 … 1 of the cubic that has these values and derivatives with respect to s at 0 and 1.
-double cubic(double s, double x0, double v0, double x1, double v1) {
-  const double r = 1 - s;
-  return x0 * r * r * (1 + 2 * s) + x1 * s * s * (1 + 2 * r) + v0 * s * r * r - v1 * s * s * r;
-}
-
-}  // namespace
-
 Monitor::SectionExpansion::SectionExpansion(const PointExpansion& e) {
   for (Eigen::Index i = 0; i < e.phi.cols(); ++i) {
     first.emplace_back(e.phi.col(i));
@@ -32,8 +24,18 @@ Vector3 Monitor::SectionExpansion::displacement(const double* q) const {
   return d;
 }
 
+Vector3 Monitor::SectionExpansion::velocity(const double* q, const double* u) const {
+  Vector3 v = Vector3::Zero();
+  const Vector3* gamma = second.data();
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    v += first[i] * u[i];
+    for (std::size_t j = i; j < first.size(); ++j) v += *gamma++ * (u[i] * q[j] + q[i] * u[j]);
+  }
+  return v;
+}
+
 Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
-                 Observation* seen, RunSummary& summary)
+                 double span, Observation* seen, RunSummary& summary)
     : model_(model),
       equations_(equations),
       summary_(summary),
@@ -43,9 +45,9 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       last_(initial),
       between_(initial),
       trusted_(initial),
+      effort_watch_(model, equations, span, summary),
       efforts_(model.layout().speeds),
       rates_(equations.size()),
-      rates_before_(equations.size()),
       work_(equations.make_work()),
       initial_work_(initial.y.back()),
       checked_(initial.time) {
@@ -69,14 +71,12 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     summary.peak_deflection[tip.body] = {};
     wholes_.push_back(std::move(tip));
   }
-  summary.peak_effort.assign(model.layout().speeds, 0.0);
-  summary.peak_motion_effort.assign(model.layout().speeds, 0.0);
   seen_.observe(initial.y);
   initial_energies_ = seen_.energies();
   initial_energy_ = initial_energies_.kinetic + initial_energies_.potential;
   audit_momenta(initial_energies_);
   initial_sign_ = mass_matrix_sign(initial);
-  observe(initial);
+  look(initial);
 }
 
 void Monitor::note(const std::string& name, double length, const std::array<double, 3>& d,
@@ -90,8 +90,7 @@ void Monitor::note(const std::string& name, double length, const std::array<doub
 
 /// Exact kinematics integrates along the body, at the cost of an evaluation: only where the expansion says that the
 /// deflection has not been so great before.
-void Monitor::observe_end(End& end, const State& state, bool& seen) {
-  const Vector3 rough = end.section.displacement(state.y.data() + end.slot->position);
+void Monitor::observe_end(End& end, const State& state, const Vector3& rough, bool& seen) {
   bool greater = false;
   for (std::size_t k = 0; k < 3; ++k) {
     const double size = std::abs(rough[static_cast<Eigen::Index>(k)]);
@@ -109,80 +108,54 @@ void Monitor::observe_end(End& end, const State& state, bool& seen) {
   note(end.slot->name, end.length, d, end.peak);
 }
 
-/// Where a component of the deflection has its greatest size within the last step: along the cubic through the
-/// coordinates and rates at its ends.
-void Monitor::observe_within(End& end, const State& state) {
+/// Where a component of the deflection grows at the start of the last step and shrinks at its end, its greatest size
+/// lies between: along the cubic through the coordinates and rates at the ends. It is sought where the cubic through
+/// the component itself says that it has not been so great before.
+void Monitor::observe_within(End& end, const State& state, const Vector3& now, const Vector3& velocity) {
   const double h = state.time - last_.time;
-  const std::size_t q = end.slot->position, u = model_.layout().positions + end.slot->speed;
-  const auto at = [&](double s) {
-    for (std::size_t i = 0; i < end.slot->positions; ++i)
-      between_.y[q + i] = cubic(s, last_.y[q + i], h * last_.y[u + i], state.y[q + i], h * state.y[u + i]);
-    return end.section.displacement(between_.y.data() + q);
-  };
-  constexpr int parts = 16;
-  const Vector3 first = end.section.displacement(last_.y.data() + q);
-  const Vector3 after_first = at(1.0 / parts), before_last = at(1 - 1.0 / parts);
-  const Vector3 last = end.section.displacement(state.y.data() + q);
   for (Eigen::Index k = 0; k < 3; ++k) {
-    if (std::abs(after_first[k]) <= std::abs(first[k]) || std::abs(before_last[k]) <= std::abs(last[k])) continue;
+    if (end.now[k] * end.velocity[k] <= 0 || now[k] * velocity[k] >= 0) continue;
     double greatest = 0, where = 0;
+    constexpr int parts = 16;
     for (int i = 1; i < parts; ++i) {
-      const double size = std::abs(at(static_cast<double>(i) / parts)[k]);
+      const double s = static_cast<double>(i) / parts;
+      const double size = std::abs(cubic(s, end.now[k], h * end.velocity[k], now[k], h * velocity[k]));
       if (size <= greatest) continue;
       greatest = size;
-      where = static_cast<double>(i) / parts;
+      where = s;
     }
     if (greatest <= end.rough[static_cast<std::size_t>(k)]) continue;
-    static_cast<void>(at(where));
+    const std::size_t q = end.slot->position, u = model_.layout().positions + end.slot->speed;
+    between_.y = state.y;
+    for (std::size_t i = 0; i < end.slot->positions; ++i)
+      between_.y[q + i] = cubic(where, last_.y[q + i], h * last_.y[u + i], state.y[q + i], h * state.y[u + i]);
     bool seen = false;
-    observe_end(end, between_, seen);
+    observe_end(end, between_, end.section.displacement(between_.y.data() + q), seen);
   }
 }
 
-void Monitor::observe(const State& state) {
-  if (state.time > last_.time) {
-    between_.y = state.y;
-    for (End& end : ends_) observe_within(end, state);
-    if (!model_.loads().empty() || !model_.motions().empty()) {
-      go_to_middle(state);
-      raise_efforts(between_);
-    }
-  }
+void Monitor::look(const State& state) {
   bool seen = false;
-  for (End& end : ends_) observe_end(end, state, seen);
+  for (End& end : ends_) {
+    const double* const q = state.y.data() + end.slot->position;
+    const double* const u = state.y.data() + model_.layout().positions + end.slot->speed;
+    const Vector3 now = end.section.displacement(q), velocity = end.section.velocity(q, u);
+    if (state.time > last_.time) observe_within(end, state, now, velocity);
+    end.now = now;
+    end.velocity = velocity;
+    observe_end(end, state, now, seen);
+  }
   if (!wholes_.empty()) {
     if (!seen) seen_.observe(state.y);
     for (const Tip& tip : wholes_)
       note(tip.body, tip.length, deflection(seen_, tip), &summary_.peak_deflection[tip.body]);
   }
-  raise_efforts(state);
   last_ = state;
 }
 
-/// The middle of the last step: positions on the cubic through those at its ends and their rates, speeds on the line.
-void Monitor::go_to_middle(const State& state) {
-  const std::size_t positions = model_.layout().positions, speeds = model_.layout().speeds;
-  const double h = state.time - last_.time;
-  between_.time = last_.time + 0.5 * h;
-  const bool smooth = equations_.position_rates(last_.time, last_.y, rates_before_, work_).ok() &&
-                      equations_.position_rates(state.time, state.y, rates_, work_).ok();
-  for (std::size_t i = 0; i < positions; ++i)
-    between_.y[i] = smooth ? cubic(0.5, last_.y[i], h * rates_before_[i], state.y[i], h * rates_[i])
-                           : 0.5 * (last_.y[i] + state.y[i]);
-  for (std::size_t i = positions; i < positions + speeds; ++i) between_.y[i] = 0.5 * (last_.y[i] + state.y[i]);
-  equations_.normalize(between_.y);
-}
-
-void Monitor::raise_efforts(const State& state) {
-  const auto raise = [&](std::vector<double>& peak) {
-    for (std::size_t i = 0; i < efforts_.size(); ++i) peak[i] = std::max(peak[i], std::abs(efforts_[i]));
-  };
-  if (!model_.loads().empty()) {
-    equations_.load_efforts(state.time, state.y, EquationsOfMotion::all_loads, efforts_, work_);
-    raise(summary_.peak_effort);
-  }
-  if (!model_.motions().empty() && equations_.motion_efforts(state.time, state.y, efforts_, work_).ok())
-    raise(summary_.peak_motion_effort);
+void Monitor::observe(const Stepper& stepper) {
+  look(stepper.state());
+  effort_watch_.observe(stepper);
 }
 
 double Monitor::kinetic(const State& state, const Energies& energies) {
@@ -287,9 +260,10 @@ void Monitor::remember(Memory& memory) {
   for (auto& [body, ratio] : summary_.peak_deflection_ratio) memory(ratio);
   for (End& end : ends_) {
     for (double& d : end.rough) memory(d);
+    for (double& d : end.now) memory(d);
+    for (double& d : end.velocity) memory(d);
   }
-  memory(summary_.peak_effort);
-  memory(summary_.peak_motion_effort);
+  effort_watch_.remember(memory);
   memory(summary_.energy_drift);
   memory(summary_.suspected_jumps);
   memory(last_.time);

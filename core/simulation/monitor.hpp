@@ -9,6 +9,7 @@
 
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/effort_watch.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/core/simulation/tips.hpp"
 
@@ -17,18 +18,17 @@ namespace withy {
 /// Watches one run from its initial state on; the peaks go to the run's summary.
 class Monitor {
  public:
+  /// \param span of the run [s]
   /// \param seen an observation of these equations; null: the monitor makes its own
   Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
-          Observation* seen, RunSummary& summary);
+          double span, Observation* seen, RunSummary& summary);
 
   /// Peaks of deflections and efforts: for every accepted step, and what lies between it and the one before.
-  void observe(const State& state);
-  /// Brings the observation to an output. Of what a run reports of itself only peaks of efforts look there too: a hinge
-  /// that is driven alone takes steps far longer than its efforts' changes.
-  void show(const State& state) {
-    seen_.observe(state.y);
-    raise_efforts(state);
-  }
+  void observe(const Stepper& stepper);
+  /// Loads and motions begin here, or what they do may have jumped.
+  void begin_efforts(const State& state) { effort_watch_.begin_at(state); }
+  /// Brings the observation to an output.
+  void show(const State& state) { seen_.observe(state.y); }
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
   /// Energy against the work done. A state where they balance is to be trusted.
@@ -68,6 +68,7 @@ class Monitor {
     std::vector<Vector3> second;  ///< Γ_ij for i ≤ j, halved where i = j
     explicit SectionExpansion(const PointExpansion& e);
     [[nodiscard]] Vector3 displacement(const double* q) const;
+    [[nodiscard]] Vector3 velocity(const double* q, const double* u) const;
   };
   /// A flexible body's tip, or a segment's.
   struct End {
@@ -78,12 +79,12 @@ class Monitor {
     double length;                ///< [m]
     std::array<double, 3>* peak;  ///< null: a segment's
     double* ratio;
-    std::array<double, 3> rough{};  ///< greatest |deflection| by the expansion
+    std::array<double, 3> rough{};                              ///< greatest |deflection| by the expansion
+    Vector3 now = Vector3::Zero(), velocity = Vector3::Zero();  ///< at the last accepted state, by the expansion
   };
-  void observe_end(End& end, const State& state, bool& seen);
-  void observe_within(End& end, const State& state);
-  void raise_efforts(const State& state);
-  void go_to_middle(const State& state);
+  void look(const State& state);
+  void observe_end(End& end, const State& state, const Vector3& rough, bool& seen);
+  void observe_within(End& end, const State& state, const Vector3& now, const Vector3& velocity);
   void note(const std::string& name, double length, const std::array<double, 3>& d, std::array<double, 3>* peak);
   /// Sign of det M by one evaluation; 0 where it cannot be solved.
   [[nodiscard]] int mass_matrix_sign(const State& state);
@@ -101,7 +102,8 @@ class Monitor {
   State between_;  ///< a state within the last step
   State trusted_;
   double trust_limit_ = 0.5, greatest_speed_ = 0;
-  std::vector<double> efforts_, rates_, rates_before_;
+  EffortWatch effort_watch_;
+  std::vector<double> efforts_, rates_;
   Work work_;
   [[nodiscard]] double kinetic(const State& state, const Energies& energies);
   void audit_momenta(const Energies& energies);

@@ -23,7 +23,7 @@ Session::Session(const Model& model, const EquationsOfMotion& equations, const I
       options_(std::move(options)),
       initial_(begun(model, initial)),
       loop_(model, integrator.start(equations, initial_), {initial.time, infinity, options_.events}),
-      monitor_(model, equations, loop_.state(), options_.deflection_limit, nullptr, summary_),
+      monitor_(model, equations, loop_.state(), options_.deflection_limit, infinity, nullptr, summary_),
       with_inputs_(loop_.state()) {
   for (std::size_t l = 0; l < model.loads().size(); ++l)
     if (model.loads()[l].load->input() != nullptr) settings_.push_back({l});
@@ -125,7 +125,7 @@ bool Session::before_step(const Stepper& /*stepper*/) {
 bool Session::output(const State& /*state*/) { return true; }
 
 bool Session::after_step(const Stepper& stepper, bool /*outputs*/) {
-  monitor_.observe(stepper.state());
+  monitor_.observe(stepper);
   monitor_.audit_mass_matrix(stepper.state(), stepper.statistics().determinant_sign);
   if (monitor_.sign_change()) {
     stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};

@@ -28,7 +28,8 @@ class Run final : public SteppingObserver {
         hand_overs_(options.changing != nullptr ? options.changing->hand_overs() : std::vector<double>()),
         loop_(model, integrator.start(equations, begun(model, initial)),
               {options.end, options.output, options.events, hand_overs_}),
-        monitor_(model, equations, loop_.state(), options.deflection_limit, options.seen, summary),
+        monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
+                 summary),
         validity_(model, equations, options.beyond, summary.validity) {
     if (options.own_energy) monitor_.use_own_energy(loop_.state());
     if (std::isfinite(options.drift_limit)) monitor_.trust(options.drift_limit);
@@ -36,6 +37,7 @@ class Run final : public SteppingObserver {
       restore(*options.resume);
       return;
     }
+    monitor_.begin_efforts(loop_.state());
     output_at(loop_.state());
     validity_.observe(loop_.state(), 0);
   }
@@ -88,7 +90,7 @@ class Run final : public SteppingObserver {
   bool after_step(const Stepper& stepper, bool /*outputs*/) override {
     const State& state = stepper.state();
     monitor_.audit_steps(state, stepper.statistics());
-    monitor_.observe(state);
+    monitor_.observe(stepper);
     monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
     if (audited(stepper.statistics().accepted)) monitor_.audit_energy(state);
     validity_.observe(state, loop_.step_evaluations());
@@ -107,12 +109,16 @@ class Run final : public SteppingObserver {
     if (stated != options_.events.end() && stated->stops) stopped_by_.push_back(event.name);
   }
   void switched() override { ++summary_.switchings; }
-  void jumped() override { monitor_.pass_instant(); }
+  void jumped() override {
+    monitor_.pass_instant();
+    monitor_.begin_efforts(loop_.state());
+  }
+  void restarted() override { monitor_.begin_efforts(loop_.state()); }
 
  private:
-  /// Energy is looked at after each of the first steps, then after every fourth, whatever the output interval.
+  /// Energy is looked at after each of the first steps, then after every eighth, whatever the output interval.
   static bool audited(std::size_t accepted) {
-    constexpr std::size_t first = 256, interval = 4;
+    constexpr std::size_t first = 64, interval = 8;
     return accepted <= first || accepted % interval == 0;
   }
   [[nodiscard]] double seconds() const {

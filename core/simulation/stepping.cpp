@@ -35,6 +35,7 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
     if (!jumps) continue;
     observer_->landed(state());
     stepper_->restart();
+    observer_->restarted();
   }
   return ended_;
 }

@@ -50,6 +50,8 @@ class SteppingObserver {
   virtual void landed(const State& /*state*/) {}
   /// Discrete states of loads have been renewed or have switched: what follows is not smooth with what was before.
   virtual void jumped() {}
+  /// A load or a motion jumps at the present time, as it has declared.
+  virtual void restarted() {}
   /// Renews the discrete states that are due at the state's time; for states that are not laid out as the model's.
   virtual void renew(Clocks& clocks, State& state) { clocks.renew(state); }
 };
