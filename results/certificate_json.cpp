@@ -48,14 +48,10 @@ Json plan_json(const Certificate& c) {
   for (std::size_t i = 0; i < c.rungs.size(); ++i)
     evaluations[c.rungs[i]] = {{"run", i < plan.run_evaluations.size() ? plan.run_evaluations[i] : 0},
                                {"coarse", plan.evaluations[i]}};
-  return {{"list", std::move(all)},
-          {"accuracy", plan.accuracy},
-          {"accuracy_used", plan.use},
-          {"worst", plan.worst},
-          {"windows", plan.windows},
-          {"repeated", plan.repeated},
-          {"integrator", plan.integrator},
-          {"evaluations", std::move(evaluations)}};
+  return {{"list", std::move(all)},        {"accuracy", plan.accuracy},
+          {"accuracy_used", plan.use},     {"worst", plan.worst},
+          {"windows", plan.windows},       {"repeated", plan.repeated},
+          {"integrator", plan.integrator}, {"evaluations", std::move(evaluations)}};
 }
 
 Json estimate_json(const Certificate& c) {
@@ -115,6 +111,7 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
           ? Json{{"against", certificate.against}, {"rms", n.rms}, {"peak", n.peak}, {"samples", n.samples}}
           : Json();
   c["estimated_error"] = estimate_json(certificate);
+  if (!certificate.estimate) c["without_estimate"] = certificate.without_estimate;
   c["steps"] = steps_json(certificate.steps);
   c["indicators"] = indicators_json(certificate.indicators);
   return c;

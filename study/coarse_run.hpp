@@ -16,7 +16,7 @@ namespace withy::study {
 
 /// What a coarse run has shown of a window.
 struct WindowTrack {
-  std::vector<double> times;                 ///< of accepted steps [s]; the last is the window's end
+  std::vector<double> times;                  ///< of accepted steps [s]; the last is the window's end
   std::vector<std::vector<double>> readings;  ///< of outputs at these times; empty where none was taken
   State end;
 };

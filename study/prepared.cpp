@@ -72,7 +72,8 @@ void make_rungs(Prepared& prepared, Registry& registry) {
     } catch (const std::invalid_argument&) {
       continue;  // a body without exact kinematics: the ladder ends before it
     }
-    prepared.scene.sources.add({std::string(kind_name<Formulation>()), rung.id, registry.find<Formulation>(rung.id)->origin});
+    prepared.scene.sources.add(
+        {std::string(kind_name<Formulation>()), rung.id, registry.find<Formulation>(rung.id)->origin});
     prepared.rungs.push_back({rung.id, rung.formulation->terms(), prepared.rung_equations.back().get()});
   }
 }

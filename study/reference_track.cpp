@@ -15,8 +15,8 @@ constexpr double readings = 400;
 constexpr double of_accuracy = 0.1;
 /// An evaluation of an integrator with Jacobians counts for this many: they cost several each.
 constexpr std::size_t with_jacobians = 4;
-/// Third-order terms beyond this part of the accuracy are looked at: (deflection over length)² of the range (spin-up: 0.36 % at
-/// 0.057, 0.49 % at 0.067).
+/// Third-order terms beyond this part of the accuracy are looked at: (deflection over length)² of the range (spin-up:
+/// 0.36 % at 0.057, 0.49 % at 0.067).
 constexpr double worth_a_look = 0.5;
 
 /// Ends of windows [s]: outputs of the run, so that a change of rungs is one.

@@ -87,9 +87,10 @@ class Agreement {
     constexpr double another = 0.3;
     const double apart = outputs_ ? relative_error(apart_, plan_.scales) : 0;
     if (!(apart > another)) return {};
-    return fmt::format("The coarse run that its error is estimated by is {:.2g} % of an output's range off: the motion "
-                       "is sensitive, and the error is not known.",
-                       100 * apart);
+    return fmt::format(
+        "The coarse run that its error is estimated by is {:.2g} % of an output's range off: the motion "
+        "is sensitive, and the error is not known.",
+        100 * apart);
   }
 
  private:
@@ -123,6 +124,27 @@ RunSummary run_plainly(const Prepared& prepared, const RunSettings& settings, co
   return run_equations(prepared, settings, *prepared.equations, nullptr, beyond, [](const State&) {});
 }
 
+/// Where there is no estimate: why, and what is known without one.
+std::string without_estimate(const Prepared& prepared, const RunSummary& summary, const std::optional<Beyond>& beyond,
+                             const RunSettings& settings) {
+  if (!flexible(prepared.model())) return "no body is flexible: all formulations are the same";
+  if (summary.status == RunStatus::interrupted) return "not estimated: the run was interrupted";
+  if (has_switches(prepared.model()) && beyond)
+    return "not estimated: loads switch at the zeros of functions, and two formulations have no common steps";
+  if (prepared.scene.formulation->terms().strain == StrainOrder::exact && !beyond)
+    return "nothing is left out: kinematics is exact and nothing is truncated";
+  if (beyond && !beyond->highest) return "not estimated: it was not asked for";
+  // (deflection over length)² of the range: what second-order kinematics was measured to be off by.
+  double deflection = 0;
+  for (const auto& [body, ratio] : summary.peak_deflection_ratio) deflection = std::max(deflection, ratio);
+  const std::string third = fmt::format(
+      "terms of third order in the deflection are left out, about {:.2g} % of it where it is {:.2g} of a body's length",
+      100 * deflection * deflection, deflection);
+  if (!beyond) return third + "; not estimated: no body offers more";
+  return third +
+         (settings.estimate == Estimate::never ? "" : "; `--estimate always` compares with " + beyond->formulation);
+}
+
 bool wanted(Estimate estimate, const Beyond& beyond) {
   return estimate == Estimate::always || (estimate == Estimate::automatic && !beyond.highest);
 }
@@ -134,7 +156,9 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
   if (prepared.escalates()) {
     RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
     result.summary = run_planned(prepared, settings, plan);
-    result.summary.message += growth_text(prepared, result.summary);
+    // What is inaccurate here is the choice, and nothing grows.
+    if (result.summary.status != RunStatus::inaccurate)
+      result.summary.message += growth_text(prepared, result.summary);
     std::optional<ErrorEstimate> estimate = plan.estimate;
     if (estimate) estimate->end = result.summary.final.time;
     result.certificate = certify(prepared, {&result.summary, nullptr, std::move(plan), std::move(estimate)}, registry);
@@ -149,8 +173,10 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
       result.summary.status != RunStatus::interrupted)
     estimate = estimate_error(prepared.scene, *prepared.equations, *beyond, result.summary, registry,
                               settings.control.interrupted);
-  result.certificate =
-      certify(prepared, {&result.summary, beyond ? &*beyond : nullptr, {}, std::move(estimate)}, registry);
+  std::string why_not =
+      estimate || !settings.look_beyond ? std::string() : without_estimate(prepared, result.summary, beyond, settings);
+  result.certificate = certify(
+      prepared, {&result.summary, beyond ? &*beyond : nullptr, {}, std::move(estimate), std::move(why_not)}, registry);
   return result;
 }
 

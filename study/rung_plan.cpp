@@ -65,9 +65,9 @@ class Planner {
   /// The composite run where a window begins.
   struct Mark {
     State state;
-    Distances errors;   ///< greatest so far
-    std::size_t rung;   ///< of the window before
-    bool exact = false; ///< no other rung than the reference's so far: the states are the same
+    Distances errors;    ///< greatest so far
+    std::size_t rung;    ///< of the window before
+    bool exact = false;  ///< no other rung than the reference's so far: the states are the same
   };
 
   [[nodiscard]] std::size_t window() const { return marks_.size() - 1; }
@@ -133,7 +133,9 @@ class Planner {
     }
     return good;
   }
-  [[nodiscard]] static std::size_t most_evaluations(const WindowTrack& track) { return 1000 + 100 * track.times.size(); }
+  [[nodiscard]] static std::size_t most_evaluations(const WindowTrack& track) {
+    return 1000 + 100 * track.times.size();
+  }
 
   void begin(std::size_t rung, const State& state) {
     run_ = std::make_unique<CoarseRun>(prepared_, *prepared_.rungs[rung].equations, outputs_, *integrator_, state,
@@ -145,7 +147,10 @@ class Planner {
   /// To the last mark that keeps the next stricter shares, and one rung up from what was made there.
   void go_back() {
     ++strictness_;
-    while (marks_.size() > 1 && use(marks_.back().errors) > (window() > 0 ? share(window() - 1) : 0)) marks_.pop_back();
+    const auto kept = [&](const Mark& m) {
+      return strictness_ > theta.size() ? m.exact : use(m.errors) <= share(window() - 1);
+    };
+    while (marks_.size() > 1 && !kept(marks_.back())) marks_.pop_back();
     rung_ = strictness_ == 1 ? std::min<std::size_t>(1, top()) : top();
     next_lower_ = window() + 2;
     run_.reset();
@@ -195,7 +200,8 @@ void judge(RungPlan& plan, const ReferenceTrack& reference, const Prepared& prep
     add(fmt::format("The coarse run in {} ended at t = {:.4g} s: {}. The error beyond is not known.", highest,
                     plan.estimate->distances.until, reference.problem));
   if (reference.third_order > plan.accuracy)
-    add(fmt::format("Deflections of {:.2g} of a body's length are beyond what {} is good for, about {:.2g} % of their "
+    add(
+        fmt::format("Deflections of {:.2g} of a body's length are beyond what {} is good for, about {:.2g} % of their "
                     "range, and no kinematics is offered that is better.",
                     reference.deflection, highest, 100 * reference.third_order));
   if (plan.use > 1)

@@ -34,12 +34,12 @@ struct RungPlan {
   std::string worst;                      ///< output of which that is so
   /// Why the error is not known, or not to be held; else empty.
   std::string problem;
-  std::string integrator;                 ///< of the coarse runs; empty: there were none
-  std::vector<std::size_t> evaluations;   ///< of the coarse runs, in each rung
+  std::string integrator;                    ///< of the coarse runs; empty: there were none
+  std::vector<std::size_t> evaluations;      ///< of the coarse runs, in each rung
   std::vector<std::size_t> run_evaluations;  ///< of the run itself, in each rung, those of its watches among them
-  std::size_t windows = 0, repeated = 0;  ///< of time; tries of a window that were not kept
-  std::vector<PlannedReading> readings;   ///< at the ends of windows
-  Distances scales;                       ///< that errors are relative to
+  std::size_t windows = 0, repeated = 0;     ///< of time; tries of a window that were not kept
+  std::vector<PlannedReading> readings;      ///< at the ends of windows
+  Distances scales;                          ///< that errors are relative to
 };
 
 /// Plans the run of a scene in formulation `auto`. The same scene gives the same plan, bit by bit.

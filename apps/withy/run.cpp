@@ -87,8 +87,7 @@ ExitStatus run(const RunArguments& given) {
                   "\nresults in " + arguments.out +
                   (has_report_page() ? ", to look at in its report.html\n" : ", drawn in its results.svg\n"));
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
-  if (summary.status == RunStatus::interrupted)
-    complain("the same command with --resume goes on from there");
+  if (summary.status == RunStatus::interrupted) complain("the same command with --resume goes on from there");
   return exit_status(summary.status);
 }
 

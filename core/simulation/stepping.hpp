@@ -57,9 +57,9 @@ class SteppingObserver {
 };
 
 struct SteppingOptions {
-  double end = 0;                         ///< [s]
-  double output = 0.01;                   ///< interval of outputs [s]; they fall on its multiples
-  std::span<const RunEvent> events = {};  ///< looked for on the dense output
+  double end = 0;                           ///< [s]
+  double output = 0.01;                     ///< interval of outputs [s]; they fall on its multiples
+  std::span<const RunEvent> events = {};    ///< looked for on the dense output
   std::span<const double> hand_overs = {};  ///< times [s] at which the equations change; increasing
 };
 

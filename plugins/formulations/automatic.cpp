@@ -10,7 +10,8 @@ void enroll_automatic(Enrollment& enrollment) {
       {.id = "auto",
        .summary = "The cheapest formulations that together hold an accuracy, changed along a run and estimated against "
                   "the highest; quadratic where nothing runs",
-       .parameters = {number("accuracy", "1", "greatest error of each output that formulations may make, of its own range")
+       .parameters = {number("accuracy", "1",
+                             "greatest error of each output that formulations may make, of its own range")
                           .above(0)
                           .most(1)
                           .otherwise(0.01)},

@@ -72,7 +72,8 @@ TEST(Auto, SampledControllersAndCheckpointsGoOverAnyChange) {
                "bending_y: {stiffness: 20, modes: 2}}\nhinges:\n  axle: {type: revolute, axis: [0, 0, 1], parent: "
                "world, child: beam}\nloads:\n  control: {type: pd-controller, law: constant, sample: 0.03, hinges: "
                "{axle: {to: 0.5, stiffness: 5, damping: 0.4}}}\n");
-  const Finished f = withy(folder, {"run", "sampled.yaml", "--formulation", "auto", "--checkpoint", "0", "--out", "out"});
+  const Finished f =
+      withy(folder, {"run", "sampled.yaml", "--formulation", "auto", "--checkpoint", "0", "--out", "out"});
   EXPECT_EQ(f.status, 0) << f.err;
 }
 

@@ -64,7 +64,8 @@ TEST(ChangingEquations, one_stretch_is_the_run_of_its_formulation_bit_by_bit) {
 }
 
 TEST(ChangingEquations, the_state_goes_over_as_it_is_and_energy_counts_anew) {
-  for (const char* integrator : {"{name: dopri5, rtol: 1e-8}", "{name: imex, rtol: 1e-8}", "{name: radau, rtol: 1e-8}"}) {
+  for (const char* integrator :
+       {"{name: dopri5, rtol: 1e-8}", "{name: imex, rtol: 1e-8}", "{name: radau, rtol: 1e-8}"}) {
     Ladder l(falling("", integrator));
     const RunSummary run = l.run({{0, 0, 0.4}, {1, 0.4, 1}});
     ASSERT_EQ(run.status, RunStatus::completed) << integrator;
