@@ -17,7 +17,7 @@ constexpr double of_accuracy = 0.1;
 constexpr std::size_t with_jacobians = 4;
 /// Third-order terms beyond this part of the accuracy are looked at: (deflection over length)² of the range (spin-up:
 /// 0.36 % at 0.057, 0.49 % at 0.067).
-constexpr double worth_a_look = 0.5;
+constexpr double worth_a_look = 0.02;
 
 /// Ends of windows [s]: outputs of the run, so that a change of rungs is one.
 std::vector<double> window_ends(double start, double end, double output) {

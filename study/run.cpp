@@ -157,8 +157,7 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
     RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
     result.summary = run_planned(prepared, settings, plan);
     // What is inaccurate here is the choice, and nothing grows.
-    if (result.summary.status != RunStatus::inaccurate)
-      result.summary.message += growth_text(prepared, result.summary);
+    if (result.summary.status != RunStatus::inaccurate) result.summary.message += growth_text(prepared, result.summary);
     std::optional<ErrorEstimate> estimate = plan.estimate;
     if (estimate) estimate->end = result.summary.final.time;
     result.certificate = certify(prepared, {&result.summary, nullptr, std::move(plan), std::move(estimate)}, registry);
