@@ -23,7 +23,10 @@ std::string component(const std::complex<double>& x) {
 
 std::string modes_text(const study::ModesOf& run, std::size_t count) {
   const study::ModesAt& at = run.points.front();
-  count = std::min(count, at.modes.size());
+  // Rigid motions are listed beside those that are asked for, and have no shapes worth a column.
+  const auto rigid =
+      static_cast<std::size_t>(std::count_if(at.modes.begin(), at.modes.end(), [](const Mode& m) { return m.rigid; }));
+  count = std::min(count + rigid, at.modes.size());
   TextTable table({"mode", "frequency\n[rad/s]", "\n[Hz]", "damping\nratio", "growth\n[1/s]", "<", "<dominated by"});
   for (std::size_t i = 0; i < count; ++i) {
     const Mode& m = at.modes[i];
@@ -33,14 +36,18 @@ std::string modes_text(const study::ModesOf& run, std::size_t count) {
                study::dominating(at, m)});
   }
   std::string text = table.str();
-  if (count < at.modes.size()) text += fmt::format("{} more: --count {}\n", at.modes.size() - count, at.modes.size());
+  if (count < at.modes.size())
+    text += fmt::format("{} more: --count {}\n", at.modes.size() - count, at.modes.size() - rigid);
   std::vector<std::string> head = {"<shape"};
-  for (std::size_t i = 0; i < count; ++i) head.push_back(std::to_string(i + 1));
+  for (std::size_t i = 0; i < count; ++i)
+    if (!at.modes[i].rigid) head.push_back(std::to_string(i + 1));
+  if (head.size() == 1) return text;
   TextTable shapes(head);
   for (std::size_t s = 0; s < at.names.size(); ++s) {
     std::vector<std::string> cells = {at.names[s]};
     bool moves = false;
     for (std::size_t i = 0; i < count; ++i) {
+      if (at.modes[i].rigid) continue;
       const std::complex<double> x = at.modes[i].shape[static_cast<Eigen::Index>(s)];
       moves = moves || x != 0.0;
       cells.push_back(component(x));

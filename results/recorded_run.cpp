@@ -3,8 +3,10 @@
 #include <optional>
 
 #include "withy/results/certificate_json.hpp"
+#include "withy/results/certificate_text.hpp"
 #include "withy/results/checkpoint_files.hpp"
 #include "withy/results/csv_recorder.hpp"
+#include "withy/results/hdf5_recorder.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/report/report_page.hpp"
@@ -15,15 +17,42 @@ namespace {
 
 constexpr const char* table_name = "results.csv";
 constexpr const char* summary_name = "run.json";
+constexpr const char* hdf5_name = "results.h5";
 constexpr const char* picture_name = "results.svg";  ///< in the place of a report
 
+/// results.h5 with what is known of a run before it begins.
+std::unique_ptr<Hdf5Recorder> begun_hdf5(const std::filesystem::path& folder, const study::Prepared& prepared,
+                                         const Provenance& provenance) {
+  auto file = make_hdf5_recorder(folder / hdf5_name);
+  file->describe("scene", prepared.values.text());
+  file->describe("formulation", prepared.scene.formulation_name);
+  file->describe("integrator", prepared.scene.integrator_name);
+  file->describe("provenance", json_text(provenance_json(provenance)));
+  return file;
+}
+
+/// What is known when it has ended.
+void describe_end(const study::Prepared& prepared, const RecordedRun& ended, Hdf5Recorder& file) {
+  const RunSummary& summary = ended.run.summary;
+  file.describe("run", json_text(ended.json));
+  file.describe("certificate", certificate_text(prepared.model(), summary, ended.run.certificate));
+  file.describe("status", std::string(name(summary.status)));
+}
+
 RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder, const study::Prepared& prepared,
-                          Registry& registry, const Provenance& provenance, study::RunSettings settings) {
-  for (const char* old : {summary_name, report_name, picture_name}) std::filesystem::remove(folder / old);
+                          Registry& registry, const Provenance& provenance, study::RunSettings settings,
+                          RunFiles files) {
+  for (const char* old : {summary_name, report_name, picture_name, hdf5_name}) std::filesystem::remove(folder / old);
   RunReport report(prepared);
   if (settings.resume != nullptr) read_csv(folder / table_name, report.table());
-  SharedRecorder recorders({&csv, &report.table()});
+  std::vector<Recorder*> all = {&csv, &report.table()};
+  const auto hdf5 = files.hdf5 ? begun_hdf5(folder, prepared, provenance) : nullptr;
+  if (hdf5 != nullptr) all.push_back(hdf5.get());
+  SharedRecorder recorders(all);
   RunTable table(prepared, recorders);
+  if (hdf5 != nullptr) hdf5->describe_frames(table.frames());
+  // An HDF5 file cannot be cut off at a mark: it is written anew.
+  if (hdf5 != nullptr && settings.resume != nullptr) read_csv(folder / table_name, *hdf5);
   const bool seen = !prepared.escalates();
   if (seen) settings.seen = &table.seen();
   settings.output = [&table, seen, also = settings.output](const State& state, std::size_t rung) {
@@ -36,9 +65,10 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
   };
   RecordedRun recorded;
   recorded.run = study::run(prepared, registry, settings);
-  recorders.end();
   recorded.json = run_json(prepared.scene, recorded.run.summary, recorded.run.certificate);
   recorded.json.update(provenance_json(provenance));
+  if (hdf5 != nullptr) describe_end(prepared, recorded, *hdf5);
+  recorders.end();
   write_file(folder / summary_name, json_text(recorded.json));
   if (has_report_page()) {
     recorded.report = report.text(recorded.run, recorded.json);
@@ -59,19 +89,21 @@ RunTable::RunTable(const study::Prepared& prepared, Recorder& recorder) : record
 }
 
 std::vector<std::string> run_content() {
-  return {table_name, summary_name, "checkpoint.cbor", "checkpoint.previous.cbor", report_name, picture_name};
+  return {table_name,  summary_name, "checkpoint.cbor", "checkpoint.previous.cbor",
+          report_name, picture_name, hdf5_name};
 }
 
 RecordedRun record_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
-                       const Provenance& provenance, study::RunSettings settings) {
+                       const Provenance& provenance, study::RunSettings settings, RunFiles files) {
   std::filesystem::create_directories(folder);
   CsvRecorder csv(folder / table_name);
-  return simulate_into(csv, folder, prepared, registry, provenance, std::move(settings));
+  return simulate_into(csv, folder, prepared, registry, provenance, std::move(settings), files);
 }
 
 RecordedRun record_lasting_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
-                               const Provenance& provenance, study::RunSettings settings, const StoredRun* from) {
-  const CheckpointFiles files(folder, provenance.fingerprint());
+                               const Provenance& provenance, study::RunSettings settings, const StoredRun* from,
+                               RunFiles files) {
+  const CheckpointFiles checkpoints(folder, provenance.fingerprint());
   std::optional<CsvRecorder> csv;
   if (from != nullptr) {
     csv.emplace(folder / table_name, from->table);
@@ -79,9 +111,9 @@ RecordedRun record_lasting_run(const std::filesystem::path& folder, const study:
   } else {
     csv.emplace(folder / table_name);
   }
-  settings.checkpoint = [&](const Checkpoint& checkpoint) { files.write({checkpoint, csv->mark(), {}}); };
-  RecordedRun recorded = simulate_into(*csv, folder, prepared, registry, provenance, std::move(settings));
-  if (recorded.run.summary.status != RunStatus::interrupted) files.remove();
+  settings.checkpoint = [&](const Checkpoint& checkpoint) { checkpoints.write({checkpoint, csv->mark(), {}}); };
+  RecordedRun recorded = simulate_into(*csv, folder, prepared, registry, provenance, std::move(settings), files);
+  if (recorded.run.summary.status != RunStatus::interrupted) checkpoints.remove();
   return recorded;
 }
 

@@ -1,5 +1,6 @@
 /// \file
-/// Runs that leave a folder behind: results.csv as they go, run.json and report.html when they have ended.
+/// Runs that leave a folder behind: results.csv as they go (and results.h5), run.json and report.html when they have
+/// ended.
 #pragma once
 
 #include <filesystem>
@@ -23,6 +24,8 @@ class RunTable {
   void add(const State& state, std::size_t rung) { recorder_.row(columns_[rung].row(state)); }
   /// The same of the first formulation, where `seen()` is at that state.
   void add_seen(const State& state) { recorder_.row(columns_.front().row_of_seen(state)); }
+  /// Axes of each column, ResultColumns::frames.
+  [[nodiscard]] const std::vector<std::string>& frames() const { return columns_.front().frames(); }
   /// For RunSettings::seen: a row then costs no pass of its own.
   [[nodiscard]] Observation& seen() { return columns_.front().seen(); }
 
@@ -37,17 +40,23 @@ struct RecordedRun {
   std::string report;           ///< its part of a page, RunReport::text; empty where this build holds no page
 };
 
+/// What a run writes beside what every run does.
+struct RunFiles {
+  bool hdf5 = false;  ///< results.h5, too
+};
+
 /// What a run leaves in its folder, checkpoints included.
 std::vector<std::string> run_content();
 
 /// Simulates into a folder, made where it is not there; a folder without run.json is a run that was killed.
 /// `settings.output` sees every output too. \throws std::system_error where something cannot be written.
 RecordedRun record_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
-                       const Provenance& provenance, study::RunSettings settings);
+                       const Provenance& provenance, study::RunSettings settings, RunFiles files = {});
 
 /// The same with checkpoints in the folder every `settings.checkpoint_seconds`, and where the run is interrupted; they
 /// are removed when it has ended. \param from where to go on; null: it begins
 RecordedRun record_lasting_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
-                               const Provenance& provenance, study::RunSettings settings, const StoredRun* from);
+                               const Provenance& provenance, study::RunSettings settings, const StoredRun* from,
+                               RunFiles files = {});
 
 }  // namespace withy

@@ -23,6 +23,8 @@ std::string numbered(const std::string& name, std::size_t index, std::size_t cou
   return count == 1 ? name : fmt::format("{}.{}", name, index);
 }
 
+std::string hinge_frame(const HingeNode& hinge) { return "F of hinge " + hinge.name; }
+
 }  // namespace
 
 ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equations,
@@ -36,31 +38,49 @@ ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equati
       efforts_(model.layout().speeds) {
   const Layout& layout = model.layout();
   columns_.push_back({"t", "s"});
+  const auto in = [&](const std::string& frame) { frames_.resize(columns_.size(), frame); };
   const auto append = [&](const std::vector<Column>& more) {
     columns_.insert(columns_.end(), more.begin(), more.end());
   };
-  for (const HingeNode& h : model.hinges()) append(coordinate_columns(h));
+  in("");
+  for (const HingeNode& h : model.hinges()) {
+    append(coordinate_columns(h));
+    in(hinge_frame(h));
+  }
   const auto add_modes = [&](const char* suffix) {
     for (const Slot& body : layout.bodies)
       for (std::size_t i = 0; i < body.speeds; ++i)
         columns_.push_back({layout.speed_names[body.speed + i] + suffix, ""});
   };
   add_modes("");
-  for (const HingeNode& h : model.hinges()) append(rate_columns(h));
+  in("");
+  for (const HingeNode& h : model.hinges()) {
+    append(rate_columns(h));
+    in(hinge_frame(h));
+  }
   add_modes(".rate");
-  for (const Tip& tip : tips_)
-    if (tip.flexible) add(columns_, tip.body, {".tip.deflection_x", ".tip.deflection_y", ".tip.deflection_z"}, "m");
+  in("");
+  for (const Tip& tip : tips_) {
+    if (!tip.flexible) continue;
+    add(columns_, tip.body, {".tip.deflection_x", ".tip.deflection_y", ".tip.deflection_z"}, "m");
+    in(tip.body);
+  }
   for (const Tip& tip : tips_) add(columns_, tip.body, {".tip.x", ".tip.y", ".tip.z"}, "m");
+  in("world");
   for (const MotionNode& motion : model.motions()) {
     const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(motion.hinge)];
     const std::vector<HingeRate> rates = hinge_rates(*hinge.hinge);
     for (std::size_t i = 0; i < rates.size(); ++i)
       columns_.push_back({numbered(hinge.name + ".motion_effort", i, rates.size()), rates[i].angular ? "N m" : "N"});
+    in(hinge_frame(hinge));
   }
   add(columns_, "", {"kinetic_energy", "potential_energy", "work"}, "J");
+  in("");
   add(columns_, "linear_momentum", {".x", ".y", ".z"}, "kg m/s");
   add(columns_, "angular_momentum", {".x", ".y", ".z"}, "kg m^2/s");
+  in("world, about its origin");
   append(sensors_.columns());
+  in("as the scene's outputs say");
 }
 
 const std::vector<double>& ResultColumns::row(const State& state) {

@@ -23,6 +23,8 @@ class ResultColumns {
   /// Model and equations must outlive the object. The sensors are bound to this model.
   ResultColumns(const Model& model, const EquationsOfMotion& equations, const std::vector<SensorNode>& sensors = {});
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+  /// The axes that each is told in, as `world`; empty where that has no meaning.
+  [[nodiscard]] const std::vector<std::string>& frames() const { return frames_; }
   /// As many numbers as there are columns, until the next row. Those of sensors are NaN, as which tables have an empty
   /// cell, where the state has no finite accelerations. Allocates nothing.
   const std::vector<double>& row(const State& state);
@@ -41,6 +43,7 @@ class ResultColumns {
   const EquationsOfMotion& equations_;
   std::vector<Tip> tips_;
   std::vector<Column> columns_;
+  std::vector<std::string> frames_;
   std::unique_ptr<Observation> seen_;
   SensorReader sensors_;
   Work work_;  ///< for the efforts of motions

@@ -27,6 +27,10 @@ std::string trade_csv(const std::vector<study::TradeResult>& results, const std:
 std::string trade_picture(const std::string& title, const std::vector<study::TradeResult>& results,
                           const std::vector<bool>& front);
 
+/// What the page of a trade shows: the same with the command that runs each model.
+nlohmann::ordered_json trade_page(const study::Prepared& prepared, nlohmann::ordered_json trade,
+                                  const std::vector<study::TradeResult>& results);
+
 /// Finished points in a folder, a file each.
 class TradeFolder : public study::PointStore {
  public:
@@ -42,7 +46,8 @@ class TradeFolder : public study::PointStore {
 };
 
 /// Of a study: the scene, what the points ask of a reference, and the builds of the plugins that they name.
+/// \param outputs that errors are measured on
 std::string trade_fingerprint(const study::Prepared& prepared, const std::vector<study::Point>& points,
-                              Registry& registry);
+                              Registry& registry, const std::vector<std::string>& outputs);
 
 }  // namespace withy

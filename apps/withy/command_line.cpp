@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/apps/withy/command_tree.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/sweep.hpp"
 #include "withy/scene/names.hpp"
@@ -15,12 +16,14 @@ namespace withy::app {
 
 namespace {
 
+constexpr const char* meaning = "Dynamics of trees of rigid and flexible bodies";
+
 /// In the order of the help.
-const std::array commands = {&new_command,     &check_command,       &run_command,       &report_command,
-                             &plot_command,    &compare_command,     &inverse_command,   &terms_command,
-                             &trade_command,   &sweep_command,       &advise_command,    &eval_command,
-                             &inspect_command, &equilibrium_command, &linearize_command, &modes_command,
-                             &bench_command,   &import_command,      &plugins_command,   &schema_command};
+const std::array commands = {
+    &new_command,     &check_command,       &run_command,       &report_command,     &plot_command,   &compare_command,
+    &inverse_command, &terms_command,       &trade_command,     &sweep_command,      &advise_command, &eval_command,
+    &inspect_command, &equilibrium_command, &linearize_command, &response_command,   &modes_command,  &bench_command,
+    &import_command,  &plugins_command,     &schema_command,    &completion_command, &manual_command};
 
 /// Parses with this parser; what is not the command's to answer is printed, and its status returned.
 std::optional<ExitStatus> parse(CLI::App& program, int argc, const char* const* argv) {
@@ -59,8 +62,19 @@ ExitStatus unknown(const std::string& name) {
 
 }  // namespace
 
+std::unique_ptr<CLI::App> command_tree() {
+  auto program = std::make_unique<CLI::App>(meaning, "withy");
+  program->set_version_flag("--version", "");
+  for (const Command* command : commands) {
+    CLI::App& parser = *program->add_subcommand(command->name, command->meaning);
+    parser.footer(std::string("Examples:\n") + command->examples);
+    static_cast<void>(command->add(parser));
+  }
+  return program;
+}
+
 std::variant<std::function<ExitStatus()>, ExitStatus> read_command_line(int argc, const char* const* argv) {
-  CLI::App program("Dynamics of trees of rigid and flexible bodies", "withy");
+  CLI::App program(meaning, "withy");
   program.set_version_flag("--version", "withy " WITHY_VERSION);
   program.footer(
       "Examples:\n"

@@ -5,6 +5,7 @@
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/results/csv_recorder.hpp"
+#include "withy/results/hdf5_recorder.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/table_picture.hpp"
 #include "withy/results/terminal_plot.hpp"
@@ -34,7 +35,8 @@ Asked asked_for(const std::vector<std::string>& given) {
   Asked asked;
   for (const std::string& text : given) {
     if (fs::is_directory(text)) {
-      const fs::path table = fs::path(text) / "results.csv";
+      fs::path table = fs::path(text) / "results.csv";
+      if (!fs::exists(table)) table.replace_extension(".h5");
       if (!fs::exists(table)) throw study::InputError(text + " holds no results.csv: it is no folder of a run");
       asked.tables.push_back(table);
     } else if (fs::is_regular_file(text)) {
@@ -49,7 +51,7 @@ Asked asked_for(const std::vector<std::string>& given) {
 
 std::string name_of(const fs::path& table) {
   const fs::path folder = fs::absolute(table).parent_path();
-  return table.filename() == "results.csv" ? folder.filename().string() : table.filename().string();
+  return table.stem() == "results" ? folder.filename().string() : table.filename().string();
 }
 
 ExitStatus plot(const PlotArguments& arguments) {
@@ -59,7 +61,7 @@ ExitStatus plot(const PlotArguments& arguments) {
   std::vector<std::string> legend;
   for (const fs::path& file : asked.tables) {
     tables.push_back(std::make_unique<DecimatedTable>(most_rows, 0));
-    read_csv(file, *tables.back());
+    file.extension() == ".h5" ? read_hdf5(file, *tables.back()) : read_csv(file, *tables.back());
     legend.push_back(name_of(file));
     runs.push_back({legend.back(), tables.back().get()});
   }

@@ -11,6 +11,7 @@
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/results/certificate_text.hpp"
 #include "withy/results/checkpoint_files.hpp"
+#include "withy/results/hdf5_recorder.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/recorded_run.hpp"
 #include "withy/results/report/report_page.hpp"
@@ -25,6 +26,7 @@ struct RunArguments : SceneArguments, OutputArguments {
   std::string estimate = "auto";
   /// Wall time between checkpoints [s]; 0: only where the run is interrupted; not given: 60.
   std::optional<double> checkpoint;
+  bool hdf5 = false;    ///< results.h5 too
   bool resume = false;  ///< go on from the checkpoint in the folder
 };
 
@@ -53,7 +55,8 @@ RecordedRun lasting_run(const Engine& engine, const RunArguments& arguments, con
   if (!arguments.resume) {
     const ResultsFolder taken(folder, "run", provenance, run_content(),
                               arguments.force ? FolderUse::replace : FolderUse::begin);
-    return record_lasting_run(folder, engine.prepared(), engine.registry(), provenance, settings, nullptr);
+    return record_lasting_run(folder, engine.prepared(), engine.registry(), provenance, settings, nullptr,
+                              {arguments.hdf5});
   }
   const CheckpointFiles files(folder, provenance.fingerprint());
   if (!files.exist()) throw ResultsError(folder.string() + " holds no checkpoint: there is nothing to resume");
@@ -63,7 +66,8 @@ RecordedRun lasting_run(const Engine& engine, const RunArguments& arguments, con
                        " changed since; run without --resume to begin anew");
   const StoredRun from = files.read();
   if (!from.remark.empty()) complain(from.remark);
-  return record_lasting_run(folder, engine.prepared(), engine.registry(), provenance, settings, &from);
+  return record_lasting_run(folder, engine.prepared(), engine.registry(), provenance, settings, &from,
+                            {arguments.hdf5});
 }
 
 RecordedRun recorded(const Engine& engine, const RunArguments& arguments) {
@@ -78,6 +82,10 @@ ExitStatus run(const RunArguments& given) {
   RunArguments arguments = given;
   const Engine engine(arguments);
   check_accuracy(engine);
+  if (arguments.hdf5 && !hdf5_missing().empty()) {
+    complain("--hdf5: " + hdf5_missing());
+    return ExitStatus::environment;
+  }
   if (arguments.out.empty()) arguments.out = default_folder(arguments, engine.scene().formulation_name);
   const RecordedRun ended = recorded(engine, arguments);
   const RunSummary& summary = ended.run.summary;
@@ -112,6 +120,7 @@ std::function<ExitStatus()> add_run(CLI::App& c) {
             return seconds && *seconds >= 0 ? std::string() : "need a number of seconds, 0 or more";
           },
           ""));
+  c.add_flag("--hdf5", a.hdf5, "Write the table as results.h5 too, with scene, certificate and versions");
   c.add_flag("--resume", a.resume,
              "Go on from the checkpoint in the folder of the results: the same command as before, and this");
   return [arguments] { return run(*arguments); };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "withy/core/model/columns.hpp"
 #include "withy/study/run.hpp"
@@ -13,6 +14,16 @@ namespace withy::app {
 namespace {
 
 std::string name_of_sign(int sign) { return sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"); }
+
+/// Of a quaternion w x y z: intrinsic turns about x, y, z, R = Rx(a) Ry(b) Rz(c).
+std::string attitude(std::span<const double> q) {
+  const double w = q[0], x = q[1], y = q[2], z = q[3], size = w * w + x * x + y * y + z * z;
+  const auto degrees = [](double angle) { return angle * 180 / std::numbers::pi + 0.0; };
+  return fmt::format("{:.4f}, {:.4f}, {:.4f} deg, turned about x, y, z in this order",
+                     degrees(std::atan2(2 * (w * x - y * z), w * w - x * x - y * y + z * z)),
+                     degrees(std::asin(std::clamp(2 * (x * z + w * y) / size, -1.0, 1.0))),
+                     degrees(std::atan2(2 * (w * z - x * y), w * w + x * x - y * y - z * z)));
+}
 
 }  // namespace
 
@@ -33,7 +44,12 @@ std::string run_table(const study::Prepared& prepared, const RunSummary& summary
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const auto columns = coordinate_columns(model.hinges()[h]);
     const Slot& slot = model.layout().hinges[h];
-    for (std::size_t i = 0; i < columns.size(); ++i)
+    std::size_t first = 0;
+    if (columns.size() >= 4 && columns[0].name.ends_with(".qw")) {
+      line("final " + model.hinges()[h].name, attitude(std::span(summary.final.y).subspan(slot.position, 4)));
+      first = 4;
+    }
+    for (std::size_t i = first; i < columns.size(); ++i)
       line("final " + columns[i].name, readable(summary.final.y[slot.position + i], columns[i].unit));
   }
   for (const auto& [body, d] : summary.peak_deflection) {

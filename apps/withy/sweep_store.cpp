@@ -5,8 +5,10 @@
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/sweep.hpp"
 #include "withy/campaign/collect.hpp"
+#include "withy/campaign/sweep_page.hpp"
 #include "withy/campaign/sweep_run.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/scene/units.hpp"
 
 namespace withy::app {
@@ -37,6 +39,7 @@ Json json_of(const campaign::Collected& c) {
   j["files"] = {"table.csv", "failed.csv"};
   if (c.statistics) j["files"].push_back("statistics.csv");
   if (c.indices) j["files"].push_back("indices.csv");
+  if (has_report_page()) j["files"].push_back(report_name);
   return j;
 }
 
@@ -51,7 +54,13 @@ std::string collected_text(const campaign::Collected& c, const std::string& stor
   text += "\ntable.csv";
   if (c.statistics) text += ", statistics.csv";
   if (c.indices) text += ", indices.csv";
-  return text + " in " + store + '\n';
+  return text + " in " + store + (has_report_page() ? ", to look at in its report.html\n" : "\n");
+}
+
+campaign::Collected collected_with_page(const std::string& store) {
+  const campaign::Collected collected = campaign::collect(store);
+  campaign::write_sweep_page(store, collected);
+  return collected;
 }
 
 std::string lost_text(std::uint64_t bytes) {
@@ -84,7 +93,7 @@ ExitStatus sweep_run(const SweepArguments& arguments) {
   Json j = {{"cases", outcome.cases},   {"before", outcome.before},   {"ran", outcome.ran},
             {"failed", outcome.failed}, {"seconds", outcome.seconds}, {"store", arguments.store}};
   if (whole) {
-    const campaign::Collected collected = campaign::collect(arguments.store);
+    const campaign::Collected collected = collected_with_page(arguments.store);
     text += collected_text(collected, arguments.store);
     j["collected"] = json_of(collected);
   }
@@ -123,7 +132,7 @@ ExitStatus sweep_status(const SweepArguments& arguments) {
 }
 
 ExitStatus sweep_collect(const SweepArguments& arguments) {
-  const campaign::Collected collected = campaign::collect(arguments.store);
+  const campaign::Collected collected = collected_with_page(arguments.store);
   print(arguments.json ? json_text(json_of(collected)) : collected_text(collected, arguments.store));
   return ExitStatus::done;
 }

@@ -9,22 +9,27 @@
 
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
+#include "withy/apps/withy/formulation_words.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/trade_axes.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/text_table.hpp"
 #include "withy/results/trade_files.hpp"
 
 namespace withy::app {
 namespace {
 
-std::string table_text(const std::vector<study::TradeResult>& results, const std::vector<bool>& front) {
+std::string table_text(const std::vector<study::TradeResult>& results, const std::vector<bool>& front,
+                       const study::Outputs& outputs) {
   const auto any = [&](auto&& has) { return std::any_of(results.begin(), results.end(), has); };
   const bool families = any([](const study::TradeResult& r) { return !r.point.family.empty(); });
   const bool overs = any([](const study::TradeResult& r) { return !r.point.over.empty(); });
+  const bool hinges = outputs.has(study::Measure::angle) || outputs.has(study::Measure::slide),
+             tips = outputs.has(study::Measure::place);
   std::vector<std::string> head = {"<", "<formulation", "modes"};
   if (families) head.emplace_back("<family");
   if (overs) head.emplace_back("<over");
@@ -41,10 +46,10 @@ std::string table_text(const std::vector<study::TradeResult>& results, const std
     row.push_back(fmt::format("{:g}", r.point.tolerance));
     row.push_back(r.status);
     if (r.completed()) {
-      for (std::string& cell :
-           std::vector<std::string>{fmt::format("{:.3g}", r.hinge_error), fmt::format("{:.3g}", 1e3 * r.tip_error),
-                                    fmt::format("{:.3g}", 100 * r.relative_error), std::to_string(r.steps),
-                                    fmt::format("{:.2f}", 1e3 * r.cpu_seconds)})
+      for (std::string& cell : std::vector<std::string>{
+               hinges ? fmt::format("{:.3g}", r.hinge_error) : "-",
+               tips ? fmt::format("{:.3g}", 1e3 * r.tip_error) : "-", fmt::format("{:.3g}", 100 * r.relative_error),
+               std::to_string(r.steps), fmt::format("{:.2f}", 1e3 * r.cpu_seconds)})
         row.push_back(std::move(cell));
     } else {
       row.insert(row.end(), 5, "-");
@@ -70,6 +75,12 @@ std::string reasons_text(const std::vector<study::TradeResult>& results) {
     out += '\n';
   }
   return out;
+}
+
+std::vector<std::string> formulations_of(const std::vector<study::TradeResult>& results) {
+  std::vector<std::string> names;
+  for (const study::TradeResult& r : results) names.push_back(r.point.formulation);
+  return names;
 }
 
 std::string references_text(const study::TradeStudy& study) {
@@ -106,10 +117,11 @@ ExitStatus trade(const TradeArguments& arguments) {
   const std::vector<study::Point> points = study::points_of(axes_of(arguments.axes, engine.registry()));
   std::optional<TradeFolder> store;
   const auto taken = take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()),
-                                 {"trade.json", "trade.csv", "trade.svg"});
-  if (taken) store.emplace(arguments.out, trade_fingerprint(engine.prepared(), points, engine.registry()));
+                                 {"trade.json", "trade.csv", "trade.svg", report_name});
+  if (taken)
+    store.emplace(arguments.out, trade_fingerprint(engine.prepared(), points, engine.registry(), arguments.outputs));
   study::TradeStudy study(engine.prepared(), engine.registry(), points,
-                          {arguments.jobs, store ? &*store : nullptr, study_control("trade")});
+                          {arguments.jobs, store ? &*store : nullptr, study_control("trade"), arguments.outputs});
   const bool whole = study.run();
   const auto results = study.results();
   const auto front = study::pareto_front(results);
@@ -118,16 +130,21 @@ ExitStatus trade(const TradeArguments& arguments) {
   std::string text =
       arguments.json
           ? json_text(j)
-          : title + "\n\n" + table_text(results, front) +
+          : title + "\n\n" + table_text(results, front, study.outputs()) +
                 "\n*: no other point is both more accurate, as far as the reference can tell, and cheaper. Error "
                 "in % of each output's own range, the greatest of all.\n" +
-                references_text(study) + reasons_text(results);
+                references_text(study) + formulation_words(formulations_of(results), engine.registry()) +
+                reasons_text(results);
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
     write_file(folder / "trade.json", json_text(j));
     write_file(folder / "trade.csv", trade_csv(results, front));
     write_file(folder / "trade.svg", trade_picture(title, results, front));
-    if (!arguments.json) text += "\ntrade.csv, trade.svg and trade.json in " + arguments.out + '\n';
+    if (has_report_page())
+      write_study_page(folder / report_name, "trade", title, trade_page(engine.prepared(), j, results));
+    if (!arguments.json)
+      text += fmt::format("\ntrade.csv, trade.svg and trade.json in {}{}\n", arguments.out,
+                          has_report_page() ? ", to look at in its report.html" : "");
   }
   print(text);
   return whole ? ExitStatus::done : ExitStatus::interrupted;
@@ -170,6 +187,11 @@ std::function<ExitStatus()> add_trade(CLI::App& c) {
   c.add_option("--lock", a.lock, "Of frequencies: hinges that are held")->type_name("HINGE,HINGE,...")->delimiter(',');
   c.add_option("--spin", a.spin, "Of frequencies: hinges held at a constant rate")
       ->type_name("HINGE=RATE,...")
+      ->delimiter(',');
+  c.add_option(
+       "--outputs,--output", a.outputs,
+       "What errors are measured on: hinges, BODY.tip, BODY.tip.deflection, outputs of the scene (root, root.mz)")
+      ->type_name("NAME,...")
       ->delimiter(',');
   c.add_option("--jobs", a.jobs, "Points run at once; default: one a core")->type_name("N");
   add_output(c, a, "Folder for table and picture, and for finished points: the same command continues");

@@ -35,11 +35,11 @@ class Clocks {
   /// Renews what is due at the state's time.
   void renew(State& state);
   /// Renews the states of one load at the zero of a switching function of its own.
-  void renew(State& state, const DiscreteSlot& slot, const Crossing& crossing);
+  void renew(State& state, const LoadSlot& slot, const Crossing& crossing);
 
  private:
   struct Clock {
-    DiscreteSlot slot;
+    LoadSlot slot;
     double period;
     double index;  ///< of the next instant; whole
   };
@@ -74,7 +74,7 @@ class ZeroWatch {
   void begin_at(const State& state);
 
   /// The load and the index within it of a switching function; nothing for an event of the caller.
-  [[nodiscard]] std::optional<std::pair<DiscreteSlot, int>> switching(std::size_t function) const;
+  [[nodiscard]] std::optional<std::pair<LoadSlot, int>> switching(std::size_t function) const;
   /// The event of the caller that a function is.
   [[nodiscard]] const RunEvent& event(std::size_t function) const { return events_[function - switches_]; }
   void remember(Memory& memory) { memory(signs_); }
@@ -87,8 +87,8 @@ class ZeroWatch {
   const Model& model_;
   std::span<const RunEvent> events_;
   std::size_t switches_ = 0;
-  std::vector<DiscreteSlot> slots_;  ///< of loads with switching functions
-  std::vector<int> signs_;           ///< −1, 0, +1 at the last accepted state
+  std::vector<LoadSlot> slots_;  ///< of loads with switching functions
+  std::vector<int> signs_;       ///< −1, 0, +1 at the last accepted state
   std::vector<int> before_;
   std::vector<int> start_signs_;  ///< `signs_` at the start of the step that `find` has looked at
   std::vector<double> values_, ends_;

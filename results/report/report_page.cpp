@@ -25,6 +25,8 @@ std::string_view page() { return {withy_report_page, withy_report_page_end}; }
 constexpr std::string_view place = "/* data of withy */";
 // Each run stands on a line of its own between these.
 constexpr std::string_view before = R"(<script type="application/json" id="withy-data">{"format":"withy-report/1")";
+constexpr std::string_view study_before =
+    R"(<script type="application/json" id="withy-data">{"format":"withy-study/1",)";
 constexpr std::string_view first_run = ",\"runs\":[\n", between = ",\n", after = "\n]}</script>";
 
 /// Adds JSON so that it cannot end the element it stands in.
@@ -37,36 +39,58 @@ void add_guarded(std::string_view json, std::string& text) {
   }
 }
 
+std::string dumped(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
+
+/// The page with what `add` puts in the place of its data.
+template <class Add>
+void write_page(const std::filesystem::path& file, std::size_t size, const Add& add) {
+  const std::string_view empty = page();
+  const std::size_t at = empty.find(place);
+  if (at == std::string_view::npos) throw std::logic_error("this build holds no page for reports");
+  std::string text;
+  text.reserve(empty.size() + size);
+  text += empty.substr(0, at);
+  add(text);
+  text += empty.substr(at + place.size());
+  write_file(file, text);
+}
+
 }  // namespace
 
 bool has_report_page() { return !page().empty(); }
 
 void write_report(const std::filesystem::path& file, const ReportContent& content) {
-  const std::string_view empty = page();
-  const std::size_t at = empty.find(place);
-  if (at == std::string_view::npos) throw std::logic_error("this build holds no page for reports");
-  std::string text;
-  std::size_t size = empty.size();
+  std::size_t size = 1000;
   for (const std::string& run : content.runs) size += run.size() + run.size() / 16;
-  text.reserve(size + 1000);
-  text += empty.substr(0, at);
-  text += before;
-  add_guarded(",\"title\":" + Json(content.title).dump(-1, ' ', true, Json::error_handler_t::replace), text);
-  text += ",\"reference\":" + std::to_string(content.reference);
-  text += first_run;
-  for (std::size_t i = 0; i < content.runs.size(); ++i) {
-    if (i > 0) text += between;
-    add_guarded(content.runs[i], text);
-  }
-  text += after;
-  text += empty.substr(at + place.size());
-  write_file(file, text);
+  write_page(file, size, [&](std::string& text) {
+    text += before;
+    add_guarded(",\"title\":" + dumped(content.title), text);
+    text += ",\"reference\":" + std::to_string(content.reference);
+    text += first_run;
+    for (std::size_t i = 0; i < content.runs.size(); ++i) {
+      if (i > 0) text += between;
+      add_guarded(content.runs[i], text);
+    }
+    text += after;
+  });
+}
+
+void write_study_page(const std::filesystem::path& file, const std::string& kind, const std::string& title,
+                      const Json& data) {
+  const std::string study = dumped({{"kind", kind}, {"title", title}, {"data", data}});
+  write_page(file, study.size() + study.size() / 16 + 1000, [&](std::string& text) {
+    text += study_before;
+    add_guarded(std::string_view(study).substr(1, study.size() - 2), text);
+    text += "}</script>";
+  });
 }
 
 std::vector<std::string> read_report(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::system_error(errno, std::generic_category(), file.string());
   const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (text.find(study_before) != std::string::npos)
+    throw ResultsError(file.string() + " shows a study, and holds no runs to put on a page; it is one already");
   const std::size_t begin = text.find(before), first = text.find(first_run, begin), end = text.find(after, first);
   if (begin == std::string::npos || first == std::string::npos || end == std::string::npos)
     throw ResultsError(file.string() + " is no report of this program");

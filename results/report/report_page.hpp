@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,10 @@ struct ReportContent {
 };
 /// Writes the page, whole or not at all. \throws std::system_error; std::logic_error where the build holds no page
 void write_report(const std::filesystem::path& file, const ReportContent& content);
+/// Writes the page of a study in its place. \param kind `trade`, `modes` or `sweep`: what the data are, as
+/// web/src/studies reads them. \throws std::system_error; std::logic_error where the build holds no page
+void write_study_page(const std::filesystem::path& file, const std::string& kind, const std::string& title,
+                      const nlohmann::ordered_json& data);
 /// The runs on a page. \throws ResultsError where it is none; std::system_error where it cannot be read
 std::vector<std::string> read_report(const std::filesystem::path& file);
 

@@ -5,6 +5,7 @@
 
 #include "withy/results/certificate_text.hpp"
 #include "withy/results/csv.hpp"
+#include "withy/results/report/arrows.hpp"
 #include "withy/results/report/base64.hpp"
 #include "withy/results/report/drawing.hpp"
 #include "withy/results/result_columns.hpp"
@@ -76,6 +77,14 @@ void add_validity(const std::vector<std::string>& bodies, const std::vector<doub
   }
 }
 
+/// Places and vectors moment by moment, six numbers each.
+Json arrows_json(const Arrows& arrows, Arrays& data) {
+  Json list = Json::array();
+  for (const Arrows::Arrow& a : arrows.all())
+    list.push_back({{"name", a.name}, {"unit", a.unit}, {"greatest", a.greatest}, {"numbers", data.add(a.numbers)}});
+  return list;
+}
+
 }  // namespace
 
 RunReport::RunReport(const study::Prepared& prepared)
@@ -89,6 +98,7 @@ std::string RunReport::picture() const {
 std::string RunReport::text(const study::CertifiedRun& ended, const Json& run) const {
   const Model& model = prepared_.model();
   Drawing drawing(prepared_.scene.model, prepared_.scene.formulation->terms());
+  Arrows arrows(prepared_.scene, prepared_.scene.formulation->terms(), table_.columns());
   std::vector<double> times, rates, deflections;
   std::vector<float> numbers;
   const std::vector<std::vector<double>> samples = table_.samples();
@@ -96,6 +106,7 @@ std::string RunReport::text(const study::CertifiedRun& ended, const Json& run) c
     const State state = state_of_row(model.layout(), row);
     times.push_back(state.time);
     drawing.append(state.y, numbers);
+    arrows.append(state.y, row);
     drawing.append_rates(rates);
     drawing.append_deflections(deflections);
   }
@@ -117,7 +128,8 @@ std::string RunReport::text(const study::CertifiedRun& ended, const Json& run) c
                     {"parts", drawing.parts()},
                     {"size", drawing.size()},
                     {"times", data.add(times)},
-                    {"numbers", data.add(numbers)}}},
+                    {"numbers", data.add(numbers)},
+                    {"arrows", arrows_json(arrows, data)}}},
                   {"validity", std::move(validity)}};
   return data.behind(part.dump(-1, ' ', true, Json::error_handler_t::replace));
 }

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "withy/tests/cli/process.hpp"
 
@@ -13,6 +16,41 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
+
+/// What stands in the fenced blocks of a page: the language, and the lines.
+std::vector<std::pair<std::string, std::string>> blocks(const std::string& page) {
+  std::vector<std::pair<std::string, std::string>> all;
+  bool inside = false;
+  for (const std::string& line : lines(page)) {
+    if (line.starts_with("```")) {
+      inside = !inside;
+      if (inside) all.emplace_back(line.substr(3), "");
+    } else if (inside) {
+      all.back().second += line + '\n';
+    }
+  }
+  return all;
+}
+
+TEST(Tutorial, EveryCommandRunsOnTheScenesThatItHasWritten) {
+  const Folder folder;
+  std::ifstream in(WITHY_SOURCES "/docs/tutorial.md");
+  const std::string page{std::istreambuf_iterator<char>(in), {}}, program = WITHY_PROGRAM;
+  int commands = 0;
+  for (const auto& [language, text] : blocks(page)) {
+    // A file says its name in its first line.
+    if (language == "yaml") folder.write(text.substr(2, text.find('\n') - 2), text);
+    if (language != "sh") continue;
+    for (const std::string& line : lines(text)) {
+      ASSERT_TRUE(line.starts_with("withy ")) << line;
+      const Finished f = Process(folder, {"/bin/sh", "-c", '\'' + program + "' " + line.substr(6)}).wait();
+      EXPECT_EQ(f.status, 0) << line << '\n' << f.err;
+      EXPECT_EQ(f.err, "") << line;
+      ++commands;
+    }
+  }
+  EXPECT_GE(commands, 12);
+}
 
 TEST(New, EveryKindIsPlausibleAndRuns) {
   const Folder folder;
@@ -29,6 +67,11 @@ TEST(New, EveryKindIsPlausibleAndRuns) {
     const json run = json::parse(f.out);
     EXPECT_EQ(run.at("status"), "completed");
     EXPECT_EQ(run.at("message"), "") << kind;
+    if (kind == "satellite") {
+      // Its momenta are zero but for rounding, and that is no drift of them.
+      EXPECT_LT(run.at("certificate").at("momentum_drift").at("linear"), 1e-9);
+      EXPECT_LT(run.at("certificate").at("momentum_drift").at("angular"), 1e-9);
+    }
     for (const json& indicator : run.at("certificate").at("indicators"))
       EXPECT_LT(indicator.at("value"), indicator.at("limit")) << kind << ": " << indicator;
   }

@@ -9,9 +9,10 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::vector<std::string> commands = {
-    "run",   "compare", "inverse", "terms",   "trade",  "advise", "eval",  "inspect", "equilibrium", "linearize",
-    "modes", "import",  "bench",   "plugins", "schema", "new",    "check", "report",  "plot",        "sweep"};
+const std::vector<std::string> commands = {"run",    "compare", "inverse",     "terms",      "trade",    "advise",
+                                           "eval",   "inspect", "equilibrium", "linearize",  "response", "modes",
+                                           "import", "bench",   "plugins",     "schema",     "new",      "check",
+                                           "report", "plot",    "sweep",       "completion", "manual"};
 
 /// The command lines under "Examples:" in a help text, without the program's name.
 std::vector<std::vector<std::string>> examples(const std::string& help) {
@@ -76,6 +77,63 @@ TEST_P(HelpOf, AnUnknownOptionIsBadInputAndLeavesStandardOutputAlone) {
   EXPECT_EQ(f.status, 2);
   EXPECT_EQ(f.out, "");
   EXPECT_NE(f.err, "");
+}
+
+TEST(Help, ColoursAreForTerminalsThatWantThem) {
+  const Folder folder;
+  const std::string program = WITHY_PROGRAM;
+  // `script` gives a program a terminal.
+  const auto on_terminal = [&](const std::string& before) {
+    return Process(folder, {"/bin/sh", "-c",
+                            "exec env TERM=xterm " + before + " script -qec \"'" + program +
+                                "' run scenes/pendulum.yaml --out out --force\" /dev/null"})
+        .wait()
+        .out;
+  };
+  EXPECT_THAT(on_terminal(""), HasSubstr("\033[32mcompleted\033[0m"));
+  EXPECT_THAT(on_terminal("NO_COLOR=1"), testing::Not(HasSubstr("\033[32m")));
+  EXPECT_THAT(withy(folder, {"run", "scenes/pendulum.yaml", "--out", "out", "--force"}).out,
+              testing::Not(HasSubstr("\033")));
+}
+
+/// What bash offers behind the words.
+std::vector<std::string> completed(const Folder& folder, const std::string& typed) {
+  const std::string script = withy(folder, {"completion", "bash"}).out;
+  const Finished f = Process(folder, {"/bin/bash", "-c",
+                                      script + "\ncompopt() { :; }\nCOMP_WORDS=(" + typed +
+                                          ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_withy\necho ${COMPREPLY[@]}"})
+                         .wait();
+  EXPECT_EQ(f.err, "") << typed;
+  return words(f.out);
+}
+
+TEST(Help, BashCompletesCommandsOptionsWordsAndFiles) {
+  const Folder folder;
+  using testing::Contains;
+  using testing::ElementsAre;
+  EXPECT_THAT(completed(folder, "withy com"), testing::UnorderedElementsAre("compare", "completion"));
+  EXPECT_THAT(completed(folder, "withy run --form"), ElementsAre("--formulation"));
+  EXPECT_THAT(completed(folder, "withy run scene.yaml --estimate a"), testing::UnorderedElementsAre("auto", "always"));
+  EXPECT_THAT(completed(folder, "withy sweep co"), ElementsAre("collect"));
+  EXPECT_THAT(completed(folder, "withy sweep run --sh"), ElementsAre("--shard"));
+  EXPECT_THAT(completed(folder, "withy completion z"), ElementsAre("zsh"));
+  EXPECT_THAT(completed(folder, "withy run scenes/pendulu"), Contains("scenes/pendulum.yaml"));
+  EXPECT_THAT(completed(folder, "withy run scenes/pendulum.yaml --checkpoint 1"), testing::IsEmpty());
+}
+
+TEST_P(HelpOf, NamesTheOptionsThatCompletionAndManualName) {
+  const Folder folder;
+  std::string manual;
+  for (const char c : withy(folder, {"manual"}).out)
+    if (c != '\\') manual += c;  // roff writes \- for -
+  const std::vector<std::string> made = {manual, withy(folder, {"completion", "bash"}).out,
+                                         withy(folder, {"completion", "zsh"}).out};
+  EXPECT_NE(manual.find("withy " + GetParam()), std::string::npos);
+  for (const std::string& word : words(withy(folder, {GetParam(), "--help"}).out)) {
+    if (!word.starts_with("--")) continue;
+    const std::string option = word.substr(0, word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-"));
+    for (const std::string& text : made) EXPECT_NE(text.find(option), std::string::npos) << option;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, HelpOf, testing::ValuesIn(commands),

@@ -43,7 +43,7 @@ TEST(SweepCommand, MakesATableInTheOrderOfThePlanWithTheColumnsItSays) {
   const Finished ran = folder.sweep({"run", "plan.yaml", "--out", "store"});
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(ran.err, "");
-  EXPECT_THAT(ran.out, HasSubstr("120 cases: 120 done, 0 missing\ntable.csv, statistics.csv in store\n"));
+  EXPECT_THAT(ran.out, HasSubstr("120 cases: 120 done, 0 missing\ntable.csv, statistics.csv in store"));
   const std::vector<std::string> rows = lines(folder.read("store/table.csv"));
   ASSERT_EQ(rows.size(), 121U);
   EXPECT_EQ(rows[0],

@@ -12,14 +12,15 @@ export function unpack(run) {
   const { animation } = run;
   animation.times = doubles(animation.times);
   animation.numbers = new Float32Array(bytes(run.arrays[animation.numbers]));
+  // Pages of earlier versions have none.
+  for (const arrow of animation.arrows ??= []) arrow.numbers = new Float32Array(bytes(run.arrays[arrow.numbers]));
   for (const series of run.validity) series.data = doubles(series.data);
   run.time = run.table.columns[0].data;
   delete run.arrays;
   return run;
 }
 
-export function readData() {
-  const data = JSON.parse(document.getElementById('withy-data').textContent);
+export function prepared(data) {
   data.runs.forEach((run, index) => { unpack(run).index = index; });
   nameRuns(data.runs);
   return data;

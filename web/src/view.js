@@ -3,6 +3,7 @@ import {
   AmbientLight, Box3, BufferGeometry, Color, DirectionalLight, GridHelper, Group, Line, LineBasicMaterial, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { Arrows } from './arrows.js';
 import { palette } from './data.js';
 import { Motion } from './motion.js';
 import { Shapes } from './shapes.js';
@@ -18,7 +19,7 @@ export class View {
     this.element = element;
     this.runs = runs;
     this.motions = runs.map(run => new Motion(run.animation));
-    this.show = { trails: true, ghosts: true, axes: false, follow: false };
+    this.show = { trails: true, ghosts: true, axes: false, follow: false, sensors: true };
     this.scale = 1;
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
@@ -89,6 +90,8 @@ export class View {
       this.scene.add(shapes.group);
       return shapes;
     });
+    this.arrows = this.motions.map((motion, i) => new Arrows(motion, this.runs[i].animation.arrows, this.size, dark));
+    for (const arrows of this.arrows) this.scene.add(arrows.group);
     this.add_ground(dark);
     this.add_trails(colours);
     this.go(this.time ?? 0);
@@ -109,7 +112,8 @@ export class View {
     for (let k = 0; k < 3; ++k) if (across.getComponent(k) === 0) center.setComponent(k, Math.round(center.getComponent(k) / this.cell) * this.cell);
     grid.position.copy(center);
     grid.visible = !this.show.follow;
-    document.getElementById('cell').textContent = grid.visible ? `squares of ${this.cell} m` : '';
+    const words = this.arrows.map(a => a.words).filter(Boolean)[0];
+    document.getElementById('cell').textContent = [grid.visible ? `squares of ${this.cell} m` : '', words ? `longest arrows: ${words}` : ''].filter(Boolean).join('; ');
     this.grid = grid;
     this.scene.add(grid);
   }
@@ -143,6 +147,9 @@ export class View {
       motion.go(own, this.scale);
       this.shapes?.[i].update(this.scale, this.show);
       this.shapes[i].group.visible = !this.runs[i].hidden;
+      // Where deformation is drawn larger than it is, they would stand beside the bodies.
+      this.arrows[i].group.visible = this.show.sensors && this.scale === 1 && !this.runs[i].hidden;
+      if (this.arrows[i].group.visible) this.arrows[i].go(own);
     });
     this.trails.visible = this.show.trails && this.scale === 1;
     for (const line of this.trails.children) {

@@ -1,17 +1,14 @@
 // The page in a browser: it shows what the program computed, asks for nothing, and its controls work.
 //   node page_test.mjs WITHY SCENES CHROMIUM
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { chromium } from 'playwright-core';
 import { unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
+import { in_browser, opened, text } from './browser.mjs';
 
-const [withy, scenes, browser_path] = process.argv.slice(2);
-const folder = mkdtempSync(join(tmpdir(), 'withy-page-'));
-const run = (...words) => execFileSync(withy, words, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] });
+const [withy, scenes, chromium] = process.argv.slice(2);
+let folder, run;
 const simulate = (scene, out, ...more) => run('run', join(scenes, scene), '--out', join(folder, out), ...more);
 const data_of = file => JSON.parse(/<script type="application\/json" id="withy-data">([^]*?)<\/script>/.exec(readFileSync(file, 'utf8'))[1]);
 
@@ -31,17 +28,56 @@ function check_motion(file) {
   }
 }
 
-async function opened(browser, file, hash, troubles) {
-  const page = await browser.newPage({ viewport: { width: 1200, height: 900 } });
-  page.on('console', m => troubles.push(`console: ${m.text()}`));
-  page.on('pageerror', e => troubles.push(`error: ${e.stack}`));
-  page.on('request', r => { if (!/^(file|data):/.test(r.url())) troubles.push(`request: ${r.url()}`); });
-  await page.goto(`file://${file}#${hash}`);
-  await page.waitForSelector('body[data-ready]', { timeout: 60000 });
-  return page;
-}
 const picture = page => page.evaluate(() => document.querySelector('#view canvas').toDataURL());
-const text = (page, selector) => page.textContent(selector);
+
+// Arrows have the size of what was measured and, in world axes, its direction: what an accelerometer feels where nothing
+// has weight is the change of the velocity in the world.
+function check_arrows(file) {
+  const run = unpack(data_of(file).runs[0]), { times, arrows } = run.animation;
+  const column = name => { const c = run.table.columns.find(c => c.name === name); return c.samples ?? c.data; };
+  const arrow = name => arrows.find(a => a.name === name);
+  for (const [name, first] of [['elbow_load force', 'elbow_load.f'], ['middle moment', 'middle.m'], ['box acceleration', 'box.']]) {
+    const parts = ['x', 'y', 'z'].map(c => column(first + c)), { numbers, greatest } = arrow(name);
+    for (let i = 0; i < times.length; ++i)
+      assert.ok(Math.abs(Math.hypot(...numbers.slice(6 * i + 3, 6 * i + 6)) - Math.hypot(...parts.map(p => p[i]))) <= 1e-6 * greatest, `${name} at ${times[i]}`);
+  }
+  const { numbers, greatest } = arrow('box acceleration');
+  ['tip.vx', 'tip.vy'].forEach((name, k) => {
+    const v = column(name);
+    for (let i = 1; i + 1 < times.length; ++i)
+      assert.ok(Math.abs(numbers[6 * i + 3 + k] - (v[i + 1] - v[i - 1]) / (times[i + 1] - times[i - 1])) < 0.03 * greatest, `${name} at ${times[i]}`);
+  });
+  ['x', 'y'].forEach((c, k) => column(`payload.tip.${c}`).forEach((x, i) => assert.ok(Math.abs(numbers[6 * i + k] - x) < 1e-6)));
+}
+
+async function check_sensors(browser, troubles) {
+  const page = await opened(browser, join(folder, 'loads/report.html'), 't=1.2&theme=light', troubles);
+  assert.match(await text(page, '#cell'), /longest arrows: [\d.]+ N, [\d.]+ N m, [\d.]+ m\/s\^2/);
+  const with_arrows = await picture(page);
+  await page.uncheck('#sensors');
+  assert.notEqual(await picture(page), with_arrows);
+  await page.close();
+}
+
+// A body of data that has few points is seen: rods of its colour reach from its root to its tip.
+async function check_points(browser, troubles) {
+  const page = await opened(browser, join(folder, 'boom/report.html'), 't=0.3&theme=light', troubles);
+  const across = await page.evaluate(async () => {
+    const source = document.querySelector('#view canvas'), canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [source.width, source.height];
+    const context = canvas.getContext('2d');
+    context.drawImage(source, 0, 0);
+    const { data, width, height } = context.getImageData(0, 0, canvas.width, canvas.height);
+    let least = width, most = 0;
+    for (let y = 0; y < height; ++y) for (let x = 0; x < width; ++x) {
+      const [r, g, b] = data.subarray(4 * (y * width + x));
+      if (b - r > 90 && b > 110 && g > 60) [least, most] = [Math.min(least, x), Math.max(most, x)];
+    }
+    return (most - least) / width;
+  });
+  assert.ok(across > 0.35, `the boom takes ${across} of the picture`);
+  await page.close();
+}
 
 async function check_controls(browser, troubles) {
   const page = await opened(browser, join(folder, 'arm/report.html'), 't=1&theme=light', troubles);
@@ -110,26 +146,23 @@ async function check_several(browser, troubles) {
   await page.close();
 }
 
-let browser;
-try {
+await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
+  [folder, run] = [own_folder, own_run];
   simulate('two-link-slew.yaml', 'arm');
   simulate('two-link-slew.yaml', 'arm-ruthless', '--formulation', 'ruthless');
   simulate('spacecraft.yaml', 'craft', '--set', 'time.end=4');
   simulate('solar-panel.yaml', 'panel');
-  for (const name of ['arm', 'craft', 'panel']) check_motion(join(folder, name, 'report.html'));
+  simulate('loads-of-the-slew.yaml', 'loads');
+  check_arrows(join(folder, 'loads/report.html'));
+  simulate('imported-boom.yaml', 'boom');
+  for (const name of ['arm', 'craft', 'panel', 'boom']) check_motion(join(folder, name, 'report.html'));
   const troubles = [];
-  browser = await chromium.launch({
-    executablePath: browser_path,
-    args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
-      '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-  });
   await check_controls(browser, troubles);
   await check_columns(browser, troubles);
   await check_several(browser, troubles);
+  await check_sensors(browser, troubles);
+  await check_points(browser, troubles);
   await (await opened(browser, join(folder, 'panel/report.html'), 'theme=dark', troubles)).close();
   assert.deepEqual(troubles, []);
   console.log('the page shows, moves, compares and asks for nothing');
-} finally {
-  await browser?.close();
-  rmSync(folder, { recursive: true });
-}
+});

@@ -1,0 +1,190 @@
+/// \file
+/// `withy completion SHELL`: what a shell needs to complete the command line, made from the same options as the help.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "withy/apps/withy/command.hpp"
+#include "withy/apps/withy/command_tree.hpp"
+#include "withy/apps/withy/output.hpp"
+
+namespace withy::app {
+namespace {
+
+/// One word of the command line and what may follow it, for a shell's script: "sweep run".
+struct Place {
+  std::string words;
+  std::vector<std::pair<std::string, std::string>> parts;    ///< commands of the command, with what they do
+  std::vector<std::pair<std::string, std::string>> options;  ///< `--out`, with its meaning
+  std::vector<std::pair<std::string, std::string>> values;   ///< "--out" or "1", the first argument: a kind or words
+};
+
+/// What completes a value: the words that it may be, or `files` or `folders`; empty where only the user knows.
+std::string values_of(const CLI::Option& option) {
+  if (const auto words = choices(option); !words.empty()) {
+    std::string text;
+    for (const std::string& w : words) text += (text.empty() ? "" : " ") + w;
+    return text;
+  }
+  const std::string name = option.get_name(), kind = value_name(option);
+  if (name == "--out" || kind == "STORE" || kind == "DIR" || kind == "FOLDER") return "folders";
+  const bool file = option.get_positional() || kind == "FILE";
+  return file ? "files" : "";
+}
+
+Place place_of(const std::string& words, const CLI::App& parser) {
+  Place place{words, {}, {}, {}};
+  for (const CLI::App* part : parser.get_subcommands({}))
+    place.parts.emplace_back(part->get_name(), part->get_description());
+  std::size_t position = 0;
+  for (const CLI::Option* o : parser.get_options()) {
+    const std::string values = values_of(*o);
+    if (o->get_positional()) place.values.emplace_back(std::to_string(++position), values);
+    for (const std::string& name : option_names(*o)) {
+      place.options.emplace_back(name, first_sentence(o->get_description()));
+      if (takes_value(*o)) place.values.emplace_back(name, values.empty() ? "none" : values);
+    }
+  }
+  return place;
+}
+
+std::vector<Place> places() {
+  const auto program = command_tree();
+  std::vector<Place> all = {place_of("", *program)};
+  for (const CLI::App* command : program->get_subcommands({})) {
+    all.push_back(place_of(command->get_name(), *command));
+    for (const CLI::App* part : command->get_subcommands({}))
+      all.push_back(place_of(command->get_name() + ' ' + part->get_name(), *part));
+  }
+  return all;
+}
+
+std::string names(const std::vector<std::pair<std::string, std::string>>& entries) {
+  std::string text;
+  for (const auto& [name, meaning] : entries) text += (text.empty() ? "" : " ") + name;
+  return text;
+}
+
+constexpr const char* bash_head = R"(# Completion of withy for bash; made by `withy completion bash`.
+_withy() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} place= position=0 parts= options= values= i
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    case "$place/${COMP_WORDS[i]}" in
+)";
+constexpr const char* bash_middle = R"(      */-*) ;;
+      *) [[ ${COMP_WORDS[i-1]} == --* ]] || ((++position)) ;;
+    esac
+  done
+  ((++position))
+  case "$place" in
+)";
+constexpr const char* bash_end = R"(  esac
+  if [[ $word == -* ]]; then COMPREPLY=($(compgen -W "$options" -- "$word")); return; fi
+  case "$values" in
+    none) COMPREPLY=() ;;
+    folders) compopt -o filenames; COMPREPLY=($(compgen -d -- "$word")) ;;
+    files) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")) ;;
+    *) COMPREPLY=($(compgen -W "$parts $values" -- "$word")) ;;
+  esac
+}
+complete -F _withy withy
+)";
+
+std::string bash_script() {
+  std::string text = bash_head;
+  const std::vector<Place> all = places();
+  for (const Place& p : all)
+    for (const auto& [name, meaning] : p.parts)
+      text += fmt::format("      {}/{}) place=\"{}{}{}\"; position=0 ;;\n", p.words.empty() ? "" : '"' + p.words + '"',
+                          name, p.words, p.words.empty() ? "" : " ", name);
+  text += bash_middle;
+  for (const Place& p : all) {
+    text += fmt::format("    \"{}\")\n      parts=\"{}\" options=\"{}\"\n      case \"$before\" in\n", p.words,
+                        names(p.parts), names(p.options));
+    std::string positions;
+    for (const auto& [name, values] : p.values) {
+      if (name.front() == '-')
+        text += fmt::format("        {}) values=\"{}\" ;;\n", name, values);
+      else
+        positions += fmt::format("{}) values=\"{}\" ;; ", name, values);
+    }
+    // Behind the last argument comes another of its kind.
+    const bool repeats = !positions.empty();
+    text += repeats ? fmt::format("        *) case $position in {}*) values=files ;; esac ;;\n", positions)
+                    : "        *) ;;\n";
+    text += "      esac ;;\n";
+  }
+  return text + bash_end;
+}
+
+/// Inside single quotes of zsh, and of a description in brackets.
+std::string quoted(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\'')
+      out += "'\\''";
+    else if (c == '[' || c == ']' || c == ':' || c == '\\')
+      out += std::string("\\") + c;
+    else
+      out += c == '\n' ? ' ' : c;
+  }
+  return out;
+}
+
+std::string zsh_action(const std::string& values) {
+  if (values == "files") return "_files";
+  if (values == "folders") return "_files -/";
+  return values.empty() || values == "none" ? " " : "(" + values + ")";
+}
+
+std::string zsh_place(const Place& p) {
+  std::string name = p.words;
+  for (char& c : name)
+    if (c == ' ') c = '_';
+  std::string text = fmt::format("_withy_{}() {{\n", name);
+  if (!p.parts.empty()) {
+    text += "  local -a parts=(\n";
+    for (const auto& [part, meaning] : p.parts) text += fmt::format("    '{}:{}'\n", part, quoted(meaning));
+    return text +
+           "  )\n  if (( CURRENT == 2 )); then _describe 'command' parts; return; fi\n  local part=$words[2]\n  shift "
+           "words; (( CURRENT-- ))\n" +
+           fmt::format("  (( $+functions[_withy_{0}{1}$part] )) && _withy_{0}{1}$part || _files\n}}\n", name,
+                       name.empty() ? "" : "_");
+  }
+  text += "  _arguments -S";
+  for (const auto& [option, meaning] : p.options) {
+    std::string action;
+    for (const auto& [of, values] : p.values)
+      if (of == option) action = ": :" + zsh_action(values);
+    text += fmt::format(" \\\n    '*{}[{}]{}'", option, quoted(meaning), action);
+  }
+  for (const auto& [position, values] : p.values)
+    if (position.front() != '-') text += fmt::format(" \\\n    '{}: :{}'", position, zsh_action(values));
+  return text + " \\\n    '*: :_files'\n}\n";
+}
+
+std::string zsh_script() {
+  std::string text = "#compdef withy\n# Completion of withy for zsh; made by `withy completion zsh`.\n";
+  for (const Place& p : places()) text += zsh_place(p);
+  return text + "_withy_\n";
+}
+
+ExitStatus completion(const std::string& shell) {
+  print(shell == "bash" ? bash_script() : zsh_script());
+  return ExitStatus::done;
+}
+
+std::function<ExitStatus()> add_completion(CLI::App& c) {
+  const auto shell = std::make_shared<std::string>();
+  c.add_option("SHELL", *shell, "The shell")->required()->check(CLI::IsMember({"bash", "zsh"}));
+  return [shell] { return completion(*shell); };
+}
+
+}  // namespace
+
+const Command completion_command = {"completion", "Print what makes a shell complete withy's commands and options",
+                                    "  withy completion bash\n"
+                                    "  withy completion zsh",
+                                    &add_completion};
+
+}  // namespace withy::app

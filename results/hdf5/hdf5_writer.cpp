@@ -1,0 +1,169 @@
+#include <cerrno>
+#include <chrono>
+#include <limits>
+#include <map>
+#include <system_error>
+
+#include "withy/results/csv.hpp"
+#include "withy/results/hdf5/hdf5_handle.hpp"
+#include "withy/results/hdf5/hdf5_library.hpp"
+
+namespace withy {
+namespace {
+
+constexpr hsize_t chunk = 512;  ///< rows that are compressed together
+using Clock = std::chrono::steady_clock;
+
+class Hdf5Writer final : public Hdf5Recorder {
+ public:
+  explicit Hdf5Writer(const std::filesystem::path& path) : name_(path.string()) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Hdf5Handle access = latest();
+    file_ = {need(H5Fcreate(name_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)), &H5Fclose};
+    write_text(file_, "format", "withy-results/1");
+    write_text(file_, "status", "running");
+  }
+
+  void begin(const std::vector<Column>& columns) override {
+    if (!columns_.empty()) return;  // the table goes on
+    const Hdf5Handle how = part_by_part();
+    const hsize_t none = 0, most = H5S_UNLIMITED;
+    const Hdf5Handle space(need(H5Screate_simple(1, &none, &most)), &H5Sclose);
+    for (const Column& column : columns) {
+      columns_.emplace_back(need(H5Dcreate2(file_, column_name(column.name).c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT,
+                                            how, H5P_DEFAULT)),
+                            &H5Dclose);
+      write_text(columns_.back(), "unit", column.unit.empty() ? "1" : column.unit);
+    }
+    write_order(columns);
+    waiting_.assign(columns.size(), {});
+    need(H5Fflush(file_, H5F_SCOPE_LOCAL));
+  }
+
+  void describe_frames(const std::vector<std::string>& frames) override {
+    for (std::size_t c = 0; c < frames.size(); ++c)
+      if (!frames[c].empty()) write_text(columns_[c], "frame", frames[c]);
+  }
+
+  void row(std::span<const double> numbers) override {
+    if (!shared_) {  // from here on datasets grow and nothing else changes
+      need(H5Fstart_swmr_write(file_));
+      shared_ = true;
+    }
+    for (std::size_t c = 0; c < waiting_.size(); ++c) waiting_[c].push_back(numbers[c]);
+    // A part that is written before it is full is written again later: the longer a run, the more seldom.
+    const auto now = Clock::now();
+    if ((rows_ + waiting_.front().size()) % chunk == 0) write_waiting();
+    if (now - flushed_ > std::chrono::seconds(1) + (now - began_) / 20) flush();
+  }
+
+  RecordMark mark() override {
+    flush();
+    return {rows_, 0, {}};
+  }
+
+  void end() override {
+    if (ended_) return;
+    write_waiting();
+    columns_.clear();
+    need(file_.close());
+    // Attributes cannot be added while others may read. A file that is killed in this moment is refused by those that
+    // open it, until h5clear; its rows are in it.
+    if (!descriptions_.empty()) {
+      const Hdf5Handle access = latest();
+      file_ = {need(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access)), &H5Fclose};
+      for (const auto& [name, text] : descriptions_) write_text(file_, name, text);
+      need(file_.close());
+    }
+    ended_ = true;
+  }
+
+  void describe(const std::string& name, const std::string& text) override {
+    if (shared_)
+      descriptions_[name] = text;
+    else
+      write_text(file_, name, text);
+  }
+
+ private:
+  /// Checks what a call gave.
+  template <class Result>
+  Result need(Result result) const {
+    if (result >= 0) return result;
+    const int error = errno != 0 ? errno : EIO;
+    const std::string why = hdf5_error();
+    throw std::system_error(error, std::generic_category(), "cannot write " + name_ + (why.empty() ? "" : ": " + why));
+  }
+
+  /// The form of files that knows single writers with many readers.
+  [[nodiscard]] Hdf5Handle latest() const {
+    Hdf5Handle access(need(H5Pcreate(H5P_FILE_ACCESS)), &H5Pclose);
+    need(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST));
+    need(H5Pset_file_locking(access, 1, 1));  // file systems without locks are no reason to write nothing
+    return access;
+  }
+
+  [[nodiscard]] Hdf5Handle part_by_part() const {
+    Hdf5Handle how(need(H5Pcreate(H5P_DATASET_CREATE)), &H5Pclose);
+    need(H5Pset_chunk(how, 1, &chunk));
+    need(H5Pset_shuffle(how));
+    need(H5Pset_deflate(how, 1));
+    need(H5Pset_fletcher32(how));
+    // What was never written is no number.
+    const double nothing = std::numeric_limits<double>::quiet_NaN();
+    need(H5Pset_fill_value(how, H5T_NATIVE_DOUBLE, &nothing));
+    return how;
+  }
+
+  /// The names of the datasets in the order of the table, since a file lists them by the alphabet.
+  void write_order(const std::vector<Column>& columns) const {
+    std::string names;
+    for (const Column& column : columns) names += (names.empty() ? "" : "\n") + column_name(column.name);
+    write_text(file_, "columns", names);
+  }
+
+  void write_text(hid_t object, const std::string& name, const std::string& text) const {
+    const Hdf5Handle type(need(H5Tcopy(H5T_C_S1)), &H5Tclose);
+    need(H5Tset_size(type, text.size() + 1));
+    need(H5Tset_cset(type, H5T_CSET_UTF8));
+    const Hdf5Handle space(need(H5Screate(H5S_SCALAR)), &H5Sclose);
+    if (need(H5Aexists(object, name.c_str())) > 0) need(H5Adelete(object, name.c_str()));
+    const Hdf5Handle attribute(need(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT)),
+                               &H5Aclose);
+    need(H5Awrite(attribute, type, text.c_str()));
+  }
+
+  void write_waiting() {
+    const hsize_t count = waiting_.empty() ? 0 : waiting_.front().size(), first = rows_, size = rows_ + count;
+    if (count == 0) return;
+    const Hdf5Handle memory(need(H5Screate_simple(1, &count, nullptr)), &H5Sclose);
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      need(H5Dset_extent(columns_[c], &size));
+      const Hdf5Handle place(need(H5Dget_space(columns_[c])), &H5Sclose);
+      need(H5Sselect_hyperslab(place, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
+      need(H5Dwrite(columns_[c], H5T_NATIVE_DOUBLE, memory, place, H5P_DEFAULT, waiting_[c].data()));
+      waiting_[c].clear();
+    }
+    rows_ = size;
+  }
+
+  void flush() {
+    write_waiting();
+    need(H5Fflush(file_, H5F_SCOPE_LOCAL));
+    flushed_ = Clock::now();
+  }
+
+  std::string name_;
+  Hdf5Handle file_;
+  std::vector<Hdf5Handle> columns_;
+  std::vector<std::vector<double>> waiting_;  ///< of each column the numbers of the next rows
+  std::map<std::string, std::string> descriptions_;
+  hsize_t rows_ = 0;  ///< that the library has been given
+  bool shared_ = false, ended_ = false;
+  Clock::time_point began_ = Clock::now(), flushed_ = began_;
+};
+
+}  // namespace
+}  // namespace withy
+
+withy::Hdf5Recorder* withy_hdf5_make_recorder(const std::filesystem::path& path) { return new withy::Hdf5Writer(path); }

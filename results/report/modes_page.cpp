@@ -1,0 +1,123 @@
+#include "withy/results/report/modes_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "withy/scene/units.hpp"
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_shares = 8;
+constexpr std::size_t least_branches = 10;
+
+/// A shape in which equal numbers are equal kinetic energies.
+Eigen::VectorXcd weighted(const study::ModesAt& at, const Mode& mode) {
+  return mode.shape.cwiseProduct(at.masses.cwiseAbs().cwiseSqrt().cast<std::complex<double>>());
+}
+
+double likeness(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b) {
+  const double sizes = a.squaredNorm() * b.squaredNorm();
+  return a.size() == b.size() && sizes > 0 ? std::norm(a.dot(b)) / sizes : 0;
+}
+
+/// The greatest shares of the kinetic energy: name, share, phase [deg] against the greatest.
+Json shares_json(const study::ModesAt& at, const Eigen::VectorXcd& shape) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(shape.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return std::norm(shape[a]) > std::norm(shape[b]); });
+  const double all = shape.squaredNorm();
+  Json list = Json::array();
+  for (std::size_t k = 0; k < std::min(order.size(), most_shares); ++k) {
+    const double share = std::norm(shape[order[k]]) / all;
+    if (k > 0 && !(share > 1e-3)) break;
+    const double phase = std::arg(shape[order[k]] / shape[order[0]]) * 180 / std::numbers::pi;
+    list.push_back({at.names[static_cast<std::size_t>(order[k])], share, std::round(phase)});
+  }
+  return list;
+}
+
+Json branch_json(const study::ModesOf& run, std::size_t branch) {
+  Json values = Json::array();
+  Eigen::VectorXcd first;
+  for (const study::ModesAt& at : run.points) {
+    if (branch >= at.modes.size()) {
+      values.push_back(nullptr);
+      continue;
+    }
+    const Mode& m = at.modes[branch];
+    const Eigen::VectorXcd shape = weighted(at, m);
+    if (first.size() == 0) first = shape;
+    values.push_back({{"value", at.value},
+                      {"hertz", m.eigenvalue.imag() / (2 * std::numbers::pi)},
+                      {"damping_ratio", m.rigid || m.eigenvalue.imag() == 0 ? Json() : Json(m.damping_ratio())},
+                      {"growth", m.growth()},
+                      {"unstable", study::unstable(at, m)},
+                      {"state", study::behaviour(at, m)},
+                      {"dominated_by", study::dominating(at, m)},
+                      {"mac", likeness(first, shape)},
+                      {"shape", shares_json(at, shape)}});
+  }
+  return {{"at", std::move(values)}};
+}
+
+/// Branches are followed from the first value; those of rigid motion alone are left out.
+Json run_json(const study::ModesOf& run, std::size_t count) {
+  Json branches = Json::array();
+  std::size_t modes = 0;
+  for (const study::ModesAt& at : run.points) modes = std::max(modes, at.modes.size());
+  for (std::size_t b = 0; b < modes && branches.size() < std::max(count, least_branches); ++b) {
+    const bool moves = std::any_of(run.points.begin(), run.points.end(),
+                                   [b](const study::ModesAt& at) { return b < at.modes.size() && !at.modes[b].rigid; });
+    if (moves) branches.push_back(branch_json(run, b));
+  }
+  return {{"formulation", run.formulation}, {"branches", std::move(branches)}};
+}
+
+/// What must be known to read the picture, each once.
+Json remarks_json(const std::vector<study::ModesOf>& runs) {
+  std::set<std::string> said;
+  Json remarks = Json::array();
+  const auto say = [&](const std::string& text) {
+    if (!text.empty() && said.insert(text).second) remarks.push_back(text);
+  };
+  for (const study::ModesOf& run : runs) {
+    for (const study::ModesAt& at : run.points) {
+      if (!at.problem.empty()) say(fmt::format("{}: {}", run.formulation, at.problem));
+    }
+    const auto frozen = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return at.frozen(); });
+    if (frozen != run.points.end()) say(study::turn_text(frozen->turn->check));
+  }
+  return remarks;
+}
+
+}  // namespace
+
+Json modes_page(const std::vector<study::ModesOf>& runs, const study::Sweep& sweep, std::size_t count) {
+  Json values = Json::array(), all = Json::array();
+  for (const study::ModesAt& at : runs.front().points) values.push_back(at.value);
+  for (const study::ModesOf& run : runs) all.push_back(run_json(run, count));
+  const std::string unit = sweep.unit.empty() && !sweep.spun().empty() ? "rad/s" : sweep.unit;
+  Json rate;  // of a rotor: rad/s in one unit of what is swept
+  if (!sweep.spun().empty()) {
+    rate = 1.0;
+    if (!sweep.unit.empty()) rate = read_any_quantity("1 " + sweep.unit).value.value_or(0);
+  }
+  return {{"points", runs.front().points.size()},
+          {"label", sweep.path + (unit.empty() ? "" : " [" + unit + "]")},
+          {"rate", std::move(rate)},
+          {"values", std::move(values)},
+          {"remarks", remarks_json(runs)},
+          {"runs", std::move(all)}};
+}
+
+}  // namespace withy

@@ -1,0 +1,19 @@
+/// \file
+/// What the page of modes shows.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "withy/study/modes.hpp"
+
+namespace withy {
+
+/// Of each formulation its lowest branches over what is swept: frequencies, damping, the kinetic energy's shares in
+/// each shape, and how like each shape is to the branch's first: MAC = |φ₀ᴴφ|² / (φ₀ᴴφ₀ φᴴφ), each speed weighted by
+/// √M_ii. \param count branches a formulation, at least 10 where there are as many
+nlohmann::ordered_json modes_page(const std::vector<study::ModesOf>& runs, const study::Sweep& sweep,
+                                  std::size_t count);
+
+}  // namespace withy

@@ -1,0 +1,40 @@
+// What sensors measure, as arrows where they are: forces, moments, accelerations. Those of one unit have one scale.
+import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Vector3 } from 'three';
+
+const up = new Vector3(0, 1, 0), from = new Vector3(), along = new Vector3(), one = new Vector3(), other = new Vector3();
+const colours = dark => ({ force: dark ? '#e69f00' : '#b84a00', moment: dark ? '#e58fc0' : '#a5447c', acceleration: dark ? '#2fc79a' : '#00704f' });
+
+export class Arrows {
+  // size: of the whole system [m]
+  constructor(motion, arrows, size, dark) {
+    Object.assign(this, { motion, size, group: new Group() });
+    const greatest = new Map();
+    for (const a of arrows) greatest.set(a.unit, Math.max(greatest.get(a.unit) ?? 0, a.greatest));
+    this.items = arrows.filter(a => a.greatest > 0).map(a => {
+      const kind = a.name.slice(a.name.lastIndexOf(' ') + 1), material = new MeshBasicMaterial({ color: colours(dark)[kind] });
+      const shaft = new Mesh(new CylinderGeometry(size * 0.0045, size * 0.0045, 1, 8), material), head = new Mesh(new ConeGeometry(size * 0.014, size * 0.04, 12), material);
+      for (const part of [shaft, head]) { part.frustumCulled = false; this.group.add(part); }
+      return { arrow: a, shaft, head, scale: 0.22 * size / greatest.get(a.unit) };
+    });
+    this.words = [...greatest].filter(([, v]) => v > 0).map(([unit, v]) => `${+v.toPrecision(3)} ${unit}`).join(', ');
+  }
+
+  // Between two moments in proportion.
+  go(time) {
+    const { times } = this.motion, i = this.motion.index(time), j = Math.min(i + 1, times.length - 1);
+    const w = j > i ? Math.min(1, Math.max(0, (time - times[i]) / (times[j] - times[i]))) : 0;
+    for (const { arrow, shaft, head, scale } of this.items) {
+      const at = (k, part, out) => out.fromArray(arrow.numbers, 6 * k + part);
+      from.copy(at(i, 0, one)).lerp(at(j, 0, other), w);
+      along.copy(at(i, 3, one)).lerp(at(j, 3, other), w).multiplyScalar(scale);
+      const length = along.length();
+      shaft.visible = head.visible = length > 0.004 * this.size;
+      if (!shaft.visible) continue;
+      along.divideScalar(length);
+      shaft.scale.y = length;
+      shaft.position.copy(from).addScaledVector(along, length / 2);
+      head.position.copy(from).addScaledVector(along, length);
+      for (const part of [shaft, head]) part.quaternion.setFromUnitVectors(up, along);
+    }
+  }
+}

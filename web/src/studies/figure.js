@@ -1,0 +1,189 @@
+// Figures of studies: SVG with axes, marks that answer the pointer, and a note beside it.
+const svg_names = 'http://www.w3.org/2000/svg';
+export function draw(name, attributes = {}, text) {
+  const e = document.createElementNS(svg_names, name);
+  for (const [key, value] of Object.entries(attributes)) if (value != null) e.setAttribute(key, value);
+  if (text != null) e.textContent = text;
+  return e;
+}
+
+export const number = v => v == null || Number.isNaN(v) ? '–' : v === 0 ? '0'
+  : Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3 ? v.toExponential(2).replace('e+', 'e') : `${+v.toPrecision(4)}`;
+
+// A scale from data to pixels with its ticks.
+export function scale_of(values, { log = false, from, to, include = [], room = 0.05 }) {
+  const shown = values.filter(v => Number.isFinite(v) && (!log || v > 0));
+  const tell = v => log ? Math.log10(v) : v;
+  let low = Infinity, high = -Infinity;
+  for (const v of [...shown, ...include]) {
+    low = Math.min(low, tell(v));
+    high = Math.max(high, tell(v));
+  }
+  if (low > high) [low, high] = log ? [-1, 1] : [0, 1];
+  if (low === high) [low, high] = low === 0 || log ? [low - 1, high + 1] : [low - 0.1 * Math.abs(low), high + 0.1 * Math.abs(high)];
+  const more = room * (high - low);
+  low -= include.length && Math.min(...include.map(tell)) <= low ? 0 : more;
+  high += more;
+  const at = v => from + (tell(v) - low) / (high - low) * (to - from);
+  at.ticks = log ? log_ticks(low, high) : ticks(low, high, Math.abs(to - from) / (Math.abs(to - from) > 300 ? 80 : 50));
+  at.low = low;
+  at.high = high;
+  return at;
+}
+function ticks(low, high, most) {
+  const least = (high - low) / Math.max(2, most), decade = 10 ** Math.floor(Math.log10(least));
+  const step = [1, 2, 5, 10].map(k => k * decade).find(s => s >= least * 0.999), digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const out = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
+    const v = k * step;
+    out.push([v, Math.abs(high) >= 1e5 || step < 1e-4 ? (v === 0 ? '0' : v.toExponential(1).replace('.0e', 'e').replace('e+', 'e')) : v.toFixed(digits)]);
+  }
+  return out;
+}
+function log_ticks(low, high) {
+  const out = [], thin = Math.max(1, Math.round((high - low) / 8));
+  for (let k = Math.floor(low); k <= high; ++k) {
+    const name = k >= -3 && k <= 4 ? `${+(10 ** k).toPrecision(1)}` : `1e${k}`;
+    if (k >= low && k % thin === 0) out.push([10 ** k, name]);
+    if (high - low < 2.2) for (const m of [2, 5]) if (k + Math.log10(m) >= low && k + Math.log10(m) <= high) out.push([m * 10 ** k, k >= -3 && k <= 4 ? `${+(m * 10 ** k).toPrecision(1)}` : `${m}e${k}`]);
+  }
+  return out;
+}
+
+// Axes with their labels; what is drawn goes to `marks`, cut off at the frame.
+export class Figure {
+  constructor({ title, width = 760, height = 440, right = 16, x, y }) {
+    const left = 74, top = 14, bottom = 50;
+    Object.assign(this, { width, height, left, top, bottom, right });
+    this.element = document.createElement('figure');
+    this.element.className = 'study-figure';
+    if (title) {
+      const caption = document.createElement('figcaption');
+      caption.textContent = title;
+      this.element.append(caption);
+    }
+    this.svg = draw('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': title ?? y.label });
+    this.element.append(this.svg);
+    this.x = scale_of(x.values, { ...x, from: left, to: width - right });
+    this.y = scale_of(y.values, { ...y, from: height - bottom, to: top });
+    this.grid(x.label, y.label);
+    this.marks = draw('g');
+    this.svg.append(this.marks);
+  }
+  grid(x_label, y_label) {
+    const { width, height, left, top, bottom, right } = this, g = draw('g', { class: 'axes' });
+    for (const [v, name] of this.x.ticks) {
+      const p = this.x(v);
+      if (p < left - 0.5 || p > width - right + 0.5) continue;
+      g.append(draw('line', { x1: p, x2: p, y1: top, y2: height - bottom }), draw('text', { x: p, y: height - bottom + 17, 'text-anchor': 'middle' }, name));
+    }
+    for (const [v, name] of this.y.ticks) {
+      const p = this.y(v);
+      if (p < top - 0.5 || p > height - bottom + 0.5) continue;
+      g.append(draw('line', { x1: left, x2: width - right, y1: p, y2: p }), draw('text', { x: left - 7, y: p + 4, 'text-anchor': 'end' }, name));
+    }
+    g.append(draw('rect', { x: left, y: top, width: width - right - left, height: height - bottom - top, class: 'frame' }));
+    g.append(draw('text', { x: (left + width - right) / 2, y: height - 10, 'text-anchor': 'middle', class: 'label' }, x_label));
+    g.append(draw('text', { x: 16, y: (top + height - bottom) / 2, 'text-anchor': 'middle', class: 'label', transform: `rotate(-90 16 ${(top + height - bottom) / 2})` }, y_label));
+    this.svg.append(g);
+  }
+  line(points, attributes) {
+    let path = '', pen = 'M';
+    for (const [x, y] of points) {
+      if (x == null || y == null || !Number.isFinite(y)) { pen = 'M'; continue; }
+      path += `${pen}${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)}`;
+      pen = 'L';
+    }
+    const e = draw('path', { d: path, fill: 'none', ...attributes });
+    this.marks.append(e);
+    return e;
+  }
+  // A mark of a shape around a place; `about` is what the pointer is told, `chosen` what a click does.
+  mark(x, y, shape, { small = false, ...attributes }, about, chosen) {
+    const e = draw('path', { d: shapes[shape % shapes.length], transform: `translate(${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)})${small ? ' scale(0.62)' : ''}`, class: 'mark', tabindex: chosen ? 0 : null, role: chosen ? 'button' : null, 'aria-label': chosen ? about().join(', ') : null, ...attributes });
+    this.marks.append(e);
+    answers(e, about, chosen);
+    return e;
+  }
+  text(x, y, text, attributes) { this.svg.append(draw('text', { x, y, class: 'name', ...attributes }, text)); }
+}
+
+// Circle, square, triangle, diamond, downward triangle, cross: told apart without colour.
+export const shapes = ['M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0Z', 'M-4 -4H4V4H-4Z', 'M0 -5.4L4.9 3.6H-4.9Z', 'M0 -5.6L5.6 0L0 5.6L-5.6 0Z', 'M0 5.4L4.9 -3.6H-4.9Z', 'M-4.5 -1.5H-1.5V-4.5H1.5V-1.5H4.5V1.5H1.5V4.5H-1.5V1.5H-4.5Z'];
+
+// A note beside the pointer, or beside what has the focus.
+let note = null;
+export function tell(lines, x, y) {
+  note ??= document.body.appendChild(Object.assign(document.createElement('div'), { id: 'note' }));
+  note.hidden = !lines;
+  if (!lines) return;
+  note.replaceChildren(...lines.map((text, i) => Object.assign(document.createElement(i ? 'div' : 'b'), { textContent: text })));
+  const { offsetWidth: w, offsetHeight: h } = note;
+  note.style.left = `${Math.max(4, Math.min(x + 14, innerWidth - w - 8))}px`;
+  note.style.top = `${y + 18 + h > innerHeight ? y - h - 12 : y + 18}px`;
+}
+export function answers(e, about, chosen) {
+  if (about) {
+    e.addEventListener('pointermove', event => tell(about(), event.clientX, event.clientY));
+    e.addEventListener('pointerleave', () => tell(null));
+    e.addEventListener('focus', () => { const r = e.getBoundingClientRect(); tell(about(), r.right, r.bottom); });
+    e.addEventListener('blur', () => tell(null));
+  }
+  if (chosen) {
+    e.addEventListener('click', chosen);
+    e.addEventListener('keydown', event => { if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); event.stopPropagation(); chosen(); } });
+  }
+}
+
+// A table whose heads sort: columns are [head, of row, text of row].
+export function table_of(columns, rows, chosen) {
+  const table = document.createElement('table'), body = document.createElement('tbody'), head = document.createElement('tr');
+  table.className = 'rows';
+  let sorted = -1, sign = 1;
+  const fill = () => body.replaceChildren(...rows.map(row => {
+    const line = document.createElement('tr');
+    for (const [, of, text] of columns) {
+      const textContent = `${(text ?? of)(row) ?? ''}`;
+      line.append(Object.assign(document.createElement('td'), { textContent, className: typeof of(row) === 'number' ? 'number' : textContent.length > 50 ? 'long' : '' }));
+    }
+    if (chosen) { line.tabIndex = 0; answers(line, null, () => chosen(row)); }
+    row.line = line;
+    return line;
+  }));
+  columns.forEach(([name, of], i) => {
+    const cell = document.createElement('th'), button = Object.assign(document.createElement('button'), { textContent: name });
+    button.onclick = () => {
+      sign = sorted === i ? -sign : 1;
+      sorted = i;
+      rows = rows.map((row, k) => [row, k]).sort(([a, k], [b, l]) => {
+        const [p, q] = [of(a), of(b)];
+        return (p == null) - (q == null) || sign * (typeof p === 'number' ? p - q : `${p}`.localeCompare(`${q}`)) || k - l;
+      }).map(([row]) => row);
+      fill();
+    };
+    cell.append(button);
+    head.append(cell);
+  });
+  const top = document.createElement('thead');
+  top.append(head);
+  table.append(top, body);
+  fill();
+  return table;
+}
+
+// Names with their colours and shapes; a click hides what they stand for.
+export function legend(entries, changed) {
+  const holder = document.createElement('div');
+  holder.className = 'legend';
+  for (const entry of entries) {
+    const button = document.createElement('button'), icon = draw('svg', { viewBox: '-7 -7 14 14', width: 14, height: 14 });
+    icon.append(entry.dash != null ? draw('path', { d: 'M-7 0H7', stroke: entry.color, 'stroke-width': 2.5, 'stroke-dasharray': entry.dash }) : draw('path', { d: shapes[entry.shape ?? 0], fill: entry.hollow ? 'none' : entry.color, stroke: entry.color, 'stroke-width': 1.5 }));
+    button.append(icon, ` ${entry.name}`);
+    button.className = 'chip';
+    button.setAttribute('aria-pressed', !entry.hidden);
+    if (changed) button.onclick = () => { entry.hidden = !entry.hidden; changed(); };
+    else button.disabled = true;
+    holder.append(button);
+  }
+  return holder;
+}

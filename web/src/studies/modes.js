@@ -1,0 +1,160 @@
+// Frequencies and damping over what is swept (a Campbell diagram), or of one configuration; the shape of the mode that is
+// clicked.
+import { dashes } from '../data.js';
+import { element } from '../words.js';
+import { Figure, draw, legend, number, table_of } from './figure.js';
+
+const hertz = m => m.hertz;
+const radians = m => 2 * Math.PI * m.hertz;
+
+export class Modes {
+  constructor(holder, data) {
+    Object.assign(this, { data, unit: 'Hz', chosen: null, harmonics: data.rate ? 4 : 0 });
+    this.swept = data.points > 1;
+    this.branches = data.runs.flatMap((run, r) => run.branches.map((branch, i) => ({ ...branch, run, r, index: i, name: this.name_of(branch, run) })));
+    this.tools = element('div', null, { class: 'bar' });
+    this.names = element('div');
+    this.figures = element('div', null, { class: 'figures' });
+    this.card = element('aside', null, { class: 'card', id: 'mode', 'aria-live': 'polite' });
+    const beside = element('div', null, { class: 'beside' }), left = element('div');
+    left.append(this.tools, this.names, this.figures);
+    beside.append(left, this.card);
+    const said = element('div', null, { class: 'answer' });
+    for (const remark of data.remarks) said.append(element('p', remark));
+    said.append(element('p', `Branches are followed by shape: a name is of the coordinate that holds most of the kinetic energy, at the beginning and, where it becomes another, at the end. ${this.swept ? 'Triangles mark motions that grow. ' : ''}Click a mark for its shape.`, { class: 'soft' }));
+    holder.append(said, beside);
+    if (!this.swept) holder.append(this.table());
+    this.set_up();
+    const first = this.branches[0];
+    if (first) this.choose(first, first.at.find(Boolean));
+  }
+
+  name_of(branch, run) {
+    const known = branch.at.filter(Boolean), from = known[0].dominated_by, to = known.at(-1).dominated_by;
+    const name = from === to ? from : `${from} → ${to}`;
+    return this.data.runs.length > 1 ? `${run.formulation}: ${name}` : name;
+  }
+
+  set_up() {
+    const add = (label, options, value, act) => {
+      const holder = element('label', `${label} `), select = element('select', null, { 'aria-label': label });
+      for (const o of options) select.append(element('option', `${o}`, { value: o }));
+      select.value = value;
+      select.onchange = () => { act(select.value); this.paint(this.colours); };
+      holder.append(select);
+      this.tools.append(holder);
+    };
+    add('Frequencies in', ['Hz', 'rad/s'], 'Hz', v => { this.unit = v; });
+    if (this.swept && this.data.rate) add('Lines of the rate up to', [0, 1, 2, 3, 4, 6, 8, 12], this.harmonics, v => { this.harmonics = +v; });
+  }
+
+  paint(colours) {
+    this.colours = colours;
+    const several = this.data.runs.length > 1;
+    for (const b of this.branches) {
+      b.color = colours[(several ? b.r : b.index) % colours.length];
+      b.dash = several ? dashes[b.index % dashes.length].join(' ') : '';
+    }
+    this.names.replaceChildren(this.swept ? legend(this.branches, () => this.paint(colours)) : '');
+    this.figures.replaceChildren(...(this.swept ? [this.campbell(), this.damping(), this.growth()].filter(Boolean) : []));
+    if (this.chosen) this.choose(...this.chosen);
+  }
+
+  values(of) {
+    return this.branches.filter(b => !b.hidden).map(b => ({ b, points: b.at.map((m, i) => [this.data.values[i], m ? of(m) : null, m]) }));
+  }
+
+  figure(label, of, { log = false, include, height = 330, right = 16 } = {}) {
+    const curves = this.values(of), all = curves.flatMap(c => c.points.map(p => p[1])).filter(v => v != null);
+    const figure = new Figure({ height, right, x: { label: this.data.label, values: this.data.values, room: 0 }, y: { label, values: all, log, include } });
+    for (const { b, points } of curves) {
+      figure.line(points.map(([x, y]) => [x, log && !(y > 0) ? null : y]), { stroke: b.color, 'stroke-width': 1.8, 'stroke-dasharray': b.dash });
+      for (const [x, y, m] of points) {
+        if (y == null || (log && !(y > 0))) continue;
+        figure.mark(x, y, m.unstable ? 2 : 0, { fill: m.unstable ? 'var(--bad)' : b.color, small: !m.unstable }, () => this.about(b, m), () => this.choose(b, m));
+      }
+    }
+    return figure;
+  }
+
+  campbell() {
+    const of = this.unit === 'Hz' ? hertz : radians;
+    const figure = this.figure(`frequency [${this.unit}]`, of, { include: [0], height: 520, right: 210 });
+    this.per_rev(figure);
+    this.label(figure, of);
+    figure.element.id = 'campbell';
+    return figure.element;
+  }
+
+  // n times the rate: where a branch crosses one, n impulses a turn meet it.
+  per_rev(figure) {
+    const { values, rate } = this.data, last = values.at(-1), top = figure.y.high;
+    for (let n = 1; n <= this.harmonics; ++n) {
+      const at = v => n * Math.abs(v) * rate / (this.unit === 'Hz' ? 2 * Math.PI : 1);
+      const end = at(last) > top ? last * top / at(last) : last;
+      if (at(last) === 0) continue;
+      figure.marks.prepend(figure.line([[values[0], at(values[0])], [end, at(end)]], { class: 'harmonic' }));
+      figure.text(figure.x(end) - 4, figure.y(at(end)) + (end === last ? -4 : 12), `${n} per turn`, { class: 'harmonic', 'text-anchor': 'end' });
+    }
+  }
+
+  // Names at the ends of branches, moved apart.
+  label(figure, of) {
+    const ends = this.values(of).map(({ b, points }) => [b, points.filter(p => p[1] != null).at(-1)]).filter(([, p]) => p)
+      .map(([b, p]) => ({ b, y: figure.y(p[1]), from: figure.y(p[1]) })).sort((p, q) => p.y - q.y);
+    for (let i = 1; i < ends.length; ++i) ends[i].y = Math.max(ends[i].y, ends[i - 1].y + 15);
+    const over = ends.length ? Math.max(0, ends.at(-1).y - (figure.height - figure.bottom)) : 0;
+    for (let i = ends.length - 1, most = Infinity; over > 0 && i >= 0; --i) {
+      ends[i].y = Math.min(ends[i].y, most, figure.height - figure.bottom);
+      most = ends[i].y - 15;
+    }
+    const x = figure.width - figure.right;
+    for (const { b, y, from } of ends) {
+      figure.svg.append(draw('path', { d: `M${x} ${from}L${x + 14} ${y}`, stroke: b.color, fill: 'none', 'stroke-width': 1 }));
+      figure.text(x + 18, y + 4, b.name.length > 30 ? `${b.name.slice(0, 29)}…` : b.name, { style: `fill: ${b.color}` });
+    }
+  }
+
+  damping() {
+    const of = m => m.damping_ratio == null ? null : 100 * m.damping_ratio;
+    if (!this.values(of).some(c => c.points.some(p => p[1] != null && Math.abs(p[1]) > 1e-7))) return null;
+    return this.figure('damping ratio [%]', of).element;
+  }
+  growth() {
+    if (!this.branches.some(b => b.at.some(m => m?.unstable))) return null;
+    return this.figure('growth [1/s]', m => m.unstable ? m.growth : 0).element;
+  }
+
+  about(b, m) {
+    return [b.name, this.swept ? `${this.data.label} ${number(m.value)}` : '', `${number(hertz(m))} Hz, ${number(radians(m))} rad/s`, m.damping_ratio == null ? '' : `damping ratio ${number(100 * m.damping_ratio)} %`, m.state].filter(Boolean);
+  }
+
+  // Where the kinetic energy of the shape is, and how like the first shape of the branch it is.
+  choose(b, m) {
+    this.chosen = [b, m];
+    this.card.replaceChildren(element('h2', 'Mode'));
+    for (const text of this.about(b, m)) this.card.append(element('div', text));
+    if (this.swept) this.card.append(element('div', `like the branch's first shape (MAC): ${m.mac.toFixed(3)}`, { class: 'soft' }));
+    this.card.append(element('p', 'Shares of the kinetic energy, and phases', { class: 'soft' }));
+    const bars = element('table', null, { class: 'bars' });
+    for (const [name, share, phase] of m.shape) {
+      const row = element('tr'), cell = element('td'), bar = element('div', null, { class: 'level' });
+      bar.style.width = `${Math.max(1, 100 * share)}%`;
+      bar.style.background = b.color ?? 'currentColor';
+      cell.append(bar);
+      row.append(element('th', name), cell, element('td', `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`, { class: 'number' }), element('td', `${Math.round(phase)}°`, { class: 'number' }));
+      bars.append(row);
+    }
+    this.card.append(bars);
+  }
+
+  table() {
+    const rows = this.branches.map(b => ({ b, m: b.at.find(Boolean) }));
+    const several = this.data.runs.length > 1 ? [['formulation', r => r.b.run.formulation]] : [];
+    const table = table_of([...several, ['mode', r => r.b.index + 1], ['frequency [Hz]', r => hertz(r.m), r => number(hertz(r.m))], ['[rad/s]', r => radians(r.m), r => number(radians(r.m))],
+      ['damping ratio [%]', r => r.m.damping_ratio == null ? null : 100 * r.m.damping_ratio, r => r.m.damping_ratio == null ? '–' : number(100 * r.m.damping_ratio)], ['mostly', r => r.m.dominated_by], ['state', r => r.m.state]], rows, r => this.choose(r.b, r.m));
+    const frame = element('div', null, { class: 'scroll' });
+    frame.append(table);
+    return frame;
+  }
+}

@@ -1,0 +1,34 @@
+// The page of a study: its title, light or dark, print; what it shows is in the file of its kind.
+import { palette } from '../data.js';
+import { Modes } from './modes.js';
+import { Sweep } from './sweep.js';
+import { Trade } from './trade.js';
+
+const kinds = { trade: Trade, modes: Modes, sweep: Sweep };
+
+export function show_study(page) {
+  const $ = id => document.getElementById(id), wish = new URLSearchParams(location.hash.slice(1));
+  document.title = `${page.title} – withy`;
+  $('title').textContent = page.title;
+  for (const id of ['stage', 'words', 'plots', 'sources', 'help']) $(id).remove();
+  const holder = $('study');
+  holder.hidden = false;
+  const study = new kinds[page.kind](holder, page.data);
+  let dark = wish.get('theme') ? wish.get('theme') === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
+  const paint = bright => {
+    document.documentElement.dataset.theme = dark && !bright ? 'dark' : 'light';
+    $('theme').textContent = dark ? 'Light' : 'Dark';
+    study.paint(palette(dark && !bright));
+  };
+  $('theme').onclick = () => { dark = !dark; paint(); };
+  $('print').onclick = () => print();
+  addEventListener('beforeprint', () => paint(true));
+  addEventListener('afterprint', () => paint());
+  addEventListener('keydown', e => {
+    if (e.target.matches('input, select') || e.ctrlKey || e.metaKey || e.altKey || e.key.toLowerCase() !== 'd') return;
+    e.preventDefault();
+    $('theme').click();
+  });
+  paint();
+  document.body.dataset.ready = 'true';
+}

@@ -1,0 +1,234 @@
+// Many cases: how results are distributed, what they depend on, and which cases failed.
+import { element } from '../words.js';
+import { Figure, answers, draw, number, scale_of, table_of, tell } from './figure.js';
+
+const short = name => name.replace(/^peak\.|^final\./, '');
+
+export class Sweep {
+  constructor(holder, data) {
+    Object.assign(this, { data, holder, parts: [] });
+    this.varied = data.columns.filter(c => c.role !== 'result' && c.numeric);
+    this.results = data.columns.filter(c => c.role === 'result' && c.numeric);
+    this.write_answer();
+    this.card = element('aside', null, { class: 'card', id: 'case', 'aria-live': 'polite' });
+    if (data.indices) this.section('What it depends on', (colours, result) => this.indices(colours, result), true);
+    this.section('Envelopes over what varies', (colours, result) => this.envelopes(colours, result), true);
+    this.section('Distributions', colours => this.histograms(colours));
+    this.section('Scatter', colours => [this.scatter(colours)]);
+    if (data.statistics) this.section('Statistics', () => [this.rows(data.statistics)]);
+    if (data.failures.length) this.section(`Cases that failed (${data.failed})`, () => [this.failures()]);
+  }
+
+  write_answer() {
+    const { cases, done, failed, failed_share } = this.data, said = element('div', null, { class: 'answer' });
+    said.append(element('p', `${cases} cases: ${done} done, ${failed} of them failed${cases > done ? `, ${cases - done} missing` : ''}.`));
+    if (failed > 0) said.append(element('p', `${number(100 * failed_share.value)} % failed; with 95 % confidence ${number(100 * failed_share.low)} to ${number(100 * failed_share.high)} %, were they drawn at random.`, { class: 'message' }));
+    if (this.data.counted_every > 1) said.append(element('p', `Distributions and envelopes are of every ${this.data.counted_every}th case; table.csv has all.`));
+    for (const c of this.results.slice(0, 6)) said.append(element('p', `${c.name}: half of the cases are below ${number(c.median)}, 5 % below ${number(c.p05)}, 5 % above ${number(c.p95)}; least ${number(c.least)}, greatest ${number(c.greatest)}.`, { class: 'soft' }));
+    this.holder.append(said);
+  }
+
+  // A part of the page; with a choice of the result where it shows one at a time.
+  section(title, make, chooses = false) {
+    const part = element('section'), bar = element('div', null, { class: 'bar' }), figures = element('div', null, { class: 'figures small' });
+    bar.append(element('h2', title));
+    const entry = { make, figures, part, result: this.results[0] };
+    if (chooses && this.results.length > 1) {
+      const select = element('select', null, { 'aria-label': `Result, ${title}` });
+      for (const c of this.results) select.append(element('option', c.name, { value: c.name }));
+      select.onchange = () => { entry.result = this.results.find(c => c.name === select.value); this.fill(entry); };
+      bar.append(select);
+    }
+    part.append(bar, figures);
+    this.holder.append(part);
+    this.parts.push(entry);
+  }
+  fill(entry) {
+    const made = entry.result || !entry.make.length ? entry.make(this.colours, entry.result) : entry.make(this.colours, null);
+    entry.figures.replaceChildren(...made);
+    entry.part.hidden = made.length === 0;
+  }
+  paint(colours) {
+    this.colours = colours;
+    this.parts.forEach(entry => this.fill(entry));
+  }
+
+  histograms(colours) {
+    return [...this.results, ...this.varied].map(c => {
+      const { bins, least, greatest } = c, width = (greatest - least) / bins.length || 1;
+      const figure = new Figure({ title: c.name, width: 420, height: 250, x: { label: c.name, values: [least, greatest], room: 0.02 }, y: { label: 'cases', values: bins, include: [0] } });
+      bins.forEach((count, i) => {
+        const x0 = figure.x(least + i * width), x1 = figure.x(least + (i + 1) * width), y = figure.y(count);
+        const bar = draw('rect', { x: x0, y, width: Math.max(1, x1 - x0 - 1), height: Math.max(0, figure.y(0) - y), fill: c.role === 'result' ? colours[0] : colours[6] });
+        answers(bar, () => [`${count} cases`, `${number(least + i * width)} to ${number(least + (i + 1) * width)}`]);
+        figure.marks.append(bar);
+      });
+      if (c.role === 'result') for (const [v, name] of [[c.p05, '5 %'], [c.median, 'median'], [c.p95, '95 %']]) {
+        figure.marks.append(draw('line', { x1: figure.x(v), x2: figure.x(v), y1: figure.top, y2: figure.height - figure.bottom, class: 'limit' }));
+        const late = figure.x(v) > figure.width - figure.right - 40;
+        figure.text(figure.x(v) + (late ? -3 : 3), figure.top + 11, name, { class: 'soft', 'text-anchor': late ? 'end' : 'start' });
+      }
+      return figure.element;
+    });
+  }
+
+  // Over each number that varies: least, 5 %, median, 95 % and greatest of the cases near each of its values.
+  envelopes(colours, result) {
+    if (!result) return [];
+    const made = this.varied.map(axis => {
+      const levels = this.data.envelopes[axis.name]?.[result.name];
+      if (!levels || levels.length < 2) return null;
+      const figure = new Figure({ width: 420, height: 300, x: { label: axis.name, values: levels.map(l => l.at), room: 0.02 }, y: { label: result.name, values: levels.flatMap(l => [l.least, l.greatest]) } });
+      const band = (low, high, opacity) => {
+        const there = levels.map(l => `${figure.x(l.at)} ${figure.y(l[high])}`), back = [...levels].reverse().map(l => `${figure.x(l.at)} ${figure.y(l[low])}`);
+        figure.marks.append(draw('path', { d: `M${[...there, ...back].join('L')}Z`, fill: colours[0], opacity }));
+      };
+      band('least', 'greatest', 0.16);
+      band('p05', 'p95', 0.3);
+      figure.line(levels.map(l => [l.at, l.median]), { stroke: colours[0], 'stroke-width': 2 });
+      for (const l of levels) figure.mark(l.at, l.median, 0, { fill: colours[0], small: true }, () => [`${axis.name} about ${number(l.at)}`, `median ${number(l.median)}, 5 % ${number(l.p05)}, 95 % ${number(l.p95)}`, `least ${number(l.least)}, greatest ${number(l.greatest)}, ${l.count} cases`]);
+      return figure.element;
+    }).filter(Boolean);
+    return made.length ? [element('p', 'Line: median; dark: from 5 to 95 % of the cases; light: from the least to the greatest.', { class: 'soft wide' }), ...made] : [];
+  }
+
+  indices(colours, result) {
+    const { head, rows } = this.data.indices, at = name => head.indexOf(name);
+    const own = rows.filter(r => r[at('result')] === result?.name);
+    if (!own.length) return [];
+    const bars = (title, of, color) => this.bars(title, own.map(r => ({ name: r[at('parameter')] + (at('value') >= 0 ? ` = ${r[at('value')]}` : ''), ...of(r) })), color);
+    const estimate = name => r => ({ value: +r[at(name)], low: +r[at(`${name}.low`)], high: +r[at(`${name}.high`)] });
+    if (at('total') >= 0) return [bars('Sobol index, alone: share of the variance', estimate('first'), colours[0]), bars('Sobol index, total: with all others', estimate('total'), colours[1])];
+    if (at('mu_star') >= 0) return [bars('Morris: mean size of the elementary effects', estimate('mu_star'), colours[0]), bars('Morris: their deviation (interaction, curvature)', r => ({ value: +r[at('sigma')] }), colours[1])];
+    return [bars(`Change of ${result.name}, one value at a time`, r => ({ value: +r[at('difference')] }), colours[0])];
+  }
+
+  // Horizontal bars with intervals, the greatest first.
+  bars(title, entries, color) {
+    entries = entries.filter(e => Number.isFinite(e.value)).sort((a, b) => Math.abs(b.value) - Math.abs(a.value)).slice(0, 30);
+    const figure = element('figure', null, { class: 'study-figure' }), width = 560, line = 26, left = 210, height = entries.length * line + 30;
+    const svg = draw('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': title });
+    const x = scale_of(entries.flatMap(e => [e.value, e.low ?? e.value, e.high ?? e.value]), { from: left, to: width - 60, include: [0] });
+    const axes = draw('g', { class: 'axes' });
+    for (const [v, name] of x.ticks) axes.append(draw('line', { x1: x(v), x2: x(v), y1: 0, y2: height - 24 }), draw('text', { x: x(v), y: height - 8, 'text-anchor': 'middle' }, name));
+    svg.append(axes);
+    entries.forEach((e, i) => {
+      const y = i * line + 5, from = Math.min(x(0), x(e.value));
+      const bar = draw('rect', { x: from, y, width: Math.max(1, Math.abs(x(e.value) - x(0))), height: 16, fill: color });
+      answers(bar, () => [e.name, `${number(e.value)}${e.low != null ? `, with 95 % confidence ${number(e.low)} to ${number(e.high)}` : ''}`]);
+      svg.append(bar);
+      if (e.low != null) svg.append(draw('path', { d: `M${x(e.low)} ${y + 8}H${x(e.high)}M${x(e.low)} ${y + 4}v8M${x(e.high)} ${y + 4}v8`, stroke: 'currentColor', 'stroke-width': 1.4 }));
+      svg.append(draw('text', { x: left - 8, y: y + 12, 'text-anchor': 'end', class: 'name' }, e.name.length > 30 ? `…${e.name.slice(-29)}` : e.name), draw('text', { x: Math.max(x(e.value), x(e.high ?? e.value)) + 6, y: y + 12, class: 'soft' }, number(e.value)));
+    });
+    figure.append(element('figcaption', title), svg);
+    return figure;
+  }
+
+  // Every pair of some columns; a case is found by the pointer and shown whole by a click.
+  scatter(colours) {
+    const all = [...this.varied, ...this.results];
+    this.pairs ??= new Set([...this.varied.slice(0, 3), ...this.results.slice(0, 3)]);
+    const holder = element('div', null, { class: 'pairs' }), bar = element('div', null, { class: 'legend' });
+    for (const c of all) {
+      const chip = element('button', c.name, { class: 'chip', 'aria-pressed': this.pairs.has(c) });
+      chip.onclick = () => {
+        if (!this.pairs.delete(c) && this.pairs.size < 8) this.pairs.add(c);
+        this.fill(this.parts.find(p => p.figures.contains(holder)));
+      };
+      bar.append(chip);
+    }
+    const beside = element('div', null, { class: 'beside' });
+    beside.append(this.matrix(all.filter(c => this.pairs.has(c)), colours), this.card);
+    if (!this.card.childElementCount) this.card.append(element('h2', 'Case'), element('p', 'Click a point.', { class: 'soft' }));
+    const every = this.data.sample.every;
+    holder.append(bar, element('p', `Completed cases as points, failed ones as crosses where both values are known${every > 1 ? `; every ${every}th of the cases` : ''}.`, { class: 'soft' }), beside);
+    return holder;
+  }
+
+  matrix(columns, colours) {
+    const n = columns.length, cell = Math.max(110, Math.min(250, 840 / Math.max(1, n))), left = 64, bottom = 46, size = n * cell;
+    const svg = draw('svg', { viewBox: `0 0 ${left + size + 6} ${size + bottom + 6}`, role: 'img', 'aria-label': 'Scatter of every pair' });
+    const place = name => this.data.columns.findIndex(c => c.name === name);
+    const scales = columns.map(c => scale_of([c.least, c.greatest], { from: 6, to: cell - 6, room: 0 }));
+    columns.forEach((y, i) => columns.forEach((x, j) => {
+      const g = draw('g', { transform: `translate(${left + j * cell} ${4 + i * cell})`, class: 'axes' });
+      g.append(draw('rect', { x: 0, y: 0, width: cell - 4, height: cell - 4, class: 'frame hit' }));
+      if (i === j) this.own(g, x, cell, colours);
+      else this.points(g, [place(x.name), scales[j]], [place(y.name), scales[i]], cell, colours, [x, y]);
+      if (i === n - 1) {
+        for (const v of [x.least, x.greatest]) g.append(draw('text', { x: v === x.least ? 0 : cell - 6, y: cell + 10, 'text-anchor': v === x.least ? 'start' : 'end' }, number(v)));
+        g.append(draw('text', { x: cell / 2, y: cell + 26, 'text-anchor': 'middle', class: 'name' }, fitted(short(x.name), cell)));
+      }
+      if (j === 0) {
+        for (const v of [y.least, y.greatest]) g.append(draw('text', { x: -6, y: v === y.least ? cell - 6 : 11, 'text-anchor': 'end' }, number(v)));
+        g.append(draw('text', { x: -50, y: cell / 2, 'text-anchor': 'middle', class: 'name', transform: `rotate(-90 -50 ${cell / 2})` }, fitted(short(y.name), cell)));
+      }
+      svg.append(g);
+    }));
+    return svg;
+  }
+  own(g, c, cell, colours) {
+    const most = Math.max(1, ...c.bins), width = (cell - 12) / c.bins.length;
+    c.bins.forEach((count, k) => g.append(draw('rect', { x: 6 + k * width, y: cell - 4 - count / most * (cell - 16), width: Math.max(1, width - 0.6), height: count / most * (cell - 16), fill: c.role === 'result' ? colours[0] : colours[6], opacity: 0.75 })));
+  }
+  points(g, [ix, sx], [iy, sy], cell, colours, [x, y]) {
+    let path = '', crosses = '';
+    const known = [];
+    for (const row of this.data.sample.rows) {
+      const [a, b] = [row.values[ix], row.values[iy]];
+      if (a == null || b == null) continue;
+      const px = sx(a), py = cell - sy(b);
+      known.push([px, py, row]);
+      if (row.status === 'completed') path += `M${px.toFixed(1)} ${py.toFixed(1)}h0`;
+      else crosses += `M${(px - 3).toFixed(1)} ${(py - 3).toFixed(1)}l6 6m-6 0l6 -6`;
+    }
+    g.append(draw('path', { d: path, stroke: colours[0], 'stroke-width': known.length > 400 ? 2.4 : 3.6, 'stroke-linecap': 'round', opacity: 0.65 }), draw('path', { d: crosses, stroke: 'var(--bad)', 'stroke-width': 1.5 }));
+    const ring = g.appendChild(draw('circle', { r: 5.5, fill: 'none', stroke: 'currentColor', visibility: 'hidden' }));
+    const nearest = event => {
+      const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(g.getScreenCTM().inverse());
+      let best = null, least = 144;
+      for (const k of known) {
+        const d = (k[0] - p.x) ** 2 + (k[1] - p.y) ** 2;
+        if (d < least) [best, least] = [k, d];
+      }
+      return best;
+    };
+    g.addEventListener('pointermove', event => {
+      const found = nearest(event);
+      ring.setAttribute('visibility', found ? 'visible' : 'hidden');
+      if (!found) return tell(null);
+      ring.setAttribute('cx', found[0]);
+      ring.setAttribute('cy', found[1]);
+      tell([`case ${found[2].case}`, `${x.name} ${number(found[2].values[ix])}`, `${y.name} ${number(found[2].values[iy])}`], event.clientX, event.clientY);
+    });
+    g.addEventListener('pointerleave', () => { ring.setAttribute('visibility', 'hidden'); tell(null); });
+    g.addEventListener('click', event => { const found = nearest(event); if (found) this.choose(found[2]); });
+  }
+
+  choose(row) {
+    const table = element('table');
+    this.data.columns.forEach((c, i) => {
+      const line = element('tr');
+      line.append(element('th', c.name, { scope: 'row' }), element('td', row.values[i] == null ? '–' : typeof row.values[i] === 'number' ? number(row.values[i]) : `${row.values[i]}`));
+      table.append(line);
+    });
+    this.card.replaceChildren(element('h2', `Case ${row.case}`), element('div', row.status, { class: `state ${row.status}` }), table, element('p', 'To run it alone:', { class: 'soft' }), element('pre', `withy sweep case ${this.data.plan} ${row.case}`));
+  }
+
+  rows({ head, rows }) {
+    const columns = head.map((name, i) => [name, row => { const v = row.cells[i]; return v !== '' && Number.isFinite(+v) ? +v : v; }, row => { const v = row.cells[i]; return v !== '' && Number.isFinite(+v) ? number(+v) : v; }]);
+    const frame = element('div', null, { class: 'scroll' });
+    frame.append(table_of(columns, rows.map(cells => ({ cells }))));
+    return frame;
+  }
+  failures() {
+    const frame = element('div', null, { class: 'scroll' });
+    frame.append(table_of([['case', r => r.case], ['status', r => r.status], ['why', r => r.message], ['to run it alone', r => r.command]], this.data.failures));
+    return frame;
+  }
+}
+
+function fitted(name, width) {
+  const most = Math.floor(width / 6.6);
+  return name.length > most ? `…${name.slice(-most + 1)}` : name;
+}

@@ -1,0 +1,146 @@
+// The pages of studies in a browser: what they show is what the program's files say; hover, click and sorting work.
+//   node study_test.mjs WITHY SCENES CHROMIUM [PICTURES]
+import assert from 'node:assert/strict';
+import { execSync } from 'node:child_process';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { in_browser, opened, text } from './browser.mjs';
+
+const [withy, scenes, chromium, pictures] = process.argv.slice(2).map(path => resolve(path));
+const page_data = file => JSON.parse(/<script type="application\/json" id="withy-data">([^]*?)<\/script>/.exec(readFileSync(file, 'utf8'))[1]).data;
+const shot = async (page, name) => { if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`), fullPage: true }); };
+const close = (a, b) => assert.ok(Math.abs(a - b) <= 1e-9 * Math.max(Math.abs(a), Math.abs(b)), `${a} and ${b}`);
+
+// Each model is a mark where its numbers say; a click tells all of it, with the command that runs it.
+async function check_trade(browser, folder, run, troubles) {
+  const out = join(folder, 'trade');
+  run('trade', join(scenes, 'driven-arm.yaml'), '--set', 'time.end=1', '--formulations', 'ruthless,consistent,quadratic,linear', '--modes', '1,2', '--tolerances', '1e-4,1e-6', '--out', out);
+  const { points } = JSON.parse(readFileSync(join(out, 'trade.json'))), done = points.filter(p => p.status === 'completed');
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
+  const marks = page.locator('.figures .mark');
+  assert.equal(await marks.count(), done.length);
+  const at = await marks.evaluateAll(all => all.map(m => /translate\(([-\d.]+) ([-\d.]+)\)/.exec(m.getAttribute('transform')).slice(1).map(Number)));
+  done.forEach((p, i) => done.forEach((q, j) => {
+    if (q.cpu_seconds > 1.05 * p.cpu_seconds) assert.ok(at[j][0] > at[i][0], 'dearer is further to the right');
+    if (q.relative_error > 1.05 * p.relative_error && p.relative_error > 1e-13) assert.ok(at[j][1] < at[i][1], 'worse is higher');
+  }));
+  await marks.nth(0).hover({ force: true });
+  assert.match(await text(page, '#note'), /error .* %, CPU time .* ms/);
+  await page.click('table.rows tbody tr:nth-child(2)');
+  assert.match(await text(page, '#model'), new RegExp(`${points[1].formulation}[^]*withy run .*driven-arm.yaml`));
+  await page.click('table.rows th:nth-child(2) button');
+  const sorted = await page.$$eval('table.rows tbody tr', rows => rows.map(r => r.children[1].textContent));
+  assert.deepEqual(sorted, [...sorted].sort());
+  await shot(page, 'trade-light');
+  await page.click('.legend .chip');
+  assert.ok(await marks.count() < done.length, 'a formulation is taken away');
+  await page.click('.legend .chip');
+  await page.keyboard.press('d');
+  assert.equal(await page.getAttribute('html', 'data-theme'), 'dark');
+  await shot(page, 'trade-dark');
+  assert.ok((await page.pdf()).length > 20000, 'it prints');
+  await page.close();
+  // The command of the page is the model's run.
+  const { command, steps } = page_data(join(out, 'report.html')).points.at(-1);
+  execSync(`${command.replace('withy', withy)} --set time.end=1 --out ${join(folder, 'point')}`, { stdio: 'ignore' });
+  assert.equal(JSON.parse(readFileSync(join(folder, 'point/run.json'))).steps, steps);
+}
+
+// Branches are the columns of modes.csv; lines of the rate rise by one rate a rate.
+async function check_modes(browser, folder, run, troubles) {
+  const out = join(folder, 'modes');
+  run('modes', join(scenes, 'rotating-blade.yaml'), '--sweep', 'spin.axle=0 rpm:60 rpm:9', '--out', out);
+  const { runs, values, rate } = page_data(join(out, 'report.html'));
+  close(rate, 2 * Math.PI / 60);
+  const exact = JSON.parse(readFileSync(join(out, 'modes.json'))).runs[0].points;
+  runs[0].branches.forEach((b, i) => b.at.forEach((m, k) => {
+    close(m.hertz, exact[k].modes[i].eigenvalue[1] / 2 / Math.PI);
+    assert.equal(m.value, values[k]);
+    const all = m.shape.reduce((sum, [, share]) => sum + share, 0);
+    assert.ok(all > 0.95 && all < 1 + 1e-12, `shares of ${all}`);
+    assert.ok(m.mac >= 0 && m.mac <= 1 + 1e-12);
+    if (k === 0) close(m.mac, 1);
+  }));
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
+  assert.match(await text(page, '#campbell'), /1 per turn[^]*2 per turn/);
+  assert.match(await text(page, '#campbell'), /spin.axle \[rpm\]/);
+  await page.locator('#campbell .mark').nth(12).click({ force: true });
+  assert.match(await text(page, '#mode'), /kinetic energy[^]*blade\./);
+  await page.selectOption('select[aria-label="Frequencies in"]', 'rad/s');
+  assert.match(await text(page, '#campbell'), /frequency \[rad\/s\]/);
+  await page.selectOption('select[aria-label="Lines of the rate up to"]', '0');
+  assert.doesNotMatch(await text(page, '#campbell'), /per turn/);
+  await page.selectOption('select[aria-label="Lines of the rate up to"]', '4');
+  await page.selectOption('select[aria-label="Frequencies in"]', 'Hz');
+  await shot(page, 'modes-light');
+  await page.click('#theme');
+  await shot(page, 'modes-dark');
+  await page.close();
+  run('modes', join(scenes, 'two-link-slew.yaml'), '--lock', 'shoulder,elbow', '--out', join(folder, 'locked'));
+  const single = await opened(browser, join(folder, 'locked/report.html'), 'theme=light', troubles);
+  assert.ok(await single.locator('table.rows tbody tr').count() >= 2);
+  await shot(single, 'modes-single');
+  await single.close();
+}
+
+function write_plan(folder, name, text) {
+  const file = join(folder, name);
+  writeFileSync(file, `format: withy-sweep/1\nscene: ${join(scenes, 'two-link-slew.yaml')}\nset: {time.end: 1, integrator.rtol: 1e-5}\nseed: 7\nkeep: {final: [shoulder, elbow], peak: [link1.tip.deflection_y]}\n${text}`);
+  return file;
+}
+
+// Quantiles, histograms and cases are those of table.csv; failures are named.
+async function check_sweep(browser, folder, run, troubles) {
+  const out = join(folder, 'sweep');
+  const plan = write_plan(folder, 'plan.yaml', 'vary:\n  loads.slew.time_scale: {grid: [0.5, 0.8, 1.0]}\n  bodies.link1.mass_per_length: {normal: {mean: 1.33937, deviation: 0.05}}\n  bodies.link2.bending_y.stiffness: {uniform: {from: 8, to: 20}}\ncases: 60\n');
+  run('sweep', 'run', plan, '--out', out);
+  const data = page_data(join(out, 'report.html'));
+  const [head, ...rows] = readFileSync(join(out, 'table.csv'), 'utf8').trim().split('\n').map(l => l.split(','));
+  for (const column of data.columns) {
+    const own = rows.map(r => +r[head.indexOf(column.name)]).sort((a, b) => a - b);
+    assert.equal(own.length, 180);
+    close(column.least, own[0]);
+    close(column.greatest, own[179]);
+    close(column.median, (own[89] + own[90]) / 2);
+    assert.equal(column.bins.reduce((a, b) => a + b), 180);
+    const width = (own[179] - own[0]) / 24;
+    close(column.bins[0], own.filter(x => x < own[0] + width).length);
+  }
+  const peak = 'peak.link1.tip.deflection_y[m]', slow = data.envelopes['loads.slew.time_scale'][peak].find(l => l.at === 0.5);
+  assert.equal(slow.count, 60);
+  close(slow.greatest, Math.max(...rows.filter(r => +r[head.indexOf('loads.slew.time_scale')] === 0.5).map(r => +r[head.indexOf(peak)])));
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
+  assert.match(await text(page, '.answer'), /180 cases: 180 done, 0 of them failed/);
+  const cell = page.locator('.pairs svg g:has(circle)').first();
+  const point = await cell.evaluate(g => { const d = /^M([\d.]+) ([\d.]+)/.exec(g.querySelector('path').getAttribute('d')), p = new DOMPoint(+d[1], +d[2]).matrixTransform(g.getScreenCTM()); return { x: p.x, y: p.y }; });
+  await page.evaluate(y => scrollTo(0, y - 300), point.y);
+  const moved = await cell.evaluate(g => { const d = /^M([\d.]+) ([\d.]+)/.exec(g.querySelector('path').getAttribute('d')), p = new DOMPoint(+d[1], +d[2]).matrixTransform(g.getScreenCTM()); return { x: p.x, y: p.y }; });
+  await page.mouse.move(moved.x, moved.y);
+  assert.match(await text(page, '#note'), /case \d+/);
+  await page.mouse.click(moved.x, moved.y);
+  assert.match(await text(page, '#case'), /withy sweep case .*plan.yaml \d+/);
+  await shot(page, 'sweep-light');
+  await page.click('#theme');
+  await shot(page, 'sweep-dark');
+  await page.close();
+}
+
+// Bars are the rows of indices.csv.
+async function check_indices(browser, folder, run, troubles) {
+  const out = join(folder, 'sobol');
+  const plan = write_plan(folder, 'sobol.yaml', 'design: saltelli\nvary:\n  bodies.link1.mass_per_length: {uniform: {from: 1.2, to: 1.5}}\n  bodies.link1.bending_y.stiffness: {uniform: {from: 60, to: 120}}\n  loads.slew.time_scale: {uniform: {from: 0.4, to: 1.3}}\ncases: 16\n');
+  run('sweep', 'run', plan, '--out', out);
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
+  const names = await page.$$eval('section:first-of-type figcaption', all => all.map(f => f.textContent));
+  assert.ok(names.some(n => /Sobol index, alone/.test(n)) && names.some(n => /total/.test(n)), names.join());
+  assert.equal(await page.locator('section:first-of-type figure').first().locator('rect').count(), 3);
+  await shot(page, 'sobol-light');
+  await page.close();
+}
+
+await in_browser(withy, chromium, async (browser, folder, run) => {
+  const troubles = [];
+  for (const check of [check_trade, check_modes, check_sweep, check_indices]) await check(browser, folder, run, troubles);
+  assert.deepEqual(troubles, []);
+  console.log('the pages of studies show what their files say');
+});
