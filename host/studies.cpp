@@ -58,7 +58,7 @@ std::string Scene::compare(const std::vector<std::string>& formulations, const s
       {},
       study::compare(base->values, library().registry(), formulations, reference,
                      [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
-                       return study::simulate(prepared, output, control_of(follow));
+                       return study::simulate(prepared, library().registry(), output, control_of(follow));
                      })};
   return Json{{"scene", base->scene.file},
               {"name", base->scene.name},

@@ -35,24 +35,23 @@ Json body_json(const BodyValidity& b, const RunSummary& summary) {
   return j;
 }
 
-Json stretches_json(const Certificate& c) {
+/// Rungs over time, the accuracy asked and what finding them has cost.
+Json plan_json(const Certificate& c) {
+  const study::RungPlan& plan = *c.plan;
   Json all = Json::array();
-  for (const study::NamedStretch& named : c.stretches) {
-    const Stretch& s = named.stretch;
-    Json why = Json::array();
-    for (const Excess& e : s.excess)
-      why.push_back(
-          {{"body", e.body}, {"indicator", e.indicator}, {"value", e.value}, {"limit", e.limit}, {"time", e.time}});
-    all.push_back({{"formulation", named.formulation},
-                   {"start", s.start},
-                   {"end", s.end},
-                   {"steps", s.steps},
-                   {"evaluations", s.evaluations},
-                   {"energy_drift", s.energy_drift},
-                   {"escalated_because", std::move(why)},
-                   {"energy_jump", s.energy_jump}});
-  }
-  return {{"list", std::move(all)}, {"discarded_evaluations", c.discarded_evaluations}};
+  for (const study::PlannedStretch& s : plan.stretches)
+    all.push_back({{"formulation", c.rungs[s.stretch.rung]},
+                   {"start", s.stretch.start},
+                   {"end", s.stretch.end},
+                   {"accuracy_used", s.use}});
+  Json evaluations = Json::object();
+  for (std::size_t i = 0; i < c.rungs.size(); ++i)
+    evaluations[c.rungs[i]] = {{"run", i < plan.run_evaluations.size() ? plan.run_evaluations[i] : 0},
+                               {"coarse", plan.evaluations[i]}};
+  return {{"list", std::move(all)},        {"accuracy", plan.accuracy},
+          {"accuracy_used", plan.use},     {"worst", plan.worst},
+          {"windows", plan.windows},       {"repeated", plan.repeated},
+          {"integrator", plan.integrator}, {"evaluations", std::move(evaluations)}};
 }
 
 Json estimate_json(const Certificate& c) {
@@ -90,7 +89,7 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
   c["formulation"] = {{"name", certificate.formulation}, {"meaning", certificate.meaning}};
   for (const study::OwnFormulation& own : certificate.own)
     c["formulation"]["bodies"][own.body] = {{"name", own.formulation}, {"meaning", own.meaning}};
-  if (!certificate.stretches.empty()) c["stretches"] = stretches_json(certificate);
+  if (certificate.plan) c["stretches"] = plan_json(certificate);
   c["integrator"] = value_json(scene.source.at("integrator"));
   c["output_interval"] = scene.output;
   c["compiled"] = certificate.compiled;
@@ -112,6 +111,7 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
           ? Json{{"against", certificate.against}, {"rms", n.rms}, {"peak", n.peak}, {"samples", n.samples}}
           : Json();
   c["estimated_error"] = estimate_json(certificate);
+  if (!certificate.estimate) c["without_estimate"] = certificate.without_estimate;
   c["steps"] = steps_json(certificate.steps);
   c["indicators"] = indicators_json(certificate.indicators);
   return c;

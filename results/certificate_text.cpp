@@ -65,15 +65,15 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model) {
   append(e.distances.moments, 1, "N m");
   append(e.distances.forces, 1, "N");
   if (out.empty()) return "no hinge moves and no body has a tip";
-  out = fmt::format("against {}, estimated by a coarse run of both: {}", e.against, out);
+  out = fmt::format("against {}, estimated by coarse runs: {}", e.against, out);
   if (e.distances.until < e.end)
     out += fmt::format("; up to {:.4g} s, where the estimate's budget ended", e.distances.until);
   return out;
 }
 
 std::string body_text(const BodyValidity& b, const RunSummary& summary) {
-  std::string out =
-      fmt::format("turns at {:.2g} of its fundamental frequency {:.4g} rad/s", b.rate_ratio, b.fundamental);
+  std::string out = fmt::format("turns at {:.2g} of the lowest frequency it has as it is carried, {:.4g} rad/s",
+                                b.rate_ratio, b.fundamental);
   if (b.load.size() > 0) {
     const std::size_t most = study::greatest_share(b.load);
     out += fmt::format("; {} load {:.2g} of the buckling load, most of it from {}",
@@ -88,19 +88,24 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
   return out;
 }
 
-std::vector<std::string> stretches_text(const study::Certificate& certificate) {
+/// Families are named after the ends they are made for, the root's first.
+std::string families_text(const study::Certificate& certificate) {
+  std::string text;
+  for (const study::BodyFamilies& f : certificate.families)
+    text += fmt::format("{}{} {} {}", text.empty() ? "" : ", ", f.body, f.modes, f.family);
+  return text;
+}
+
+std::vector<std::string> plan_text(const study::Certificate& certificate) {
   std::vector<std::string> lines;
-  for (const study::NamedStretch& named : certificate.stretches) {
-    const Stretch& s = named.stretch;
-    std::string text = fmt::format("{} from {:.4g} to {:.4g} s", named.formulation, s.start, s.end);
-    if (!s.excess.empty()) {
-      const Excess& e = s.excess.front();
-      text += e.limit > 0 ? fmt::format("; left since at {:.4g} s {} of '{}' is {:.3g}, limit {:.3g}", e.time,
-                                        e.indicator, e.body, e.value, e.limit)
-                          : "; left since " + e.indicator;
-    }
-    lines.push_back(std::move(text));
-  }
+  if (!certificate.plan) return lines;
+  const study::RungPlan& plan = *certificate.plan;
+  for (const study::PlannedStretch& s : plan.stretches)
+    lines.push_back(
+        fmt::format("{} from {:.4g} to {:.4g} s", certificate.rungs[s.stretch.rung], s.stretch.start, s.stretch.end));
+  if (plan.estimate)
+    lines.push_back(fmt::format("asked {:.3g} % of each output's own range; estimated {:.2g} % of that of {}",
+                                100 * plan.accuracy, 100 * plan.accuracy * plan.use, plan.worst));
   return lines;
 }
 
@@ -132,7 +137,8 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
   if (!certificate.own.empty())
     line("",
          "a mix conserves no more than each of its formulations does, and may be further off than any of them alone");
-  for (const std::string& text : stretches_text(certificate)) line("", text);
+  for (const std::string& text : plan_text(certificate)) line("", text);
+  if (!certificate.families.empty()) line("modes", families_text(certificate));
   line("energy", fmt::format("off by {} of the greatest{}", percent(certificate.energy_drift),
                              certificate.untruncated_drift > 2 * certificate.energy_drift
                                  ? fmt::format("; the energy without truncation by {}, which the model leaves out",
@@ -143,11 +149,16 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
                                  "conserved",
                                  percent(certificate.momentum.linear), percent(certificate.momentum.angular)));
   const NeglectedAcceleration& n = certificate.neglected;
-  if (!certificate.against.empty() && n.samples > 0) {
+  // Vibrations that hardly move an output are in it: where the error of outputs is known, that says it.
+  if (!certificate.estimate && !certificate.against.empty() && n.samples > 0) {
     line("left out", fmt::format("{} of the accelerations in the mean, {} at the peaks, against {} ({} samples)",
                                  percent(n.rms), percent(n.peak), certificate.against, n.samples));
   }
-  if (certificate.estimate) line("error", error_text(*certificate.estimate, model));
+  if (certificate.estimate) {
+    line("error", error_text(*certificate.estimate, model));
+  } else if (!certificate.without_estimate.empty()) {
+    line("error", certificate.without_estimate);
+  }
   for (const BodyValidity& b : certificate.bodies) line(b.name, body_text(b, summary));
   if (!certificate.indicators.empty()) {
     const study::Indicator& first = certificate.indicators.front();

@@ -82,7 +82,7 @@ Json comparison_json(const ComparisonAt& group, Registry& registry, bool varied)
     Json j;
     if (varied) j["value"] = group.value;
     j.update(run_json(run.prepared.scene, run.summary,
-                      study::certify(run.prepared, {&run.summary, nullptr, nullptr, {}}, registry)));
+                      study::certify(run.prepared, {&run.summary, nullptr, {}, {}}, registry)));
     if (group.comparison.has_reference()) {
       const study::NamedDistances d = group.comparison.distances(run);
       j["distance"] = {{"hinges", d.hinges},   {"tips", d.tips},     {"deflections", d.deflections},

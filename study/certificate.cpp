@@ -26,9 +26,13 @@ std::vector<OwnFormulation> own_formulations(const Scene& scene, Registry& regis
   return all;
 }
 
-void add_stretches(Certificate& c, const Prepared& prepared, const EscalatedRun& run) {
-  for (const Stretch& s : run.stretches) c.stretches.push_back({prepared.rungs[s.rung].name, s});
-  c.discarded_evaluations = run.discarded_evaluations;
+void add_plan(Certificate& c, const Prepared& prepared, RungPlan plan, double reached) {
+  for (const Rung& rung : prepared.rungs) c.rungs.push_back(rung.name);
+  std::erase_if(plan.stretches, [&](const PlannedStretch& s) {
+    return s.stretch.start >= reached && s.stretch.start > plan.stretches.front().stretch.start;
+  });
+  plan.stretches.back().stretch.end = std::min(plan.stretches.back().stretch.end, reached);
+  c.plan = std::move(plan);
 }
 
 /// Among the indicators, in its place.
@@ -52,9 +56,9 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.meaning = meaning_of(scene.formulation_name, registry);
   c.own = own_formulations(scene, registry);
   const Rung* last = nullptr;  // what a run that changes its formulation ended in
-  if (evidence.escalated != nullptr) {
-    last = &prepared.rungs[evidence.escalated->stretches.back().rung];
-    add_stretches(c, prepared, *evidence.escalated);
+  if (evidence.plan) {
+    add_plan(c, prepared, std::move(*evidence.plan), summary.reached);
+    last = &prepared.rungs[c.plan->stretches.back().stretch.rung];
   }
   c.compiled = (last != nullptr ? *last->equations : *prepared.equations).savings();
   c.energy_drift = summary.energy_drift;
@@ -71,6 +75,7 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   if (evidence.beyond != nullptr) c.against = evidence.beyond->formulation;
   c.neglected = summary.validity.neglected;
   c.estimate = std::move(evidence.estimate);
+  c.without_estimate = std::move(evidence.without_estimate);
   c.steps = step_limit(prepared, summary, registry);
   c.indicators = indicators(scene, summary, last != nullptr ? std::optional(last->terms) : std::nullopt);
   add_rounding(c);

@@ -8,15 +8,10 @@
 
 #include "withy/study/error_estimate.hpp"
 #include "withy/study/indicators.hpp"
+#include "withy/study/rung_plan.hpp"
 #include "withy/study/step_limit.hpp"
 
 namespace withy::study {
-
-/// A stretch of a run of formulation `auto`, with the name of what it was in.
-struct NamedStretch {
-  std::string formulation;
-  Stretch stretch;
-};
 
 /// A body in a formulation of its own.
 struct OwnFormulation {
@@ -33,22 +28,23 @@ struct BodyFamilies {
 };
 
 struct Certificate {
-  std::string formulation;                ///< of the scene
-  std::string meaning;                    ///< the formulation in a sentence
-  std::vector<OwnFormulation> own;        ///< bodies whose formulation is another; the scene's does not hold for them
-  std::vector<NamedStretch> stretches;    ///< of formulation `auto`; else empty
-  std::size_t discarded_evaluations = 0;  ///< the same
-  std::vector<std::string> compiled;      ///< what the compiled equations save
-  double energy_drift = 0;                ///< RunSummary::energy_drift
-  double untruncated_drift = 0;           ///< RunSummary::untruncated_drift
-  MomentumDrift momentum;                 ///< RunSummary::momentum
-  std::vector<BodyFamilies> families;     ///< of every body that has modes
-  std::optional<double> rounding;    ///< relative error that rounding leaves the final accelerations; none: no digit
-  std::size_t samples = 0;           ///< of validity
-  std::vector<BodyValidity> bodies;  ///< of every flexible body
-  std::string against;               ///< formulation that accelerations were compared with; empty: none
-  NeglectedAcceleration neglected;   ///< no samples where there was nothing to compare with
+  std::string formulation;             ///< of the scene
+  std::string meaning;                 ///< the formulation in a sentence
+  std::vector<OwnFormulation> own;     ///< bodies whose formulation is another; the scene's does not hold for them
+  std::optional<RungPlan> plan;        ///< of formulation `auto`, as far as the run went
+  std::vector<std::string> rungs;      ///< its formulations
+  std::vector<std::string> compiled;   ///< what the compiled equations save
+  double energy_drift = 0;             ///< RunSummary::energy_drift
+  double untruncated_drift = 0;        ///< RunSummary::untruncated_drift
+  MomentumDrift momentum;              ///< RunSummary::momentum
+  std::vector<BodyFamilies> families;  ///< of every body that has modes
+  std::optional<double> rounding;      ///< relative error that rounding leaves the final accelerations; none: no digit
+  std::size_t samples = 0;             ///< of validity
+  std::vector<BodyValidity> bodies;    ///< of every flexible body
+  std::string against;                 ///< formulation that accelerations were compared with; empty: none
+  NeglectedAcceleration neglected;     ///< no samples where there was nothing to compare with
   std::optional<ErrorEstimate> estimate;  ///< none where there is no model up, or it was not asked for
+  std::string without_estimate;           ///< why there is none, and what is known without one
   StepLimit steps;
   std::vector<Indicator> indicators;  ///< the one that binds first
 };
@@ -56,9 +52,10 @@ struct Certificate {
 /// What a run leaves for its certificate.
 struct Evidence {
   const RunSummary* summary = nullptr;
-  const Beyond* beyond = nullptr;           ///< null: nothing to compare with
-  const EscalatedRun* escalated = nullptr;  ///< of formulation `auto`
+  const Beyond* beyond = nullptr;  ///< null: nothing to compare with
+  std::optional<RungPlan> plan;    ///< of formulation `auto`
   std::optional<ErrorEstimate> estimate;
+  std::string without_estimate = {};  ///< why there is none
 };
 Certificate certify(const Prepared& prepared, Evidence evidence, Registry& registry);
 

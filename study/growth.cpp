@@ -27,7 +27,8 @@ std::string physical_cause(const Prepared& prepared, const RunSummary& summary) 
   std::string text;
   for (const BodyValidity& b : summary.validity.bodies) {
     const auto index = static_cast<std::size_t>(model.body(b.name));
-    const double rate = std::max(b.rate_ratio, motion.bodies()[index].rate.norm() / b.fundamental);
+    const double rate =
+        std::max(b.rate_ratio, b.fundamental > 0 ? motion.bodies()[index].rate.norm() / b.fundamental : 0.0);
     const double buckling = std::max(b.buckling, -MotionStiffness(model, index).evaluate(motion.bodies()).least);
     if (rate >= 1)
       text += fmt::format(

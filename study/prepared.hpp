@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "withy/core/plugin/equations.hpp"
-#include "withy/core/simulation/escalation.hpp"
+#include "withy/core/simulation/changing_equations.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/scene/scene.hpp"
 
@@ -19,8 +19,9 @@ struct Prepared {
   SceneValues values;  ///< that the scene was made of
   Scene scene;
   std::shared_ptr<const EquationsOfMotion> equations;
-  /// Of the formulation `auto`, which a run chooses and changes: `ruthless`, `quadratic` and, where every flexible body
-  /// offers it, `exact`; else empty. Where nothing runs, `auto` is `quadratic`.
+  /// Of the formulation `auto`, which a run chooses and changes: those that studies take, by their ranks, but for the
+  /// strict ones, whose mass matrix can become singular, and those that not every flexible body offers; else empty.
+  /// Where nothing runs, `auto` is `quadratic`.
   std::vector<Rung> rungs;
   std::vector<std::shared_ptr<const EquationsOfMotion>> rung_equations;
 

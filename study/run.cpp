@@ -6,8 +6,9 @@
 #include <chrono>
 
 #include "withy/core/simulation/instants.hpp"
+#include "withy/study/accuracy.hpp"
 #include "withy/study/growth.hpp"
-#include "withy/study/input_error.hpp"
+#include "withy/study/rung_plan.hpp"
 
 namespace withy::study {
 namespace {
@@ -41,28 +42,14 @@ class Timer {
   int asked_ = 0, enough_ = 1;
 };
 
-/// The run of formulation `auto`.
-EscalatedRun run_escalating(const Prepared& prepared, const RunSettings& settings) {
-  const Scene& scene = prepared.scene;
-  for (const LoadNode& load : scene.model->loads())
-    if (load.load->discrete() != nullptr && load.load->input() == nullptr)
-      throw InputError(scene.file + ": /formulation: got 'auto', which changes the equations along a run; load '" +
-                       load.name + "' has discrete states, which do not go over: name a formulation");
-  if (settings.checkpoint_seconds > 0 || settings.resume != nullptr)
-    throw InputError(scene.file + ": /formulation: a run of 'auto' keeps no checkpoints; name a formulation");
-  const RunOptions options = options_of(prepared, settings.control);
-  return simulate_escalating(*scene.model, prepared.rungs, *scene.integrator, scene.initial, options,
-                             [&](const State& state, std::size_t rung) {
-                               settings.control.tell(state.time, options.end);
-                               if (settings.output) settings.output(state, rung);
-                             });
-}
-
-/// The run of any other formulation.
-RunSummary run_plainly(const Prepared& prepared, const RunSettings& settings, const EquationsOfMotion* beyond) {
+/// The run of some equations, which may change.
+RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, const EquationsOfMotion& equations,
+                         ChangingEquations* changing, const EquationsOfMotion* beyond,
+                         const std::function<void(const State&)>& output) {
   const Scene& scene = prepared.scene;
   RunOptions options = options_of(prepared, settings.control);
   options.beyond = beyond;
+  options.changing = changing;
   Timer timer(settings.checkpoint_seconds);
   if (settings.checkpoint)
     options.checkpoint = [&](const Checkpoint& checkpoint) {
@@ -72,20 +59,90 @@ RunSummary run_plainly(const Prepared& prepared, const RunSettings& settings, co
   options.resume = settings.resume;
   options.seen = settings.seen;
   if (settings.checkpoint_seconds > 0) options.checkpoint_due = [&] { return timer.due(); };
-  return withy::simulate(*scene.model, *prepared.equations, *scene.integrator, scene.initial, options,
-                         [&](const State& state) {
-                           settings.control.tell(state.time, options.end);
-                           if (settings.output) settings.output(state, 0);
-                         });
+  return withy::simulate(*scene.model, equations, *scene.integrator, scene.initial, options, [&](const State& state) {
+    settings.control.tell(state.time, options.end);
+    output(state);
+    if (settings.output) settings.output(state, changing != nullptr ? changing->rung() : 0);
+  });
 }
 
-/// What the last stretch of a run of `auto` may be compared with.
-std::optional<Beyond> beyond_last(const Prepared& prepared, const EscalatedRun& run, Registry& registry) {
-  const std::size_t last = run.stretches.back().rung;
-  if (last + 1 >= prepared.rungs.size() || !flexible(prepared.model())) return {};
-  Beyond beyond = compile_throughout(prepared, registry, prepared.rungs[last + 1].name);
-  beyond.highest = !next_rung(registry, beyond.formulation);
-  return beyond;
+/// How far the run is from the coarse one that its formulations were chosen by.
+class Agreement {
+ public:
+  Agreement(const Prepared& prepared, const ChangingEquations& equations, const RungPlan& plan)
+      : plan_(plan), equations_(equations) {
+    if (plan.readings.empty()) return;
+    outputs_.emplace(prepared.model());
+    for (const Rung& rung : prepared.rungs)
+      readers_.push_back(std::make_unique<OutputReader>(*outputs_, prepared.model(), *rung.equations));
+    apart_ = outputs_->none();
+  }
+  void look(const State& state) {
+    for (; next_ < plan_.readings.size() && plan_.readings[next_].time <= state.time; ++next_)
+      if (plan_.readings[next_].time == state.time)
+        outputs_->raise(readers_[equations_.rung()]->read(state), plan_.readings[next_].values, apart_);
+  }
+  /// Where the motion itself is another, so are its errors.
+  [[nodiscard]] std::string text() const {
+    constexpr double another = 0.3;
+    const double apart = outputs_ ? relative_error(apart_, plan_.scales) : 0;
+    if (!(apart > another)) return {};
+    return fmt::format(
+        "The coarse run that its error is estimated by is {:.2g} % of an output's range off: the motion "
+        "is sensitive, and the error is not known.",
+        100 * apart);
+  }
+
+ private:
+  const RungPlan& plan_;
+  const ChangingEquations& equations_;
+  std::optional<Outputs> outputs_;
+  std::vector<std::unique_ptr<OutputReader>> readers_;
+  std::size_t next_ = 0;
+  Distances apart_;
+};
+
+/// The run of formulation `auto`, by its plan.
+RunSummary run_planned(const Prepared& prepared, const RunSettings& settings, RungPlan& plan) {
+  std::vector<Stretch> stretches;
+  for (const PlannedStretch& s : plan.stretches) stretches.push_back(s.stretch);
+  ChangingEquations equations(prepared.rungs, std::move(stretches));
+  Agreement agreement(prepared, equations, plan);
+  RunSummary summary = run_equations(prepared, settings, equations, &equations, nullptr,
+                                     [&](const State& state) { agreement.look(state); });
+  plan.run_evaluations = equations.evaluations();
+  if (summary.status != RunStatus::completed) return summary;
+  std::string problem = plan.problem;
+  if (const std::string text = agreement.text(); !text.empty()) problem += (problem.empty() ? "" : " ") + text;
+  if (problem.empty()) return summary;
+  summary.status = RunStatus::inaccurate;
+  summary.message = problem + (summary.message.empty() ? "" : " ") + summary.message;
+  return summary;
+}
+
+RunSummary run_plainly(const Prepared& prepared, const RunSettings& settings, const EquationsOfMotion* beyond) {
+  return run_equations(prepared, settings, *prepared.equations, nullptr, beyond, [](const State&) {});
+}
+
+/// Where there is no estimate: why, and what is known without one.
+std::string without_estimate(const Prepared& prepared, const RunSummary& summary, const std::optional<Beyond>& beyond,
+                             const RunSettings& settings) {
+  if (!flexible(prepared.model())) return "no body is flexible: all formulations are the same";
+  if (summary.status == RunStatus::interrupted) return "not estimated: the run was interrupted";
+  if (has_switches(prepared.model()) && beyond)
+    return "not estimated: loads switch at the zeros of functions, and two formulations have no common steps";
+  if (prepared.scene.formulation->terms().strain == StrainOrder::exact && !beyond)
+    return "nothing is left out: kinematics is exact and nothing is truncated";
+  if (beyond && !beyond->highest) return "not estimated: it was not asked for";
+  // (deflection over length)² of the range: what second-order kinematics was measured to be off by.
+  double deflection = 0;
+  for (const auto& [body, ratio] : summary.peak_deflection_ratio) deflection = std::max(deflection, ratio);
+  const std::string third = fmt::format(
+      "terms of third order in the deflection are left out, about {:.2g} % of it where it is {:.2g} of a body's length",
+      100 * deflection * deflection, deflection);
+  if (!beyond) return third + "; not estimated: no body offers more";
+  return third +
+         (settings.estimate == Estimate::never ? "" : "; `--estimate always` compares with " + beyond->formulation);
 }
 
 bool wanted(Estimate estimate, const Beyond& beyond) {
@@ -96,28 +153,29 @@ bool wanted(Estimate estimate, const Beyond& beyond) {
 
 CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings) {
   CertifiedRun result;
-  std::optional<Beyond> beyond;
-  std::optional<EscalatedRun> escalated;
-  const EquationsOfMotion* used = prepared.equations.get();
   if (prepared.escalates()) {
-    escalated = run_escalating(prepared, settings);
-    result.summary = escalated->summary;
-    if (settings.look_beyond) beyond = beyond_last(prepared, *escalated, registry);
-    // A run that changed its formulation on the way has no estimate.
-    const Stretch& last = escalated->stretches.back();
-    used = last.start > prepared.scene.initial.time ? nullptr : prepared.rungs[last.rung].equations;
-  } else {
-    if (settings.look_beyond) beyond = next_model_up(prepared, registry);
-    result.summary = run_plainly(prepared, settings, beyond ? beyond->equations.get() : nullptr);
+    RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
+    result.summary = run_planned(prepared, settings, plan);
+    // What is inaccurate here is the choice, and nothing grows.
+    if (result.summary.status != RunStatus::inaccurate) result.summary.message += growth_text(prepared, result.summary);
+    std::optional<ErrorEstimate> estimate = plan.estimate;
+    if (estimate) estimate->end = result.summary.final.time;
+    result.certificate = certify(prepared, {&result.summary, nullptr, std::move(plan), std::move(estimate)}, registry);
+    return result;
   }
+  std::optional<Beyond> beyond;
+  if (settings.look_beyond) beyond = next_model_up(prepared, registry);
+  result.summary = run_plainly(prepared, settings, beyond ? beyond->equations.get() : nullptr);
   result.summary.message += growth_text(prepared, result.summary);
   std::optional<ErrorEstimate> estimate;
-  if (beyond && used != nullptr && wanted(settings.estimate, *beyond) && !has_switches(prepared.model()) &&
+  if (beyond && wanted(settings.estimate, *beyond) && !has_switches(prepared.model()) &&
       result.summary.status != RunStatus::interrupted)
-    estimate = estimate_error(prepared.scene, *used, *beyond, result.summary, registry, settings.control.interrupted);
+    estimate = estimate_error(prepared.scene, *prepared.equations, *beyond, result.summary, registry,
+                              settings.control.interrupted);
+  std::string why_not =
+      estimate || !settings.look_beyond ? std::string() : without_estimate(prepared, result.summary, beyond, settings);
   result.certificate = certify(
-      prepared, {&result.summary, beyond ? &*beyond : nullptr, escalated ? &*escalated : nullptr, std::move(estimate)},
-      registry);
+      prepared, {&result.summary, beyond ? &*beyond : nullptr, {}, std::move(estimate), std::move(why_not)}, registry);
   return result;
 }
 
@@ -126,13 +184,17 @@ std::string outcome_text(const RunSummary& summary) {
   return fmt::format("{} at {:.4g} s", name(summary.status), summary.reached);
 }
 
-RunSummary simulate(const Prepared& prepared, const std::function<void(const State&)>& output, const Control& control) {
+RunSummary simulate(const Prepared& prepared, Registry& registry, const std::function<void(const State&)>& output,
+                    const Control& control) {
   RunSettings settings;
   settings.control = control;
   settings.output = [&](const State& state, std::size_t) {
     if (output) output(state);
   };
-  if (prepared.escalates()) return run_escalating(prepared, settings).summary;
+  if (prepared.escalates()) {
+    RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
+    return run_planned(prepared, settings, plan);
+  }
   return run_plainly(prepared, settings, nullptr);
 }
 

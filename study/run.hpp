@@ -37,16 +37,16 @@ struct CertifiedRun {
 };
 
 /// Simulates from the scene's initial state to its end, measures what is left out on the way, and estimates its effect
-/// afterwards.
-/// \throws InputError where `auto` meets a load with discrete states, or is to be saved or resumed; SceneError where
-/// the scene has no end.
+/// afterwards. Of `auto` the error is estimated and its formulations are chosen before; a run that comes to the end and
+/// does not hold the accuracy asked, or cannot know it, is inaccurate.
+/// \throws SceneError where the scene has no end.
 CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings = {});
 
 /// "completed", or "diverged at 0.0523 s".
 std::string outcome_text(const RunSummary& summary);
 
 /// The run alone, with no more than its outputs.
-RunSummary simulate(const Prepared& prepared, const std::function<void(const State&)>& output,
+RunSummary simulate(const Prepared& prepared, Registry& registry, const std::function<void(const State&)>& output,
                     const Control& control = {});
 
 }  // namespace withy::study

@@ -68,7 +68,7 @@ Group group_at(const CompareArguments& arguments, const Plugins& plugins, const 
   if (!path.empty()) values.set_text(path + '=' + value);
   const auto simulator = [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
     const std::string& formulation = prepared.scene.formulation_name;
-    if (group.folder.empty()) return study::simulate(prepared, output, run_control(formulation));
+    if (group.folder.empty()) return study::simulate(prepared, registry, output, run_control(formulation));
     study::RunSettings settings;
     settings.look_beyond = false;
     settings.control = run_control(formulation);

@@ -75,17 +75,12 @@ RecordedRun recorded(const Engine& engine, const RunArguments& arguments) {
   study::RunSettings settings;
   settings.estimate = estimate_of(arguments.estimate);
   settings.control = run_control(engine.scene().formulation_name);
-  if (!engine.prepared().escalates()) return lasting_run(engine, arguments, provenance, settings);
-  const auto taken = take_folder(arguments, "run", provenance, run_content());
-  return record_run(arguments.out, engine.prepared(), engine.registry(), provenance, settings, {arguments.hdf5});
+  return lasting_run(engine, arguments, provenance, settings);
 }
 
 ExitStatus run(const RunArguments& given) {
   RunArguments arguments = given;
   const Engine engine(arguments);
-  if (engine.prepared().escalates() && (arguments.resume || arguments.checkpoint))
-    throw InputError(std::string(arguments.resume ? "--resume" : "--checkpoint") +
-                     ": a run of formulation 'auto' keeps no checkpoints; leave it out, or name a formulation");
   check_accuracy(engine);
   if (arguments.hdf5 && !hdf5_missing().empty()) {
     complain("--hdf5: " + hdf5_missing());
@@ -100,8 +95,7 @@ ExitStatus run(const RunArguments& given) {
                   "\nresults in " + arguments.out +
                   (has_report_page() ? ", to look at in its report.html\n" : ", drawn in its results.svg\n"));
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
-  if (summary.status == RunStatus::interrupted && !engine.prepared().escalates())
-    complain("the same command with --resume goes on from there");
+  if (summary.status == RunStatus::interrupted) complain("the same command with --resume goes on from there");
   return exit_status(summary.status);
 }
 

@@ -72,7 +72,8 @@ ExitStatus terms(const TermsArguments& arguments) {
       take_folder(arguments, "terms", provenance_of(scene, engine.plugins()), {"terms.csv", "terms.svg", "terms.json"});
   study::TermStudy study(engine.prepared(), engine.registry());
   const RunSummary summary = study::simulate(
-      engine.prepared(), [&](const State& state) { study.enter(state); }, run_control(scene.formulation_name));
+      engine.prepared(), engine.registry(), [&](const State& state) { study.enter(state); },
+      run_control(scene.formulation_name));
   const study::TermSizes& sizes = study.sizes();
   const nlohmann::ordered_json j = terms_json(scene, summary, sizes);
   const std::string title = engine.prepared().title();

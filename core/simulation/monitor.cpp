@@ -172,6 +172,20 @@ void Monitor::use_own_energy(const State& initial) {
   initial_energy_ = kinetic(initial, initial_energies_) + initial_energies_.potential;
 }
 
+void Monitor::rebase_energy(const State& state, const std::function<void()>& change) {
+  audit_energy(state);
+  const auto energy = [&] {
+    seen_.observe(state.y);
+    const Energies e = seen_.energies();
+    return e.kinetic + e.potential;
+  };
+  const double before = energy();
+  change();
+  const double jump = energy() - before;
+  initial_energy_ += jump;
+  initial_energies_.potential += jump;
+}
+
 void Monitor::audit_momenta(const Energies& e) {
   const auto apart = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -272,6 +286,8 @@ void Monitor::remember(Memory& memory) {
   memory(summary_.suspected_jumps);
   memory(last_.time);
   memory(last_.y);
+  memory(initial_energy_);
+  memory(initial_energies_.potential);
   memory(energy_error_);
   memory(energy_scale_);
   memory(summary_.untruncated_drift);

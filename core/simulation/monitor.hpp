@@ -33,6 +33,8 @@ class Monitor {
   [[nodiscard]] const std::string& excess() const { return excess_; }
   /// Energy against the work done. A state where they balance is to be trusted.
   void audit_energy(const State& state);
+  /// The equations change at a state, by `change`: what energy does there is no error of theirs.
+  void rebase_energy(const State& state, const std::function<void()>& change);
   /// The kinetic energy is that of the equations' mass matrix (RunOptions::own_energy).
   void use_own_energy(const State& initial);
   /// To be called at the end: what the loads have done on the way decides whether momenta are conserved.

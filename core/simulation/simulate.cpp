@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "withy/core/simulation/changing_equations.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/monitor.hpp"
 #include "withy/core/simulation/run_times.hpp"
@@ -24,7 +25,9 @@ class Run final : public SteppingObserver {
         options_(options),
         output_(output),
         summary_(summary),
-        loop_(model, integrator.start(equations, begun(model, initial)), {options.end, options.output, options.events}),
+        hand_overs_(options.changing != nullptr ? options.changing->hand_overs() : std::vector<double>()),
+        loop_(model, integrator.start(equations, begun(model, initial)),
+              {options.end, options.output, options.events, hand_overs_}),
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
                  summary),
         validity_(model, equations, options.beyond, summary.validity) {
@@ -35,12 +38,11 @@ class Run final : public SteppingObserver {
       return;
     }
     monitor_.begin_efforts(loop_.state());
-    if (!output_at(loop_.state())) return;
+    output_at(loop_.state());
     validity_.observe(loop_.state(), 0);
   }
 
   Stop to_end() {
-    if (left_) return stop_;
     const SteppingEnd end = loop_.run(*this);
     if (end.cause == SteppingEnd::Cause::stopped) return stop_;
     return stop_of(end, model_, equations_, loop_.state(), loop_.stepper().statistics());
@@ -49,7 +51,7 @@ class Run final : public SteppingObserver {
   /// The last state is an output, however the run ended.
   void finish(RunStatus status) {
     const State& state = loop_.state();
-    if (state.time > emitted_ && !left_) {
+    if (state.time > emitted_) {
       output_at(state);
     } else {
       monitor_.show(state);
@@ -77,7 +79,14 @@ class Run final : public SteppingObserver {
     }
     return stop_.status == RunStatus::completed;
   }
-  bool output(const State& state) override { return output_at(state); }
+  bool output(const State& state) override {
+    output_at(state);
+    return true;
+  }
+  void landed(const State& state) override {
+    if (!std::binary_search(hand_overs_.begin(), hand_overs_.end(), state.time)) return;
+    monitor_.rebase_energy(state, [&] { options_.changing->go_over(state.time); });
+  }
   bool after_step(const Stepper& stepper, bool /*outputs*/) override {
     const State& state = stepper.state();
     monitor_.audit_steps(state, stepper.statistics());
@@ -116,17 +125,10 @@ class Run final : public SteppingObserver {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   }
 
-  /// False where the caller does not accept the state: the run ends before it.
-  bool output_at(const State& state) {
-    if (options_.accept && !options_.accept(state)) {
-      left_ = true;
-      stop_ = {RunStatus::interrupted, "stopped by its caller", false};
-      return false;
-    }
+  void output_at(const State& state) {
     monitor_.show(state);
     emitted_ = state.time;
     if (output_) output_(state);
-    return true;
   }
 
   void save() {
@@ -135,6 +137,7 @@ class Run final : public SteppingObserver {
     options_.checkpoint({loop_.state(), loop_.stepper().memory(), memory.numbers()});
   }
   void restore(const Checkpoint& checkpoint) {
+    if (options_.changing != nullptr) options_.changing->go_over(checkpoint.state.time);
     loop_.resume(checkpoint.state, checkpoint.stepper);
     Memory memory(checkpoint.watches);
     remember(memory);
@@ -164,11 +167,11 @@ class Run final : public SteppingObserver {
   const RunOptions& options_;
   const std::function<void(const State&)>& output_;
   RunSummary& summary_;
+  std::vector<double> hand_overs_;  ///< increasing
   Stepping loop_;
   Monitor monitor_;
   ValidityWatch validity_;
   double emitted_ = 0;  ///< time of the last output
-  bool left_ = false;   ///< an output was not accepted
   Stop stop_;           ///< why this observer has ended the stepping
   std::vector<std::string> stopped_by_;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
@@ -249,6 +252,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   if (!(options.output > 0)) throw std::invalid_argument("the output interval is not positive");
   const double began = thread_cpu_seconds();
   RunSummary summary;
+  if (options.changing != nullptr) options.changing->go_over(initial.time);
   Run run(model, equations, integrator, initial, options, output, summary);
   Stop stop = run.to_end();
   run.finish(stop.status);

@@ -19,6 +19,8 @@
 
 namespace withy {
 
+class ChangingEquations;
+
 /// How a run ended.
 enum class RunStatus {
   completed,
@@ -58,9 +60,8 @@ struct RunOptions {
   std::function<bool()> checkpoint_due;               ///< asked between steps: whether `checkpoint` is to be called
   std::function<void(const Checkpoint&)> checkpoint;  ///< called then and when the run is interrupted
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: begin at the initial state
-  /// Asked of each output before anything is made of it. Where it answers false the run ends, as interrupted, and that
-  /// output is not given.
-  std::function<bool(const State&)> accept;
+  /// Equations that change along the run, the ones it is made with: they go over at their own times. Null: they stay.
+  ChangingEquations* changing = nullptr;
   /// Of these equations: brought to the state of each output before it is given, so that a row of results costs no
   /// second pass. Null: the run uses its own.
   Observation* seen = nullptr;

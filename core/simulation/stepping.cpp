@@ -16,6 +16,9 @@ Stepping::Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const S
       end_(options.end),
       sample_(stepper_->state()) {
   clocks_.go_on_after(state().time);
+  jumps_.insert(jumps_.end(), options.hand_overs.begin(), options.hand_overs.end());
+  std::sort(jumps_.begin(), jumps_.end());
+  jumps_.erase(std::unique(jumps_.begin(), jumps_.end()), jumps_.end());
 }
 
 SteppingEnd Stepping::run(SteppingObserver& observer) {
@@ -30,6 +33,7 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
       if (state().time >= clocks_.next()) renew_clocks();
     }
     if (!jumps) continue;
+    observer_->landed(state());
     stepper_->restart();
     observer_->restarted();
   }

@@ -46,6 +46,8 @@ class SteppingObserver {
   virtual void passed(const EventTime& /*event*/) {}
   /// A load has switched at the zero of a function of its own.
   virtual void switched() {}
+  /// At the time of a discontinuity of loads or of SteppingOptions::hand_overs, before the stepper begins anew.
+  virtual void landed(const State& /*state*/) {}
   /// Discrete states of loads have been renewed or have switched: what follows is not smooth with what was before.
   virtual void jumped() {}
   /// A load or a motion jumps at the present time, as it has declared.
@@ -55,9 +57,10 @@ class SteppingObserver {
 };
 
 struct SteppingOptions {
-  double end = 0;                         ///< [s]
-  double output = 0.01;                   ///< interval of outputs [s]; they fall on its multiples
-  std::span<const RunEvent> events = {};  ///< looked for on the dense output
+  double end = 0;                           ///< [s]
+  double output = 0.01;                     ///< interval of outputs [s]; they fall on its multiples
+  std::span<const RunEvent> events = {};    ///< looked for on the dense output
+  std::span<const double> hand_overs = {};  ///< times [s] at which the equations change; increasing
 };
 
 /// One integration under way.

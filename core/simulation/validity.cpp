@@ -9,7 +9,7 @@ namespace withy {
 namespace {
 
 // Measured (docs/validity.md): what a sample costs in evaluations of `ruthless`, the cheapest to be watched.
-constexpr std::size_t motion_cost = 20;
+constexpr std::size_t motion_cost = 22;
 constexpr std::size_t comparison_cost = 20;
 constexpr std::size_t samples_per_cost = 50;  ///< 2 %
 // Short runs are sampled more often, at intervals that grow with the run: a dozen samples by 1000 evaluations.
@@ -24,6 +24,7 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       beyond_(beyond),
       validity_(validity),
       motion_(model),
+      frequency_(model, equations),
       work_(equations.make_work()),
       beyond_work_(beyond != nullptr ? beyond->make_work() : Work(0)),
       rates_(equations.size()),
@@ -35,9 +36,7 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
     const BodyNode& node = model.bodies()[b];
     const ModalShape& shape = node.body->shape();
     if (shape.modes() == 0) continue;
-    const ElasticModes modes = elastic_modes(shape);
     BodyValidity v{.name = node.name, .load = {}, .highest = {}};
-    if (modes.frequencies.size() > 0) v.fundamental = modes.frequencies[0];
     Watched w{b, model.layout().modes(b), MotionStiffness(model, b), {}};
     for (const ModeGroup& group : mode_groups(shape)) {
       const ElasticModes own = elastic_modes(shape, group.coordinates);
@@ -63,12 +62,14 @@ void ValidityWatch::sample(const State& state, std::size_t evaluations) {
   ++validity_.samples;
   const Layout& layout = model_.layout();
   motion_.update(state.y, std::span<const double>(rates_).subspan(layout.positions, layout.speeds));
+  if (!bodies_.empty()) frequency_.update(state.y);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Watched& w = bodies_[i];
     BodyValidity& v = validity_.bodies[i];
-    if (v.fundamental > 0) {
-      const double ratio = motion_.bodies()[w.body].rate.norm() / v.fundamental;
-      if (ratio > v.rate_ratio) {
+    if (const double fundamental = frequency_.of(w.body); fundamental > 0) {
+      const double ratio = motion_.bodies()[w.body].rate.norm() / fundamental;
+      if (ratio > v.rate_ratio || !(v.fundamental > 0)) {
+        v.fundamental = fundamental;
         v.rate_ratio = ratio;
         v.rate_time = state.time;
       }
@@ -125,6 +126,7 @@ void ValidityWatch::compare_accelerations(const State& state) {
 
 void ValidityWatch::remember(Memory& memory) {
   for (BodyValidity& v : validity_.bodies) {
+    memory(v.fundamental);
     memory(v.rate_ratio);
     memory(v.rate_time);
     memory(v.load.least);
@@ -139,6 +141,7 @@ void ValidityWatch::remember(Memory& memory) {
       memory(family.energy);
     }
   }
+  frequency_.remember(memory);
   memory(validity_.samples);
   memory(validity_.neglected.samples);
   memory(squares_);

@@ -8,6 +8,7 @@
 
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/memory.hpp"
+#include "withy/core/simulation/carried_frequency.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
 
 namespace withy {
@@ -23,12 +24,14 @@ struct HighestMode {
 /// Extremes of one flexible body over the samples of a run.
 struct BodyValidity {
   std::string name;
-  double fundamental = 0;  ///< ω₁ of K and the body's own modal mass, its frame held [rad/s]
-  double rate_ratio = 0;   ///< greatest |ω| of the body's frame over ω₁
-  double rate_time = 0;    ///< when [s]
-  LoadRatio load;          ///< where its size is greatest
-  double load_time = 0;    ///< when [s]
-  double buckling = 0;     ///< greatest compressive load over the buckling load, ≥ 0
+  /// ω₁ of the structure that the body is part of, as it is carried and loaded: with what hangs on it, hinges held, at
+  /// rate_time [rad/s].
+  double fundamental = 0;
+  double rate_ratio = 0;  ///< greatest |ω| of the body's frame over ω₁
+  double rate_time = 0;   ///< when [s]
+  LoadRatio load;         ///< where its size is greatest
+  double load_time = 0;   ///< when [s]
+  double buckling = 0;    ///< greatest compressive load over the buckling load, ≥ 0
   std::vector<HighestMode> highest;
 };
 
@@ -87,6 +90,7 @@ class ValidityWatch {
   Validity& validity_;
   TreeMotion motion_;
   std::vector<Watched> bodies_;
+  CarriedFrequency frequency_;
   Work work_, beyond_work_;
   std::vector<double> rates_, beyond_rates_, difference_, product_;
   double squares_ = 0, neglected_squares_ = 0, greatest_ = 0, neglected_greatest_ = 0;

@@ -1,15 +1,23 @@
 /// \file
-/// The formulation that a run chooses and changes as its motion asks (core/simulation/escalation.hpp). Where nothing
-/// runs it is `quadratic`, which holds wherever the ladder begins.
+/// The formulation that a run chooses and changes as the accuracy asked of its outputs needs (study/rung_plan.hpp).
+/// Where nothing runs it is `quadratic`.
 #include "formulation_plugin.hpp"
 
 namespace withy {
 
 void enroll_automatic(Enrollment& enrollment) {
-  enroll_terms<StrainOrder::quadratic, Truncation::none, InStudies::aside>(
-      enrollment, "auto",
-      "The least of ruthless, quadratic and exact whose validity holds, changed along a run where it does not; "
-      "quadratic where nothing runs");
+  enrollment.add<Formulation>(
+      {.id = "auto",
+       .summary = "The cheapest formulations that together hold an accuracy, changed along a run and estimated against "
+                  "the highest; quadratic where nothing runs",
+       .parameters = {number("accuracy", "1",
+                             "greatest error of each output that formulations may make, of its own range")
+                          .above(0)
+                          .most(1)
+                          .otherwise(0.01)},
+       .make = [](const Value& /*parameters*/, const MakeContext& /*context*/) -> std::unique_ptr<Formulation> {
+         return std::make_unique<SweptFormulation>(Terms{}, InStudies::aside);
+       }});
 }
 
 }  // namespace withy

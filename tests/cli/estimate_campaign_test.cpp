@@ -51,7 +51,7 @@ Claims claims_of(unsigned seed, const std::string& scene) {
         prepare(SceneValues::read(scene).choose_formulation(formulation, "the campaign"), plugins());
     const std::optional<Beyond> beyond = next_model_up(prepared, plugins());
     if (!beyond) continue;
-    const RunSummary summary = simulate(prepared, {});
+    const RunSummary summary = simulate(prepared, plugins(), {});
     const ErrorEstimate e = estimate_error(prepared.scene, *prepared.equations, *beyond, summary, plugins(), {});
     if (!(e.distances.until > prepared.scene.initial.time)) continue;
     const std::vector<State> used = exact_outputs(prepared, *prepared.equations, e.distances.until);

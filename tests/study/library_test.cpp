@@ -37,7 +37,7 @@ TEST(StudyRun, OfAVariedSceneHasACertificateWithItsError) {
   ASSERT_TRUE(result.certificate.estimate);
   // Against the difference of two runs.
   const Comparison c = compare(short_slew(1.2), plugins(), {"ruthless"}, "quadratic",
-                               [](const Prepared& p, const auto& output) { return simulate(p, output); });
+                               [](const Prepared& p, const auto& output) { return simulate(p, plugins(), output); });
   const double truth = c.distances(c.runs[0]).tips.at("payload.tip");
   EXPECT_NEAR(result.certificate.estimate->distances.tips.at("payload.tip"), truth, 0.2 * truth);
 }
@@ -45,7 +45,7 @@ TEST(StudyRun, OfAVariedSceneHasACertificateWithItsError) {
 TEST(StudyRun, OutputsDoNotDependOnWhatIsMeasuredBeside) {
   const Prepared prepared = prepare(short_slew(), plugins());
   std::vector<State> alone, beside;
-  simulate(prepared, [&](const State& s) { alone.push_back(s); });
+  simulate(prepared, plugins(), [&](const State& s) { alone.push_back(s); });
   RunSettings settings;
   settings.estimate = Estimate::always;
   settings.output = [&](const State& s, std::size_t) { beside.push_back(s); };

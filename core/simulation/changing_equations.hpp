@@ -1,0 +1,115 @@
+/// \file
+/// Equations of one model that change their formulation along a run. Coordinates are the same in all formulations, so
+/// that the state goes over as it is.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/terms.hpp"
+
+namespace withy {
+
+/// A formulation that a run may be in; each keeps more than the one before it.
+struct Rung {
+  std::string name;
+  Terms terms;
+  const EquationsOfMotion* equations = nullptr;
+};
+
+/// A part of a run in one formulation.
+struct Stretch {
+  std::size_t rung = 0;
+  double start = 0, end = 0;  ///< [s]
+};
+
+/// The equations of the rung that is in force, under one face: a run goes on over a change with its integrator, its
+/// watches and its checkpoints. `go_over` chooses the rung: of one thread, but for what a Work is of.
+class ChangingEquations final : public EquationsOfMotion, private LinearlyImplicit, private Linearization {
+ public:
+  /// \param rungs of one model; they must outlive it. \param stretches adjoin each other; at least one
+  ChangingEquations(const std::vector<Rung>& rungs, std::vector<Stretch> stretches);
+
+  /// Goes to the stretch that begins at the time [s] or has it inside.
+  void go_over(double time);
+  /// Index of the rung in force.
+  [[nodiscard]] std::size_t rung() const { return rung_; }
+  /// Made in each rung, those of the run's watches among them.
+  [[nodiscard]] const std::vector<std::size_t>& evaluations() const { return evaluations_; }
+  /// Times [s] at which the rung changes, increasing.
+  [[nodiscard]] std::vector<double> hand_overs() const;
+
+  [[nodiscard]] const Layout& layout() const override { return now().layout(); }
+  [[nodiscard]] Work make_work() const override;
+  Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
+                         Work& work) const noexcept override {
+    ++evaluations_[rung_];
+    return now().derivatives(t, y, y_dot, work);
+  }
+  void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
+                    Work& work) const noexcept override {
+    now().load_efforts(t, y, load, efforts, work);
+  }
+  Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
+                            Work& work) const noexcept override {
+    return now().motion_efforts(t, y, efforts, work);
+  }
+  void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
+                        Work& work) const override {
+    now().inverse_dynamics(y, u_dot, efforts, work);
+  }
+  void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> product,
+                  Work& work) const override {
+    now().mass_times(y, a, product, work);
+  }
+  /// Null where a rung that takes part has no way to.
+  [[nodiscard]] const LinearlyImplicit* linearly_implicit() const override;
+  [[nodiscard]] const Linearization* linearization() const override;
+  Evaluation position_rates(double t, std::span<const double> y, std::span<double> y_dot,
+                            Work& work) const noexcept override {
+    return now().position_rates(t, y, y_dot, work);
+  }
+  void normalize(std::span<double> y) const noexcept override { now().normalize(y); }
+  [[nodiscard]] std::unique_ptr<Observation> make_observation() const override;
+  [[nodiscard]] DenseSystem system(double t, std::span<const double> y) const override { return now().system(t, y); }
+  [[nodiscard]] Energies energies(std::span<const double> y) const override { return now().energies(y); }
+  [[nodiscard]] WorldPose frame_pose(std::span<const double> y, int body, int frame) const override {
+    return now().frame_pose(y, body, frame);
+  }
+  [[nodiscard]] std::array<double, 3> deflection(std::span<const double> y, int body, int frame) const override {
+    return now().deflection(y, body, frame);
+  }
+  [[nodiscard]] std::vector<std::string> savings() const override { return now().savings(); }
+
+ private:
+  class Seen;
+  [[nodiscard]] const EquationsOfMotion& now() const { return *rungs_[rung_].equations; }
+  [[nodiscard]] Work make_factors() const override;
+  Evaluation factorize(std::span<const double> y, double delta, Work& factors) const noexcept override {
+    return now().linearly_implicit()->factorize(y, delta, factors);
+  }
+  void solve(std::span<double> r, Work& factors) const noexcept override {
+    now().linearly_implicit()->solve(r, factors);
+  }
+  Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base, double delta,
+                                  std::span<double> y_dot, Work& work) const noexcept override {
+    ++evaluations_[rung_];
+    return now().linearly_implicit()->implicit_derivatives(t, y, base, delta, y_dot, work);
+  }
+  Evaluation jacobian(double t, std::span<const double> y, std::span<const double> y_dot,
+                      std::span<double> jacobian) const override {
+    return now().linearization()->jacobian(t, y, y_dot, jacobian);
+  }
+  [[nodiscard]] std::vector<std::string> differenced(double t, std::span<const double> y) const override {
+    return now().linearization()->differenced(t, y);
+  }
+
+  const std::vector<Rung>& rungs_;
+  std::vector<Stretch> stretches_;
+  std::size_t rung_ = 0;
+  mutable std::vector<std::size_t> evaluations_;
+};
+
+}  // namespace withy

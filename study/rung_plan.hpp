@@ -1,0 +1,53 @@
+/// \file
+/// Which formulation a run of `auto` is in and when: goal-oriented model adaptivity (Oden & Prudhomme, J. Comput. Phys.
+/// 182, 2002, 496–515). The goals are the outputs, each within a share of its own range. Before the run two coarse runs
+/// of it are compared: one in the highest rung, and one that begins in the least rung, lands on the steps of the first,
+/// so that the errors of both steps are nearly the same and their difference is that of the models, and goes back over
+/// a window of time one rung up where its error has used up more than the window's share. As it goes on to the end from
+/// every error that it has made, later growth of errors counts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/study/control.hpp"
+#include "withy/study/error_estimate.hpp"
+
+namespace withy::study {
+
+struct PlannedStretch {
+  Stretch stretch;
+  double use = 0;  ///< greatest share of the accuracy asked that is used up by its end
+};
+
+/// An output of the coarse run, to hold the run itself against.
+struct PlannedReading {
+  double time = 0;             ///< [s]
+  std::vector<double> values;  ///< as of OutputReader
+};
+
+struct RungPlan {
+  std::vector<PlannedStretch> stretches;  ///< adjoining, from the start to the end of the run
+  double accuracy = 0;                    ///< asked, of each output's own range
+  std::optional<ErrorEstimate> estimate;  ///< greatest estimated errors; nothing where none could be made
+  double use = 0;                         ///< greatest of them over what is allowed
+  std::string worst;                      ///< output of which that is so
+  /// Why the error is not known, or not to be held; else empty.
+  std::string problem;
+  std::string integrator;                    ///< of the coarse runs; empty: there were none
+  std::vector<std::size_t> evaluations;      ///< of the coarse runs, in each rung
+  std::vector<std::size_t> run_evaluations;  ///< of the run itself, in each rung, those of its watches among them
+  std::size_t windows = 0, repeated = 0;     ///< of time; tries of a window that were not kept
+  std::vector<PlannedReading> readings;      ///< at the ends of windows
+  Distances scales;                          ///< that errors are relative to
+};
+
+/// Plans the run of a scene in formulation `auto`. The same scene gives the same plan, bit by bit.
+/// \param accuracy of each output's own range
+/// \throws InputError where an integrator of the coarse runs is missing.
+RungPlan plan_rungs(const Prepared& prepared, Registry& registry, double accuracy, const Control& control);
+
+/// The accuracy that the scene asks of `auto`.
+double asked_accuracy(const Scene& scene);
+
+}  // namespace withy::study
