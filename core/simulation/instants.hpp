@@ -60,6 +60,10 @@ class ZeroWatch {
   /// Watches the switching functions of the model's loads and `events`, from a state on. Both must outlive the watch.
   ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start);
   [[nodiscard]] bool empty() const { return signs_.empty(); }
+  /// Count of the functions.
+  [[nodiscard]] std::size_t count() const { return signs_.size(); }
+  /// Sets the values of all functions at (t, y).
+  void evaluate(double t, std::span<const double> y, std::span<double> values) const;
 
   /// The zeros passed in the stepper's last step, which began at `from` [s], on its dense output, in their order.
   const std::vector<Zero>& find(const Stepper& stepper, double from);
@@ -80,7 +84,6 @@ class ZeroWatch {
   void remember(Memory& memory) { memory(signs_); }
 
  private:
-  void evaluate(double t, std::span<const double> y, std::span<double> values) const;
   /// Whether a function that has this sign now is to be noticed.
   [[nodiscard]] bool noticed(std::size_t function, int direction) const;
 
