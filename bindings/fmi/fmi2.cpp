@@ -195,7 +195,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
 }
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  return call(c, "fmi2EnterEventMode", Mode::continuous | Mode::event, In::model_exchange,
+  return call(c, "fmi2EnterEventMode", static_cast<unsigned>(Mode::continuous), In::model_exchange,
               [](Component& i) { i.enter(Mode::event); });
 }
 

@@ -130,7 +130,7 @@ fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
 }
 
 fmi3Status fmi3EnterEventMode(fmi3Instance c) {
-  return call(c, "fmi3EnterEventMode", Mode::continuous | Mode::event, In::model_exchange,
+  return call(c, "fmi3EnterEventMode", static_cast<unsigned>(Mode::continuous), In::model_exchange,
               [](Instance3& i) { i.enter(Mode::event); });
 }
 

@@ -35,11 +35,11 @@ class Clocks {
   /// Renews what is due at the state's time.
   void renew(State& state);
   /// Renews the states of one load at the zero of a switching function of its own.
-  void renew(State& state, const DiscreteSlot& slot, const Crossing& crossing);
+  void renew(State& state, const LoadSlot& slot, const Crossing& crossing);
 
  private:
   struct Clock {
-    DiscreteSlot slot;
+    LoadSlot slot;
     double period;
     double index;  ///< of the next instant; whole
   };
@@ -60,10 +60,6 @@ class ZeroWatch {
   /// Watches the switching functions of the model's loads and `events`, from a state on. Both must outlive the watch.
   ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start);
   [[nodiscard]] bool empty() const { return signs_.empty(); }
-  /// Count of the functions.
-  [[nodiscard]] std::size_t count() const { return signs_.size(); }
-  /// Sets the values of all functions at (t, y).
-  void evaluate(double t, std::span<const double> y, std::span<double> values) const;
 
   /// The zeros passed in the stepper's last step, which began at `from` [s], on its dense output, in their order.
   const std::vector<Zero>& find(const Stepper& stepper, double from);
@@ -78,20 +74,21 @@ class ZeroWatch {
   void begin_at(const State& state);
 
   /// The load and the index within it of a switching function; nothing for an event of the caller.
-  [[nodiscard]] std::optional<std::pair<DiscreteSlot, int>> switching(std::size_t function) const;
+  [[nodiscard]] std::optional<std::pair<LoadSlot, int>> switching(std::size_t function) const;
   /// The event of the caller that a function is.
   [[nodiscard]] const RunEvent& event(std::size_t function) const { return events_[function - switches_]; }
   void remember(Memory& memory) { memory(signs_); }
 
  private:
+  void evaluate(double t, std::span<const double> y, std::span<double> values) const;
   /// Whether a function that has this sign now is to be noticed.
   [[nodiscard]] bool noticed(std::size_t function, int direction) const;
 
   const Model& model_;
   std::span<const RunEvent> events_;
   std::size_t switches_ = 0;
-  std::vector<DiscreteSlot> slots_;  ///< of loads with switching functions
-  std::vector<int> signs_;           ///< −1, 0, +1 at the last accepted state
+  std::vector<LoadSlot> slots_;  ///< of loads with switching functions
+  std::vector<int> signs_;       ///< −1, 0, +1 at the last accepted state
   std::vector<int> before_;
   std::vector<int> start_signs_;  ///< `signs_` at the start of the step that `find` has looked at
   std::vector<double> values_, ends_;

@@ -11,7 +11,6 @@
 namespace withy::test {
 namespace {
 
-const std::string commanded = SCENES "/commanded-arm.yaml";
 const std::string jets = SCENES "/attitude-jets.yaml";
 
 /// Model exchange with the classic Runge-Kutta method: it lands on time events and finds zeros of indicators by

@@ -24,6 +24,8 @@
 
 namespace withy::test {
 
+inline const std::string commanded = SCENES "/commanded-arm.yaml";
+
 using Tree = boost::property_tree::ptree;
 
 /// A variable as the model description has it.

@@ -8,8 +8,6 @@
 namespace withy::test {
 namespace {
 
-const std::string commanded = SCENES "/commanded-arm.yaml";
-
 /// Arguments that are right, wrong and missing, by chance.
 class Chance {
  public:
