@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "withy/campaign/cases.hpp"
+#include "withy/core/plugin/formula.hpp"
 #include "withy/scene/describe.hpp"
 #include "withy/scene/names.hpp"
-#include "withy/sensors/formula.hpp"
 
 namespace withy::campaign {
 namespace {

@@ -22,12 +22,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Cells = std::vector<std::string>;
 
-constexpr std::size_t most_rows = 1000;          ///< whole cases on the page
-constexpr std::size_t most_numbers = 8'000'000;  ///< in memory
-constexpr std::size_t most_failures = 200;       ///< of them on the page
-constexpr std::size_t bins = 24;                 ///< of a histogram
-constexpr std::size_t most_levels = 12;          ///< of an envelope
-constexpr std::size_t most_envelopes = 120;      ///< pairs of what varies and a result
+constexpr std::size_t most_rows = 1000;                ///< whole cases on the page
+constexpr std::size_t most_outputs_shown = 8'000'000;  ///< in memory
+constexpr std::size_t most_failures = 200;             ///< of them on the page
+constexpr std::size_t bins = 24;                       ///< of a histogram
+constexpr std::size_t most_levels_shown = 12;          ///< of an envelope
+constexpr std::size_t most_envelopes = 120;            ///< pairs of what varies and a result
 
 /// The lines of a table behind its head. Texts in quotes may hold ends of lines.
 void read_rows(const std::filesystem::path& file, const std::function<void(const Cells&)>& take) {
@@ -110,12 +110,12 @@ Json level_json(double at, std::vector<double> values) {
 Json envelope_json(const Numbers& axis, const Numbers& result) {
   std::vector<double> places = axis.sorted();
   if (places.empty()) return {};
-  const double least = places.front(), width = (places.back() - least) / static_cast<double>(most_levels);
+  const double least = places.front(), width = (places.back() - least) / static_cast<double>(most_levels_shown);
   places.erase(std::unique(places.begin(), places.end()), places.end());
-  const bool few = places.size() <= most_levels;
+  const bool few = places.size() <= most_levels_shown;
   if (!few) {
-    places.resize(most_levels);
-    for (std::size_t k = 0; k < most_levels; ++k) places[k] = least + (static_cast<double>(k) + 0.5) * width;
+    places.resize(most_levels_shown);
+    for (std::size_t k = 0; k < most_levels_shown; ++k) places[k] = least + (static_cast<double>(k) + 0.5) * width;
   }
   std::vector<std::vector<double>> values(places.size());
   for (std::size_t i = 0; i < axis.all.size(); ++i) {
@@ -123,7 +123,7 @@ Json envelope_json(const Numbers& axis, const Numbers& result) {
     if (!std::isfinite(x) || !std::isfinite(y)) continue;
     const std::size_t k =
         few ? static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), x) - places.begin())
-            : std::min(static_cast<std::size_t>((x - least) / width), most_levels - 1);
+            : std::min(static_cast<std::size_t>((x - least) / width), most_levels_shown - 1);
     values[k].push_back(y);
   }
   Json levels = Json::array();
@@ -163,7 +163,7 @@ class Page {
   [[nodiscard]] std::size_t counted_every() const {
     const std::size_t numbers =
         collected_.cases * (about_.paths.size() + about_.derived.size() + about_.columns.size());
-    return std::max<std::size_t>(1, (numbers + most_numbers - 1) / most_numbers);
+    return std::max<std::size_t>(1, (numbers + most_outputs_shown - 1) / most_outputs_shown);
   }
   [[nodiscard]] std::size_t shown_every() const {
     const std::size_t counted = counted_every(), step = most_rows * counted;

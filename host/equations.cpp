@@ -16,10 +16,10 @@
 namespace withy::host {
 namespace {
 
-/// The elements of y by the names of the result columns, positions and then speeds.
+/// The elements of y by the names of the result columns: positions, speeds, continuous states of loads.
 std::vector<Port> state_ports(const Model& model) {
   const Layout& layout = model.layout();
-  std::vector<Port> ports(layout.positions + layout.speeds);
+  std::vector<Port> ports(layout.moving());
   const auto put = [&](std::size_t first, const std::vector<Column>& columns) {
     for (std::size_t i = 0; i < columns.size(); ++i) ports[first + i] = {columns[i].name, columns[i].unit};
   };
@@ -34,6 +34,8 @@ std::vector<Port> state_ports(const Model& model) {
       ports[layout.positions + body.speed + i] = {mode + ".rate", ""};
     }
   }
+  for (std::size_t i = 0; i < layout.continuous; ++i)
+    ports[layout.positions + layout.speeds + i] = {layout.continuous_names[i], ""};
   return ports;
 }
 
@@ -56,7 +58,7 @@ struct Equations::Parts {
   explicit Parts(std::shared_ptr<const study::Prepared> from)
       : prepared(std::move(from)),
         equations(*prepared->equations),
-        size(equations.layout().positions + equations.layout().speeds),
+        size(equations.layout().moving()),
         full(prepared->scene.initial.y),
         full_dot(full.size()),
         work(equations.make_work()) {}

@@ -13,8 +13,9 @@
 
 namespace withy::host {
 
-/// y holds positions (hinge and modal coordinates [rad, m]), then speeds. An object is of one thread at a time, since
-/// it owns the memory of an evaluation; copies share the compiled equations and are of threads of their own.
+/// y holds positions (hinge and modal coordinates [rad, m]), then speeds, then continuous states of loads. An object is
+/// of one thread at a time, since it owns the memory of an evaluation; copies share the compiled equations and are of
+/// threads of their own.
 class Equations {
  public:
   /// \param formulation id of a formulation; empty: the scene's

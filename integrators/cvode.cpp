@@ -272,8 +272,8 @@ class CvodeStepper final : public Stepper {
     for (std::size_t i = 0; i < state_.y.size(); ++i) values[i] = state_.y[i] + (t_limit - state_.time) * slope[i];
     return accept(t_limit, {values, state_.y.size()});
   }
-  /// Positions and speeds; discrete states, which are constant, and the work follow them.
-  [[nodiscard]] std::size_t moving() const { return equations_.layout().positions + equations_.layout().speeds; }
+  /// Discrete states, which are constant, and the work follow these.
+  [[nodiscard]] std::size_t moving() const { return equations_.layout().moving(); }
   void remember(Memory& memory) {
     memory(statistics_.accepted);
     memory(statistics_.rejected);

@@ -4,6 +4,8 @@
 /// auxiliary accelerations a keep order 2 where the mass matrix depends on the positions:
 ///   (1 − αm) a₁ + αm a₀ = (1 − αf) u̇₁ + αf u̇₀,   u₁ = u₀ + h ((1 − γ) a₀ + γ a₁),
 ///   x₁ = x₀ moved for h with the speeds Δ = u₀ + h ((½ − β) a₀ + β a₁).
+/// Continuous states of loads are taken as speeds are, with rates of their own in the place of a (Jansen, Whiting &
+/// Hulbert, Comput. Methods Appl. Mech. Engrg. 190, 2000, 305–319, with the α of the second-order method).
 #include "equal_steps.hpp"
 #include "jacobian.hpp"
 #include "withy/core/plugin/registry.hpp"
@@ -37,10 +39,10 @@ class AlphaStepper final : public EqualSteps {
         jacobian_(equations, options.jacobian),
         motion_work_(equations.make_work()),
         sizes_(size()),
-        matrix_(Eigen::MatrixXd::Identity(jacobian_.speeds(), jacobian_.speeds())),
+        matrix_(Eigen::MatrixXd::Identity(jacobian_.rates(), jacobian_.rates())),
         lu_(matrix_) {
     for (Eigen::ArrayXd* a : {&moving_, &rate_, &lost_, &lost_next_}) a->setZero(size());
-    for (Eigen::VectorXd* a : {&a0_, &a1_, &residual_}) a->setZero(jacobian_.speeds());
+    for (Eigen::VectorXd* a : {&a0_, &a1_, &residual_}) a->setZero(jacobian_.rates());
     moved_.setZero(jacobian_.positions());
   }
 
@@ -59,7 +61,7 @@ class AlphaStepper final : public EqualSteps {
   static constexpr double accuracy = 1e-13;  ///< of the iteration, relative to the sizes of positions and speeds
 
   Attempt attempt(double h) override {
-    const Eigen::Index np = jacobian_.positions(), n = jacobian_.speeds();
+    const Eigen::Index np = jacobian_.positions(), n = jacobian_.rates();
     const double t = state_.time;
     if (!begun_) {
       a0_ = slope_.segment(np, n).matrix();
@@ -118,7 +120,7 @@ class AlphaStepper final : public EqualSteps {
 
   /// next_ for a1_. By the midpoint rule, then normalized: for quaternions of third order in h |Δ|, exact where ẋ = u.
   Evaluation move(double h) {
-    const Eigen::Index np = jacobian_.positions(), n = jacobian_.speeds();
+    const Eigen::Index np = jacobian_.positions(), n = jacobian_.rates();
     const double beta = parameters_.beta(), gamma = parameters_.gamma();
     moving_ = y();
     moving_.segment(np, n) += (h * ((0.5 - beta) * a0_ + beta * a1_)).array();
@@ -145,7 +147,7 @@ class AlphaStepper final : public EqualSteps {
     if (factored_ == h) return;
     factored_ = h;
     const AlphaParameters& p = parameters_;
-    const Eigen::Index np = jacobian_.positions(), n = jacobian_.speeds();
+    const Eigen::Index np = jacobian_.positions(), n = jacobian_.rates();
     const auto J = jacobian_.matrix();
     matrix_ = h * p.gamma() * J.bottomRightCorner(n, n);
     matrix_.noalias() += h * h * p.beta() * J.bottomLeftCorner(n, np) * J.topRightCorner(np, n);

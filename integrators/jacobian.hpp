@@ -1,7 +1,7 @@
 /// \file
-/// What implicit methods share: the Jacobian of ẏ = f(t, y) and linear systems with μ − ∂f/∂y, of positions and speeds.
-/// What follows them in y has no part in these: discrete states, which are constant, and the work, a quadrature on
-/// which nothing depends.
+/// What implicit methods share: the Jacobian of ẏ = f(t, y) and linear systems with μ − ∂f/∂y, of positions, speeds and
+/// continuous states of loads. What follows them in y has no part in these: discrete states, which are constant, and
+/// the work, a quadrature on which nothing depends.
 #pragma once
 
 #include <Eigen/LU>
@@ -32,6 +32,7 @@ class StepJacobian {
         missing_(wanted == Source::exact && linearization_ == nullptr),
         positions_(static_cast<Eigen::Index>(equations.layout().positions)),
         speeds_(static_cast<Eigen::Index>(equations.layout().speeds)),
+        size_(static_cast<Eigen::Index>(equations.layout().moving())),
         values_(Eigen::VectorXd::Zero(size() * size())),
         moved_(Eigen::ArrayXd::Zero(all())),
         slope_(Eigen::ArrayXd::Zero(all())) {
@@ -41,7 +42,8 @@ class StepJacobian {
         if (slots == &equations.layout().bodies || s.positions <= 1)
           integrals += s.positions == s.speeds ? s.positions : 0;
     }
-    second_order_ = integrals == equations.layout().positions && positions_ == speeds_ && positions_ > 0;
+    second_order_ = integrals == equations.layout().positions && positions_ == speeds_ && positions_ > 0 &&
+                    equations.layout().continuous == 0;
     if (second_order_) map().topRightCorner(positions_, speeds_).setIdentity();
   }
 
@@ -72,13 +74,15 @@ class StepJacobian {
 
   void remember(Memory& memory) { memory(values_); }
 
-  /// Positions and speeds.
-  [[nodiscard]] Eigen::Index size() const { return positions_ + speeds_; }
+  /// Positions, speeds and continuous states of loads.
+  [[nodiscard]] Eigen::Index size() const { return size_; }
+  /// Speeds and continuous states.
+  [[nodiscard]] Eigen::Index rates() const { return size_ - positions_; }
   /// Of y.
   [[nodiscard]] Eigen::Index all() const { return static_cast<Eigen::Index>(equations_.size()); }
   [[nodiscard]] Eigen::Index positions() const { return positions_; }
   [[nodiscard]] Eigen::Index speeds() const { return speeds_; }
-  /// ẋ = u throughout: systems have the size of the speeds alone.
+  /// ẋ = u throughout, and nothing else: systems have the size of the speeds alone.
   [[nodiscard]] bool second_order() const { return second_order_; }
   [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> matrix() const { return {values_.data(), size(), size()}; }
   [[nodiscard]] std::vector<std::string> remarks() const {
@@ -92,7 +96,7 @@ class StepJacobian {
   const EquationsOfMotion& equations_;
   const Linearization* linearization_;
   bool missing_, second_order_ = false;
-  Eigen::Index positions_, speeds_;
+  Eigen::Index positions_, speeds_, size_;
   Eigen::VectorXd values_;
   Eigen::ArrayXd moved_, slope_;
 };

@@ -80,6 +80,7 @@ class BoundHingeInput final : public BoundLoad, public HeldValue {
   std::vector<double> discontinuities() const override { return rows(); }
   const DiscretePart* discrete() const override { return this; }
   const InputPort* input() const override { return this; }
+  InputPlace place() const override { return {.speed = static_cast<int>(speed_), .frame = {}}; }
   double end() const override { return 0; }
   void begin(State& /*state*/) const override {}
   void add(double t, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
@@ -105,6 +106,9 @@ class BoundFrameInput final : public FrameLoad, public HeldValue {
   std::vector<double> discontinuities() const override { return rows(); }
   const DiscretePart* discrete() const override { return this; }
   const InputPort* input() const override { return this; }
+  InputPlace place() const override {
+    return {.frame = frames()[0], .direction = at_.direction, .following = at_.following, .moment = at_.moment};
+  }
   void add(double /*t*/, std::span<const double> /*discrete*/, std::span<double> /*efforts*/) const noexcept override {}
   void wrenches(double /*t*/, std::span<const FrameMotion> /*motions*/,
                 std::span<Wrench> wrenches) const noexcept override {

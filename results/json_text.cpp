@@ -27,6 +27,10 @@ const char* kind_text(ParameterSpec::Kind kind) {
       return "map";
     case ParameterSpec::Kind::named:
       return "named maps";
+    case ParameterSpec::Kind::matrix:
+      return "matrix";
+    case ParameterSpec::Kind::texts:
+      return "texts";
   }
   return "";
 }

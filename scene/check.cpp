@@ -12,6 +12,7 @@
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/orientation.hpp"
 #include "withy/scene/units.hpp"
 
 namespace withy {
@@ -90,11 +91,14 @@ bool Checker::refers(const Place& place, const std::string& name, ParameterSpec:
   if (what == nothing) return true;
   if (names_ == nullptr) return true;
   if (what == frame && !names_->frames_complete) return true;
-  const NameList& known = what == body    ? names_->bodies
-                          : what == hinge ? names_->hinges
-                          : what == load  ? names_->loads
-                                          : names_->frames;
+  const NameList& known = what == body     ? names_->bodies
+                          : what == hinge  ? names_->hinges
+                          : what == load   ? names_->loads
+                          : what == signal ? names_->signals
+                          : what == input  ? names_->loads
+                                           : names_->frames;
   if (known.has(name)) return true;
+  if (what == signal && known.has(name.substr(0, name.find('.')))) return true;
   diagnostics_.error(place, fmt::format("no {} {}{}", referent(what), in_quotes(name), suggest(name, known.names())));
   return false;
 }
@@ -214,6 +218,49 @@ std::optional<Value> Checker::table(const Value& value, const ParameterSpec& spe
   return result;
 }
 
+std::optional<Value> Checker::matrix(const Value& value, const ParameterSpec& spec) const {
+  const auto is_row = [](const Value& item) { return item.kind() == Value::Kind::list && !item.items().empty(); };
+  if (value.kind() != Value::Kind::list || value.items().empty() || !is_row(value.items()[0])) {
+    got(value, spec);
+    return {};
+  }
+  ParameterSpec line = spec;
+  line.kind = ParameterSpec::Kind::vector;
+  line.count = value.items()[0].items().size();
+  Value result = Value::list({}, value.place());
+  bool good = true;
+  for (const Value& item : value.items()) {
+    auto r = row(item, line);
+    good = good && r.has_value();
+    if (good) result.items().push_back(std::move(*r));
+  }
+  if (!good) return {};
+  return result;
+}
+
+std::optional<Value> Checker::texts(const Value& value, const ParameterSpec& spec) const {
+  ParameterSpec one = spec;
+  one.kind = ParameterSpec::Kind::text;
+  if (value.kind() != Value::Kind::list) {
+    auto single = text(value, one);
+    if (!single) return {};
+    return Value::list({std::move(*single)}, value.place());
+  }
+  if (value.items().empty()) {
+    got(value, spec);
+    return {};
+  }
+  Value result = Value::list({}, value.place());
+  bool good = true;
+  for (const Value& item : value.items()) {
+    auto checked = text(item, one);
+    good = good && checked.has_value();
+    if (good) result.items().push_back(std::move(*checked));
+  }
+  if (!good) return {};
+  return result;
+}
+
 std::optional<Value> Checker::named(const Value& value, const ParameterSpec& spec) const {
   if (!is_map(value, expectation(spec))) return {};
   Value result = Value::map({}, value.place());
@@ -288,6 +335,7 @@ std::optional<Value> Checker::check(const Value& value, const ParameterSpec& spe
     case ParameterSpec::Kind::text:
       return text(value, spec);
     case ParameterSpec::Kind::vector:
+      if (value.kind() == Value::Kind::map && is_orientation(spec)) return read_orientation(value, *this);
       return row(value, spec);
     case ParameterSpec::Kind::table:
       return table(value, spec);
@@ -295,6 +343,10 @@ std::optional<Value> Checker::check(const Value& value, const ParameterSpec& spe
       return check_members(value, spec.members);
     case ParameterSpec::Kind::named:
       return named(value, spec);
+    case ParameterSpec::Kind::matrix:
+      return matrix(value, spec);
+    case ParameterSpec::Kind::texts:
+      return texts(value, spec);
     case ParameterSpec::Kind::boolean:
       break;
   }

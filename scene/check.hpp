@@ -35,6 +35,7 @@ struct SceneNames {
   NameList hinges;
   NameList frames;  ///< "body" and "body.frame"
   NameList loads;
+  NameList signals;  ///< columns of hinges, outputs and loads, without what stands behind a dot of the latter two
   bool frames_complete = true;  ///< false where a body could not be made: any frame name is taken then
 };
 
@@ -93,6 +94,8 @@ class Checker {
   std::optional<Value> row(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> table(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> named(const Value& value, const ParameterSpec& spec) const;
+  std::optional<Value> matrix(const Value& value, const ParameterSpec& spec) const;
+  std::optional<Value> texts(const Value& value, const ParameterSpec& spec) const;
   bool refers(const Place& place, const std::string& name, ParameterSpec::Refers what) const;
   void unknown_plugin(const Value& id, const std::string& kind, const std::vector<std::string>& ids) const;
   void got(const Value& value, const ParameterSpec& spec, const std::string& why = {}) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "withy/scene/names.hpp"
+#include "withy/scene/orientation.hpp"
 
 namespace withy {
 namespace {
@@ -45,6 +46,10 @@ const char* referent(ParameterSpec::Refers what) {
       return "formulation";
     case motion:
       return "motion";
+    case signal:
+      return "signal";
+    case input:
+      return "load of type input";
     case nothing:
       break;
   }
@@ -79,6 +84,8 @@ std::string expectation(const ParameterSpec& spec) {
       return "text";
     case vector: {
       const std::string item = range(spec).empty() ? "" : ", each" + range(spec);
+      if (is_orientation(spec))
+        return "a unit quaternion [w, x, y, z], {axis: [x, y, z], angle: a} or {xyz: [a, b, c]}";
       if (spec.count == 0) return "a list of finite numbers" + item + bracketed(spec.unit);
       return fmt::format("a list of {} finite numbers{}{}", spec.count, item, bracketed(spec.unit));
     }
@@ -89,6 +96,12 @@ std::string expectation(const ParameterSpec& spec) {
       return "a map with " + listed(keys_of(spec.members));
     case named:
       return "a map of names, each with " + listed(keys_of(spec.members));
+    case matrix:
+      return "a list of rows of finite numbers, all of one length" + bracketed(spec.unit);
+    case texts:
+      return spec.refers == ParameterSpec::Refers::nothing
+                 ? "a text, or a list of them"
+                 : fmt::format("the name of a {}, or a list of names", referent(spec.refers));
   }
   return {};
 }

@@ -9,12 +9,14 @@ Value numbers(std::initializer_list<double> xs) {
   return Value::list(std::move(items));
 }
 
-std::vector<ParameterSpec> pose_members() {
-  return {vector("position", 3, "m", "position of the frame's origin").otherwise(numbers({0, 0, 0})),
-          vector("orientation", 4, "1", "unit quaternion w, x, y, z of the frame").otherwise(numbers({1, 0, 0, 0}))};
-}
-
 }  // namespace
+
+std::vector<ParameterSpec> pose_members() {
+  return {
+      vector("position", 3, "m", "position of the frame's origin").otherwise(numbers({0, 0, 0})),
+      vector("orientation", 4, "1", "how the frame is turned: unit quaternion w, x, y, z, axis and angle, or angles")
+          .otherwise(numbers({1, 0, 0, 0}))};
+}
 
 std::vector<ParameterSpec> scene_members() {
   return {

@@ -34,5 +34,7 @@ ParameterSpec formulation_name();
 Value named_formulation(Value given);
 /// The type of a motion beside the plugin's own options.
 ParameterSpec motion_type();
+/// Position and orientation of a frame.
+std::vector<ParameterSpec> pose_members();
 
 }  // namespace withy::grammar

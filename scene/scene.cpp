@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <list>
+#include <set>
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/file_notes.hpp"
+#include "withy/scene/control_order.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
@@ -48,7 +51,9 @@ class SceneBuilder {
     scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);
     add_motions(tree.model.get());
+    name_signals(document_, tree.model.get(), tree.names, checker_.registry());
     add_loads(tree.model.get());
+    tree.names.loads = {};
     for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
       tree.names.loads.add(load.name);
     add_outputs(tree);
@@ -139,10 +144,21 @@ class SceneBuilder {
   }
 
   void add_loads(Model* model) {
+    std::list<PendingLoad> loads;
+    std::set<std::string> names;
+    if (const Value* given = document_.root.find("loads"))
+      for (const auto& [name, load] : given->members()) names.insert(name);
     add_parts<Load>("loads", grammar::load_members(), model != nullptr,
-                    [&](const std::string& name, const Value&, const std::unique_ptr<Load>& load) {
-                      model->add_load(name, *load);
+                    [&](const std::string& name, const Value& value, std::unique_ptr<Load> load) {
+                      loads.push_back({name, needed_loads(value, names), std::move(load)});
                     });
+    for (const PendingLoad& pending : in_order_of_need(std::move(loads), checker_)) {
+      try {
+        model->add_load(pending.name, *pending.load);
+      } catch (const std::invalid_argument& e) {
+        checker_.key_error("/loads/" + pending.name, e.what());
+      }
+    }
   }
   void add_motions(Model* model) {
     add_parts<Motion>("motions", grammar::motion_members(), model != nullptr,
@@ -224,6 +240,12 @@ class SceneBuilder {
       check_driven(model);
     }
     model.prescribe(scene_.initial);
+    if (model.layout().continuous == 0) return;
+    // Where the loads' own states begin depends on all else; what the scene says of them goes first.
+    model.begin_continuous(scene_.initial);
+    const Value* loads = given == nullptr ? nullptr : given->find("loads");
+    if (loads != nullptr && diagnostics_.ok())
+      set_state(Value::map({{"loads", *loads}}, given->place()), model, checker_, scene_.initial);
   }
 
   /// Reports what `initial` says of driven hinges against their motions.

@@ -4,6 +4,7 @@
 
 #include "withy/core/plugin/strain_kinematics.hpp"
 #include "withy/scene/grammar.hpp"
+#include "withy/scene/orientation.hpp"
 #include "withy/scene/scene.hpp"
 
 namespace withy {
@@ -127,6 +128,7 @@ class SchemaWriter {
       case text:
         return word(spec);
       case vector:
+        if (is_orientation(spec)) return orientation();
         return row(quantity(), spec.count);
       case table:
         return rows(spec);
@@ -135,8 +137,24 @@ class SchemaWriter {
       case named:
         return {
             {"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", members(spec.members)}};
+      case matrix: {
+        Json line = row(quantity(), 0);
+        line["minItems"] = 1;
+        return {{"type", "array"}, {"items", std::move(line)}, {"minItems", 1}};
+      }
+      case texts: {
+        const Json one = word(spec);
+        return {{"anyOf", Json::array({one, {{"type", "array"}, {"items", one}, {"minItems", 1}}})}};
+      }
     }
     return {};
+  }
+
+  /// A quaternion, or one of the maps that say the same.
+  Json orientation() {
+    Json forms = Json::array({row(number_or_quantity({{"type", "number"}}), 4)});
+    for (const Specs& form : orientation_forms()) forms.push_back(members(form));
+    return {{"anyOf", forms}};
   }
 
   Json described(const ParameterSpec& spec) {
@@ -221,21 +239,33 @@ class SchemaWriter {
     return {{"description", "motion plugin, by type or with options"}, {"anyOf", list}};
   }
 
-  static Json state() {
-    const auto part = [](const char* first, const char* second) {
+  /// A hinge's coordinates: numbers, or of one that turns about any axis an orientation or a pose.
+  Json position() {
+    Json forms = Json::array({reference("numbers")});
+    for (const Specs& form : orientation_forms()) forms.push_back(members(form));
+    forms.push_back(members(grammar::pose_members()));
+    return {{"anyOf", forms}};
+  }
+
+  Json state() {
+    const auto part = [](const char* first, const Json& of_first, const char* second) {
       return Json{{"type", "object"},
                   {"additionalProperties",
                    {{"type", "object"},
                     {"additionalProperties", false},
-                    {"properties", {{first, reference("numbers")}, {second, reference("numbers")}}}}}};
+                    {"properties", {{first, of_first}, {second, reference("numbers")}}}}}};
     };
     const Json number = number_or_quantity({{"type", "number"}});
     return {{"type", "object"},
             {"description", "state at the start; what is not named is as the loads begin, or at its reference"},
             {"additionalProperties", false},
             {"properties",
-             {{"hinges", part("position", "rate")},
-              {"bodies", part("modes", "rates")},
+             {{"hinges", part("position", position(), "rate")},
+              {"bodies", part("modes", reference("numbers"), "rates")},
+              {"loads",
+               {{"type", "object"},
+                {"propertyNames", reference("name")},
+                {"additionalProperties", {{"type", "object"}, {"additionalProperties", number}}}}},
               {"inputs", {{"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", number}}},
               {"time", number},
               {"work", number}}}};

@@ -7,7 +7,9 @@
 #include <unordered_map>
 
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/orientation.hpp"
 #include "withy/scene/scene.hpp"
 
 namespace withy {
@@ -39,11 +41,12 @@ class StateReader {
       : model_(model), checker_(checker), state_(state) {}
 
   bool read(const Value& value) {
-    if (!map_with(value, {"hinges", "bodies", "inputs", "time", "work"})) return false;
+    if (!map_with(value, {"hinges", "bodies", "loads", "inputs", "time", "work"})) return false;
     scalar(value, number("time", "s", ""), state_.time);
     model_.prescribe(state_);  // what the state does not say of driven hinges, their motions do
     if (const Value* hinges = value.find("hinges")) read_hinges(*hinges);
     if (const Value* bodies = value.find("bodies")) read_bodies(*bodies);
+    if (const Value* loads = value.find("loads")) read_loads(*loads);
     if (const Value* inputs = value.find("inputs")) read_inputs(*inputs);
     scalar(value, number("work", "J", ""), state_.y.back());
     return good_;
@@ -75,9 +78,11 @@ class StateReader {
     target = checked->number();
   }
 
-  /// Reads the list under `key` into `count` numbers of y from `first` on.
+  /// Reads the list under `key` into the numbers of y from `first` on; null where there is none that is right.
   const Value* list(const Value& map, const char* key, std::size_t first, const std::vector<std::string>& units) {
-    const Value* given = map.find(key);
+    return numbers(map.find(key), first, units);
+  }
+  const Value* numbers(const Value* given, std::size_t first, const std::vector<std::string>& units) {
     if (given == nullptr) return nullptr;
     if (given->kind() != Value::Kind::list || given->items().size() != units.size()) {
       checker_.diagnostics().error(
@@ -111,13 +116,31 @@ class StateReader {
       if (!map_with(member, {"position", "rate"})) continue;
       const Hinge& hinge = *model_.hinges()[static_cast<std::size_t>(index)].hinge;
       const Slot& slot = model_.layout().hinges[static_cast<std::size_t>(index)];
-      const Value* position = list(member, "position", slot.position, hinge_units(hinge, false));
+      const Value* given = member.find("position");
+      std::optional<Value> coordinates;
+      if (given != nullptr && given->kind() == Value::Kind::map && has_quaternion(hinge)) {
+        coordinates = coordinates_of(*given, hinge);
+        good_ = good_ && coordinates.has_value();
+        given = coordinates ? &*coordinates : nullptr;
+      }
+      const Value* position = numbers(given, slot.position, hinge_units(hinge, false));
       if (position != nullptr && has_quaternion(hinge)) {
         const std::span<double> q(state_.y.data() + slot.position, 4);
         if (!accept_quaternion(q, position->place(), checker_.diagnostics())) good_ = false;
       }
       list(member, "rate", model_.layout().positions + slot.speed, hinge_units(hinge, true));
     }
+  }
+
+  /// The coordinates that a map says: an orientation of a spherical hinge, orientation and position of a free one.
+  [[nodiscard]] std::optional<Value> coordinates_of(const Value& map, const Hinge& hinge) const {
+    if (hinge.kernel()->kind == HingeKernel::Kind::spherical) return read_orientation(map, checker_);
+    const auto pose = checker_.check_members(map, grammar::pose_members());
+    if (!pose) return {};
+    Value all = Value::list({}, map.place());
+    for (const char* key : {"orientation", "position"})
+      for (const Value& x : pose->at(key).items()) all.items().push_back(x);
+    return all;
   }
 
   void read_bodies(const Value& value) {
@@ -150,6 +173,31 @@ class StateReader {
     }
   }
 
+  void read_loads(const Value& value) {
+    if (!checker_.is_map(value, "a map of names of loads that have continuous states")) {
+      good_ = false;
+      return;
+    }
+    std::vector<std::string> names;
+    std::vector<LoadSlot> slots = model_.layout().continuous_slots;
+    std::erase_if(slots, [](const LoadSlot& slot) { return slot.count == 0; });
+    for (const LoadSlot& slot : slots) names.push_back(model_.loads()[slot.load].name);
+    for (const auto& [name, member] : value.members()) {
+      const auto at = std::find(names.begin(), names.end(), name);
+      if (at == names.end()) {
+        key_error(member,
+                  fmt::format("no load with continuous states {}{}", in_quotes(name), checker_.suggest(name, names)));
+        continue;
+      }
+      const LoadSlot& slot = slots[static_cast<std::size_t>(at - names.begin())];
+      const ContinuousPart& part = *model_.loads()[slot.load].continuous;
+      std::vector<std::string> keys;
+      for (std::size_t i = 0; i < slot.count; ++i) keys.push_back(part.name(i));
+      if (!map_with(member, keys)) continue;
+      for (std::size_t i = 0; i < slot.count; ++i) scalar(member, number(keys[i], "1", ""), state_.y[slot.first + i]);
+    }
+  }
+
   void read_inputs(const Value& value) {
     if (!checker_.is_map(value, "a map of names of loads of type input")) {
       good_ = false;
@@ -176,6 +224,20 @@ class StateReader {
   State& state_;
   bool good_ = true;
 };
+
+/// Names of the continuous states of loads with their values, load after load.
+using NamedStates = std::vector<std::pair<std::string, double>>;
+std::vector<std::pair<std::string, NamedStates>> continuous_of(const Model& model, const State& state) {
+  std::vector<std::pair<std::string, NamedStates>> all;
+  for (const LoadSlot& slot : model.layout().continuous_slots) {
+    if (slot.count == 0) continue;
+    const LoadNode& load = model.loads()[slot.load];
+    all.emplace_back(load.name, NamedStates{});
+    for (std::size_t i = 0; i < slot.count; ++i)
+      all.back().second.emplace_back(load.continuous->name(i), state.y[slot.first + i]);
+  }
+  return all;
+}
 
 /// The inputs that a host has set, with their values at the state.
 std::vector<std::pair<std::string, double>> inputs_of(const Model& model, const State& state) {
@@ -243,6 +305,13 @@ Value state_value(const Model& model, const State& state) {
                           {"hinges", std::move(hinges)},
                           {"bodies", std::move(bodies)},
                           {"work", Value(state.y.back())}});
+  Value loads = Value::map({});
+  for (const auto& [load, states] : continuous_of(model, state)) {
+    Value own = Value::map({});
+    for (const auto& [name, value] : states) own.members().emplace_back(name, Value(value));
+    loads.members().emplace_back(load, std::move(own));
+  }
+  if (!loads.members().empty()) all.set("loads", std::move(loads));
   Value inputs = Value::map({});
   for (const auto& [name, value] : inputs_of(model, state)) inputs.members().emplace_back(name, Value(value));
   if (!inputs.members().empty()) all.set("inputs", std::move(inputs));
@@ -267,6 +336,9 @@ std::string write_state(const Model& model, const State& state) {
   for (const Slot& s : layout.bodies) {
     json["bodies"][s.name] = {{"modes", part(s.position, s.positions)},
                               {"rates", part(layout.positions + s.speed, s.speeds)}};
+  }
+  for (const auto& [load, states] : continuous_of(model, state)) {
+    for (const auto& [name, value] : states) json["loads"][load][name] = value;
   }
   for (const auto& [name, value] : inputs_of(model, state)) json["inputs"][name] = value;
   return json.dump();

@@ -24,7 +24,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["scene"] = inner "|withy/scene/.*|yaml-cpp/.*|nlohmann/.*|fmt/.*|spdlog/.*"
     may["study"] = inner "|withy/(scene|study|plugins/host)/.*|fmt/.*|boost/math/.*"
     may["results"] = inner "|withy/(scene|study|results)/.*|nlohmann/.*|fmt/.*|boost/crc.hpp|hdf5[.]h|(sys/)?[a-z]+[.]h"
-    may["campaign"] = inner "|withy/(scene|study|results|campaign)/.*|nlohmann/.*|withy/sensors/formula.hpp|fmt/.*|boost/(crc[.]hpp|(math|random)/.*)|(sys/)?[a-z]+[.]h"
+    may["campaign"] = inner "|withy/(scene|study|results|campaign)/.*|nlohmann/.*|fmt/.*|boost/(crc[.]hpp|(math|random)/.*)|(sys/)?[a-z]+[.]h"
     may["host"] = inner "|withy/(scene|study|results|plugins/host|host)/.*|nlohmann/.*|fmt/.*"
     may["bindings/c"] = inner "|withy/(scene|study|host)/.*|withy/bindings/c/.*|stddef[.]h"
     may["bindings/fmi"] = inner "|withy/(scene|study|results|plugins/host|bindings/fmi)/.*|nlohmann/.*|fmt/.*|minizip/.*|std[a-z]+[.]h"

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Measures the trade of every scene of the gallery: tables into docs/trade.md, pictures into docs/pictures, everything
-# into results/gallery. What is finished there is not run again: remove it for new measurements.
+# Measures the trade of every scene of the gallery: tables into docs/measured and from there into
+# docs/trade.md, pictures into docs/pictures, everything into results/gallery. What is finished there is not run again: remove it for new measurements.
 #
 #   scripts/gallery.sh               # all; names of scenes as arguments: those
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
+source scripts/measured.sh
 need_packages "${build_packages[@]}"
 build release withy
 
@@ -24,38 +25,21 @@ gallery=(
   "gallery/long-chain --modes 1,2"
 )
 
-# table FOLDER: trade.csv as a table of Markdown: every point of dopri5, of others those on the front. In bold: the front.
-table() {
+# rows FOLDER: trade.csv as rows of cells: every point of dopri5, of others those on the front. In bold: the front.
+rows() {
   awk -F, '
     function cell(x) { return x == "" ? "–" : sprintf("%.3g", x) }
     NR == 1 { next }
     $4 != "dopri5" && $14 != 1 { next }
     { gsub(/"/, "", $6)
-      row = "| " ($14 == 1 ? "**" $1 "**" : $1) " | " $2 ($3 == "" ? "" : " " $3) " | " $6 " | " $4 " | "
-      row = row ($7 != "completed" ? $7 " | | | | |" : cell($8) " | " cell(1000 * $9) " | " cell(100 * $10) " | " $11 " | " cell(1000 * $13) " |")
-      if ($6 == "") sub(/ \|  \| /, " | ", row)
+      row = ($14 == 1 ? "**" $1 "**" : $1) "\t" $2 ($3 == "" ? "" : " " $3) "\t" $6 "\t" $4 "\t"
+      row = row ($7 != "completed" ? $7 "\t\t\t\t" : cell($8) "\t" cell(1000 * $9) "\t" cell(100 * $10) "\t" $11 "\t" cell(1000 * $13))
+      if ($6 == "") sub(/\t\t/, "\t", row)
       over = over || $6 != ""
       rows[++n] = row }
     END {
-      print "| formulation | modes |" (over ? " over |" : "") " integrator | hinge error | tip error [mm] | error [%] | steps | CPU [ms] |"
-      print "|---|---|---|---|---|---|---|---|" (over ? "---|" : "")
+      print "formulation\tmodes\t" (over ? "over\t" : "") "integrator\thinge error\ttip error [mm]\terror [%]\tsteps\tCPU [ms]"
       for (i = 1; i <= n; ++i) print rows[i] }' "$1/trade.csv"
-}
-
-# replace NAME: standard input takes the place of what stands between the marks of NAME in docs/trade.md.
-replace() {
-  local text
-  text=$(mktemp)
-  awk -v name="$1" -v table="$(cat)" '
-    $0 == "<!-- gallery: " name " -->" { print; print table; skip = 1; found = 1; next }
-    $0 == "<!-- end -->" { skip = 0 }
-    !skip { print }
-    END { exit !found }' docs/trade.md >"$text" || {
-    echo "docs/trade.md has no mark '<!-- gallery: $1 -->'" >&2
-    exit 1
-  }
-  cat "$text" >docs/trade.md
-  rm "$text"
 }
 
 for entry in "${gallery[@]}"; do
@@ -65,7 +49,9 @@ for entry in "${gallery[@]}"; do
   folder=results/gallery/$name
   mkdir -p "$folder"
   echo "$name"
-  build/release/bin/withy trade "scenes/$scene.yaml" --tolerances 1e-4 "${words[@]:1}" --out "$folder" >"$folder.txt"
+  command=(withy trade "scenes/$scene.yaml" --tolerances 1e-4 "${words[@]:1}")
+  "build/release/bin/${command[0]}" "${command[@]:1}" --out "$folder" >"$folder.txt"
   cp "$folder/trade.svg" "docs/pictures/trade-$name.svg"
-  { table "$folder"; echo; sed -n '/^Reference/p' "$folder.txt"; } | replace "$name"
+  rows "$folder" | record_table "trade-$name" "${command[*]}" "$(sed -n '/^Reference/p' "$folder.txt")"
 done
+scripts/docs.sh

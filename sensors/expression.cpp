@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "formula.hpp"
+#include "withy/core/plugin/formula.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/plugin/sensor.hpp"
 

@@ -34,7 +34,7 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
       state_(std::move(state)),
       held_(layout().speeds, false) {
   const Model& model = prepared_.model();
-  for (const DiscreteSlot& slot : layout().discrete_slots) {
+  for (const LoadSlot& slot : layout().discrete_slots) {
     if (model.loads()[slot.load].load->input() != nullptr) continue;
     throw InputError(prepared.scene.file + ": load '" + model.loads()[slot.load].name +
                      "' changes at instants (sampled, or a relay); linear analyses need loads that are continuous in "

@@ -97,6 +97,19 @@ bool at_rest(const Configuration& c) {
   return true;
 }
 
+/// Whether the continuous states of loads stay what they are.
+bool states_rest(const Configuration& c) {
+  const Layout& layout = c.layout();
+  const EquationsOfMotion& equations = *c.prepared().equations;
+  Work work = equations.make_work();
+  std::vector<double> y_dot(layout.size());
+  if (layout.continuous == 0) return true;
+  if (!equations.derivatives(c.state().time, c.state().y, y_dot, work).ok()) return false;
+  for (std::size_t i = layout.positions + layout.speeds; i < layout.moving(); ++i)
+    if (std::abs(y_dot[i]) > 1e-9 * (1 + std::abs(c.state().y[i]))) return false;
+  return true;
+}
+
 /// What rounding leaves of accelerations in equilibrium: of terms M⁻¹ K q, to four digits more than they have.
 double acceleration_tolerance(const Configuration& c, const FirstOrderForm& form) {
   double greatest = 0;
@@ -105,9 +118,10 @@ double acceleration_tolerance(const Configuration& c, const FirstOrderForm& form
 }
 
 /// Rows of all speeds' displacements and rates, for the free ones alone.
-Eigen::MatrixXd rows_of_free(const std::vector<LinearOutput>& outputs, const std::vector<Eigen::Index>& free) {
+Eigen::MatrixXd rows_of_free(const std::vector<LinearOutput>& outputs, const std::vector<Eigen::Index>& free,
+                             Eigen::Index states) {
   const auto m = static_cast<Eigen::Index>(free.size());
-  Eigen::MatrixXd C(static_cast<Eigen::Index>(outputs.size()), 2 * m);
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(outputs.size()), states);
   for (Eigen::Index k = 0; k < C.rows(); ++k) {
     const Eigen::RowVectorXd& row = outputs[static_cast<std::size_t>(k)].row;
     for (Eigen::Index i = 0; i < m; ++i) {
@@ -126,14 +140,14 @@ LinearModel linear_model(const Configuration& c, const Ports& ports) {
   const std::vector<LinearOutput> outputs = chosen_outputs(all_outputs(c), ports.outputs);
   const Eigen::VectorXd a = accelerations(c.dynamics(), c.state(), c.held());
   const Tangents tangents = c.dynamics().tangents(c.state().time, c.state().y, a);
-  const FirstOrderForm form = first_order_form(tangents, c.held());
+  const FirstOrderForm form = whole_first_order_form(tangents, c.held());
   const std::vector<Eigen::Index> free = free_speeds(c.held());
 
   LinearModel linear;
   linear.derivatives = derivatives_text(tangents);
   linear.A = form.A;
   linear.B.resize(form.B.rows(), static_cast<Eigen::Index>(inputs.size()));
-  linear.C = rows_of_free(outputs, free);
+  linear.C = rows_of_free(outputs, free, form.A.rows());
   double greatest = 0;
   for (const Eigen::Index s : free) {
     linear.states.push_back(names[static_cast<std::size_t>(s)]);
@@ -141,6 +155,7 @@ LinearModel linear_model(const Configuration& c, const Ports& ports) {
     greatest = std::max(greatest, std::abs(a[s]));
   }
   for (std::size_t i = 0; i < free.size(); ++i) linear.states.push_back(linear.states[i] + ".rate");
+  linear.states.insert(linear.states.end(), c.layout().continuous_names.begin(), c.layout().continuous_names.end());
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     linear.inputs.push_back(names[inputs[k]]);
     linear.B.col(static_cast<Eigen::Index>(k)) = form.B.col(static_cast<Eigen::Index>(inputs[k]));
@@ -149,7 +164,7 @@ LinearModel linear_model(const Configuration& c, const Ports& ports) {
     linear.outputs.push_back(o.name);
     linear.output_values.push_back(o.value);
   }
-  linear.equilibrium = at_rest(c) && greatest <= acceleration_tolerance(c, form);
+  linear.equilibrium = at_rest(c) && states_rest(c) && greatest <= acceleration_tolerance(c, form);
   return linear;
 }
 

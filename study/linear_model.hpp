@@ -12,7 +12,7 @@
 namespace withy::study {
 
 struct LinearModel {
-  std::vector<std::string> states;   ///< displacements of the free speeds, then their rates
+  std::vector<std::string> states;   ///< displacements of the free speeds, their rates, continuous states of loads
   std::vector<std::string> inputs;   ///< efforts on speeds [N m, N]
   std::vector<std::string> outputs;  ///< coordinates, rates, deflections and places of tips [rad, m, s]
   std::vector<double> output_values;

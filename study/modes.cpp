@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "withy/study/continuous_states.hpp"
+
 namespace withy::study {
 namespace {
 
@@ -22,6 +24,7 @@ std::string Sweep::text(double value) const {
 }
 
 ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
+  refuse_continuous_states(c.prepared(), "'withy modes'");
   ModesAt at;
   at.names = c.layout().speed_names;
   at.model = c.prepared().scene.model;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "withy/apps/withy/engine.hpp"
+#include "withy/apps/withy/formulation_words.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/variation.hpp"
@@ -114,7 +115,9 @@ ExitStatus compare(const CompareArguments& arguments) {
   for (const ComparisonAt& group : groups)
     for (Json& run : comparison_json(group, plugins.registry(), !label.empty())) j["runs"].push_back(std::move(run));
 
-  std::string text = arguments.json ? json_text(j) : comparison_text(groups, arguments.reference, label);
+  std::string text = arguments.json ? json_text(j)
+                                    : comparison_text(groups, arguments.reference, label) +
+                                          formulation_words(arguments.formulations, plugins.registry());
   if (!arguments.out.empty()) {
     write_file(fs::path(arguments.out) / "compare.json", json_text(j));
     if (!arguments.json)

@@ -13,6 +13,7 @@
 #include "withy/results/output_file.hpp"
 #include "withy/results/text_table.hpp"
 #include "withy/study/against_next.hpp"
+#include "withy/study/continuous_states.hpp"
 
 namespace withy::app {
 namespace {
@@ -46,6 +47,7 @@ TextTable hinge_table(const study::Configuration& c, const SteadyState& steady) 
 ExitStatus equilibrium(const EquilibriumArguments& arguments) {
   const Engine engine(arguments);
   const study::Configuration c = configuration_of(engine, arguments);
+  study::refuse_continuous_states(c.prepared(), "'withy equilibrium'");
   const SteadyState steady = find_steady_state(c.dynamics(), c.state(), c.held());
   const Tangents tangents =
       c.dynamics().tangents(steady.state.time, steady.state.y, c.dynamics().steady_accelerations(steady.state.time));

@@ -1,14 +1,32 @@
 #include "withy/apps/withy/output.hpp"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
+#include <new>
+#include <string>
 #include <system_error>
+
+#include "withy/apps/withy/colour.hpp"
 
 namespace withy::app {
 
-void print(std::string_view text) {
+namespace {
+
+void write_out(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
     throw std::system_error(errno, std::generic_category(), "standard output");
+}
+
+}  // namespace
+
+void print(std::string_view text) {
+  // JSON is read by programs, on a terminal too.
+  if (shows_colours(STDOUT_FILENO) && !text.starts_with('{') && !text.starts_with('['))
+    write_out(with_outcomes_coloured(text));
+  else
+    write_out(text);
 }
 
 void finish_printing() {
@@ -17,7 +35,14 @@ void finish_printing() {
 
 void complain(std::string_view text) noexcept {
   // Where standard error cannot be written there is nobody left to tell: the exit status says it.
-  static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+  std::string bold;
+  try {
+    if (shows_colours(STDERR_FILENO)) bold = with_places_bold(text);
+  } catch (const std::bad_alloc&) {
+    bold.clear();  // without memory the text is written as it is
+  }
+  const std::string_view shown = bold.empty() ? text : std::string_view(bold);
+  static_cast<void>(std::fwrite(shown.data(), 1, shown.size(), stderr));
   if (!text.empty() && text.back() != '\n') static_cast<void>(std::fputc('\n', stderr));
 }
 

@@ -9,6 +9,7 @@
 
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
+#include "withy/apps/withy/formulation_words.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/trade_axes.hpp"
@@ -73,6 +74,12 @@ std::string reasons_text(const std::vector<study::TradeResult>& results) {
   return out;
 }
 
+std::vector<std::string> formulations_of(const std::vector<study::TradeResult>& results) {
+  std::vector<std::string> names;
+  for (const study::TradeResult& r : results) names.push_back(r.point.formulation);
+  return names;
+}
+
 std::string references_text(const study::TradeStudy& study) {
   std::string out;
   for (const auto& [over, r] : study.references()) {
@@ -122,7 +129,8 @@ ExitStatus trade(const TradeArguments& arguments) {
           : title + "\n\n" + table_text(results, front) +
                 "\n*: no other point is both more accurate, as far as the reference can tell, and cheaper. Error "
                 "in % of each output's own range, the greatest of all.\n" +
-                references_text(study) + reasons_text(results);
+                references_text(study) + formulation_words(formulations_of(results), engine.registry()) +
+                reasons_text(results);
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
     write_file(folder / "trade.json", json_text(j));

@@ -51,7 +51,7 @@ int sign(double x) { return (x > 0) - (x < 0); }
 Dynamics::Dynamics(std::shared_ptr<const study::Prepared> prepared, double t)
     : prepared_(std::move(prepared)),
       equations_(*prepared_->equations),
-      states_(moving_states(prepared_->model().layout())),
+      states_(prepared_->model().layout().moving()),
       quaternions_(prepared_->model().layout().positions != prepared_->model().layout().speeds),
       state_(initial_at(*prepared_, t)),
       seen_(state_),
@@ -63,8 +63,8 @@ Dynamics::Dynamics(std::shared_ptr<const study::Prepared> prepared, double t)
       clocks_(prepared_->model()),
       zeros_(prepared_->model(), prepared_->scene.events, state_),
       jumps_(jump_times(prepared_->model())),
-      signs_(zeros_.count()),
-      values_(zeros_.count()) {
+      signs_(indicator_count(prepared_->scene)),
+      values_(signs_.size()) {
   begin();
 }
 
@@ -219,7 +219,18 @@ void Dynamics::sensitivity(std::span<const double> along_states, std::span<const
 }
 
 std::span<const double> Dynamics::event_indicators() {
-  zeros_.evaluate(state_.time, seen().y, values_);
+  const State& state = seen();
+  const Layout& layout = model().layout();
+  const std::span<const double> y(state.y);
+  std::size_t at = 0;
+  for (const LoadSlot& slot : layout.discrete_slots) {
+    const DiscretePart& part = *model().loads()[slot.load].load->discrete();
+    if (part.switches() > 0)
+      part.switching(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds),
+                     y.subspan(slot.first, slot.count), std::span(values_).subspan(at, part.switches()));
+    at += part.switches();
+  }
+  for (const RunEvent& event : prepared_->scene.events) values_[at++] = event.function(state.time, y);
   return values_;
 }
 

@@ -113,9 +113,9 @@ void Instance::remake() {
         values.set("integrator.rtol", Value(*tolerance_), "tolerance");
   }
   auto prepared = std::make_shared<const study::Prepared>(study::prepare(std::move(values), registry()));
-  if (moving_states(prepared->model().layout()) != variables_.states)
+  if (prepared->model().layout().moving() != variables_.states)
     throw std::runtime_error("with these parameters the model has " +
-                             std::to_string(moving_states(prepared->model().layout())) + " states; the FMU has " +
+                             std::to_string(prepared->model().layout().moving()) + " states; the FMU has " +
                              std::to_string(variables_.states));
   auto made = std::make_unique<Dynamics>(std::move(prepared), start_);
   for (std::size_t i = 0; i < starts_.size(); ++i)

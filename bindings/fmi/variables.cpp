@@ -5,7 +5,6 @@
 #include <set>
 
 #include "withy/bindings/fmi/scene_numbers.hpp"
-#include "withy/core/simulation/instants.hpp"
 #include "withy/results/result_columns.hpp"
 #include "withy/scene/sha256.hpp"
 #include "withy/study/input_error.hpp"
@@ -15,10 +14,10 @@ namespace {
 
 using Kind = Variable::Kind;
 
-/// The names of the numbers in y, positions and then speeds, as the tables have them.
+/// The names of the numbers in y that move, as the tables have them: positions, speeds, continuous states of loads.
 std::vector<Column> state_columns(const Model& model) {
   const Layout& layout = model.layout();
-  std::vector<Column> all(moving_states(layout));
+  std::vector<Column> all(layout.moving());
   const auto put = [&](std::size_t first, const std::vector<Column>& columns) {
     for (std::size_t i = 0; i < columns.size(); ++i) all[first + i] = columns[i];
   };
@@ -32,6 +31,8 @@ std::vector<Column> state_columns(const Model& model) {
       all[layout.positions + body.speed + i] = {layout.speed_names[body.speed + i] + ".rate", ""};
     }
   }
+  for (std::size_t i = 0; i < layout.continuous; ++i)
+    all[layout.positions + layout.speeds + i] = {layout.continuous_names[i], ""};
   return all;
 }
 
@@ -78,7 +79,12 @@ void add_outputs(Variables& v, const study::Prepared& prepared) {
 
 }  // namespace
 
-std::size_t moving_states(const Layout& layout) { return layout.size() - layout.discrete - 1; }
+std::size_t indicator_count(const Scene& scene) {
+  std::size_t count = scene.events.size();
+  for (const LoadSlot& slot : scene.model->layout().discrete_slots)
+    count += scene.model->loads()[slot.load].load->discrete()->switches();
+  return count;
+}
 
 Variables variables_of(const study::Prepared& prepared, Registry& registry) {
   const std::string& file = prepared.scene.file;
@@ -95,8 +101,7 @@ Variables variables_of(const study::Prepared& prepared, Registry& registry) {
     v.all.push_back(
         {Kind::parameter, v.parameters++, n.path, n.unit == "1" ? "" : n.unit, n.meaning, n.value, n.least, n.most});
   }
-  const Scene& scene = prepared.scene;
-  v.indicators = ZeroWatch(prepared.model(), scene.events, begun(prepared.model(), scene.initial)).count();
+  v.indicators = indicator_count(prepared.scene);
   for (std::size_t i = 0; i < v.indicators; ++i)
     v.all.push_back({Kind::indicator, i, fmt::format("event_indicator[{}]", i), "", "its zeros are events"});
   std::set<std::string> names;

@@ -54,7 +54,7 @@ Variables variables_of(const study::Prepared& prepared, Registry& registry);
 /// Tells one FMU from another: a UUID made of the scene with its settings, the files it names and the variables.
 std::string token_of(const study::Prepared& prepared, const Variables& variables);
 
-/// Count of the numbers in State::y that move: the continuous states of an FMU.
-std::size_t moving_states(const Layout& layout);
+/// Count of event indicators: switching functions of loads, then the scene's events.
+std::size_t indicator_count(const Scene& scene);
 
 }  // namespace withy::fmi

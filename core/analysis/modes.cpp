@@ -222,6 +222,21 @@ FirstOrderForm first_order_form(const Tangents& tangents, const Held& held) {
   return form;
 }
 
+FirstOrderForm whole_first_order_form(const Tangents& tangents, const Held& held) {
+  const FirstOrderForm form = first_order_form(tangents, held);
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  const Eigen::Index n = form.A.rows(), m = n / 2, k = tangents.by_state.cols();
+  if (k == 0) return form;
+  FirstOrderForm whole{Eigen::MatrixXd::Zero(n + k, n + k), Eigen::MatrixXd::Zero(n + k, form.B.cols())};
+  whole.A.topLeftCorner(n, n) = form.A;
+  whole.A.topRightCorner(n, k) = -form.B * tangents.by_state;  // the residual has efforts on its other side
+  whole.A.block(n, 0, k, m) = tangents.rate_by_position(Eigen::all, free);
+  whole.A.block(n, m, k, m) = tangents.rate_by_speed(Eigen::all, free);
+  whole.A.bottomRightCorner(k, k) = tangents.rate_by_state;
+  whole.B.topRows(n) = form.B;
+  return whole;
+}
+
 Eigen::VectorXd balancing_units(const Eigen::MatrixXd& A, const Eigen::VectorXd& masses) {
   const Eigen::Index m = masses.size();
   Eigen::VectorXd units(2 * m);

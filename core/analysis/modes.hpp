@@ -61,6 +61,10 @@ struct FirstOrderForm {
 /// \throws std::domain_error as natural_modes.
 FirstOrderForm first_order_form(const Tangents& tangents, const Held& held);
 
+/// The same with the continuous states of loads behind the rates, z = (δ, δu, states of loads).
+/// \throws std::domain_error as natural_modes.
+FirstOrderForm whole_first_order_form(const Tangents& tangents, const Held& held);
+
 /// Units of z in which inertias are one and both halves of A are alike: eigenvalues are then found as well as can be.
 Eigen::VectorXd balancing_units(const Eigen::MatrixXd& A, const Eigen::VectorXd& masses);
 

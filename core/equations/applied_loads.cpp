@@ -7,13 +7,10 @@
 namespace withy {
 
 AppliedLoads::AppliedLoads(const Model& model, Terms terms) : model_(model) {
-  std::size_t scratch = 0;
-  for (const LoadNode& node : model.loads()) {
-    scratch = std::max(scratch, node.load->scratch());
+  for (const LoadNode& node : model.loads())
     frames_.insert(frames_.end(), node.load->frames().begin(), node.load->frames().end());
-  }
   sweep::WorkLayout memory;
-  scratch_offset_ = memory.take<double>(scratch);
+  scratch_offset_ = memory.take<double>(model.load_scratch());
   if (!frames_.empty()) {
     paths_ = std::make_unique<const FramePaths>(model, terms, frames_);
     motions_offset_ = memory.take<FrameMotion>(frames_.size());
@@ -31,10 +28,18 @@ void AppliedLoads::add(double t, std::span<const double> y, std::span<double> ef
   const auto wanted = [only](std::size_t i) { return only < 0 || i == static_cast<std::size_t>(only); };
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const BoundLoad& load = *loads[i].load;
-    if (wanted(i)) load.add(t, positions, speeds, efforts, {sweep::at<double>(work, scratch_offset_), load.scratch()});
+    if (wanted(i)) load.add(t, positions, speeds, efforts, scratch(work).first(load.scratch()));
   }
-  model_.add_discrete_efforts(t, y, efforts, only);
+  model_.add_state_efforts(t, y, efforts, scratch(work), only);
   if (paths_ != nullptr) paths_->add_efforts(wrenches(t, y, work, only), efforts, work + paths_offset_);
+}
+
+bool AppliedLoads::rates(double t, std::span<const double> y, std::span<double> y_dot, std::byte* work) const noexcept {
+  return model_.continuous_rates(t, y, y_dot, scratch(work));
+}
+
+std::span<double> AppliedLoads::scratch(std::byte* work) const noexcept {
+  return {sweep::at<double>(work, scratch_offset_), model_.load_scratch()};
 }
 
 std::span<const Wrench> AppliedLoads::wrenches(double t, std::span<const double> y, std::byte* work,
@@ -50,7 +55,7 @@ std::span<const Wrench> AppliedLoads::wrenches(double t, std::span<const double>
     const std::size_t count = model_.loads()[i].load->frames().size();
     const auto own = all.subspan(first, count);
     if (only < 0 || i == static_cast<std::size_t>(only)) {
-      model_.loads()[i].wrenches(t, y, motions.subspan(first, count), own);
+      model_.loads()[i].wrenches(t, y, model_.layout(), motions.subspan(first, count), own, scratch(work));
     } else {
       std::fill(own.begin(), own.end(), Wrench{});
     }

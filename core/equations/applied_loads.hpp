@@ -22,12 +22,16 @@ class AppliedLoads {
   /// Adds the efforts at time t [s], y as in State, of all loads or of one (index in Model::loads()).
   void add(double t, std::span<const double> y, std::span<double> efforts, std::byte* work,
            int only = -1) const noexcept;
+  /// Sets the derivatives of the loads' continuous states in y_dot; false where one of them is not finite.
+  bool rates(double t, std::span<const double> y, std::span<double> y_dot, std::byte* work) const noexcept;
   /// Frames at which loads act, load after load.
   [[nodiscard]] const std::vector<FrameIndex>& frames() const { return frames_; }
   /// The wrenches there at (t, y), world axes, in the work memory.
   std::span<const Wrench> wrenches(double t, std::span<const double> y, std::byte* work, int only = -1) const noexcept;
 
  private:
+  [[nodiscard]] std::span<double> scratch(std::byte* work) const noexcept;
+
   const Model& model_;
   std::unique_ptr<const FramePaths> paths_;  ///< of the loads' frames, load after load; null: none acts at a frame
   std::vector<FrameIndex> frames_;

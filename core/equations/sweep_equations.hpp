@@ -91,7 +91,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
     const Evaluation evaluation = accelerations(y, efforts.data(), 0, y_dot, work);
     if (!evaluation.ok()) return evaluation;
     if (!terms_.products_of_speeds) elastic_.add_damping(speeds, efforts, -1);
-    return finish(y.first(layout().positions), speeds, efforts, y_dot, evaluation);
+    return finish(t, y, speeds, efforts, y_dot, evaluation, work);
   }
 
   Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base, double delta,
@@ -109,7 +109,7 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
     const std::span<double> implicit = forces;  // which nobody needs any more
     const auto u = speeds_of(base);
     for (std::size_t i = 0; i < order.speeds; ++i) implicit[i] = u[i] + delta * y_dot[order.positions + i];
-    return finish(y.first(order.positions), implicit, efforts, y_dot, evaluation);
+    return finish(t, y, implicit, efforts, y_dot, evaluation, work);
   }
 
   Evaluation forward_dynamics(std::span<const double> y, std::span<const double> efforts, std::span<double> u_dot,
@@ -286,23 +286,26 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
       return sweep_.accelerations(y.data(), speeds, efforts, result, of_sweep_.in(work));
     }
   }
-  /// All that an evaluation gives beside accelerations: position rates and power of these speeds, and whether all is
-  /// finite.
-  Evaluation finish(std::span<const double> positions, std::span<const double> speeds, std::span<const double> efforts,
-                    std::span<double> y_dot, const Evaluation& evaluation) const noexcept {
+  /// All that an evaluation gives beside accelerations: position rates and power of these speeds, the rates of the
+  /// loads' own states, and whether all is finite.
+  Evaluation finish(double t, std::span<const double> y, std::span<const double> speeds,
+                    std::span<const double> efforts, std::span<double> y_dot, const Evaluation& evaluation,
+                    Work& work) const noexcept {
     const Layout& order = layout();
-    rates_.set(positions, speeds, y_dot);
+    rates_.set(y.first(order.positions), speeds, y_dot);
     const double* accelerations = y_dot.data() + order.positions;
     double power = 0;
     if (!model_->motions().empty() || !model_->loads().empty()) {
       for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
     }
     power += elastic_.damping_power(speeds);
-    for (std::size_t i = 0; i < order.discrete; ++i) y_dot[order.positions + order.speeds + i] = 0;
-    y_dot[order.positions + order.speeds + order.discrete] = power;
+    for (std::size_t i = 0; i < order.discrete; ++i) y_dot[order.moving() + i] = 0;
+    y_dot[order.moving() + order.discrete] = power;
     double total = power;
     for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
     if (!std::isfinite(total)) return {Evaluation::Outcome::nonfinite, first_nonfinite(*model_, accelerations)};
+    if (order.continuous > 0 && !loads_.rates(t, y, y_dot, of_loads_.in(work)))
+      return {Evaluation::Outcome::nonfinite, -1};
     return evaluation;
   }
   /// The speeds that inertia forces see: zeros where their products are dropped.

@@ -6,8 +6,8 @@
 
 namespace withy {
 
-FramePaths::FramePaths(const Model& model, Terms terms, const std::vector<FrameIndex>& frames)
-    : link_of_(model.bodies().size(), -1) {
+FramePaths::FramePaths(const Model& model, Terms terms, const std::vector<FrameIndex>& frames, bool untruncated)
+    : link_of_(model.bodies().size(), -1), untruncated_(untruncated) {
   for (const FrameIndex& f : frames) frames_.push_back(place(model, terms, f, Pose{}));
   sweep::WorkLayout memory;
   hinge_offset_ = memory.take<frame_pass::HingeStep>(links_.size());
@@ -79,7 +79,7 @@ std::size_t FramePaths::link(const Model& model, Terms terms, int body) {
            .modal = {},
            .mode = modes_,
            .order = own.strain,
-           .truncation = own.truncation,
+           .truncation = untruncated_ ? Truncation::none : own.truncation,
            .sections = {},
            .rod = nullptr};
     if (l.modes > 0) l.modal = *model.layout().modes(index);

@@ -20,7 +20,8 @@ namespace withy {
 class FramePaths {
  public:
   /// `terms` hold for every body that has none of its own. The model must outlive the paths.
-  FramePaths(const Model& model, Terms terms, const std::vector<FrameIndex>& frames);
+  /// \param untruncated as if no body were truncated, as sensors see frames
+  FramePaths(const Model& model, Terms terms, const std::vector<FrameIndex>& frames, bool untruncated = false);
   ~FramePaths();
   /// Bytes of memory that the functions below share, aligned to 64.
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
@@ -74,7 +75,7 @@ class FramePaths {
   std::vector<Place> frames_;
   std::size_t modes_ = 0;
   std::size_t partials_ = 0;
-  bool strict_ = false, symmetric_ = false;
+  bool untruncated_ = false, strict_ = false, symmetric_ = false;
   std::size_t hinge_offset_ = 0, partials_offset_ = 0, full_offset_ = 0, first_order_offset_ = 0, work_size_ = 0;
 };
 

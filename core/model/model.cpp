@@ -226,6 +226,7 @@ State Model::reference_state() const {
     const Slot& slot = layout_.hinges[h];
     hinges_[h].hinge->reference(std::span(s.y).subspan(slot.position, slot.positions));
   }
+  begin_continuous(s);
   return s;
 }
 
@@ -246,6 +247,15 @@ std::shared_ptr<const Model> Model::in_kinematics(std::shared_ptr<const Model> m
     BodyNode& own = changed->bodies_[b];
     own.body = std::move(body);
     for (Frame& frame : own.frames) frame.section = own.body->station(frame.section.X.x()).value();
+  }
+  for (std::size_t l = 0; l < model->loads_.size(); ++l) {
+    std::shared_ptr<const BoundLoad> load =
+        model->loads_[l].load->rebound(changed == nullptr ? *model : *changed, scene);
+    if (load == nullptr) continue;
+    if (changed == nullptr) changed = std::make_shared<Model>(*model);
+    changed->load_scratch_ = std::max(changed->load_scratch_, load->scratch());
+    changed->loads_[l].load = std::move(load);
+    changed->loads_[l].continuous = changed->loads_[l].load->continuous();
   }
   if (changed == nullptr) return model;
   return changed;
@@ -299,27 +309,68 @@ void Model::add_motion(std::string name, const std::string& hinge_name, std::sha
   motions_.push_back({std::move(name), index, std::move(motion)});
 }
 
-void LoadNode::wrenches(double t, std::span<const double> y, std::span<const FrameMotion> motions,
-                        std::span<Wrench> wrenches) const noexcept {
+void LoadNode::wrenches(double t, std::span<const double> y, const Layout& layout, std::span<const FrameMotion> motions,
+                        std::span<Wrench> wrenches, std::span<double> scratch) const noexcept {
   load->wrenches(t, motions, wrenches);
   if (slot.count > 0) load->discrete()->add_wrenches(t, discrete(y), motions, wrenches);
+  if (continuous != nullptr) continuous->add_wrenches(view(t, y, layout, scratch), motions, wrenches);
 }
 
-void Model::add_discrete_efforts(double t, std::span<const double> y, std::span<double> efforts,
-                                 int only) const noexcept {
-  for (const DiscreteSlot& slot : layout_.discrete_slots) {
-    if (only >= 0 && slot.load != static_cast<std::size_t>(only)) continue;
-    loads_[slot.load].load->discrete()->add(t, y.subspan(slot.first, slot.count), efforts);
+void Model::add_state_efforts(double t, std::span<const double> y, std::span<double> efforts, std::span<double> scratch,
+                              int only) const noexcept {
+  const auto wanted = [only](const LoadSlot& slot) { return only < 0 || slot.load == static_cast<std::size_t>(only); };
+  for (const LoadSlot& slot : layout_.discrete_slots) {
+    if (wanted(slot)) loads_[slot.load].load->discrete()->add(t, y.subspan(slot.first, slot.count), efforts);
+  }
+  for (const LoadSlot& slot : layout_.continuous_slots) {
+    const LoadNode& node = loads_[slot.load];
+    if (wanted(slot)) node.continuous->add(node.view(t, y, layout_, scratch), efforts);
+  }
+}
+
+bool Model::continuous_rates(double t, std::span<const double> y, std::span<double> y_dot,
+                             std::span<double> scratch) const noexcept {
+  double sum = 0;
+  for (const LoadSlot& slot : layout_.continuous_slots) {
+    const LoadNode& node = loads_[slot.load];
+    const std::span<double> rates = y_dot.subspan(slot.first, slot.count);
+    node.continuous->rates(node.view(t, y, layout_, scratch), rates);
+    for (const double rate : rates) sum += 0.0 * rate;
+  }
+  return sum == 0.0;
+}
+
+void Model::begin_continuous(State& state) const {
+  std::vector<double> scratch(load_scratch_), begun;
+  for (const LoadSlot& slot : layout_.continuous_slots) {
+    const LoadNode& node = loads_[slot.load];
+    begun.assign(slot.count, 0.0);
+    node.continuous->begin(node.view(state.time, state.y, layout_, scratch), begun);
+    std::copy(begun.begin(), begun.end(), state.y.begin() + static_cast<std::ptrdiff_t>(slot.first));
   }
 }
 
 void Model::add_load(std::string name, const Load& load) {
-  loads_.push_back({std::move(name), load.bind(*this)});
-  if (const DiscretePart* part = loads_.back().load->discrete(); part != nullptr && part->states() > 0) {
-    loads_.back().slot = {loads_.size() - 1, layout_.positions + layout_.speeds + layout_.discrete, part->states()};
-    layout_.discrete_slots.push_back(loads_.back().slot);
+  std::shared_ptr<const BoundLoad> bound = load.bind(*this);
+  load_scratch_ = std::max(load_scratch_, bound->scratch());
+  const std::size_t index = loads_.size();
+  LoadNode node{std::move(name), bound};
+  if (const ContinuousPart* part = bound->continuous(); part != nullptr) {
+    const std::size_t count = part->states();
+    node.continuous = part;
+    node.continuous_slot = {index, layout_.moving(), count};
+    layout_.continuous_slots.push_back(node.continuous_slot);
+    for (std::size_t i = 0; i < count; ++i) layout_.continuous_names.push_back(node.name + "." + part->name(i));
+    layout_.continuous += count;
+    // Discrete states stand behind the continuous ones.
+    for (LoadSlot& slot : layout_.discrete_slots) loads_[slot.load].slot.first = slot.first += count;
+  }
+  if (const DiscretePart* part = bound->discrete(); part != nullptr && part->states() > 0) {
+    node.slot = {index, layout_.moving() + layout_.discrete, part->states()};
+    layout_.discrete_slots.push_back(node.slot);
     layout_.discrete += part->states();
   }
+  loads_.push_back(std::move(node));
 }
 
 }  // namespace withy

@@ -18,6 +18,8 @@
 
 namespace withy {
 
+struct SensorNode;
+
 /// A frame of a body: fixed at `pose` to the section at a station. Every body has the frame "root" with pose identity.
 struct Frame {
   std::string name;
@@ -60,16 +62,24 @@ struct HingeNode {
 struct LoadNode {
   std::string name;
   std::shared_ptr<const BoundLoad> load;
-  DiscreteSlot slot = {};  ///< of its discrete states; count 0: it has none
+  LoadSlot slot = {};                          ///< of its discrete states; count 0: it has none
+  LoadSlot continuous_slot = {};               ///< of its continuous states; likewise
+  const ContinuousPart* continuous = nullptr;  ///< its continuous part
 
   /// Its discrete states in y, laid out as State::y.
   template <class T>
   [[nodiscard]] std::span<T> discrete(std::span<T> y) const {
     return y.subspan(slot.first, slot.count);
   }
-  /// Sets the wrench at each of the load's frames, with what its discrete states in y add.
-  void wrenches(double t, std::span<const double> y, std::span<const FrameMotion> motions,
-                std::span<Wrench> wrenches) const noexcept;
+  /// What its continuous part sees of y in a model of this layout.
+  [[nodiscard]] LoadView view(double t, std::span<const double> y, const Layout& layout,
+                              std::span<double> scratch) const {
+    return {t, layout, y, discrete(y), y.subspan(continuous_slot.first, continuous_slot.count), scratch};
+  }
+  /// Sets the wrench at each of the load's frames, with what its states in y add.
+  /// \param scratch as BoundLoad::add
+  void wrenches(double t, std::span<const double> y, const Layout& layout, std::span<const FrameMotion> motions,
+                std::span<Wrench> wrenches, std::span<double> scratch) const noexcept;
 };
 
 /// A prescribed motion in the tree.
@@ -107,15 +117,24 @@ class Model {
   /// is no such body.
   [[nodiscard]] std::vector<int> segments(std::string_view body) const;
 
-  /// The state at time 0 with every coordinate at its reference, at rest.
+  /// Doubles of scratch space with which every load can be evaluated.
+  [[nodiscard]] std::size_t load_scratch() const { return load_scratch_; }
+  /// The state at time 0 with every coordinate at its reference, at rest, continuous states as they begin there.
   [[nodiscard]] State reference_state() const;
   /// Puts driven hinges where their motions have them at the state's time; locked ones stay, at rest.
   void prescribe(State& state) const;
   /// Sets the accelerations of the driven speeds at time t [s] in u_dot, one a speed; leaves the others.
   void prescribe_accelerations(double t, std::span<double> u_dot) const noexcept;
-  /// Adds the efforts [N m, N] of the discrete states in y at time t, of all loads or of one (index in loads()).
-  void add_discrete_efforts(double t, std::span<const double> y, std::span<double> efforts,
-                            int only = -1) const noexcept;
+  /// Sets the continuous states of all loads as they begin at the state.
+  void begin_continuous(State& state) const;
+  /// Adds the efforts [N m, N] of the loads' own states in y at time t, of all loads or of one (index in loads()).
+  /// \param scratch load_scratch() doubles
+  void add_state_efforts(double t, std::span<const double> y, std::span<double> efforts, std::span<double> scratch,
+                         int only = -1) const noexcept;
+  /// Sets the derivatives of the continuous states in y_dot, laid out as y; leaves the others. False where one of them
+  /// is not finite.
+  bool continuous_rates(double t, std::span<const double> y, std::span<double> y_dot,
+                        std::span<double> scratch) const noexcept;
   /// The same tree with every body rigid in its undeformed shape, without loads and motions.
   [[nodiscard]] Model rigidified() const;
 
@@ -124,9 +143,13 @@ class Model {
   [[nodiscard]] static std::shared_ptr<const Model> in_kinematics(std::shared_ptr<const Model> model,
                                                                   const Terms& scene);
 
-  /// Adds a load, bound to this model. For builders of a model, before it is shared.
+  /// Adds a load, bound to this model. For builders of a model, before it is shared and before it has states.
   /// \throws std::invalid_argument as Load::bind.
   void add_load(std::string name, const Load& load);
+  /// Sensors that loads may measure, by their names; those without a sensor exist and cannot be measured.
+  [[nodiscard]] const std::vector<SensorNode>* measured() const { return measured_.get(); }
+  /// For builders of a model, before loads are added.
+  void set_measured(std::shared_ptr<const std::vector<SensorNode>> sensors) { measured_ = std::move(sensors); }
   /// Prescribes the motion of a hinge. For builders of a model, before it is shared.
   /// \throws std::invalid_argument where there is no such hinge, it cannot move so, or it is driven already.
   void add_motion(std::string name, const std::string& hinge, std::shared_ptr<const Motion> motion);
@@ -140,8 +163,10 @@ class Model {
   std::vector<MotionNode> motions_;
   Vector3 gravity_;
   Layout layout_;
+  std::size_t load_scratch_ = 0;
   std::vector<int> bodies_by_name_, hinges_by_name_;  ///< indices in the order of names
   std::vector<bool> driven_;                          ///< by hinge
+  std::shared_ptr<const std::vector<SensorNode>> measured_;
 };
 
 }  // namespace withy

@@ -127,10 +127,11 @@ class LinearlyImplicit {
 class Linearization {
  public:
   virtual ~Linearization() = default;
-  /// Sets the derivatives of ẋ and u̇ (rows) with respect to positions and speeds (columns), size() − 1 of each,
-  /// column-major, at (t, y) where ẏ is `y_dot`. The work element is a quadrature, on which nothing depends: it has no
-  /// row and no column. With respect to a quaternion they are those along its unit sphere, and zero across it.
-  /// O(size²) memory, O(size²) to O(size³) time; may allocate, as it is asked for once in many steps.
+  /// Sets the derivatives of ẋ, u̇ and ż (rows) with respect to positions, speeds and continuous states of loads
+  /// (columns), Layout::moving() of each, column-major, at (t, y) where ẏ is `y_dot`. Discrete states are constant and
+  /// the work is a quadrature, on which nothing depends: they have no rows and no columns. With respect to a quaternion
+  /// they are those along its unit sphere, and zero across it. O(size²) memory, O(size²) to O(size³) time; may
+  /// allocate, as it is asked for once in many steps.
   virtual Evaluation jacobian(double t, std::span<const double> y, std::span<const double> y_dot,
                               std::span<double> jacobian) const = 0;
   /// Names of loads whose part in it at (t, y) is numerical.

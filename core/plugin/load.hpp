@@ -9,12 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/plugin/state.hpp"
 #include "withy/core/spatial/pose.hpp"
 
 namespace withy {
 
 class Model;
-struct State;
+struct Terms;
 
 /// A frame of a body of a model.
 struct FrameIndex {
@@ -68,6 +69,70 @@ class DiscretePart {
                             std::span<const FrameMotion> /*motions*/, std::span<Wrench> /*wrenches*/) const noexcept {}
 };
 
+/// What the continuous part of a load sees at a time: the whole state, its own part of it, and scratch space as
+/// BoundLoad::add.
+struct LoadView {
+  double t;  ///< [s]
+  const Layout& layout;
+  std::span<const double> y;                     ///< as State::y
+  std::span<const double> discrete, continuous;  ///< the load's own
+  std::span<double> scratch;
+
+  [[nodiscard]] std::span<const double> positions() const { return y.first(layout.positions); }
+  [[nodiscard]] std::span<const double> speeds() const { return y.subspan(layout.positions, layout.speeds); }
+};
+
+/// Derivatives of the efforts τ and of the rates ż that a ContinuousPart gives; z are its own states.
+struct ContinuousDerivatives {
+  Eigen::Ref<Eigen::MatrixXd> effort_by_position, effort_by_speed;  ///< as of BoundLoad::add_derivatives
+  Eigen::Ref<Eigen::MatrixXd> effort_by_state;                      ///< speeds × z
+  Eigen::Ref<Eigen::MatrixXd> rate_by_position, rate_by_speed;      ///< z × speeds
+  Eigen::Ref<Eigen::MatrixXd> rate_by_state;                        ///< z × z
+};
+
+/// The part of a load with differential equations of its own, ż = g(t, x, u, z): the integral of a controller, a
+/// filter, the current of a motor. Its numbers z are the load's continuous states; they stand in State and are
+/// integrated with the motion, to the same tolerance.
+class ContinuousPart {
+ public:
+  virtual ~ContinuousPart() = default;
+  /// Count of continuous states; 0: efforts follow the whole state at once, without memory.
+  [[nodiscard]] virtual std::size_t states() const = 0;
+  /// Name of one of them: "integral". With the load's name it is that of the element of State.
+  [[nodiscard]] virtual std::string name(std::size_t state) const = 0;
+  /// Sets them for the start of a motion at the state in `view`, whose `continuous` means nothing.
+  virtual void begin(const LoadView& view, std::span<double> continuous) const noexcept = 0;
+  /// Sets ż, smooth but at BoundLoad::discontinuities and at instants.
+  virtual void rates(const LoadView& view, std::span<double> rates) const noexcept = 0;
+  /// Adds the efforts [N m, N] that depend on them, beside those of BoundLoad::add.
+  virtual void add(const LoadView& view, std::span<double> efforts) const noexcept = 0;
+  /// Adds what depends on them to the wrenches that BoundLoad::wrenches has set at the load's frames.
+  virtual void add_wrenches(const LoadView& /*view*/, std::span<const FrameMotion> /*motions*/,
+                            std::span<Wrench> /*wrenches*/) const noexcept {}
+  /// Adds the derivatives of `add` and of `rates`; may allocate. \returns false, adding nothing, where it has none: it
+  /// is then differentiated numerically, as its wrenches always are.
+  virtual bool add_derivatives(const LoadView& /*view*/, ContinuousDerivatives& /*to*/) const { return false; }
+};
+
+/// Numbers that a load gives to loads which name it: the command of a controller.
+class LoadOutput {
+ public:
+  virtual ~LoadOutput() = default;
+  /// Count of them.
+  [[nodiscard]] virtual std::size_t outputs() const = 0;
+  /// Sets them from a view of the load whose output they are.
+  virtual void read(const LoadView& view, std::span<double> values) const noexcept = 0;
+};
+
+/// Where and along what an input acts: on a generalized speed, or by a force or moment at a frame.
+struct InputPlace {
+  int speed = -1;  ///< index; −1: at the frame
+  FrameIndex frame;
+  Vector3 direction = Vector3::Zero();  ///< unit vector, in world axes or those of the frame
+  bool following = false;               ///< in those of the frame
+  bool moment = false;
+};
+
 /// A value that a host sets between the steps of a simulation. It is kept in the discrete states of its load, so that
 /// a State knows it.
 class InputPort {
@@ -75,6 +140,8 @@ class InputPort {
   virtual ~InputPort() = default;
   /// SI unit of the value: "N m" or "N".
   [[nodiscard]] virtual std::string unit() const = 0;
+  /// Where it acts, and what controllers add to it.
+  [[nodiscard]] virtual InputPlace place() const = 0;
   /// Whether a value that is set is reached in a straight line at the end of the next step; else it holds at once.
   [[nodiscard]] virtual bool interpolates() const = 0;
   /// The value at time t [s].
@@ -116,12 +183,21 @@ class BoundLoad {
   [[nodiscard]] virtual std::vector<double> discontinuities() const = 0;
   /// What of the load changes at instants alone, beside what `add` and `wrenches` give; null where nothing does.
   [[nodiscard]] virtual const DiscretePart* discrete() const { return nullptr; }
+  /// What of the load has differential equations of its own; null where nothing has.
+  [[nodiscard]] virtual const ContinuousPart* continuous() const { return nullptr; }
+  /// What it gives to other loads; null where nothing.
+  [[nodiscard]] virtual const LoadOutput* output() const { return nullptr; }
   /// The value in the discrete states that a host sets; null where they are the load's own.
   [[nodiscard]] virtual const InputPort* input() const { return nullptr; }
   /// Time [s] at which the load has done its work (a slew's end); 0 where it has no end of its own.
   [[nodiscard]] virtual double end() const = 0;
   /// Sets the hinge coordinates where the load wants the motion to begin (a slew starts at its `from`).
   virtual void begin(State& state) const = 0;
+  /// The load for the same tree compiled in these terms, its bodies in their strain kinematics, where it asks the model
+  /// for more than indices; null where it is that one itself.
+  [[nodiscard]] virtual std::unique_ptr<BoundLoad> rebound(const Model& /*model*/, const Terms& /*terms*/) const {
+    return nullptr;
+  }
 };
 
 /// A load as the scene states it.

@@ -107,4 +107,12 @@ ParameterSpec named(std::string key, std::vector<ParameterSpec> members, std::st
   return s;
 }
 
+ParameterSpec matrix(std::string key, std::string unit, std::string meaning) {
+  return make(ParameterSpec::Kind::matrix, std::move(key), std::move(unit), std::move(meaning));
+}
+
+ParameterSpec texts(std::string key, std::string meaning) {
+  return make(ParameterSpec::Kind::texts, std::move(key), "", std::move(meaning));
+}
+
 }  // namespace withy

@@ -28,9 +28,24 @@ struct ParameterSpec {
               ///< of the other columns
     map,      ///< the members given in `members`
     named,    ///< any number of named maps, each with `members`; the names refer as `refers` says
+    matrix,   ///< rows of numbers in `unit`, one row at least and all of one length, at least one
+    texts,    ///< a text, or a list of them, at least one: as `text`; becomes a list
   };
   /// What a name must be the name of; the reader reports dangling names.
-  enum class Refers { nothing, body, hinge, frame, load, mode_family, motion, strain_kinematics, formulation };
+  enum class Refers {
+    nothing,
+    body,
+    hinge,
+    frame,
+    load,
+    mode_family,
+    motion,
+    strain_kinematics,
+    formulation,
+    signal,  ///< a number that loads measure: a column of a hinge, a number of an output, what a load gives
+             ///< (signals.hpp)
+    input    ///< a load of type input
+  };
   /// What a parameter is to studies, whatever its key: they vary those that have a role (mode_parameters.hpp).
   enum class Role {
     none,
@@ -76,5 +91,7 @@ ParameterSpec vector(std::string key, std::size_t count, std::string unit, std::
 ParameterSpec table(std::string key, std::vector<std::string> column_units, std::string meaning);
 ParameterSpec map(std::string key, std::vector<ParameterSpec> members, std::string meaning);
 ParameterSpec named(std::string key, std::vector<ParameterSpec> members, std::string meaning);
+ParameterSpec matrix(std::string key, std::string unit, std::string meaning);
+ParameterSpec texts(std::string key, std::string meaning);
 
 }  // namespace withy

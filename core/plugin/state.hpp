@@ -18,8 +18,8 @@ struct Slot {
   std::size_t speeds = 0;     ///< count
 };
 
-/// Where the discrete states of a load stand in State::y.
-struct DiscreteSlot {
+/// Where the discrete or the continuous states of a load stand in State::y.
+struct LoadSlot {
   std::size_t load = 0;  ///< index in Model::loads()
   std::size_t first = 0;
   std::size_t count = 0;
@@ -33,11 +33,16 @@ struct Layout {
   std::vector<std::string> speed_names;  ///< as `shoulder.0`, `link1.bending_y[1]`
   std::size_t positions = 0;
   std::size_t speeds = 0;
-  std::size_t discrete = 0;                  ///< count of discrete states
-  std::vector<DiscreteSlot> discrete_slots;  ///< of the loads that have any, in their order
+  std::size_t continuous = 0;                 ///< count of continuous states of loads
+  std::size_t discrete = 0;                   ///< count of discrete states of loads
+  std::vector<LoadSlot> continuous_slots;     ///< of the loads with a continuous part, in their order
+  std::vector<LoadSlot> discrete_slots;       ///< of the loads that have discrete states, in their order
+  std::vector<std::string> continuous_names;  ///< as `servo.integral`
 
   /// Number of elements of State::y.
-  [[nodiscard]] std::size_t size() const { return positions + speeds + discrete + 1; }
+  [[nodiscard]] std::size_t size() const { return moving() + discrete + 1; }
+  /// Those that change between instants and on which derivatives depend: positions, speeds and continuous states.
+  [[nodiscard]] std::size_t moving() const { return positions + speeds + continuous; }
   [[nodiscard]] const Slot* hinge(std::string_view name) const;
   [[nodiscard]] const Slot* body(std::string_view name) const;
   /// Modes of a body of the model, by its index; null where it has none.
@@ -47,8 +52,9 @@ struct Layout {
 };
 
 /// Time [s], then in one array y: positions (hinge coordinates [rad, m], modal coordinates), speeds (their rates; for
-/// quaternions the angular velocity), discrete states of loads (constant between instants, so their derivatives are
-/// zero), and last the work [J] done so far by loads, motions and damping.
+/// quaternions the angular velocity), continuous states of loads (with differential equations of their own), discrete
+/// states of loads (constant between instants, so their derivatives are zero), and last the work [J] done so far by
+/// loads, motions and damping.
 struct State {
   double time = 0;
   std::vector<double> y;

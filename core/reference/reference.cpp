@@ -130,11 +130,10 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
     const Slot& slot = layout.hinges[static_cast<std::size_t>(node.hinge)];
     for (std::size_t i = 0; i < slot.speeds; ++i) s.prescribed.push_back({slot.speed + i, u_dot[slot.speed + i]});
   }
-  for (const LoadNode& node : model_->loads()) {
-    std::vector<double> scratch(node.load->scratch());
+  std::vector<double> scratch(model_->load_scratch());
+  for (const LoadNode& node : model_->loads())
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), s.applied, scratch);
-  }
-  model_->add_discrete_efforts(t, y, s.applied);
+  model_->add_state_efforts(t, y, s.applied, scratch);
   return s;
 }
 
@@ -144,6 +143,7 @@ std::vector<PlacedWrench> ReferenceDynamics::wrenches_at(double t, std::span<con
     terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? 0.0 : 1.0, rods_[b].get()});
   const reference::ReferenceTree<double> tree(*model_, std::move(terms), y);
   std::vector<PlacedWrench> all;
+  std::vector<double> scratch(model_->load_scratch());
   for (const LoadNode& node : model_->loads()) {
     std::vector<FrameMotion> motions;
     for (const FrameIndex& at : node.load->frames()) {
@@ -151,7 +151,7 @@ std::vector<PlacedWrench> ReferenceDynamics::wrenches_at(double t, std::span<con
       motions.push_back({A.R, A.p, A.w, A.v});
     }
     std::vector<Wrench> wrenches(motions.size());
-    node.wrenches(t, y, motions, wrenches);
+    node.wrenches(t, y, model_->layout(), motions, wrenches, scratch);
     for (std::size_t i = 0; i < wrenches.size(); ++i) all.push_back({node.load->frames()[i], wrenches[i]});
   }
   return all;

@@ -94,8 +94,9 @@ bool EffortWatch::hides_a_peak() const {
   return false;
 }
 
-/// Within a step: positions on the cubic through those at its ends and their rates, speeds on the line.
+/// Within a step: positions on the cubic through those at its ends and their rates, the rest on the line.
 void EffortWatch::look_between(const Sample& before, const Sample& after) {
+  const std::size_t moving = equations_.layout().moving();
   const std::vector<double>&x = before.state.y, &y = after.state.y;
   const double h = after.state.time - before.state.time;
   const bool smooth = equations_.position_rates(before.state.time, x, rates_before_, work_).ok() &&
@@ -108,7 +109,7 @@ void EffortWatch::look_between(const Sample& before, const Sample& after) {
     for (std::size_t i = 0; i < positions_; ++i)
       between_.state.y[i] =
           smooth ? cubic(s, x[i], h * rates_before_[i], y[i], h * rates_[i]) : (1 - s) * x[i] + s * y[i];
-    for (std::size_t i = positions_; i < positions_ + speeds_; ++i) between_.state.y[i] = (1 - s) * x[i] + s * y[i];
+    for (std::size_t i = positions_; i < moving; ++i) between_.state.y[i] = (1 - s) * x[i] + s * y[i];
     equations_.normalize(between_.state.y);
     evaluate(between_);
     raise(between_);

@@ -282,7 +282,7 @@ EscalatedRun simulate_escalating(const Model& model, const std::vector<Rung>& ru
                                  const State& initial, const RunOptions& options,
                                  const std::function<void(const State&, std::size_t)>& output) {
   if (rungs.empty()) throw std::invalid_argument("no formulation to run in");
-  for (const DiscreteSlot& slot : model.layout().discrete_slots)
+  for (const LoadSlot& slot : model.layout().discrete_slots)
     if (model.loads()[slot.load].load->input() == nullptr)
       throw std::invalid_argument("discrete states of loads do not go over from one formulation to the next");
   if (options.checkpoint || options.resume != nullptr)

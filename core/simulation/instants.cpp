@@ -9,7 +9,7 @@ namespace {
 
 int sign(double value) { return (value > 0) - (value < 0); }
 
-const DiscretePart& part_of(const Model& model, const DiscreteSlot& slot) {
+const DiscretePart& part_of(const Model& model, const LoadSlot& slot) {
   return *model.loads()[slot.load].load->discrete();
 }
 
@@ -25,7 +25,7 @@ std::span<const double> speeds(const Model& model, std::span<const double> y) {
 bool has_switches(const Model& model) {
   const auto& slots = model.layout().discrete_slots;
   return std::any_of(slots.begin(), slots.end(),
-                     [&](const DiscreteSlot& slot) { return part_of(model, slot).switches() > 0; });
+                     [&](const LoadSlot& slot) { return part_of(model, slot).switches() > 0; });
 }
 
 State begun(const Model& model, State state) {
@@ -35,7 +35,7 @@ State begun(const Model& model, State state) {
 
 Clocks::Clocks(const Model& model) : model_(model) {
   std::size_t scratch = 0;
-  for (const DiscreteSlot& slot : model.layout().discrete_slots) {
+  for (const LoadSlot& slot : model.layout().discrete_slots) {
     scratch = std::max(scratch, model.loads()[slot.load].load->scratch());
     if (const double period = part_of(model, slot).period(); period > 0) clocks_.push_back({slot, period, 0});
   }
@@ -43,7 +43,7 @@ Clocks::Clocks(const Model& model) : model_(model) {
 }
 
 void Clocks::begin(State& state) {
-  for (const DiscreteSlot& slot : model_.layout().discrete_slots) renew(state, slot, {});
+  for (const LoadSlot& slot : model_.layout().discrete_slots) renew(state, slot, {});
   go_on_after(state.time);
 }
 
@@ -68,7 +68,7 @@ void Clocks::renew(State& state) {
   }
 }
 
-void Clocks::renew(State& state, const DiscreteSlot& slot, const Crossing& crossing) {
+void Clocks::renew(State& state, const LoadSlot& slot, const Crossing& crossing) {
   const std::span<double> y(state.y);
   part_of(model_, slot)
       .renew(state.time, positions(model_, y), speeds(model_, y), crossing, y.subspan(slot.first, slot.count),
@@ -77,7 +77,7 @@ void Clocks::renew(State& state, const DiscreteSlot& slot, const Crossing& cross
 
 ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start)
     : model_(model), events_(events), inside_(start) {
-  for (const DiscreteSlot& slot : model.layout().discrete_slots) {
+  for (const LoadSlot& slot : model.layout().discrete_slots) {
     if (part_of(model, slot).switches() == 0) continue;
     switches_ += part_of(model, slot).switches();
     slots_.push_back(slot);
@@ -89,7 +89,7 @@ ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const
 
 void ZeroWatch::evaluate(double t, std::span<const double> y, std::span<double> values) const {
   std::size_t at = 0;
-  for (const DiscreteSlot& slot : slots_) {
+  for (const LoadSlot& slot : slots_) {
     const DiscretePart& part = part_of(model_, slot);
     part.switching(t, positions(model_, y), speeds(model_, y), y.subspan(slot.first, slot.count),
                    values.subspan(at, part.switches()));
@@ -170,10 +170,10 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, doub
   return zeros_;
 }
 
-std::optional<std::pair<DiscreteSlot, int>> ZeroWatch::switching(std::size_t function) const {
+std::optional<std::pair<LoadSlot, int>> ZeroWatch::switching(std::size_t function) const {
   if (function >= switches_) return {};
   std::size_t index = function;
-  for (const DiscreteSlot& slot : slots_) {
+  for (const LoadSlot& slot : slots_) {
     const std::size_t count = part_of(model_, slot).switches();
     if (index < count) return std::pair{slot, static_cast<int>(index)};
     index -= count;

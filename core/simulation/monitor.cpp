@@ -201,8 +201,26 @@ void Monitor::finish_momenta() {
   MomentumDrift& m = summary_.momentum;
   m.conserved = floats && outside <= rounding * all;
   if (!m.conserved) return;
-  m.linear = greatest_linear_ > 0 ? linear_error_ / greatest_linear_ : 0;
-  m.angular = greatest_angular_ > 0 ? angular_error_ / greatest_angular_ : 0;
+  // A tree at rest as a whole has momenta of rounding alone: they are measured by what its energy could carry,
+  // |P|² ≤ 2 m T and |L|² ≤ 2 T Σ m r².
+  double mass = 0, inertia = 0;
+  for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
+    double away = 0;  // of the body
+    if (!model_.bodies()[b].frames.empty()) {
+      const WorldPose root = seen_.frame_pose(static_cast<int>(b), 0);
+      away = std::hypot(root.position[0], root.position[1], root.position[2]);
+    }
+    for (const Particle& p : model_.bodies()[b].body->shape().particles) {
+      mass += p.mass;
+      inertia += p.mass * std::pow(away + p.at.X.norm(), 2);
+    }
+  }
+  const auto relative = [&](double error, double greatest, double most) {
+    const double scale = greatest > 1e-9 * most ? greatest : most;
+    return scale > 0 ? error / scale : 0.0;
+  };
+  m.linear = relative(linear_error_, greatest_linear_, std::sqrt(2 * mass * energy_scale_));
+  m.angular = relative(angular_error_, greatest_angular_, std::sqrt(2 * inertia * energy_scale_));
 }
 
 void Monitor::audit_energy(const State& state) {

@@ -12,16 +12,18 @@ namespace withy {
 namespace {
 
 /// Both equations as one system for a stepper, of one thread: y holds the positions of both, the
-/// speeds of both, the discrete states of both, then the work of both together.
+/// speeds of both, the continuous and the discrete states of both, then the work of both together.
 class PairedEquations final : public EquationsOfMotion {
  public:
   PairedEquations(const EquationsOfMotion& first, const EquationsOfMotion& second)
       : halves_{Half(first), Half(second)},
         positions_(first.layout().positions),
         speeds_(first.layout().speeds),
+        continuous_(first.layout().continuous),
         discrete_(first.layout().discrete) {
     layout_.positions = 2 * positions_;
     layout_.speeds = 2 * speeds_;
+    layout_.continuous = 2 * continuous_;
     layout_.discrete = 2 * discrete_;
   }
   const Layout& layout() const override { return layout_; }
@@ -79,8 +81,9 @@ class PairedEquations final : public EquationsOfMotion {
   struct Part {
     std::size_t first, count;
   };
-  [[nodiscard]] std::array<Part, 3> parts() const noexcept {
-    return {{{0, positions_}, {positions_, speeds_}, {positions_ + speeds_, discrete_}}};
+  [[nodiscard]] std::array<Part, 4> parts() const noexcept {
+    const std::size_t continuous = positions_ + speeds_, discrete = continuous + continuous_;
+    return {{{0, positions_}, {positions_, speeds_}, {continuous, continuous_}, {discrete, discrete_}}};
   }
   struct Half {
     explicit Half(const EquationsOfMotion& e) : equations(&e), work(e.make_work()), y(e.size()), y_dot(e.size()) {}
@@ -91,7 +94,7 @@ class PairedEquations final : public EquationsOfMotion {
   [[noreturn]] static void refuse() { throw std::logic_error("two models in one have no dynamics but their own"); }
 
   mutable std::array<Half, 2> halves_;
-  std::size_t positions_, speeds_, discrete_;
+  std::size_t positions_, speeds_, continuous_, discrete_;
   Layout layout_;
 };
 

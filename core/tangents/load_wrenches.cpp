@@ -4,27 +4,31 @@
 
 namespace withy::analysis {
 
-std::vector<AppliedWrench<double>> wrenches_of(const LoadNode& load, double t, std::span<const double> y,
-                                               const std::vector<FrameState<double>>& frames, bool& /*depends*/) {
+std::vector<AppliedWrench<double>> wrenches_of(const LoadNode& load, const Model& model, double t,
+                                               std::span<const double> y, const std::vector<FrameState<double>>& frames,
+                                               bool& /*depends*/) {
   std::vector<FrameMotion> motions;
   for (const FrameState<double>& f : frames) motions.push_back({f.R, f.p, f.w, f.v});
   std::vector<Wrench> values(frames.size());
-  load.wrenches(t, y, motions, values);
+  std::vector<double> scratch(model.load_scratch());
+  load.wrenches(t, y, model.layout(), motions, values, scratch);
   std::vector<AppliedWrench<double>> result;
   for (std::size_t k = 0; k < frames.size(); ++k)
     result.push_back({load.load->frames()[k], values[k].moment, values[k].force});
   return result;
 }
 
-std::vector<AppliedWrench<Jet>> wrenches_of(const LoadNode& load, double t, std::span<const double> y,
-                                            const std::vector<FrameState<Jet>>& frames, bool& depends) {
+std::vector<AppliedWrench<Jet>> wrenches_of(const LoadNode& load, const Model& model, double t,
+                                            std::span<const double> y, const std::vector<FrameState<Jet>>& frames,
+                                            bool& depends) {
   const auto value = [](const Jet& x) { return x.value(); };
   std::vector<FrameMotion> motions;
   for (const FrameState<Jet>& f : frames)
     motions.push_back({f.R.unaryExpr(value), f.p.unaryExpr(value), f.w.unaryExpr(value), f.v.unaryExpr(value)});
+  std::vector<double> scratch(model.load_scratch());
   const auto wrenches_at = [&](const std::vector<FrameMotion>& at) {
     std::vector<Wrench> values(at.size());
-    load.wrenches(t, y, at, values);
+    load.wrenches(t, y, model.layout(), at, values, scratch);
     Eigen::Matrix<double, 6, Eigen::Dynamic> all(6, static_cast<Eigen::Index>(at.size()));
     for (std::size_t k = 0; k < at.size(); ++k)
       all.col(static_cast<Eigen::Index>(k)) << values[k].moment, values[k].force;

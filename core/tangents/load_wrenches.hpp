@@ -11,12 +11,14 @@ namespace withy::analysis {
 /// Loads and hinges that have no derivatives of their own are differentiated with this step [rad, m, s⁻¹ of these].
 constexpr double difference_step = 1e-3;
 
-/// Wrenches at frames in motion; y as State::y, for the discrete states.
-std::vector<AppliedWrench<double>> wrenches_of(const LoadNode& load, double t, std::span<const double> y,
-                                               const std::vector<FrameState<double>>& frames, bool& depends);
+/// Wrenches at frames in motion; y as State::y, for the load's own states.
+std::vector<AppliedWrench<double>> wrenches_of(const LoadNode& load, const Model& model, double t,
+                                               std::span<const double> y, const std::vector<FrameState<double>>& frames,
+                                               bool& depends);
 /// The same with derivatives: those of the wrenches with respect to the frames' motion by central differences, that
 /// motion's own exactly. `depends` becomes true where they are not zero.
-std::vector<AppliedWrench<Jet>> wrenches_of(const LoadNode& load, double t, std::span<const double> y,
-                                            const std::vector<FrameState<Jet>>& frames, bool& depends);
+std::vector<AppliedWrench<Jet>> wrenches_of(const LoadNode& load, const Model& model, double t,
+                                            std::span<const double> y, const std::vector<FrameState<Jet>>& frames,
+                                            bool& depends);
 
 }  // namespace withy::analysis

@@ -47,11 +47,13 @@ Evaluation StateJacobian::jacobian(double t, std::span<const double> y, std::spa
                                    std::span<double> jacobian) const {
   const Model& model = dynamics_.model();
   const Layout& layout = model.layout();
-  const auto positions = static_cast<Eigen::Index>(layout.positions), n = static_cast<Eigen::Index>(layout.speeds);
+  const auto positions = static_cast<Eigen::Index>(layout.positions), n = static_cast<Eigen::Index>(layout.speeds),
+             z = static_cast<Eigen::Index>(layout.continuous);
   const Tangents tangents = dynamics_.tangents(t, y, Eigen::Map<const Eigen::VectorXd>(y_dot.data() + positions, n));
 
   // Rows and columns of the prescribed speeds become those of the identity, so that their u̇ has no derivatives.
-  Eigen::MatrixXd M = tangents.mass, by_position = tangents.by_position, by_speed = tangents.by_speed;
+  Eigen::MatrixXd M = tangents.mass, by_position = tangents.by_position, by_speed = tangents.by_speed,
+                  by_state = tangents.by_state;
   for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
     if (!model.driven(h)) continue;
     const auto first = static_cast<Eigen::Index>(layout.hinges[h].speed),
@@ -61,18 +63,27 @@ Evaluation StateJacobian::jacobian(double t, std::span<const double> y, std::spa
     M.block(first, first, count, count).setIdentity();
     by_position.middleRows(first, count).setZero();
     by_speed.middleRows(first, count).setZero();
+    if (z > 0) by_state.middleRows(first, count).setZero();
   }
   const Eigen::PartialPivLU<Eigen::MatrixXd> lu(M);
-  const Eigen::MatrixXd by_displacement = -lu.solve(by_position);
+  // Of u̇, then of ż.
+  Eigen::MatrixXd by_displacement(n + z, n);
+  by_displacement.topRows(n) = -lu.solve(by_position);
 
-  Eigen::Map<Eigen::MatrixXd> J(jacobian.data(), positions + n, positions + n);
+  Eigen::Map<Eigen::MatrixXd> J(jacobian.data(), positions + n + z, positions + n + z);
   J.setZero();
-  J.bottomRightCorner(n, n) = -lu.solve(by_speed);
+  J.block(positions, positions, n, n) = -lu.solve(by_speed);
+  if (z > 0) {
+    by_displacement.bottomRows(z) = tangents.rate_by_position;
+    J.block(positions, positions + n, n, z) = -lu.solve(by_state);
+    J.block(positions + n, positions, z, n) = tangents.rate_by_speed;
+    J.bottomRightCorner(z, z) = tangents.rate_by_state;
+  }
   const auto identity = [&](const Slot& slot) {
     for (std::size_t i = 0; i < slot.positions; ++i) {
       const auto x = static_cast<Eigen::Index>(slot.position + i), u = static_cast<Eigen::Index>(slot.speed + i);
       J(x, positions + u) = 1;
-      J.col(x).tail(n) = by_displacement.col(u);
+      J.col(x).tail(n + z) = by_displacement.col(u);
     }
   };
   for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
@@ -88,7 +99,7 @@ Evaluation StateJacobian::jacobian(double t, std::span<const double> y, std::spa
                                          y.subspan(layout.positions + slot.speed, slot.speeds));
     J.block(x, x, count, count) = c.drift;
     J.block(x, positions + u, count, speeds) = c.rates;
-    J.block(positions, x, n, count) = by_displacement.middleCols(u, speeds) * c.inverse;
+    J.block(positions, x, n + z, count) = by_displacement.middleCols(u, speeds) * c.inverse;
   }
   for (const Slot& slot : layout.bodies) identity(slot);
   if (!J.allFinite()) return {Evaluation::Outcome::singular, -1};

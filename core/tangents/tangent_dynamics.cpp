@@ -5,6 +5,7 @@
 
 #include "withy/core/plugin/central_difference.hpp"
 #include "withy/core/reference/first_order_energy.hpp"
+#include "withy/core/tangents/continuous_tangents.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
 #include "withy/core/tangents/recursion.hpp"
 
@@ -169,6 +170,8 @@ TangentDynamics::TangentDynamics(std::shared_ptr<const Model> model, Terms terms
     if (rod == nullptr) throw std::invalid_argument("body '" + body.name + "' has no exact kinematics");
     rods_.back() = std::make_shared<const RodTable>(*rod);
   }
+  for (const LoadNode& node : model_->loads())
+    controlled_frames_ = controlled_frames_ || (node.continuous != nullptr && !node.load->frames().empty());
 }
 
 template <class T>
@@ -181,7 +184,7 @@ std::vector<AppliedWrench<T>> TangentDynamics::wrenches(double t, std::span<cons
     std::vector<FrameState<T>> frames;
     for (const FrameIndex& at : load.frames()) frames.push_back(shown.frame_state(at));
     bool depends = false;
-    for (AppliedWrench<T>& w : analysis::wrenches_of(model_->loads()[l], t, y, frames, depends))
+    for (AppliedWrench<T>& w : analysis::wrenches_of(model_->loads()[l], *model_, t, y, frames, depends))
       all.push_back(std::move(w));
     if (differenced != nullptr && depends) (*differenced)[l] = true;
   }
@@ -190,11 +193,11 @@ std::vector<AppliedWrench<T>> TangentDynamics::wrenches(double t, std::span<cons
 
 template <class T>
 VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen::VectorXd& a, Seeds seeds,
-                               std::vector<bool>* differenced) const {
+                               std::vector<bool>* differenced, std::span<const double> seen) const {
   const Builder<T> build{*this, y, a, seeds};
   const auto ruthless = [&](std::size_t b) { return terms_[b].truncation == Truncation::ruthless; };
   const Recursion<T> shown(*model_, build.hinges(), build.bodies(ruthless));
-  const std::vector<AppliedWrench<T>> wrenches = this->wrenches(t, y, shown, differenced);
+  const std::vector<AppliedWrench<T>> wrenches = this->wrenches(t, seen.empty() ? y : seen, shown, differenced);
   if (!products_of_speeds_) {
     const Builder<T> still{*this, y, a, seeds, true};
     return Recursion<T>(*model_, still.hinges(), still.bodies(ruthless)).efforts(wrenches);
@@ -233,13 +236,14 @@ VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen:
   return r;
 }
 
-Eigen::VectorXd TangentDynamics::first_order_efforts(double t, std::span<const double> y,
-                                                     const Eigen::VectorXd& a) const {
+Eigen::VectorXd TangentDynamics::first_order_efforts(double t, std::span<const double> y, const Eigen::VectorXd& a,
+                                                     std::span<const double> seen) const {
   const Builder<double> build{*this, y, a, {}};
   const auto ruthless = [&](std::size_t b) { return terms_[b].truncation == Truncation::ruthless; };
   const Recursion<double> shown(*model_, build.hinges(), build.bodies(ruthless));
   std::vector<reference::PlacedWrench> placed;
-  for (const AppliedWrench<double>& w : wrenches(t, y, shown, nullptr)) placed.push_back({w.at, {w.moment, w.force}});
+  for (const AppliedWrench<double>& w : wrenches(t, seen.empty() ? y : seen, shown, nullptr))
+    placed.push_back({w.at, {w.moment, w.force}});
   const reference::FirstOrderSystem s = reference::first_order_system(*model_, terms_, y, placed);
   return s.M * a - s.f - s.applied;
 }
@@ -292,11 +296,10 @@ Eigen::VectorXd TangentDynamics::elastic(std::span<const double> y) const {
 Eigen::VectorXd TangentDynamics::load_efforts(double t, std::span<const double> y) const {
   const Layout& layout = model_->layout();
   std::vector<double> efforts(layout.speeds, 0.0);
-  for (const LoadNode& node : model_->loads()) {
-    std::vector<double> scratch(node.load->scratch());
+  std::vector<double> scratch(model_->load_scratch());
+  for (const LoadNode& node : model_->loads())
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), efforts, scratch);
-  }
-  model_->add_discrete_efforts(t, y, efforts);
+  model_->add_state_efforts(t, y, efforts, scratch);
   return Eigen::Map<const Eigen::VectorXd>(efforts.data(), static_cast<Eigen::Index>(efforts.size()));
 }
 
@@ -412,6 +415,34 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, Tangents& t
   }
   tangents.by_position -= by_position;
   tangents.by_speed -= by_speed;
+  if (!layout.continuous_slots.empty()) add_continuous(t, y, tangents);
+}
+
+void TangentDynamics::add_continuous(double t, std::span<const double> y, Tangents& tangents) const {
+  std::vector<bool> differenced(model_->loads().size(), false);
+  const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
+  const auto move = [&](std::span<double> moved, std::size_t speed, double h) {
+    displace(moved, h * Eigen::VectorXd::Unit(n, static_cast<Eigen::Index>(speed)));
+  };
+  // The residual has efforts on its other side.
+  const auto of_wrenches = [&, a = Eigen::VectorXd(Eigen::VectorXd::Zero(n))](std::span<const double> seen) {
+    return Eigen::VectorXd(
+        -(symmetric_ ? first_order_efforts(t, y, a, seen) : efforts<double>(t, y, a, {}, nullptr, seen)));
+  };
+  std::function<Eigen::VectorXd(std::span<const double>)> at_frames;
+  if (controlled_frames_) at_frames = of_wrenches;
+  ContinuousTangents own = continuous_tangents(*model_, t, y, move, at_frames, differenced);
+  tangents.by_position -= own.effort_by_position;
+  tangents.by_speed -= own.effort_by_speed;
+  tangents.by_state = -own.effort_by_state;
+  tangents.rate_by_position = std::move(own.rate_by_position);
+  tangents.rate_by_speed = std::move(own.rate_by_speed);
+  tangents.rate_by_state = std::move(own.rate_by_state);
+  for (std::size_t l = 0; l < differenced.size(); ++l) {
+    const std::string& name = model_->loads()[l].name;
+    const auto begin = tangents.differenced.begin(), end = tangents.differenced.end();
+    if (differenced[l] && std::find(begin, end, name) == end) tangents.differenced.push_back(name);
+  }
 }
 
 void TangentDynamics::displace(std::span<double> y, const Eigen::VectorXd& delta) const {

@@ -28,10 +28,12 @@ struct Tangents {
   Eigen::MatrixXd mass;         ///< ∂r/∂a = M
   Eigen::MatrixXd by_position;  ///< ∂r/∂δ: tangent stiffness, with weight, spin, acceleration and loads
   Eigen::MatrixXd by_speed;     ///< ∂r/∂u: damping and gyroscopic terms
+  /// With the continuous states z of loads, ż = g(t, δ, u, z): ∂r/∂z (speeds × z), ∂g/∂δ and ∂g/∂u (z × speeds), ∂g/∂z.
+  Eigen::MatrixXd by_state, rate_by_position, rate_by_speed, rate_by_state;
   /// C of δ̇ = δu + C δ: zero but where speeds are no derivatives of coordinates (angular velocities).
   Eigen::MatrixXd drift;
-  /// Loads whose derivatives are numerical: without BoundLoad::add_derivatives, or wrenches that depend on their
-  /// frame's motion, with respect to that motion.
+  /// Loads whose derivatives are numerical: without BoundLoad::add_derivatives or those of their continuous part, or
+  /// wrenches that depend on their frame's motion, with respect to that motion.
   std::vector<std::string> differenced;
 };
 
@@ -84,20 +86,23 @@ class TangentDynamics {
   std::vector<analysis::AppliedWrench<T>> wrenches(double t, std::span<const double> y,
                                                    const analysis::Recursion<T>& shown,
                                                    std::vector<bool>* differenced) const;
+  /// \param seen the state that wrenches of loads see, y where it is empty
   template <class T>
   [[nodiscard]] Eigen::Matrix<T, Eigen::Dynamic, 1> efforts(double t, std::span<const double> y,
                                                             const Eigen::VectorXd& a, Seeds seeds,
-                                                            std::vector<bool>* differenced = nullptr) const;
+                                                            std::vector<bool>* differenced = nullptr,
+                                                            std::span<const double> seen = {}) const;
   /// The residual; its derivatives along directions from `from` on, one a column.
   Eigen::VectorXd differentiate(double t, std::span<const double> y, const Eigen::VectorXd& a, std::size_t from,
                                 Eigen::Ref<Eigen::MatrixXd> columns, std::vector<bool>* differenced) const;
   /// Of the symmetric truncation.
-  [[nodiscard]] Eigen::VectorXd first_order_efforts(double t, std::span<const double> y,
-                                                    const Eigen::VectorXd& a) const;
+  [[nodiscard]] Eigen::VectorXd first_order_efforts(double t, std::span<const double> y, const Eigen::VectorXd& a,
+                                                    std::span<const double> seen = {}) const;
   void differentiate_first_order(double t, std::span<const double> y, const Eigen::VectorXd& a, std::size_t from,
                                  Eigen::Ref<Eigen::MatrixXd> columns, std::vector<bool>* differenced) const;
   void add_elastic(Tangents& tangents) const;
   void add_loads(double t, std::span<const double> y, Tangents& tangents) const;
+  void add_continuous(double t, std::span<const double> y, Tangents& tangents) const;
   [[nodiscard]] Eigen::VectorXd load_efforts(double t, std::span<const double> y) const;
   [[nodiscard]] Eigen::VectorXd elastic(std::span<const double> y) const;
   [[nodiscard]] Eigen::MatrixXd drift(std::span<const double> y) const;
@@ -106,6 +111,7 @@ class TangentDynamics {
   std::vector<Terms> terms_;                           ///< of each body
   std::vector<const Slot*> slots_;                     ///< of each body's modes; null where it has none
   std::vector<std::shared_ptr<const RodTable>> rods_;  ///< of each body; null where its kinematics is an expansion
+  bool controlled_frames_ = false;                     ///< a load with a continuous part acts at a frame
   bool strict_ = false, symmetric_ = false;
   bool products_of_speeds_ = true;
 };

@@ -79,6 +79,23 @@ TEST_P(HelpOf, AnUnknownOptionIsBadInputAndLeavesStandardOutputAlone) {
   EXPECT_NE(f.err, "");
 }
 
+TEST(Help, ColoursAreForTerminalsThatWantThem) {
+  const Folder folder;
+  const std::string program = WITHY_PROGRAM;
+  // `script` gives a program a terminal.
+  const auto on_terminal = [&](const std::string& before) {
+    return Process(folder, {"/bin/sh", "-c",
+                            "exec env TERM=xterm " + before + " script -qec \"'" + program +
+                                "' run scenes/pendulum.yaml --out out --force\" /dev/null"})
+        .wait()
+        .out;
+  };
+  EXPECT_THAT(on_terminal(""), HasSubstr("\033[32mcompleted\033[0m"));
+  EXPECT_THAT(on_terminal("NO_COLOR=1"), testing::Not(HasSubstr("\033[32m")));
+  EXPECT_THAT(withy(folder, {"run", "scenes/pendulum.yaml", "--out", "out", "--force"}).out,
+              testing::Not(HasSubstr("\033")));
+}
+
 /// What bash offers behind the words.
 std::vector<std::string> completed(const Folder& folder, const std::string& typed) {
   const std::string script = withy(folder, {"completion", "bash"}).out;

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "withy/apps/withy/allocations.hpp"
+#include "withy/apps/withy/colour.hpp"
 #include "withy/results/svg_plot.hpp"
 #include "withy/results/text_table.hpp"
 
@@ -26,6 +27,16 @@ TEST(Allocations, OfOperatorNewMallocAndEigenAreCounted) {
   EXPECT_EQ(allocations(), before + 3);
   two.setConstant(*one);
   EXPECT_EQ(allocations(), before + 3) << "arithmetic allocates nothing";
+}
+
+TEST(Colour, OutcomesAndPlacesAreMarkedAndNothingElseChanges) {
+  EXPECT_EQ(with_outcomes_coloured("outcome   completed\nuncompleted, completed.\nquadratic diverged at"),
+            "outcome   \033[32mcompleted\033[0m\nuncompleted, completed.\nquadratic \033[31mdiverged\033[0m at");
+  EXPECT_EQ(with_places_bold("arm.yaml:3:7: /bodies: got 1: no\nt = 3: word 4:5: x\ntable.csv:12: bad\n"),
+            "\033[1marm.yaml:3:7:\033[0m /bodies: got 1: no\nt = 3: word 4:5: x\n\033[1mtable.csv:12:\033[0m bad\n");
+  const std::string text = "t[s],x\n\n 1:2:\n";
+  EXPECT_EQ(with_outcomes_coloured(text), text);
+  EXPECT_EQ(with_places_bold(text), text);
 }
 
 TEST(SvgPlot, AxisMarksAreRoundAndInside) {

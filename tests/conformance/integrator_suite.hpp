@@ -247,6 +247,31 @@ TEST_P(IntegratorSuite, jumps_to_another_state) {
   EXPECT_EQ(stepper->state().y, fresh->state().y);
 }
 
+// Continuous states of loads stand behind the speeds and follow first-order equations of their own, here one that the
+// motion would not leave alone: ẍ = −x + z, ż = −z + 0.7 (x − X(t)), X = (e⁻ᵗ + cos t + sin t)/2 what it does from 1 at
+// rest with z = 1.
+TEST_P(IntegratorSuite, has_the_order_it_states_with_continuous_states_of_loads) {
+  Layout layout = Duffing::equations().layout();
+  layout.continuous = 1;
+  const auto X = [](double t) { return 0.5 * (std::exp(-t) + std::cos(t) + std::sin(t)); };
+  FunctionEquations equations(layout, [&](double t, std::span<const double> y, std::span<double> f) {
+    f[0] = y[1];
+    f[1] = -y[0] + y[2];
+    f[2] = -y[2] + 0.7 * (y[0] - X(t));
+    f[3] = 0;
+    return Evaluation{};
+  });
+  equations.stiffness_ = {1};
+  const auto error = [&](double h) {
+    const auto stepper = with_step(h)->start(equations, {0, {1, 0, 1, 0}});
+    EXPECT_EQ(drive(*stepper, 3).outcome, StepResult::Outcome::ok);
+    return std::max(std::abs(stepper->state().y[0] - X(3)), std::abs(stepper->state().y[2] - std::exp(-3)));
+  };
+  const double measured = std::log2(error(0.05 * GetParam().stretch) / error(0.025 * GetParam().stretch));
+  RecordProperty("order", std::to_string(measured));
+  EXPECT_GE(measured, with_step(0.1)->order() - 0.25);
+}
+
 // Between positions with speeds and the work stand the loads' discrete states, which are constant between instants.
 TEST_P(IntegratorSuite, leaves_discrete_states_alone_and_integrates_the_work_behind_them) {
   Layout layout = Duffing::equations().layout();

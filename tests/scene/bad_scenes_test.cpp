@@ -182,6 +182,10 @@ const BadScene bad_scenes[] = {
     {"orientation_not_a_unit_quaternion", "{position: [0.0762, 0, 0]}", "{orientation: [1, 1, 0, 0]}",
      "10:26: /bodies/hub/frames/out/orientation: got a quaternion of norm 1.4142135623730951; need norm 1 within "
      "1e-06"},
+    {"orientation_without_an_axis", "{position: [0.0762, 0, 0]}", "{orientation: {axis: [0, 0, 0], angle: 90 deg}}",
+     "10:33: /bodies/hub/frames/out/orientation/axis: got an axis of length 0; need a direction"},
+    {"orientation_in_metres", "{position: [0.0762, 0, 0]}", "{orientation: {xyz: [1 m, 0, 0]}}",
+     "10:33: /bodies/hub/frames/out/orientation/xyz/0: "},
     {"offset_not_a_unit_quaternion", "child: hub}", "child: hub, offset: {orientation: [0, 0, 0, 0]}}",
      "18:96: /hinges/shoulder/offset/orientation: got a quaternion of norm 0; need norm 1 within 1e-06"},
     {"zero_axis", "axis: [0, 0, 1]", "axis: [0, 0, 0]", "18:36: /hinges/shoulder/axis: "},

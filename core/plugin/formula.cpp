@@ -1,6 +1,4 @@
-#include "formula.hpp"
-
-#include <fmt/format.h>
+#include "withy/core/plugin/formula.hpp"
 
 #include <algorithm>
 #include <array>
@@ -69,7 +67,7 @@ class FormulaReader {
     return true;
   }
   [[noreturn]] void fail(const std::string& why) const {
-    throw std::invalid_argument(fmt::format("{} at character {}", why, at_ + 1));
+    throw std::invalid_argument(why + " at character " + std::to_string(at_ + 1));
   }
   void put(Formula::Step step, std::size_t operands) {
     pending_ += 1;
@@ -153,7 +151,7 @@ class FormulaReader {
     if (function == functions.end()) {
       std::string known;
       for (const Function& f : functions) known += (known.empty() ? "" : ", ") + std::string(f.name);
-      fail(fmt::format("no function '{}'; known: {}", name, known));
+      fail("no function '" + name + "'; known: " + known);
     }
     take('(');
     std::size_t count = 0;
@@ -163,7 +161,8 @@ class FormulaReader {
     } while (take(','));
     if (!take(')')) fail("expected ',' or ')'");
     if (count < function->least || count > function->most)
-      fail(fmt::format("{} takes {} number{}, got {}", name, function->least, function->least == 1 ? "" : "s", count));
+      fail(name + " takes " + std::to_string(function->least) + (function->least == 1 ? " number" : " numbers") +
+           ", got " + std::to_string(count));
     put({.operation = Operation::function,
          .index = static_cast<std::size_t>(function - functions.begin()),
          .count = count},

@@ -1,0 +1,289 @@
+#include "withy/core/kinematics/signals.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+
+#include "withy/core/model/columns.hpp"
+
+namespace withy {
+namespace {
+
+constexpr std::size_t doubles_of_motion = sizeof(FrameMotion) / sizeof(double);
+constexpr std::size_t doubles_of_line = 8;  // 64 bytes, to which the work of paths is aligned
+
+/// What a load gives, by its name.
+std::vector<std::string> names_of(const LoadNode& node) {
+  const std::size_t count = node.load->output() == nullptr ? 0 : node.load->output()->outputs();
+  if (count == 1) return {node.name};
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) names.push_back(node.name + "." + std::to_string(i));
+  return names;
+}
+
+}  // namespace
+
+/// A state of which positions and speeds are known. What would need accelerations or efforts is a given number.
+class Signals::Seen final : public SensedState {
+ public:
+  Seen(const Signals& signals, const LoadView& view, double unavailable, std::vector<FrameIndex>* asked)
+      : signals_(signals), view_(view), unavailable_(unavailable), asked_(asked) {
+    energies_.kinetic = energies_.potential = unavailable;
+    energies_.linear_momentum.fill(unavailable);
+    energies_.angular_momentum.fill(unavailable);
+    if (asked_ != nullptr) probed_.assign(view.layout.speeds, unavailable);
+  }
+  bool observe(const State& /*state*/) noexcept override { return true; }
+  const Layout& layout() const noexcept override { return view_.layout; }
+  double time() const noexcept override { return view_.t; }
+  std::span<const double> y() const noexcept override { return view_.y; }
+  std::span<const double> accelerations() noexcept override { return of_speeds(); }
+  Vector3 gravity() const noexcept override { return signals_.model_->gravity(); }
+  FrameMotion motion(FrameIndex frame) noexcept override {
+    if (frame.body < 0) return {};
+    for (std::size_t i = 0; i < signals_.frames_.size(); ++i) {
+      const FrameIndex& known = signals_.frames_[i];
+      if (known.body == frame.body && known.frame == frame.frame)
+        return reinterpret_cast<const FrameMotion*>(view_.scratch.data() + signals_.numbers_)[i];
+    }
+    if (asked_ != nullptr) asked_->push_back(frame);
+    return {};
+  }
+  FrameAcceleration acceleration(FrameIndex frame) noexcept override {
+    if (frame.body < 0) return {};
+    return {Vector3::Constant(unavailable_), Vector3::Constant(unavailable_)};
+  }
+  std::span<const double> load_efforts(int /*load*/) noexcept override { return of_speeds(); }
+  std::span<const double> motion_efforts() noexcept override { return of_speeds(); }
+  Wrench reaction(int /*hinge*/) noexcept override {
+    return {Vector3::Constant(unavailable_), Vector3::Constant(unavailable_)};
+  }
+  SectionLoad section(std::size_t /*index*/) noexcept override {
+    const Vector3 none = Vector3::Constant(unavailable_);
+    return {{none, none}, none, none};
+  }
+  BodyEnergies energies(int /*body*/) noexcept override {
+    const Vector3 none = Vector3::Constant(unavailable_);
+    return {unavailable_, unavailable_, unavailable_, none, none};
+  }
+  const Energies& energies() noexcept override { return energies_; }
+
+ private:
+  [[nodiscard]] std::span<const double> of_speeds() const {
+    return asked_ != nullptr ? std::span<const double>(probed_) : std::span<const double>(signals_.zeros_);
+  }
+
+  const Signals& signals_;
+  const LoadView& view_;
+  double unavailable_;
+  std::vector<FrameIndex>* asked_;  ///< null in a run, which allocates nothing
+  std::vector<double> probed_;
+  Energies energies_;
+};
+
+Signals::Signals(const Model& model, const Terms& terms, std::vector<std::string> names) : names_(std::move(names)) {
+  zeros_.assign(model.layout().speeds, 0.0);
+  for (const std::string& name : names_) sources_.push_back(find(model, name));
+  choose_readings(model, terms);
+}
+Signals::Signals(Signals&&) noexcept = default;
+Signals::~Signals() = default;
+
+bool Signals::of_loads() const {
+  return std::any_of(sources_.begin(), sources_.end(), [](const Source& s) { return s.load != nullptr; });
+}
+
+Signals::Source Signals::find(const Model& model, const std::string& name) const {
+  const auto at = [&](const std::vector<Column>& columns) {
+    std::size_t i = 0;
+    while (i < columns.size() && columns[i].name != name) ++i;
+    return i;
+  };
+  Source source;
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    if (const std::size_t i = at(coordinate_columns(model.hinges()[h])); i < slot.positions)
+      source.element = Element{false, slot.position + i};
+    if (const std::size_t i = at(rate_columns(model.hinges()[h])); i < slot.speeds)
+      source.element = Element{true, slot.speed + i};
+    if (source.element) return source;
+  }
+  for (std::size_t l = 0; l < model.loads().size(); ++l) {
+    const LoadNode& node = model.loads()[l];
+    const std::vector<std::string> given = names_of(node);
+    const auto output = std::find(given.begin(), given.end(), name);
+    if (output == given.end()) continue;
+    source.load = node.load;
+    source.index = l;
+    source.output = static_cast<std::size_t>(output - given.begin());
+    source.continuous = node.continuous_slot;
+    return source;
+  }
+  std::size_t first = 0;
+  for (const SensorNode& node : model.measured() == nullptr ? std::vector<SensorNode>{} : *model.measured()) {
+    if (node.sensor == nullptr) {
+      if (name.substr(0, name.find('.')) == node.name)
+        throw std::invalid_argument(
+            "signal '" + name + "' depends on efforts of loads, and so on this load's own: the loop " + name +
+            " -> this load -> " + name + " would be algebraic; measure positions and rates");
+      continue;
+    }
+    const std::vector<Column> columns = columns_of(node);
+    if (const std::size_t i = at(columns); i < columns.size()) {
+      source.number = first + i;
+      return source;
+    }
+    first += columns.size();
+  }
+  throw std::invalid_argument("no signal '" + name + "'; known: " + known(model));
+}
+
+std::string Signals::known(const Model& model) const {
+  std::vector<std::string> all;
+  for (const HingeNode& hinge : model.hinges()) {
+    for (const Column& c : coordinate_columns(hinge)) all.push_back(c.name);
+    for (const Column& c : rate_columns(hinge)) all.push_back(c.name);
+  }
+  for (const SensorNode& node : model.measured() == nullptr ? std::vector<SensorNode>{} : *model.measured())
+    for (const Column& c : node.sensor == nullptr ? std::vector<Column>{} : columns_of(node)) all.push_back(c.name);
+  for (const LoadNode& node : model.loads())
+    for (const std::string& name : names_of(node)) all.push_back(name);
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 30); ++i) text += (i == 0 ? "" : ", ") + all[i];
+  return all.size() > 30 ? text + " ..." : text;
+}
+
+void Signals::choose_readings(const Model& model, const Terms& terms) {
+  const auto is_sensor = [](const Source& s) { return !s.element && s.load == nullptr; };
+  if (std::any_of(sources_.begin(), sources_.end(), is_sensor)) {
+    model_ = std::make_shared<const Model>(model);
+    for (const SensorNode& node : *model.measured()) {
+      if (node.sensor == nullptr) continue;
+      const std::size_t count = node.sensor->columns().size();
+      readings_.push_back({node.sensor, numbers_, count});
+      numbers_ += count;
+    }
+    lay_out();
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    // Only what the numbers depend on: a sensor whose numbers may be anything is not read.
+    const std::vector<Reading> all = readings_;
+    std::vector<FrameIndex> ignored;
+    for (std::size_t i = all.size(); i-- > 0;) {
+      const bool named = std::any_of(sources_.begin(), sources_.end(), [&](const Source& s) {
+        return is_sensor(s) && s.number >= all[i].first && s.number < all[i].first + all[i].count;
+      });
+      if (named) continue;
+      const auto at = readings_.begin() + static_cast<std::ptrdiff_t>(i);
+      const std::vector<double> with = probe(model, 0, &ignored);
+      const Reading reading = *at;
+      readings_.erase(at);
+      const std::vector<double> without = probe(model, 0, &ignored);
+      const bool needed = !std::equal(with.begin(), with.end(), without.begin(),
+                                      [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
+      if (needed) readings_.insert(readings_.begin() + static_cast<std::ptrdiff_t>(i), reading);
+    }
+    std::vector<FrameIndex> asked;
+    static_cast<void>(probe(model, 0, &asked));
+    for (const FrameIndex& f : asked) {
+      const auto same = [&](const FrameIndex& g) { return g.body == f.body && g.frame == f.frame; };
+      if (std::none_of(frames_.begin(), frames_.end(), same)) frames_.push_back(f);
+    }
+    if (!frames_.empty()) paths_ = std::make_unique<const FramePaths>(*model_, terms, frames_, true);
+    lay_out();
+    const std::vector<double> still = probe(model, 0, &ignored);
+    for (const double size : {nan, 1.7e3, -2.3e3}) {
+      const std::vector<double> changed = probe(model, size, &ignored);
+      for (std::size_t i = 0; i < sources_.size(); ++i) {
+        if (!is_sensor(sources_[i]) || changed[i] == still[i] || std::isnan(still[i])) continue;
+        throw std::invalid_argument(
+            "signal '" + names_[i] + "' depends on accelerations, efforts or energies: the loop " + names_[i] +
+            " -> this load -> accelerations -> " + names_[i] +
+            " would be algebraic; measure positions and rates (a gyro, a frame that shows its velocity)");
+      }
+    }
+  } else {
+    model_ = nullptr;
+  }
+  lay_out();
+}
+
+void Signals::lay_out() {
+  own_ = numbers_ + frames_.size() * doubles_of_motion;
+  if (paths_ != nullptr) own_ += doubles_of_line + (paths_->work_size() + sizeof(double) - 1) / sizeof(double);
+  scratch_ = own_;
+  for (const Source& s : sources_) {
+    if (s.load != nullptr) scratch_ = std::max(scratch_, own_ + s.load->output()->outputs() + s.load->scratch());
+  }
+}
+
+std::vector<double> Signals::probe(const Model& model, double unavailable, std::vector<FrameIndex>* asked) const {
+  State state;
+  const Layout& layout = model.layout();
+  state.y.assign(layout.size(), 0.0);
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = layout.hinges[h];
+    const auto x = std::span(state.y).subspan(slot.position, slot.positions);
+    model.hinges()[h].hinge->reference(x);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += 0.1 * std::sin(1.0 + static_cast<double>(slot.position + i));
+    model.hinges()[h].hinge->normalize(x);
+  }
+  for (const Slot& slot : layout.bodies) {
+    for (std::size_t i = 0; i < slot.positions; ++i)
+      state.y[slot.position + i] = 1e-3 * std::cos(static_cast<double>(slot.position + i));
+  }
+  for (std::size_t i = 0; i < layout.speeds; ++i)
+    state.y[layout.positions + i] = 0.1 * std::cos(1.0 + static_cast<double>(i));
+  std::vector<double> scratch(scratch_), values(sources_.size());
+  const LoadView view{0.1, layout, state.y, {}, {}, scratch};
+  read_sensors(view, unavailable, asked);
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    if (!sources_[i].element && sources_[i].load == nullptr) values[i] = scratch[sources_[i].number];
+  }
+  return values;
+}
+
+void Signals::read_sensors(const LoadView& view, double unavailable, std::vector<FrameIndex>* asked) const noexcept {
+  const std::span<double> numbers = view.scratch.first(numbers_);
+  if (asked != nullptr) std::fill(numbers.begin(), numbers.end(), std::numeric_limits<double>::quiet_NaN());
+  if (paths_ != nullptr) {
+    auto* const motions = reinterpret_cast<FrameMotion*>(view.scratch.data() + numbers_);
+    for (std::size_t i = 0; i < frames_.size(); ++i) std::construct_at(motions + i);
+    auto address =
+        reinterpret_cast<std::uintptr_t>(view.scratch.data() + numbers_ + frames_.size() * doubles_of_motion);
+    address = (address + 63) / 64 * 64;
+    paths_->motions(view.positions(), view.speeds(), {motions, frames_.size()},
+                    reinterpret_cast<std::byte*>(address));  // NOLINT(performance-no-int-to-ptr)
+  }
+  Seen seen(*this, view, unavailable, asked);
+  for (const Reading& r : readings_)
+    r.sensor->read(seen, {0, numbers.first(r.first)}, numbers.subspan(r.first, r.count));
+}
+
+void Signals::read(const LoadView& view, std::span<double> values) const noexcept {
+  if (!readings_.empty()) read_sensors(view, 0.0, nullptr);
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const Source& source = sources_[i];
+    if (source.element) {
+      values[i] = source.element->rate ? view.speeds()[source.element->index] : view.positions()[source.element->index];
+    } else if (source.load == nullptr) {
+      values[i] = view.scratch[source.number];
+    } else {
+      const LoadOutput& output = *source.load->output();
+      LoadSlot held;
+      for (const LoadSlot& slot : view.layout.discrete_slots) {
+        if (slot.load == source.index) held = slot;
+      }
+      const std::span<double> given = view.scratch.subspan(own_, output.outputs());
+      output.read({view.t, view.layout, view.y, view.y.subspan(held.first, held.count),
+                   view.y.subspan(source.continuous.first, source.continuous.count),
+                   view.scratch.subspan(own_ + output.outputs())},
+                  given);
+      values[i] = given[source.output];
+    }
+  }
+}
+
+}  // namespace withy

@@ -1,0 +1,88 @@
+/// \file
+/// What controllers measure: numbers of a state by their names, found from positions and speeds alone.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "withy/core/kinematics/frame_paths.hpp"
+#include "withy/core/plugin/sensor.hpp"
+
+namespace withy {
+
+/// Chosen numbers of a model: columns of hinges (`shoulder` [rad], `shoulder.rate` [rad/s]), numbers of sensors that
+/// need no accelerations, efforts or energies (`imu.z`), and what other loads give (`servo`, of several numbers
+/// `servo.0`). Immutable; the caller owns the scratch space.
+class [[gnu::visibility("default")]] Signals {
+ public:
+  /// An element of State::y.
+  struct Element {
+    bool rate = false;      ///< a speed, else a position
+    std::size_t index = 0;  ///< among those
+  };
+
+  /// The sensors are Model::measured(), the loads those that the model has.
+  /// \param terms of the formulation; frames move by its strain kinematics without truncation, as outputs show them
+  /// \throws std::invalid_argument where there is no such number, or where it depends on accelerations or efforts: as
+  /// these depend on the load that measures it, the loop would be algebraic.
+  Signals(const Model& model, const Terms& terms, std::vector<std::string> names);
+  Signals(Signals &&) noexcept;
+  ~Signals();
+
+  [[nodiscard]] std::size_t size() const { return sources_.size(); }
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// Doubles of scratch space that `read` needs.
+  [[nodiscard]] std::size_t scratch() const { return scratch_; }
+  /// The element of State::y that a signal is; nothing where it is another number.
+  [[nodiscard]] std::optional<Element> element(std::size_t signal) const { return sources_[signal].element; }
+  /// Whether any is given by another load: a view of the whole state is then needed.
+  [[nodiscard]] bool of_loads() const;
+  /// Whether any depends on the place of a frame.
+  [[nodiscard]] bool of_frames() const { return paths_ != nullptr; }
+  /// Sets the numbers, one a name, at the state of `view`, with its scratch space.
+  void read(const LoadView& view, std::span<double> values) const noexcept;
+
+ private:
+  class [[gnu::visibility("hidden")]] Seen;
+  struct Source {
+    std::optional<Element> element;
+    std::size_t number = 0;                 ///< of all sensors' numbers, where it is one
+    std::shared_ptr<const BoundLoad> load;  ///< that gives it, where one does
+    std::size_t index = 0;                  ///< of that load in Model::loads()
+    std::size_t output = 0;                 ///< among what it gives
+    LoadSlot continuous = {};               ///< of its states
+  };
+  /// A sensor that is read, with the place of its numbers.
+  struct Reading {
+    std::shared_ptr<const BoundSensor> sensor;
+    std::size_t first = 0, count = 0;
+  };
+  struct Memory {
+    std::size_t numbers = 0, motions = 0, paths = 0, size = 0;  ///< first doubles of each
+  };
+
+  Source find(const Model& model, const std::string& name) const;
+  [[nodiscard]] std::string known(const Model& model) const;
+  void choose_readings(const Model& model, const Terms& terms);
+  void read_sensors(const LoadView& view, double unavailable, std::vector<FrameIndex>* asked) const noexcept;
+  /// The numbers of the sources at a state about the reference, with accelerations and efforts of this size.
+  [[nodiscard]] std::vector<double> probe(const Model& model, double unavailable, std::vector<FrameIndex>* asked) const;
+  void lay_out();
+
+  std::vector<std::string> names_;
+  std::vector<Source> sources_;
+  std::vector<Reading> readings_;
+  std::size_t numbers_ = 0;             ///< of all measured sensors
+  std::shared_ptr<const Model> model_;  ///< that `paths_` refer to
+  std::vector<FrameIndex> frames_;
+  std::unique_ptr<const FramePaths> paths_;  ///< null: no frame is asked for
+  std::vector<double> zeros_;                ///< one a speed
+  std::size_t own_ = 0;                      ///< doubles for sensors
+  std::size_t scratch_ = 0;
+};
+
+}  // namespace withy

@@ -1,0 +1,47 @@
+/// \file
+/// What a controller is inside: a system from signals to efforts, with or without states.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace withy {
+
+/// ż = g(t, w, z), v = h(t, w, z): w what is measured, v what is commanded. Immutable.
+class ControlBlock {
+ public:
+  /// Derivatives at a point; shapes: states or outputs × inputs or states.
+  struct Slopes {
+    Eigen::MatrixXd rate_by_input, rate_by_state, output_by_input, output_by_state;
+  };
+
+  virtual ~ControlBlock() = default;
+  [[nodiscard]] virtual std::size_t inputs() const = 0;
+  [[nodiscard]] virtual std::size_t outputs() const { return 1; }
+  /// Names of the states z.
+  [[nodiscard]] virtual std::vector<std::string> states() const { return {}; }
+  /// Sets z where the block begins to run.
+  virtual void begin(double /*t*/, std::span<const double> /*w*/, std::span<double> z) const noexcept {
+    for (double& x : z) x = 0;
+  }
+  virtual void rates(double /*t*/, std::span<const double> /*w*/, std::span<const double> /*z*/,
+                     std::span<double> /*rates*/) const noexcept {}
+  virtual void output(double t, std::span<const double> w, std::span<const double> z,
+                      std::span<double> v) const noexcept = 0;
+  /// Takes z from t [s] to a sample later, w held at what it is at t.
+  virtual void advance(double /*t*/, std::span<const double> /*w*/, std::span<double> /*z*/) const noexcept {}
+  /// Tells it of the period [s] of `advance`, before it is shared.
+  virtual void set_sample(double /*period*/) {}
+  /// Sets the derivatives, of the right shapes and zero before. False where it leaves them to differences.
+  virtual bool slopes(double /*t*/, std::span<const double> /*w*/, std::span<const double> /*z*/,
+                      Slopes& /*slopes*/) const {
+    return false;
+  }
+  /// As BoundLoad's.
+  [[nodiscard]] virtual std::vector<double> discontinuities() const { return {}; }
+  [[nodiscard]] virtual double end() const { return 0; }
+};
+
+}  // namespace withy

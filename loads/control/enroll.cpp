@@ -1,0 +1,24 @@
+/// \file
+/// What the library of controllers brings: one source each, with its ids in CMakeLists.txt.
+#include "withy/core/plugin/entry.hpp"
+
+namespace withy {
+
+void enroll_actuator(Enrollment& enrollment);
+void enroll_control_expression(Enrollment& enrollment);
+void enroll_pid(Enrollment& enrollment);
+void enroll_transfer_function(Enrollment& enrollment);
+
+namespace {
+
+void enroll_control(Enrollment& enrollment) {
+  enroll_actuator(enrollment);
+  enroll_control_expression(enrollment);
+  enroll_pid(enrollment);
+  enroll_transfer_function(enrollment);
+}
+
+}  // namespace
+}  // namespace withy
+
+WITHY_PLUGIN(control, withy::enroll_control);

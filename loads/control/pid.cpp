@@ -1,0 +1,193 @@
+/// \file
+/// Proportional, integral and derivative feedback with a limit (Åström & Hägglund, "Advanced PID Control", ch. 3):
+///   e = r − y,   u = k_p e + I + k_d d,   τ = max(−τ_max, min(τ_max, u)),
+///   d = (e − f)/T_f with ḟ = (e − f)/T_f,  or ṙ − ẏ without filter,
+///   İ = k_i e + (τ − u)/T_t  (back-calculation),  or k_i e, zero while u is beyond the limit and e drives it further
+///   (clamping).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "withy/loads/control/control_load.hpp"
+#include "withy/loads/control/reference.hpp"
+
+namespace withy {
+namespace {
+
+enum class AntiWindup { none, back_calculation, clamping };
+
+struct PidGains {
+  double proportional = 0, integral = 0, derivative = 0;
+  double filter = 0;  ///< T_f [s]; 0: the rate is measured
+  double limit = std::numeric_limits<double>::infinity();
+  AntiWindup anti_windup = AntiWindup::none;
+  double tracking = 0;  ///< T_t [s]
+};
+
+class Pid final : public ControlBlock {
+ public:
+  Pid(const PidGains& gains, Trajectory reference) : k_(gains), reference_(std::move(reference)) {}
+
+  std::size_t inputs() const override { return measures_rate() ? 2 : 1; }
+  std::vector<std::string> states() const override {
+    std::vector<std::string> names;
+    if (integrates()) names.emplace_back("integral");
+    if (filters()) names.emplace_back("filter");
+    return names;
+  }
+  void begin(double t, std::span<const double> w, std::span<double> z) const noexcept override {
+    if (integrates()) z[0] = 0;
+    if (filters()) z[filter_place()] = at(reference_, t).position - w[0];
+  }
+  void rates(double t, std::span<const double> w, std::span<const double> z,
+             std::span<double> rates) const noexcept override {
+    const Demand a = demand(t, w, z);
+    if (filters()) rates[filter_place()] = (a.error - z[filter_place()]) / k_.filter;
+    if (integrates()) rates[0] = integral_rate(a);
+  }
+  void output(double t, std::span<const double> w, std::span<const double> z,
+              std::span<double> v) const noexcept override {
+    v[0] = demand(t, w, z).effort;
+  }
+  void set_sample(double period) override { period_ = period; }
+  void advance(double t, std::span<const double> w, std::span<double> z) const noexcept override {
+    const Demand a = demand(t, w, z);
+    if (integrates()) z[0] += period_ * integral_rate(a);
+    if (filters()) z[filter_place()] = a.error + (z[filter_place()] - a.error) * std::exp(-period_ / k_.filter);
+  }
+  bool slopes(double t, std::span<const double> w, std::span<const double> z, Slopes& s) const override {
+    const Demand a = demand(t, w, z);
+    const bool free = a.effort == a.wanted;
+    // Of u, by w and z; e = r − w₀.
+    Eigen::RowVectorXd by_input = Eigen::RowVectorXd::Zero(s.output_by_input.cols()),
+                       by_state = Eigen::RowVectorXd::Zero(s.output_by_state.cols());
+    by_input[0] = -k_.proportional;
+    const auto f = static_cast<Eigen::Index>(filter_place());
+    if (filters()) {
+      by_input[0] -= k_.derivative / k_.filter;
+      by_state[f] = -k_.derivative / k_.filter;
+      s.rate_by_input(f, 0) = -1 / k_.filter;
+      s.rate_by_state(f, f) = -1 / k_.filter;
+    } else if (measures_rate()) {
+      by_input[1] = -k_.derivative;
+    }
+    if (integrates()) by_state[0] = 1;
+    if (free) {
+      s.output_by_input.row(0) = by_input;
+      s.output_by_state.row(0) = by_state;
+    }
+    if (!integrates() || (!free && k_.anti_windup == AntiWindup::clamping && a.error * a.wanted > 0)) return true;
+    s.rate_by_input(0, 0) = -k_.integral;
+    if (!free && k_.anti_windup == AntiWindup::back_calculation) {
+      s.rate_by_input.row(0) -= by_input / k_.tracking;
+      s.rate_by_state.row(0) = -by_state / k_.tracking;
+    }
+    return true;
+  }
+  std::vector<double> discontinuities() const override { return jumps_of(reference_); }
+  double end() const override { return end_of(reference_); }
+  [[nodiscard]] bool measures_rate() const { return k_.derivative > 0 && k_.filter == 0; }
+
+ private:
+  struct Demand {
+    double error, wanted, effort;  ///< e, u, τ
+  };
+  [[nodiscard]] bool integrates() const { return k_.integral > 0; }
+  [[nodiscard]] bool filters() const { return k_.derivative > 0 && k_.filter > 0; }
+  [[nodiscard]] std::size_t filter_place() const { return integrates() ? 1 : 0; }
+  [[nodiscard]] Demand demand(double t, std::span<const double> w, std::span<const double> z) const noexcept {
+    const MotionPoint r = at(reference_, t);
+    const double error = r.position - w[0];
+    double wanted = k_.proportional * error;
+    if (integrates()) wanted += z[0];
+    if (filters()) wanted += k_.derivative * (error - z[filter_place()]) / k_.filter;
+    if (measures_rate()) wanted += k_.derivative * (r.rate - w[1]);
+    return {error, wanted, std::clamp(wanted, -k_.limit, k_.limit)};
+  }
+  [[nodiscard]] double integral_rate(const Demand& a) const noexcept {
+    const bool beyond = a.effort != a.wanted;
+    if (beyond && k_.anti_windup == AntiWindup::clamping && a.error * a.wanted > 0) return 0;
+    double rate = k_.integral * a.error;
+    if (beyond && k_.anti_windup == AntiWindup::back_calculation) rate += (a.effort - a.wanted) / k_.tracking;
+    return rate;
+  }
+
+  PidGains k_;
+  Trajectory reference_;
+  double period_ = 0;  ///< [s]
+};
+
+/// Nothing after a reported error.
+std::optional<PidGains> read_gains(const Value& p, const MakeContext& context) {
+  PidGains k{.proportional = p.number_at("proportional"),
+             .integral = p.number_at("integral"),
+             .derivative = p.number_at("derivative"),
+             .filter = p.number_at("filter")};
+  const auto error = [&](const Value& at, const char* message) {
+    context.diagnostics.error(at.place(), message);
+    return std::nullopt;
+  };
+  if (k.proportional == 0 && k.integral == 0 && k.derivative == 0)
+    return error(p, "does nothing; need 'proportional', 'integral' or 'derivative'");
+  if (const Value* limit = p.find("limit")) k.limit = limit->number();
+  const Value* way = p.find("anti_windup");
+  if (way != nullptr && !p.has("limit")) return error(*way, "there is no 'limit', at which the integral would wind up");
+  if (p.has("limit") && k.integral > 0) {
+    const std::string name = way == nullptr ? "back-calculation" : way->text();
+    k.anti_windup = name == "none"       ? AntiWindup::none
+                    : name == "clamping" ? AntiWindup::clamping
+                                         : AntiWindup::back_calculation;
+  }
+  if (const Value* tracking = p.find("tracking_time")) {
+    if (k.anti_windup != AntiWindup::back_calculation)
+      return error(*tracking, "is of the back-calculation at a 'limit', of an 'integral'");
+    k.tracking = tracking->number();
+  } else if (k.anti_windup == AntiWindup::back_calculation) {
+    // Between the derivative's time and the integral's (Åström & Hägglund, section 3.5).
+    k.tracking = k.derivative > 0 ? std::sqrt(k.derivative / k.integral) : k.proportional / k.integral;
+    if (!(k.tracking > 0)) return error(p, "an integral alone needs a 'tracking_time' for its back-calculation");
+  }
+  return k;
+}
+
+std::unique_ptr<Load> make_pid(const Value& p, const MakeContext& context) {
+  const std::size_t before = context.diagnostics.errors().size();
+  std::optional<ControlEnds> ends = read_ends(p, context);
+  const std::optional<PidGains> gains = read_gains(p, context);
+  const std::optional<Trajectory> reference = read_reference(p, context);
+  if (ends && ends->of.size() > 1) context.diagnostics.error(p.at("of").place(), "got more than one signal; need one");
+  if (ends && ends->of.empty() && !ends->hinge)
+    context.diagnostics.error(p.place(), "measures nothing; need 'of' or 'hinge'");
+  if (!ends || !gains || !reference || context.diagnostics.errors().size() != before) return nullptr;
+  auto block = std::make_shared<Pid>(*gains, *reference);
+  block->set_sample(ends->sample);
+  ends->rate_too = block->measures_rate();
+  return make_control(std::move(*ends), std::move(block));
+}
+
+}  // namespace
+
+void enroll_pid(Enrollment& enrollment) {
+  std::vector<ParameterSpec> own{
+      number("proportional", "N m/rad", "effort for one of error").least(0).otherwise(0.0),
+      number("integral", "N m/(rad s)", "rate of effort for one of error").least(0).otherwise(0.0),
+      number("derivative", "N m s/rad", "effort for one of error a second").least(0).otherwise(0.0),
+      number("filter", "s", "time constant of the derivative's first-order filter; 0: the rate of the hinge")
+          .least(0)
+          .otherwise(0.0),
+      number("limit", "N m", "the effort never exceeds this").above(0).optional(),
+      text("anti_windup", "what the integral does at the limit, back-calculation where left out")
+          .one_of({"back-calculation", "clamping", "none"})
+          .optional(),
+      number("tracking_time", "s", "of the back-calculation, in which the integral follows the limit")
+          .above(0)
+          .optional()};
+  for (ParameterSpec& spec : reference_parameters("rad")) own.push_back(std::move(spec));
+  enrollment.add<Load>(
+      {.id = "pid",
+       .summary = "Controller: proportional, integral and derivative feedback, limited, with anti-windup",
+       .parameters = control_parameters(std::move(own)),
+       .make = &make_pid});
+}
+
+}  // namespace withy

@@ -1,0 +1,140 @@
+#include "withy/scene/control_order.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "withy/core/model/columns.hpp"
+#include "withy/core/model/model.hpp"
+#include "withy/scene/grammar.hpp"
+#include "withy/scene/make.hpp"
+
+namespace withy {
+namespace {
+
+/// Adds the loads among the words of a text; a word ends before a dot.
+void add_words(const std::string& text, const std::set<std::string>& loads, std::set<std::string>& found) {
+  const auto of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
+  for (auto at = text.begin(); at != text.end();) {
+    const auto end = std::find_if_not(at, text.end(), of_word);
+    if (const std::string word(at, end); loads.contains(word)) found.insert(word);
+    at = end == text.end() ? end : std::next(end);
+  }
+}
+
+/// "a -> b -> a", beginning at a load that waits for others.
+std::string circle(const std::list<PendingLoad>& waiting) {
+  std::vector<std::string> way{waiting.front().name};
+  for (;;) {
+    const auto at =
+        std::find_if(waiting.begin(), waiting.end(), [&](const PendingLoad& l) { return l.name == way.back(); });
+    const auto next = std::find_if(at->needs.begin(), at->needs.end(), [&](const std::string& need) {
+      return std::any_of(waiting.begin(), waiting.end(), [&](const PendingLoad& l) { return l.name == need; });
+    });
+    const auto before = std::find(way.begin(), way.end(), *next);
+    if (before != way.end()) {
+      std::string text;
+      for (auto name = before; name != way.end(); ++name) text += *name + " -> ";
+      return text + *next;
+    }
+    way.push_back(*next);
+  }
+}
+
+/// The outputs in their order, without a sensor where it cannot be bound yet.
+std::shared_ptr<const std::vector<SensorNode>> measurable(const Value& outputs, const Model& model,
+                                                          const Document& document, const SceneNames& names,
+                                                          Registry& registry) {
+  auto all = std::make_shared<std::vector<SensorNode>>();
+  std::vector<SensorNode> bound;
+  for (const auto& [name, given] : outputs.members()) {
+    Diagnostics unheard;  // what is wrong is reported where outputs are read
+    Checker checker(document, registry, unheard);
+    checker.know(&names);
+    std::shared_ptr<const BoundSensor> sensor;
+    try {
+      Made<Sensor> made;
+      const auto value = check_plugin_map(given, "type", grammar::sensor_members(), checker, made);
+      const auto object = value ? make_object(*made.plugin, *value, checker) : nullptr;
+      if (object != nullptr) sensor = object->bind(model, bound);
+    } catch (const std::invalid_argument&) {
+      sensor = nullptr;
+    }
+    all->push_back({name, sensor});
+    if (sensor != nullptr) bound.push_back(all->back());
+  }
+  return all;
+}
+
+bool measures(const Value& load) {
+  const Value* type = load.find("type");
+  return load.has("of") || (type != nullptr && type->kind() == Value::Kind::text && type->text() == "expression");
+}
+
+}  // namespace
+
+void name_signals(const Document& document, Model* model, SceneNames& names, Registry& registry) {
+  const Value none = Value::map({});
+  const auto map_of = [&](const char* key) -> const Value& {
+    const Value* given = document.root.find(key);
+    return given == nullptr || given->kind() != Value::Kind::map ? none : *given;
+  };
+  const std::vector<Value::Member>& loads = map_of("loads").members();
+  for (const auto& [name, given] : loads) names.loads.add(name);
+  if (model == nullptr) return;
+  for (const HingeNode& hinge : model->hinges()) {
+    for (const Column& c : coordinate_columns(hinge)) names.signals.add(c.name);
+    for (const Column& c : rate_columns(hinge)) names.signals.add(c.name);
+  }
+  for (const char* key : {"outputs", "loads"})
+    for (const auto& [name, given] : map_of(key).members()) names.signals.add(name);
+  if (std::any_of(loads.begin(), loads.end(), [](const Value::Member& load) { return measures(load.second); }))
+    model->set_measured(measurable(map_of("outputs"), *model, document, names, registry));
+}
+
+std::set<std::string> needed_loads(const Value& load, const std::set<std::string>& loads) {
+  std::set<std::string> found;
+  for (const char* key : {"of", "to"}) {
+    const Value* given = load.find(key);
+    if (given == nullptr || given->kind() != Value::Kind::list) continue;
+    for (const Value& item : given->items()) {
+      const std::string name = item.text().substr(0, item.text().find('.'));
+      if (loads.contains(name)) found.insert(name);
+    }
+  }
+  if (const Value* formula = load.find("value"); formula != nullptr && formula->kind() == Value::Kind::text)
+    add_words(formula->text(), loads, found);
+  return found;
+}
+
+std::list<PendingLoad> in_order_of_need(std::list<PendingLoad> loads, const Checker& checker) {
+  std::list<PendingLoad> ordered;
+  std::set<std::string> done;
+  const auto there = [&](const std::string& need) {
+    return done.contains(need) ||
+           std::any_of(loads.begin(), loads.end(), [&](const PendingLoad& l) { return l.name == need; });
+  };
+  while (!loads.empty()) {
+    const auto ready = std::find_if(loads.begin(), loads.end(), [&](const PendingLoad& l) {
+      return std::all_of(l.needs.begin(), l.needs.end(), [&](const std::string& need) { return done.contains(need); });
+    });
+    if (ready != loads.end()) {
+      done.insert(ready->name);
+      ordered.splice(ordered.end(), loads, ready);
+      continue;
+    }
+    const auto hopeless = std::find_if(loads.begin(), loads.end(), [&](const PendingLoad& l) {
+      return !std::all_of(l.needs.begin(), l.needs.end(), there);
+    });
+    if (hopeless != loads.end()) {
+      loads.erase(hopeless);
+      continue;
+    }
+    checker.key_error(
+        "/loads/" + loads.front().name,
+        fmt::format("the loop {} is algebraic: each of these loads needs what another one gives", circle(loads)));
+    break;
+  }
+  return ordered;
+}
+
+}  // namespace withy

@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# docs.sh [--check]: puts the tables of docs/ in the place of what stands between `<!-- measured: NAME -->` and
+# `<!-- end -->`, from the measurements in docs/measured/NAME.txt. With --check nothing is written: a page that says
+# something else than its measurements, a mark without a file and a file that no page shows are errors.
+#
+# A file of measurements: lines `command: …`, `commit: …`, `date: …`; an empty line; rows with tabs between their cells,
+# the heads first; an empty line; sentences about them. scripts/gallery.sh writes those of the gallery; by hand:
+#   record_table NAME COMMAND <rows      # of scripts/measured.sh
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+check=${1:-}
+[ -z "$check" ] || [ "$check" = --check ] || {
+  echo "usage: scripts/docs.sh [--check]" >&2
+  exit 2
+}
+
+# A file of measurements as Markdown, with what it comes from below.
+markdown() {
+  awk -F'\t' '
+    part == 0 && /^[a-z]+: / { of[substr($0, 1, index($0, ":") - 1)] = substr($0, index($0, ":") + 2); next }
+    /^$/ && part < 2 { part++; if (part == 1) next }
+    part == 1 {
+      row = "|"
+      for (i = 1; i <= NF; ++i) row = row ($i == "" ? " |" : " " $i " |")
+      print row
+      if (!headed++) { rule = "|"; for (i = 1; i <= NF; ++i) rule = rule "---|"; print rule }
+      next
+    }
+    { print }
+    END {
+      if (of["commit"] == "" || of["date"] == "" || of["command"] == "") exit 1
+      printf "\n<sub>`%s`, at %s, %s</sub>\n", of["command"], of["commit"], of["date"]
+    }' "$1"
+}
+
+bad=0
+shown=" "
+text=$(mktemp)
+block=$(mktemp)
+trap 'rm -f "$text" "$block"' EXIT
+for page in docs/*.md; do
+  names=$(sed -n 's/^<!-- measured: \([a-z0-9-]*\) -->$/\1/p' "$page")
+  [ -n "$names" ] || continue
+  cp "$page" "$text"
+  for name in $names; do
+    shown+="$name "
+    if ! markdown "docs/measured/$name.txt" >"$block"; then
+      echo "$page: docs/measured/$name.txt is missing, or does not say its command, commit and date" >&2
+      bad=1
+      continue
+    fi
+    awk -v name="$name" -v block="$block" '
+      $0 == "<!-- measured: " name " -->" { print; while ((getline line < block) > 0) print line; skip = 1; next }
+      $0 == "<!-- end -->" { skip = 0 }
+      !skip { print }' "$text" >"$text.new"
+    mv "$text.new" "$text"
+  done
+  cmp -s "$text" "$page" && continue
+  if [ -n "$check" ]; then
+    diff --label "$page" --label "docs/measured" -u "$page" "$text" >&2 || true
+    echo "$page does not say what was measured: run scripts/docs.sh" >&2
+    bad=1
+  else
+    cat "$text" >"$page"
+    echo "$page"
+  fi
+done
+for file in docs/measured/*.txt; do
+  name=$(basename "$file" .txt)
+  [[ "$shown" == *" $name "* ]] || {
+    echo "$file: no page shows it" >&2
+    bad=1
+  }
+done
+exit $bad
