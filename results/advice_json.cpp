@@ -20,8 +20,7 @@ Json measure_json(const study::Outputs& outputs) {
   Json all = Json::array();
   for (const study::Output& o : outputs.list()) {
     const auto measure = static_cast<std::size_t>(o.measure);
-    all.push_back(
-        {{"output", o.label}, {"measure", study::measure_name(measure)}, {"unit", study::measure_unit(measure)}});
+    all.push_back({{"output", o.label}, {"measure", study::measure_name(measure)}, {"unit", o.unit}});
   }
   return all;
 }

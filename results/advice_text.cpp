@@ -29,8 +29,8 @@ std::string use_text(const study::Accuracy& accuracy, double use) {
 }
 
 /// "3.4 mm", "2 deg", "0.5 N m".
-std::string quantity(double value, study::Measure measure) {
-  const std::string unit = study::measure_unit(static_cast<std::size_t>(measure));
+std::string quantity(double value, const study::Output& output) {
+  const std::string& unit = output.unit;
   if (unit == "rad") return fmt::format("{:.3g} deg", value * 180 / std::numbers::pi);
   return unit == "m" ? fmt::format("{:.3g} mm", 1e3 * value) : fmt::format("{:.3g} {}", value, unit);
 }
@@ -40,8 +40,8 @@ std::string worst_text(const AdviceReport& report, const study::Probe& p) {
   const study::Yardstick& yardstick = *report.advice.yardstick;
   const std::size_t i = yardstick.worst(p.distances);
   const study::Output& o = report.question.outputs.list()[i];
-  return fmt::format("most in {}, {} of {}", o.label, quantity(p.distances[i], o.measure),
-                     quantity(yardstick.reference.ranges[i], o.measure));
+  return fmt::format("most in {}, {} of {}", o.label, quantity(p.distances[i], o),
+                     quantity(yardstick.reference.ranges[i], o));
 }
 
 /// Outputs that hardly move, and what their ranges count as.
@@ -51,8 +51,8 @@ std::string floors_text(const AdviceReport& report) {
   for (std::size_t i = 0; i < r.scales.size(); ++i) {
     if (!(r.ranges[i] < r.scales[i])) continue;
     const study::Output& o = report.question.outputs.list()[i];
-    out += fmt::format("{}{} ({} counts as {})", out.empty() ? "" : ", ", o.label, quantity(r.ranges[i], o.measure),
-                       quantity(r.scales[i], o.measure));
+    out += fmt::format("{}{} ({} counts as {})", out.empty() ? "" : ", ", o.label, quantity(r.ranges[i], o),
+                       quantity(r.scales[i], o));
   }
   return out;
 }

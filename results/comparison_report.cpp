@@ -15,7 +15,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-TextTable table_for(const Model& model, const RunSummary& summary, const std::string& label) {
+using OutputErrors = std::vector<study::Comparison::OutputError>;
+
+/// "0.0123 of 4.5": the distance and the range.
+std::string error_text(const study::Comparison::OutputError& o) {
+  return fmt::format("{:.3g} of {:.3g}", o.distance, o.range);
+}
+
+/// \param outputs that errors are asked of by name
+TextTable table_for(const Model& model, const RunSummary& summary, const std::string& label,
+                    const OutputErrors& outputs) {
   std::vector<std::string> head = {"<formulation"};
   if (!label.empty()) head.push_back(label);
   head.push_back("<outcome");
@@ -25,7 +34,10 @@ TextTable table_for(const Model& model, const RunSummary& summary, const std::st
     head.push_back(fmt::format("{}\n[{}]", h.name, columns[0].unit == "rad" ? "deg" : columns[0].unit));
   }
   for (const auto& [body, peak] : summary.peak_deflection) head.push_back("peak " + body + "\n[mm]");
-  for (const char* text : {"evaluations", "CPU\n[ms]", "hinge\nerror", "tip error\n[mm]"}) head.emplace_back(text);
+  for (const char* text : {"evaluations", "CPU\n[ms]"}) head.emplace_back(text);
+  if (outputs.empty())
+    for (const char* text : {"hinge\nerror", "tip error\n[mm]"}) head.emplace_back(text);
+  for (const auto& o : outputs) head.push_back(o.label + fmt::format("\n[{}]", o.unit));
   return TextTable(head);
 }
 
@@ -48,7 +60,11 @@ void add_row(TextTable& table, const ComparisonAt& group, const study::ComparedR
   row.push_back(std::to_string(s.steps.evaluations));
   row.push_back(fmt::format("{:.2f}", 1e3 * s.cpu_seconds));
   const study::Comparison& c = group.comparison;
-  if (c.has_reference() && &run != &c.runs[c.reference]) {
+  const bool apart = c.has_reference() && &run != &c.runs[c.reference];
+  if (!c.outputs.empty()) {
+    for (const auto& o : c.has_reference() ? c.output_errors(run) : OutputErrors())
+      row.push_back(apart ? error_text(o) : "-");
+  } else if (apart) {
     const study::NamedDistances d = c.distances(run);
     row.push_back(fmt::format("{:.2g}", d.greatest_hinge()));
     row.push_back(fmt::format("{:.3g}", 1e3 * d.greatest_tip()));
@@ -71,6 +87,9 @@ Json comparison_json(const ComparisonAt& group, Registry& registry, bool varied)
       const study::NamedDistances d = group.comparison.distances(run);
       j["distance"] = {{"hinges", d.hinges},   {"tips", d.tips},     {"deflections", d.deflections},
                        {"moments", d.moments}, {"forces", d.forces}, {"until", d.until}};
+      if (!group.comparison.outputs.empty()) j["outputs"] = Json::array();
+      for (const auto& o : group.comparison.output_errors(run))
+        j["outputs"].push_back({{"output", o.label}, {"unit", o.unit}, {"distance", o.distance}, {"range", o.range}});
     }
     runs.push_back(std::move(j));
   }
@@ -80,7 +99,9 @@ Json comparison_json(const ComparisonAt& group, Registry& registry, bool varied)
 std::string comparison_text(const std::vector<ComparisonAt>& groups, const std::string& reference,
                             const std::string& label) {
   const study::ComparedRun& first = groups.front().comparison.runs.front();
-  TextTable table = table_for(first.prepared.model(), first.summary, label);
+  const study::Comparison& comparison = groups.front().comparison;
+  TextTable table = table_for(first.prepared.model(), first.summary, label,
+                              comparison.has_reference() ? comparison.output_errors(first) : OutputErrors());
   std::string reasons;
   for (const ComparisonAt& group : groups) {
     for (std::size_t i = 0; i < group.comparison.listed; ++i) {
@@ -91,10 +112,11 @@ std::string comparison_text(const std::vector<ComparisonAt>& groups, const std::
                              run.summary.message);
     }
   }
-  return fmt::format(
-      "{} ({})\n\n{}\nErrors are greatest distances from {}, in rad or m of hinges and mm of tips, "
-      "while both ran.\n{}",
-      first.prepared.title(), first.prepared.scene.integrator_name, table.str(), reference, reasons);
+  return fmt::format("{} ({})\n\n{}\nErrors are greatest distances from {}, {}, while both ran.\n{}",
+                     first.prepared.title(), first.prepared.scene.integrator_name, table.str(), reference,
+                     comparison.outputs.empty() ? "in rad or m of hinges and mm of tips"
+                                                : "beside how far the reference goes from its start",
+                     reasons);
 }
 
 }  // namespace withy

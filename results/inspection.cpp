@@ -117,6 +117,15 @@ Json inspection_json(const study::Prepared& prepared, const State& state, const 
     j["motions"].push_back({{"name", motion.name},
                             {"type", type_of(scene, "motions", motion.name)},
                             {"hinge", prepared.model().hinges()[static_cast<std::size_t>(motion.hinge)].name}});
+  j["outputs"] = Json::array();
+  for (const SensorNode& sensor : scene.outputs) {
+    Json components = Json::array();
+    for (const SensorColumn& column : sensor.sensor->columns())
+      components.push_back({{"component", column.component}, {"unit", column.unit}});
+    j["outputs"].push_back({{"name", sensor.name},
+                            {"type", type_of(scene, "outputs", sensor.name)},
+                            {"components", std::move(components)}});
+  }
   j["coordinates"] = prepared.model().layout().speed_names;
   j["compiled"] = prepared.equations->savings();
   j["mass_matrix"] = mass_matrix_json(prepared, state);
@@ -230,6 +239,15 @@ std::string inspection_text(const Scene& scene, const Json& j) {
   }
   for (const Json& load : j["loads"])
     out += fmt::format("\nload {}: {}\n", load["name"].get<std::string>(), load["type"].get<std::string>());
+  for (const Json& output : j["outputs"]) {
+    out += fmt::format("\noutput {}: {}", output["name"].get<std::string>(), output["type"].get<std::string>());
+    const char* join = "\n  ";
+    for (const Json& c : output["components"]) {
+      out += fmt::format("{}{}[{}]", join, c["component"].get<std::string>(), c["unit"].get<std::string>());
+      join = " ";
+    }
+    out += '\n';
+  }
   const Json& m = j["mass_matrix"];
   if (!m.is_null()) {
     const int sign = m["determinant_sign"].get<int>();

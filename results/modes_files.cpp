@@ -58,15 +58,6 @@ Json turn_json(const study::TurningModes& turn) {
   return j;
 }
 
-Json rows_json(const Eigen::MatrixXd& m) {
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < m.rows(); ++i) {
-    const Eigen::VectorXd row = m.row(i);
-    rows.push_back(std::vector<double>(row.data(), row.data() + row.size()));
-  }
-  return rows;
-}
-
 }  // namespace
 
 Json steady_json(const Model& model, const SteadyState& steady, const Held& held) {
@@ -185,28 +176,6 @@ std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::st
   std::vector<Panel> panels = {std::move(frequencies)};
   if (growths.y_range.second > 0) panels.push_back(std::move(growths));
   return svg_plot(title, legend, panels);
-}
-
-Json linear_model_json(const study::Configuration& c, const study::LinearModel& linear) {
-  Json accelerations = Json::object();
-  for (const auto& [name, value] : linear.accelerations) accelerations[name] = value;
-  Json j;
-  j["scene"] = c.prepared().scene.file;
-  j["formulation"] = c.prepared().scene.formulation_name;
-  j["state"] = Json::parse(write_state(c.prepared().model(), c.state()));
-  j["held"] = c.held_names();
-  j["states"] = linear.states;
-  j["inputs"] = linear.inputs;
-  j["outputs"] = linear.outputs;
-  j["output_values"] = linear.output_values;
-  j["A"] = rows_json(linear.A);
-  j["B"] = rows_json(linear.B);
-  j["C"] = rows_json(linear.C);
-  j["D"] = rows_json(Eigen::MatrixXd::Zero(linear.C.rows(), linear.B.cols()));
-  j["accelerations"] = accelerations;
-  j["equilibrium"] = linear.equilibrium;
-  j["derivatives"] = linear.derivatives;
-  return j;
 }
 
 }  // namespace withy

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "withy/study/against_next.hpp"
-#include "withy/study/linear_model.hpp"
 #include "withy/study/modes.hpp"
 
 namespace withy {
@@ -24,8 +23,5 @@ std::string modes_csv(const std::vector<study::ModesOf>& runs, const std::string
 /// Frequencies, and where something grows the rates of growth, over the value.
 std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const std::string& label,
                           std::size_t count);
-
-/// What `withy linearize` prints.
-nlohmann::ordered_json linear_model_json(const study::Configuration& configuration, const study::LinearModel& linear);
 
 }  // namespace withy

@@ -78,7 +78,7 @@ Scale scale_of(const Panel& panel, double top) {
   const auto y = [&](double v) { return Scale::place(v, panel.log_y); };
   Scale s{0, 0, y(panel.y_range.first), y(panel.y_range.second), top, panel.height, panel.log_x, panel.log_y};
   // An axis of values begins at 0, one in decades a little before the least.
-  if (panel.log_x || panel.equal) s.x0 = std::numeric_limits<double>::infinity(), s.x1 = -s.x0;
+  if (panel.log_x || panel.equal || panel.free_x) s.x0 = std::numeric_limits<double>::infinity(), s.x1 = -s.x0;
   for (const Curve& c : panel.curves) {
     for (const double v : c.x) {
       s.x0 = std::min(s.x0, Scale::place(v, panel.log_x));

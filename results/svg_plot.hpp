@@ -28,6 +28,7 @@ struct Panel {
   std::vector<Curve> curves;
   double height = 200;
   bool log_x = false, log_y = false;  ///< in decades; values, and the range, above 0
+  bool free_x = false;                ///< the axis of x begins at the least x, not at 0
   bool equal = false;                 ///< one unit is as long along both axes, and x may begin below 0
 };
 

@@ -40,18 +40,23 @@ Json trade_result_json(const study::TradeResult& r) {
           {"relative_error", r.relative_error},
           {"cpu_seconds", r.cpu_seconds},
           {"steps", r.steps},
-          {"evaluations", r.evaluations}};
+          {"evaluations", r.evaluations},
+          {"sensors", r.sensors}};
 }
 
 Json trade_reference_json(const study::TradeReference& r) {
-  return {{"formulation", r.point.formulation}, {"modes", r.point.modes},   {"integrator", r.point.integrator},
-          {"tolerance", r.point.tolerance},     {"hinge_way", r.hinge_way}, {"tip_way", r.tip_way},
-          {"hinge_error", r.hinge_error},       {"tip_error", r.tip_error}, {"relative_error", r.relative_error}};
+  return {{"formulation", r.point.formulation}, {"modes", r.point.modes},          {"integrator", r.point.integrator},
+          {"tolerance", r.point.tolerance},     {"hinge_way", r.hinge_way},        {"tip_way", r.tip_way},
+          {"hinge_error", r.hinge_error},       {"tip_error", r.tip_error},        {"relative_error", r.relative_error},
+          {"sensor_ways", r.sensor_ways},       {"sensor_errors", r.sensor_errors}};
 }
 
 Json trade_json(const Scene& scene, const study::TradeStudy& study, const std::vector<study::TradeResult>& results,
                 const std::vector<bool>& front) {
-  Json j{{"scene", scene.file}, {"name", scene.name}, {"references", Json::object()}, {"points", Json::array()}};
+  Json j{{"scene", scene.file}, {"name", scene.name}};
+  j["outputs"] = Json::array();
+  for (const study::Output& o : study.outputs().list()) j["outputs"].push_back({{"output", o.label}, {"unit", o.unit}});
+  j["references"] = Json::object(), j["points"] = Json::array();
   for (const auto& [over, reference] : study.references()) j["references"][over] = trade_reference_json(reference);
   for (std::size_t i = 0; i < results.size(); ++i) {
     j["points"].push_back(trade_result_json(results[i]));
@@ -138,7 +143,9 @@ study::PointStore::Kept kept_of(const Json& j, const study::Point& point) {
                     r.at("tip_way"),
                     r.at("hinge_error"),
                     r.at("tip_error"),
-                    r.at("relative_error")};
+                    r.at("relative_error"),
+                    r.at("sensor_ways"),
+                    r.at("sensor_errors")};
   kept.result = {point,
                  j.at("status"),
                  j.at("message"),
@@ -148,7 +155,8 @@ study::PointStore::Kept kept_of(const Json& j, const study::Point& point) {
                  j.at("cpu_seconds"),
                  j.at("steps"),
                  j.at("evaluations"),
-                 kept.reference.relative_error};
+                 kept.reference.relative_error,
+                 j.at("sensors")};
   return kept;
 }
 
@@ -193,7 +201,7 @@ std::vector<std::string> subjects_over(const SceneValues& values, const std::vec
 }  // namespace
 
 std::string trade_fingerprint(const study::Prepared& prepared, const std::vector<study::Point>& points,
-                              Registry& registry) {
+                              Registry& registry, const std::vector<std::string>& outputs) {
   int modes = 0;
   double tolerance = 1;
   std::map<std::string, std::string> builds;
@@ -211,7 +219,7 @@ std::string trade_fingerprint(const study::Prepared& prepared, const std::vector
   for (const char* reference : {"exact", "quadratic"}) build_of.operator()<Formulation>(reference);
   build_of.operator()<Integrator>("dopri5");
   return sha256(Json::array({provenance_of(prepared.scene).fingerprint(), modes, tolerance, builds,
-                             subjects_over(prepared.values, points, registry)})
+                             subjects_over(prepared.values, points, registry), outputs})
                     .dump());
 }
 

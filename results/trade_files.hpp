@@ -46,7 +46,8 @@ class TradeFolder : public study::PointStore {
 };
 
 /// Of a study: the scene, what the points ask of a reference, and the builds of the plugins that they name.
+/// \param outputs that errors are measured on
 std::string trade_fingerprint(const study::Prepared& prepared, const std::vector<study::Point>& points,
-                              Registry& registry);
+                              Registry& registry, const std::vector<std::string>& outputs);
 
 }  // namespace withy

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pages of docs/ into a site, build/site/index.html: it opens from disk, search included. A page that is in no
-# table of contents, a picture or a link within the pages that leads nowhere is an error.
+# Makes the pages of docs/ into a site, build/site/index.html: it opens from disk, search included. Pages that
+# docs/site/index.md does not list stand under More; a picture or a link within the pages that leads nowhere is an error.
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 need_packages python3-sphinx python3-myst-parser
 
@@ -11,7 +11,13 @@ cp -r docs/*.md docs/decisions docs/pictures docs/site/* "$pages"
 # Links to files of the sources become their names: the site holds the pages alone.
 python3 - "$pages" <<'PYTHON'
 import pathlib, re, sys
-for page in pathlib.Path(sys.argv[1]).rglob("*.md"):
+root = pathlib.Path(sys.argv[1])
+index = root / "index.md"
+listed = index.read_text().split()
+others = sorted(p.stem for p in root.glob("*.md") if p != index and p.stem not in listed)
+if others:
+    index.write_text(index.read_text() + "\n```{toctree}\n:caption: More\n" + "\n".join(others) + "\n```\n")
+for page in root.rglob("*.md"):
     text = page.read_text()
     page.write_text(re.sub(r"\[([^\]]+)\]\((?:\.\./)+([^)#]+)(?:#[^)]*)?\)", lambda m: f"{m[1]} (`{m[2]}`)"
                            if not (page.parent / m[0].split("](")[1][:-1].split("#")[0]).exists() else m[0], text))

@@ -15,6 +15,20 @@ namespace {
 constexpr double least_distance = 1e-9;  // of its unit; what outputs without a scale may move by
 constexpr double least_effort = 1e-3;    // of the kinetic energy over a radian or the longest body
 
+constexpr double least_range = 1e-7;    // of its unit, of what a sensor shows
+constexpr double beside_others = 1e-3;  // of the greatest range of the same sensor's numbers of the same unit
+
+/// The greatest range among the numbers of an output's sensor that have its unit.
+double greatest_beside(const Outputs& outputs, const Distances& ranges, std::size_t i) {
+  double most = 0;
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    const Output &o = outputs.list()[i], &other = outputs.list()[k];
+    if (other.measure == Measure::sensor && other.group == o.group && other.unit == o.unit)
+      most = std::max(most, ranges[k]);
+  }
+  return most;
+}
+
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(' ');
   if (first == std::string::npos) return {};
@@ -55,8 +69,10 @@ Distances scales(const Outputs& outputs, const Distances& ranges, double energy)
   for (std::size_t i = 0; i < scales.size(); ++i) {
     const Output& o = outputs.list()[i];
     double floor = o.floor;
-    if (o.measure == Measure::moment) floor = least_effort * energy;
-    if (o.measure == Measure::force && outputs.length() > 0) floor = least_effort * energy / outputs.length();
+    if (o.unit == "N m") floor = least_effort * energy;
+    if (o.unit == "N" && outputs.length() > 0) floor = least_effort * energy / outputs.length();
+    if (o.measure == Measure::sensor)
+      floor = std::max({floor, least_range, beside_others * greatest_beside(outputs, ranges, i)});
     scales[i] = std::max(scales[i], floor);
   }
   return scales;
@@ -71,13 +87,14 @@ double relative_error(const Distances& distances, const Distances& scales) {
 
 const char* floors_text() {
   return "a range below a thousandth of a radian, of the body's length (deflections), of the longest body (places, "
-         "slides), or of the kinetic energy over a radian or that length (efforts) counts as that";
+         "slides), or of the kinetic energy over a radian or that length (efforts) counts as that; of an output of the "
+         "scene also one below a thousandth of its other components of that unit";
 }
 
 Distances Accuracy::limits(const Outputs& outputs, const Distances& scales) const {
   Distances limits(scales.size(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    const std::string unit = measure_unit(static_cast<std::size_t>(outputs.list()[i].measure));
+    const std::string& unit = outputs.list()[i].unit;
     if (unit == "rad" && angle) limits[i] = *angle;
     if (unit == "m" && length) limits[i] = *length;
     if (share) limits[i] = std::min(limits[i], std::max(*share * scales[i], least_distance));
@@ -86,12 +103,15 @@ Distances Accuracy::limits(const Outputs& outputs, const Distances& scales) cons
 }
 
 void Accuracy::require_something_of(const Outputs& outputs) const {
-  const bool lengths = outputs.has(Measure::slide) || outputs.has(Measure::place) || outputs.has(Measure::deflection);
-  if (share || (length && lengths) || (angle && outputs.has(Measure::angle))) return;
+  const auto any_in = [&](const char* unit) {
+    return std::any_of(outputs.list().begin(), outputs.list().end(), [&](const Output& o) { return o.unit == unit; });
+  };
+  const bool lengths = any_in("m"), angles = any_in("rad");
+  if (share || (length && lengths) || (angle && angles)) return;
   throw OptionError("accuracy", "'" + text() + "' asks nothing of the outputs, which are " +
-                                    std::string(lengths                       ? "lengths"
-                                                : outputs.has(Measure::angle) ? "angles"
-                                                                              : "efforts"));
+                                    (lengths  ? "lengths"
+                                     : angles ? "angles"
+                                              : "neither lengths nor angles"));
 }
 
 std::string Accuracy::text() const {

@@ -11,6 +11,8 @@ namespace withy::study {
 
 /// What a relative error of each output is a share of: its own range, or where it hardly moves its floor. An effort's
 /// floor is a thousandth of the greatest kinetic energy over a radian, or over the length of the longest body.
+/// The same goes for what sensors show in these units; of all that they show, a thousandth of what the same sensor's
+/// other numbers of that unit move is a floor too, and 1e-7 of the unit.
 /// \param ranges greatest distances of the outputs from their start
 /// \param energy greatest kinetic energy of the same run [J]
 Distances scales(const Outputs& outputs, const Distances& ranges, double energy);

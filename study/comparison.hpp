@@ -28,14 +28,24 @@ struct Comparison {
   [[nodiscard]] bool has_reference() const { return reference < runs.size(); }
   /// Greatest distances of a run from the reference, over the outputs both have.
   [[nodiscard]] NamedDistances distances(const ComparedRun& run) const;
+  std::vector<std::string> outputs;  ///< names that distances are asked of; empty: everything but sensors
+  /// An output asked for by name: how far a run is from the reference, and how far that moves while both run.
+  struct OutputError {
+    std::string label, unit;
+    double distance = 0, range = 0;
+  };
+  /// Of each output named; none where none is.
+  [[nodiscard]] std::vector<OutputError> output_errors(const ComparedRun& run) const;
 };
 
 /// Simulates a scene, every output handed on.
 using Simulator = std::function<RunSummary(const Prepared&, const std::function<void(const State&)>& output)>;
 
 /// Runs the formulations, and the reference where it is not among them.
+/// \param outputs names of Comparison::outputs
 /// \throws SceneError, InputError, PluginError
 Comparison compare(const SceneValues& values, Registry& registry, const std::vector<std::string>& formulations,
-                   const std::string& reference, const Simulator& simulator);
+                   const std::string& reference, const Simulator& simulator,
+                   const std::vector<std::string>& outputs = {});
 
 }  // namespace withy::study

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/simulation/instants.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 
@@ -26,21 +27,29 @@ std::size_t hinge_of(const Layout& layout, std::size_t speed) {
   return h;
 }
 
+/// \throws InputError where a load's discrete part has no place in a linear analysis.
+void require_continuous(const std::string& file, const Model& model, const LoadSlot& slot, Sampling sampling) {
+  const LoadNode& node = model.loads()[slot.load];
+  if (node.load->input() != nullptr) return;
+  const DiscretePart& part = *node.load->discrete();
+  const bool switches = part.switches() > 0 || !(part.period() > 0);
+  if (sampling == Sampling::kept && !switches) return;
+  throw InputError(file + ": load '" + node.name + "' changes at instants (" + (switches ? "a relay" : "sampled") +
+                   "); linear analyses need loads that are continuous in time: leave out " +
+                   (switches ? "the load" : "its 'sample'; 'withy linearize' and 'withy response' take it as it is"));
+}
+
 }  // namespace
 
-Configuration::Configuration(const Prepared& prepared, State state, const Holding& holding)
+Configuration::Configuration(const Prepared& prepared, State state, const Holding& holding, Sampling sampling)
     : prepared_(prepared),
       dynamics_(prepared.scene.model, prepared.scene.formulation->terms()),
       state_(std::move(state)),
       held_(layout().speeds, false) {
   const Model& model = prepared_.model();
-  for (const LoadSlot& slot : layout().discrete_slots) {
-    if (model.loads()[slot.load].load->input() != nullptr) continue;
-    throw InputError(prepared.scene.file + ": load '" + model.loads()[slot.load].name +
-                     "' changes at instants (sampled, or a relay); linear analyses need loads that are continuous in "
-                     "time: leave out its 'sample', or the load");
-  }
+  for (const LoadSlot& slot : layout().discrete_slots) require_continuous(prepared.scene.file, model, slot, sampling);
   model.prescribe(state_);
+  if (sampling == Sampling::kept) state_ = begun(model, std::move(state_));
   for (const MotionNode& motion : model.motions()) {
     const Slot& slot = layout().hinges[static_cast<std::size_t>(motion.hinge)];
     for (std::size_t i = 0; i < slot.speeds; ++i) held_[slot.speed + i] = true;

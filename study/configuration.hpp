@@ -22,10 +22,16 @@ struct Holding {
   std::vector<Spin> spun;
 };
 
+/// What becomes of loads that are sampled.
+enum class Sampling {
+  refused,
+  kept  ///< they hold what they give at the state
+};
+
 class Configuration {
  public:
-  /// \throws InputError where a load changes at instants, or there is no such hinge.
-  Configuration(const Prepared& prepared, State state, const Holding& holding);
+  /// \throws InputError where a load switches, or is sampled and that is refused, or there is no such hinge.
+  Configuration(const Prepared& prepared, State state, const Holding& holding, Sampling sampling = Sampling::refused);
 
   [[nodiscard]] const Prepared& prepared() const { return prepared_; }
   [[nodiscard]] const Layout& layout() const { return prepared_.model().layout(); }

@@ -1,35 +1,45 @@
 /// \file
-/// The linear model of small motions about a state, ẋ = A x + B u, y = C x, with names.
+/// The linear model of small motions about a state, ż = A z + B v, y = C z + D v, with names; where loads are sampled,
+/// the exact map from one sample to the next.
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "withy/core/analysis/linear_system.hpp"
+#include "withy/core/model/columns.hpp"
 #include "withy/study/configuration.hpp"
 
 namespace withy::study {
 
 struct LinearModel {
-  std::vector<std::string> states;   ///< displacements of the free speeds, their rates, continuous states of loads
-  std::vector<std::string> inputs;   ///< efforts on speeds [N m, N]
-  std::vector<std::string> outputs;  ///< coordinates, rates, deflections and places of tips [rad, m, s]
+  /// Displacements of the free speeds, their rates, continuous states of loads; of a sampled model then what its loads
+  /// hold.
+  std::vector<std::string> states;
+  std::vector<Column> inputs;   ///< values of input loads, or efforts on speeds [N m, N]
+  std::vector<Column> outputs;  ///< components of sensors; coordinates, rates, deflections and places of tips
   std::vector<double> output_values;
-  Eigen::MatrixXd A, B, C;                                    ///< D is zero
+  LinearSystem system;
   std::vector<std::pair<std::string, double>> accelerations;  ///< of the free speeds at the state
   bool equilibrium = false;                                   ///< nothing that is free moves or begins to
-  std::string derivatives;                                    ///< how they were found
+  std::string derivatives;                                    ///< how A was found
+  std::string output_derivatives;                             ///< how C and D were
 };
 
 /// What goes in and comes out.
 struct Ports {
-  std::vector<std::string> inputs;   ///< hinges or speeds; `all` is every speed; empty: every hinge
-  std::vector<std::string> outputs;  ///< names or their beginnings up to a dot; empty: every output
+  /// Input loads, hinges or speeds; `all` is every speed; empty: every input load or, where there is none, every hinge.
+  std::vector<std::string> inputs;
+  /// Names or their beginnings up to a dot, of the scene's sensors and of what every model has; empty: every sensor or,
+  /// where there is none, everything else.
+  std::vector<std::string> outputs;
 };
 
-/// \throws InputError where there is no such input or output; std::domain_error where the mass matrix of what is free
-/// is singular.
+/// Sampled loads are discretised exactly: z are values just before a sample, y those just after it, v is held from it
+/// to the next. Of loads with several periods the common one counts, through which v is held. \throws InputError where
+/// there is no such input or output, or no common period; std::domain_error where the mass matrix of what is free is
+/// singular.
 LinearModel linear_model(const Configuration& configuration, const Ports& ports);
 
 }  // namespace withy::study

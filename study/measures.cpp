@@ -54,7 +54,7 @@ double distance(Output::Shape shape, std::span<const double> a, std::span<const 
 }
 
 /// The names that outputs may be asked for by.
-std::string known_names(const Model& model, const std::vector<Tip>& tips) {
+std::string known_names(const Model& model, const std::vector<Tip>& tips, std::span<const SensorNode> sensors) {
   std::string list;
   const auto add = [&](const std::string& name) { list += (list.empty() ? "" : ", ") + name; };
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
@@ -65,6 +65,8 @@ std::string known_names(const Model& model, const std::vector<Tip>& tips) {
   }
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
     if (model.driven(h)) add(effort_name(model.hinges()[h]));
+  for (const SensorNode& sensor : sensors)
+    for (const Column& column : columns_of(sensor)) add(column.name);
   return list;
 }
 
@@ -77,19 +79,21 @@ double greatest(const std::map<std::string, double>& values) {
 }  // namespace
 
 const char* measure_name(std::size_t measure) {
-  constexpr std::array<const char*, measures> names = {"angle", "slide", "place", "deflection", "moment", "force"};
+  constexpr std::array<const char*, measures> names = {"angle",  "slide", "place", "deflection",
+                                                       "moment", "force", "sensor"};
   return names.at(measure);
 }
 
 const char* measure_unit(std::size_t measure) {
-  constexpr std::array<const char*, measures> units = {"rad", "m", "m", "m", "N m", "N"};
+  constexpr std::array<const char*, measures> units = {"rad", "m", "m", "m", "N m", "N", ""};
   return units.at(measure);
 }
 
-Outputs::Outputs(const Model& model, const std::vector<std::string>& names) : length_(longest_body(model)) {
+Outputs::Outputs(const Model& model, const std::vector<std::string>& names, std::span<const SensorNode> sensors)
+    : length_(longest_body(model)) {
   const std::vector<Tip> all_tips = tips(model);
   if (names.empty()) add_all(model, all_tips, false);
-  for (const std::string& name : names) add_named(model, all_tips, name);
+  for (const std::string& name : names) add_named(model, all_tips, name, sensors);
   if (outputs_.empty()) throw InputError("no hinge of the scene moves and no body has a tip: nothing to measure");
 }
 
@@ -110,7 +114,8 @@ void Outputs::add_all(const Model& model, const std::vector<Tip>& tips, bool dri
     if (model.driven(h)) add_effort(model, h);
 }
 
-void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const std::string& name) {
+void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const std::string& name,
+                        std::span<const SensorNode> sensors) {
   const std::size_t before = outputs_.size();
   if (const int h = model.hinge(name); h >= 0) add_hinge(model, static_cast<std::size_t>(h));
   for (std::size_t i = 0; i < tips.size(); ++i) {
@@ -119,12 +124,37 @@ void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const 
   }
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
     if (model.driven(h) && name == effort_name(model.hinges()[h])) add_effort(model, h);
+  add_sensors(name, sensors);
   if (outputs_.size() == before)
-    throw OptionError("outputs", "got '" + name + "'; need one of: " + known_names(model, tips));
+    throw OptionError("outputs", "got '" + name + "'; need one of: " + known_names(model, tips, sensors));
+}
+
+void Outputs::add_sensors(const std::string& name, std::span<const SensorNode> sensors) {
+  std::size_t first = 0;
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    const std::vector<Column> columns = columns_of(sensors[s]);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const bool whole = name == sensors[s].name;
+      if (!whole && name != columns[i].name) continue;
+      Output o{.name = sensors[s].name, .measure = Measure::sensor, .index = s, .coordinate = first + i};
+      o.label = columns[i].name, o.unit = columns[i].unit, o.group = s;
+      o.floor = o.unit == "rad" ? hardly : o.unit == "m" ? hardly * length_ : 0;
+      // Of a whole orientation the four numbers of its quaternion are one angle, and its three angles say the same.
+      const std::string component = columns[i].name.substr(columns[i].name.rfind('.') + 1);
+      if (whole && component == "qw") {
+        o.shape = Output::Shape::orientation;
+        o.label = sensors[s].name + ".orientation", o.unit = "rad";
+        i += 6;
+      }
+      add(std::move(o));
+    }
+    first += columns.size();
+  }
 }
 
 void Outputs::add(Output output) {
   if (output.label.empty()) output.label = output.name;
+  if (output.unit.empty()) output.unit = measure_unit(static_cast<std::size_t>(output.measure));
   output.at = size_;
   size_ += numbers_of(output.shape);
   outputs_.push_back(std::move(output));
@@ -211,13 +241,18 @@ PerMeasure Outputs::per_measure(const Distances& distances) const {
   return most;
 }
 
-OutputReader::OutputReader(const Outputs& outputs, const Model& model, const EquationsOfMotion& equations)
+OutputReader::OutputReader(const Outputs& outputs, const Model& model, const EquationsOfMotion& equations,
+                           std::vector<SensorNode> sensors)
     : outputs_(outputs),
       model_(model),
       equations_(equations),
       seen_(equations.make_observation()),
       tips_(tips(model)),
       work_(0) {
+  if (outputs.has(Measure::sensor)) {
+    sensors_.emplace(std::move(sensors), equations);
+    sensed_.resize(sensors_->columns().size());
+  }
   if (!outputs.has(Measure::moment) && !outputs.has(Measure::force)) return;
   work_ = equations.make_work();
   efforts_.resize(model.layout().speeds);
@@ -230,8 +265,14 @@ std::vector<double> OutputReader::read(const State& state) {
   seen_->observe(y);
   if (!efforts_.empty() && !equations_.motion_efforts(state.time, y, efforts_, work_).ok())
     std::fill(efforts_.begin(), efforts_.end(), std::numeric_limits<double>::quiet_NaN());
+  if (sensors_ && !sensors_->read(state, sensed_))
+    std::fill(sensed_.begin(), sensed_.end(), std::numeric_limits<double>::quiet_NaN());
   for (const Output& o : outputs_.list()) {
     switch (o.measure) {
+      case Measure::sensor:
+        values.insert(values.end(), sensed_.begin() + static_cast<std::ptrdiff_t>(o.coordinate),
+                      sensed_.begin() + static_cast<std::ptrdiff_t>(o.coordinate + numbers_of(o.shape)));
+        break;
       case Measure::place: {
         const auto p = seen_->frame_pose(tips_[o.index].tip.body, tips_[o.index].tip.frame).position;
         values.insert(values.end(), p.begin(), p.end());
@@ -270,6 +311,8 @@ std::map<std::string, double>& NamedDistances::of(Measure measure) {
       return moments;
     case Measure::force:
       return forces;
+    case Measure::sensor:
+      return sensors;
     case Measure::angle:
     case Measure::slide:
       break;
@@ -282,7 +325,7 @@ NamedDistances named(const Outputs& outputs, const Distances& distances, double 
   d.until = until;
   for (std::size_t i = 0; i < distances.size(); ++i) {
     const Output& o = outputs.list()[i];
-    double& most = d.of(o.measure)[o.name];
+    double& most = d.of(o.measure)[o.measure == Measure::sensor ? o.label : o.name];
     most = std::max(most, distances[i]);
   }
   return d;

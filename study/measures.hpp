@@ -6,12 +6,14 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/equations.hpp"
+#include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/core/simulation/tips.hpp"
 
 namespace withy::study {
@@ -23,14 +25,15 @@ enum class Measure {
   place,       ///< of a tip, in the world [m]
   deflection,  ///< of a tip, in the frame of its body's root [m]
   moment,      ///< that a motion needs on a speed it prescribes [N m]
-  force        ///< the same [N]
+  force,       ///< the same [N]
+  sensor       ///< of an output that the scene names, in its own unit
 };
-inline constexpr std::size_t measures = 6;
+inline constexpr std::size_t measures = 7;
 /// One number for each measure.
 using PerMeasure = std::array<double, measures>;
-/// "angle", "slide", "place", "deflection", "moment", "force".
+/// "angle", "slide", "place", "deflection", "moment", "force", "sensor".
 const char* measure_name(std::size_t measure);
-/// "rad", "m", "N m" or "N".
+/// "rad", "m", "N m" or "N"; of a sensor, which has its own, empty.
 const char* measure_unit(std::size_t measure);
 
 /// One number for each output, in the order of Outputs::list() [rad, m, N m, N].
@@ -42,22 +45,31 @@ struct Output {
   std::string name;  ///< of the hinge, or as "link2.tip", "link2.tip.deflection", "axle.motion_effort"
   Measure measure = Measure::angle;
   Shape shape = Shape::number;
-  std::size_t index = 0;       ///< of the hinge, or of the tip among tips(model)
-  std::size_t coordinate = 0;  ///< first one among the hinge's; of efforts its speed
+  std::size_t index = 0;  ///< of the hinge, or of the tip among tips(model)
+  /// First one among the hinge's; of efforts its speed; of sensors the first of its numbers among those of all.
+  std::size_t coordinate = 0;
   /// A range below this counts as this: a thousandth of a radian, of the body's length for deflections, of the longest
   /// body for slides and places. Efforts have none of their own: see `scales`.
   double floor = 0;
   std::string label = {};  ///< the name, told apart from others of that name: "float.slide", "cross.1"
   std::size_t at = 0;      ///< first of its numbers in a reading
+  std::string unit = {};   ///< SI
+  /// Of sensors: the place of the sensor in the scene. What hardly moves beside others of its sensor and unit counts as
+  /// moving a thousandth as much as they do.
+  std::size_t group = 0;
 };
 
 /// Outputs of a scene. Those of models with the same hinges and tips can be compared, whatever their modes.
 class Outputs {
  public:
   /// Every hinge that no motion drives, place and deflection of every tip, and the efforts that motions need; with
-  /// names, what these name: hinges, `body.tip`, `body.tip.deflection`, `hinge.motion_effort`.
+  /// names, what these name: hinges, `body.tip`, `body.tip.deflection`, `hinge.motion_effort`; outputs of the scene,
+  /// whole or one component as `root.mz`. An orientation among all components of one is measured as the angle of the
+  /// rotation between two.
+  /// \param sensors of the scene, bound to the model
   /// \throws InputError where there is no such output, or nothing to measure.
-  explicit Outputs(const Model& model, const std::vector<std::string>& names = {});
+  explicit Outputs(const Model& model, const std::vector<std::string>& names = {},
+                   std::span<const SensorNode> sensors = {});
   /// The same with the hinges that motions drive; there may be none.
   static Outputs all(const Model& model);
 
@@ -84,7 +96,9 @@ class Outputs {
   void add_effort(const Model& model, std::size_t hinge);
   void add_all(const Model& model, const std::vector<Tip>& tips, bool driven);
   void add_tip(const Tip& tip, std::size_t index, bool deflection);
-  void add_named(const Model& model, const std::vector<Tip>& tips, const std::string& name);
+  void add_named(const Model& model, const std::vector<Tip>& tips, const std::string& name,
+                 std::span<const SensorNode> sensors);
+  void add_sensors(const std::string& name, std::span<const SensorNode> sensors);
 
   std::vector<Output> outputs_;
   std::size_t size_ = 0;
@@ -94,8 +108,10 @@ class Outputs {
 /// Reads outputs from states of one model. What is given must outlive it.
 class OutputReader {
  public:
-  OutputReader(const Outputs& outputs, const Model& model, const EquationsOfMotion& equations);
-  /// The numbers of all outputs; an effort that cannot be found is no number.
+  /// \param sensors of the scene, bound to this model; all that outputs were made with
+  OutputReader(const Outputs& outputs, const Model& model, const EquationsOfMotion& equations,
+               std::vector<SensorNode> sensors = {});
+  /// The numbers of all outputs; an effort or a sensor that cannot be found is no number.
   [[nodiscard]] std::vector<double> read(const State& state);
   /// At the state read last [J].
   [[nodiscard]] double kinetic_energy() const { return seen_->energies().kinetic; }
@@ -108,6 +124,8 @@ class OutputReader {
   std::vector<Tip> tips_;
   Work work_;
   std::vector<double> efforts_;
+  std::optional<SensorReader> sensors_;  ///< nothing where no output is a sensor's
+  std::vector<double> sensed_;
 };
 
 /// Greatest distances between two runs, by name.
@@ -119,6 +137,7 @@ struct NamedDistances {
   std::map<std::string, double> deflections;  ///< of tips, in the frame of their body's root [m]
   std::map<std::string, double> moments;      ///< that motions need [N m]
   std::map<std::string, double> forces;       ///< the same [N]
+  std::map<std::string, double> sensors;      ///< by the labels of single outputs, each in its unit
   double until = 0;                           ///< time [s] of the last output both have
   [[nodiscard]] std::map<std::string, double>& of(Measure measure);
   [[nodiscard]] double greatest_hinge() const;

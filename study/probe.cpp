@@ -91,7 +91,7 @@ Probe Evaluator::run(const Point& point, const Yardstick& yardstick, const Allow
   }
   p.distances = outputs_.none();
   const Readings& truth = yardstick.reference.readings;
-  OutputReader reader(outputs_, at.prepared->model(), *at.prepared->equations);
+  OutputReader reader(outputs_, at.prepared->model(), *at.prepared->equations, at.prepared->scene.outputs);
   std::size_t next = 0;
   bool afforded = true;
   const auto measure = [&](const State& s) {

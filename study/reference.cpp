@@ -33,7 +33,7 @@ class ReferenceSearch {
       return {};
     }
     Reference r{.point = point, .readings = {}, .ranges = outputs_.none(), .scales = {}, .own = {}, .walk = {}};
-    OutputReader reader(outputs_, model.prepared->model(), *model.prepared->equations);
+    OutputReader reader(outputs_, model.prepared->model(), *model.prepared->equations, model.prepared->scene.outputs);
     const auto keep = [&](const State& s) {
       r.readings.times.push_back(s.time);
       r.readings.values.push_back(reader.read(s));

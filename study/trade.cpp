@@ -43,7 +43,7 @@ TimedRun timed_run(const Prepared& model, const Outputs& outputs, const Control&
     run.cpu_seconds = std::min(run.cpu_seconds, run.summary.cpu_seconds);
     spent += run.summary.cpu_seconds;
   }
-  OutputReader reader(outputs, model.model(), *model.equations);
+  OutputReader reader(outputs, model.model(), *model.equations, model.scene.outputs);
   for (const State& s : states) {
     run.readings.times.push_back(s.time);
     run.readings.values.push_back(reader.read(s));
@@ -73,7 +73,7 @@ TradeStudy::TradeStudy(const Prepared& base, Registry& registry, std::vector<Poi
       registry_(registry),
       points_(std::move(points)),
       options_(std::move(options)),
-      outputs_(base.model()),
+      outputs_(base.model(), options_.outputs, base.scene.outputs),
       finished_(points_.size()) {
   for (std::size_t i = 0; i < points_.size(); ++i) look_up(i);
 }
@@ -115,8 +115,8 @@ void TradeStudy::find_reference_for(const Point& point) {
   const Reference& r = *found.reference;
   const double relative = relative_error(r.own, r.scales);
   const NamedDistances ways = named(outputs_, r.ranges, 0), own = named(outputs_, r.own, 0);
-  told_[key] = {r.point, ways.greatest_hinge(), ways.greatest_tip(), own.greatest_hinge(), own.greatest_tip(),
-                relative};
+  told_[key] = {r.point,  ways.greatest_hinge(), ways.greatest_tip(), own.greatest_hinge(), own.greatest_tip(),
+                relative, ways.sensors,          own.sensors};
   known_.emplace(key, Known{std::move(*found.reference), relative});
 }
 
@@ -140,6 +140,7 @@ TradeResult TradeStudy::run_point(const Point& point) const {
     const NamedDistances by_name = named(outputs_, distance, until);
     result.hinge_error = by_name.greatest_hinge();
     result.tip_error = by_name.greatest_tip();
+    result.sensors = by_name.sensors;
     result.relative_error = relative_error(distance, known.reference.scales);
     result.reference_error = known.relative_error;
   } catch (const SceneError& e) {

@@ -22,7 +22,8 @@ struct TradeResult {
   double relative_error = 0;  ///< greatest of all outputs, over what each is measured by
   double cpu_seconds = 0;
   std::size_t steps = 0, evaluations = 0;
-  double reference_error = 0;  ///< of its reference, relative: errors below it cannot be told apart
+  double reference_error = 0;                  ///< of its reference, relative: errors below it cannot be told apart
+  std::map<std::string, double> sensors = {};  ///< greatest distances of the numbers of sensors, each in its unit
   [[nodiscard]] bool completed() const { return status == "completed"; }
 };
 
@@ -32,6 +33,7 @@ struct TradeReference {
   double hinge_way = 0, tip_way = 0;      ///< greatest distances from the start [rad or m; m]
   double hinge_error = 0, tip_error = 0;  ///< its own, by one mode less and ten times the tolerance
   double relative_error = 0;
+  std::map<std::string, double> sensor_ways = {}, sensor_errors = {};  ///< of the numbers of sensors, in their units
 };
 
 /// Keeps what is finished. Called by one thread at a time.
@@ -50,7 +52,8 @@ class PointStore {
 struct TradeOptions {
   std::size_t jobs = 0;         ///< threads; 0: one a core
   PointStore* store = nullptr;  ///< null: nothing is kept
-  Control control;
+  Control control = {};
+  std::vector<std::string> outputs = {};  ///< that errors are measured on; empty: all of the usual ones
 };
 
 class TradeStudy {
@@ -70,6 +73,7 @@ class TradeStudy {
   [[nodiscard]] std::vector<TradeResult> results() const;
   /// Of that point; null where it is not among them or not finished.
   [[nodiscard]] const TradeResult* result(const Point& point) const;
+  [[nodiscard]] const Outputs& outputs() const { return outputs_; }
   /// By the values gone over, joined with spaces.
   [[nodiscard]] const std::map<std::string, TradeReference>& references() const { return told_; }
 

@@ -47,7 +47,7 @@ ExitStatus advise(const AdviseArguments& arguments) {
     throw InputError("--write takes the scene as its file has it: put what --set changes into the file first");
   const Engine engine(arguments);
   const study::Accuracy accuracy = study::Accuracy::parse(arguments.accuracy);
-  const study::Outputs outputs(engine.model(), arguments.outputs);
+  const study::Outputs outputs(engine.model(), arguments.outputs, engine.scene().outputs);
   const study::Candidates candidates = study::candidates_for(engine.prepared(), engine.registry(), arguments.axes);
   study::Evaluator evaluator(engine.prepared(), engine.registry(), outputs, study_control("advise, s of CPU time"));
   const study::Advice advice = study::advise(evaluator, candidates, accuracy);
@@ -81,9 +81,10 @@ std::function<ExitStatus()> add_advise(CLI::App& c) {
                "Greatest error of the outputs: a share of each one's own range, a length, an angle, or several")
       ->type_name("A,...")
       ->capture_default_str();
-  axis("--outputs,--output", a.outputs, "NAME,...",
-       "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection, HINGE.motion_effort; default: all of "
-       "these, but hinges that motions drive");
+  axis(
+      "--outputs,--output", a.outputs, "NAME,...",
+      "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection, HINGE.motion_effort, outputs of the scene "
+      "(root, or one component, root.mz); default: all but these last, and but hinges that motions drive");
   axis("--formulations,--formulation", a.axes.formulations, "ID,...",
        "Formulations to choose from; default: all that take part in studies, plugins' too");
   axis("--families,--family", a.axes.families, "ID,...",

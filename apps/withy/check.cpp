@@ -42,12 +42,12 @@ ExitStatus check(const CheckArguments& arguments) {
     std::string text;
     for (const study::Remark& remark : remarks) text += line_of(scene, remark);
     const std::size_t n = model.bodies().size();
-    text +=
-        fmt::format("{} is valid: {} {}, {} speeds, formulation {}, integrator {}; {}\n", scene.file, n,
-                    n == 1 ? "body" : "bodies", model.layout().speeds, scene.formulation_name, scene.integrator_name,
-                    remarks.empty()       ? "nothing is implausible"
-                    : remarks.size() == 1 ? "one thing is implausible"
-                                          : fmt::format("{} things are implausible", remarks.size()));
+    text += fmt::format("{} is valid: {} {}, {} {}, formulation {}, integrator {}; {}\n", scene.file, n,
+                        n == 1 ? "body" : "bodies", model.layout().speeds,
+                        model.layout().speeds == 1 ? "speed" : "speeds", scene.formulation_name, scene.integrator_name,
+                        remarks.empty()       ? "nothing is implausible"
+                        : remarks.size() == 1 ? "one thing is implausible"
+                                              : fmt::format("{} things are implausible", remarks.size()));
     print(text);
   }
   return arguments.strict && !remarks.empty() ? ExitStatus::bad_input : ExitStatus::done;

@@ -23,6 +23,7 @@ namespace {
 
 struct CompareArguments : SceneArguments, OutputArguments {
   std::vector<std::string> formulations = {"ruthless", "inconsistent", "consistent", "quadratic"};
+  std::vector<std::string> outputs;     ///< that errors are measured on; empty: all of the usual ones
   std::string reference = "quadratic";  ///< formulation that the others' errors are measured against
   std::string over;                     ///< `path=value,value,…`: the comparison is made at each value; may be empty
 };
@@ -77,7 +78,8 @@ Group group_at(const CompareArguments& arguments, const Plugins& plugins, const 
     group.reports.push_back(std::move(recorded.report));
     return recorded.run.summary;
   };
-  group.comparison = study::compare(values, registry, arguments.formulations, arguments.reference, simulator);
+  group.comparison =
+      study::compare(values, registry, arguments.formulations, arguments.reference, simulator, arguments.outputs);
   return group;
 }
 
@@ -137,6 +139,10 @@ std::function<ExitStatus()> add_compare(CLI::App& c) {
   c.add_option("--reference", a.reference, "Formulation the errors are measured against")
       ->type_name("ID")
       ->capture_default_str();
+  c.add_option("--outputs,--output", a.outputs,
+               "What errors are shown of, each beside its range: hinges, tips, outputs of the scene (root, root.mz)")
+      ->type_name("NAME,...")
+      ->delimiter(',');
   c.add_option("--over", a.over, "Compare at each of these values of the scene")->type_name("PATH=VALUE,VALUE,...");
   add_output(c, a, "Folder for results and pictures; default: nothing is kept");
   return [arguments] { return compare(*arguments); };
@@ -146,6 +152,8 @@ std::function<ExitStatus()> add_compare(CLI::App& c) {
 
 const Command compare_command = {"compare", "Simulate a scene in several formulations, side by side",
                                  "  withy compare scenes/two-link-slew.yaml\n"
+                                 "  withy compare scenes/loads-of-the-slew.yaml --formulations quadratic,linear "
+                                 "--reference exact --output root.mz,elbow_load.fx\n"
                                  "  withy compare scenes/two-link-slew.yaml --formulations ruthless,quadratic "
                                  "--over loads.slew.time_scale=1.0,1.2 --out results/comparison",
                                  &add_compare};

@@ -22,8 +22,10 @@ study::Holding holding_of(const Model& model, const std::vector<std::string>& lo
   return holding;
 }
 
-study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments) {
-  return {engine.prepared(), engine.state(arguments.state), holding_of(engine.model(), arguments.lock, arguments.spin)};
+study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments,
+                                      study::Sampling sampling) {
+  return {engine.prepared(), engine.state(arguments.state), holding_of(engine.model(), arguments.lock, arguments.spin),
+          sampling};
 }
 
 void add_configuration(CLI::App& command, ConfigurationArguments& a) {

@@ -23,6 +23,7 @@ void add_configuration(CLI::App& parser, ConfigurationArguments& arguments);
 study::Holding holding_of(const Model& model, const std::vector<std::string>& lock,
                           const std::vector<std::string>& spin);
 /// The configuration of a command line. \throws SceneError, InputError, PluginError
-study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments);
+study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments,
+                                      study::Sampling sampling = study::Sampling::refused);
 
 }  // namespace withy::app

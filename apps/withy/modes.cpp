@@ -11,6 +11,7 @@
 #include "withy/apps/withy/progress.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/apps/withy/variation.hpp"
+#include "withy/results/effective_mass_files.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/modes_files.hpp"
 #include "withy/results/modes_text.hpp"
@@ -28,6 +29,7 @@ struct ModesArguments : ConfigurationArguments, OutputArguments {
   std::size_t count = 6;  ///< modes that are shown
   bool as_is = false;     ///< about the state as it is given, steady or not
   bool poles = false;     ///< all eigenvalues are listed
+  bool masses = false;    ///< effective masses are found
   bool floquet = false;   ///< characteristic exponents over a turn
   std::optional<std::vector<std::string>> blades;  ///< equal blades by names, or `auto`; none: not asked
   double period = 0;                               ///< [s]; 0: found from the rates
@@ -126,14 +128,28 @@ bool complain_of(const std::vector<study::ModesOf>& runs, const study::Sweep& sw
   return failed;
 }
 
+/// About the steady state that the modes are about; nothing where they are not asked for or there is none.
+std::optional<study::EffectiveMasses> masses_of(const Engine& engine, const ModesArguments& arguments,
+                                                const std::vector<study::ModesOf>& runs) {
+  if (!arguments.masses || !runs.front().points.front().problem.empty()) return {};
+  study::Configuration c = configuration_of(engine, arguments);
+  if (const auto& steady = runs.front().points.front().steady) c.set_state(steady->steady.state);
+  return study::effective_masses(c);
+}
+
 ExitStatus modes(const ModesArguments& arguments) {
   const study::Sweep sweep = parse_sweep(arguments.sweep, "--sweep");
+  if (arguments.masses && (!sweep.none() || !arguments.formulations.empty()))
+    throw InputError(
+        "--effective-mass is of one configuration, in the scene's formulation: leave out --sweep and "
+        "--formulations, or --set formulation=ID");
   const Engine engine(arguments);
   const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
                                   {"modes.json", "modes.csv", "modes.svg", report_name});
   std::vector<std::optional<study::AgainstNext>> against;
   const std::vector<study::ModesOf> runs = runs_of(engine, arguments, sweep, against);
   if (interrupted()) return ExitStatus::interrupted;
+  const std::optional<study::EffectiveMasses> masses = masses_of(engine, arguments, runs);
   Json j;
   j["scene"] = arguments.scene;
   j["sweep"] = sweep.none() ? Json() : Json(sweep.path);
@@ -142,12 +158,14 @@ ExitStatus modes(const ModesArguments& arguments) {
     j["runs"].push_back(modes_json(runs[i]));
     j["runs"].back()["against_next"] = against_json(against[i]);
   }
+  if (masses) j["effective_mass"] = effective_mass_json(*masses);
   if (!arguments.out.empty()) write_files(runs, j, arguments, sweep);
   if (arguments.json) {
     print(json_text(j));
   } else {
     for (std::size_t i = 0; i < runs.size(); ++i)
       print((i == 0 ? "" : "\n") + run_text(runs[i], arguments, sweep, against[i]));
+    if (masses) print('\n' + effective_mass_text(*masses));
     if (!arguments.out.empty()) print("\nResults: " + arguments.out + '\n');
   }
   return complain_of(runs, sweep) ? ExitStatus::stopped : ExitStatus::done;
@@ -166,6 +184,7 @@ std::function<ExitStatus()> add_modes(CLI::App& c) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{100000}))
       ->capture_default_str();
   c.add_flag("--poles", a.poles, "All eigenvalues, real and complex, in the order of |λ|");
+  c.add_flag("--effective-mass", a.masses, "How much of the mass each mode moves where the base shakes");
   c.add_flag("--floquet", a.floquet, "Characteristic exponents over a whole turn, most unstable first");
   c.add_option("--blades", a.blades, "Equal blades seen from where the rotor does not turn: their names, or auto")
       ->type_name("NAME,...")
@@ -184,6 +203,7 @@ const Command modes_command = {
     "modes", "Frequencies, damping and shapes of small motions; over a sweep, if wanted",
     "  withy modes scenes/two-link-slew.yaml --lock shoulder,elbow\n"
     "  withy modes scenes/rotating-blade.yaml --spin axle=6 --count 4\n"
+    "  withy modes scenes/solar-panel.yaml --as-is --effective-mass\n"
     "  withy modes scenes/rotating-blade.yaml --formulations ruthless,inconsistent,consistent --sweep "
     "spin.axle=0:6:13 --count 4 --out results/campbell",
     &add_modes};

@@ -23,10 +23,13 @@
 namespace withy::app {
 namespace {
 
-std::string table_text(const std::vector<study::TradeResult>& results, const std::vector<bool>& front) {
+std::string table_text(const std::vector<study::TradeResult>& results, const std::vector<bool>& front,
+                       const study::Outputs& outputs) {
   const auto any = [&](auto&& has) { return std::any_of(results.begin(), results.end(), has); };
   const bool families = any([](const study::TradeResult& r) { return !r.point.family.empty(); });
   const bool overs = any([](const study::TradeResult& r) { return !r.point.over.empty(); });
+  const bool hinges = outputs.has(study::Measure::angle) || outputs.has(study::Measure::slide),
+             tips = outputs.has(study::Measure::place);
   std::vector<std::string> head = {"<", "<formulation", "modes"};
   if (families) head.emplace_back("<family");
   if (overs) head.emplace_back("<over");
@@ -43,10 +46,10 @@ std::string table_text(const std::vector<study::TradeResult>& results, const std
     row.push_back(fmt::format("{:g}", r.point.tolerance));
     row.push_back(r.status);
     if (r.completed()) {
-      for (std::string& cell :
-           std::vector<std::string>{fmt::format("{:.3g}", r.hinge_error), fmt::format("{:.3g}", 1e3 * r.tip_error),
-                                    fmt::format("{:.3g}", 100 * r.relative_error), std::to_string(r.steps),
-                                    fmt::format("{:.2f}", 1e3 * r.cpu_seconds)})
+      for (std::string& cell : std::vector<std::string>{
+               hinges ? fmt::format("{:.3g}", r.hinge_error) : "-",
+               tips ? fmt::format("{:.3g}", 1e3 * r.tip_error) : "-", fmt::format("{:.3g}", 100 * r.relative_error),
+               std::to_string(r.steps), fmt::format("{:.2f}", 1e3 * r.cpu_seconds)})
         row.push_back(std::move(cell));
     } else {
       row.insert(row.end(), 5, "-");
@@ -115,9 +118,10 @@ ExitStatus trade(const TradeArguments& arguments) {
   std::optional<TradeFolder> store;
   const auto taken = take_folder(arguments, "trade", provenance_of(engine.scene(), engine.plugins()),
                                  {"trade.json", "trade.csv", "trade.svg", report_name});
-  if (taken) store.emplace(arguments.out, trade_fingerprint(engine.prepared(), points, engine.registry()));
+  if (taken)
+    store.emplace(arguments.out, trade_fingerprint(engine.prepared(), points, engine.registry(), arguments.outputs));
   study::TradeStudy study(engine.prepared(), engine.registry(), points,
-                          {arguments.jobs, store ? &*store : nullptr, study_control("trade")});
+                          {arguments.jobs, store ? &*store : nullptr, study_control("trade"), arguments.outputs});
   const bool whole = study.run();
   const auto results = study.results();
   const auto front = study::pareto_front(results);
@@ -126,7 +130,7 @@ ExitStatus trade(const TradeArguments& arguments) {
   std::string text =
       arguments.json
           ? json_text(j)
-          : title + "\n\n" + table_text(results, front) +
+          : title + "\n\n" + table_text(results, front, study.outputs()) +
                 "\n*: no other point is both more accurate, as far as the reference can tell, and cheaper. Error "
                 "in % of each output's own range, the greatest of all.\n" +
                 references_text(study) + formulation_words(formulations_of(results), engine.registry()) +
@@ -183,6 +187,11 @@ std::function<ExitStatus()> add_trade(CLI::App& c) {
   c.add_option("--lock", a.lock, "Of frequencies: hinges that are held")->type_name("HINGE,HINGE,...")->delimiter(',');
   c.add_option("--spin", a.spin, "Of frequencies: hinges held at a constant rate")
       ->type_name("HINGE=RATE,...")
+      ->delimiter(',');
+  c.add_option(
+       "--outputs,--output", a.outputs,
+       "What errors are measured on: hinges, BODY.tip, BODY.tip.deflection, outputs of the scene (root, root.mz)")
+      ->type_name("NAME,...")
       ->delimiter(',');
   c.add_option("--jobs", a.jobs, "Points run at once; default: one a core")->type_name("N");
   add_output(c, a, "Folder for table and picture, and for finished points: the same command continues");

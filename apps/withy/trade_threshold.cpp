@@ -87,9 +87,9 @@ std::optional<study::Thresholds> found(const Engine& engine, const TradeArgument
   }
   std::optional<TradeFolder> store;
   if (!arguments.out.empty())
-    store.emplace(arguments.out, trade_fingerprint(engine.prepared(), points, engine.registry()));
+    store.emplace(arguments.out, trade_fingerprint(engine.prepared(), points, engine.registry(), arguments.outputs));
   return study::thresholds_of_runs(engine.prepared(), engine.registry(), points, q.range, q.limit,
-                                   {arguments.jobs, store ? &*store : nullptr, control});
+                                   {arguments.jobs, store ? &*store : nullptr, control, arguments.outputs});
 }
 
 nlohmann::ordered_json thresholds_json(const TradeArguments& arguments, const Question& q,

@@ -126,9 +126,9 @@ Signals::Source Signals::find(const Model& model, const std::string& name) const
   for (const SensorNode& node : model.measured() == nullptr ? std::vector<SensorNode>{} : *model.measured()) {
     if (node.sensor == nullptr) {
       if (name.substr(0, name.find('.')) == node.name)
-        throw std::invalid_argument(
-            "signal '" + name + "' depends on efforts of loads, and so on this load's own: the loop " + name +
-            " -> this load -> " + name + " would be algebraic; measure positions and rates");
+        throw std::invalid_argument("signal '" + name +
+                                    "' depends on efforts of loads, and so on this load's own: the loop " + name +
+                                    " -> this load -> " + name + " would be algebraic; measure positions and rates");
       continue;
     }
     const std::vector<Column> columns = columns_of(node);

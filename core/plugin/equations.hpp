@@ -162,7 +162,8 @@ class EquationsOfMotion {
                                     Work& work) const noexcept = 0;
   /// The same two, of all loads and of the motions, as the last call of `derivatives` with this work memory has found
   /// them on its way: for watching a run at the price of a copy. \returns false where these equations do not keep them.
-  virtual bool found_efforts(Work& /*work*/, std::span<double> /*loads*/, std::span<double> /*motions*/) const noexcept {
+  virtual bool found_efforts(Work& /*work*/, std::span<double> /*loads*/,
+                             std::span<double> /*motions*/) const noexcept {
     return false;
   }
   /// Inverse dynamics: efforts [N m, N] on all speeds that, with weight, stiffness, damping and velocity terms, give

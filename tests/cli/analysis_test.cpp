@@ -156,6 +156,43 @@ hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: bob}}
   EXPECT_EQ(j.at("derivatives"), "exact");
 }
 
+TEST(Linearize, KeepsSensorsAndInputsForOtherPrograms) {
+  const Folder folder;
+  const json j = result(folder, {"linearize", "scenes/loads-of-the-slew.yaml", "--input", "shoulder", "--output",
+                                 "shoulder_torque,box.y", "--out", "arm"});
+  EXPECT_EQ(j.at("outputs"), json({"shoulder_torque", "box.y"}));
+  EXPECT_EQ(j.at("output_units"), json({"N m", "m/s^2"}));
+  EXPECT_NEAR(j.at("D").at(0).at(0), 1, 1e-12) << "an effort is felt at once";
+  EXPECT_NE(j.at("D").at(1).at(0), 0.0);
+  EXPECT_EQ(json::parse(folder.read("arm/linear.json")), j);
+  EXPECT_THAT(folder.read("arm/linear.mat"), testing::StartsWith("MATLAB 5.0"));
+  EXPECT_THAT(folder.read("arm/linear.npz"), testing::StartsWith("PK"));
+}
+
+TEST(Response, OfASampledLoopSaysItsMarginsFirstAndDrawsThem) {
+  const Folder folder;
+  folder.write("servo.yaml", R"(format: withy/1
+time: {end: 1}
+bodies: {wheel: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}
+loads: {control: {type: pd-controller, law: constant, sample: 0.05, hinges: {axle: {stiffness: 0, damping: 4}}}}
+)");
+  const Finished f = withy(folder, {"response", "servo.yaml", "--input", "control", "--out", "loop"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(lines(f.out)[0], HasSubstr("control opened: stable: the gain may rise to 20 times"));
+  EXPECT_THAT(f.out, HasSubstr("sampled every 0.05 s"));
+  for (const char* picture : {"loop/bode.svg", "loop/nichols.svg"})
+    EXPECT_THAT(folder.read(picture), HasSubstr("</svg>"));
+  const json j = json::parse(folder.read("loop/response.json"));
+  EXPECT_EQ(j.at("period"), 0.05);
+  EXPECT_EQ(j.at("margins").at("stable"), true);
+  EXPECT_EQ(lines(folder.read("loop/response.csv")).size(), 1 + j.at("values").size());
+  // Of a load on two hinges one is to be named.
+  const Finished both = withy(folder, {"response", "scenes/pd-arm.yaml", "--input", "control"});
+  EXPECT_EQ(both.status, 2);
+  EXPECT_THAT(both.err, HasSubstr("control.HINGE"));
+}
+
 TEST(Linearize, NamesOfInputsAndOutputsAreChecked) {
   const Folder folder;
   for (const auto& [option, name] :

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <numbers>
 
 #include "withy/core/analysis/modes.hpp"
 #include "withy/core/plugin/central_difference.hpp"
@@ -340,6 +341,19 @@ TEST(Control, MistakesAreLocatedAndNamed) {
   EXPECT_THAT(problem("type: expression, to: command, value: second, sample: 0.1}\n  second: {type: expression, to: "
                       "nothing, value: servo"),
               HasSubstr("algebraic"));
+}
+
+// Three joints of a flexible arm under its weight: the integrals take it up, the shoulder's motor has a limit.
+TEST(Control, AManipulatorHoldsItsPose) {
+  LoadedScene s(test::shipped("manipulator-pid.yaml"));
+  const std::vector<State> all = s.run();
+  EXPECT_NEAR(s.position(all.back(), "shoulder"), 0.8, 1e-2);
+  EXPECT_NEAR(s.position(all.back(), "elbow"), -1.0, 1e-2);
+  EXPECT_NEAR(s.position(all.back(), "wrist"), 40 * std::numbers::pi / 180, 1e-2);
+  EXPECT_LT(std::abs(s.rate(all.back(), "shoulder")), 1e-2);
+  const double peak = s.summary.peak_effort[s.hinge("shoulder").speed];
+  EXPECT_GT(peak, 40);
+  EXPECT_LE(peak, 80);
 }
 
 }  // namespace

@@ -248,9 +248,9 @@ TEST(StudyLinearModel, OfThePendulumIsItsFrequency) {
   State hanging = prepared.scene.initial;
   std::fill(hanging.y.begin(), hanging.y.end(), 0.0);
   const LinearModel linear = linear_model({prepared, hanging, {}}, {});
-  ASSERT_EQ(linear.A.rows(), 2);
+  ASSERT_EQ(linear.system.A.rows(), 2);
   // 1.2 kg, centre of mass 0.5 m from the pivot, 0.4 kg m² about it.
-  EXPECT_NEAR(linear.A(1, 0), -1.2 * 9.81 * 0.5 / 0.4, 1e-9);
+  EXPECT_NEAR(linear.system.A(1, 0), -1.2 * 9.81 * 0.5 / 0.4, 1e-9);
   EXPECT_TRUE(linear.equilibrium);
 }
 

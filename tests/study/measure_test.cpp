@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "withy/study/accuracy.hpp"
+#include "withy/study/input_error.hpp"
 #include "withy/study/probe.hpp"
 #include "withy/study/trade.hpp"
 #include "withy/tests/study/plugins.hpp"
@@ -80,6 +81,34 @@ TEST(Outputs, HaveTheEffortsThatMotionsNeed) {
   ASSERT_EQ(read.size(), 1U);
   EXPECT_EQ(read[0], efforts[scene.model().layout().hinge("axle")->speed]);
   EXPECT_GT(read[0], 0.1);
+}
+
+/// Of one component what the scene shows; of a whole output its orientation as an angle, and floors by its other
+/// numbers.
+TEST(Outputs, AreTheScenesSensorsByName) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spin-up.yaml");
+  values.set_text("outputs={foot: {type: reaction, hinge: axle}, end: {type: frame, of: blade.tip}}");
+  const Prepared scene = prepare(values, plugins());
+  const Outputs outputs(scene.model(), {"foot.mz", "end", "axle.motion_effort"}, scene.scene.outputs);
+  ASSERT_EQ(outputs.list()[0].label, "foot.mz");
+  EXPECT_EQ(outputs.list()[0].unit, "N m");
+  EXPECT_EQ(outputs.list()[4].label, "end.orientation");
+  EXPECT_EQ(outputs.list()[4].unit, "rad");
+  OutputReader reader(outputs, scene.model(), *scene.equations, scene.scene.outputs);
+  State state = scene.scene.initial;
+  state.time = 5;
+  scene.model().prescribe(state);
+  const std::vector<double> read = reader.read(state);
+  // What turns the axle is what the axle carries about itself.
+  EXPECT_NEAR(std::abs(read[outputs.list()[0].at]), std::abs(read.back()), 1e-9 * std::abs(read.back()));
+  Distances distances = outputs.none();
+  outputs.raise(read, reader.read(scene.scene.initial), distances);
+  EXPECT_NEAR(distances[4], std::abs(state.y[0]), 1e-6) << "the angle that the axle has turned";
+  // z of the place moves a millionth of what x does: it counts as a thousandth of that.
+  Distances ranges = outputs.none();
+  ranges[1] = 8, ranges[2] = 8, ranges[3] = 8e-6;
+  EXPECT_DOUBLE_EQ(scales(outputs, ranges, 0)[3], 8e-3);
+  EXPECT_THROW(Outputs(scene.model(), {"foot.mw"}, scene.scene.outputs), InputError);
 }
 
 /// A pendulum's own run at a tight tolerance.

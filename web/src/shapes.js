@@ -3,6 +3,7 @@ import {
   BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, DoubleSide, Group, InstancedMesh, Line, LineBasicMaterial,
   LineDashedMaterial, LineSegments, Matrix4, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
 } from 'three';
+import { ConvexHull } from 'three/examples/jsm/math/ConvexHull.js';
 
 const around = 12; // points around a tube
 const a = new Vector3(), b = new Vector3(), c = new Vector3(), normal = new Vector3(), side = new Vector3();
@@ -26,6 +27,21 @@ function grid(rows, columns, closed) {
   return index;
 }
 
+// Triangles around the points of a body at rest, which has no surface of its own in its data; none where the points lie
+// in a plane or are too few.
+function hull_of(body) {
+  const points = Array.from({ length: body.count }, (_, k) => new Vector3().fromArray(body.points, 3 * k));
+  if (points.length < 4) return null;
+  const at = new Map(points.map((p, k) => [p, k])), index = [];
+  for (const face of new ConvexHull().setFromPoints(points).faces) {
+    const corners = [];
+    let edge = face.edge;
+    do { corners.push(at.get(edge.head().point)); edge = edge.next; } while (edge !== face.edge);
+    for (let k = 1; k + 1 < corners.length; ++k) index.push(corners[0], corners[k], corners[k + 1]);
+  }
+  return index.length > 0 ? index : null;
+}
+
 export class Shapes {
   // size: of the whole system [m]; colours: of flexible and rigid bodies
   constructor(motion, size, colours, faint) {
@@ -36,6 +52,7 @@ export class Shapes {
     this.flexible = solid(colours.flexible, { side: DoubleSide });
     this.rigid = solid(colours.rigid, { transparent: true, opacity: faint ? 0.45 : 0.8 });
     this.joint = solid(colours.joint);
+    this.skin = solid(colours.flexible, { side: DoubleSide, transparent: true, opacity: faint ? 0.25 : 0.45, flatShading: true });
     this.ghost = new LineDashedMaterial({ color: colours.ghost, dashSize: size * 0.02, gapSize: size * 0.015 });
     this.radius = size * 0.011;
     this.items = motion.bodies.map(body => this.make(body));
@@ -66,6 +83,22 @@ export class Shapes {
       item.dots = new InstancedMesh(new SphereGeometry(this.radius * 0.8, 10, 8), this.flexible, body.count);
       item.dots.frustumCulled = false;
       this.group.add(item.dots);
+      const index = hull_of(body);
+      if (index) {
+        item.hull = new Mesh(geometry_of(body.count, index), this.skin);
+        item.hull.frustumCulled = false;
+        this.group.add(item.hull);
+      } else {
+        // Too few for a surface: rods from each point to the next, as they lie behind each other from the root.
+        const away = k => a.fromArray(body.points, 3 * k).lengthSq();
+        item.chain = Array.from({ length: body.count }, (_, k) => k).sort((k, l) => away(k) - away(l));
+        item.rods = item.chain.slice(1).map(() => {
+          const rod = new Mesh(new CylinderGeometry(this.radius * 0.6, this.radius * 0.6, 1, 10), this.flexible);
+          rod.frustumCulled = false;
+          this.group.add(rod);
+          return rod;
+        });
+      }
     } else this.make_box(body, item);
     if (body.flexible && body.kind !== 'points') {
       item.ghost = new Line(new BufferGeometry().setFromPoints(this.middle(body)), this.ghost);
@@ -126,8 +159,10 @@ export class Shapes {
       item.group.quaternion.copy(body.pose.q);
       if (item.ghost) item.ghost.visible = show.ghosts;
       if (item.tube) this.bend(item, scale);
-      if (item.surface) this.warp(item, scale);
+      if (item.surface) this.warp(item.surface, body, scale);
+      if (item.hull) this.warp(item.hull, body, scale);
       if (item.dots) this.scatter(item, scale);
+      if (item.rods) this.join(item, scale);
     }
     const matrix = new Matrix4();
     this.jointed.forEach((body, i) => {
@@ -163,7 +198,7 @@ export class Shapes {
     tube.geometry.computeVertexNormals();
   }
 
-  warp({ body, surface }, scale) {
+  warp(surface, body, scale) {
     const position = surface.geometry.attributes.position;
     for (let k = 0; k < body.count; ++k) {
       this.motion.point(body, k, scale, a);
@@ -177,6 +212,17 @@ export class Shapes {
     const matrix = new Matrix4();
     for (let k = 0; k < body.count; ++k) dots.setMatrixAt(k, matrix.makeTranslation(this.motion.point(body, k, scale, a)));
     dots.instanceMatrix.needsUpdate = true;
+  }
+
+  join({ body, chain, rods }, scale) {
+    rods.forEach((rod, i) => {
+      this.motion.point(body, chain[i], scale, a);
+      this.motion.point(body, chain[i + 1], scale, b);
+      rod.position.copy(a).add(b).multiplyScalar(0.5);
+      b.sub(a);
+      rod.scale.y = Math.max(b.length(), 1e-9);
+      rod.quaternion.setFromUnitVectors(c.set(0, 1, 0), b.normalize());
+    });
   }
 
   turn_axes() {

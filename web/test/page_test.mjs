@@ -59,6 +59,26 @@ async function check_sensors(browser, troubles) {
   await page.close();
 }
 
+// A body of data that has few points is seen: rods of its colour reach from its root to its tip.
+async function check_points(browser, troubles) {
+  const page = await opened(browser, join(folder, 'boom/report.html'), 't=0.3&theme=light', troubles);
+  const across = await page.evaluate(async () => {
+    const source = document.querySelector('#view canvas'), canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [source.width, source.height];
+    const context = canvas.getContext('2d');
+    context.drawImage(source, 0, 0);
+    const { data, width, height } = context.getImageData(0, 0, canvas.width, canvas.height);
+    let least = width, most = 0;
+    for (let y = 0; y < height; ++y) for (let x = 0; x < width; ++x) {
+      const [r, g, b] = data.subarray(4 * (y * width + x));
+      if (b - r > 90 && b > 110 && g > 60) [least, most] = [Math.min(least, x), Math.max(most, x)];
+    }
+    return (most - least) / width;
+  });
+  assert.ok(across > 0.35, `the boom takes ${across} of the picture`);
+  await page.close();
+}
+
 async function check_controls(browser, troubles) {
   const page = await opened(browser, join(folder, 'arm/report.html'), 't=1&theme=light', troubles);
   const begin = await picture(page);
@@ -134,12 +154,14 @@ await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   simulate('solar-panel.yaml', 'panel');
   simulate('loads-of-the-slew.yaml', 'loads');
   check_arrows(join(folder, 'loads/report.html'));
-  for (const name of ['arm', 'craft', 'panel']) check_motion(join(folder, name, 'report.html'));
+  simulate('imported-boom.yaml', 'boom');
+  for (const name of ['arm', 'craft', 'panel', 'boom']) check_motion(join(folder, name, 'report.html'));
   const troubles = [];
   await check_controls(browser, troubles);
   await check_columns(browser, troubles);
   await check_several(browser, troubles);
   await check_sensors(browser, troubles);
+  await check_points(browser, troubles);
   await (await opened(browser, join(folder, 'panel/report.html'), 'theme=dark', troubles)).close();
   assert.deepEqual(troubles, []);
   console.log('the page shows, moves, compares and asks for nothing');

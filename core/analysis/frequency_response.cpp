@@ -1,0 +1,232 @@
+#include "withy/core/analysis/frequency_response.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace withy {
+namespace {
+
+using Complex = std::complex<double>;
+using std::numbers::pi;
+
+/// Relative width to which crossings and peaks are found.
+constexpr double narrow = 1e-13;
+/// A root with less damping than this is on the edge of stability.
+constexpr double undamped = 1e-9;
+
+bool finite(Complex x) { return std::isfinite(x.real()) && std::isfinite(x.imag()); }
+
+/// Where `side` changes between two frequencies, by bisection.
+template <class Side>
+double change_between(double a, double b, Side&& side) {
+  const bool at_a = side(a);
+  while (b - a > narrow * b) {
+    const double middle = 0.5 * (a + b);
+    if (middle <= a || middle >= b) break;
+    (side(middle) == at_a ? a : b) = middle;
+  }
+  return 0.5 * (a + b);
+}
+
+/// The greatest of a function with one maximum between a and b, by the golden section.
+template <class Function>
+double maximum_between(double a, double b, Function&& f) {
+  constexpr double golden = 0.6180339887498949;
+  double c = b - golden * (b - a), d = a + golden * (b - a), at_c = f(c), at_d = f(d);
+  // A maximum is flat: half the digits are all there are.
+  while (b - a > 1e-9 * b) {
+    if (at_c > at_d) {
+      b = d, d = c, at_d = at_c;
+      at_c = f(c = b - golden * (b - a));
+    } else {
+      a = c, c = d, at_c = at_d;
+      at_d = f(d = a + golden * (b - a));
+    }
+  }
+  return 0.5 * (a + b);
+}
+
+/// The best of those that count; null where none does.
+template <class Item, class Counts, class Better>
+const Item* best(const std::vector<Item>& items, Counts&& counts, Better&& better) {
+  const Item* found = nullptr;
+  for (const Item& item : items)
+    if (counts(item) && (found == nullptr || better(item, *found))) found = &item;
+  return found;
+}
+
+/// The values with one left out for each of `others` that is the same but for rounding; what was left out goes to
+/// `same`.
+Eigen::VectorXcd without(const LinearSystem& system, const Eigen::VectorXcd& values, const Eigen::VectorXcd& others,
+                         std::vector<Complex>& same) {
+  double greatest = 0;
+  for (const Complex value : values)
+    if (const double size = std::abs(exponent_of(system, value)); std::isfinite(size))
+      greatest = std::max(greatest, size);
+  std::vector<Complex> left(values.begin(), values.end());
+  for (const Complex other : others) {
+    const Complex s = exponent_of(system, other);
+    // Multipliers of motions that are over after a sample are rounding of zero, whose logarithms differ.
+    const auto over = [&](Complex value) { return system.sampled() && std::abs(value) < 1e-9; };
+    const auto apart = [&](Complex value) {
+      return over(value) && over(other) ? 0.0 : std::abs(exponent_of(system, value) - s);
+    };
+    const auto nearest =
+        std::min_element(left.begin(), left.end(), [&](Complex a, Complex b) { return apart(a) < apart(b); });
+    // A double root is found to the square root of rounding.
+    if (nearest == left.end() || !(apart(*nearest) <= (over(other) ? 0.0 : 1e-6 * std::abs(s)) + 1e-7 * greatest))
+      continue;
+    same.push_back(*nearest);
+    left.erase(nearest);
+  }
+  return Eigen::Map<const Eigen::VectorXcd>(left.data(), static_cast<Eigen::Index>(left.size()));
+}
+
+/// The gains at the ends of the frequencies, where G is real.
+void add_gains_at_ends(const TransferFunction& G, std::optional<double> static_gain, Margins& margins) {
+  const auto add = [&](double omega, Complex value) {
+    if (finite(value) && value.real() < 0) margins.gains.push_back({omega, -1 / value.real()});
+  };
+  const LinearSystem& s = G.system();
+  if (static_gain) add(0, *static_gain);
+  if (s.sampled())
+    add(pi / s.period, G(-1.0)(0, 0));
+  else
+    add(std::numeric_limits<double>::infinity(), s.D(0, 0));
+}
+
+/// What is left of an angle in (−π, π].
+double wrapped(double angle) { return angle - 2 * pi * std::ceil((angle - pi) / (2 * pi)); }
+
+}  // namespace
+
+Complex exponent_of(const LinearSystem& system, Complex value) {
+  if (!system.sampled()) return value;
+  return value == 0.0 ? Complex(-std::numeric_limits<double>::infinity(), 0) : std::log(value) / system.period;
+}
+
+SeenRoots seen_roots(const LinearSystem& system, const Eigen::VectorXcd& poles, const Eigen::VectorXcd& zeros) {
+  std::vector<Complex> hidden, same;
+  SeenRoots seen;
+  seen.zeros = without(system, zeros, poles, same);
+  seen.poles = without(system, poles,
+                       Eigen::Map<const Eigen::VectorXcd>(same.data(), static_cast<Eigen::Index>(same.size())), hidden);
+  seen.hidden = Eigen::Map<const Eigen::VectorXcd>(hidden.data(), static_cast<Eigen::Index>(hidden.size()));
+  return seen;
+}
+
+std::vector<ResponseAt> frequency_response(const TransferFunction& G, double low, double high, int per_decade,
+                                           const Eigen::VectorXcd& marks) {
+  const double last = G.system().sampled() ? std::min(high, pi / G.system().period) : high;
+  std::vector<double> at;
+  const int count = std::max(2, static_cast<int>(std::ceil(per_decade * std::log10(last / low))));
+  for (int i = 0; i <= count; ++i) at.push_back(low * std::pow(last / low, static_cast<double>(i) / count));
+  at.back() = last;
+  for (const Complex mark : marks) {
+    const Complex s = exponent_of(G.system(), mark);
+    const double half_width = std::abs(s.real());
+    if (!(s.imag() > 0) || !(half_width < 0.5 * s.imag())) continue;
+    const double width = std::max(half_width, 1e-6 * s.imag());
+    for (int k = half_width <= undamped * s.imag() ? 1 : 0; k <= 6; ++k) {
+      const double away = k == 0 ? 0 : 0.25 * std::exp2(k) * width;
+      at.push_back(s.imag() - away);
+      at.push_back(s.imag() + away);
+    }
+  }
+  std::sort(at.begin(), at.end());
+  std::vector<ResponseAt> response;
+  for (const double omega : at) {
+    if (omega < low || omega > last || (!response.empty() && omega <= response.back().omega)) continue;
+    if (const Complex value = G.at_frequency(omega); finite(value)) response.push_back({omega, value});
+  }
+  return response;
+}
+
+std::vector<Peak> peaks(const TransferFunction& G, const std::vector<ResponseAt>& response,
+                        const Eigen::VectorXcd& poles) {
+  std::vector<Peak> found;
+  for (const Complex pole : poles) {
+    const Complex s = exponent_of(G.system(), pole);
+    if (s.imag() > 0 && std::abs(s.real()) <= undamped * s.imag() && !response.empty() &&
+        s.imag() >= response.front().omega && s.imag() <= response.back().omega)
+      found.push_back({s.imag(), {}});
+  }
+  const auto gain = [&](double omega) { return std::abs(G.at_frequency(omega)); };
+  const std::size_t bare = found.size();
+  for (std::size_t i = 1; i + 1 < response.size(); ++i) {
+    const double here = std::abs(response[i].value);
+    if (!(here > std::abs(response[i - 1].value)) || !(here >= std::abs(response[i + 1].value))) continue;
+    const double omega = maximum_between(response[i - 1].omega, response[i + 1].omega, gain);
+    const bool known = std::any_of(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(bare),
+                                   [&](const Peak& p) { return std::abs(p.omega - omega) <= 1e-5 * omega; });
+    if (!known) found.push_back({omega, gain(omega)});
+  }
+  std::sort(found.begin(), found.end(), [](const Peak& a, const Peak& b) { return a.omega < b.omega; });
+  return found;
+}
+
+LinearSystem closed_loop(const LinearSystem& s, double k) {
+  const double loop = 1 + k * s.D(0, 0);
+  if (std::abs(loop) < 1e-14) throw std::domain_error("the loop is not well posed: 1 + k D is zero");
+  LinearSystem closed = s;
+  closed.A -= s.B * s.C * (k / loop);
+  closed.B /= loop;
+  closed.C /= loop;
+  closed.D /= loop;
+  return closed;
+}
+
+Margins margins(const TransferFunction& G, const std::vector<ResponseAt>& response, const Eigen::VectorXcd& hidden,
+                std::optional<double> static_gain) {
+  Margins m;
+  add_gains_at_ends(G, static_gain, m);
+  const auto above = [&](double omega) { return G.at_frequency(omega).imag() > 0; };
+  const auto beyond_one = [&](double omega) { return std::abs(G.at_frequency(omega)) > 1; };
+  for (std::size_t i = 0; i + 1 < response.size(); ++i) {
+    const ResponseAt &a = response[i], &b = response[i + 1];
+    const auto rounding = [](Complex x) { return std::abs(x.imag()) <= 1e-11 * std::abs(x); };
+    if ((a.value.imag() > 0) != (b.value.imag() > 0) && !rounding(a.value) && !rounding(b.value)) {
+      const double omega = change_between(a.omega, b.omega, above);
+      const Complex value = G.at_frequency(omega);
+      // Through a pole on the axis the sign changes too.
+      if (value.real() < 0 && std::abs(value.imag()) <= 1e-4 * std::abs(value))
+        m.gains.push_back({omega, -1 / value.real()});
+    }
+    if ((std::abs(a.value) > 1) != (std::abs(b.value) > 1)) {
+      const double omega = change_between(a.omega, b.omega, beyond_one);
+      const double angle = wrapped(std::arg(G.at_frequency(omega)) + pi);
+      m.phases.push_back({omega, angle, (angle < 0 ? angle + 2 * pi : angle) / omega});
+    }
+  }
+  std::stable_sort(m.gains.begin(), m.gains.end(),
+                   [](const GainMargin& a, const GainMargin& b) { return a.omega < b.omega; });
+  m.growth = -std::numeric_limits<double>::infinity();
+  std::vector<Complex> unmoved;
+  for (const Complex pole : without(G.system(), poles(closed_loop(G.system(), 1)), hidden, unmoved))
+    m.growth = std::max(m.growth, exponent_of(G.system(), pole).real());
+  m.stable = m.growth < 0;
+  return m;
+}
+
+const GainMargin* Margins::upper() const {
+  return best(
+      gains, [](const GainMargin& g) { return g.factor > 1; },
+      [](const GainMargin& a, const GainMargin& b) { return a.factor < b.factor; });
+}
+
+const GainMargin* Margins::lower() const {
+  return best(
+      gains, [](const GainMargin& g) { return g.factor < 1; },
+      [](const GainMargin& a, const GainMargin& b) { return a.factor > b.factor; });
+}
+
+const PhaseMargin* Margins::phase() const {
+  return best(
+      phases, [](const PhaseMargin&) { return true; },
+      [](const PhaseMargin& a, const PhaseMargin& b) { return std::abs(a.angle) < std::abs(b.angle); });
+}
+
+}  // namespace withy

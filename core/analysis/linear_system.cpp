@@ -1,0 +1,173 @@
+#include "withy/core/analysis/linear_system.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <unsupported/Eigen/MatrixFunctions>
+#include <vector>
+
+namespace withy {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Below this share of its factors a number is rounding of them.
+constexpr double rounding_share = 1e-11;
+
+/// Takes off the state that y alone sees: it and its rate are zero where y is. What is left sees, as its output, what
+/// would move that state. \returns what y sees it with, 0 where y sees no state
+double drop_seen_state(LinearSystem& s, double scale) {
+  const Eigen::Index n = s.A.rows();
+  const double seen = s.C.norm();
+  if (!(seen > rounding_share * scale)) return 0;
+  // The reflection that brings C onto the last state.
+  Eigen::VectorXd v = s.C.transpose();
+  const double sign = v[n - 1] < 0 ? 1.0 : -1.0;
+  v[n - 1] -= sign * seen;
+  const double square = v.squaredNorm();
+  if (square > 0) {
+    s.A -= (2 / square) * v * (v.transpose() * s.A).eval();
+    s.A -= (2 / square) * (s.A * v).eval() * v.transpose();
+    s.B -= (2 / square) * v * (v.transpose() * s.B).eval();
+  }
+  const Eigen::MatrixXd A = s.A, B = s.B;
+  s.A = A.topLeftCorner(n - 1, n - 1);
+  s.C = A.bottomLeftCorner(1, n - 1);
+  s.B = B.topRows(n - 1);
+  s.D = B.bottomRows(1);
+  return sign * seen;
+}
+
+/// Sets to zero what is so but for rounding.
+void clear_zeros(Eigen::VectorXcd& values, const Eigen::MatrixXd& A) {
+  if (A.rows() == 0) return;
+  const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(A).singularValues();
+  const auto null = (singular.array() <= 1e-13 * static_cast<double>(A.rows()) * singular[0]).count();
+  const double small = 1e-6 * values.cwiseAbs().maxCoeff();
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(values.size()));
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Eigen::Index>(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return std::abs(values[a]) < std::abs(values[b]); });
+  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(2 * null, values.size()); ++i) {
+    Complex& value = values[order[static_cast<std::size_t>(i)]];
+    if (std::abs(value) <= small) value = 0;
+  }
+}
+
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
+  if (A.rows() == 0) return {};
+  if (!A.allFinite()) throw std::domain_error("the linear system is not finite");
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A, false);
+  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+  return solver.eigenvalues();
+}
+
+}  // namespace
+
+Complex LinearSystem::at_frequency(double omega) const {
+  return sampled() ? std::polar(1.0, omega * period) : Complex(0, omega);
+}
+
+LinearSystem LinearSystem::between(Eigen::Index input, Eigen::Index output) const {
+  return {A, B.col(input), C.row(output), D.block(output, input, 1, 1), period};
+}
+
+std::pair<Eigen::MatrixXd, Eigen::MatrixXd> hold(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double T) {
+  const Eigen::Index n = A.rows(), m = B.cols();
+  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + m, n + m);
+  both.topLeftCorner(n, n) = A * T;
+  both.topRightCorner(n, m) = B * T;
+  if (!both.allFinite()) throw std::domain_error("the linear system is not finite");
+  const Eigen::MatrixXd e = both.exp();
+  return {e.topLeftCorner(n, n), e.topRightCorner(n, m)};
+}
+
+Eigen::VectorXd balance(LinearSystem& s) {
+  const Eigen::Index n = s.A.rows();
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(n);
+  bool better = true;
+  for (int round = 0; better && round < 100; ++round) {
+    better = false;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double own = std::abs(s.A(i, i));
+      const double column = s.A.col(i).lpNorm<1>() - own, row = s.A.row(i).lpNorm<1>() - own;
+      if (!(column > 0) || !(row > 0)) continue;
+      const double f = std::exp2(std::round(0.5 * std::log2(row / column)));
+      if (column * f + row / f > 0.95 * (column + row)) continue;
+      s.A.col(i) *= f;
+      s.A.row(i) /= f;
+      units[i] *= f;
+      better = true;
+    }
+  }
+  s.B = units.cwiseInverse().asDiagonal() * s.B;
+  s.C = s.C * units.asDiagonal();
+  return units;
+}
+
+Eigen::VectorXcd poles(const LinearSystem& system) {
+  LinearSystem s = system;
+  balance(s);
+  Eigen::VectorXcd values = eigenvalues(s.A);
+  if (!s.sampled()) clear_zeros(values, s.A);
+  return values;
+}
+
+ZerosAndGain zeros(LinearSystem s) {
+  balance(s);
+  const double output = s.C.norm(), input = s.B.norm(), direct = std::abs(s.D(0, 0));
+  double product = 1, scale = output;
+  // D by itself, beside what the states carry to y: they have the unit of time between them, which the norm of A tells.
+  double least = rounding_share * output * input / std::max(s.A.norm(), 1e-300);
+  if (s.A.rows() == 0 || !(input > 0) || !(output > 0)) least = 0;
+  double through = direct;
+  while (!(through > least)) {
+    if (s.A.rows() == 0) return {};
+    const double seen = drop_seen_state(s, scale);
+    if (seen == 0) return {};
+    product *= seen;
+    scale = std::max(s.A.norm(), s.C.norm());
+    least = rounding_share * input;
+    through = std::abs(s.D(0, 0));
+  }
+  const double d = s.D(0, 0);
+  ZerosAndGain result{eigenvalues(s.A - s.B * s.C / d), product * d};
+  if (!s.sampled()) clear_zeros(result.zeros, s.A - s.B * s.C / d);
+  return result;
+}
+
+TransferFunction::TransferFunction(LinearSystem system) : of_(std::move(system)) {
+  balance(of_);
+  if (of_.A.rows() < 2) return;
+  const Eigen::HessenbergDecomposition<Eigen::MatrixXd> form(of_.A);
+  const Eigen::MatrixXd Q = form.matrixQ();
+  of_.A = form.matrixH();
+  of_.B = Q.transpose() * of_.B;
+  of_.C = of_.C * Q;
+}
+
+Eigen::MatrixXcd TransferFunction::operator()(Complex s) const {
+  const Eigen::Index n = of_.A.rows();
+  // Gaussian elimination below the diagonal of a Hessenberg matrix: one row a column, neighbours exchanged.
+  Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> H = -of_.A.cast<Complex>(),
+                                                                          x = of_.B.cast<Complex>();
+  H.diagonal().array() += s;
+  for (Eigen::Index k = 0; k + 1 < n; ++k) {
+    if (std::abs(H(k + 1, k)) > std::abs(H(k, k))) {
+      H.row(k).tail(n - k).swap(H.row(k + 1).tail(n - k));
+      x.row(k).swap(x.row(k + 1));
+    }
+    if (H(k + 1, k) == 0.0) continue;
+    const Complex factor = H(k + 1, k) / H(k, k);
+    H.row(k + 1).tail(n - k) -= factor * H.row(k).tail(n - k);
+    x.row(k + 1) -= factor * x.row(k);
+  }
+  for (Eigen::Index k = n - 1; k >= 0; --k) {
+    for (Eigen::Index j = k + 1; j < n; ++j) x.row(k) -= H(k, j) * x.row(j);
+    x.row(k) /= H(k, k);
+  }
+  return of_.C.cast<Complex>() * x + of_.D.cast<Complex>();
+}
+
+}  // namespace withy

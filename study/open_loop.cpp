@@ -1,0 +1,142 @@
+#include "withy/study/open_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "withy/core/model/hinge_rates.hpp"
+#include "withy/study/input_error.hpp"
+#include "withy/study/linear_parts.hpp"
+
+namespace withy::study {
+namespace {
+
+/// Derivatives of a load's efforts with respect to the small motions: speeds × size.
+Eigen::MatrixXd fed_back(const SmallMotions& motions, std::size_t load) {
+  Eigen::MatrixXd slopes(motions.by_effort().cols(), motions.size());
+  for (Eigen::Index i = 0; i < slopes.cols(); ++i)
+    slopes.col(i) =
+        adaptive_difference([&](double h) { return motions.efforts(motions.displaced(i, h), load); }, motions.step(i))
+            .slope;
+  return slopes;
+}
+
+std::size_t find_load(const Model& model, const std::string& name) {
+  const auto& loads = model.loads();
+  return static_cast<std::size_t>(
+      std::find_if(loads.begin(), loads.end(), [&](const LoadNode& l) { return l.name == name; }) - loads.begin());
+}
+
+/// The load and hinge that "control.elbow" or "control" names; the hinge may be empty. Load's index is their count
+/// where there is none.
+std::pair<std::size_t, std::string> load_and_hinge(const Model& model, const std::string& name) {
+  if (const std::size_t load = find_load(model, name); load < model.loads().size()) return {load, ""};
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos) return {model.loads().size(), ""};
+  const std::size_t load = find_load(model, name.substr(0, dot));
+  return {load, name.substr(dot + 1)};
+}
+
+/// What a load answers with: efforts in one proportion, along · (row · states).
+struct Answer {
+  Eigen::VectorXd along;  ///< one a speed, the greatest 1
+  Eigen::RowVectorXd row;
+  std::string unit;  ///< of the effort where there is one alone; else empty
+};
+
+std::string unit_of_speed(const Model& model, std::size_t speed) {
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    if (speed >= slot.speed && speed < slot.speed + slot.speeds)
+      return hinge_rates(*model.hinges()[h].hinge)[speed - slot.speed].angular ? "N m" : "N";
+  }
+  return "";
+}
+
+/// Takes the slopes of a load's efforts apart. \param hinge that the loop is opened at; empty: at all efforts
+/// \throws InputError where the efforts are not in one proportion
+Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::string& name,
+                 const std::string& hinge) {
+  const Slot* const slot = hinge.empty() ? nullptr : c.layout().hinge(hinge);
+  if (!hinge.empty() && slot == nullptr)
+    throw OptionError("input", "no hinge '" + hinge + "' that load '" + name + "' could act on");
+  Eigen::MatrixXd slopes = all;
+  std::string names;
+  std::vector<std::size_t> speeds;
+  for (std::size_t s = 0; s < c.layout().speeds; ++s) {
+    const auto row = static_cast<Eigen::Index>(s);
+    const bool here = slot == nullptr || (s >= slot->speed && s < slot->speed + slot->speeds);
+    if (!here || c.held()[s]) slopes.row(row).setZero();
+    if (slopes.row(row).isZero(0)) continue;
+    names += (names.empty() ? "" : ", ") + c.layout().speed_names[s];
+    speeds.push_back(s);
+  }
+  if (speeds.empty()) throw OptionError("input", "load '" + name + "' feeds nothing back");
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slopes, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  if (svd.singularValues().size() > 1 && svd.singularValues()[1] > 1e-9 * svd.singularValues()[0])
+    throw OptionError("input",
+                      "load '" + name + "' feeds back to " + names + "; name one hinge, as " + name + ".HINGE");
+  Answer answer{svd.matrixU().col(0), {}, speeds.size() == 1 ? unit_of_speed(c.prepared().model(), speeds[0]) : ""};
+  Eigen::Index greatest = 0;
+  answer.along.cwiseAbs().maxCoeff(&greatest);
+  answer.along /= answer.along[greatest];
+  answer.row = slopes.row(greatest);
+  return answer;
+}
+
+/// a − b, zero where they are the same but for rounding: a stiffness that is taken off leaves none.
+Eigen::MatrixXd difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  constexpr double rounding = 1e-11;  // of differences of eighth order
+  return (a - b).binaryExpr(a.cwiseAbs() + b.cwiseAbs(),
+                            [](double left, double size) { return std::abs(left) <= rounding * size ? 0.0 : left; });
+}
+
+}  // namespace
+
+bool feeds_back(const Model& model, const std::string& name) {
+  const auto [load, hinge] = load_and_hinge(model, name);
+  return load < model.loads().size() && model.loads()[load].load->input() == nullptr;
+}
+
+LinearModel open_loop(const Configuration& c, const std::string& name) {
+  SmallMotions motions(c, {});
+  const Model& model = motions.model();
+  const auto [load, hinge] = load_and_hinge(model, name);
+  const SampledLoads sampled(motions);
+  const bool is_sampled = sampled.period_of(load) > 0;
+  if (!is_sampled && !sampled.none())
+    throw OptionError("input",
+                      "the loop of '" + name + "', which acts without pause, cannot be opened beside sampled ones");
+  if (is_sampled && std::abs(sampled.period_of(load) - sampled.period()) > 1e-9 * sampled.period())
+    throw OptionError("input",
+                      fmt::format("load '{}' is sampled each {:g} s, and all loads together repeat each {:g} s: the "
+                                  "loop of the slowest alone can be opened",
+                                  name, sampled.period_of(load), sampled.period()));
+  const Eigen::MatrixXd all =
+      is_sampled ? sampled.efforts().middleCols(sampled.held_by(load).first, sampled.held_by(load).second)
+                 : fed_back(motions, load);
+  const Answer answer = answer_of(c, all, name, hinge);
+  LinearModel linear = about(c, motions, sampled);
+  linear.inputs = {{name, answer.unit}};
+  linear.outputs = {{"-" + name, answer.unit}};
+  linear.output_values = {-answer.along.dot(motions.efforts(motions.state(), load)) / answer.along.squaredNorm()};
+  linear.output_derivatives = "by central differences of eighth order";
+  Eigen::MatrixXd A = motions.A(), held = sampled.efforts();
+  const Eigen::VectorXd push = motions.by_effort() * answer.along;
+  linear.system.C.setZero(1, motions.size() + sampled.size());
+  linear.system.D.setZero(1, 1);
+  if (is_sampled) {
+    const auto [first, count] = sampled.held_by(load);
+    linear.system.C.block(0, motions.size() + first, 1, count) = -answer.row;
+    held.middleCols(first, count) = difference(held.middleCols(first, count), answer.along * answer.row);
+  } else {
+    linear.system.C.leftCols(motions.size()) = -answer.row;
+    A = difference(A, push * answer.row);
+  }
+  sample(sampled, A, motions.by_effort() * held, push, linear.system);
+  return linear;
+}
+
+}  // namespace withy::study

@@ -1,0 +1,157 @@
+#include "withy/study/response.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "withy/study/input_error.hpp"
+#include "withy/study/open_loop.hpp"
+
+namespace withy::study {
+namespace {
+
+using Complex = std::complex<double>;
+using std::numbers::pi;
+
+LinearModel one_of(LinearModel model, const ResponseQuestion& question) {
+  const auto require_one = [](const std::vector<Column>& columns, const std::string& option, const std::string& name) {
+    if (columns.size() == 1) return;
+    std::string names;
+    for (const Column& c : columns) names += (names.empty() ? "" : ", ") + c.name;
+    throw OptionError(option, fmt::format("'{}' is {} of: {}; name one", name, columns.size(), names));
+  };
+  require_one(model.inputs, "input", question.input);
+  require_one(model.outputs, "output", question.output);
+  return model;
+}
+
+LinearModel model_for(const Configuration& c, const ResponseQuestion& question, bool& opened) {
+  opened = feeds_back(c.prepared().model(), question.input);
+  if (!opened) {
+    if (question.output.empty())
+      throw OptionError("output",
+                        "needs a name: an output of the scene, or a coordinate or tip that 'withy linearize' lists");
+    return one_of(linear_model(c, {{question.input}, {question.output}}), question);
+  }
+  if (!question.output.empty())
+    throw OptionError("output", "'" + question.input +
+                                    "' feeds back: its loop is opened, and the output is what it "
+                                    "answers; leave --output out");
+  return open_loop(c, question.input);
+}
+
+/// Whether a root stands for s = 0.
+bool at_zero(const LinearSystem& s, Complex root) {
+  return s.sampled() ? std::abs(exponent_of(s, root)) <= 1e-7 * pi / s.period : root == 0.0;
+}
+
+/// G(0), or the limit of s^integrators G, as ∏ (s − zero) / ∏ (s − pole) has it.
+void find_static_gain(const TransferFunction& G, double gain, Response& r) {
+  const LinearSystem& s = r.model.system;
+  const auto zero = [&](Complex root) { return at_zero(s, root); };
+  const auto held = std::count_if(r.roots.poles.begin(), r.roots.poles.end(), zero);
+  const auto lost = std::count_if(r.roots.zeros.begin(), r.roots.zeros.end(), zero);
+  r.integrators = static_cast<int>(std::max<std::ptrdiff_t>(0, held - lost));
+  const Complex here = s.sampled() ? 1.0 : 0.0;
+  if (std::none_of(r.every.begin(), r.every.end(), zero)) {
+    r.static_gain = G(here)(0, 0).real();
+    return;
+  }
+  if (lost > held) return;
+  Complex logarithm = std::log(Complex(gain));
+  for (const Complex z : r.roots.zeros)
+    if (!zero(z)) logarithm += std::log(here - z);
+  for (const Complex p : r.roots.poles)
+    if (!zero(p)) logarithm -= std::log(here - p);
+  r.static_gain = std::exp(logarithm).real();
+  // (z − 1)ⁿ is (s T)ⁿ near s = 0.
+  if (s.sampled()) r.static_gain /= std::pow(s.period, r.integrators);
+}
+
+/// Residues of simple poles from zeros, poles and gain.
+void find_participation(double gain, Response& r) {
+  r.participation.assign(static_cast<std::size_t>(r.roots.poles.size()), 0.0);
+  if (r.model.system.sampled()) return;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < r.roots.poles.size(); ++i) {
+    const Complex p = r.roots.poles[i];
+    if (p == 0.0) continue;
+    Complex logarithm = std::log(Complex(gain)) - std::log(p);
+    for (const Complex z : r.roots.zeros) logarithm += std::log(p - z);
+    for (Eigen::Index j = 0; j < r.roots.poles.size(); ++j)
+      if (j != i) logarithm -= std::log(p - r.roots.poles[j]);
+    const double share = std::exp(logarithm.real());
+    if (!std::isfinite(share)) continue;  // a double pole has no residue
+    r.participation[static_cast<std::size_t>(i)] = share;
+    sum += share;
+  }
+  for (double& share : r.participation) share = sum > 0 ? share / sum : 0.0;
+}
+
+/// The ends of the frequencies [rad/s].
+std::pair<double, double> ends(const ResponseQuestion& question, const Response& r) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  const auto meet = [&](const Eigen::VectorXcd& roots) {
+    for (const Complex root : roots) {
+      const double size = std::abs(exponent_of(r.model.system, root));
+      if (at_zero(r.model.system, root) || !std::isfinite(size)) continue;
+      low = std::min(low, size);
+      high = std::max(high, size);
+    }
+  };
+  meet(r.roots.poles);
+  // Zeros far beyond the poles are small numbers in the leading coefficient.
+  if (!(high > 0)) meet(r.roots.zeros);
+  if (!(high > 0)) low = high = 2 * pi;
+  low /= 10, high *= 10;
+  const double half_rate = r.model.system.sampled() ? pi / r.model.system.period : high;
+  high = std::min(high, half_rate);
+  low = std::min(low, high / 10);
+  if (question.from) low = 2 * pi * *question.from;
+  if (question.to) high = 2 * pi * *question.to;
+  if (!(low > 0) || !(high > low))
+    throw InputError(fmt::format("frequencies from {:g} to {:g} Hz: need above 0, and the end above the beginning",
+                                 low / (2 * pi), high / (2 * pi)));
+  if (r.model.system.sampled() && low >= half_rate)
+    throw OptionError("from", fmt::format("half the rate of the samples is {:g} Hz; need a frequency below it",
+                                          half_rate / (2 * pi)));
+  return {low, high};
+}
+
+}  // namespace
+
+Response response(const Configuration& c, const ResponseQuestion& question) {
+  Response r;
+  r.model = model_for(c, question, r.opened);
+  const LinearSystem& s = r.model.system;
+  const ZerosAndGain found = zeros(s);
+  if (found.gain == 0)
+    throw std::domain_error("the output " + r.model.outputs[0].name + " does not feel the input " +
+                            r.model.inputs[0].name + " at this state");
+  r.every = poles(s);
+  r.roots = seen_roots(s, r.every, found.zeros);
+  const TransferFunction G(s);
+  find_static_gain(G, found.gain, r);
+  find_participation(found.gain, r);
+  const auto [low, high] = ends(question, r);
+  Eigen::VectorXcd marks(r.roots.poles.size() + r.roots.zeros.size());
+  marks << r.roots.poles, r.roots.zeros;
+  r.values = frequency_response(G, low, high, question.per_decade, marks);
+  r.peaks = peaks(G, r.values, r.roots.poles);
+  try {
+    r.margins = margins(G, r.values, r.roots.hidden, r.integrators > 0 ? std::optional<double>() : r.static_gain);
+  } catch (const std::domain_error&) {
+    r.margins.reset();
+  }
+  if (!question.reduce) return r;
+  r.reduction = balanced_truncation(s, *question.reduce);
+  const TransferFunction smaller(r.reduction->system);
+  for (const ResponseAt& at : r.values)
+    r.reduction_error = std::max(r.reduction_error, std::abs(smaller.at_frequency(at.omega) - at.value));
+  return r;
+}
+
+}  // namespace withy::study

@@ -1,0 +1,153 @@
+#include "withy/study/small_motions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "withy/core/analysis/modes.hpp"
+#include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/simulation/tips.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::study {
+namespace {
+
+/// Holds a hinge at its coordinates or its rate: its acceleration is zero, and that is all that a single state shows.
+class HeldStill final : public Motion {
+ public:
+  bool locks() const override { return true; }
+  MotionPoint at(double /*t*/) const noexcept override { return {}; }
+  std::vector<double> discontinuities() const override { return {}; }
+  double end() const override { return 0; }
+};
+
+/// An effort on every speed, its discrete states.
+class BoundPush final : public BoundLoad, public DiscretePart {
+ public:
+  explicit BoundPush(std::size_t speeds) : speeds_(speeds) {}
+  std::size_t scratch() const override { return 0; }
+  void add(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+           std::span<double> /*efforts*/, std::span<double> /*scratch*/) const noexcept override {}
+  std::vector<double> discontinuities() const override { return {}; }
+  const DiscretePart* discrete() const override { return this; }
+  double end() const override { return 0; }
+  void begin(State& /*state*/) const override {}
+  std::size_t states() const override { return speeds_; }
+  void renew(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+             const Crossing& /*crossing*/, std::span<double> /*discrete*/,
+             std::span<double> /*scratch*/) const noexcept override {}
+  void add(double /*t*/, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
+    for (std::size_t s = 0; s < speeds_; ++s) efforts[s] += discrete[s];
+  }
+
+ private:
+  std::size_t speeds_;
+};
+
+class Push final : public Load {
+ public:
+  std::unique_ptr<BoundLoad> bind(const Model& model) const override {
+    return std::make_unique<BoundPush>(model.layout().speeds);
+  }
+};
+
+}  // namespace
+
+SmallMotions::SmallMotions(const Configuration& c, std::vector<SensorNode> sensors)
+    : dynamics_(c.dynamics()), work_(0), state_(c.state()), free_(free_speeds(c.held())) {
+  auto model = std::make_shared<Model>(c.prepared().model());
+  hold(c, *model, !sensors.empty());
+  model->add_load("effort", Push());
+  model_ = model;
+  equations_ = c.prepared().scene.formulation->compile(model_);
+  reader_ = std::make_unique<SensorReader>(std::move(sensors), *equations_);
+  work_ = equations_->make_work();
+  // The discrete states that push are the last, before the work.
+  push_ = model_->loads().back().slot.first;
+  state_.y.insert(state_.y.begin() + static_cast<std::ptrdiff_t>(push_), model_->layout().speeds, 0.0);
+
+  accelerations_ = withy::accelerations(dynamics_, c.state(), c.held());
+  const Tangents tangents = dynamics_.tangents(c.state().time, c.state().y, accelerations_);
+  derivatives_ = derivatives_text(tangents);
+  FirstOrderForm form = whole_first_order_form(tangents, c.held());
+  A_ = std::move(form.A), by_effort_ = std::move(form.B);
+  for (const Eigen::Index s : free_) names_.push_back(model_->layout().speed_names[static_cast<std::size_t>(s)]);
+  for (std::size_t i = 0; i < free_.size(); ++i) names_.push_back(names_[i] + ".rate");
+  const std::vector<std::string>& of_loads = model_->layout().continuous_names;
+  names_.insert(names_.end(), of_loads.begin(), of_loads.end());
+  find_steps(c);
+}
+
+void SmallMotions::hold(const Configuration& c, Model& model, bool needed) const {
+  for (std::size_t h = 0; h < c.layout().hinges.size(); ++h) {
+    const Slot& slot = c.layout().hinges[h];
+    const auto first = c.held().begin() + static_cast<std::ptrdiff_t>(slot.speed);
+    const auto held = std::count(first, first + static_cast<std::ptrdiff_t>(slot.speeds), true);
+    if (held == 0 || model.driven(h)) continue;
+    if (static_cast<std::size_t>(held) == slot.speeds)
+      model.add_motion("hold " + slot.name, slot.name, std::make_shared<HeldStill>());
+    else if (needed)
+      throw InputError("one rate of several of hinge '" + slot.name +
+                       "' is held, and sensors do not know of that: hold all of it, or choose other outputs");
+  }
+}
+
+void SmallMotions::find_steps(const Configuration& c) {
+  double length = 0;
+  for (const Tip& tip : tips(c.prepared().model())) length = std::max(length, tip.length);
+  if (!(length > 0)) length = 1;
+  const Layout& layout = c.layout();
+  std::vector<double> of_speeds(layout.speeds, 1e-3 * length);
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    const std::vector<HingeRate> rates = hinge_rates(*model_->hinges()[h].hinge);
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      of_speeds[layout.hinges[h].speed + i] = rates[i].angular ? 1e-2 : 1e-2 * length;
+  }
+  for (std::size_t s = 0; s < layout.speeds; ++s)
+    if (layout.speed_names[s].find(".torsion[") != std::string::npos) of_speeds[s] = 1e-2;
+  // A speed's step is that of its displacement.
+  for (int half = 0; half < 2; ++half)
+    for (const Eigen::Index s : free_) steps_.push_back(of_speeds[static_cast<std::size_t>(s)]);
+  for (std::size_t i = layout.positions + layout.speeds; i < layout.moving(); ++i)
+    steps_.push_back(1e-2 * std::max(1.0, std::abs(c.state().y[i])));
+}
+
+State SmallMotions::displaced(Eigen::Index i, double h) const {
+  State moved = state_;
+  const auto m = static_cast<Eigen::Index>(free_.size());
+  if (i >= 2 * m) {
+    const Layout& layout = model_->layout();
+    moved.y[layout.positions + layout.speeds + static_cast<std::size_t>(i - 2 * m)] += h;
+    return moved;
+  }
+  const Eigen::Index speed = free_[static_cast<std::size_t>(i % m)];
+  if (i < m)
+    dynamics_.displace(moved.y, h * Eigen::VectorXd::Unit(by_effort_.cols(), speed));
+  else
+    moved.y[model_->layout().positions + static_cast<std::size_t>(speed)] += h;
+  return moved;
+}
+
+double SmallMotions::step(Eigen::Index i) const { return steps_[static_cast<std::size_t>(i)]; }
+
+State SmallMotions::pushed(std::size_t speed, double effort) const {
+  State state = state_;
+  state.y[push_ + speed] = effort;
+  return state;
+}
+
+Eigen::VectorXd SmallMotions::efforts(const State& state, std::size_t load) const {
+  Eigen::VectorXd efforts(by_effort_.cols());
+  equations_->load_efforts(state.time, state.y, static_cast<int>(load),
+                           {efforts.data(), static_cast<std::size_t>(efforts.size())}, work_);
+  return efforts;
+}
+
+Eigen::VectorXd SmallMotions::sensed(const State& state) {
+  Eigen::VectorXd values(static_cast<Eigen::Index>(columns().size()));
+  if (!reader_->read(state, {values.data(), columns().size()}))
+    throw std::domain_error("the accelerations that sensors look at are not finite near this state");
+  return values;
+}
+
+}  // namespace withy::study

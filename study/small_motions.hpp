@@ -1,0 +1,69 @@
+/// \file
+/// Small motions about a configuration as a linear system that can be displaced, pushed and looked at.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "withy/core/analysis/adaptive_difference.hpp"
+#include "withy/core/simulation/sensor_reader.hpp"
+#include "withy/study/configuration.hpp"
+
+namespace withy::study {
+
+/// ż = A z + B τ about a configuration: z are displacements δ of the free speeds, their rates, then the
+/// continuous states of loads; τ are efforts on
+/// all speeds beside those of the scene's loads. The model has, beside the scene's loads, one that pushes any speed,
+/// and motions in the place of what is held, so that accelerations and reactions are those of what is free.
+class SmallMotions {
+ public:
+  /// \throws InputError where one rate of several of a hinge is held and `sensors` are to be read; std::domain_error
+  /// where the mass matrix of what is free is singular.
+  SmallMotions(const Configuration& configuration, std::vector<SensorNode> sensors);
+
+  [[nodiscard]] const Model& model() const { return *model_; }
+  [[nodiscard]] const State& state() const { return state_; }
+  [[nodiscard]] Eigen::Index size() const { return A_.rows(); }
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  [[nodiscard]] const Eigen::MatrixXd& A() const { return A_; }
+  [[nodiscard]] const Eigen::MatrixXd& by_effort() const { return by_effort_; }          ///< size × speeds
+  [[nodiscard]] const Eigen::VectorXd& accelerations() const { return accelerations_; }  ///< of all speeds
+  /// Speeds that are not held.
+  [[nodiscard]] const std::vector<Eigen::Index>& free() const { return free_; }
+  /// How A was found.
+  [[nodiscard]] const std::string& derivatives() const { return derivatives_; }
+
+  /// The state with z_i = h.
+  [[nodiscard]] State displaced(Eigen::Index i, double h) const;
+  /// A step of z_i over which anything changes little: 0.01 rad, a hundredth or (modes) a thousandth of the longest
+  /// body; of a load's state a hundredth of it, or of one.
+  [[nodiscard]] double step(Eigen::Index i) const;
+  /// The state with an effort [N m, N] on a speed.
+  [[nodiscard]] State pushed(std::size_t speed, double effort) const;
+  /// Efforts [N m, N] of a load (index in Model::loads()) on all speeds.
+  [[nodiscard]] Eigen::VectorXd efforts(const State& state, std::size_t load) const;
+  /// What the sensors show. \throws std::domain_error where accelerations are not finite
+  [[nodiscard]] Eigen::VectorXd sensed(const State& state);
+  [[nodiscard]] const std::vector<Column>& columns() const { return reader_->columns(); }
+
+ private:
+  void hold(const Configuration& c, Model& model, bool needed) const;
+  void find_steps(const Configuration& c);
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const EquationsOfMotion> equations_;
+  std::unique_ptr<SensorReader> reader_;
+  const TangentDynamics& dynamics_;
+  mutable Work work_;
+  State state_;
+  std::size_t push_ = 0;  ///< first of the discrete states that push
+  std::vector<Eigen::Index> free_;
+  std::vector<std::string> names_;
+  std::vector<double> steps_;
+  Eigen::MatrixXd A_, by_effort_;
+  Eigen::VectorXd accelerations_;
+  std::string derivatives_;
+};
+
+}  // namespace withy::study
