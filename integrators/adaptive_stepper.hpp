@@ -29,9 +29,10 @@ class AdaptiveStepper : public OneStep {
     const double remaining = t_limit - t;
     const double least = std::max({control_.min_step, 16 * std::numeric_limits<double>::epsilon() * std::abs(t),
                                    std::numeric_limits<double>::min()});
-    // What remains may be a rounding error long: the first step, found as a part of it, is no shorter than any may be.
+    // What remains may be a rounding error long: the first step, found as a part of it, is no shorter than any may be,
+    // the next one neither, when the least is a rounding error longer.
     if (!(proposal_ > 0))
-      proposal_ = control_.initial_step > 0 ? control_.initial_step : std::max(first_step(remaining), least);
+      proposal_ = control_.initial_step > 0 ? control_.initial_step : std::max(first_step(remaining), 2 * least);
     double wanted = std::min(proposal_, control_.max_step);
     bool rejected = false;
     for (int failures = 0;;) {

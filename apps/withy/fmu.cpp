@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "withy/apps/withy/command.hpp"
+#include "withy/apps/withy/engine.hpp"
+#include "withy/apps/withy/output.hpp"
+#include "withy/bindings/fmi/export.hpp"
+#include "withy/results/json_text.hpp"
+
+namespace withy::app {
+namespace {
+
+struct FmuArguments : SceneArguments {
+  int version = 3;
+  std::vector<std::string> kinds{"me", "cs"};
+  std::string out;  ///< empty: the scene's name with .fmu
+};
+
+ExitStatus make_fmu(const FmuArguments& a) {
+  const Engine engine(a);
+  fmi::Export what;
+  what.version = a.version;
+  what.model_exchange = std::find(a.kinds.begin(), a.kinds.end(), "me") != a.kinds.end();
+  what.co_simulation = std::find(a.kinds.begin(), a.kinds.end(), "cs") != a.kinds.end();
+  what.out = a.out;
+  if (a.out.empty()) what.out = std::filesystem::path(a.scene).filename().replace_extension(".fmu");
+  const fmi::Exported made = fmi::export_fmu(engine.prepared(), a.options, engine.registry(), what);
+  const fmi::Variables& v = made.variables;
+  const std::size_t outputs = v.states + v.outputs;
+  if (a.json) {
+    print(json_text(nlohmann::ordered_json{{"file", what.out.string()},
+                                           {"fmi", a.version},
+                                           {"kinds", a.kinds},
+                                           {"model_identifier", made.description.identifier},
+                                           {"token", made.description.token},
+                                           {"bytes", made.bytes},
+                                           {"states", v.states},
+                                           {"inputs", v.inputs},
+                                           {"outputs", outputs},
+                                           {"parameters", v.parameters},
+                                           {"event_indicators", v.indicators}}));
+  } else {
+    print(fmt::format("written: {} ({:.1f} MB), FMI {}.0, {}\n{} states, {} inputs, {} outputs, {} parameters\n",
+                      what.out.string(), 1e-6 * static_cast<double>(made.bytes), a.version, fmt::join(a.kinds, ", "),
+                      v.states, v.inputs, outputs, v.parameters));
+  }
+  return ExitStatus::done;
+}
+
+std::function<ExitStatus()> add_fmu(CLI::App& c) {
+  const auto arguments = std::make_shared<FmuArguments>();
+  FmuArguments& a = *arguments;
+  add_scene(c, a);
+  add_formulation(c, a);
+  c.add_option("--fmi", a.version, "Version of the standard: 2 or 3")
+      ->check(CLI::IsMember({2, 3}))
+      ->capture_default_str();
+  c.add_option("--kind", a.kinds, "Model exchange (me), co-simulation (cs), or both; default: both")
+      ->type_name("KIND,...")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"me", "cs"}));
+  c.add_option("--out", a.out, "File; default: the scene's name with .fmu, in the working folder")->type_name("FILE");
+  return [arguments] { return make_fmu(*arguments); };
+}
+
+}  // namespace
+
+const Command fmu_command = {"fmu", "Export a scene as an FMU, for other programs to simulate",
+                             "  withy fmu scenes/commanded-arm.yaml --out arm.fmu\n"
+                             "  withy fmu scenes/commanded-arm.yaml --fmi 2 --kind cs --out arm.fmu",
+                             &add_fmu};
+
+}  // namespace withy::app

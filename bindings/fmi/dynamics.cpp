@@ -1,0 +1,317 @@
+#include "withy/bindings/fmi/dynamics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+
+namespace withy::fmi {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The scene's initial state at another time: what motions prescribe is where it then is.
+State initial_at(const study::Prepared& prepared, double t) {
+  State state = prepared.scene.initial;
+  if (t == state.time) return state;
+  state.time = t;
+  prepared.model().prescribe(state);
+  return state;
+}
+
+std::vector<bool> driven_states(const Model& model, std::size_t states) {
+  std::vector<bool> driven(states, false);
+  const Layout& layout = model.layout();
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    if (!model.driven(h)) continue;
+    const Slot& slot = layout.hinges[h];
+    for (std::size_t i = 0; i < slot.positions; ++i) driven[slot.position + i] = true;
+    for (std::size_t i = 0; i < slot.speeds; ++i) driven[layout.positions + slot.speed + i] = true;
+  }
+  return driven;
+}
+
+std::vector<double> jump_times(const Model& model) {
+  std::vector<double> times;
+  const auto add = [&](const std::vector<double>& more) { times.insert(times.end(), more.begin(), more.end()); };
+  for (const LoadNode& load : model.loads()) add(load.load->discontinuities());
+  for (const MotionNode& motion : model.motions()) add(motion.motion->discontinuities());
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+double rounding(double t) { return 1e-12 * std::max(1.0, std::abs(t)); }
+
+int sign(double x) { return (x > 0) - (x < 0); }
+
+}  // namespace
+
+Dynamics::Dynamics(std::shared_ptr<const study::Prepared> prepared, double t)
+    : prepared_(std::move(prepared)),
+      equations_(*prepared_->equations),
+      states_(prepared_->model().layout().moving()),
+      quaternions_(prepared_->model().layout().positions != prepared_->model().layout().speeds),
+      state_(initial_at(*prepared_, t)),
+      seen_(state_),
+      work_(equations_.make_work()),
+      table_(prepared_->model(), equations_, prepared_->scene.outputs),
+      driven_(driven_states(prepared_->model(), states_)),
+      y_dot_(state_.y.size()),
+      jacobian_(states_ * states_),
+      clocks_(prepared_->model()),
+      zeros_(prepared_->model(), prepared_->scene.events, state_),
+      jumps_(jump_times(prepared_->model())),
+      signs_(indicator_count(prepared_->scene)),
+      values_(signs_.size()) {
+  begin();
+}
+
+void Dynamics::changed() {
+  seen_is_now_ = derivatives_are_now_ = jacobian_is_now_ = false;
+  row_ = nullptr;
+}
+
+void Dynamics::set_time(double t) {
+  if (t == state_.time) return;
+  state_.time = t;
+  changed();
+}
+
+void Dynamics::set_moving(std::span<const double> y) {
+  std::copy(y.begin(), y.end(), state_.y.begin());
+  changed();
+}
+
+void Dynamics::set_state(std::size_t index, double value) {
+  state_.y[index] = value;
+  changed();
+}
+
+void Dynamics::show(const State& state) {
+  state_ = state;
+  jump_ = infinity;
+  changed();
+}
+
+double Dynamics::input(std::size_t load) const {
+  const LoadNode& node = model().loads()[load];
+  return node.load->input()->value(state_.time, node.discrete(std::span(state_.y)));
+}
+
+void Dynamics::set_input(std::size_t load, double value) {
+  const LoadNode& node = model().loads()[load];
+  node.load->input()->set(state_.time, state_.time, value, node.discrete(std::span(state_.y)));
+  changed();
+}
+
+/// The state with its quaternions scaled to unit length and, where the next jump has not been dealt with, a time before
+/// it.
+const State& Dynamics::seen() {
+  if (!quaternions_ && state_.time < jump_) return state_;
+  if (!seen_is_now_) {
+    seen_ = state_;
+    if (quaternions_) equations_.normalize(seen_.y);
+    seen_.time = std::min(state_.time, std::nextafter(jump_, -infinity));
+    seen_is_now_ = true;
+  }
+  return seen_;
+}
+
+Evaluation Dynamics::evaluate(const State& state) { return equations_.derivatives(state.time, state.y, y_dot_, work_); }
+
+std::span<const double> Dynamics::derivatives() {
+  if (!derivatives_are_now_) {
+    const Evaluation evaluation = evaluate(seen());
+    if (!evaluation.ok())
+      throw Discarded("t = " + brief(state_.time) + " s: " +
+                      (evaluation.outcome == Evaluation::Outcome::singular ? "the mass matrix cannot be solved"
+                                                                           : "the derivatives are not finite") +
+                      (evaluation.body < 0
+                           ? std::string()
+                           : " at body '" + model().bodies()[static_cast<std::size_t>(evaluation.body)].name + "'"));
+    derivatives_are_now_ = true;
+  }
+  return std::span(y_dot_).first(states_);
+}
+
+const std::vector<double>& Dynamics::outputs() {
+  if (row_ != nullptr) return *row_;
+  const std::vector<double>& row = table_.row(seen());
+  const auto bad = std::find_if(row.begin(), row.end(), [](double x) { return !std::isfinite(x); });
+  if (bad != row.end())
+    throw Discarded("t = " + brief(state_.time) + " s: output '" +
+                    table_.columns()[static_cast<std::size_t>(bad - row.begin())].name + "' is not finite");
+  row_ = &row;
+  return row;
+}
+
+State Dynamics::moved(double h, std::span<const double> along_states, std::span<const std::size_t> inputs,
+                      std::span<const double> along_inputs) {
+  State state = seen();
+  for (std::size_t i = 0; i < along_states.size(); ++i) state.y[i] += h * along_states[i];
+  if (quaternions_) equations_.normalize(state.y);
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    const LoadNode& node = model().loads()[inputs[k]];
+    const InputPort& port = *node.load->input();
+    const std::span<double> held = node.discrete(std::span(state.y));
+    port.set(state.time, state.time, port.value(state.time, held) + h * along_inputs[k], held);
+  }
+  return state;
+}
+
+void Dynamics::differences(std::span<const double> along_states, std::span<const std::size_t> inputs,
+                           std::span<const double> along_inputs, std::span<const std::size_t> columns,
+                           std::span<double> values) {
+  double longest = 0, place = 0;
+  for (std::size_t i = 0; i < along_states.size(); ++i) {
+    longest = std::max(longest, std::abs(along_states[i]));
+    if (along_states[i] != 0) place = std::max(place, std::abs(state_.y[i]));
+  }
+  if (longest == 0)
+    for (const double rate : along_inputs) longest = std::max(longest, std::abs(rate));
+  if (longest == 0) return std::fill(values.begin(), values.end(), 0.0);
+  const double h = 1e-3 * (1 + 1e-3 * place) / longest;
+  row_ = nullptr;
+  const auto at = [&](double step) {
+    const std::vector<double>& row = table_.row(moved(step, along_states, inputs, along_inputs));
+    Eigen::VectorXd numbers(static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t c = 0; c < columns.size(); ++c) numbers[static_cast<Eigen::Index>(c)] = row[columns[c]];
+    return numbers;
+  };
+  const Eigen::VectorXd found = central_difference(at, h);
+  if (!found.allFinite()) throw Discarded("t = " + brief(state_.time) + " s: an output has no finite derivative");
+  std::copy(found.begin(), found.end(), values.begin());
+}
+
+void Dynamics::sensitivity(std::span<const double> along_states, std::span<const std::size_t> inputs,
+                           std::span<const double> along_inputs, std::span<double> derivatives,
+                           std::span<const std::size_t> columns, std::span<double> values) {
+  if (!columns.empty()) differences(along_states, inputs, along_inputs, columns, values);
+  if (derivatives.empty()) return;
+  std::fill(derivatives.begin(), derivatives.end(), 0.0);
+  if (!along_states.empty()) {
+    const Linearization* linearization = equations_.linearization();
+    if (linearization == nullptr)
+      throw std::invalid_argument("formulation '" + prepared_->scene.formulation_name + "' has no derivatives");
+    static_cast<void>(this->derivatives());
+    if (!jacobian_is_now_ && !linearization->jacobian(state_.time, seen().y, y_dot_, jacobian_).ok())
+      throw Discarded("t = " + brief(state_.time) + " s: the mass matrix cannot be solved");
+    jacobian_is_now_ = true;
+    for (std::size_t j = 0; j < states_; ++j)
+      if (along_states[j] != 0)
+        for (std::size_t i = 0; i < states_; ++i) derivatives[i] += jacobian_[j * states_ + i] * along_states[j];
+  }
+  double longest = 0;
+  for (const double rate : along_inputs) longest = std::max(longest, std::abs(rate));
+  if (longest == 0) return;
+  // Affine: a difference over any step has no error but rounding.
+  const double step = 1 / longest;
+  std::vector<double> sum(states_);
+  for (const double h : {step, -step}) {
+    derivatives_are_now_ = false;
+    if (!evaluate(moved(h, {}, inputs, along_inputs)).ok())
+      throw Discarded("t = " + brief(state_.time) + " s: the mass matrix cannot be solved");
+    for (std::size_t i = 0; i < states_; ++i) sum[i] += (h > 0 ? 1 : -1) * y_dot_[i];
+  }
+  for (std::size_t i = 0; i < states_; ++i) derivatives[i] += sum[i] / (2 * step);
+}
+
+std::span<const double> Dynamics::event_indicators() {
+  const State& state = seen();
+  const Layout& layout = model().layout();
+  const std::span<const double> y(state.y);
+  std::size_t at = 0;
+  for (const LoadSlot& slot : layout.discrete_slots) {
+    const DiscretePart& part = *model().loads()[slot.load].load->discrete();
+    if (part.switches() > 0)
+      part.switching(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds),
+                     y.subspan(slot.first, slot.count), std::span(values_).subspan(at, part.switches()));
+    at += part.switches();
+  }
+  for (const RunEvent& event : prepared_->scene.events) values_[at++] = event.function(state.time, y);
+  return values_;
+}
+
+/// What is due at the state's time has been dealt with: the next instant. A host lands up to rounding of its own.
+double Dynamics::next_instant() {
+  const auto jump = std::upper_bound(jumps_.begin(), jumps_.end(), state_.time + rounding(state_.time));
+  jump_ = jump == jumps_.end() ? infinity : *jump;
+  seen_is_now_ = false;
+  return std::min(jump_, clocks_.next());
+}
+
+State Dynamics::start() const {
+  State state = state_;
+  for (const LoadNode& load : model().loads()) {
+    if (load.load->input() != nullptr) continue;
+    const std::span<const double> first = load.discrete(std::span(prepared_->scene.initial.y));
+    std::copy(first.begin(), first.end(), load.discrete(std::span(state.y)).begin());
+  }
+  return state;
+}
+
+EventUpdate Dynamics::begin() {
+  state_ = start();
+  clocks_.begin(state_);
+  const double next = next_instant();
+  changed();
+  static_cast<void>(event_indicators());
+  std::transform(values_.begin(), values_.end(), signs_.begin(), sign);
+  return {false, false, next};
+}
+
+/// Acts on the indicators that have changed their signs. \returns whether a load has switched
+bool Dynamics::switch_where_passed(EventUpdate& update) {
+  bool switched = false;
+  static_cast<void>(event_indicators());
+  for (std::size_t f = 0; f < signs_.size(); ++f) {
+    const int now = sign(values_[f]);
+    if (now == 0 || now == signs_[f]) continue;
+    const bool passed = signs_[f] != 0;  // else it began on its zero
+    signs_[f] = now;
+    if (!passed) continue;
+    if (const auto load = zeros_.switching(f)) {
+      clocks_.renew(state_, load->first, {load->second, now});
+      switched = true;
+      changed();
+    } else {
+      const RunEvent& event = zeros_.event(f);
+      if (event.direction == 0 || event.direction == now) update.terminate = update.terminate || event.stops;
+    }
+  }
+  return switched;
+}
+
+EventUpdate Dynamics::update_discrete() {
+  EventUpdate update;
+  // A load is told the instant itself, wherever a host lands.
+  const double now = state_.time, due = clocks_.next();
+  if (due <= now + rounding(now)) {
+    state_.time = due;
+    clocks_.renew(state_);
+    clocks_.go_on_after(std::max(now, due));
+    state_.time = now;
+    changed();
+  }
+  update.next = next_instant();
+  changed();
+  update.again = switch_where_passed(update);
+  return update;
+}
+
+void Dynamics::remember(Memory& memory) {
+  memory(state_.time);
+  memory(state_.y);
+  memory(signs_);
+  double instant = clocks_.next();
+  memory(instant);
+  memory(jump_);
+  if (!memory.reading()) return;
+  // Clocks stand before their next instant, also where the state has passed it without an update.
+  clocks_.go_on_after(std::isfinite(instant) ? std::nextafter(instant, -infinity) : state_.time);
+  changed();
+}
+
+}  // namespace withy::fmi

@@ -1,0 +1,94 @@
+#include "withy/bindings/fmi/export.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "withy/bindings/fmi/documentation.hpp"
+#include "withy/bindings/fmi/resources.hpp"
+#include "withy/bindings/fmi/zip_file.hpp"
+#include "withy/plugins/host/plugin_host.hpp"
+#include "withy/scene/document.hpp"
+#include "withy/scene/sha256.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::fmi {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folder with the library and what it brings.
+fs::path library_folder() {
+  const fs::path folder = PluginHost::default_directory().parent_path() / "fmu";
+  if (!fs::exists(folder / "fmu.so"))
+    throw PluginError((folder / "fmu.so").string() +
+                      ": the library for FMUs is not there; build or install all of withy");
+  return folder;
+}
+
+/// Name of a library: letters, digits and '_' of the file's name, not a digit first.
+std::string identifier_of(const fs::path& out) {
+  std::string name = out.stem().string();
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c >= 128 || std::isalnum(c) == 0; }, '_');
+  return name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "fmu_" + name : name;
+}
+
+/// The library in an FMU has withy's own plugins alone.
+void check_plugins(const study::Prepared& prepared) {
+  const fs::path own = PluginHost::default_directory();
+  for (const PluginUsed& plugin : prepared.scene.sources.plugins) {
+    std::error_code ignored;
+    if (plugin.file == "built in" || fs::equivalent(fs::path(plugin.file).parent_path(), own, ignored)) continue;
+    throw study::InputError(prepared.scene.file + ": " + plugin.kind + " '" + plugin.id + "' is of " + plugin.file +
+                            ", which is none of withy's own plugins; an FMU has those alone");
+  }
+}
+
+void add_scene(ZipFile& zip, const study::Prepared& prepared, const SceneOptions& options) {
+  const fs::path file = prepared.scene.file;
+  const std::string folder = std::string("resources/") + scene_folder + '/';
+  zip.add(std::string("resources/") + recipe_file, write_recipe(file.filename().string(), options));
+  zip.add(folder + file.filename().string(), prepared.values.text());
+  for (const FileUsed& used : prepared.scene.sources.files) {
+    const fs::path name = fs::path(used.path).lexically_normal();
+    if (name.is_absolute() || (name.begin() != name.end() && *name.begin() == ".."))
+      throw study::InputError(prepared.scene.file + ": file '" + used.path +
+                              "' is not beside or below the scene; an FMU carries files by names relative to it");
+    const std::string bytes = read_bytes((file.parent_path() / name).string());
+    if (sha256(bytes) != used.sha256) throw study::InputError(used.path + ": has changed since the scene was read");
+    zip.add(folder + name.generic_string(), bytes);
+  }
+}
+
+void add_library(ZipFile& zip, const Description& d) {
+  const fs::path folder = library_folder();
+  const std::string platform = d.version == 2 ? "linux64" : "x86_64-linux";
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    const std::string name = entry.path().filename().string();
+    zip.add("binaries/" + platform + '/' + (name == "fmu.so" ? d.identifier + ".so" : name),
+            read_bytes(entry.path().string()));
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / "licenses"))
+    zip.add("documentation/licenses/" + entry.path().filename().string(), read_bytes(entry.path().string()));
+}
+
+}  // namespace
+
+Exported export_fmu(const study::Prepared& prepared, const SceneOptions& options, Registry& registry,
+                    const Export& what) {
+  check_plugins(prepared);
+  Exported made{{what.version, what.model_exchange, what.co_simulation, identifier_of(what.out), {}},
+                variables_of(prepared, registry)};
+  made.description.token = token_of(prepared, made.variables);
+  ZipFile zip(what.out);
+  zip.add("modelDescription.xml", model_description(made.description, prepared, made.variables));
+  zip.add("documentation/index.html", documentation_page(made.description, prepared, made.variables));
+  add_library(zip, made.description);
+  add_scene(zip, prepared, options);
+  zip.finish();
+  made.bytes = fs::file_size(what.out);
+  return made;
+}
+
+}  // namespace withy::fmi

@@ -1,0 +1,353 @@
+#include "withy/bindings/fmi/instance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "withy/bindings/fmi/resources.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+#include "withy/plugins/host/static_plugins.hpp"
+
+namespace withy::fmi {
+namespace {
+
+/// The plugins linked in; threads share them.
+Registry& registry() {
+  static Registry plugins = [] {
+    Registry all;
+    enroll_static_plugins(all);
+    return all;
+  }();
+  return plugins;
+}
+
+std::string quoted(const Variable& v) { return "variable '" + v.name + "'"; }
+
+}  // namespace
+
+Instance::Instance(Kind kind, std::string name, std::string_view token, const std::string& resources, Log log)
+    : kind_(kind), name_(std::move(name)), log_(std::move(log)), values_(read_resources(resources)) {
+  const auto prepared = std::make_shared<const study::Prepared>(study::prepare(values_, registry()));
+  variables_ = variables_of(*prepared, registry());
+  token_ = token_of(*prepared, variables_);
+  if (token != token_)
+    throw std::runtime_error("the model description is of another FMU: its token is '" + std::string(token) +
+                             "'; that of these resources is '" + token_ + "'");
+  dynamics_ = std::make_unique<Dynamics>(prepared, prepared->scene.initial.time);
+  reset();
+  stale_ = false;
+}
+
+Instance::~Instance() {
+  *const_cast<volatile std::uint64_t*>(&kind_of_handle) = 0;
+  for (const SavedState* state : saved_) delete state;
+}
+
+const char* Instance::mode_name() const {
+  switch (mode_) {
+    case Mode::instantiated:
+      return "instantiated";
+    case Mode::initialization:
+      return "initialization";
+    case Mode::event:
+      return "event";
+    case Mode::continuous:
+      return "continuous-time";
+    case Mode::step:
+      return "step";
+    case Mode::intermediate:
+      return "intermediate update";
+    case Mode::terminated:
+      return "terminated";
+  }
+  return "";
+}
+
+void Instance::say(Status status, const char* category, const std::string& message) const {
+  if (!log_.write) return;
+  const bool fault = status != Status::ok;
+  if (!fault && (!log_.on || (!log_.categories.empty() && !log_.categories.contains(category) &&
+                              !log_.categories.contains(log_all))))
+    return;
+  log_.write(status, category, message.c_str());
+}
+
+void Instance::reset() {
+  const auto of_kind = [&](std::size_t first, std::size_t count) {
+    std::vector<double> values(count);
+    for (std::size_t i = 0; i < count; ++i) values[i] = variables_.all[first + i].start;
+    return values;
+  };
+  parameters_ = of_kind(variables_.parameter(0), variables_.parameters);
+  starts_ = of_kind(variables_.state(0), variables_.states);
+  inputs_ = of_kind(variables_.input(0), variables_.inputs);
+  is_started_.assign(starts_.size(), 0);
+  is_input_set_.assign(inputs_.size(), 0);
+  tolerance_.reset();
+  start_ = dynamics_->prepared().scene.initial.time;
+  session_.reset();
+  stale_ = true;
+  mode_ = Mode::instantiated;
+}
+
+void Instance::set_experiment(std::optional<double> tolerance, double start) {
+  if (!std::isfinite(start) || (tolerance && !(*tolerance > 0 && std::isfinite(*tolerance))))
+    throw std::invalid_argument("the start time is to be finite, a tolerance finite and above 0");
+  stale_ = stale_ || start != start_ || tolerance != tolerance_;
+  start_ = start;
+  tolerance_ = tolerance;
+}
+
+/// Makes the scene anew with the parameters, tolerance and start values that were set.
+void Instance::remake() {
+  SceneValues values = values_;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const Variable& v = variables_.all[variables_.parameter(i)];
+    if (parameters_[i] != v.start) values.set(v.name, Value(parameters_[i]), "parameter '" + v.name + "'");
+  }
+  const Value* rtol = values.find("integrator.rtol");
+  if (tolerance_ && variables_.parameters > 0) {
+    for (std::size_t i = 0; i < variables_.parameters; ++i)
+      if (variables_.all[variables_.parameter(i)].name == "integrator.rtol" &&
+          (rtol == nullptr || rtol->kind() != Value::Kind::number || rtol->number() != *tolerance_))
+        values.set("integrator.rtol", Value(*tolerance_), "tolerance");
+  }
+  auto prepared = std::make_shared<const study::Prepared>(study::prepare(std::move(values), registry()));
+  if (prepared->model().layout().moving() != variables_.states)
+    throw std::runtime_error("with these parameters the model has " +
+                             std::to_string(prepared->model().layout().moving()) + " states; the FMU has " +
+                             std::to_string(variables_.states));
+  auto made = std::make_unique<Dynamics>(std::move(prepared), start_);
+  for (std::size_t i = 0; i < starts_.size(); ++i)
+    if (is_started_[i] != 0) made->set_state(i, starts_[i]);
+  for (std::size_t i = 0; i < inputs_.size(); ++i)
+    if (is_input_set_[i] != 0) made->set_input(variables_.all[variables_.input(i)].index, inputs_[i]);
+  made->begin();
+  dynamics_ = std::move(made);
+  stale_ = false;
+}
+
+Dynamics& Instance::dynamics() {
+  if (stale_) remake();
+  return *dynamics_;
+}
+
+void Instance::enter_initialization() {
+  static_cast<void>(dynamics());
+  mode_ = Mode::initialization;
+}
+
+void Instance::exit_initialization() {
+  Dynamics& d = dynamics();
+  d.begin();
+  if (kind_ == Kind::co_simulation) {
+    make_session();
+    d.show(session_->state());
+    for (const std::string& remark : session_->stepper().remarks())
+      say(Status::ok, log_all, "The integrator: " + remark + ".");
+  }
+  mode_ = kind_ == Kind::co_simulation ? Mode::step : Mode::event;
+}
+
+void Instance::make_session() {
+  const study::Prepared& p = dynamics_->prepared();
+  const auto between = [this] {
+    const double now = session_->state().time;
+    if (between_ == nullptr || early_ || now <= step_began_) return false;
+    dynamics_->show(session_->state());
+    mode_ = Mode::intermediate;
+    early_ = (*between_)(now);
+    mode_ = Mode::step;
+    return early_.has_value();
+  };
+  session_ = std::make_unique<Session>(p.model(), *p.equations, *p.scene.integrator, dynamics_->start(),
+                                       SessionOptions{p.scene.deflection_limit, p.scene.events, between});
+}
+
+const Variable& Instance::variable(std::uint32_t reference) const {
+  if (reference >= variables_.all.size())
+    throw std::out_of_range("there is no variable of value reference " + std::to_string(reference) + "; the last is " +
+                            std::to_string(variables_.all.size() - 1));
+  return variables_.all[reference];
+}
+
+void Instance::get(std::span<const std::uint32_t> references, double* values) {
+  for (const std::uint32_t reference : references) {
+    const Variable& v = variable(reference);
+    switch (v.kind) {
+      case Variable::Kind::time:
+        *values++ = dynamics().time();
+        break;
+      case Variable::Kind::state:
+        *values++ = dynamics().state().y[v.index];
+        break;
+      case Variable::Kind::derivative:
+        *values++ = dynamics().derivatives()[v.index];
+        break;
+      case Variable::Kind::output:
+        *values++ = dynamics().outputs()[v.index];
+        break;
+      case Variable::Kind::indicator:
+        *values++ = dynamics().indicator(v.index);
+        break;
+      case Variable::Kind::parameter:
+        *values++ = parameters_[v.index];
+        break;
+      case Variable::Kind::input: {
+        const std::size_t i = reference - variables_.input(0);
+        *values++ = is_input_set_[i] != 0 ? inputs_[i] : dynamics().input(v.index);
+        break;
+      }
+    }
+  }
+}
+
+void Instance::check_set(const Variable& v, double value) {
+  const auto refuse = [&](const std::string& why) { throw std::invalid_argument(quoted(v) + ": " + why); };
+  const bool starting = is_in(Mode::instantiated | Mode::initialization);
+  if (!std::isfinite(value)) refuse("got " + brief(value) + "; need a finite number");
+  if (v.kind == Variable::Kind::parameter && !starting)
+    refuse("is a fixed parameter, set before initialization ends; the mode is " + std::string(mode_name()));
+  if (v.kind == Variable::Kind::state && !starting)
+    refuse("is a state, which is set by its start value; the mode is " + std::string(mode_name()));
+  if (v.kind == Variable::Kind::state && dynamics_->driven(v.index) && value != dynamics_->state().y[v.index])
+    refuse("is prescribed by a motion of the scene");
+  if (v.kind == Variable::Kind::input && is_in(Mode::intermediate | Mode::terminated))
+    refuse("is an input, which is not set in the mode " + std::string(mode_name()));
+  if (v.kind != Variable::Kind::parameter && v.kind != Variable::Kind::state && v.kind != Variable::Kind::input)
+    refuse("is calculated");
+}
+
+void Instance::set_one(const Variable& v, double value) {
+  if (v.kind == Variable::Kind::parameter) {
+    stale_ = stale_ || parameters_[v.index] != value;
+    parameters_[v.index] = value;
+  } else if (v.kind == Variable::Kind::state) {
+    starts_[v.index] = value;
+    is_started_[v.index] = 1;
+    if (!stale_) dynamics_->set_state(v.index, value);
+  } else {
+    const auto i = static_cast<std::size_t>(&v - &variables_.all[variables_.input(0)]);
+    inputs_[i] = value;
+    is_input_set_[i] = 1;
+    if (session_ != nullptr) session_->set_input(v.index, value);
+    // One that is reached in a straight line still has its old value.
+    const bool later = session_ != nullptr && dynamics_->model().loads()[v.index].load->input()->interpolates();
+    if (!stale_ && !later) dynamics_->set_input(v.index, value);
+  }
+}
+
+void Instance::set(std::span<const std::uint32_t> references, const double* values) {
+  for (std::size_t i = 0; i < references.size(); ++i) check_set(variable(references[i]), values[i]);
+  for (std::size_t i = 0; i < references.size(); ++i) set_one(variable(references[i]), values[i]);
+}
+
+std::vector<double> Instance::jacobian_along(std::span<const std::uint32_t> unknowns,
+                                             std::span<const std::uint32_t> knowns, const double* along) {
+  std::vector<double> along_states, along_inputs, derivatives, values, result;
+  std::vector<std::size_t> inputs, columns;
+  for (std::size_t k = 0; k < knowns.size(); ++k) {
+    const Variable& v = variable(knowns[k]);
+    if (v.kind == Variable::Kind::state) {
+      along_states.resize(variables_.states);
+      along_states[v.index] += along[k];
+    } else if (v.kind == Variable::Kind::input) {
+      inputs.push_back(v.index);
+      along_inputs.push_back(along[k]);
+    } else {
+      throw std::invalid_argument(quoted(v) + ": derivatives are with respect to states and inputs");
+    }
+  }
+  for (const std::uint32_t reference : unknowns) {
+    const Variable& v = variable(reference);
+    if (v.kind == Variable::Kind::derivative) {
+      derivatives.resize(variables_.states);
+    } else if (v.kind == Variable::Kind::output) {
+      columns.push_back(v.index);
+    } else if (v.kind != Variable::Kind::state) {
+      throw std::invalid_argument(quoted(v) + ": derivatives are those of derivatives of states and of outputs");
+    }
+  }
+  values.resize(columns.size());
+  dynamics().sensitivity(along_states, inputs, along_inputs, derivatives, columns, values);
+  std::size_t column = 0;
+  for (const std::uint32_t reference : unknowns) {
+    const Variable& v = variables_.all[reference];
+    if (v.kind == Variable::Kind::derivative) {
+      result.push_back(derivatives[v.index]);
+    } else if (v.kind == Variable::Kind::output) {
+      result.push_back(values[column++]);
+    } else {
+      result.push_back(along_states.empty() ? 0 : along_states[v.index]);
+    }
+  }
+  return result;
+}
+
+void Instance::directional(std::span<const std::uint32_t> unknowns, std::span<const std::uint32_t> knowns,
+                           const double* along_knowns, double* sensitivity) {
+  const std::vector<double> found = jacobian_along(unknowns, knowns, along_knowns);
+  std::copy(found.begin(), found.end(), sensitivity);
+}
+
+void Instance::adjoint(std::span<const std::uint32_t> unknowns, std::span<const std::uint32_t> knowns,
+                       const double* along_unknowns, double* sensitivity) {
+  std::vector<double> sums(knowns.size());
+  for (std::size_t k = 0; k < knowns.size(); ++k) {
+    constexpr double one = 1;
+    const std::vector<double> column = jacobian_along(unknowns, knowns.subspan(k, 1), &one);
+    for (std::size_t u = 0; u < unknowns.size(); ++u) sums[k] += along_unknowns[u] * column[u];
+  }
+  std::copy(sums.begin(), sums.end(), sensitivity);
+}
+
+void Instance::give(std::span<const double> numbers, double* array, std::size_t count) const {
+  if (count != numbers.size() || (count > 0 && array == nullptr))
+    throw std::invalid_argument("got an array of " + std::to_string(count) + " numbers; need " +
+                                std::to_string(numbers.size()));
+  std::copy(numbers.begin(), numbers.end(), array);
+}
+
+void Instance::give_indicators(double* array, std::size_t count) { give(dynamics().event_indicators(), array, count); }
+
+void Instance::set_continuous(std::span<const double> x) {
+  if (x.size() != variables_.states || (x.data() == nullptr && !x.empty()))
+    throw std::invalid_argument("got an array of " + std::to_string(x.size()) + " numbers; need " +
+                                std::to_string(variables_.states));
+  if (!std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); }))
+    throw Discarded("a state is not finite");
+  dynamics().set_moving(x);
+}
+
+StepEnd Instance::step(double from, double length, const BetweenSteps& between) {
+  const double now = session_->state().time;
+  if (!std::isfinite(from) || !std::isfinite(length) || length < 0 ||
+      std::abs(from - now) > 1e-9 * std::max(1.0, std::abs(now)))
+    throw std::invalid_argument("a step of " + brief(length) + " s from " + brief(from) +
+                                " s; need one of at least 0 s from where the FMU stands, " + brief(now) + " s");
+  const double target = std::max(now, from + length);
+  step_began_ = now;
+  early_.reset();
+  between_ = between ? &between : nullptr;
+  SessionEnd end = session_->advance(target, true);
+  between_ = nullptr;
+  if (end.status == RunStatus::interrupted && early_ && *early_ > session_->state().time)
+    end = session_->advance(std::min(*early_, target), true);
+  dynamics_->show(session_->state());
+  StepEnd result;
+  result.reached = session_->state().time == target;
+  result.early = early_.has_value() && !result.reached;
+  for (const EventTime& e : session_->events())
+    say(Status::ok, log_events, "Event '" + e.name + "' at t = " + brief(e.time) + " s.");
+  if (end.status == RunStatus::completed && !end.reached && !result.early) {
+    result.terminate = true;
+    result.reason = "event '" + (session_->events().empty() ? std::string() : session_->events().back().name) +
+                    "' ends the simulation at t = " + brief(session_->state().time) + " s";
+  } else if (end.status != RunStatus::completed && end.status != RunStatus::interrupted) {
+    result.terminate = result.failed = true;
+    result.reason = end.message;
+  }
+  return result;
+}
+
+}  // namespace withy::fmi

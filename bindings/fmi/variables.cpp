@@ -1,0 +1,134 @@
+#include "withy/bindings/fmi/variables.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "withy/bindings/fmi/scene_numbers.hpp"
+#include "withy/results/result_columns.hpp"
+#include "withy/scene/sha256.hpp"
+#include "withy/study/input_error.hpp"
+
+namespace withy::fmi {
+namespace {
+
+using Kind = Variable::Kind;
+
+/// The names of the numbers in y that move, as the tables have them: positions, speeds, continuous states of loads.
+std::vector<Column> state_columns(const Model& model) {
+  const Layout& layout = model.layout();
+  std::vector<Column> all(layout.moving());
+  const auto put = [&](std::size_t first, const std::vector<Column>& columns) {
+    for (std::size_t i = 0; i < columns.size(); ++i) all[first + i] = columns[i];
+  };
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    put(layout.hinges[h].position, coordinate_columns(model.hinges()[h]));
+    put(layout.positions + layout.hinges[h].speed, rate_columns(model.hinges()[h]));
+  }
+  for (const Slot& body : layout.bodies) {
+    for (std::size_t i = 0; i < body.speeds; ++i) {
+      all[body.position + i] = {layout.speed_names[body.speed + i], ""};
+      all[layout.positions + body.speed + i] = {layout.speed_names[body.speed + i] + ".rate", ""};
+    }
+  }
+  for (std::size_t i = 0; i < layout.continuous; ++i)
+    all[layout.positions + layout.speeds + i] = {layout.continuous_names[i], ""};
+  return all;
+}
+
+std::string per_second(const std::string& unit) {
+  if (unit.empty() || unit == "1") return unit.empty() ? "" : "1/s";
+  return unit.ends_with("/s") ? unit + "^2" : unit + "/s";
+}
+
+void add_states(Variables& v, const Model& model, const State& initial) {
+  const std::vector<Column> columns = state_columns(model);
+  v.states = columns.size();
+  for (std::size_t i = 0; i < v.states; ++i)
+    v.all.push_back({Kind::state, i, columns[i].name, columns[i].unit, {}, initial.y[i]});
+  for (std::size_t i = 0; i < v.states; ++i)
+    v.all.push_back({Kind::derivative, i, "der(" + columns[i].name + ")", per_second(columns[i].unit), {}});
+}
+
+void add_inputs(Variables& v, const Model& model, const State& initial) {
+  for (std::size_t l = 0; l < model.loads().size(); ++l) {
+    const LoadNode& load = model.loads()[l];
+    const InputPort* port = load.load->input();
+    if (port == nullptr) continue;
+    const double value = port->value(initial.time, load.discrete(std::span(initial.y)));
+    v.all.push_back({Kind::input, l, load.name, port->unit(), "load '" + load.name + "'", value});
+    ++v.inputs;
+  }
+}
+
+/// Columns that are no states: what tables show of a state, then the sensors. Work is what a run integrates beside.
+void add_outputs(Variables& v, const study::Prepared& prepared) {
+  const ResultColumns table(prepared.model(), *prepared.equations, prepared.scene.outputs);
+  const std::size_t own = ResultColumns(prepared.model(), *prepared.equations).columns().size();
+  std::set<std::string> known;
+  for (const Variable& variable : v.all) known.insert(variable.name);
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    const Column& column = table.columns()[c];
+    if (c < own && (known.contains(column.name) || column.name == "work")) continue;
+    Variable output{Kind::output, c, column.name, column.unit, {}};
+    output.of_state_alone = c < own && column.name.find(".motion_effort") == std::string::npos;
+    v.all.push_back(std::move(output));
+    ++v.outputs;
+  }
+}
+
+}  // namespace
+
+std::size_t indicator_count(const Scene& scene) {
+  std::size_t count = scene.events.size();
+  for (const LoadSlot& slot : scene.model->layout().discrete_slots)
+    count += scene.model->loads()[slot.load].load->discrete()->switches();
+  return count;
+}
+
+Variables variables_of(const study::Prepared& prepared, Registry& registry) {
+  const std::string& file = prepared.scene.file;
+  if (prepared.escalates())
+    throw study::InputError(file +
+                            ": /formulation: got 'auto', which changes the equations along a run; an FMU needs one "
+                            "formulation by name");
+  Variables v;
+  v.all.push_back({Kind::time, 0, "t", "s", "time"});
+  add_states(v, prepared.model(), prepared.scene.initial);
+  add_inputs(v, prepared.model(), prepared.scene.initial);
+  add_outputs(v, prepared);
+  for (const SceneNumber& n : scene_numbers(prepared.scene, registry)) {
+    v.all.push_back(
+        {Kind::parameter, v.parameters++, n.path, n.unit == "1" ? "" : n.unit, n.meaning, n.value, n.least, n.most});
+  }
+  v.indicators = indicator_count(prepared.scene);
+  for (std::size_t i = 0; i < v.indicators; ++i)
+    v.all.push_back({Kind::indicator, i, fmt::format("event_indicator[{}]", i), "", "its zeros are events"});
+  std::set<std::string> names;
+  for (const Variable& variable : v.all)
+    if (!names.insert(variable.name).second)
+      throw study::InputError(
+          fmt::format("{}: two variables of the FMU would be called '{}': give the load or output another name", file,
+                      variable.name));
+  return v;
+}
+
+std::string token_of(const study::Prepared& prepared, const Variables& variables) {
+  Sha256 hash;
+  const auto add = [&](std::string_view text) {
+    hash.add(text);
+    hash.add(std::string_view("\0", 1));
+  };
+  add("withy " WITHY_VERSION);
+  add(prepared.scene.sha256);
+  add(prepared.scene.formulation_name);
+  add(prepared.scene.integrator_name);
+  for (const std::string& setting : prepared.scene.settings) add(setting);
+  for (const FileUsed& file : prepared.scene.sources.files) add(file.sha256);
+  for (const Variable& v : variables.all) add(fmt::format("{} {} {}", v.name, v.unit, v.start));
+  const std::string d = hash.digest();
+  return fmt::format("{}-{}-5{}-8{}-{}", d.substr(0, 8), d.substr(8, 4), d.substr(12, 3), d.substr(15, 3),
+                     d.substr(18, 12));
+}
+
+}  // namespace withy::fmi

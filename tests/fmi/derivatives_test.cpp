@@ -1,0 +1,88 @@
+/// \file
+/// Directional and adjoint derivatives against differences of what the FMU itself gives.
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "withy/core/plugin/central_difference.hpp"
+#include "withy/tests/fmi/importer.hpp"
+
+namespace withy::test {
+namespace {
+
+/// Unknowns of an instance of model exchange along a direction of states and inputs, by differences.
+std::vector<double> by_differences(Instance3& i, const std::vector<std::uint32_t>& unknowns,
+                                   const std::vector<double>& y, const std::vector<double>& along_states,
+                                   const std::vector<std::uint32_t>& inputs, const std::vector<double>& along_inputs) {
+  const auto at = [&](double h) {
+    std::vector<double> moved = y, u = along_inputs;
+    for (std::size_t k = 0; k < y.size(); ++k) moved[k] += h * along_states[k];
+    for (double& value : u) value *= h;
+    EXPECT_EQ(i.fmi.SetContinuousStates(i.c, moved.data(), moved.size()), fmi3OK);
+    EXPECT_EQ(i.fmi.SetFloat64(i.c, inputs.data(), inputs.size(), u.data(), u.size()), fmi3OK) << i.heard.last;
+    Eigen::VectorXd values(static_cast<Eigen::Index>(unknowns.size()));
+    EXPECT_EQ(i.fmi.GetFloat64(i.c, unknowns.data(), unknowns.size(), values.data(), unknowns.size()), fmi3OK);
+    return values;
+  };
+  const Eigen::VectorXd found = central_difference(at, 2e-3);
+  at(0);
+  return {found.begin(), found.end()};
+}
+
+}  // namespace
+
+TEST(Derivatives, DirectionalOnesAreThoseOfDifferencesAndAdjointOnesTheirTransposes) {
+  for (const std::string& file :
+       {smooth_arm_file(), std::string(SCENES "/commanded-arm.yaml"), std::string(SCENES "/loads-of-the-slew.yaml")}) {
+    const Unpacked& fmu = exported(file, 3);
+    Instance3 i(fmu, false);
+    i.initialize();
+    ASSERT_EQ(i.fmi.EnterContinuousTimeMode(i.c), fmi3OK);
+    const std::vector<std::uint32_t> inputs = fmu.of("input");
+    std::vector<double> y(fmu.states.size());
+    ASSERT_EQ(i.fmi.GetContinuousStates(i.c, y.data(), y.size()), fmi3OK);
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> number(-1, 1);
+    std::vector<std::uint32_t> knowns = fmu.states, unknowns = fmu.derivatives;
+    std::vector<double> seed, along_states, along_inputs;
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      const bool quaternion = fmu.variables[fmu.states[k]].name.find(".q") != std::string::npos;
+      const bool mode = fmu.variables[fmu.states[k]].name.find('[') != std::string::npos;
+      // Along the unit sphere: away from it there is no motion. The base stands at the identity.
+      along_states.push_back(quaternion && y[k] != 0 ? 0 : (mode ? 0.02 : 1) * number(random));
+      if (!quaternion) y[k] += (mode ? 1e-3 : 0.1) * number(random);
+    }
+    for (std::size_t k = 0; k < inputs.size(); ++k) along_inputs.push_back(number(random));
+    const std::vector<std::uint32_t> outputs = fmu.of("output");
+    unknowns.insert(unknowns.end(), outputs.begin(), outputs.end());
+    knowns.insert(knowns.end(), inputs.begin(), inputs.end());
+    seed = along_states;
+    seed.insert(seed.end(), along_inputs.begin(), along_inputs.end());
+    const std::vector<double> want = by_differences(i, unknowns, y, along_states, inputs, along_inputs);
+    std::vector<double> got(unknowns.size());
+    ASSERT_EQ(i.fmi.GetDirectionalDerivative(i.c, unknowns.data(), unknowns.size(), knowns.data(), knowns.size(),
+                                             seed.data(), seed.size(), got.data(), got.size()),
+              fmi3OK)
+        << i.heard.last;
+    double greatest = 0;
+    for (const double w : want) greatest = std::max(greatest, std::abs(w));
+    for (std::size_t k = 0; k < want.size(); ++k)
+      EXPECT_NEAR(got[k], want[k], 1e-7 * std::max(1.0, std::abs(want[k])) + 1e-12 * greatest)
+          << file << ": " << fmu.variables[unknowns[k]].name;
+    // w · (J v) = (Jᵀ w) · v
+    std::vector<double> weights, adjoint(knowns.size());
+    for (std::size_t k = 0; k < unknowns.size(); ++k) weights.push_back(number(random));
+    ASSERT_EQ(i.fmi.GetAdjointDerivative(i.c, unknowns.data(), unknowns.size(), knowns.data(), knowns.size(),
+                                         weights.data(), weights.size(), adjoint.data(), adjoint.size()),
+              fmi3OK);
+    double left = 0, right = 0, scale = 0;
+    for (std::size_t k = 0; k < unknowns.size(); ++k) left += weights[k] * got[k];
+    for (std::size_t k = 0; k < knowns.size(); ++k) {
+      right += adjoint[k] * seed[k];
+      scale += std::abs(adjoint[k] * seed[k]);
+    }
+    EXPECT_NEAR(left, right, 1e-7 * scale);
+  }
+}
+
+}  // namespace withy::test

@@ -1,0 +1,128 @@
+/// \file
+/// What is in an FMU: a model description by the standard's rules, a library that needs nothing that is not there.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <iterator>
+#include <set>
+#include <sstream>
+
+#include "withy/study/input_error.hpp"
+#include "withy/tests/fmi/importer.hpp"
+
+namespace withy::test {
+namespace {
+
+std::set<std::size_t> indices(const Tree& list, const char* tag, const char* key) {
+  std::set<std::size_t> all;
+  for (const auto& [name, element] : list) {
+    if (name != tag) continue;
+    const auto a = attributes_of(element);
+    EXPECT_TRUE(all.insert(std::stoul(a.at(key))).second) << tag << " twice: " << a.at(key);
+    const auto words = [](const std::string& text) {
+      std::istringstream in(text);
+      return std::distance(std::istream_iterator<std::string>(in), {});
+    };
+    if (a.contains("dependencies")) {
+      EXPECT_EQ(words(a.at("dependencies")), words(a.at("dependenciesKind")));
+    }
+  }
+  return all;
+}
+
+std::string needed(const std::filesystem::path& library) {
+  std::string out;
+  std::array<char, 4096> buffer{};
+  std::FILE* pipe = popen(("readelf -d '" + library.string() + "'").c_str(), "r");
+  for (std::size_t n = 0; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) out.append(buffer.data(), n);
+  EXPECT_EQ(pclose(pipe), 0);
+  return out;
+}
+
+}  // namespace
+
+TEST(Description, NamesReferencesUnitsAndStructureFollowTheRulesOfBothVersions) {
+  for (const int version : {2, 3}) {
+    for (const std::string& file :
+         {busy_arm_file(), std::string(SCENES "/loads-of-the-slew.yaml"), std::string(SCENES "/imported-boom.yaml")}) {
+      const Unpacked& fmu = exported(file, version);
+      std::set<std::string> names, units;
+      for (const auto& [tag, unit] : fmu.xml.get_child("UnitDefinitions")) units.insert(attributes_of(unit).at("name"));
+      std::set<std::size_t> outputs, derivatives, initial;
+      const std::size_t first = version == 2 ? 1 : 0;  // FMI 2.0 counts variables in the structure from 1
+      for (std::size_t i = 0; i < fmu.variables.size(); ++i) {
+        const Described& v = fmu.variables[i];
+        EXPECT_EQ(v.reference, i);
+        EXPECT_TRUE(names.insert(v.name).second) << v.name;
+        EXPECT_EQ(v.name.find_first_of("\r\n\t"), std::string::npos);
+        const auto at = [&](const char* key) {
+          return v.attributes.contains(key) ? v.attributes.at(key) : std::string();
+        };
+        EXPECT_TRUE(!v.attributes.contains("unit") || units.contains(at("unit"))) << v.name;
+        const bool exact = at("initial") == "exact" || at("causality") == "input";
+        EXPECT_EQ(v.attributes.contains("start"), exact) << v.name;
+        if (at("causality") == "output") outputs.insert(i + first);
+        if (v.attributes.contains("derivative")) derivatives.insert(i + first);
+        if (at("initial") == "calculated" && (at("causality") == "output" || v.attributes.contains("derivative")))
+          initial.insert(i + first);
+      }
+      const Tree& structure = fmu.xml.get_child("ModelStructure");
+      if (version == 2) {
+        EXPECT_EQ(indices(structure.get_child("Outputs"), "Unknown", "index"), outputs);
+        EXPECT_EQ(indices(structure.get_child("Derivatives"), "Unknown", "index"), derivatives);
+        EXPECT_EQ(indices(structure.get_child("InitialUnknowns"), "Unknown", "index"), initial);
+      } else {
+        EXPECT_EQ(indices(structure, "Output", "valueReference"), outputs);
+        EXPECT_EQ(indices(structure, "ContinuousStateDerivative", "valueReference"), derivatives);
+        EXPECT_EQ(indices(structure, "InitialUnknown", "valueReference"), initial);
+      }
+      EXPECT_EQ(fmu.xml.count("ModelExchange") + fmu.xml.count("CoSimulation"), 2U);
+    }
+  }
+}
+
+TEST(Description, AnFmuHasItsSceneItsFilesALibraryADocumentAndLicences) {
+  const Unpacked& fmu = exported(SCENES "/imported-boom.yaml", 3);
+  for (const char* file : {"resources/scene/imported-boom.yaml", "resources/scene/cantilever.SID_FEM",
+                           "resources/withy.json", "documentation/index.html", "documentation/licenses/license.txt"})
+    EXPECT_TRUE(std::filesystem::is_regular_file(fmu.folder / file)) << file;
+  Instance3 instance(fmu, true);
+  instance.initialize();
+}
+
+TEST(Description, TheLibraryNeedsTheRunTimesOfCAndCppAndWhatStandsBesideIt) {
+  for (const int version : {2, 3}) {
+    const std::filesystem::path library = exported(busy_arm_file(), version).library(version);
+    std::istringstream lines(needed(library));
+    std::string line;
+    while (std::getline(lines, line)) {
+      if (line.find("(NEEDED)") == std::string::npos) continue;
+      const std::string name = line.substr(line.find('[') + 1, line.find(']') - line.find('[') - 1);
+      static const std::set<std::string> everywhere{"libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1",
+                                                    "ld-linux-x86-64.so.2"};
+      if (everywhere.contains(name)) continue;
+      EXPECT_TRUE(std::filesystem::is_regular_file(library.parent_path() / name)) << name;
+    }
+    EXPECT_NE(needed(library).find("Library runpath: [$ORIGIN]"), std::string::npos);
+  }
+}
+
+TEST(Description, WhatCannotBeAnFmuIsRefusedWithItsReason) {
+  const auto refused = [](host::Scene scene) -> std::string {
+    const auto prepared = scene.prepare();
+    try {
+      static_cast<void>(
+          fmi::export_fmu(*prepared, {}, library().registry(), {3, true, true, scratch() / "refused.fmu"}));
+    } catch (const study::InputError& e) {
+      return e.what();
+    }
+    return {};
+  };
+  EXPECT_NE(refused(host::Scene::parse(library(), busy_arm).formulation("auto")).find("'auto'"), std::string::npos);
+  std::string text = busy_arm;
+  text.replace(text.find("torque: {"), 6, "axle");
+  EXPECT_NE(refused(host::Scene::parse(library(), text)).find("would be called 'axle'"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(scratch() / "refused.fmu"));
+}
+
+}  // namespace withy::test
