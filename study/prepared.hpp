@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "withy/core/plugin/equations.hpp"
-#include "withy/core/simulation/changing_equations.hpp"
+#include "withy/core/simulation/rungs.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/scene/scene.hpp"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "withy/core/simulation/changing_equations.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/study/accuracy.hpp"
 #include "withy/study/growth.hpp"

@@ -8,22 +8,9 @@
 #include <vector>
 
 #include "withy/core/plugin/equations.hpp"
-#include "withy/core/plugin/terms.hpp"
+#include "withy/core/simulation/rungs.hpp"
 
 namespace withy {
-
-/// A formulation that a run may be in; each keeps more than the one before it.
-struct Rung {
-  std::string name;
-  Terms terms;
-  const EquationsOfMotion* equations = nullptr;
-};
-
-/// A part of a run in one formulation.
-struct Stretch {
-  std::size_t rung = 0;
-  double start = 0, end = 0;  ///< [s]
-};
 
 /// The equations of the rung that is in force, under one face: a run goes on over a change with its integrator, its
 /// watches and its checkpoints. `go_over` chooses the rung: of one thread, but for what a Work is of.

@@ -25,7 +25,7 @@ namespace {
 using test::Scratch;
 using testing::HasSubstr;
 
-const std::vector<Column> columns = {{"t", "s"}, {"shoulder", "rad"}, {"boom.bending_y[1]", ""}, {"tip.x", "m"}};
+const std::vector<Column> four_columns = {{"t", "s"}, {"shoulder", "rad"}, {"boom.bending_y[1]", ""}, {"tip.x", "m"}};
 
 std::vector<double> row(std::size_t i) {
   const auto x = static_cast<double>(i);
@@ -45,7 +45,7 @@ class Hdf5 : public testing::Test {
   void write(std::size_t rows) const {
     const auto file = make_hdf5_recorder(path_);
     file->describe("scene", std::string(100'000, 's'));
-    file->begin(columns);
+    file->begin(four_columns);
     file->describe_frames({"", "F of hinge shoulder", "", "world"});
     for (std::size_t i = 0; i < rows; ++i) file->row(row(i));
     file->describe("status", "completed");
@@ -72,7 +72,7 @@ TEST_F(Hdf5, WhatIsReadIsWhatWasWritten) {
     read_hdf5(path_, table);
     ASSERT_EQ(table.rows().size(), rows);
     for (std::size_t i = 0; i < rows; ++i) ASSERT_TRUE(same(table.rows()[i], row(i))) << i;
-    ASSERT_EQ(table.columns().size(), columns.size());
+    ASSERT_EQ(table.columns().size(), four_columns.size());
     EXPECT_EQ(table.columns()[1].unit, "rad");
     EXPECT_EQ(table.columns()[2].name, "boom.bending_y.1") << "as in results.csv";
   }
@@ -101,7 +101,7 @@ TEST_F(Hdf5, AWriterThatIsKilledLeavesTheRowsUpToAFlushAndNoOthers) {
     const pid_t writer = ::fork();
     if (writer == 0) {
       const auto file = make_hdf5_recorder(path_);
-      file->begin(columns);
+      file->begin(four_columns);
       for (std::size_t i = 0;; ++i) {
         file->row(row(i));
         if (i % 700 == 0) file->mark();

@@ -195,7 +195,7 @@ initial: {hinges: {base: {position: [0.1], rate: [0.5]}, joint: {position: [-0.3
   Eigen::VectorXd z = Eigen::VectorXd::Zero(m.system.A.rows());
   z.head(4) << 0.1, -0.3, 0.5, 0;
   for (int k = 0; k < 10; ++k) z = m.system.A * z;
-  const RunSummary run = simulate(prepared, {});
+  const RunSummary run = simulate(prepared, plugins(), {});
   ASSERT_EQ(run.status, RunStatus::completed);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(run.final.y[i], z[static_cast<Eigen::Index>(i)], 1e-10) << i;
   EXPECT_THROW(static_cast<void>(open_loop(at_start(prepared), "fast")), InputError)
@@ -210,7 +210,7 @@ double growth_in_simulation(const SceneValues& scene, double factor, double stif
   const Prepared prepared = prepare(std::move(values), plugins());
   const double end = *prepared.scene.end;
   double first = 0, last = 0;
-  simulate(prepared, [&](const State& s) {
+  simulate(prepared, plugins(), [&](const State& s) {
     double& most = s.time < 0.2 * end ? first : last;
     if (s.time < 0.2 * end || s.time > 0.8 * end) most = std::max(most, std::abs(s.y[0]));
   });
