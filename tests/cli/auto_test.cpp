@@ -47,7 +47,8 @@ TEST(Auto, AsksMoreOfFormulationsWhereMoreIsAskedOfIt) {
                                       "formulation.accuracy=" + accuracy, "--out", "out", "--force"});
     EXPECT_EQ(f.status, 0) << f.err;
     std::string all;
-    for (const json& s : run_json(folder).at("certificate").at("stretches").at("list"))
+    const json run = run_json(folder);
+    for (const json& s : run.at("certificate").at("stretches").at("list"))
       all += s.at("formulation").get<std::string>() + ' ';
     return all;
   };
@@ -70,11 +71,12 @@ TEST(Auto, SampledControllersAndCheckpointsGoOverAnyChange) {
   folder.write("sampled.yaml",
                "format: withy/1\ntime: {end: 1}\nbodies:\n  beam: {type: beam, length: 1, mass_per_length: 1, "
                "bending_y: {stiffness: 20, modes: 2}}\nhinges:\n  axle: {type: revolute, axis: [0, 0, 1], parent: "
-               "world, child: beam}\nloads:\n  control: {type: pd-controller, law: constant, sample: 0.03, hinges: "
-               "{axle: {to: 0.5, stiffness: 5, damping: 0.4}}}\n");
-  const Finished f =
-      withy(folder, {"run", "sampled.yaml", "--formulation", "auto", "--checkpoint", "0", "--out", "out"});
+               "world, child: beam}\nloads:\n  control: {type: pd-controller, law: constant, sample: 0.002, hinges: "
+               "{axle: {to: 0.5, stiffness: 0.5, damping: 0.1}}}\n");
+  const Finished f = withy(folder, {"run", "sampled.yaml", "--formulation", "auto", "--set",
+                                    "formulation.accuracy=0.3%", "--checkpoint", "0", "--out", "out"});
   EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_GT(run_json(folder).at("certificate").at("stretches").at("list").size(), 1U) << "it has changed";
 }
 
 TEST(Auto, IsForAWholeSceneAndNoModelOfATrade) {

@@ -114,10 +114,14 @@ void units(Campaign& campaign) {
   for (const std::string& name : names) {
     std::string wrong, left_out;
     int compared = 0;
+    bool controlled = false;
     for (const std::string& formulation : formulations) {
       try {
         const std::string file = std::string(WITHY_SCENES) + "/" + name + ".yaml";
         Made made(text_of(file), formulation, {}, file);
+        // Gains of controllers have the units of what they measure and move, which no specification tells.
+        controlled = made.layout().continuous > 0;
+        if (controlled) break;
         const Gauge gauge;
         const Made scaled(scaled_text(made.scene, made.registry, gauge, folder.path), formulation);
         const std::string d = differences(made, scaled, gauge, steps);
@@ -127,6 +131,7 @@ void units(Campaign& campaign) {
         if (std::string(e.what()).find("exact kinematics") == std::string::npos) left_out = e.what();
       }
     }
+    if (controlled) continue;
     if (compared == 0) {
       campaign.row(name, "the same scene", "bitwise", "not compared: " + left_out, false);
     } else {
