@@ -185,16 +185,21 @@ Margins margins(const TransferFunction& G, const std::vector<ResponseAt>& respon
   add_gains_at_ends(G, static_gain, m);
   const auto above = [&](double omega) { return G.at_frequency(omega).imag() > 0; };
   const auto beyond_one = [&](double omega) { return std::abs(G.at_frequency(omega)) > 1; };
-  for (std::size_t i = 0; i + 1 < response.size(); ++i) {
-    const ResponseAt &a = response[i], &b = response[i + 1];
-    const auto rounding = [](Complex x) { return std::abs(x.imag()) <= 1e-11 * std::abs(x); };
-    if ((a.value.imag() > 0) != (b.value.imag() > 0) && !rounding(a.value) && !rounding(b.value)) {
-      const double omega = change_between(a.omega, b.omega, above);
+  const auto rounding = [](Complex x) { return std::abs(x.imag()) <= 1e-11 * std::abs(x); };
+  const ResponseAt* sided = nullptr;  // the last whose side of the real axis is known: one may stand on it
+  for (const ResponseAt& b : response) {
+    if (rounding(b.value)) continue;
+    if (sided != nullptr && (sided->value.imag() > 0) != (b.value.imag() > 0)) {
+      const double omega = change_between(sided->omega, b.omega, above);
       const Complex value = G.at_frequency(omega);
       // Through a pole on the axis the sign changes too.
       if (value.real() < 0 && std::abs(value.imag()) <= 1e-4 * std::abs(value))
         m.gains.push_back({omega, -1 / value.real()});
     }
+    sided = &b;
+  }
+  for (std::size_t i = 0; i + 1 < response.size(); ++i) {
+    const ResponseAt &a = response[i], &b = response[i + 1];
     if ((std::abs(a.value) > 1) != (std::abs(b.value) > 1)) {
       const double omega = change_between(a.omega, b.omega, beyond_one);
       const double angle = wrapped(std::arg(G.at_frequency(omega)) + pi);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <unsupported/Eigen/MatrixFunctions>
-#include <vector>
 
 namespace withy {
 namespace {
@@ -39,28 +38,31 @@ double drop_seen_state(LinearSystem& s, double scale) {
   return sign * seen;
 }
 
-/// Sets to zero what is so but for rounding.
-void clear_zeros(Eigen::VectorXcd& values, const Eigen::MatrixXd& A) {
-  if (A.rows() == 0) return;
-  const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(A).singularValues();
-  const auto null = (singular.array() <= 1e-13 * static_cast<double>(A.rows()) * singular[0]).count();
-  const double small = 1e-6 * values.cwiseAbs().maxCoeff();
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(values.size()));
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Eigen::Index>(i);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return std::abs(values[a]) < std::abs(values[b]); });
-  for (Eigen::Index i = 0; i < std::min<Eigen::Index>(2 * null, values.size()); ++i) {
-    Complex& value = values[order[static_cast<std::size_t>(i)]];
-    if (std::abs(value) <= small) value = 0;
-  }
-}
-
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
   if (A.rows() == 0) return {};
   if (!A.allFinite()) throw std::domain_error("the linear system is not finite");
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A, false);
   if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
   return solver.eigenvalues();
+}
+
+/// The same with zero for each direction that A takes to nothing, and again for what is left without it: a chain of
+/// integrators, whose eigenvalues rounding would spread by its root, is taken apart link by link.
+Eigen::VectorXcd eigenvalues_with_zeros(Eigen::MatrixXd A) {
+  const Eigen::Index n = A.rows();
+  if (!A.allFinite()) throw std::domain_error("the linear system is not finite");
+  Eigen::VectorXcd values = Eigen::VectorXcd::Zero(n);
+  double greatest = 0;
+  while (A.rows() > 0) {
+    const Eigen::BDCSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullV);
+    greatest = std::max(greatest, svd.singularValues()[0]);
+    const auto kept = (svd.singularValues().array() > 1e-13 * static_cast<double>(n) * greatest).count();
+    if (kept == A.rows()) break;
+    const Eigen::MatrixXd V = svd.matrixV().leftCols(kept);
+    A = V.transpose() * A * V;
+  }
+  values.head(A.rows()) = eigenvalues(A);
+  return values;
 }
 
 }  // namespace
@@ -109,9 +111,7 @@ Eigen::VectorXd balance(LinearSystem& s) {
 Eigen::VectorXcd poles(const LinearSystem& system) {
   LinearSystem s = system;
   balance(s);
-  Eigen::VectorXcd values = eigenvalues(s.A);
-  if (!s.sampled()) clear_zeros(values, s.A);
-  return values;
+  return s.sampled() ? eigenvalues(s.A) : eigenvalues_with_zeros(s.A);
 }
 
 ZerosAndGain zeros(LinearSystem s) {
@@ -132,9 +132,8 @@ ZerosAndGain zeros(LinearSystem s) {
     through = std::abs(s.D(0, 0));
   }
   const double d = s.D(0, 0);
-  ZerosAndGain result{eigenvalues(s.A - s.B * s.C / d), product * d};
-  if (!s.sampled()) clear_zeros(result.zeros, s.A - s.B * s.C / d);
-  return result;
+  const Eigen::MatrixXd left = s.A - s.B * s.C / d;
+  return {s.sampled() ? eigenvalues(left) : eigenvalues_with_zeros(left), product * d};
 }
 
 TransferFunction::TransferFunction(LinearSystem system) : of_(std::move(system)) {

@@ -202,11 +202,11 @@ initial: {hinges: {base: {position: [0.1], rate: [0.5]}, joint: {position: [-0.3
       << "the slowest alone can be opened";
 }
 
-/// Greatest |coordinate| in the first and in the last fifth of a run with the controller's gains times `factor`.
-double growth_in_simulation(const SceneValues& scene, double factor, double stiffness, double damping) {
-  SceneValues values = scene;
-  values.set("loads.control.hinges.axle.stiffness", Value(factor * stiffness), "the test");
-  values.set("loads.control.hinges.axle.damping", Value(factor * damping), "the test");
+using Gains = std::vector<std::pair<std::string, double>>;
+
+/// Greatest |coordinate| in the last over that in the first fifth of a run with the controller's gains times `factor`.
+double growth_in_simulation(SceneValues values, double factor, const Gains& gains) {
+  for (const auto& [path, gain] : gains) values.set("loads.control." + path, Value(factor * gain), "the test");
   const Prepared prepared = prepare(std::move(values), plugins());
   const double end = *prepared.scene.end;
   double first = 0, last = 0;
@@ -219,7 +219,7 @@ double growth_in_simulation(const SceneValues& scene, double factor, double stif
 
 /// Where the margin says that the loop is on the edge, a run two per cent below decays and one two per cent above
 /// grows.
-void confirm(const std::string& text, bool from_below, double stiffness, double damping) {
+void confirm(const std::string& text, bool from_below, const Gains& gains) {
   SceneValues values = SceneValues::parse("format: withy/1\n" + text, "text");
   const Prepared prepared = prepare(values, plugins());
   State rest = prepared.scene.initial;
@@ -229,8 +229,8 @@ void confirm(const std::string& text, bool from_below, double stiffness, double 
   const GainMargin* margin = from_below ? r.margins->lower() : r.margins->upper();
   ASSERT_NE(margin, nullptr);
   const double inside = from_below ? 1.02 : 0.98, outside = from_below ? 0.98 : 1.02;
-  EXPECT_LT(growth_in_simulation(values, inside * margin->factor, stiffness, damping), 0.9) << margin->factor;
-  EXPECT_GT(growth_in_simulation(values, outside * margin->factor, stiffness, damping), 1.1) << margin->factor;
+  EXPECT_LT(growth_in_simulation(values, inside * margin->factor, gains), 0.9) << margin->factor;
+  EXPECT_GT(growth_in_simulation(values, outside * margin->factor, gains), 1.1) << margin->factor;
 }
 
 TEST(Loop, OfASampledControllerOfAFlexibleArmGoesUnstableInSimulationWhereItsMarginSays) {
@@ -246,7 +246,7 @@ hinges:
 loads: {control: {type: pd-controller, law: constant, sample: 0.02, hinges: {axle: {stiffness: 10, damping: 2}}}}
 initial: {hinges: {axle: {position: [0.001]}}}
 )",
-          false, 10, 2);
+          false, {{"hinges.axle.stiffness", 10}, {"hinges.axle.damping", 2}});
 }
 
 TEST(Loop, ThatHoldsAPendulumUprightFallsInSimulationWhereItsMarginSays) {
@@ -260,7 +260,25 @@ hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: pole}}
 loads: {control: {type: pd-controller, law: constant, hinges: {axle: {stiffness: 20, damping: 0.5}}}}
 initial: {hinges: {axle: {position: [1.0e-6], rate: [0]}}}
 )",
-          true, 20, 0.5);
+          true, {{"hinges.axle.stiffness", 20}, {"hinges.axle.damping", 0.5}});
+}
+
+/// J s³ + k (k_d s² + k_p s + k_i) is stable for k above J k_i/(k_d k_p).
+TEST(Loop, ThatIntegratesGoesUnstableInSimulationWhereItsMarginSays) {
+  const std::string text = R"(
+time: {end: 60, output: 0.05}
+integrator: {name: dopri5, rtol: 1e-9, atol: 1e-12}
+bodies: {wheel: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}
+loads: {control: {type: pid, hinge: axle, proportional: 8, integral: 10, derivative: 4}}
+initial: {hinges: {axle: {position: [0.01]}}}
+)";
+  const Response r = response(at_start(prepare(SceneValues::parse("format: withy/1\n" + text, "text"), plugins())),
+                              {"control", "", {}, {}, 50, {}});
+  EXPECT_EQ(r.integrators, 3);
+  ASSERT_TRUE(r.margins && r.margins->lower() != nullptr);
+  EXPECT_NEAR(r.margins->lower()->factor, 2.0 * 10 / (4 * 8), 1e-8);
+  confirm(text, true, {{"proportional", 8}, {"integral", 10}, {"derivative", 4}});
 }
 
 TEST(Reduction, OfALongArmStaysWithinItsBound) {
