@@ -116,9 +116,9 @@ class Run final : public SteppingObserver {
   void restarted() override { monitor_.begin_efforts(loop_.state()); }
 
  private:
-  /// Energy is looked at after each of the first steps, then after every eighth, whatever the output interval.
+  /// Energy is looked at after each of the first steps, then after every fourth, whatever the output interval.
   static bool audited(std::size_t accepted) {
-    constexpr std::size_t first = 64, interval = 8;
+    constexpr std::size_t first = 256, interval = 4;
     return accepted <= first || accepted % interval == 0;
   }
   [[nodiscard]] double seconds() const {
