@@ -39,7 +39,6 @@ Panel panel_of(const std::string& label, const std::vector<const study::Compared
   return panel;
 }
 
-/// The directions in which the points of a tree are furthest apart, in the order x, y, z.
 std::pair<Eigen::Index, Eigen::Index> plane_of(const std::vector<std::vector<Vector3>>& lines) {
   Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const auto& line : lines) {
@@ -48,9 +47,7 @@ std::pair<Eigen::Index, Eigen::Index> plane_of(const std::vector<std::vector<Vec
       high = high.cwiseMax(p);
     }
   }
-  Eigen::Index thinnest = 0;
-  (high - low).minCoeff(&thinnest);
-  return {thinnest == 0 ? 1 : 0, thinnest == 2 ? 1 : 2};
+  return widest_plane(low, high);
 }
 
 /// The tree of every run in the middle of the longest of them, or where the run ended before.

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
+
+#include "withy/results/svg_parts.hpp"
 
 namespace withy {
 namespace {
@@ -15,48 +16,6 @@ constexpr double width = 860;
 constexpr double left = 88;
 constexpr double right = 24;
 constexpr double foot = 52;  ///< below each panel: marks and label of its axis
-
-struct Pen {
-  const char* colour;
-  const char* dashes;
-  double thickness;
-};
-// Told apart by dashes too, for those who do not see colours (palette of Okabe and Ito). Thick below thin: curves that
-// coincide stay visible.
-constexpr std::array<Pen, 12> pens{{{"#e69f00", "none", 4.5},
-                                    {"#d55e00", "7 3", 2.4},
-                                    {"#56b4e9", "none", 3.2},
-                                    {"#000000", "2 2", 1.4},
-                                    {"#009e73", "10 3 2 3", 1.8},
-                                    {"#cc79a7", "4 4", 1.6},
-                                    {"#0072b2", "none", 2.0},
-                                    {"#999999", "none", 2.4},
-                                    {"#b8a800", "8 3", 2.0},
-                                    {"#7f3c8d", "12 4", 1.6},
-                                    {"#5d4037", "3 3", 2.0},
-                                    {"#80ba5a", "6 2 2 2", 2.0}}};
-
-const Pen& pen(std::size_t i) { return pens[i % pens.size()]; }
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else
-      out += c;
-  }
-  return out;
-}
-
-std::string stroke(const Pen& p) {
-  return fmt::format(R"(fill="none" stroke="{}" stroke-width="{}" stroke-dasharray="{}")", p.colour, p.thickness,
-                     p.dashes);
-}
 
 /// From data to the picture, for one panel whose upper edge is at `top`. Ends are logarithms on an axis in decades.
 struct Scale {
@@ -179,30 +138,12 @@ std::vector<double> decade_marks(double low, double high) {
 
 std::string svg_plot(const std::string& title, const std::vector<std::string>& legend,
                      const std::vector<Panel>& panels) {
-  std::string entries;
-  double x = left;
-  double y = 47;
-  for (std::size_t i = 0; i < legend.size(); ++i) {
-    // An average character is 7 wide at this size.
-    const double room = 41 + 7 * static_cast<double>(legend[i].size());
-    if (x + room > width && x > left) {
-      x = left;
-      y += 20;
-    }
-    fmt::format_to(std::back_inserter(entries), "<path d=\"M{} {} h34\" {}/>\n<text x=\"{}\" y=\"{}\">{}</text>\n", x,
-                   y, stroke(pen(i)), x + 41, y + 4.5, escaped(legend[i]));
-    x += room + 20;
-  }
-  double top = y + 25;
+  const SvgLegend entries = svg_legend(legend, left, width, 47);
+  double top = entries.bottom + 25;
   double height = top + 8;
   for (const Panel& panel : panels) height += panel.height + foot;
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-      "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"13\">\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
-      "<text x=\"{2}\" y=\"26\" font-size=\"17\">{3}</text>\n",
-      width, height, left, escaped(title));
-  out += entries;
+  std::string out = svg_begin(width, height, left, title);
+  out += entries.text;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Scale s = scale_of(panels[i], top);
     draw_axes(out, panels[i], s);

@@ -14,29 +14,28 @@
 namespace withy::study {
 namespace {
 
-/// What the motion of the bodies explains, at the last trusted state or where the run's samples saw more of it.
+/// What the motion of the bodies explains at the last trusted state: behind it a body may turn as fast as it likes.
 std::string physical_cause(const Prepared& prepared, const RunSummary& summary) {
   const Model& model = prepared.model();
   const EquationsOfMotion& equations = *prepared.equations;
   const State& state = summary.final;
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();
+  if (!equations.derivatives(state.time, state.y, rates, work).ok()) return {};
   TreeMotion motion(model);
-  if (equations.derivatives(state.time, state.y, rates, work).ok())
-    motion.update(state.y, std::span<const double>(rates).subspan(model.layout().positions, model.layout().speeds));
+  motion.update(state.y, std::span<const double>(rates).subspan(model.layout().positions, model.layout().speeds));
   std::string text;
   for (const BodyValidity& b : summary.validity.bodies) {
     const auto index = static_cast<std::size_t>(model.body(b.name));
-    const double rate =
-        std::max(b.rate_ratio, b.fundamental > 0 ? motion.bodies()[index].rate.norm() / b.fundamental : 0.0);
-    const double buckling = std::max(b.buckling, -MotionStiffness(model, index).evaluate(motion.bodies()).least);
+    const double rate = b.fundamental > 0 ? motion.bodies()[index].rate.norm() / b.fundamental : 0;
+    const double buckling = -MotionStiffness(model, index).evaluate(motion.bodies()).least;
     if (rate >= 1)
       text += fmt::format(
-          " '{}' turns at {:.3g} times its fundamental frequency of {:.4g} rad/s: where a formulation knows the "
-          "inertia "
-          "of rotation and not the stiffening it causes, its stiffness is negative from there on.",
+          " There '{}' turns at {:.3g} times its fundamental frequency of {:.4g} rad/s: where a formulation knows the "
+          "inertia of rotation and not the stiffening it causes, its stiffness is negative from there on.",
           b.name, rate, b.fundamental);
-    if (buckling >= 1) text += fmt::format(" '{}' is compressed by {:.3g} times its buckling load.", b.name, buckling);
+    if (buckling >= 1)
+      text += fmt::format(" There '{}' is compressed by {:.3g} times its buckling load.", b.name, buckling);
   }
   return text;
 }

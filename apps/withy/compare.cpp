@@ -13,6 +13,7 @@
 #include "withy/results/comparison_picture.hpp"
 #include "withy/results/comparison_report.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/motion_picture.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/recorded_run.hpp"
 #include "withy/results/report/report_page.hpp"
@@ -50,7 +51,7 @@ std::vector<std::string> content_of(const CompareArguments& arguments, const stu
   std::vector<std::string> names = {"compare.json"};
   for (const std::string& value : variation.values) {
     const fs::path folder = below(variation.path, value);
-    for (const char* name : {"compare.svg", report_name}) names.push_back((folder / name).string());
+    for (const char* name : {"compare.svg", "motion.svg", report_name}) names.push_back((folder / name).string());
     std::vector<std::string> formulations = arguments.formulations;
     formulations.push_back(arguments.reference);
     for (const std::string& formulation : formulations)
@@ -88,6 +89,7 @@ void write_picture(const Group& group, const std::string& label) {
   std::string title = c.runs.front().prepared.title();
   if (!label.empty()) title += ", " + label + " = " + group.value;
   write_file(group.folder / "compare.svg", comparison_picture(title, c));
+  write_file(group.folder / "motion.svg", motion_picture(title, c));
   if (!has_report_page()) return;
   write_report(group.folder / report_name,
                {title, group.reports, c.has_reference() ? static_cast<int>(c.reference) : -1});

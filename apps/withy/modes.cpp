@@ -15,9 +15,11 @@
 #include "withy/results/json_text.hpp"
 #include "withy/results/modes_files.hpp"
 #include "withy/results/modes_text.hpp"
+#include "withy/results/mounted_damping_files.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/report/modes_page.hpp"
 #include "withy/results/report/report_page.hpp"
+#include "withy/scene/units.hpp"
 #include "withy/study/against_next.hpp"
 
 namespace withy::app {
@@ -25,12 +27,13 @@ namespace {
 
 struct ModesArguments : ConfigurationArguments, OutputArguments {
   std::vector<std::string> formulations;  ///< empty: the scene's
-  std::string sweep;      ///< `path=a:b:n`, a path of the scene or `spin.hinge`; empty: one configuration
-  std::size_t count = 6;  ///< modes that are shown
-  bool as_is = false;     ///< about the state as it is given, steady or not
-  bool poles = false;     ///< all eigenvalues are listed
-  bool masses = false;    ///< effective masses are found
-  bool floquet = false;   ///< characteristic exponents over a turn
+  std::string sweep;              ///< `path=a:b:n`, a path of the scene or `spin.hinge`; empty: one configuration
+  std::size_t count = 6;          ///< modes that are shown
+  bool as_is = false;             ///< about the state as it is given, steady or not
+  bool poles = false;             ///< all eigenvalues are listed
+  bool masses = false;            ///< effective masses are found
+  std::vector<std::string> damp;  ///< ratios that the lowest vibrations shall have
+  bool floquet = false;           ///< characteristic exponents over a turn
   std::optional<std::vector<std::string>> blades;  ///< equal blades by names, or `auto`; none: not asked
   double period = 0;                               ///< [s]; 0: found from the rates
 };
@@ -128,28 +131,56 @@ bool complain_of(const std::vector<study::ModesOf>& runs, const study::Sweep& sw
   return failed;
 }
 
-/// About the steady state that the modes are about; nothing where they are not asked for or there is none.
-std::optional<study::EffectiveMasses> masses_of(const Engine& engine, const ModesArguments& arguments,
-                                                const std::vector<study::ModesOf>& runs) {
-  if (!arguments.masses || !runs.front().points.front().problem.empty()) return {};
+/// The steady state that the modes are about.
+study::Configuration steady_configuration(const Engine& engine, const ModesArguments& arguments,
+                                          const study::ModesAt& at) {
   study::Configuration c = configuration_of(engine, arguments);
-  if (const auto& steady = runs.front().points.front().steady) c.set_state(steady->steady.state);
-  return study::effective_masses(c);
+  if (at.steady) c.set_state(at.steady->steady.state);
+  return c;
+}
+
+std::vector<double> damping_ratios(const std::vector<std::string>& texts) {
+  std::vector<double> ratios;
+  for (const std::string& text : texts) {
+    std::optional<double> ratio = plain_number(text);
+    if (!ratio) ratio = read_quantity(text, "1").value;
+    if (!ratio || !(*ratio > 0) || !(*ratio < 1))
+      throw InputError("--damp takes ratios of critical damping between 0 and 1, as 0.01 or \"1 %\", and not '" + text +
+                       "'");
+    ratios.push_back(*ratio);
+  }
+  return ratios;
+}
+
+/// What is asked for one configuration beside its modes.
+void require_one_configuration(const ModesArguments& arguments, const study::Sweep& sweep) {
+  if (sweep.none() && arguments.formulations.empty()) return;
+  for (const auto& [asked, option] :
+       {std::pair{arguments.masses, "--effective-mass"}, {!arguments.damp.empty(), "--damp"}}) {
+    if (asked)
+      throw InputError(std::string(option) +
+                       " is of one configuration, in the scene's formulation: leave out --sweep and --formulations, or "
+                       "--set formulation=ID");
+  }
 }
 
 ExitStatus modes(const ModesArguments& arguments) {
   const study::Sweep sweep = parse_sweep(arguments.sweep, "--sweep");
-  if (arguments.masses && (!sweep.none() || !arguments.formulations.empty()))
-    throw InputError(
-        "--effective-mass is of one configuration, in the scene's formulation: leave out --sweep and "
-        "--formulations, or --set formulation=ID");
+  require_one_configuration(arguments, sweep);
+  const std::vector<double> ratios = damping_ratios(arguments.damp);
   const Engine engine(arguments);
   const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
                                   {"modes.json", "modes.csv", "modes.svg", report_name});
   std::vector<std::optional<study::AgainstNext>> against;
   const std::vector<study::ModesOf> runs = runs_of(engine, arguments, sweep, against);
   if (interrupted()) return ExitStatus::interrupted;
-  const std::optional<study::EffectiveMasses> masses = masses_of(engine, arguments, runs);
+  const study::ModesAt& first = runs.front().points.front();
+  std::optional<study::EffectiveMasses> masses;
+  std::optional<study::MountedDamping> damping;
+  if (first.problem.empty() && arguments.masses)
+    masses = study::effective_masses(steady_configuration(engine, arguments, first));
+  if (first.problem.empty() && !ratios.empty())
+    damping = study::mounted_damping(steady_configuration(engine, arguments, first), engine.registry(), ratios);
   Json j;
   j["scene"] = arguments.scene;
   j["sweep"] = sweep.none() ? Json() : Json(sweep.path);
@@ -159,6 +190,7 @@ ExitStatus modes(const ModesArguments& arguments) {
     j["runs"].back()["against_next"] = against_json(against[i]);
   }
   if (masses) j["effective_mass"] = effective_mass_json(*masses);
+  if (damping) j["damping"] = mounted_damping_json(*damping);
   if (!arguments.out.empty()) write_files(runs, j, arguments, sweep);
   if (arguments.json) {
     print(json_text(j));
@@ -166,6 +198,7 @@ ExitStatus modes(const ModesArguments& arguments) {
     for (std::size_t i = 0; i < runs.size(); ++i)
       print((i == 0 ? "" : "\n") + run_text(runs[i], arguments, sweep, against[i]));
     if (masses) print('\n' + effective_mass_text(*masses));
+    if (damping) print('\n' + mounted_damping_text(*damping));
     if (!arguments.out.empty()) print("\nResults: " + arguments.out + '\n');
   }
   return complain_of(runs, sweep) ? ExitStatus::stopped : ExitStatus::done;
@@ -185,6 +218,9 @@ std::function<ExitStatus()> add_modes(CLI::App& c) {
       ->capture_default_str();
   c.add_flag("--poles", a.poles, "All eigenvalues, real and complex, in the order of |λ|");
   c.add_flag("--effective-mass", a.masses, "How much of the mass each mode moves where the base shakes");
+  c.add_option("--damp", a.damp, "Ratios that the lowest vibrations shall have: finds the bodies' damping for them")
+      ->type_name("RATIO,...")
+      ->delimiter(',');
   c.add_flag("--floquet", a.floquet, "Characteristic exponents over a whole turn, most unstable first");
   c.add_option("--blades", a.blades, "Equal blades seen from where the rotor does not turn: their names, or auto")
       ->type_name("NAME,...")
@@ -204,6 +240,7 @@ const Command modes_command = {
     "  withy modes scenes/two-link-slew.yaml --lock shoulder,elbow\n"
     "  withy modes scenes/rotating-blade.yaml --spin axle=6 --count 4\n"
     "  withy modes scenes/solar-panel.yaml --as-is --effective-mass\n"
+    "  withy modes scenes/two-link-slew.yaml --lock shoulder,elbow --damp 1%,1%,1%\n"
     "  withy modes scenes/rotating-blade.yaml --formulations ruthless,inconsistent,consistent --sweep "
     "spin.axle=0:6:13 --count 4 --out results/campbell",
     &add_modes};

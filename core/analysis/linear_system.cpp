@@ -54,11 +54,16 @@ Eigen::VectorXcd eigenvalues_with_zeros(Eigen::MatrixXd A) {
   Eigen::VectorXcd values = Eigen::VectorXcd::Zero(n);
   double greatest = 0;
   while (A.rows() > 0) {
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullV);
-    greatest = std::max(greatest, svd.singularValues()[0]);
-    const auto kept = (svd.singularValues().array() > 1e-13 * static_cast<double>(n) * greatest).count();
+    const double largest = A.colwise().norm().maxCoeff();
+    greatest = std::max(greatest, largest);
+    if (!(largest > 0)) return values;
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> rows(A.rows(), A.cols());
+    rows.setThreshold(1e-13 * static_cast<double>(n) * greatest / largest);
+    rows.compute(A);
+    const Eigen::Index kept = rows.rank();
     if (kept == A.rows()) break;
-    const Eigen::MatrixXd V = svd.matrixV().leftCols(kept);
+    const Eigen::MatrixXd Z = rows.matrixZ();
+    const Eigen::MatrixXd V = Z.topRows(kept).transpose();
     A = V.transpose() * A * V;
   }
   values.head(A.rows()) = eigenvalues(A);

@@ -147,8 +147,10 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
     text = "The mass matrix of this formulation lost its positive definiteness: det M is " +
            sign_text(h.end.determinant_sign) + ", at the start it was " + sign_text(h.start.determinant_sign);
   } else {
-    text = std::string("The mass matrix is ") + (h.end.smallest_eigenvalue > 0 ? "positive definite" : "indefinite") +
-           " as it was at the start: det M is " + sign_text(h.end.determinant_sign);
+    return std::string("The mass matrix is not the reason: it is ") +
+           (h.end.smallest_eigenvalue > 0 ? "positive definite" : "indefinite") +
+           " as it was at the start. Condition of M " + brief(h.end.condition) + " (at the start " +
+           brief(h.start.condition) + ").";
   }
   const Eigen::VectorXd direction = weakest_direction(h, negative);
   return text + ". Condition of M " + brief(h.end.condition) + " (at the start " + brief(h.start.condition) +

@@ -77,6 +77,28 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
   audit_momenta(initial_energies_);
   initial_sign_ = mass_matrix_sign(initial);
   look(initial);
+  each_peak([this](double peak) { trusted_peaks_.push_back(peak); });
+}
+
+template <class Visit>
+void Monitor::each_peak(const Visit& visit) {
+  for (auto& [body, peak] : summary_.peak_deflection) {
+    for (double& d : peak) visit(d);
+  }
+  for (auto& [body, ratio] : summary_.peak_deflection_ratio) visit(ratio);
+  for (double& effort : summary_.peak_effort) visit(effort);
+  for (double& effort : summary_.peak_motion_effort) visit(effort);
+}
+
+void Monitor::trust_state(const State& state) {
+  trusted_ = state;
+  auto kept = trusted_peaks_.begin();
+  each_peak([&kept](double peak) { *kept++ = peak; });
+}
+
+void Monitor::forget_untrusted_peaks() {
+  auto kept = trusted_peaks_.begin();
+  each_peak([&kept](double& peak) { peak = *kept++; });
 }
 
 void Monitor::note(const std::string& name, double length, const std::array<double, 3>& d,
@@ -255,7 +277,7 @@ void Monitor::audit_energy(const State& state) {
   summary_.untruncated_drift = relative(untruncated_error_);
   for (std::size_t i = 0; i < model_.layout().speeds; ++i)
     greatest_speed_ = std::max(greatest_speed_, std::abs(state.y[model_.layout().positions + i]));
-  if (!sign_change_ && error <= trust_limit_ * energy_scale_) trusted_ = state;
+  if (!sign_change_ && error <= trust_limit_ * energy_scale_) trust_state(state);
 }
 
 int Monitor::mass_matrix_sign(const State& state) {
@@ -298,6 +320,7 @@ void Monitor::remember(Memory& memory) {
   memory(untruncated_error_);
   memory(trusted_.time);
   memory(trusted_.y);
+  for (double& peak : trusted_peaks_) memory(peak);
   memory(greatest_speed_);
   memory(checked_);
   memory(rejected_);

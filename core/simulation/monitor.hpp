@@ -43,6 +43,8 @@ class Monitor {
   void trust(double limit) { trust_limit_ = limit; }
   /// The last state audited that can be trusted.
   [[nodiscard]] const State& trusted() const { return trusted_; }
+  /// Takes the peaks of deflections and efforts back to what they were at the last trusted state.
+  void forget_untrusted_peaks();
   /// Greatest |speed| in the states audited [rad/s, m/s].
   [[nodiscard]] double greatest_speed() const { return greatest_speed_; }
   /// Sign of det M at an accepted state against that of the start.
@@ -86,6 +88,10 @@ class Monitor {
   void observe_end(End& end, const State& state, const Vector3& rough, bool& seen);
   void observe_within(End& end, const State& state, const Vector3& now, const Vector3& velocity);
   void note(const std::string& name, double length, const std::array<double, 3>& d, std::array<double, 3>* peak);
+  /// `visit` is given each peak of the summary, always in the same order.
+  template <class Visit>
+  void each_peak(const Visit& visit);
+  void trust_state(const State& state);
   /// Sign of det M by one evaluation; 0 where it cannot be solved.
   [[nodiscard]] int mass_matrix_sign(const State& state);
 
@@ -101,6 +107,7 @@ class Monitor {
   State last_;     ///< the accepted state before
   State between_;  ///< a state within the last step
   State trusted_;
+  std::vector<double> trusted_peaks_;
   double trust_limit_ = 0.5, greatest_speed_ = 0;
   EffortWatch effort_watch_;
   std::vector<double> efforts_, rates_;

@@ -39,7 +39,7 @@ class Run final : public SteppingObserver {
     }
     monitor_.begin_efforts(loop_.state());
     output_at(loop_.state());
-    validity_.observe(loop_.state(), 0);
+    validity_.observe(loop_.state(), 0, loop_.state().time);
   }
 
   Stop to_end() {
@@ -58,10 +58,11 @@ class Run final : public SteppingObserver {
     }
     monitor_.audit_energy(state);
     monitor_.finish_momenta();
-    validity_.finish(state, loop_.step_evaluations(), status == RunStatus::completed);
+    validity_.finish(state, monitor_.trusted().time, status == RunStatus::completed);
   }
 
   [[nodiscard]] const Stepper& stepper() const { return loop_.stepper(); }
+  [[nodiscard]] Monitor& monitor() { return monitor_; }
   [[nodiscard]] const Monitor& monitor() const { return monitor_; }
   /// Names of the events that have ended the run.
   [[nodiscard]] const std::vector<std::string>& stopped_by() const { return stopped_by_; }
@@ -85,6 +86,7 @@ class Run final : public SteppingObserver {
   }
   void landed(const State& state) override {
     if (!std::binary_search(hand_overs_.begin(), hand_overs_.end(), state.time)) return;
+    validity_.settle();
     monitor_.rebase_energy(state, [&] { options_.changing->go_over(state.time); });
   }
   bool after_step(const Stepper& stepper, bool /*outputs*/) override {
@@ -93,7 +95,7 @@ class Run final : public SteppingObserver {
     monitor_.observe(stepper);
     monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
     if (audited(stepper.statistics().accepted)) monitor_.audit_energy(state);
-    validity_.observe(state, loop_.step_evaluations());
+    validity_.observe(state, loop_.step_evaluations(), monitor_.trusted().time);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
     if (monitor_.sign_change()) {
       stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
@@ -184,12 +186,13 @@ std::string note_on_jumps(const std::vector<double>& times) {
 }
 
 /// The last state that can be trusted takes the place of the last one.
-void go_back(const Monitor& monitor, RunSummary& summary) {
+void go_back(Monitor& monitor, RunSummary& summary) {
   if (monitor.trusted().time >= summary.final.time) return;
   summary.final = monitor.trusted();
+  monitor.forget_untrusted_peaks();
   summary.message +=
       " The last state that can be trusted, the final one of the results, is that at t = " + brief(summary.final.time) +
-      " s.";
+      " s; peaks are of the motion up to there.";
 }
 
 /// Looks at the mass matrix at the end of a run, and why a run that ended badly did.

@@ -31,7 +31,8 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       beyond_rates_(equations.size()),
       difference_(model.layout().speeds),
       product_(model.layout().speeds),
-      cost_(motion_cost + (beyond != nullptr ? comparison_cost : 0)) {
+      cost_(motion_cost + (beyond != nullptr ? comparison_cost : 0)),
+      held_{0, std::vector<double>(equations.size())} {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
     const ModalShape& shape = node.body->shape();
@@ -56,8 +57,19 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
   }
 }
 
-void ValidityWatch::sample(const State& state, std::size_t evaluations) {
+void ValidityWatch::hold(const State& state, std::size_t evaluations) {
   next_ = evaluations + std::clamp(evaluations / growth, least_interval, samples_per_cost * cost_);
+  held_ = state;
+  due_ = true;
+}
+
+void ValidityWatch::settle() {
+  if (!due_) return;
+  sample(held_);
+  due_ = false;
+}
+
+void ValidityWatch::sample(const State& state) {
   if (!equations_.derivatives(state.time, state.y, rates_, work_).ok()) return;
   ++validity_.samples;
   const Layout& layout = model_.layout();
@@ -149,12 +161,16 @@ void ValidityWatch::remember(Memory& memory) {
   memory(greatest_);
   memory(neglected_greatest_);
   memory(next_);
+  memory(held_.time);
+  memory(held_.y);
+  memory(due_);
 }
 
-void ValidityWatch::finish(const State& state, std::size_t evaluations, bool completed) {
+void ValidityWatch::finish(const State& state, double trusted, bool completed) {
   if (bodies_.empty()) return;
+  if (completed || held_.time <= trusted) settle();
   // Accelerations at the pole of a singular mass matrix say nothing of the motion before.
-  if (completed) sample(state, evaluations);
+  if (completed) sample(state);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     for (std::size_t f = 0; f < bodies_[i].families.size(); ++f) {
       const Family& family = bodies_[i].families[f];

@@ -57,12 +57,17 @@ class ValidityWatch {
   /// `beyond`: equations of the same model that neglect less, or null.
   ValidityWatch(const Model& model, const EquationsOfMotion& equations, const EquationsOfMotion* beyond,
                 Validity& validity);
-  /// At an accepted state, with the evaluations that steps have made so far.
-  void observe(const State& state, std::size_t evaluations) {
-    if (!bodies_.empty() && evaluations >= next_) sample(state, evaluations);
+  /// At an accepted state, with the evaluations that steps have made so far. What is due is sampled once the run is
+  /// known to be right up to there, for what lies behind the last state `trusted` [s] is no motion of the model.
+  void observe(const State& state, std::size_t evaluations, double trusted) {
+    if (bodies_.empty()) return;
+    if (due_ && held_.time <= trusted) settle();
+    if (!due_ && evaluations >= next_) hold(state, evaluations);
   }
-  /// At the last state of a run that went well; sums become ratios.
-  void finish(const State& state, std::size_t evaluations, bool completed);
+  /// Samples what is due: the equations are about to change.
+  void settle();
+  /// At the last state; where the run went well that is a sample too. Sums become ratios.
+  void finish(const State& state, double trusted, bool completed);
   /// What has been seen so far.
   void remember(Memory& memory);
 
@@ -80,7 +85,8 @@ class ValidityWatch {
     MotionStiffness stiffness;
     std::vector<Family> families;
   };
-  void sample(const State& state, std::size_t evaluations);
+  void hold(const State& state, std::size_t evaluations);
+  void sample(const State& state);
   void look_at_energies(const State& state, Watched& w) const;
   void compare_accelerations(const State& state);
 
@@ -96,6 +102,8 @@ class ValidityWatch {
   double squares_ = 0, neglected_squares_ = 0, greatest_ = 0, neglected_greatest_ = 0;
   std::size_t cost_;      ///< of a sample in evaluations, roughly
   std::size_t next_ = 0;  ///< evaluations at which the next sample is due
+  State held_;            ///< to be sampled
+  bool due_ = false;
 };
 
 }  // namespace withy

@@ -260,4 +260,10 @@ void Drawing::append_deflections(std::vector<double>& numbers) const {
   }
 }
 
+std::pair<Eigen::Index, Eigen::Index> widest_plane(const Vector3& low, const Vector3& high) {
+  Eigen::Index thinnest = 0;
+  (high - low).minCoeff(&thinnest);
+  return {thinnest == 0 ? 1 : 0, thinnest == 2 ? 1 : 2};
+}
+
 }  // namespace withy

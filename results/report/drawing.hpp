@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "withy/core/model/model.hpp"
@@ -66,5 +67,9 @@ class Drawing {
   std::unique_ptr<Observation> seen_;
   std::size_t size_ = 0;
 };
+
+/// The two axes, in the order x, y, z, along which a box between two corners is longest: the plane to draw what is in
+/// it.
+std::pair<Eigen::Index, Eigen::Index> widest_plane(const Vector3& low, const Vector3& high);
 
 }  // namespace withy

@@ -82,6 +82,32 @@ TEST(Compare, KeepsResultsAndAWellFormedPicture) {
   EXPECT_EQ(curves, 2 * bodies + 1 + 2 * 4) << "of the arm, of all but the reference, a curve a formulation";
 }
 
+// Times of frames increase from 0 to 1, there is a shape for each, and the run that stops has its cross.
+TEST(Compare, LeavesAMovingPicture) {
+  const Folder folder;
+  ASSERT_EQ(compare(folder,
+                    {"--formulations", "inconsistent,quadratic", "--set", "loads.slew.time_scale=1.2", "--out", "out"})
+                .status,
+            0);
+  std::istringstream svg(folder.read("out/motion.svg"));
+  boost::property_tree::ptree tree;
+  ASSERT_NO_THROW(boost::property_tree::read_xml(svg, tree));
+  std::size_t moving = 0, crosses = 0;
+  for (const auto& [name, child] : tree.get_child("svg.g")) {
+    if (name == "g") ++crosses;
+    if (name != "polyline" || child.count("animate") == 0) continue;
+    ++moving;
+    const std::string times = child.get<std::string>("animate.<xmlattr>.keyTimes");
+    const std::string shapes = child.get<std::string>("animate.<xmlattr>.values");
+    EXPECT_EQ(std::count(times.begin(), times.end(), ';'), std::count(shapes.begin(), shapes.end(), ';'));
+    EXPECT_EQ(times.substr(0, 2), "0;");
+    EXPECT_EQ(times.substr(times.size() - 2), ";1");
+    EXPECT_EQ(shapes.find("nan"), std::string::npos);
+  }
+  EXPECT_EQ(moving, 2U * 5U) << "bodies of two runs";
+  EXPECT_EQ(crosses, 1U);
+}
+
 TEST(Compare, AMalformedVariationIsBadInput) {
   const Folder folder;
   for (const char* over : {"loads.slew.time_scale", "=1", "loads.slew.time_scale="}) {

@@ -8,6 +8,7 @@
 #include "withy/study/comparison.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/linear_model.hpp"
+#include "withy/study/mounted_damping.hpp"
 #include "withy/study/run.hpp"
 #include "withy/study/threshold.hpp"
 #include "withy/tests/study/plugins.hpp"
@@ -76,6 +77,25 @@ TEST(StudyRun, NamesWhatGrowsWhereABodySpinsPastItsFundamentalFrequency) {
   EXPECT_GT(r.summary.final.time, 0.5 * r.summary.reached);
 }
 
+/// Behind the last state that can be trusted the arm turns ten million times as fast: no peak of the model's motion.
+TEST(StudyRun, OfARunThatEndsBadlyPeaksAndValidityAreOfTheMotionThatCanBeTrusted) {
+  const CertifiedRun bad = run_of("extended-slew", {}, "inconsistent");
+  ASSERT_EQ(bad.summary.status, RunStatus::step_underflow) << bad.summary.message;
+  ASSERT_LT(bad.summary.final.time, bad.summary.reached);
+  EXPECT_NE(bad.summary.message.find("There 'link2' turns at"), std::string::npos) << bad.summary.message;
+  EXPECT_NE(bad.summary.message.find("The mass matrix is not the reason"), std::string::npos) << bad.summary.message;
+  const CertifiedRun until = run_of("extended-slew", {{"time.end", Value(bad.summary.final.time)}}, "inconsistent");
+  for (const auto& [body, peak] : until.summary.peak_deflection)
+    EXPECT_NEAR(bad.summary.peak_deflection.at(body)[1], peak[1], 1e-4 * peak[1]) << body;
+  for (std::size_t i = 0; i < until.summary.peak_effort.size(); ++i)
+    EXPECT_NEAR(bad.summary.peak_effort[i], until.summary.peak_effort[i], 1e-4 * until.summary.peak_effort[i]) << i;
+  // Sampled at other states, the last of them not at all here.
+  for (std::size_t b = 0; b < until.summary.validity.bodies.size(); ++b) {
+    EXPECT_LE(bad.summary.validity.bodies[b].rate_ratio, 1.01 * until.summary.validity.bodies[b].rate_ratio);
+    EXPECT_GT(bad.summary.validity.bodies[b].rate_ratio, 0.01);
+  }
+}
+
 /// 4 kg on a column that buckles under 2.5.
 TEST(StudyRun, NamesBuckling) {
   const SceneValues column = SceneValues::parse(
@@ -126,6 +146,46 @@ TEST(StudyRun, TheSymmetricTruncationConservesItsOwnEnergy) {
   const CertifiedRun r = run_of("two-link-slew", {}, "symmetric");
   EXPECT_LT(r.certificate.energy_drift, 1e-4);
   EXPECT_GT(r.certificate.untruncated_drift, 10 * r.certificate.energy_drift);
+}
+
+double ratio_of(const Prepared& prepared, const MountedDamping& damping, const Holding& holding, std::size_t mode) {
+  SceneValues values = prepared.values;
+  for (const Change& change : damping.changes) values.set_text(change.text());
+  const StartState start = [](const Prepared& p) { return p.scene.initial; };
+  return sweep_modes(values, plugins(), start, holding, {}, true, {}, {}).points.front().modes[mode].damping_ratio();
+}
+
+/// A beam with a mass on its tip, six times its own: its modes are others than those of the beam alone.
+TEST(StudyModes, OfAMountedBeamGetTheDampingRatiosThatAreAsked) {
+  const Prepared prepared = prepare(
+      SceneValues::parse("format: withy/1\nbodies:\n"
+                         "  boom: {type: beam, length: 1, mass_per_length: 0.5, bending_y: {stiffness: 10, modes: 4}}\n"
+                         "  load: {type: rigid, mass: 3, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}\nhinges:\n"
+                         "  foot: {type: weld, parent: world, child: boom}\n"
+                         "  top: {type: weld, parent: boom.tip, child: load}\n",
+                         "boom"),
+      plugins());
+  for (const std::vector<double>& asked : {std::vector<double>{0.01}, {0.01, 0.01}, {0.005, 0.02}}) {
+    const MountedDamping damping = mounted_damping({prepared, prepared.scene.initial, {}}, plugins(), asked);
+    ASSERT_EQ(damping.modes.size(), asked.size());
+    for (std::size_t j = 0; j < asked.size(); ++j) {
+      EXPECT_NEAR(damping.modes[j].reached, asked[j], 0.03 * asked[j]) << asked.size() << ' ' << j;
+      EXPECT_NEAR(ratio_of(prepared, damping, {}, j), damping.modes[j].reached, 1e-9);
+    }
+  }
+  const std::vector<double> too_many(5, 0.01);
+  EXPECT_THROW(mounted_damping({prepared, prepared.scene.initial, {}}, plugins(), too_many), InputError);
+}
+
+/// Both lowest modes of the arm strain its links alike, in phase and against each other: no damping of each link by
+/// itself gives one of them four times the ratio of the other. What is reached is what is reported.
+TEST(StudyModes, DampingThatIsOutOfReachIsReportedAsWhatIsReached) {
+  const Prepared prepared = prepare(scene("two-link-slew"), plugins());
+  const Holding holding{{"shoulder", "elbow"}, {}};
+  const MountedDamping damping = mounted_damping({prepared, prepared.scene.initial, holding}, plugins(), {0.005, 0.02});
+  EXPECT_GT(std::abs(damping.modes[0].reached - 0.005), 0.001);
+  for (std::size_t j = 0; j < 2; ++j)
+    EXPECT_NEAR(ratio_of(prepared, damping, holding, j), damping.modes[j].reached, 1e-9);
 }
 
 TEST(StudyModes, SayHowFarTheyAreFromTheNextModelUp) {

@@ -1,0 +1,76 @@
+#include "withy/results/svg_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <iterator>
+
+namespace withy {
+namespace {
+
+// Palette of Okabe and Ito. Thick below thin: curves that coincide stay visible.
+constexpr std::array<Pen, 12> pens{{{"#e69f00", "none", 4.5},
+                                    {"#d55e00", "7 3", 2.4},
+                                    {"#56b4e9", "none", 3.2},
+                                    {"#000000", "2 2", 1.4},
+                                    {"#009e73", "10 3 2 3", 1.8},
+                                    {"#cc79a7", "4 4", 1.6},
+                                    {"#0072b2", "none", 2.0},
+                                    {"#999999", "none", 2.4},
+                                    {"#b8a800", "8 3", 2.0},
+                                    {"#7f3c8d", "12 4", 1.6},
+                                    {"#5d4037", "3 3", 2.0},
+                                    {"#80ba5a", "6 2 2 2", 2.0}}};
+
+}  // namespace
+
+const Pen& pen(std::size_t i) { return pens[i % pens.size()]; }
+
+std::string stroke(const Pen& p) {
+  return fmt::format(R"(fill="none" stroke="{}" stroke-width="{}" stroke-dasharray="{}")", p.colour, p.thickness,
+                     p.dashes);
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string svg_begin(double width, double height, double left, const std::string& title) {
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
+      "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"13\">\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+      "<text x=\"{2}\" y=\"26\" font-size=\"17\">{3}</text>\n",
+      width, height, left, escaped(title));
+}
+
+SvgLegend svg_legend(const std::vector<std::string>& names, double left, double width, double top) {
+  SvgLegend legend;
+  double x = left, y = top;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    // An average character is 7 wide at this size.
+    const double room = 41 + 7 * static_cast<double>(names[i].size());
+    if (x + room > width && x > left) {
+      x = left;
+      y += 20;
+    }
+    fmt::format_to(std::back_inserter(legend.text), "<path d=\"M{} {} h34\" {}/>\n<text x=\"{}\" y=\"{}\">{}</text>\n",
+                   x, y, stroke(pen(i)), x + 41, y + 4.5, escaped(names[i]));
+    x += room + 20;
+  }
+  legend.bottom = y;
+  return legend;
+}
+
+}  // namespace withy
