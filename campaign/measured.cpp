@@ -69,6 +69,9 @@ class MeasuredReader {
     if (time_ && data_.times.size() < 2) problem(number_, 1, "need at least two rows of data");
     for (MeasuredColumn& column : data_.columns) weigh(column);
     leave_out_constant();
+    if (late_ > 1)
+      problem(number_ - 1, 1,
+              fmt::format("and {} more rows lie after it; --set time.end={:g}", late_ - 1, data_.times.back()));
     check_wishes();
     if (hidden_ > 0) problems_.push_back(fmt::format("{}: {} more lines like these", wish_.file, hidden_));
     return std::move(data_);
@@ -121,6 +124,7 @@ class MeasuredReader {
       if (!guess.empty() && !cell.name.empty())
         problem(1, place, fmt::format("no result {}; did you mean '{}'?", in_quotes(cell.name), guess));
     }
+    if (result != known_.end()) comparable_.push_back(*result);
     if (result == known_.end() || !wanted) {
       data_.ignored.push_back(head);
       return;
@@ -168,9 +172,8 @@ class MeasuredReader {
       problem(number_, place, fmt::format("the time does not increase: {:g} s after {:g} s", t, data_.times.back()));
     else if (t < wish_.from - apart)
       problem(number_, place, fmt::format("{:g} s lies before the scene's initial time, {:g} s", t, wish_.from));
-    else if (t > wish_.end + apart)
-      problem(number_, place,
-              fmt::format("{:g} s lies after the scene's end, {:g} s; --set time.end={:g}", t, wish_.end, t));
+    else if (t > wish_.end + apart && late_++ == 0)
+      problem(number_, place, fmt::format("{:g} s lies after the scene's end, {:g} s", t, wish_.end));
   }
 
   void weigh(MeasuredColumn& column) {
@@ -213,13 +216,10 @@ class MeasuredReader {
   /// Names on the command line that stand for no column.
   void check_wishes() {
     const auto check = [&](const std::string& option, const std::string& text, const std::string& name) {
-      std::vector<std::string> there;
-      for (const MeasuredColumn& c : data_.columns) {
+      for (const MeasuredColumn& c : data_.columns)
         if (covers(column_name(name), c.name)) return;
-        there.push_back(c.name);
-      }
       problems_.push_back(fmt::format("{} {}: no column of {} is compared under this name{}", option, in_quotes(text),
-                                      wish_.file, suggestion(name, there)));
+                                      wish_.file, suggestion(name, comparable_)));
     };
     for (const std::string& o : wish_.outputs) check("--output", o, o);
     for (const std::string& d : wish_.deviations) check("--deviations", d, d.substr(0, d.find('=')));
@@ -233,11 +233,12 @@ class MeasuredReader {
   const std::vector<Column>& results_;
   std::vector<std::string>& problems_;
   Measured data_;
-  std::vector<std::string> known_;  ///< names of results
+  std::vector<std::string> known_;       ///< names of results
+  std::vector<std::string> comparable_;  ///< those of them that the data has
   std::optional<std::size_t> time_;
   double to_seconds_ = 1;
   std::vector<Source> sources_;  ///< one a column that is compared
-  std::size_t cells_ = 0, number_ = 1, told_ = 0, hidden_ = 0;
+  std::size_t cells_ = 0, number_ = 1, told_ = 0, hidden_ = 0, late_ = 0;
 };
 
 }  // namespace
