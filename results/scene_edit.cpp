@@ -6,7 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
 #include "withy/scene/document.hpp"
+#include "withy/scene/same_content.hpp"
+#include "withy/scene/scene.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy {
@@ -175,6 +178,23 @@ void add_lines(std::string& out, const Json& map, int depth) {
 std::string edited(std::string text, const std::vector<std::string>& overrides) {
   for (const std::string& o : overrides) text = Edit(std::move(text), o).made();
   return text;
+}
+
+void write_changed(const SceneValues& scene, const std::vector<study::Change>& changes, const std::string& file,
+                   Registry& registry) {
+  SceneValues wanted = scene;
+  std::vector<std::string> overrides;
+  for (const study::Change& change : changes) {
+    wanted.set(change.path, change.value, "--write");
+    overrides.push_back(change.text());
+  }
+  const std::string text = edited(scene.text(), overrides);
+  const SceneValues written = SceneValues::parse(text, file);
+  if (!same_content(written.root(), wanted.root()))
+    throw study::InputError("--write: the text of " + scene.file() +
+                            " cannot be edited into this; nothing is written. Change it by hand as the lines say");
+  static_cast<void>(make_scene(written, registry));
+  write_file(file, text);
 }
 
 std::string scene_lines(const std::vector<std::string>& overrides) {

@@ -5,10 +5,7 @@
 #include "withy/apps/withy/output.hpp"
 #include "withy/results/advice_text.hpp"
 #include "withy/results/json_text.hpp"
-#include "withy/results/output_file.hpp"
 #include "withy/results/scene_edit.hpp"
-#include "withy/scene/same_content.hpp"
-#include "withy/scene/scene_values.hpp"
 #include "withy/study/left_out.hpp"
 
 namespace withy::app {
@@ -26,20 +23,6 @@ std::vector<std::string> texts_of(const std::vector<study::Change>& changes) {
   std::vector<std::string> texts;
   for (const study::Change& change : changes) texts.push_back(change.text());
   return texts;
-}
-
-/// The scene's text with the changes. What it reads as has to be what is advised: an edit that went wrong leaves no
-/// file.
-void write_scene(const AdviseArguments& arguments, const Engine& engine, const std::vector<study::Change>& changes) {
-  const std::string text = edited(read_bytes(arguments.scene), texts_of(changes));
-  SceneValues advised = engine.prepared().values;
-  for (const study::Change& change : changes) advised.set(change.path, change.value, "what is advised");
-  const SceneValues written = SceneValues::parse(text, arguments.write);
-  if (!same_content(written.root(), advised.root()))
-    throw InputError("--write: the text of " + arguments.scene +
-                     " cannot be edited into what is advised; nothing is written. Change it by hand as the lines say");
-  static_cast<void>(make_scene(written, engine.registry()));
-  write_file(arguments.write, text);
 }
 
 ExitStatus advise(const AdviseArguments& arguments) {
@@ -62,7 +45,8 @@ ExitStatus advise(const AdviseArguments& arguments) {
   const std::string left_out = study::left_out(evaluator.model(advice.choice->point));
   const std::vector<study::Change> new_changes = study::new_changes(engine.scene(), advice.choice->point);
   const std::vector<std::string> changes = texts_of(new_changes);
-  if (!arguments.write.empty()) write_scene(arguments, engine, new_changes);
+  if (!arguments.write.empty())
+    write_changed(engine.prepared().values, new_changes, arguments.write, engine.registry());
   std::string text = arguments.json ? json_text(advice_json(question, advice, left_out, changes, scene_lines(changes)))
                                     : advice_text({question, candidates, advice, left_out, changes});
   if (!arguments.json && !arguments.write.empty()) text += "\nwritten to " + arguments.write + '\n';

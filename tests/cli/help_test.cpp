@@ -9,10 +9,10 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::vector<std::string> commands = {"run",    "compare", "inverse",     "terms",      "trade",    "advise",
-                                           "eval",   "inspect", "equilibrium", "linearize",  "response", "modes",
-                                           "import", "bench",   "plugins",     "schema",     "new",      "check",
-                                           "report", "plot",    "sweep",       "completion", "manual",   "fmu"};
+const std::vector<std::string> commands = {
+    "run",         "compare",   "inverse",  "terms", "trade",      "advise", "tune",    "eval",   "inspect",
+    "equilibrium", "linearize", "response", "modes", "import",     "bench",  "plugins", "schema", "new",
+    "check",       "report",    "plot",     "sweep", "completion", "manual", "fmu"};
 
 /// The command lines under "Examples:" in a help text, without the program's name.
 std::vector<std::vector<std::string>> examples(const std::string& help) {

@@ -1,0 +1,262 @@
+#include "withy/campaign/measured.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <system_error>
+
+#include "withy/results/csv.hpp"
+#include "withy/scene/describe.hpp"
+#include "withy/scene/document.hpp"
+#include "withy/scene/names.hpp"
+#include "withy/scene/units.hpp"
+
+namespace withy::campaign {
+namespace {
+
+/// A cell of the head: "tip.x[mm]".
+struct HeadCell {
+  std::string name, unit;
+  explicit HeadCell(const std::string& text) : name(text) {
+    const std::size_t bracket = text.rfind('[');
+    if (bracket == std::string::npos || !text.ends_with(']')) return;
+    name = text.substr(0, bracket);
+    unit = text.substr(bracket + 1, text.size() - bracket - 2);
+  }
+};
+
+/// Where the cells of a line begin, counted from 1.
+std::vector<std::size_t> places_of(const std::string& line) {
+  std::vector<std::size_t> places = {1};
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') quoted = !quoted;
+    if (line[i] == ',' && !quoted) places.push_back(i + 2);
+  }
+  return places;
+}
+
+/// A name itself, or what it is the first part of: "tip" of "tip.x".
+bool covers(const std::string& name, const std::string& column) {
+  return column == name || column.starts_with(name + '.');
+}
+
+class MeasuredReader {
+ public:
+  MeasuredReader(const MeasuredWish& wish, const std::vector<Column>& results, std::vector<std::string>& problems)
+      : wish_(wish), results_(results), problems_(problems) {
+    data_.file = wish.file;
+  }
+
+  Measured read() {
+    std::string text;
+    try {
+      text = read_bytes(wish_.file);
+    } catch (const std::system_error& e) {
+      problems_.emplace_back(e.what());
+      return data_;
+    }
+    std::istringstream in(text);
+    std::string line;
+    std::getline(in, line);
+    read_head(line);
+    for (number_ = 2; std::getline(in, line); ++number_)
+      if (line.find_first_not_of(" \t\r") != std::string::npos) read_row(line);
+    if (time_ && data_.times.size() < 2) problem(number_, 1, "need at least two rows of data");
+    for (MeasuredColumn& column : data_.columns) weigh(column);
+    leave_out_constant();
+    if (late_ > 1)
+      problem(number_ - 1, 1,
+              fmt::format("and {} more rows lie after it; --set time.end={:g}", late_ - 1, data_.times.back()));
+    check_wishes();
+    if (hidden_ > 0) problems_.push_back(fmt::format("{}: {} more lines like these", wish_.file, hidden_));
+    return std::move(data_);
+  }
+
+ private:
+  /// Of what is wrong in the rows, the first are told.
+  void problem(std::size_t line, std::size_t column, const std::string& message) {
+    constexpr std::size_t most = 10;
+    if (line > 1 && ++told_ > most) {
+      ++hidden_;
+      return;
+    }
+    problems_.push_back(fmt::format("{}:{}:{}: {}", wish_.file, line, column, message));
+  }
+
+  double factor(const HeadCell& cell, const std::string& si_unit, std::size_t place) {
+    if (cell.unit.empty() || (cell.unit == "1" && si_unit.empty())) return 1;
+    const QuantityReading one = read_quantity("1 " + cell.unit, si_unit.empty() ? "1" : si_unit);
+    if (!one.value) problem(1, place, fmt::format("column {}: {}", in_quotes(cell.name), one.problem));
+    return one.value.value_or(1);
+  }
+
+  void read_head(const std::string& line) {
+    const std::vector<std::string> cells = csv_cells(line);
+    const std::vector<std::size_t> places = places_of(line);
+    for (const Column& c : results_) known_.push_back(column_name(c.name));
+    cells_ = cells.size();
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const HeadCell cell(cells[k]);
+      if ((cell.name == "t" || cell.name == "time") && !time_) {
+        time_ = k;
+        to_seconds_ = factor(cell, "s", places[k]);
+        continue;
+      }
+      add_column(cell, cells[k], k, places[k]);
+    }
+    if (!time_) problem(1, 1, "need a column t[s]");
+    if (data_.columns.empty() && wish_.outputs.empty())
+      problem(1, 1, "no column has the name of a result; the scene's are " + listed(known_));
+  }
+
+  void add_column(const HeadCell& cell, const std::string& head, std::size_t k, std::size_t place) {
+    const auto result = std::find(known_.begin(), known_.end(), column_name(cell.name));
+    const bool wanted =
+        wish_.outputs.empty() || std::any_of(wish_.outputs.begin(), wish_.outputs.end(),
+                                             [&](const std::string& o) { return covers(column_name(o), cell.name); });
+    if (result == known_.end() && wanted) {
+      const std::string guess = nearest(cell.name, known_);
+      if (!guess.empty() && !cell.name.empty())
+        problem(1, place, fmt::format("no result {}; did you mean '{}'?", in_quotes(cell.name), guess));
+    }
+    if (result != known_.end()) comparable_.push_back(*result);
+    if (result == known_.end() || !wanted) {
+      data_.ignored.push_back(head);
+      return;
+    }
+    const auto index = static_cast<std::size_t>(result - known_.begin());
+    for (const MeasuredColumn& c : data_.columns)
+      if (c.result == index) problem(1, place, fmt::format("column {} is there twice", in_quotes(cell.name)));
+    const std::string& unit = results_[index].unit;
+    sources_.push_back({k, factor(cell, unit, place)});
+    data_.columns.push_back({*result, unit, index, {}, 0, false});
+  }
+
+  std::optional<double> number(const std::string& cell, std::size_t place) {
+    if (cell.empty() || cell == "nan" || cell == "NaN") return {};
+    const auto x = plain_number(cell);
+    if (!x) problem(number_, place, fmt::format("got {}; need a number, or nothing", in_quotes(cell)));
+    return x;
+  }
+
+  void read_row(const std::string& line) {
+    const std::vector<std::string> cells = csv_cells(line);
+    const std::vector<std::size_t> places = places_of(line);
+    if (cells.size() != cells_) {
+      problem(number_, 1, fmt::format("got {} cells; the head has {}", cells.size(), cells_));
+      return;
+    }
+    if (!time_) return;
+    const auto time = number(cells[*time_], places[*time_]);
+    if (!time) {
+      if (cells[*time_].empty()) problem(number_, places[*time_], "the time is missing");
+      return;
+    }
+    const double t = to_seconds_ * *time;
+    check_time(t, places[*time_]);
+    data_.times.push_back(t);
+    for (std::size_t c = 0; c < sources_.size(); ++c) {
+      const auto x = number(cells[sources_[c].cell], places[sources_[c].cell]);
+      data_.columns[c].values.push_back(x ? sources_[c].factor * *x : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+
+  void check_time(double t, std::size_t place) {
+    const double apart = 1e-9 * (1 + std::abs(t));
+    if (!data_.times.empty() && !(t > data_.times.back()))
+      problem(number_, place, fmt::format("the time does not increase: {:g} s after {:g} s", t, data_.times.back()));
+    else if (t < wish_.from - apart)
+      problem(number_, place, fmt::format("{:g} s lies before the scene's initial time, {:g} s", t, wish_.from));
+    else if (t > wish_.end + apart && late_++ == 0)
+      problem(number_, place, fmt::format("{:g} s lies after the scene's end, {:g} s", t, wish_.end));
+  }
+
+  void weigh(MeasuredColumn& column) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const double x : column.values)
+      if (std::isfinite(x)) least = std::min(least, x), most = std::max(most, x);
+    if (column.count() == 0) {
+      problem(1, 1, fmt::format("column {} has no values", in_quotes(column.name)));
+      return;
+    }
+    for (const std::string& text : wish_.deviations) {
+      const std::size_t equals = text.find('=');
+      if (equals == std::string::npos || !covers(column_name(text.substr(0, equals)), column.name)) continue;
+      const std::string unit = column.unit.empty() ? "1" : column.unit;
+      const std::string given = text.substr(equals + 1);
+      const auto bare = plain_number(given);
+      const QuantityReading reading = bare ? QuantityReading{*bare, {}} : read_quantity(given, unit);
+      if (!reading.value || !(*reading.value > 0))
+        problems_.push_back(
+            fmt::format("--deviations {}: {}", in_quotes(text), reading.value ? "need a number > 0" : reading.problem));
+      column.deviation = reading.value.value_or(1);
+      column.deviation_given = true;
+    }
+    if (!column.deviation_given) column.deviation = most - least;
+    if (column.deviation == 0)
+      problem(1, 1,
+              fmt::format("column {} does not change, so that it has no range to weigh it by: give the standard "
+                          "deviation of its measurement, --deviations {}=…",
+                          in_quotes(column.name), column.name));
+  }
+
+  /// Columns that have no range to weigh them by, where nobody asked for them.
+  void leave_out_constant() {
+    if (!wish_.outputs.empty()) return;
+    for (const MeasuredColumn& c : data_.columns)
+      if (c.deviation == 0 && c.count() > 0) data_.ignored.push_back(c.name + " (does not change)");
+    std::erase_if(data_.columns, [](const MeasuredColumn& c) { return c.deviation == 0 && c.count() > 0; });
+  }
+
+  /// Names on the command line that stand for no column.
+  void check_wishes() {
+    const auto check = [&](const std::string& option, const std::string& text, const std::string& name) {
+      for (const MeasuredColumn& c : data_.columns)
+        if (covers(column_name(name), c.name)) return;
+      problems_.push_back(fmt::format("{} {}: no column of {} is compared under this name{}", option, in_quotes(text),
+                                      wish_.file, suggestion(name, comparable_)));
+    };
+    for (const std::string& o : wish_.outputs) check("--output", o, o);
+    for (const std::string& d : wish_.deviations) check("--deviations", d, d.substr(0, d.find('=')));
+  }
+
+  struct Source {
+    std::size_t cell;
+    double factor;  ///< to SI units
+  };
+  const MeasuredWish& wish_;
+  const std::vector<Column>& results_;
+  std::vector<std::string>& problems_;
+  Measured data_;
+  std::vector<std::string> known_;       ///< names of results
+  std::vector<std::string> comparable_;  ///< those of them that the data has
+  std::optional<std::size_t> time_;
+  double to_seconds_ = 1;
+  std::vector<Source> sources_;  ///< one a column that is compared
+  std::size_t cells_ = 0, number_ = 1, told_ = 0, hidden_ = 0, late_ = 0;
+};
+
+}  // namespace
+
+std::size_t MeasuredColumn::count() const {
+  return static_cast<std::size_t>(
+      std::count_if(values.begin(), values.end(), [](double x) { return std::isfinite(x); }));
+}
+
+std::size_t Measured::count() const {
+  std::size_t all = 0;
+  for (const MeasuredColumn& c : columns) all += c.count();
+  return all;
+}
+
+Measured read_measured(const MeasuredWish& wish, const std::vector<Column>& results,
+                       std::vector<std::string>& problems) {
+  return MeasuredReader(wish, results, problems).read();
+}
+
+}  // namespace withy::campaign

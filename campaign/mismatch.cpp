@@ -1,0 +1,146 @@
+#include "withy/campaign/mismatch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <thread>
+
+namespace withy::campaign {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Half of the difference in a coordinate that derivatives are taken over: what integration leaves of error at a
+/// relative tolerance disturbs them as little as the curvature does.
+double difference_step(const Scene& scene) {
+  const Value* rtol = scene.source.at("integrator").find("rtol");
+  return std::clamp(std::sqrt(rtol == nullptr ? 1e-6 : rtol->number()), 1e-4, 1e-2);
+}
+
+/// Neighbouring residuals of a column are correlated where the model lacks something.
+std::optional<double> neighbours(const MeasuredColumn& column, const std::vector<double>& run, double rms,
+                                 double range) {
+  constexpr double least_share = 1e-4, least = 0.3, of_chance = 4;
+  double products = 0, squares = 0, before = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    if (!std::isfinite(column.values[i])) continue;
+    const double r = run[i] - column.values[i];
+    if (count++ > 0) products += r * before;
+    squares += r * r;
+    before = r;
+  }
+  const double correlation = squares > 0 ? products / squares : 0;
+  const bool worth =
+      rms > least_share * range && correlation > std::max(least, of_chance / std::sqrt(static_cast<double>(count)));
+  return worth ? std::optional(correlation) : std::nullopt;
+}
+
+}  // namespace
+
+Mismatch::Mismatch(const study::Prepared& scene, Registry& registry, const TuneQuestion& question,
+                   std::vector<TunedValue> tuned_values, Measured measured)
+    : tuned(std::move(tuned_values)),
+      data(std::move(measured)),
+      scene_(scene),
+      registry_(registry),
+      control_{question.control.interrupted, {}},
+      jobs_(question.jobs > 0 ? question.jobs : std::max(1U, std::thread::hardware_concurrency())),
+      step_(difference_step(scene.scene)) {}
+
+std::vector<double> Mismatch::values(const VectorXd& z) const {
+  std::vector<double> x;
+  for (std::size_t i = 0; i < tuned.size(); ++i) x.push_back(tuned[i].value(z[static_cast<Index>(i)]));
+  return x;
+}
+
+std::vector<MatchedRun> Mismatch::run(const std::vector<std::vector<double>>& points) {
+  std::vector<SceneValues> scenes;
+  for (const std::vector<double>& x : points) scenes.push_back(with_values(scene_.values, tuned, x));
+  std::vector<MatchedRun> made = matched_runs(scenes, registry_, data, jobs_, control_);
+  runs += made.size();
+  for (const MatchedRun& m : made)
+    if (!m.failure.empty()) ++failed, last_failure = m.failure;
+  return made;
+}
+
+VectorXd Mismatch::residuals(const MatchedRun& run) const {
+  VectorXd r(static_cast<Index>(data.count()));
+  Index at = 0;
+  for (std::size_t c = 0; c < data.columns.size(); ++c)
+    for (std::size_t i = 0; i < data.times.size(); ++i)
+      if (const double x = data.columns[c].values[i]; std::isfinite(x))
+        r[at++] = (run.columns[c][i] - x) / data.columns[c].deviation;
+  return r;
+}
+
+bool Mismatch::evaluate(const VectorXd& z, VectorXd& r) {
+  const MatchedRun made = run({values(z)}).front();
+  if (made.ok()) r = residuals(made);
+  return made.ok();
+}
+
+bool Mismatch::derivatives(const VectorXd& z, const std::vector<std::size_t>& of, double step, MatrixXd& J) {
+  struct Side {
+    std::size_t run;
+    double at;
+  };
+  std::vector<std::vector<double>> points = {values(z)};
+  for (const std::size_t i : of)
+    for (const double side : {1.0, -1.0}) points.push_back(values(moved(z, i, side * step)));
+  const std::vector<MatchedRun> made = run(points);
+  if (!made[0].ok()) return false;
+  J.resize(static_cast<Index>(data.count()), static_cast<Index>(of.size()));
+  for (std::size_t k = 0; k < of.size(); ++k) {
+    const auto i = static_cast<Index>(of[k]);
+    const auto side = [&](std::size_t point, double by) {
+      return made[point].ok() ? Side{point, moved(z, of[k], by)[i]} : Side{0, z[i]};
+    };
+    const Side up = side(1 + 2 * k, step), down = side(2 + 2 * k, -step);
+    if (!(up.at > down.at)) return false;
+    J.col(static_cast<Index>(k)) = (residuals(made[up.run]) - residuals(made[down.run])) / (up.at - down.at);
+  }
+  return true;
+}
+
+bool Mismatch::sensitivity(const VectorXd& z, const std::vector<std::size_t>& of, Sensitivity& s) {
+  MatrixXd fine, coarse;
+  if (!derivatives(z, of, step_, fine) || !derivatives(z, of, 2 * step_, coarse)) return false;
+  s.J = (4 * fine - coarse) / 3;
+  s.error = (fine - coarse).colwise().norm() / 3;
+  return true;
+}
+
+VectorXd Mismatch::moved(VectorXd z, std::size_t i, double by) const {
+  double& x = z[static_cast<Index>(i)];
+  x = std::clamp(x + by, tuned[i].lower, tuned[i].upper);
+  return z;
+}
+
+std::vector<ColumnFit> column_fits(const Measured& data, const MatchedRun& start, const MatchedRun& end) {
+  std::vector<ColumnFit> fits;
+  for (std::size_t c = 0; c < data.columns.size(); ++c) {
+    const MeasuredColumn& column = data.columns[c];
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const double x : column.values)
+      if (std::isfinite(x)) least = std::min(least, x), most = std::max(most, x);
+    const auto rms = [&](const std::vector<double>& run) {
+      double sum = 0;
+      for (std::size_t i = 0; i < run.size(); ++i)
+        if (const double r = run[i] - column.values[i]; std::isfinite(r)) sum += r * r;
+      return std::sqrt(sum / static_cast<double>(column.count()));
+    };
+    ColumnFit fit;
+    if (start.ok()) fit.at_start = start.columns[c], fit.before = rms(fit.at_start);
+    fit.at_end = end.columns[c];
+    fit.after = rms(fit.at_end);
+    fit.correlation = neighbours(column, fit.at_end, fit.after, most - least);
+    fits.push_back(std::move(fit));
+  }
+  return fits;
+}
+
+}  // namespace withy::campaign

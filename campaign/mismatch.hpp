@@ -1,0 +1,57 @@
+/// \file
+/// How far runs of a scene are from measured data, as a function of the values that are tuned.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "withy/campaign/identified.hpp"
+#include "withy/campaign/matched_run.hpp"
+#include "withy/campaign/tune.hpp"
+
+namespace withy::campaign {
+
+/// Residuals of a scene as a function of the coordinates z of all tuned values. Counts the runs it makes.
+class Mismatch {
+ public:
+  /// Scene, registry and question must outlive it.
+  Mismatch(const study::Prepared& scene, Registry& registry, const TuneQuestion& question,
+           std::vector<TunedValue> tuned, Measured data);
+
+  [[nodiscard]] bool stopped() const { return control_.stop(); }
+  [[nodiscard]] std::vector<double> values(const Eigen::VectorXd& z) const;
+  /// Runs with these values, side by side.
+  std::vector<MatchedRun> run(const std::vector<std::vector<double>>& points);
+  /// Weighted residuals of a run where something was measured, column by column.
+  [[nodiscard]] Eigen::VectorXd residuals(const MatchedRun& run) const;
+  /// Those of the run at z; false where there is none.
+  bool evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& r);
+  /// Their derivatives by some of the coordinates, by central differences; at a bound, or beside a run that fails,
+  /// one-sided ones. False where there are none.
+  bool derivatives(const Eigen::VectorXd& z, const std::vector<std::size_t>& of, Eigen::MatrixXd& J) {
+    return derivatives(z, of, step_, J);
+  }
+  /// The same extrapolated from two steps, whose difference tells the error.
+  bool sensitivity(const Eigen::VectorXd& z, const std::vector<std::size_t>& of, Sensitivity& s);
+
+  const std::vector<TunedValue> tuned;
+  const Measured data;
+  std::size_t runs = 0, failed = 0;
+  std::string last_failure;
+
+ private:
+  bool derivatives(const Eigen::VectorXd& z, const std::vector<std::size_t>& of, double step, Eigen::MatrixXd& J);
+  [[nodiscard]] Eigen::VectorXd moved(Eigen::VectorXd z, std::size_t i, double by) const;
+
+  const study::Prepared& scene_;
+  Registry& registry_;
+  study::Control control_;
+  std::size_t jobs_;
+  double step_;
+};
+
+/// How far two runs are from each column: of the scene as it is, which may have failed, and of the fitted one.
+std::vector<ColumnFit> column_fits(const Measured& data, const MatchedRun& start, const MatchedRun& end);
+
+}  // namespace withy::campaign

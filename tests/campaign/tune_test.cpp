@@ -1,0 +1,256 @@
+// Fits to measured data: they find what made the data, know how well they do, and name what the data cannot tell.
+#include "withy/campaign/tune.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "withy/campaign/random.hpp"
+#include "withy/campaign/tune_files.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/scene_edit.hpp"
+#include "withy/study/input_error.hpp"
+#include "withy/tests/results/scratch.hpp"
+#include "withy/tests/study/plugins.hpp"
+
+namespace withy::campaign {
+namespace {
+
+using testing::HasSubstr;
+using State = FittedValue::State;
+
+constexpr const char* block = R"(format: withy/1
+integrator: {name: dopri5, rtol: 1e-8, atol: 1e-10}
+time: {end: 4, output: 0.02}
+bodies:
+  block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}
+loads:
+  spring: {type: hinge-spring, hinge: slide, stiffness: 50, damping: 0.8}   # as the maker says
+initial: {hinges: {slide: {position: ["20 mm"], rate: [0.3]}}}
+)";
+
+/// What makes the data: m ẍ + c ẋ + k x = 0 in closed form.
+struct Truth {
+  double stiffness = 58, damping = 1.1, start = 0.025, rate = 0.3;
+  double mass = 2;
+  [[nodiscard]] double at(double t) const {
+    const double decay = damping / (2 * mass), omega = std::sqrt(stiffness / mass - decay * decay);
+    return std::exp(-decay * t) * (start * std::cos(omega * t) + (rate + decay * start) / omega * std::sin(omega * t));
+  }
+};
+
+/// Normally distributed, by Box and Muller.
+double noise(std::uint64_t seed, std::uint64_t i) {
+  return std::sqrt(-2 * std::log(Key(seed)["a"][i].uniform())) *
+         std::cos(2 * std::numbers::pi * Key(seed)["b"][i].uniform());
+}
+
+struct TuneFolder : test::Scratch {
+  /// 160 rows at times that are no outputs of the scene; every seventh place was not measured.
+  void measure(const Truth& truth, double deviation, std::uint64_t seed) const {
+    std::string text = "t[ms],operator,slide[mm]\n";
+    for (std::uint64_t i = 0; i < 160; ++i) {
+      const double t = 0.0249 * static_cast<double>(i);
+      const double x = truth.at(t) + deviation * noise(seed, i);
+      text += i % 7 == 3 ? fmt::format("{},Ann,\n", 1e3 * t) : fmt::format("{},Ann,{}\n", 1e3 * t, 1e3 * x);
+    }
+    write("data.csv", text);
+  }
+  [[nodiscard]] study::Prepared prepared(const std::string& text = block) const {
+    return study::prepare(SceneValues::parse(text, "block.yaml"), test::plugins());
+  }
+  [[nodiscard]] TuneResult tuned(TuneQuestion question, const std::string& text = block) const {
+    question.data = (*this / "data.csv").string();
+    return tune(prepared(text), test::plugins(), question);
+  }
+  [[nodiscard]] TuneResult tuned(const std::vector<std::string>& parameters) const {
+    TuneQuestion question;
+    question.parameters = parameters;
+    return tuned(question);
+  }
+};
+
+const std::vector<std::string> three = {"loads.spring.stiffness", "loads.spring.damping",
+                                        "initial.hinges.slide.position.0"};
+
+TEST(Tune, FindsWhatMadeTheDataAndItsCovarianceIsThatOfManyFits) {
+  const TuneFolder folder;
+  const Truth truth;
+  const std::vector<double> wanted = {truth.stiffness, truth.damping, 1e3 * truth.start};
+  constexpr int fits = 20;
+  double distances = 0;
+  std::vector<double> squares(3, 0.0);
+  for (int seed = 0; seed < fits; ++seed) {
+    folder.measure(truth, 1e-3, static_cast<std::uint64_t>(seed));
+    const TuneResult result = folder.tuned(three);
+    ASSERT_TRUE(result.converged()) << result.trouble;
+    EXPECT_EQ(result.data.ignored, std::vector<std::string>{"operator"});
+    EXPECT_NEAR(result.columns[0].after, 1e-3, 2.5e-4);
+    EXPECT_FALSE(result.columns[0].correlation);
+    Eigen::Vector3d error;
+    for (int i = 0; i < 3; ++i) {
+      const FittedValue& p = result.parameters[static_cast<std::size_t>(i)];
+      ASSERT_TRUE(p.deviation);
+      error[i] = (p.value - wanted[static_cast<std::size_t>(i)]) / *p.deviation;
+      squares[static_cast<std::size_t>(i)] += error[i] * error[i];
+    }
+    if (seed == 0) {
+      EXPECT_LT(error.cwiseAbs().maxCoeff(), 3.0);
+    }
+    Eigen::Matrix3d correlation;
+    for (int i = 0; i < 9; ++i)
+      correlation(i / 3, i % 3) = result.correlation[static_cast<std::size_t>(i / 3)][static_cast<std::size_t>(i % 3)];
+    distances += error.dot(correlation.inverse() * error);
+  }
+  // χ² of 20 and of 60 degrees of freedom are beyond these once in a thousand times.
+  for (const double s : squares) {
+    EXPECT_GT(s, 5.9);
+    EXPECT_LT(s, 45.4);
+  }
+  EXPECT_GT(distances, 31.7);
+  EXPECT_LT(distances, 99.7);
+}
+
+TEST(Tune, KeepsUnitsAndTheSameBitsWhateverTheJobs) {
+  const TuneFolder folder;
+  folder.measure({}, 1e-3, 3);
+  TuneQuestion question;
+  question.parameters = three;
+  question.jobs = 1;
+  const TuneResult one = folder.tuned(question);
+  question.jobs = 3;
+  EXPECT_EQ(json_text(tune_json(one)), json_text(tune_json(folder.tuned(question))));
+  EXPECT_EQ(one.parameters[0].tuned.unit, "N m/rad");
+  EXPECT_EQ(one.parameters[2].tuned.unit, "mm");
+  EXPECT_EQ(one.parameters[2].tuned.start, 20);
+}
+
+TEST(Tune, NamesWhatTheDataCannotTellApart) {
+  const TuneFolder folder;
+  folder.measure({}, 1e-4, 1);
+  const TuneResult result = folder.tuned({"loads.spring.stiffness", "loads.spring.damping", "bodies.block.mass",
+                                          "bodies.block.inertia.2", "initial.hinges.slide.rate.0"});
+  ASSERT_TRUE(result.converged()) << result.trouble;
+  const FittedValue &mass = result.parameters[2], &inertia = result.parameters[3];
+  ASSERT_EQ(mass.state, State::undetermined);
+  EXPECT_EQ(mass.value, 2);
+  ASSERT_EQ(mass.same_as.size(), 2);
+  EXPECT_EQ(mass.same_as[0].first, 0);
+  EXPECT_NEAR(mass.same_as[0].second, -1, 0.01);
+  EXPECT_EQ(mass.same_as[1].first, 1);
+  EXPECT_NEAR(mass.same_as[1].second, -1, 0.01);
+  EXPECT_EQ(inertia.state, State::undetermined);
+  EXPECT_TRUE(inertia.same_as.empty());
+  EXPECT_EQ(result.parameters[4].state, State::fitted);
+  const std::string text = tune_text(result, "block");
+  EXPECT_THAT(text, HasSubstr("Not determined: bodies.block.mass. To these data 1 % more of it does the same as 1 % "
+                              "less of loads.spring.stiffness and 1 % less of loads.spring.damping"));
+  EXPECT_THAT(text, HasSubstr("bodies.block.inertia.2. To these data it has no effect"));
+}
+
+TEST(Tune, SaysThatAModelLacksSomething) {
+  const TuneFolder folder;
+  folder.measure({}, 1e-5, 1);
+  const TuneResult result = folder.tuned({"loads.spring.stiffness"});
+  ASSERT_TRUE(result.columns[0].correlation);
+  EXPECT_GT(*result.columns[0].correlation, 0.8);
+}
+
+TEST(Tune, StopsAtBoundsAndFindsTheLowestOfManyMinima) {
+  const TuneFolder folder;
+  folder.measure({}, 1e-3, 1);
+  const TuneResult bounded = folder.tuned({"loads.spring.stiffness=40..52 N m/rad", "loads.spring.damping"});
+  EXPECT_EQ(bounded.parameters[0].state, State::at_bound);
+  EXPECT_NEAR(bounded.parameters[0].value, 52, 0.1);
+  EXPECT_FALSE(bounded.parameters[0].deviation);
+  EXPECT_TRUE(bounded.parameters[1].deviation);
+
+  Truth far;
+  far.stiffness = 200;
+  far.damping = 0.8;  // the scene's
+  folder.measure(far, 1e-3, 1);
+  TuneQuestion question;
+  question.parameters = {"loads.spring.stiffness=30..500", "initial.hinges.slide.position.0"};
+  const TuneResult alone = folder.tuned(question);
+  EXPECT_GT(std::abs(alone.parameters[0].value - 200), 20);
+  question.starts = 6;
+  const TuneResult many = folder.tuned(question);
+  EXPECT_NEAR(many.parameters[0].value, 200, 4 * many.parameters[0].deviation.value());
+  EXPECT_GT(many.agreeing, 0);
+  EXPECT_LT(many.agreeing, 6);
+}
+
+TEST(Tune, GoesRoundRunsThatFail) {
+  const TuneFolder folder;
+  folder.measure({}, 1e-3, 2);
+  TuneQuestion question;
+  question.parameters = {"loads.spring.stiffness=1..400", "initial.hinges.slide.rate.0=-3..3"};
+  question.starts = 6;
+  // Runs that swing far end before the data does.
+  const std::string stops = std::string(block) + "events: {far: {hinge: slide, value: 0.09, stop: true}}\n";
+  const TuneResult result = folder.tuned(question, stops);
+  ASSERT_TRUE(result.converged()) << result.trouble;
+  EXPECT_GT(result.failed, 0);
+  EXPECT_THAT(result.last_failure, HasSubstr("an event of the scene ends it there"));
+  EXPECT_NEAR(result.parameters[0].value, 58, 4 * result.parameters[0].deviation.value());
+  // Where no run begins there is no fit, and the reason is said.
+  question.starts = 1;
+  const std::string never = std::string(block) + "events: {far: {hinge: slide, value: 0.021, stop: true}}\n";
+  EXPECT_THAT(folder.tuned(question, never).trouble, HasSubstr("an event of the scene ends it there"));
+}
+
+TEST(Tune, WritesASceneThatFits) {
+  const TuneFolder folder;
+  folder.measure({}, 1e-4, 2);
+  const TuneResult result = folder.tuned(three);
+  std::vector<TunedValue> all;
+  for (const FittedValue& p : result.parameters) all.push_back(p.tuned);
+  const std::string file = (folder / "new.yaml").string();
+  write_changed(folder.prepared().values, changes_of(folder.prepared().values, all, result.values()), file,
+                test::plugins());
+  const std::string text = folder.read("new.yaml");
+  EXPECT_THAT(text, HasSubstr("# as the maker says"));
+  EXPECT_THAT(text, HasSubstr(fmt::format("{} mm", result.parameters[2].value)));
+  // A fit of the new scene begins at its end.
+  TuneQuestion question;
+  question.parameters = three;
+  const TuneResult again = folder.tuned(question, text);
+  EXPECT_DOUBLE_EQ(again.before, result.after);
+  EXPECT_NEAR(again.after, again.before, 1e-6 * again.before);
+}
+
+TEST(Tune, TellsAllThatIsWrongAtOnce) {
+  const TuneFolder folder;
+  folder.write("data.csv", "t[s],slide[kg],slyde.rate[m/s],note\n0,1,2,a\n0.1,x,2,b\n0.1,1,2,c\n0.2,1,2\n9,1,2,d\n");
+  TuneQuestion question;
+  question.parameters = {"loads.sprong.stiffness", "bodies.block.type", "loads.spring.damping=2..1",
+                         "bodies.block.mass=3..5", "loads.spring.stiffness=1 kg.."};
+  question.deviations = {"slide=-1 mm"};
+  try {
+    static_cast<void>(folder.tuned(question));
+    FAIL() << "nothing was refused";
+  } catch (const study::InputError& e) {
+    const std::string what = e.what();
+    for (const char* part :
+         {"--parameters loads.sprong.stiffness: no \"sprong\" here to change; did you mean 'spring'?",
+          "--parameters bodies.block.type: is no number", "--parameters loads.spring.damping: got bounds 2 and 1",
+          "--parameters bodies.block.mass: the scene's 2 kg lies outside of the bounds 3 and 5",
+          "--parameters loads.spring.stiffness: bound \"1 kg\": 'kg' is a wrong unit here",
+          "data.csv:1:6: column \"slide\": 'kg' is a wrong unit here",
+          "data.csv:1:16: no result \"slyde.rate\"; did you mean 'slide.rate'?",
+          "data.csv:3:5: got \"x\"; need a number, or nothing", "data.csv:4:1: the time does not increase",
+          "data.csv:5:1: got 3 cells; the head has 4", "data.csv:6:1: 9 s lies after the scene's end, 4 s",
+          "--deviations \"slide=-1 mm\": need a number > 0"})
+      EXPECT_THAT(what, HasSubstr(part));
+  }
+}
+
+}  // namespace
+}  // namespace withy::campaign
