@@ -28,7 +28,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["host"] = inner "|withy/(scene|study|results|plugins/host|host)/.*|nlohmann/.*|fmt/.*"
     may["bindings/c"] = inner "|withy/(scene|study|host)/.*|withy/bindings/c/.*|stddef[.]h"
     may["bindings/fmi"] = inner "|withy/(scene|study|results|plugins/host|bindings/fmi)/.*|nlohmann/.*|fmt/.*|minizip/.*|std[a-z]+[.]h"
-    may["bindings/python"] = inner "|withy/(scene|study|host)/.*|pybind11/.*"
+    may["bindings/python"] = inner "|withy/(scene|study|results|campaign|host|bindings/python)/.*|pybind11/.*"
     may["plugins/formulations"] = inner "|withy/plugins/formulations/.*|fmt/.*"
     may["plugins/kinematics"] = inner "|withy/plugins/kinematics/.*"
     may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"

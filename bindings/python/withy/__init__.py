@@ -16,28 +16,17 @@ from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequenc
 from typing import Any, Union
 
 from . import _withy
-from ._errors import PluginError, SceneError, SimulationStopped
+from ._errors import PluginError, SceneError, SimulationStopped, StoreError
+from ._library import library
 from ._result import Result, unknown
+from ._sweep import SweepResult, sweep
 from ._withy import Snapshot
 
 __all__ = ["Equations", "PluginError", "Result", "Scene", "SceneError", "Simulation", "SimulationStopped", "Snapshot",
-           "load", "loads"]
+           "StoreError", "SweepResult", "load", "loads", "sweep"]
 
 Progress = Callable[[float, float], Any]
 Path = Union[str, "os.PathLike[str]"]
-
-_libraries: dict[tuple[str, ...], _withy.Library] = {}
-
-
-def _library(plugins: Sequence[Path]) -> _withy.Library:
-    """One for each list of folders, made when it is first needed; remarks are warnings."""
-    import warnings
-
-    key = tuple(os.path.abspath(os.fspath(p)) for p in plugins)
-    if key not in _libraries:
-        _libraries[key] = _withy.Library(list(key), lambda remark: warnings.warn(remark, RuntimeWarning, stacklevel=3))
-    return _libraries[key]
-
 
 def load(path: Path, plugins: Sequence[Path] = ()) -> Scene:
     """Reads a scene from a file, YAML or JSON.
@@ -51,12 +40,12 @@ def load(path: Path, plugins: Sequence[Path] = ()) -> Scene:
         OSError: where the file cannot.
     """
     name = os.fspath(path)
-    return Scene(_withy.Scene.read(_library(plugins), name), tuple(os.fspath(p) for p in plugins))
+    return Scene(_withy.Scene.read(library(plugins), name), tuple(os.fspath(p) for p in plugins))
 
 
 def loads(text: str, name: str = "scene", plugins: Sequence[Path] = ()) -> Scene:
     """Reads a scene from its text. ``name`` stands for the file in messages; names of other files begin at its folder."""
-    return Scene(_withy.Scene.parse(_library(plugins), text, name), tuple(os.fspath(p) for p in plugins))
+    return Scene(_withy.Scene.parse(library(plugins), text, name), tuple(os.fspath(p) for p in plugins))
 
 
 def _as_text(value: Any) -> str:
