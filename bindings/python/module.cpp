@@ -18,6 +18,7 @@
 #include "withy/host/simulation.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/results/results_folder.hpp"
+#include "withy/scene/scene.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace py = pybind11;
@@ -182,7 +183,8 @@ void bind_scene(py::module_& m) {
                };
              return Library(std::move(options));
            }),
-           py::arg("plugins"), py::arg("log"));
+           py::arg("plugins"), py::arg("log"))
+      .def("schema", [](const Library& l) { return withy::schema(l.registry()); });
   const auto axes = [](const std::vector<std::string>& formulations, const std::vector<std::string>& families,
                        const std::vector<int>& modes, const std::vector<std::string>& integrators,
                        const std::vector<double>& tolerances) {
@@ -220,6 +222,8 @@ void bind_scene(py::module_& m) {
                return s.advise(accuracy, outputs, axes(formulations, families, modes, integrators, tolerances), f);
              });
            })
+      .def_property_readonly("values", &Scene::values)
+      .def("linearize", &Scene::linearize, py::call_guard<py::gil_scoped_release>())
       .def("modes", [](const Scene& s, const Names& lock, const py::object& progress) {
         return followed(progress, [&](const Follow& f) { return s.modes(lock, f); });
       });
