@@ -3,7 +3,8 @@
 
 Two lists, each with the version it is of: bindings/c/abi.txt has the declarations of <withy/withy.h> as a compiler for C
 sees them, and libwithy-c must show these functions and no others of its name; host/abi.txt has the functions of
-withy::host that libwithy-host shows. What differs from its list is an error. --update writes the lists anew, but takes
+withy::host that libwithy-host shows. What differs from its list is an error, and a name in a C example of docs/ that the
+header does not have. --update writes the lists anew, but takes
 nothing away unless the version of the project allows it (docs/versions.md); --unreleased: what goes was in no release.
 """
 
@@ -58,6 +59,16 @@ def interface_in_c(library, cc):
     return declared
 
 
+def unknown_in_pages(declared):
+    """Names of withy in examples in C that are none of the header's, each with its page."""
+    known = set(re.findall(r"\b(?:withy|WITHY)_\w+", " ".join(declared)))
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        for example in re.findall(r"^```c$(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL):
+            for name in re.findall(r"\b(?:withy|WITHY)_\w+", example):
+                if name not in known and f"S_FUNCTION_NAME {name}" not in example:
+                    yield f"{page.relative_to(ROOT)}: {name} is not in <withy/withy.h>"
+
+
 def interface_in_cpp(library):
     names = subprocess.run(["c++filt"], input="\n".join(shown(library)), text=True, check=True, stdout=subprocess.PIPE).stdout
     for long, short in SHORT:
@@ -109,7 +120,10 @@ def main():
     parser.add_argument("--unreleased", action="store_true")
     options = parser.parse_args()
     libraries = options.build / "lib"
-    held = [hold(ROOT / "bindings/c/abi.txt", interface_in_c(libraries / "libwithy-c.so", options.cc), options),
+    in_c = interface_in_c(libraries / "libwithy-c.so", options.cc)
+    wrong = list(unknown_in_pages(in_c))
+    print("".join(line + "\n" for line in wrong), end="")
+    held = [not wrong, hold(ROOT / "bindings/c/abi.txt", in_c, options),
             hold(ROOT / "host/abi.txt", interface_in_cpp(libraries / "libwithy-host.so"), options)]
     sys.exit(0 if all(held) else 1)
 

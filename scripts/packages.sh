@@ -55,9 +55,9 @@ mapfile -t from < <(grep -lsw "$suite" /etc/apt/sources.list /etc/apt/sources.li
 # shellcheck disable=SC2016
 mmdebstrap --quiet --variant=apt --format=null \
   --customize-hook="copy-in ${packages[*]} $work/try /root" \
-  --customize-hook='chroot "$1" sh -c "apt-get -q -y --no-install-recommends install /root/libwithy0_* /root/withy_* /root/python3-withy_*"' \
+  --customize-hook='chroot "$1" sh -c "apt-get -qq -y --no-install-recommends install /root/libwithy0_* /root/withy_* /root/python3-withy_*"' \
   --customize-hook='chroot "$1" sh /root/try/run.sh' \
-  --customize-hook='chroot "$1" sh -c "apt-get -q -y --no-install-recommends install /root/libwithy-dev_* g++ libc6-dev pkg-config"' \
+  --customize-hook='chroot "$1" sh -c "apt-get -qq -y --no-install-recommends install /root/libwithy-dev_* g++ libc6-dev pkg-config"' \
   --customize-hook='chroot "$1" sh /root/try/build.sh' \
   --customize-hook='chroot "$1" sh -c "dpkg --purge python3-withy withy libwithy-dev libwithy0 && ! find / -xdev -name \"*withy*\" -not -path \"/root/*\" -not -path \"/var/lib/*\" | grep ."' \
   "$suite" - "${from[@]}"
