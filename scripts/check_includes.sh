@@ -29,6 +29,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["bindings/c"] = inner "|withy/(scene|study|host)/.*|withy/bindings/c/.*|stddef[.]h"
     may["bindings/fmi"] = inner "|withy/(scene|study|results|plugins/host|bindings/fmi)/.*|nlohmann/.*|fmt/.*|minizip/.*|std[a-z]+[.]h"
     may["bindings/python"] = inner "|withy/(scene|study|results|campaign|host|bindings/python)/.*|pybind11/.*"
+    may["bindings/modelica"] = "withy/withy.h|ModelicaUtilities.h|std[a-z]+[.]h|string.h"
     may["plugins/formulations"] = inner "|withy/plugins/formulations/.*|fmt/.*"
     may["plugins/kinematics"] = inner "|withy/plugins/kinematics/.*"
     may["plugins/modes"] = inner "|withy/plugins/modes/.*|fmt/.*|boost/math/.*"
