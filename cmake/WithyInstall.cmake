@@ -2,6 +2,9 @@
 # installed tree can be moved.
 include(CMakePackageConfigHelpers)
 
+# What a program needs at run time, if nothing else is said; `development`, `program` and `python` are the other parts.
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME libraries)
+
 # Programs are in bin; libraries beside each other.
 # The build tree is laid out as it is installed, and libraries are found alike. CMake's own paths for a build tree end in
 # an empty one, which is the working folder: libraries would be looked for, and taken, there.
@@ -15,7 +18,7 @@ function(withy_install_library target)
   set_target_properties(${target} PROPERTIES
     EXPORT_NAME ${ARG_EXPORT_NAME} INSTALL_RPATH "$ORIGIN"
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  install(TARGETS ${target} EXPORT withy LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  install(TARGETS ${target} EXPORT withy LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_COMPONENT development
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 

@@ -7,6 +7,7 @@
 
 #include "withy/host/names.hpp"
 #include "withy/results/certificate_json.hpp"
+#include "withy/results/json_text.hpp"
 #include "withy/results/recorded_run.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/scene_values.hpp"
@@ -73,6 +74,11 @@ void Scene::check() const { static_cast<void>(make_scene(parts_->values, library
 const std::string& Scene::text() const { return parts_->text; }
 const std::string& Scene::name() const { return parts_->name; }
 const std::vector<std::string>& Scene::changes() const { return parts_->changes; }
+std::string Scene::values() const {
+  const SceneValues& values = parts_->values;
+  if (!values.problems().errors().empty()) check();  // which reports them with every other problem
+  return value_json(values.root()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
 const Library& Scene::library() const { return parts_->library; }
 
 std::shared_ptr<const study::Prepared> Scene::prepare() const {

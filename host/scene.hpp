@@ -66,6 +66,9 @@ class Scene {
   [[nodiscard]] const std::string& text() const;
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] const std::vector<std::string>& changes() const;  ///< "path=value"
+  /// Everything as it was written and set, without defaults, as JSON text: a scene again.
+  /// \throws SceneError where the text or what was set cannot be understood
+  [[nodiscard]] std::string values() const;
 
   /// Simulates to the end of the scene. A bad end is a status, not an exception.
   [[nodiscard]] Result run(const Follow& follow = {}) const;
@@ -88,6 +91,13 @@ class Scene {
                                    const Axes& axes = {}, const Follow& follow = {}) const;
   /// Modes about the steady state of the scene's initial state, hinges in `lock` held.
   [[nodiscard]] std::string modes(const std::vector<std::string>& lock = {}, const Follow& follow = {}) const;
+  /// The linear model of small motions about the scene's initial state: A, B, C, D with names and units.
+  /// \param inputs loads of the type input, hinges whose efforts are inputs, or "all"; empty: every input load or,
+  /// where there is none, every hinge \param outputs names or their beginnings; empty: the scene's, or all \param lock
+  /// hinges that are held \throws SimulationStopped where the mass matrix of what is free is singular
+  [[nodiscard]] std::string linearize(const std::vector<std::string>& inputs = {},
+                                      const std::vector<std::string>& outputs = {},
+                                      const std::vector<std::string>& lock = {}) const;
 
   [[nodiscard]] const Library& library() const;
   /// Made and compiled, for Simulation, Equations and the functions of `withy::study`.

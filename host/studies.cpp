@@ -4,9 +4,11 @@
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/host/scene.hpp"
+#include "withy/host/stopped.hpp"
 #include "withy/results/advice_json.hpp"
 #include "withy/results/advice_text.hpp"
 #include "withy/results/comparison_report.hpp"
+#include "withy/results/linear_files.hpp"
 #include "withy/results/modes_files.hpp"
 #include "withy/results/scene_edit.hpp"
 #include "withy/results/trade_files.hpp"
@@ -96,6 +98,17 @@ std::string Scene::modes(const std::vector<std::string>& lock, const Follow& fol
       base->values, library().registry(), [](const study::Prepared& prepared) { return prepared.scene.initial; },
       {lock, {}}, {}, false, {}, control_of(follow));
   return modes_json(found).dump();
+}
+
+std::string Scene::linearize(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
+                             const std::vector<std::string>& lock) const {
+  const std::shared_ptr<const study::Prepared> base = prepare();
+  const study::Configuration at(*base, base->scene.initial, {lock, {}}, study::Sampling::kept);
+  try {
+    return linear_model_json(at, study::linear_model(at, {inputs, outputs})).dump();
+  } catch (const std::domain_error& e) {
+    throw SimulationStopped("singular", e.what(), base->scene.initial.time);
+  }
 }
 
 }  // namespace withy::host

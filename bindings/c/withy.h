@@ -53,7 +53,7 @@ typedef struct withy_library_options {
   void* context;
 } withy_library_options;
 
-/** "0.1.0". */
+/** "0.2.0". */
 WITHY_API const char* withy_version(void);
 /** Why the last call with this handle failed; empty where it did not. Never null. */
 WITHY_API const char* withy_error(const void* handle);

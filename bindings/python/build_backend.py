@@ -61,7 +61,7 @@ def _contents(prefix):
             yield name.removeprefix(f"{PACKAGE}/"), file
         elif name.startswith("bin/"):
             yield f"{data}/scripts/{name.removeprefix('bin/')}", file
-        elif re.search(r"\.so\.\d+\.\d+$", name) or "/plugins/" in name:
+        elif name.startswith("lib/withy/") or re.search(r"^lib/.*libwithy-(hdf5\.so|.*\.so\.\d+\.\d+)$", name):
             yield f"{data}/data/{name}", file
 
 

@@ -7,17 +7,18 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <atomic>
-#include <chrono>
 #include <mutex>
-#include <optional>
 #include <system_error>
-#include <thread>
 #include <utility>
 
+#include "withy/bindings/python/followed.hpp"
+#include "withy/bindings/python/sweep.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/host/equations.hpp"
 #include "withy/host/simulation.hpp"
+#include "withy/results/results_error.hpp"
+#include "withy/results/results_folder.hpp"
+#include "withy/scene/scene.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace py = pybind11;
@@ -35,67 +36,9 @@ using withy::host::Scene;
 using withy::host::Simulation;
 using withy::host::SimulationStopped;
 using withy::host::Snapshot;
+using withy::python::followed;
+using withy::python::Signals;
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-/// Lets Python handle signals while a call goes on, some twenty times a second: Ctrl-C ends the call, and what its
-/// handler raised is raised when the call is back. The calling thread alone asks Python; others of a study follow it.
-class Signals {
- public:
-  /// By the thread that calls from now on.
-  void begin() {
-    caller_ = std::this_thread::get_id();
-    asked_ = Clock::now();
-  }
-  bool pending() {
-    if (ended_ || std::this_thread::get_id() != caller_) return ended_;
-    const auto now = Clock::now();
-    if (now - asked_ < std::chrono::milliseconds(50)) return false;
-    asked_ = now;
-    const py::gil_scoped_acquire held;
-    if (PyErr_CheckSignals() == 0) return false;
-    raised_.emplace();
-    return ended_ = true;
-  }
-  /// With the interpreter held.
-  void raise() {
-    ended_ = false;
-    if (auto raised = std::exchange(raised_, std::nullopt)) throw std::move(*raised);
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::thread::id caller_;
-  Clock::time_point asked_;
-  std::atomic<bool> ended_ = false;
-  std::optional<py::error_already_set> raised_;
-};
-
-/// Calls `act` without the interpreter, which Ctrl-C ends.
-template <class Act>
-auto followed(const py::object& progress, Act&& act) {
-  Signals signals;
-  signals.begin();
-  Follow follow;
-  follow.interrupted = [&signals] { return signals.pending(); };
-  std::optional<py::error_already_set> failed;
-  if (!progress.is_none())
-    follow.progress = [&](double done, double all) {
-      const py::gil_scoped_acquire held;
-      if (failed) return;
-      try {
-        progress(done, all);
-      } catch (py::error_already_set& e) {
-        failed.emplace(std::move(e));
-      }
-    };
-  auto result = [&] {
-    const py::gil_scoped_release released;
-    return act(follow);
-  }();
-  signals.raise();
-  if (failed) throw std::move(*failed);
-  return result;
-}
 
 py::list names_of(const std::vector<Port>& ports) {
   py::list names;
@@ -206,6 +149,10 @@ void translate(std::exception_ptr pointer) {
     raise("PluginError", e.what());
   } catch (const SimulationStopped& e) {
     raise("SimulationStopped", e.what(), e.status(), e.time());
+  } catch (const withy::ResultsError& e) {
+    raise("StoreError", e.what());
+  } catch (const withy::FolderBusy& e) {
+    raise("StoreError", e.what());
   } catch (const std::out_of_range& e) {
     PyErr_SetObject(PyExc_KeyError, py::str(e.what()).ptr());
   } catch (const std::system_error& e) {
@@ -236,7 +183,8 @@ void bind_scene(py::module_& m) {
                };
              return Library(std::move(options));
            }),
-           py::arg("plugins"), py::arg("log"));
+           py::arg("plugins"), py::arg("log"))
+      .def("schema", [](const Library& l) { return withy::schema(l.registry()); });
   const auto axes = [](const std::vector<std::string>& formulations, const std::vector<std::string>& families,
                        const std::vector<int>& modes, const std::vector<std::string>& integrators,
                        const std::vector<double>& tolerances) {
@@ -274,6 +222,8 @@ void bind_scene(py::module_& m) {
                return s.advise(accuracy, outputs, axes(formulations, families, modes, integrators, tolerances), f);
              });
            })
+      .def_property_readonly("values", &Scene::values)
+      .def("linearize", &Scene::linearize, py::call_guard<py::gil_scoped_release>())
       .def("modes", [](const Scene& s, const Names& lock, const py::object& progress) {
         return followed(progress, [&](const Follow& f) { return s.modes(lock, f); });
       });
@@ -382,4 +332,5 @@ PYBIND11_MODULE(_withy, m) {
   bind_scene(m);
   bind_equations(m);
   bind_simulation(m);
+  withy::python::bind_sweep(m);
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "withy/core/simulation/simulate.hpp"
+#include "withy/host/equations.hpp"
 #include "withy/tests/host/arm.hpp"
 
 namespace withy {
@@ -31,6 +32,31 @@ TEST(HostedScene, is_varied_as_a_value) {
   for (const std::string& change : fast.changes())
     again.set(change.substr(0, change.find('=')), std::string_view(change).substr(change.find('=') + 1));
   EXPECT_EQ(again.run().values, quick.values);
+}
+
+TEST(HostedScene, says_what_it_is_as_a_scene_again) {
+  Scene arm = Scene(slew()).set("time.end", 0.2).set("bodies.link1.length", "950 mm").formulation("linear");
+  const Scene again = Scene::parse(library(), arm.values());
+  EXPECT_EQ(again.run().values, arm.run().values);
+  arm.set("bodies.lnk1.length", 1);
+  EXPECT_THAT([&] { static_cast<void>(arm.values()); },
+              testing::ThrowsMessage<SceneError>(HasSubstr("did you mean 'link1'")));
+}
+
+TEST(HostedScene, has_the_linear_model_of_its_equations) {
+  const Scene arm = Scene::read(library(), WITHY_SOURCES "/scenes/commanded-arm.yaml");
+  const json linear = json::parse(arm.linearize({}, {"shoulder"}));
+  host::Equations equations(arm, "");
+  std::vector<double> jacobian(equations.size() * equations.size());
+  equations.jacobian(0, equations.y0(), jacobian);
+  ASSERT_EQ(linear["A"].size(), equations.size());
+  for (std::size_t i = 0; i < equations.size(); ++i)
+    for (std::size_t j = 0; j < equations.size(); ++j)
+      EXPECT_NEAR(linear["A"][i][j].get<double>(), jacobian[i * equations.size() + j],
+                  1e-9 * (1 + std::abs(jacobian[i * equations.size() + j])));
+  EXPECT_EQ(linear["inputs"], json({"command"}));
+  EXPECT_EQ(linear["C"].size(), 2U);  // the angle and its rate
+  EXPECT_THROW(static_cast<void>(arm.linearize({"comand"})), std::runtime_error);
 }
 
 TEST(HostedScene, reports_every_problem_with_its_place) {

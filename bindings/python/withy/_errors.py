@@ -12,6 +12,10 @@ class PluginError(RuntimeError):
     """A library of plugins that a scene names is refused; the text says which and why."""
 
 
+class StoreError(RuntimeError):
+    """The folder of a sweep holds something else, is damaged, or another process writes what was asked of this one."""
+
+
 class SimulationStopped(RuntimeError):
     """A simulation cannot go on; the text is the physical reason.
 

@@ -10,10 +10,15 @@ from typing import Any
 import numpy
 
 
+def nearest(name: object, known: list[str]) -> str:
+    """What an error about a name says after it: the nearest one, or all."""
+    near = difflib.get_close_matches(str(name), known, 1)
+    return f"; did you mean {near[0]!r}?" if near else f"; known: {', '.join(known)}"
+
+
 def unknown(what: str, name: object, known: list[str]) -> KeyError:
     """The error for a name that is not there, with the nearest one."""
-    near = difflib.get_close_matches(str(name), known, 1)
-    return KeyError(f"no {what} {name!r}" + (f"; did you mean {near[0]!r}?" if near else f"; known: {', '.join(known)}"))
+    return KeyError(f"no {what} {name!r}" + nearest(name, known))
 
 
 class Result(Mapping):

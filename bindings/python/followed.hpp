@@ -1,0 +1,79 @@
+/// \file
+/// Calls that take long: without the interpreter, ended by Ctrl-C, heard of by a function of Python.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "withy/host/scene.hpp"
+
+namespace withy::python {
+
+namespace py = pybind11;
+
+/// Lets Python handle signals while a call goes on, some twenty times a second: Ctrl-C ends the call, and what its
+/// handler raised is raised when the call is back. The calling thread alone asks Python; others of a study follow it.
+class Signals {
+ public:
+  /// By the thread that calls from now on.
+  void begin() {
+    caller_ = std::this_thread::get_id();
+    asked_ = Clock::now();
+  }
+  bool pending() {
+    if (ended_ || std::this_thread::get_id() != caller_) return ended_;
+    const auto now = Clock::now();
+    if (now - asked_ < std::chrono::milliseconds(50)) return false;
+    asked_ = now;
+    const py::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() == 0) return false;
+    raised_.emplace();
+    return ended_ = true;
+  }
+  /// With the interpreter held.
+  void raise() {
+    ended_ = false;
+    if (auto raised = std::exchange(raised_, std::nullopt)) throw std::move(*raised);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::thread::id caller_;
+  Clock::time_point asked_;
+  std::atomic<bool> ended_ = false;
+  std::optional<py::error_already_set> raised_;
+};
+
+/// Calls `act` without the interpreter, which Ctrl-C ends.
+template <class Act>
+auto followed(const py::object& progress, Act&& act) {
+  Signals signals;
+  signals.begin();
+  host::Follow follow;
+  follow.interrupted = [&signals] { return signals.pending(); };
+  std::optional<py::error_already_set> failed;
+  if (!progress.is_none())
+    follow.progress = [&](double done, double all) {
+      const py::gil_scoped_acquire held;
+      if (failed) return;
+      try {
+        progress(done, all);
+      } catch (py::error_already_set& e) {
+        failed.emplace(std::move(e));
+      }
+    };
+  auto result = [&] {
+    const py::gil_scoped_release released;
+    return act(std::as_const(follow));
+  }();
+  signals.raise();
+  if (failed) throw std::move(*failed);
+  return result;
+}
+
+}  // namespace withy::python

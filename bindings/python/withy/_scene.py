@@ -1,0 +1,333 @@
+"""Scenes: read from files, or built in code."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy
+
+from . import _withy
+from ._library import library
+from ._parts import plain
+from ._result import Result, unknown
+
+if TYPE_CHECKING:
+    from . import Equations
+
+Progress = Callable[[float, float], Any]
+Path = Union[str, "os.PathLike[str]"]
+
+
+def load(path: Path, plugins: Sequence[Path] = ()) -> Scene:
+    """Reads a scene from a file, YAML or JSON.
+
+    Args:
+        path: of the file.
+        plugins: folders with plugins of your own.
+
+    Raises:
+        SceneError: where the text cannot be read.
+        OSError: where the file cannot.
+    """
+    return Scene._of(_withy.Scene.read(library(plugins), os.fspath(path)), [os.fspath(p) for p in plugins])
+
+
+def loads(text: str, name: str = "scene", plugins: Sequence[Path] = ()) -> Scene:
+    """Reads a scene from its text. ``name`` stands for the file in messages; names of other files begin at its folder."""
+    return Scene._of(_withy.Scene.parse(library(plugins), text, name), [os.fspath(p) for p in plugins])
+
+
+def _as_text(value: Any) -> str:
+    """A value as a scene's file has it; a text stays as it is: "25 mm", "quadratic"."""
+    if isinstance(value, str):
+        return value
+    return json.dumps(plain(value), allow_nan=True)
+
+
+_SECTIONS = ("bodies", "hinges", "loads", "motions", "outputs", "events", "constraints")
+_PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_./-]*")
+_MEANT = {"true", "false", "yes", "no", "on", "off", "null", "y", "n"}
+
+
+def _scalar(value: Any) -> str:
+    if isinstance(value, str):
+        return value if _PLAIN.fullmatch(value) and value.lower() not in _MEANT else json.dumps(value, ensure_ascii=False)
+    if isinstance(value, float) and value != value or value in (float("inf"), -float("inf")):
+        return {"nan": ".nan", "inf": ".inf", "-inf": "-.inf"}[str(value)]
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return str(int(value)) if value or str(value)[0] != "-" else "-0.0"
+    return json.dumps(value)
+
+
+def _flow(value: Any) -> str:
+    """On one line."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_scalar(k)}: {_flow(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_flow, value)) + "]"
+    return _scalar(value)
+
+
+def _block(values: Mapping[str, Any], indent: str = "") -> str:
+    """A line for each member that fits on one."""
+    text = ""
+    for key, value in values.items():
+        line = f"{indent}{_scalar(key)}: {_flow(value)}"
+        if isinstance(value, Mapping) and value and (len(line) > 120 or not indent and key in _SECTIONS):
+            line = f"{indent}{_scalar(key)}:\n{_block(value, indent + '  ').rstrip()}"
+        text += line + "\n"
+    return text
+
+
+def _frozen(value: Any) -> Any:
+    """To look at: what is changed in a copy would be lost unseen."""
+    if isinstance(value, dict):
+        return MappingProxyType({k: _frozen(v) for k, v in value.items()})
+    return tuple(map(_frozen, value)) if isinstance(value, list) else value
+
+
+class _Section(MutableMapping):
+    """The parts of a scene by their names. What it gives can be looked at; assign anew, or use Scene.set(), to change it."""
+
+    def __init__(self, scene: Scene, name: str) -> None:
+        self._scene, self._name = scene, name
+
+    def _now(self) -> Mapping[str, Any]:
+        return self._scene._values_now().get(self._name) or {}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._now():
+            raise unknown(f"member of {self._name}", name, list(self._now()))
+        return _frozen(self._now()[name])
+
+    def __setitem__(self, name: str, value: Mapping[str, Any]) -> None:
+        self._scene._changing(self._name)[name] = plain(value)
+
+    def __delitem__(self, name: str) -> None:
+        self[name]  # KeyError with the nearest name
+        del self._scene._changing(self._name)[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._now())
+
+    def __len__(self) -> int:
+        return len(self._now())
+
+    def __repr__(self) -> str:
+        return f"<{self._name}: {', '.join(self) or 'none'}>"
+
+
+class Scene:
+    """A scene: read, built in code, varied, run and studied. It can be copied and pickled.
+
+    ``Scene()`` is empty: ``scene.bodies["boom"] = withy.beam(...)``; load() and loads() read one. What is set is checked
+    when the scene is needed: every problem is then reported at once, as SceneError. The lines that it names are those of
+    the file or, of a scene built or changed in code, of to_yaml().
+
+    Args:
+        plugins: folders with plugins of your own.
+        values: members of the scene, as a file has them: ``gravity=[0, 0, -9.81]``, ``time={"end": 4}``.
+    """
+
+    def __init__(self, *, plugins: Sequence[Path] = (), **values: Any) -> None:
+        self._plugins: tuple[str, ...] = tuple(os.fspath(p) for p in plugins)
+        self._name = "scene"
+        self._read: _withy.Scene | None = None
+        # While it is built in code: what it says. Else the engine's scene knows.
+        self._values: dict[str, Any] | None = {"format": "withy/1", **{k: plain(v) for k, v in values.items()}}
+
+    @classmethod
+    def _of(cls, made: _withy.Scene, plugins: Sequence[str]) -> Scene:
+        scene = cls(plugins=plugins)
+        scene._name, scene._read, scene._values = made.name, made, None
+        return scene
+
+    @property
+    def _made(self) -> _withy.Scene:
+        """The engine's scene, anew after a change in code."""
+        if self._read is None:
+            self._read = _withy.Scene.parse(library(self._plugins), self.to_yaml(), self._name)
+        return self._read
+
+    def _values_now(self) -> dict[str, Any]:
+        if self._values is None:
+            self._values = json.loads(self._made.values)
+        return self._values
+
+    def _changing(self, section: str) -> dict[str, Any]:
+        """The members of a section, to be changed; lines of the file that was read are no longer those of the scene."""
+        values = self._values_now()
+        if self._read is not None and not self._name.endswith("to_yaml()") and self._name != "scene":
+            self._name += ", to_yaml()"
+        self._read = None
+        if not isinstance(values.get(section), dict):
+            values[section] = {}
+        return values[section]
+
+    @property
+    def bodies(self) -> MutableMapping[str, Any]:
+        """Bodies by their names: ``scene.bodies["boom"] = withy.beam(length=8, ...)``."""
+        return _Section(self, "bodies")
+
+    @property
+    def hinges(self) -> MutableMapping[str, Any]:
+        """Hinges by their names: ``scene.hinges["root"] = withy.weld(parent="bus", child="boom")``."""
+        return _Section(self, "hinges")
+
+    @property
+    def loads(self) -> MutableMapping[str, Any]:
+        """Loads by their names: ``scene.loads["push"] = withy.force(...)``."""
+        return _Section(self, "loads")
+
+    @property
+    def motions(self) -> MutableMapping[str, Any]:
+        """Prescribed motions by their names: ``scene.motions["spin"] = withy.spin_up(hinge="axle", ...)``."""
+        return _Section(self, "motions")
+
+    @property
+    def outputs(self) -> MutableMapping[str, Any]:
+        """Outputs by their names: ``scene.outputs["imu"] = withy.accelerometer(of="bus")``."""
+        return _Section(self, "outputs")
+
+    @property
+    def events(self) -> MutableMapping[str, Any]:
+        """Events by their names, each a dict."""
+        return _Section(self, "events")
+
+    @property
+    def constraints(self) -> MutableMapping[str, Any]:
+        """Constraints by their names, each a dict."""
+        return _Section(self, "constraints")
+
+    def to_yaml(self) -> str:
+        """The scene as a file has it, all that was set included: loads(scene.to_yaml()) says the same.
+
+        Raises:
+            SceneError: where what was set cannot be understood.
+        """
+        return _block(self._values_now())
+
+    def set(self, path: str, value: Any) -> Scene:
+        """Changes a value.
+
+        Args:
+            path: keys with dots between them, as ``"loads.slew.time_scale"`` or ``"gravity.1"``.
+            value: a number in SI units, a text as in a file (``"25 mm"``), a list, a dict, a NumPy array, or None.
+
+        Returns:
+            The scene itself, so that calls can follow each other.
+        """
+        self._made.set(path, _as_text(value))
+        self._values = None
+        return self
+
+    def copy(self) -> Scene:
+        """A scene of its own that says the same."""
+        return Scene._of(self._made.copy(), self._plugins)
+
+    __copy__ = copy
+
+    def __deepcopy__(self, memo: dict) -> Scene:
+        return self.copy()
+
+    def __reduce__(self):
+        return _restored, (self._made.text, self._made.name, self._plugins, list(self._made.changes))
+
+    def __repr__(self) -> str:
+        changes = "".join(f", {change}" for change in self._made.changes)
+        return f"<withy.Scene {self._made.name}{changes}>"
+
+    def check(self) -> None:
+        """Raises SceneError with every problem where the scene has any."""
+        self._made.check()
+
+    def run(self, *, progress: Progress | None = None, **options: Any) -> Result:
+        """Simulates to the end of the scene. A bad end is a status of the result, not an exception.
+
+        Args:
+            progress: called with the time reached and the end [s].
+            options: values of the scene for this run alone: ``formulation="exact"``, ``integrator={"name": "rk4",
+                "step": 1e-3}``, ``time={"end": 2}``.
+        """
+        return Result(*self._with(options)._made.run(progress))
+
+    def compile(self, formulation: str | dict | None = None) -> Equations:
+        """The equations of motion y' = f(t, y), for an integrator of your own.
+
+        Args:
+            formulation: its name, or a dict with options; the scene's where left out.
+        """
+        from . import Equations
+
+        return Equations(self._with({} if formulation is None else {"formulation": formulation})._made, "")
+
+    def compare(self, formulations: Sequence[str] = ("ruthless", "inconsistent", "consistent", "quadratic"),
+                reference: str = "quadratic", *, progress: Progress | None = None) -> dict[str, Any]:
+        """Runs several formulations: what ``withy compare --json`` prints, each run with its distance to the reference."""
+        return json.loads(self._made.compare(list(formulations), reference, progress))
+
+    def trade(self, *, formulations: Sequence[str] = (), families: Sequence[str] = (), modes: Sequence[int] = (),
+              integrators: Sequence[str] = (), tolerances: Sequence[float] = (), jobs: int = 0,
+              progress: Progress | None = None) -> dict[str, Any]:
+        """Error against cost over the product of the axes: what ``withy trade --json`` prints. ``jobs`` threads; 0: all."""
+        return json.loads(self._made.trade(list(formulations), list(families), list(modes), list(integrators),
+                                           list(tolerances), jobs, progress))
+
+    def advise(self, accuracy: str | float, outputs: Sequence[str] = (), *, formulations: Sequence[str] = (),
+               families: Sequence[str] = (), modes: Sequence[int] = (), integrators: Sequence[str] = (),
+               tolerances: Sequence[float] = (), progress: Progress | None = None) -> dict[str, Any]:
+        """The cheapest model that holds an accuracy: what ``withy advise --json`` prints; "advice" is None where none does.
+
+        Args:
+            accuracy: a share (0.01 or ``"1%"``), a length or an angle (``"1 mm, 0.1 deg"``).
+            outputs: what it is asked of: hinges, ``"link1.tip"``, ``"link1.tip.deflection"``; all where left out.
+        """
+        return json.loads(self._made.advise(str(accuracy), list(outputs), list(formulations), list(families),
+                                            list(modes), list(integrators), list(tolerances), progress))
+
+    def modes(self, lock: Sequence[str] = (), *, progress: Progress | None = None) -> dict[str, Any]:
+        """Natural modes about the steady state, hinges in ``lock`` held: an element of "runs" of ``withy modes --json``."""
+        return json.loads(self._made.modes(list(lock), progress))
+
+    def linearize(self, inputs: Sequence[str] = (), outputs: Sequence[str] = (),
+                  lock: Sequence[str] = ()) -> dict[str, Any]:
+        """The linear model of small motions about the initial state: what ``withy linearize`` prints, A to D as arrays.
+
+        Args:
+            inputs: loads of type ``input``, hinges whose efforts are inputs, or ``"all"``; the scene's inputs or, where
+                it has none, every hinge where left out.
+            outputs: names or their beginnings; the scene's where left out, or all.
+            lock: hinges that are held.
+
+        Raises:
+            SimulationStopped: where the mass matrix of what is free is singular.
+        """
+        linear = json.loads(self._made.linearize(list(inputs), list(outputs), list(lock)))
+        for name, columns in (("A", "states"), ("B", "inputs"), ("C", "states"), ("D", "inputs")):
+            linear[name] = numpy.array(linear[name], float).reshape(-1, len(linear[columns]))
+        return linear
+
+    def _with(self, options: Mapping[str, Any]) -> Scene:
+        if not options:
+            return self
+        changed = self.copy()
+        for path, value in options.items():
+            if isinstance(value, Mapping) and path not in ("formulation", "integrator"):
+                for key, member in value.items():
+                    changed.set(f"{path}.{key}", member)
+            else:
+                changed.set(path, value)
+        return changed
+
+
+def _restored(text: str, name: str, plugins: tuple[str, ...], changes: list[str]) -> Scene:
+    scene = loads(text, name, plugins)
+    for change in changes:
+        path, _, value = change.partition("=")
+        scene.set(path, value)
+    return scene
