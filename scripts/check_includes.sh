@@ -13,7 +13,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
 
     # Inside the core: each room sees those named before it, and what is named here alone.
     engine = standard "|(unsupported/)?Eigen/.*|boost/math/.*"
-    rooms = split("spatial shape plugin model deformation tree sweep sweep/rod sweep/strict sweep/symmetric sweep/first_order " \
+    rooms = split("spatial shape plugin model deformation tree sweep sweep/rod sweep/strict sweep/symmetric sweep/first_order sweep/lanes " \
                   "kinematics reference tangents equations simulation analysis", core, " ")
     seen = ""
     for (i = 1; i <= rooms; ++i) {
@@ -24,7 +24,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["scene"] = inner "|withy/scene/.*|yaml-cpp/.*|nlohmann/.*|fmt/.*|spdlog/.*"
     may["study"] = inner "|withy/(scene|study|plugins/host)/.*|fmt/.*|boost/math/.*"
     may["results"] = inner "|withy/(scene|study|results)/.*|nlohmann/.*|fmt/.*|boost/crc.hpp|hdf5[.]h|(sys/)?[a-z]+[.]h"
-    may["campaign"] = inner "|withy/(scene|study|results|campaign)/.*|nlohmann/.*|fmt/.*|boost/(crc[.]hpp|(math|random)/.*)|(sys/)?[a-z]+[.]h"
+    may["campaign"] = inner "|withy/(scene|study|results|campaign)/.*|nlohmann/.*|fmt/.*|boost/(crc[.]hpp|(math|random|context)/.*)|(sys/)?[a-z]+[.]h"
     may["host"] = inner "|withy/(scene|study|results|plugins/host|host)/.*|nlohmann/.*|fmt/.*"
     may["bindings/c"] = inner "|withy/(scene|study|host)/.*|withy/bindings/c/.*|stddef[.]h"
     may["bindings/fmi"] = inner "|withy/(scene|study|results|plugins/host|bindings/fmi)/.*|nlohmann/.*|fmt/.*|minizip/.*|std[a-z]+[.]h"

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <vector>
 
+#include "withy/core/equations/lane_equations.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -16,35 +17,63 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/// Times of `evaluate`, which makes `each` evaluations and returns whether they could be made.
+template <class Evaluate>
+EvaluationTimes time_calls(std::size_t each, const std::function<std::size_t()>& allocations, Evaluate&& evaluate) {
+  bool good = true;
+  const auto time = [&](std::size_t count) {
+    const double begin = cpu_seconds();
+    for (std::size_t i = 0; i < count; ++i) good = evaluate();
+    return cpu_seconds() - begin;
+  };
+  // The first batches warm caches and clock rate.
+  std::size_t batch = 1;
+  while (time(batch) < 0.01) batch *= 2;
+  if (!good) throw InputError("the equations of motion cannot be evaluated at this state; see withy eval");
+  std::array<double, 25> times{};
+  const std::size_t before = allocations ? allocations() : 0;
+  for (double& t : times) t = time(batch);
+  EvaluationTimes result;
+  result.evaluations = batch * times.size() * each;
+  if (allocations)
+    result.allocations = static_cast<double>(allocations() - before) / static_cast<double>(result.evaluations);
+  std::sort(times.begin(), times.end());
+  const auto count = static_cast<double>(batch * each);
+  result.median = times[times.size() / 2] / count;
+  result.fastest = times.front() / count;
+  result.slowest = times.back() / count;
+  return result;
+}
+
 }  // namespace
 
 EvaluationTimes time_evaluations(const EquationsOfMotion& equations, const State& state,
                                  const std::function<std::size_t()>& allocations) {
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();
-  Evaluation outcome;
-  const auto time = [&](std::size_t count) {
-    const double begin = cpu_seconds();
-    for (std::size_t i = 0; i < count; ++i) outcome = equations.derivatives(state.time, state.y, rates, work);
-    return cpu_seconds() - begin;
+  return time_calls(1, allocations, [&] { return equations.derivatives(state.time, state.y, rates, work).ok(); });
+}
+
+LaneTimes time_lanes(const EquationsOfMotion& equations, const State& state,
+                     const std::function<std::size_t()>& allocations) {
+  const std::unique_ptr<LaneEquations> lanes = lane_equations(equations);
+  if (lanes == nullptr) return {lane_refusal(equations), {}};
+  std::array<std::vector<double>, LaneEquations::count> rates;
+  std::vector<Work> work;
+  std::array<LaneCall, LaneEquations::count> calls;
+  std::array<LaneCall*, LaneEquations::count> asked{};
+  work.reserve(calls.size());
+  for (std::size_t lane = 0; lane < calls.size(); ++lane) {
+    rates[lane].resize(equations.size());
+    work.push_back(equations.make_work());
+    calls[lane] = {state.time, state.y, rates[lane], &work.back(), {}};
+    asked[lane] = &calls[lane];
+  }
+  const auto evaluate = [&] {
+    lanes->derivatives(asked);
+    return calls.front().evaluation.ok();
   };
-  // The first batches warm caches and clock rate.
-  std::size_t batch = 1;
-  while (time(batch) < 0.01) batch *= 2;
-  if (!outcome.ok()) throw InputError("the equations of motion cannot be evaluated at this state; see withy eval");
-  std::array<double, 25> times{};
-  const std::size_t before = allocations ? allocations() : 0;
-  for (double& t : times) t = time(batch);
-  EvaluationTimes result;
-  result.evaluations = batch * times.size();
-  if (allocations)
-    result.allocations = static_cast<double>(allocations() - before) / static_cast<double>(result.evaluations);
-  std::sort(times.begin(), times.end());
-  const auto count = static_cast<double>(batch);
-  result.median = times[times.size() / 2] / count;
-  result.fastest = times.front() / count;
-  result.slowest = times.back() / count;
-  return result;
+  return {{}, time_calls(calls.size(), allocations, evaluate)};
 }
 
 }  // namespace withy::study

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/state.hpp"
@@ -22,5 +23,15 @@ struct EvaluationTimes {
 /// \throws InputError where the equations cannot be evaluated at the state.
 EvaluationTimes time_evaluations(const EquationsOfMotion& equations, const State& state,
                                  const std::function<std::size_t()>& allocations);
+
+struct LaneTimes {
+  std::string refusal;  ///< why these equations have no lanes, and no times; empty where they have
+  EvaluationTimes times;
+};
+
+/// The same, four cases at once: times of one evaluation of one case.
+/// \throws InputError where the equations cannot be evaluated at the state.
+LaneTimes time_lanes(const EquationsOfMotion& equations, const State& state,
+                     const std::function<std::size_t()>& allocations);
 
 }  // namespace withy::study

@@ -223,6 +223,44 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
   }
   std::vector<std::string> savings() const override { return savings_; }
 
+  // For evaluations of several cases at once, which have a sweep of their own: what stands before it and after it.
+  [[nodiscard]] const Sweep& sweep() const { return sweep_; }
+  [[nodiscard]] const Terms& terms() const { return terms_; }
+  /// The loads' efforts at (t, y), in the work memory; driven accelerations go into y_dot.
+  std::span<double> applied(double t, std::span<const double> y, std::span<double> y_dot, Work& work) const noexcept {
+    const std::span<double> efforts = efforts_.in(work);
+    for (double& e : efforts) e = 0;
+    loads_.add(t, y, efforts, of_loads_.in(work));
+    // The sweep leaves all efforts on driven speeds in the place of the loads'.
+    double* on_driven = on_driven_.in(work).data();
+    for (const Slot& slot : driven_) on_driven = std::copy_n(efforts.data() + slot.speed, slot.speeds, on_driven);
+    if (!model_->motions().empty())
+      model_->prescribe_accelerations(t, {y_dot.data() + layout().positions, layout().speeds});
+    return efforts;
+  }
+  /// All that an evaluation gives beside accelerations: position rates and power of these speeds, the rates of the
+  /// loads' own states, and whether all is finite.
+  Evaluation finish(double t, std::span<const double> y, std::span<const double> speeds,
+                    std::span<const double> efforts, std::span<double> y_dot, const Evaluation& evaluation,
+                    Work& work) const noexcept {
+    const Layout& order = layout();
+    rates_.set(y.first(order.positions), speeds, y_dot);
+    const double* accelerations = y_dot.data() + order.positions;
+    double power = 0;
+    if (!model_->motions().empty() || !model_->loads().empty()) {
+      for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
+    }
+    power += elastic_.damping_power(speeds);
+    for (std::size_t i = 0; i < order.discrete; ++i) y_dot[order.moving() + i] = 0;
+    y_dot[order.moving() + order.discrete] = power;
+    double total = power;
+    for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
+    if (!std::isfinite(total)) return {Evaluation::Outcome::nonfinite, first_nonfinite(*model_, accelerations)};
+    if (order.continuous > 0 && !loads_.rates(t, y, y_dot, of_loads_.in(work)))
+      return {Evaluation::Outcome::nonfinite, -1};
+    return evaluation;
+  }
+
  private:
   void lay_out() {
     sweep::WorkLayout memory;
@@ -252,18 +290,6 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
   [[nodiscard]] const ReferenceDynamics& reference() const {
     return reference_([this] { return std::make_shared<const ReferenceDynamics>(model_, terms_); });
   }
-  /// The loads' efforts at (t, y), in the work memory; driven accelerations go into y_dot.
-  std::span<double> applied(double t, std::span<const double> y, std::span<double> y_dot, Work& work) const noexcept {
-    const std::span<double> efforts = efforts_.in(work);
-    for (double& e : efforts) e = 0;
-    loads_.add(t, y, efforts, of_loads_.in(work));
-    // The sweep leaves all efforts on driven speeds in the place of the loads'.
-    double* on_driven = on_driven_.in(work).data();
-    for (const Slot& slot : driven_) on_driven = std::copy_n(efforts.data() + slot.speed, slot.speeds, on_driven);
-    if (!model_->motions().empty())
-      model_->prescribe_accelerations(t, {y_dot.data() + layout().positions, layout().speeds});
-    return efforts;
-  }
   /// Of the last evaluation, on driven speeds.
   void find_motion_efforts(Work& work, std::span<double> efforts) const noexcept {
     const std::span<const double> all = efforts_.in(work);
@@ -285,28 +311,6 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
     } else {
       return sweep_.accelerations(y.data(), speeds, efforts, result, of_sweep_.in(work));
     }
-  }
-  /// All that an evaluation gives beside accelerations: position rates and power of these speeds, the rates of the
-  /// loads' own states, and whether all is finite.
-  Evaluation finish(double t, std::span<const double> y, std::span<const double> speeds,
-                    std::span<const double> efforts, std::span<double> y_dot, const Evaluation& evaluation,
-                    Work& work) const noexcept {
-    const Layout& order = layout();
-    rates_.set(y.first(order.positions), speeds, y_dot);
-    const double* accelerations = y_dot.data() + order.positions;
-    double power = 0;
-    if (!model_->motions().empty() || !model_->loads().empty()) {
-      for (std::size_t i = 0; i < order.speeds; ++i) power += efforts[i] * speeds[i];
-    }
-    power += elastic_.damping_power(speeds);
-    for (std::size_t i = 0; i < order.discrete; ++i) y_dot[order.moving() + i] = 0;
-    y_dot[order.moving() + order.discrete] = power;
-    double total = power;
-    for (std::size_t i = 0; i < order.speeds; ++i) total += std::abs(accelerations[i]);
-    if (!std::isfinite(total)) return {Evaluation::Outcome::nonfinite, first_nonfinite(*model_, accelerations)};
-    if (order.continuous > 0 && !loads_.rates(t, y, y_dot, of_loads_.in(work)))
-      return {Evaluation::Outcome::nonfinite, -1};
-    return evaluation;
   }
   /// The speeds that inertia forces see: zeros where their products are dropped.
   const double* inertial(std::span<const double> speeds, Work& work) const noexcept {

@@ -44,6 +44,7 @@ struct Pack {
   friend Pack operator-(const Pack& a, const Pack& b) { return {a.low - b.low, a.high - b.high}; }
   friend Pack operator*(const Pack& a, const Pack& b) { return {a.low * b.low, a.high * b.high}; }
   friend Pack operator*(double s, const Pack& a) { return {a.low * s, a.high * s}; }
+  friend Pack operator/(const Pack& a, const Pack& b) { return {a.low / b.low, a.high / b.high}; }
   friend Pack operator-(const Pack& a) { return {-a.low, -a.high}; }
 };
 inline Pack spread(double a) { return {a, a, a, a}; }
@@ -74,6 +75,7 @@ inline Pack shuffle(const Pack& a, const Pack& b) {
 
 #endif
 
+inline double first(const Pack& p) { return p[0]; }
 inline double sum(const Pack& p) { return (p[0] + p[2]) + (p[1] + p[3]); }
 
 /// A vector of three components; the fourth lane is zero.
@@ -96,6 +98,16 @@ struct Triple {
 };
 
 inline double dot(const Triple& a, const Triple& b) { return sum(a.p * b.p); }
+/// a·b + c·d + e·f, summed over the components last.
+inline double dot(const Triple& a, const Triple& b, const Triple& c, const Triple& d) {
+  return sum(a.p * b.p + c.p * d.p);
+}
+inline double dot(const Triple& a, const Triple& b, const Triple& c, const Triple& d, const Triple& e,
+                  const Triple& f) {
+  return sum(a.p * b.p + c.p * d.p + e.p * f.p);
+}
+/// Products of the components.
+inline Triple products(const Triple& a, const Triple& b) { return a.p * b.p; }
 
 inline Triple cross(const Triple& a, const Triple& b) {
   const Pack a1 = detail::shuffle<1, 2, 0, 3>(a.p, a.p);

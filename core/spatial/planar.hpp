@@ -2,57 +2,62 @@
 /// The algebra of the sweeps for motion in a plane; the third axis is its normal. Meaning of each function: space.hpp.
 #pragma once
 
+#include "withy/core/spatial/lanes.hpp"
 #include "withy/core/spatial/pose.hpp"
 
 namespace withy {
 
-struct Planar {
+/// S: a number, or one of each of several cases (Lanes).
+template <class S>
+struct PlanarOf {
+  using Scalar = S;
+  using Group = GroupOf<S>;
   static constexpr int dim = 3;      ///< numbers in a twist
   static constexpr int angular = 1;  ///< of these, angular
   static constexpr int linear = 2;
 
   struct Position {
-    double x, y;
+    S x, y;
     static Position zero() { return {0, 0}; }
-    double operator[](int i) const { return i == 0 ? x : y; }
+    S operator[](int i) const { return i == 0 ? x : y; }
     Position& operator+=(const Position& b) { return x += b.x, y += b.y, *this; }
     friend Position operator+(const Position& a, const Position& b) { return {a.x + b.x, a.y + b.y}; }
-    friend Position operator*(const Position& a, double s) { return {a.x * s, a.y * s}; }
-    friend Position operator*(double s, const Position& a) { return a * s; }
+    friend Position operator*(const Position& a, S s) { return {a.x * s, a.y * s}; }
+    friend Position operator*(S s, const Position& a) { return a * s; }
   };
-  using Angular = double;
+  using Angular = S;
   static Position position(const Vector3& a) { return {a.x(), a.y()}; }
   static Angular angle(const Vector3& a) { return a.z(); }
 
   struct Twist {
-    double w, x, y;
+    S w, x, y;
     static Twist zero() { return {0, 0, 0}; }
     static Twist of(const Vector6& v) { return {v[2], v[3], v[4]}; }
     static Twist of(Angular w, const Position& v) { return {w, v.x, v.y}; }
-    static Twist turning(double rate) { return {rate, 0, 0}; }
-    static Twist sliding(double rate) { return {0, rate, 0}; }
-    [[nodiscard]] double turn() const { return w; }
-    [[nodiscard]] double slide() const { return x; }
-    double& operator[](int i) { return i == 0 ? w : (i == 1 ? x : y); }
-    double operator[](int i) const { return i == 0 ? w : (i == 1 ? x : y); }
+    static Twist turning(S rate) { return {rate, 0, 0}; }
+    static Twist sliding(S rate) { return {0, rate, 0}; }
+    [[nodiscard]] S turn() const { return w; }
+    [[nodiscard]] S slide() const { return x; }
+    S& operator[](int i) { return i == 0 ? w : (i == 1 ? x : y); }
+    S operator[](int i) const { return i == 0 ? w : (i == 1 ? x : y); }
     Twist& operator+=(const Twist& b) { return w += b.w, x += b.x, y += b.y, *this; }
     Twist& operator-=(const Twist& b) { return w -= b.w, x -= b.x, y -= b.y, *this; }
     friend Twist operator+(const Twist& a, const Twist& b) { return {a.w + b.w, a.x + b.x, a.y + b.y}; }
     friend Twist operator-(const Twist& a, const Twist& b) { return {a.w - b.w, a.x - b.x, a.y - b.y}; }
-    friend Twist operator*(const Twist& a, double s) { return {a.w * s, a.x * s, a.y * s}; }
-    friend Twist operator*(double s, const Twist& a) { return a * s; }
+    friend Twist operator*(const Twist& a, S s) { return {a.w * s, a.x * s, a.y * s}; }
+    friend Twist operator*(S s, const Twist& a) { return a * s; }
   };
-  static double dot(const Twist& a, const Twist& b) { return a.w * b.w + a.x * b.x + a.y * b.y; }
+  static S dot(const Twist& a, const Twist& b) { return a.w * b.w + a.x * b.x + a.y * b.y; }
 
   struct Rotation {
-    double c = 1, s = 0;
+    S c = 1, s = 0;
   };
   struct Frame {
     Rotation R;
     Position p;
   };
   static Frame make(const Pose& X) { return {{X.R(0, 0), X.R(1, 0)}, {X.p.x(), X.p.y()}}; }
-  static Rotation about_z(double cosine, double sine) { return {cosine, sine}; }
+  static Rotation about_z(S cosine, S sine) { return {cosine, sine}; }
   static Rotation compose(const Rotation& A, const Rotation& B) {
     return {A.c * B.c - A.s * B.s, A.s * B.c + A.c * B.s};
   }
@@ -86,7 +91,7 @@ struct Planar {
 
   /// A symmetric map of twists to wrenches: the upper triangle.
   struct Inertia {
-    double ww, wx, wy, xx, xy, yy;
+    S ww, wx, wy, xx, xy, yy;
     static Inertia zero() { return {0, 0, 0, 0, 0, 0}; }
     Inertia& operator+=(const Inertia& b) {
       ww += b.ww, wx += b.wx, wy += b.wy, xx += b.xx, xy += b.xy, yy += b.yy;
@@ -99,27 +104,27 @@ struct Planar {
     [[nodiscard]] Twist turn_column() const { return {ww, wx, wy}; }
     [[nodiscard]] Twist slide_column() const { return {wx, xx, xy}; }
     /// Subtracts (s u) uᵀ.
-    void subtract_square(const Twist& u, double s) {
+    void subtract_square(const Twist& u, S s) {
       const Twist v = u * s;
       ww -= v.w * u.w, wx -= v.w * u.x, wy -= v.w * u.y, xx -= v.x * u.x, xy -= v.x * u.y, yy -= v.y * u.y;
     }
   };
   static Inertia shift_to_parent(const Position& p, const Inertia& I) {
-    const double wx = I.wx - p.y * I.xx + p.x * I.xy;
-    const double wy = I.wy - p.y * I.xy + p.x * I.yy;
+    const S wx = I.wx - p.y * I.xx + p.x * I.xy;
+    const S wy = I.wy - p.y * I.xy + p.x * I.yy;
     return {I.ww - p.y * (I.wx + wx) + p.x * (I.wy + wy), wx, wy, I.xx, I.xy, I.yy};
   }
   static Inertia to_parent(const Frame& AB, const Inertia& I) {
-    const double c = AB.R.c, s = AB.R.s;
-    const double cxx = c * I.xx - s * I.xy, cxy = c * I.xy - s * I.yy;
-    const double sxx = s * I.xx + c * I.xy, sxy = s * I.xy + c * I.yy;
+    const S c = AB.R.c, s = AB.R.s;
+    const S cxx = c * I.xx - s * I.xy, cxy = c * I.xy - s * I.yy;
+    const S sxx = s * I.xx + c * I.xy, sxy = s * I.xy + c * I.yy;
     return shift_to_parent(AB.p, Inertia{I.ww, c * I.wx - s * I.wy, s * I.wx + c * I.wy, c * cxx - s * cxy,
                                          s * cxx + c * cxy, s * sxx + c * sxy});
   }
 
   /// Any map of twists to wrenches, row-major.
   struct Matrix {
-    double m[9];
+    S m[9];
     static Matrix zero() { return {{0, 0, 0, 0, 0, 0, 0, 0, 0}}; }
     static Matrix of(const Inertia& I) { return {{I.ww, I.wx, I.wy, I.wx, I.xx, I.xy, I.wy, I.xy, I.yy}}; }
     Matrix& operator+=(const Matrix& b) {
@@ -173,9 +178,9 @@ struct Planar {
     return N;
   }
   static Matrix to_parent(const Frame& AB, const Matrix& M) {
-    const double c = AB.R.c, s = AB.R.s;
-    const double ax = s * AB.p.x - c * AB.p.y;
-    const double ay = c * AB.p.x + s * AB.p.y;
+    const S c = AB.R.c, s = AB.R.s;
+    const S ax = s * AB.p.x - c * AB.p.y;
+    const S ay = c * AB.p.x + s * AB.p.y;
     // Columns of to_child: (1, ax, ay), (0, c, −s), (0, s, c).
     const Twist r0 = M.row(0) + M.row(1) * ax + M.row(2) * ay;
     const Twist r1 = M.row(1) * c - M.row(2) * s;
@@ -190,5 +195,7 @@ struct Planar {
     return N;
   }
 };
+
+using Planar = PlanarOf<double>;
 
 }  // namespace withy

@@ -2,12 +2,18 @@
 /// The algebra of the sweeps for motion in three dimensions. Meaning of each function: space.hpp.
 #pragma once
 
-#include "withy/core/spatial/pack.hpp"
+#include "withy/core/spatial/lanes.hpp"
 #include "withy/core/spatial/pose.hpp"
 
 namespace withy {
 
-struct Spatial {
+/// S: a number, or one of each of several cases (Lanes).
+template <class S>
+struct SpatialOf {
+  using Scalar = S;
+  using Group = GroupOf<S>;
+  using Triple = TripleOf<S>;
+  using Block = BlockOf<S>;
   static constexpr int dim = 6;
   static constexpr int angular = 3;
   static constexpr int linear = 3;
@@ -23,10 +29,10 @@ struct Spatial {
     static Twist zero() { return {Triple::zero(), Triple::zero()}; }
     static Twist of(const Vector6& a) { return {position(a.head<3>()), position(a.tail<3>())}; }
     static Twist of(const Angular& w, const Position& v) { return {w, v}; }
-    static Twist turning(double rate) { return {Triple(0, 0, rate), Triple::zero()}; }
-    static Twist sliding(double rate) { return {Triple::zero(), Triple(rate, 0, 0)}; }
-    [[nodiscard]] double turn() const { return w[2]; }
-    [[nodiscard]] double slide() const { return v[0]; }
+    static Twist turning(S rate) { return {Triple(0, 0, rate), Triple::zero()}; }
+    static Twist sliding(S rate) { return {Triple::zero(), Triple(rate, 0, 0)}; }
+    [[nodiscard]] S turn() const { return w[2]; }
+    [[nodiscard]] S slide() const { return v[0]; }
     [[nodiscard]] Vector6 array() const {
       Vector6 a;
       a << w[0], w[1], w[2], v[0], v[1], v[2];
@@ -36,10 +42,10 @@ struct Spatial {
     Twist& operator-=(const Twist& b) { return w -= b.w, v -= b.v, *this; }
     friend Twist operator+(const Twist& a, const Twist& b) { return {a.w + b.w, a.v + b.v}; }
     friend Twist operator-(const Twist& a, const Twist& b) { return {a.w - b.w, a.v - b.v}; }
-    friend Twist operator*(const Twist& a, double s) { return {a.w * s, a.v * s}; }
-    friend Twist operator*(double s, const Twist& a) { return a * s; }
+    friend Twist operator*(const Twist& a, S s) { return {a.w * s, a.v * s}; }
+    friend Twist operator*(S s, const Twist& a) { return a * s; }
   };
-  static double dot(const Twist& a, const Twist& b) { return sum(a.w.p * b.w.p + a.v.p * b.v.p); }
+  static S dot(const Twist& a, const Twist& b) { return withy::dot(a.w, b.w, a.v, b.v); }
 
   using Rotation = Block;
   struct Frame {
@@ -47,7 +53,7 @@ struct Spatial {
     Position p;
   };
   static Frame make(const Pose& X) { return {block(X.R), position(X.p)}; }
-  static Rotation about_z(double c, double s) { return {{Triple(c, s, 0), Triple(-s, c, 0), Triple(0, 0, 1)}}; }
+  static Rotation about_z(S c, S s) { return {{Triple(c, s, 0), Triple(-s, c, 0), Triple(0, 0, 1)}}; }
   static Rotation compose(const Rotation& A, const Rotation& B) { return A * B; }
   static Position rotate(const Rotation& R, const Position& a) { return R * a; }
   static Position unrotate(const Rotation& R, const Position& a) { return withy::transposed_times(R, a); }
@@ -87,7 +93,7 @@ struct Spatial {
     [[nodiscard]] Twist turn_column() const { return {A.c[2], L.c[2]}; }
     [[nodiscard]] Twist slide_column() const { return {Triple(L(0, 0), L(0, 1), L(0, 2)), M.c[0]}; }
     /// Subtracts (s u) uᵀ.
-    void subtract_square(const Twist& u, double s) {
+    void subtract_square(const Twist& u, S s) {
       const Twist v = u * s;
       A.subtract_outer(v.w, u.w);
       L.subtract_outer(v.v, u.w);
@@ -102,13 +108,13 @@ struct Spatial {
     N.L = I.L - Mp;
     // A + p̂L + (p̂L)ᵀ − p̂Mp̂, the last term halved and symmetrized with the others.
     Block half = I.L;
-    for (int j = 0; j < 3; ++j) half.c[j].p -= spread(0.5) * Mp.c[j].p;
+    for (int j = 0; j < 3; ++j) half.c[j] -= 0.5 * Mp.c[j];
     const Block pL = skew_times(p, half);
     N.A = I.A + pL + transpose(pL);
     return N;
   }
   static Inertia to_parent(const Frame& AB, const Inertia& I) {
-    return shift_to_parent(AB.p, Inertia{turned(AB.R, I.A), turned(AB.R, I.L), turned(AB.R, I.M)});
+    return shift_to_parent(AB.p, Inertia{turned_symmetric(AB.R, I.A), turned(AB.R, I.L), turned_symmetric(AB.R, I.M)});
   }
 
   /// Any map of twists to wrenches, [AA AL; LA LL].
@@ -162,5 +168,7 @@ struct Spatial {
                            Matrix{turned(AB.R, M.AA), turned(AB.R, M.AL), turned(AB.R, M.LA), turned(AB.R, M.LL)});
   }
 };
+
+using Spatial = SpatialOf<double>;
 
 }  // namespace withy

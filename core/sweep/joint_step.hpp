@@ -2,9 +2,8 @@
 /// What the sweeps do at a hinge: its motion on the way out, and the rates between State and the aligned axes.
 #pragma once
 
-#include <cmath>
-
 #include "withy/core/sweep/node.hpp"
+#include "withy/core/sweep/sine_cosine.hpp"
 
 namespace withy::sweep {
 
@@ -24,13 +23,13 @@ constexpr bool has_bias(Joint kind) { return !single(kind) && kind != Joint::fix
 
 /// H ẍ of a hinge with one rate, for its local rate.
 template <class Space>
-inline typename Space::Twist along(Joint kind, double rate) {
+inline typename Space::Twist along(Joint kind, typename Space::Scalar rate) {
   return kind == Joint::rotate ? Space::Twist::turning(rate) : Space::Twist::sliding(rate);
 }
 
 /// Hᵀ F of a hinge with one rate.
 template <class Space>
-inline double component(Joint kind, const typename Space::Twist& F) {
+inline typename Space::Scalar component(Joint kind, const typename Space::Twist& F) {
   return kind == Joint::rotate ? F.turn() : F.slide();
 }
 
@@ -55,7 +54,8 @@ inline HingeMotion general_motion(const JointData<Spatial>& joint, const double*
 
 /// Pose, rate and bias of a hinge at coordinates x and rates u (its own, not the whole State's).
 template <class Space>
-inline void joint_motion(const JointData<Space>& joint, const double* x, const double* u, JointMotion<Space>& out) {
+inline void joint_motion(const JointData<Space>& joint, const typename Space::Scalar* x,
+                         const typename Space::Scalar* u, JointMotion<Space>& out) {
   using Twist = typename Space::Twist;
   out.rate = out.bias = Twist::zero();
   switch (joint.kind) {
@@ -67,12 +67,12 @@ inline void joint_motion(const JointData<Space>& joint, const double* x, const d
       out.SM.p = joint.F.p;
       out.SM.R = joint.F.R;
       if (!joint.pose_matters) return;
-      const double angle = joint.direction * x[0];
-      const double sine = std::sin(angle), cosine = std::cos(angle);
+      typename Space::Scalar sine, cosine;
+      sine_cosine(joint.direction * x[0], sine, cosine);
       if constexpr (Space::angular == 1) {
         out.SM.R = Space::compose(joint.F.R, {cosine, sine});
       } else {
-        const Block& F = joint.F.R;
+        const auto& F = joint.F.R;
         out.SM.R.c[0] = F.c[0] * cosine + F.c[1] * sine;
         out.SM.R.c[1] = F.c[1] * cosine - F.c[0] * sine;
       }
@@ -92,16 +92,18 @@ inline void joint_motion(const JointData<Space>& joint, const double* x, const d
     default:
       break;
   }
-  if constexpr (Space::angular == 3) general_joint_motion(joint, x, u, out);  // a planar tree has no other hinges
+  if constexpr (has_general_hinges<Space>) general_joint_motion(joint, x, u, out);
 }
 
 /// H a of a driven hinge at coordinates x and rates u (its own) for the accelerations a of its rates.
 template <class Space>
-[[gnu::noinline]] typename Space::Twist driven_acceleration(const JointData<Space>& joint, const double* x,
-                                                            const double* u, const double* a) {
+[[gnu::noinline]] typename Space::Twist driven_acceleration(const JointData<Space>& joint,
+                                                            const typename Space::Scalar* x,
+                                                            const typename Space::Scalar* u,
+                                                            const typename Space::Scalar* a) {
   if (single(joint.kind)) return along<Space>(joint.kind, joint.direction * a[0]);
   auto A = Space::Twist::zero();
-  if constexpr (Space::angular == 3) {
+  if constexpr (has_general_hinges<Space>) {
     const HingeMotion m = general_motion(joint, x, u);
     for (Eigen::Index i = 0; i < m.H.cols(); ++i) A += Space::Twist::of(m.H.col(i)) * a[i];
   }
@@ -110,13 +112,14 @@ template <class Space>
 
 /// Sets the efforts Hᵀ F on its rates, F the wrench that it passes on.
 template <class Space>
-[[gnu::noinline]] void driven_efforts(const JointData<Space>& joint, const double* x, const double* u,
-                                      const typename Space::Twist& F, double* efforts) {
+[[gnu::noinline]] void driven_efforts(const JointData<Space>& joint, const typename Space::Scalar* x,
+                                      const typename Space::Scalar* u, const typename Space::Twist& F,
+                                      typename Space::Scalar* efforts) {
   if (single(joint.kind)) {
     efforts[0] = joint.direction * component<Space>(joint.kind, F);
     return;
   }
-  if constexpr (Space::angular == 3) {
+  if constexpr (has_general_hinges<Space>) {
     const HingeMotion m = general_motion(joint, x, u);
     for (Eigen::Index i = 0; i < m.H.cols(); ++i) efforts[i] = Space::dot(Space::Twist::of(m.H.col(i)), F);
   }

@@ -15,12 +15,12 @@ namespace withy::sweep {
 /// The first basis function is the constant, so that ∫ f dm = √mass · (first coefficient of f).
 template <class Space>
 struct MassTable {
-  std::size_t rank = 0;       ///< generalized particles
-  std::size_t packs = 0;      ///< rank / 4, rounded up
-  bool second_order = false;  ///< some Γ is there
-  double root_mass = 0;       ///< √mass; 0: no particles
+  std::size_t rank = 0;                  ///< generalized particles
+  std::size_t packs = 0;                 ///< groups of them: rank / 4, rounded up; of several cases at once one each
+  bool second_order = false;             ///< some Γ is there
+  typename Space::Scalar root_mass = 0;  ///< √mass; 0: no particles
   /// For each pack: X (linear), then Φ_i (n·linear), then Γ_ij for i ≤ j (pairs·linear), components innermost.
-  std::vector<Pack> data;
+  std::vector<typename Space::Group> data;
   std::size_t stride = 0;  ///< packs of `data` for each pack of particles
 
   MassTable() = default;
@@ -38,22 +38,24 @@ constexpr int count(int n) {
 template <class Space, int N>
 struct ParticleMotion {
   static constexpr int L = Space::linear;
-  Pack r[L], v[L], a[L];
+  using Scalar = typename Space::Scalar;
+  using Group = typename Space::Group;
+  Group r[L], v[L], a[L];
 
-  ParticleMotion(const Pack* field, bool second_order, int n, const double* q, const double* q_dot, Pack* P) {
-    const Pack* phi = field + L;
+  ParticleMotion(const Group* field, bool second_order, int n, const Scalar* q, const Scalar* q_dot, Group* P) {
+    const Group* phi = field + L;
     for (int i = 0; i < n * L; ++i) P[i] = phi[i];
     for (int c = 0; c < L; ++c) {
       r[c] = field[c];
-      v[c] = a[c] = spread(0.0);
+      v[c] = a[c] = spread(Scalar(0));
     }
     if (second_order) {
-      const Pack* g = phi + n * L;
+      const Group* g = phi + n * L;
       for (int i = 0; i < n; ++i) {
         for (int j = i; j < n; ++j, g += L) {
-          const Pack qj = spread(q[j]);
-          const Pack qi = spread(q[i]);
-          const Pack rates = spread((i == j ? 1.0 : 2.0) * q_dot[i] * q_dot[j]);
+          const Group qj = spread(q[j]);
+          const Group qi = spread(q[i]);
+          const Group rates = spread((i == j ? 1.0 : 2.0) * q_dot[i] * q_dot[j]);
           for (int c = 0; c < L; ++c) {
             P[i * L + c] += g[c] * qj;
             if (i != j) P[j * L + c] += g[c] * qi;
@@ -63,8 +65,8 @@ struct ParticleMotion {
       }
     }
     for (int i = 0; i < n; ++i) {
-      const Pack half = spread(0.5 * q[i]);
-      const Pack rate = spread(q_dot[i]);
+      const Group half = spread(0.5 * q[i]);
+      const Group rate = spread(q_dot[i]);
       for (int c = 0; c < L; ++c) {
         r[c] += (phi[i * L + c] + P[i * L + c]) * half;
         v[c] += P[i * L + c] * rate;
@@ -74,55 +76,69 @@ struct ParticleMotion {
 };
 
 /// Adds ω×(ω×r) + 2 ω×ṙ to four points' accelerations a.
-inline void add_turning(const Planar::Twist& V, const Pack* r, const Pack* v, Pack* a) {
-  const Pack w2 = spread(V.w * V.w);
-  const Pack w = spread(2 * V.w);
+template <class Space>
+requires(Space::angular == 1) inline void add_turning(const typename Space::Twist& V, const typename Space::Group* r,
+                                                      const typename Space::Group* v, typename Space::Group* a) {
+  const auto w2 = spread(V.w * V.w);
+  const auto w = spread(2 * V.w);
   a[0] -= w2 * r[0] + w * v[1];
   a[1] -= w2 * r[1] - w * v[0];
 }
 
-inline void add_turning(const Spatial::Twist& V, const Pack* r, const Pack* v, Pack* a) {
-  const double w0 = V.w[0], w1 = V.w[1], w2 = V.w[2];
+template <class Space>
+requires(Space::angular == 3) inline void add_turning(const typename Space::Twist& V, const typename Space::Group* r,
+                                                      const typename Space::Group* v, typename Space::Group* a) {
+  using Scalar = typename Space::Scalar;
+  const Scalar w0 = V.w[0], w1 = V.w[1], w2 = V.w[2];
   // ω×(ω×r) = ω (ω·r) − |ω|² r, as a symmetric matrix.
-  const double xx = -(w1 * w1 + w2 * w2), yy = -(w0 * w0 + w2 * w2), zz = -(w0 * w0 + w1 * w1);
-  const double xy = w0 * w1, xz = w0 * w2, yz = w1 * w2;
+  const Scalar xx = -(w1 * w1 + w2 * w2), yy = -(w0 * w0 + w2 * w2), zz = -(w0 * w0 + w1 * w1);
+  const Scalar xy = w0 * w1, xz = w0 * w2, yz = w1 * w2;
   a[0] += xx * r[0] + xy * r[1] + xz * r[2] + 2 * (w1 * v[2] - w2 * v[1]);
   a[1] += xy * r[0] + yy * r[1] + yz * r[2] + 2 * (w2 * v[0] - w0 * v[2]);
   a[2] += xz * r[0] + yz * r[1] + zz * r[2] + 2 * (w0 * v[1] - w1 * v[0]);
 }
 
 /// Adds the integrals of four points, fields times root masses, in which the constant function has no part.
-template <int N>
-inline void add_products(const Pack* r, const Pack* a, const Pack* P, int modes, Planar::Inertia& I, Planar::Twist* C,
-                         double* G, Planar::Twist& p, double* h) {
+template <class Space, int N>
+requires(Space::angular == 1) inline void add_products(const typename Space::Group* r, const typename Space::Group* a,
+                                                       const typename Space::Group* P, int modes,
+                                                       typename Space::Inertia& I, typename Space::Twist* C,
+                                                       typename Space::Scalar* G, typename Space::Twist& p,
+                                                       typename Space::Scalar* h) {
   const int n = count<N>(modes);
   I.ww += sum(r[0] * r[0] + r[1] * r[1]);
   p.w += sum(r[0] * a[1] - r[1] * a[0]);
   for (int i = 0; i < n; ++i) {
-    const Pack* Pi = P + i * 2;
+    const auto* Pi = P + i * 2;
     C[i].w += sum(r[0] * Pi[1] - r[1] * Pi[0]);
     h[i] += sum(Pi[0] * a[0] + Pi[1] * a[1]);
     for (int j = 0; j <= i; ++j) G[i * n + j] += sum(Pi[0] * P[j * 2] + Pi[1] * P[j * 2 + 1]);
   }
 }
 
-template <int N>
-inline void add_products(const Pack* r, const Pack* a, const Pack* P, int modes, Spatial::Inertia& I, Spatial::Twist* C,
-                         double* G, Spatial::Twist& p, double* h) {
+template <class Space, int N>
+requires(Space::angular == 3) inline void add_products(const typename Space::Group* r, const typename Space::Group* a,
+                                                       const typename Space::Group* P, int modes,
+                                                       typename Space::Inertia& I, typename Space::Twist* C,
+                                                       typename Space::Scalar* G, typename Space::Twist& p,
+                                                       typename Space::Scalar* h) {
+  using Scalar = typename Space::Scalar;
+  using Triple = typename Space::Triple;
+  using Block = typename Space::Block;
   const int n = count<N>(modes);
-  const double rxx = sum(r[0] * r[0]), ryy = sum(r[1] * r[1]), rzz = sum(r[2] * r[2]);
-  const double rxy = sum(r[0] * r[1]), rxz = sum(r[0] * r[2]), ryz = sum(r[1] * r[2]);
+  const Scalar rxx = sum(r[0] * r[0]), ryy = sum(r[1] * r[1]), rzz = sum(r[2] * r[2]);
+  const Scalar rxy = sum(r[0] * r[1]), rxz = sum(r[0] * r[2]), ryz = sum(r[1] * r[2]);
   I.A += Block{{Triple(ryy + rzz, -rxy, -rxz), Triple(-rxy, rxx + rzz, -ryz), Triple(-rxz, -ryz, rxx + ryy)}};
-  const auto moment = [&](const Pack* f) {
+  const auto moment = [&](const typename Space::Group* f) {
     return Triple(sum(r[1] * f[2] - r[2] * f[1]), sum(r[2] * f[0] - r[0] * f[2]), sum(r[0] * f[1] - r[1] * f[0]));
   };
   p.w += moment(a);
   for (int i = 0; i < n; ++i) {
-    const Pack* Pi = P + i * 3;
+    const auto* Pi = P + i * 3;
     C[i].w += moment(Pi);
     h[i] += sum(Pi[0] * a[0] + Pi[1] * a[1] + Pi[2] * a[2]);
     for (int j = 0; j <= i; ++j) {
-      const Pack* Pj = P + j * 3;
+      const auto* Pj = P + j * 3;
       G[i * n + j] += sum(Pi[0] * Pj[0] + Pi[1] * Pj[1] + Pi[2] * Pj[2]);
     }
   }
@@ -134,49 +150,55 @@ inline void add_products(const Pack* r, const Pack* a, const Pack* P, int modes,
 /// With r = X + Φq + ½qᵀΓq, P = Φ + Γq, a = ω×v + ω×(ω×r) + 2 ω×ṙ + q̇ᵀΓq̇:
 ///   C_i = ∫ (r×P_i; P_i), G_ij = ∫ P_i·P_j, p = ∫ (r×a; a), h_i = ∫ P_i·a.
 /// The constant function is the first lane of the first pack; sums over lanes are taken last.
-template <int N>
-inline void integrate(const MassTable<Planar>& table, int modes, const double* q, const double* q_dot,
-                      const Planar::Twist& V, Pack* P, Planar::Inertia& I, Planar::Twist* C, double* G,
-                      Planar::Twist& p, double* h) {
+template <class Space, int N>
+requires(Space::angular ==
+         1) inline void integrate(const MassTable<Space>& table, int modes, const typename Space::Scalar* q,
+                                  const typename Space::Scalar* q_dot, const typename Space::Twist& V,
+                                  typename Space::Group* P, typename Space::Inertia& I, typename Space::Twist* C,
+                                  typename Space::Scalar* G, typename Space::Twist& p, typename Space::Scalar* h) {
   const int n = count<N>(modes);
-  const double m = table.root_mass;
+  const auto m = table.root_mass;
   for (std::size_t k = 0; k < table.packs; ++k) {
-    ParticleMotion<Planar, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
-    Pack *r = x.r, *a = x.a;
-    add_turning(V, r, x.v, a);
+    ParticleMotion<Space, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
+    auto *r = x.r, *a = x.a;
+    add_turning<Space>(V, r, x.v, a);
     if (k == 0) {
       add_to_first(a[0], -m * V.w * V.y);  // ω×v acts through the constant function
       add_to_first(a[1], m * V.w * V.x);
-      I += Planar::Inertia{0, -m * r[1][0], m * r[0][0], m * m, 0, m * m};
-      p += Planar::Twist{0, m * a[0][0], m * a[1][0]};
+      I += typename Space::Inertia{0, -m * first(r[1]), m * first(r[0]), m * m, 0, m * m};
+      p += typename Space::Twist{0, m * first(a[0]), m * first(a[1])};
       for (int i = 0; i < n; ++i) {
-        C[i].x += m * P[i * 2][0];
-        C[i].y += m * P[i * 2 + 1][0];
+        C[i].x += m * first(P[i * 2]);
+        C[i].y += m * first(P[i * 2 + 1]);
       }
     }
-    add_products<N>(r, a, P, n, I, C, G, p, h);
+    add_products<Space, N>(r, a, P, n, I, C, G, p, h);
   }
 }
 
-template <int N>
-inline void integrate(const MassTable<Spatial>& table, int modes, const double* q, const double* q_dot,
-                      const Spatial::Twist& V, Pack* P, Spatial::Inertia& I, Spatial::Twist* C, double* G,
-                      Spatial::Twist& p, double* h) {
+template <class Space, int N>
+requires(Space::angular ==
+         3) inline void integrate(const MassTable<Space>& table, int modes, const typename Space::Scalar* q,
+                                  const typename Space::Scalar* q_dot, const typename Space::Twist& V,
+                                  typename Space::Group* P, typename Space::Inertia& I, typename Space::Twist* C,
+                                  typename Space::Scalar* G, typename Space::Twist& p, typename Space::Scalar* h) {
+  using Triple = typename Space::Triple;
+  using Block = typename Space::Block;
   const int n = count<N>(modes);
   for (std::size_t k = 0; k < table.packs; ++k) {
-    ParticleMotion<Spatial, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
-    Pack *r = x.r, *a = x.a;
-    add_turning(V, r, x.v, a);
+    ParticleMotion<Space, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
+    auto *r = x.r, *a = x.a;
+    add_turning<Space>(V, r, x.v, a);
     if (k == 0) {
-      const double m = table.root_mass;
+      const auto m = table.root_mass;
       const Triple acceleration = cross(V.w, V.v) * m;
       for (int c = 0; c < 3; ++c) add_to_first(a[c], acceleration[c]);
-      I.L -= Block::skew(Triple(r[0][0], r[1][0], r[2][0]) * m);
+      I.L -= Block::skew(Triple(first(r[0]), first(r[1]), first(r[2])) * m);
       I.M += Block{{Triple(m * m, 0, 0), Triple(0, m * m, 0), Triple(0, 0, m * m)}};
-      p.v += Triple(a[0][0], a[1][0], a[2][0]) * m;
-      for (int i = 0; i < n; ++i) C[i].v += Triple(P[i * 3][0], P[i * 3 + 1][0], P[i * 3 + 2][0]) * m;
+      p.v += Triple(first(a[0]), first(a[1]), first(a[2])) * m;
+      for (int i = 0; i < n; ++i) C[i].v += Triple(first(P[i * 3]), first(P[i * 3 + 1]), first(P[i * 3 + 2])) * m;
     }
-    add_products<N>(r, a, P, n, I, C, G, p, h);
+    add_products<Space, N>(r, a, P, n, I, C, G, p, h);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <new>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "withy/core/plugin/hinge.hpp"
@@ -20,18 +21,15 @@ enum class Joint { fixed, rotate, slide, ball, free, custom };
 
 /// The inertia of a rigid part in the space of the sweep.
 template <class Space>
-typename Space::Inertia inertia_of(const RigidInertia& I);
-
-template <>
-inline Spatial::Inertia inertia_of<Spatial>(const RigidInertia& I) {
-  return {Spatial::block(I.inertia),
-          Block::skew(-Spatial::position(I.moment)),
-          {{Triple(I.mass, 0, 0), Triple(0, I.mass, 0), Triple(0, 0, I.mass)}}};
-}
-
-template <>
-inline Planar::Inertia inertia_of<Planar>(const RigidInertia& I) {
-  return {I.inertia(2, 2), -I.moment.y(), I.moment.x(), I.mass, 0, I.mass};
+inline typename Space::Inertia inertia_of(const RigidInertia& I) {
+  if constexpr (Space::angular == 1) {
+    return {I.inertia(2, 2), -I.moment.y(), I.moment.x(), I.mass, 0, I.mass};
+  } else {
+    using Triple = typename Space::Triple;
+    return {Space::block(I.inertia),
+            Space::Block::skew(-Space::position(I.moment)),
+            {{Triple(I.mass, 0, 0), Triple(0, I.mass, 0), Triple(0, 0, I.mass)}}};
+  }
 }
 
 /// Change of a rigid inertia whose mass stays: first moment and inertia about the origin, as few numbers as there are.
@@ -39,44 +37,46 @@ inline Planar::Inertia inertia_of<Planar>(const RigidInertia& I) {
 template <class Space>
 struct Variation;
 
-template <>
-struct Variation<Planar> {
-  double x, y, J;  ///< moment, inertia
+template <class S>
+struct Variation<PlanarOf<S>> {
+  using Planar = PlanarOf<S>;
+  S x, y, J;  ///< moment, inertia
   static Variation zero() { return {0, 0, 0}; }
   static Variation of(const RigidInertia& I) { return {I.moment.x(), I.moment.y(), I.inertia(2, 2)}; }
-  static Variation bilinear(const Planar::Twist& U, const Planar::Twist& V) {
+  static Variation bilinear(const typename Planar::Twist& U, const typename Planar::Twist& V) {
     return {U.w * V.y + U.y * V.w, -(U.w * V.x + U.x * V.w), U.w * V.w};
   }
-  friend double dot(const Variation& a, const Variation& b) { return a.x * b.x + a.y * b.y + a.J * b.J; }
-  void add(const Variation& b, double s) { x += b.x * s, y += b.y * s, J += b.J * s; }
+  friend S dot(const Variation& a, const Variation& b) { return a.x * b.x + a.y * b.y + a.J * b.J; }
+  void add(const Variation& b, S s) { x += b.x * s, y += b.y * s, J += b.J * s; }
   /// I V.
-  [[nodiscard]] Planar::Twist times(const Planar::Twist& V) const {
+  [[nodiscard]] typename Planar::Twist times(const typename Planar::Twist& V) const {
     return {J * V.w + x * V.y - y * V.x, -y * V.w, x * V.w};
   }
-  [[nodiscard]] Planar::Inertia inertia() const { return {J, -y, x, 0, 0, 0}; }
+  [[nodiscard]] typename Planar::Inertia inertia() const { return {J, -y, x, 0, 0, 0}; }
 };
 
-template <>
-struct Variation<Spatial> {
+template <class S>
+struct Variation<SpatialOf<S>> {
+  using Spatial = SpatialOf<S>;
+  using Triple = TripleOf<S>;
+  using Block = BlockOf<S>;
   Triple s, d, o;  ///< moment; inertia xx yy zz; xy xz yz
   static Variation zero() { return {Triple::zero(), Triple::zero(), Triple::zero()}; }
   static Variation of(const RigidInertia& I) {
     return {Spatial::position(I.moment), Triple(I.inertia(0, 0), I.inertia(1, 1), I.inertia(2, 2)),
             Triple(I.inertia(0, 1), I.inertia(0, 2), I.inertia(1, 2))};
   }
-  static Variation bilinear(const Spatial::Twist& U, const Spatial::Twist& V) {
+  static Variation bilinear(const typename Spatial::Twist& U, const typename Spatial::Twist& V) {
     const Triple &u = U.w, &w = V.w;
-    return {cross(V.v, u) + cross(U.v, w), u.p * w.p,
+    return {cross(V.v, u) + cross(U.v, w), products(u, w),
             Triple(u[0] * w[1] + u[1] * w[0], u[0] * w[2] + u[2] * w[0], u[1] * w[2] + u[2] * w[1])};
   }
-  friend double dot(const Variation& a, const Variation& b) {
-    return sum(a.s.p * b.s.p + a.d.p * b.d.p + a.o.p * b.o.p);
-  }
-  void add(const Variation& b, double k) { s += b.s * k, d += b.d * k, o += b.o * k; }
-  [[nodiscard]] Spatial::Twist times(const Spatial::Twist& V) const {
+  friend S dot(const Variation& a, const Variation& b) { return withy::dot(a.s, b.s, a.d, b.d, a.o, b.o); }
+  void add(const Variation& b, S k) { s += b.s * k, d += b.d * k, o += b.o * k; }
+  [[nodiscard]] typename Spatial::Twist times(const typename Spatial::Twist& V) const {
     return {tensor() * V.w + cross(s, V.v), cross(V.w, s)};
   }
-  [[nodiscard]] Spatial::Inertia inertia() const { return {tensor(), Block::skew(-s), Block::zero()}; }
+  [[nodiscard]] typename Spatial::Inertia inertia() const { return {tensor(), Block::skew(-s), Block::zero()}; }
 
  private:
   [[nodiscard]] Block tensor() const {
@@ -88,7 +88,7 @@ struct Variation<Spatial> {
 template <class Space>
 struct RigidPart {
   typename Space::Inertia inertia;
-  double mass = 0;
+  typename Space::Scalar mass = 0;
   typename Space::Position moment;
 
   RigidPart() : RigidPart(RigidInertia{}) {}
@@ -97,10 +97,10 @@ struct RigidPart {
   /// V ×* (I V), the wrench that holds the part against its velocity.
   [[nodiscard]] typename Space::Twist velocity_wrench(const typename Space::Twist& V) const {
     if constexpr (Space::angular == 1) {
-      const double cx = -V.w * V.y, cy = V.w * V.x, ww = V.w * V.w;
+      const auto cx = -V.w * V.y, cy = V.w * V.x, ww = V.w * V.w;
       return {moment.x * cy - moment.y * cx, mass * cx - ww * moment.x, mass * cy - ww * moment.y};
     } else {
-      const Triple c = cross(V.w, V.v);
+      const auto c = cross(V.w, V.v);
       return {cross(V.w, inertia.A * V.w) + cross(moment, c), mass * c + cross(V.w, cross(V.w, moment))};
     }
   }
@@ -131,6 +131,17 @@ struct Fields {
   }
 };
 
+/// Whether a space holds several cases at once.
+template <class Space>
+constexpr bool in_lanes = !std::is_same_v<typename Space::Scalar, double>;
+/// Exact kinematics, sections with rotary inertia in space, and hinges with several rates are of one case alone.
+template <class Space>
+constexpr bool has_rods = !in_lanes<Space>;
+template <class Space>
+constexpr bool has_sections = Space::angular == 1 || !in_lanes<Space>;
+template <class Space>
+constexpr bool has_general_hinges = Space::angular == 3 && !in_lanes<Space>;
+
 /// Hinge of a node.
 template <class Space>
 struct JointData {
@@ -142,6 +153,7 @@ struct JointData {
   bool pose_matters = true;  ///< false on a world without weight, whose accelerations are zero in any axes
   std::size_t position = 0, positions = 0, speed = 0, speeds = 0;
 
+  JointData() = default;
   explicit JointData(const NodeSpec& node)
       : direction(node.direction),
         F(Space::make(node.F)),

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "withy/core/deformation/point_motion.hpp"
+#include "withy/core/sweep/joint_step.hpp"
 #include "withy/core/sweep/mass_table.hpp"
 #include "withy/core/sweep/node.hpp"
 
@@ -18,11 +19,27 @@ struct StationMotion {
   typename Space::Twist bias;  ///< J̇ q̇, component-wise in S
 };
 
+/// detail::ExponentialCoefficients of a scalar.
+template <class S>
+struct ExponentialOf : detail::ExponentialCoefficients<S> {
+  using detail::ExponentialCoefficients<S>::ExponentialCoefficients;
+};
+template <>
+struct ExponentialOf<Lanes> {
+  Lanes a, b, c, db, dc;
+  explicit ExponentialOf(const Lanes& s) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const detail::ExponentialCoefficients<double> k(s[i]);
+      a.set(i, k.a), b.set(i, k.b), c.set(i, k.c), db.set(i, k.db), dc.set(i, k.dc);
+    }
+  }
+};
+
 /// Evaluates a section at q, q̇; J receives n twists. R(q) = exp(θ̂) with θ = Ψq + ½qᵀΘq; in S axes the angular velocity
 /// is T θ̇ with the right Jacobian T = 1 − b θ̂ + c θ̂².
 template <class Space, int N>
-inline void station_motion(const Fields<Space>& f, int modes, const double* q, const double* q_dot,
-                           StationMotion<Space>& out, typename Space::Twist* J) {
+inline void station_motion(const Fields<Space>& f, int modes, const typename Space::Scalar* q,
+                           const typename Space::Scalar* q_dot, StationMotion<Space>& out, typename Space::Twist* J) {
   using Twist = typename Space::Twist;
   const int n = count<N>(modes);
   Twist displacement = Twist::zero(), rate = Twist::zero(), bias = Twist::zero();
@@ -42,7 +59,7 @@ inline void station_motion(const Fields<Space>& f, int modes, const double* q, c
     rate += J[i] * q_dot[i];
   }
   if constexpr (Space::angular == 1) {
-    out.frame.R = {std::cos(displacement.w), std::sin(displacement.w)};
+    sine_cosine(displacement.w, out.frame.R.s, out.frame.R.c);
     out.frame.p = {f.X.x + displacement.x, f.X.y + displacement.y};
     const auto turn = [&](const Twist& V) { return Twist::of(V.w, Space::unrotate(out.frame.R, {V.x, V.y})); };
     for (int i = 0; i < n; ++i) J[i] = turn(J[i]);
@@ -50,12 +67,15 @@ inline void station_motion(const Fields<Space>& f, int modes, const double* q, c
     const Twist b = turn(bias);
     out.bias = {b.w, b.x + out.rate.w * out.rate.y, b.y - out.rate.w * out.rate.x};
   } else {
+    using Scalar = typename Space::Scalar;
+    using Triple = typename Space::Triple;
+    using Block = typename Space::Block;
     const Triple t = displacement.w;
-    const double s = dot(t, t);
-    const detail::ExponentialCoefficients<double> k(s);
+    const Scalar s = dot(t, t);
+    const ExponentialOf<Scalar> k(s);
     // 1 + a θ̂ + b θ̂², with θ̂² = θθᵀ − s 1.
-    const auto polynomial = [&](double a, double b) {
-      const double d = 1 - b * s;
+    const auto polynomial = [&](const Scalar& a, const Scalar& b) {
+      const Scalar d = 1 - b * s;
       Block m = {{Triple(d, a * t[2], -a * t[1]), Triple(-a * t[2], d, a * t[0]), Triple(a * t[1], -a * t[0], d)}};
       m.subtract_outer(t * -b, t);
       return m;
@@ -67,7 +87,7 @@ inline void station_motion(const Fields<Space>& f, int modes, const double* q, c
     for (int i = 0; i < n; ++i) J[i] = {right * J[i].w, back * J[i].v};
     out.rate = {right * rate.w, back * rate.v};
     // Ṫ θ̇ with θ̇ × θ̇ = 0.
-    const double s_rate = 2 * dot(t, rate.w);
+    const Scalar s_rate = 2 * dot(t, rate.w);
     const Triple x = cross(t, rate.w);
     const Triple turning = cross(t, x) * (k.dc * s_rate) - x * (k.db * s_rate) + cross(rate.w, x) * k.c;
     out.bias = {turning + right * bias.w, back * bias.v - cross(out.rate.w, out.rate.v)};

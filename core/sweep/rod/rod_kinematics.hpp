@@ -70,8 +70,9 @@ struct RodIntegrals {
   }
 };
 
+/// Of several cases at once: there is none.
 template <class Space>
-struct RodKinematics;
+struct RodKinematics {};
 
 /// What a station needs beside `RodIntegrals::to`: place and first order of its section.
 template <class Space>

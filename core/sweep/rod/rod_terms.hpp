@@ -29,10 +29,10 @@ inline void integrate(const RodKinematics<Planar>& rod, const RodWork& work, int
       C[i].x += sum(m * P[i * 2]);
       C[i].y += sum(m * P[i * 2 + 1]);
     }
-    add_turning(V, r, v, a);
+    add_turning<Planar>(V, r, v, a);
     I += Planar::Inertia{0, -sum(m * r[1]), sum(m * r[0]), 0, 0, 0};
     p += Planar::Twist{0, sum(m * a[0]), sum(m * a[1])};
-    add_products<N>(r, a, P, n, I, C, G, p, h);
+    add_products<Planar, N>(r, a, P, n, I, C, G, p, h);
   }
   I += Planar::Inertia{0, 0, 0, rod.integrals.mass, 0, rod.integrals.mass};
 }
@@ -61,10 +61,10 @@ inline void integrate(const RodKinematics<Spatial>& rod, const RodWork& work, in
       }
       C[i].v += Triple(sum(m * P[i * 3]), sum(m * P[i * 3 + 1]), sum(m * P[i * 3 + 2]));
     }
-    add_turning(V, r, v, a);
+    add_turning<Spatial>(V, r, v, a);
     moment += Triple(sum(m * r[0]), sum(m * r[1]), sum(m * r[2]));
     p.v += Triple(sum(m * a[0]), sum(m * a[1]), sum(m * a[2]));
-    add_products<N>(r, a, P, n, I, C, G, p, h);
+    add_products<Spatial, N>(r, a, P, n, I, C, G, p, h);
     if (rod.inertia.empty()) continue;
     const Pack* t = work.slope + Rod::axis(n) * packs + k;
     PackVector omega = PackVector::zero();

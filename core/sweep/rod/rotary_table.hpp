@@ -15,7 +15,7 @@ struct RotaryTable {
   /// Inertia J [kg m²] about a unit vector e of each section's axes. A section's tensor is the sum over its principal
   /// axes; in the plane the only axis is the normal.
   struct Axis {
-    Pack J, e[3];
+    typename Space::Group J, e[3];
   };
 
   std::size_t sections = 0, packs = 0;
@@ -23,7 +23,7 @@ struct RotaryTable {
   std::size_t axes_each = 0;  ///< axes of each pack, the greatest number that one of its sections has
   std::vector<Axis> axes;
   /// For each pack: Ψ_i (n·angular), then, of second order, Θ_ij for i ≤ j (pairs·angular), components innermost.
-  std::vector<Pack> fields;
+  std::vector<typename Space::Group> fields;
   std::size_t stride = 0;  ///< packs of `fields` for each pack of sections
 
   RotaryTable() = default;

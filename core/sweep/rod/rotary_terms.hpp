@@ -84,10 +84,12 @@ struct PackExponential {
 };
 
 /// Adds the rotary inertia of all sections to the integrals of a node, see mass_table.hpp; P: n·angular packs.
-template <int N>
-inline void collect_sections(const RotaryTable<Spatial>& table, int modes, const double* q, const double* q_dot,
-                             const Spatial::Twist& V, Pack* P, Spatial::Inertia& I, Spatial::Twist* C, double* G,
-                             Spatial::Twist& p, double* h) {
+template <class Space, int N>
+requires(std::is_same_v<Space, Spatial>) inline void collect_sections(const RotaryTable<Space>& table, int modes,
+                                                                      const double* q, const double* q_dot,
+                                                                      const Spatial::Twist& V, Pack* P,
+                                                                      Spatial::Inertia& I, Spatial::Twist* C, double* G,
+                                                                      Spatial::Twist& p, double* h) {
   const int n = count<N>(modes);
   const auto at = [](const Pack* v) { return PackVector{v[0], v[1], v[2]}; };
   const auto times = [](const PackVector& v, const Pack& s) { return PackVector{v[0] * s, v[1] * s, v[2] * s}; };
@@ -139,18 +141,22 @@ inline void collect_sections(const RotaryTable<Spatial>& table, int modes, const
   }
 }
 
-template <int N>
-inline void collect_sections(const RotaryTable<Planar>& table, int modes, const double* q, const double* q_dot,
-                             const Planar::Twist& /*V*/, Pack* P, Planar::Inertia& I, Planar::Twist* C, double* G,
-                             Planar::Twist& p, double* h) {
+template <class Space, int N>
+requires(Space::angular ==
+         1) inline void collect_sections(const RotaryTable<Space>& table, int modes, const typename Space::Scalar* q,
+                                         const typename Space::Scalar* q_dot, const typename Space::Twist& /*V*/,
+                                         typename Space::Group* P, typename Space::Inertia& I, typename Space::Twist* C,
+                                         typename Space::Scalar* G, typename Space::Twist& p,
+                                         typename Space::Scalar* h) {
+  using Group = typename Space::Group;
   const int n = count<N>(modes);
   for (std::size_t k = 0; k < table.packs; ++k) {
-    const Pack* psi = table.fields.data() + k * table.stride;
-    const Pack J = table.axes[k].J;
+    const Group* psi = table.fields.data() + k * table.stride;
+    const Group J = table.axes[k].J;
     for (int i = 0; i < n; ++i) P[i] = psi[i];
-    Pack bias = spread(0.0);
+    Group bias = spread(typename Space::Scalar(0));
     if (table.second_order) {
-      const Pack* second = psi + n;
+      const Group* second = psi + n;
       for (int i = 0; i < n; ++i) {
         for (int j = i; j < n; ++j, ++second) {
           P[i] += *second * spread(q[j]);
@@ -159,11 +165,11 @@ inline void collect_sections(const RotaryTable<Planar>& table, int modes, const 
         }
       }
     }
-    const Pack moment = J * bias;
+    const Group moment = J * bias;
     I.ww += sum(J);
     p.w += sum(moment);
     for (int i = 0; i < n; ++i) {
-      const Pack turn = J * P[i];
+      const Group turn = J * P[i];
       C[i].w += sum(turn);
       h[i] += sum(P[i] * moment);
       for (int j = 0; j <= i; ++j) G[i * n + j] += sum(turn * P[j]);

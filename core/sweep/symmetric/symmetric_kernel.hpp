@@ -32,8 +32,8 @@ void precompute(SymmetricNode<Space>& node) {
 template <class Space, int N, Flavor flavor>
 inline void section_motion(const SymmetricNode<Space>& node, std::size_t station, const SymmetricState<Space>& s,
                            StationMotion<Space>& out, typename Space::Twist* J) {
-  const double* q = s.positions + node.mode_position;
-  const double* q_dot = s.speeds + node.mode_speed;
+  const auto* q = s.positions + node.mode_position;
+  const auto* q_dot = s.speeds + node.mode_speed;
   if constexpr (flavor == Flavor::exact) {
     const RodWork work = rod_work_at(node.rod, node.modes, at<Pack>(s.work, node.work_rod));
     rod_station_motion<N>(node.rod, station, work, node.modes, q, q_dot, out, J);
@@ -113,36 +113,39 @@ template <class Space, int N, Flavor flavor>
 template <class Space, int N, Flavor flavor>
 inline void integrate_mass(const SymmetricNode<Space>& node, const SymmetricState<Space>& s,
                            const typename Space::Twist& V, typename Space::Inertia& I, typename Space::Twist& p,
-                           typename Space::Twist* C, double* G, double* h) {
+                           typename Space::Twist* C, typename Space::Scalar* G, typename Space::Scalar* h) {
   const int n = count<N>(node.modes);
-  const double* q = s.positions + node.mode_position;
-  const double* q_dot = s.speeds + node.mode_speed;
-  Pack* P = at<Pack>(s.work, node.work_P);
+  const auto* q = s.positions + node.mode_position;
+  const auto* q_dot = s.speeds + node.mode_speed;
+  using Group = typename Space::Group;
+  Group P_here[N > 0 ? N * Space::linear : 1];
+  Group* P = N > 0 ? P_here : at<Group>(s.work, node.work_P);
   if constexpr (flavor == Flavor::exact) {
     const RodWork rod = rod_work_at(node.rod, n, at<Pack>(s.work, node.work_rod));
     integrate<N>(node.rod, rod, n, q_dot, V, P, I, C, G, p, h);
   } else {
-    integrate<N>(node.mass, n, q, q_dot, V, P, I, C, G, p, h);
-    collect_sections<N>(node.rotary, n, q, q_dot, V, P, I, C, G, p, h);
+    integrate<Space, N>(node.mass, n, q, q_dot, V, P, I, C, G, p, h);
+    if constexpr (has_sections<Space>) collect_sections<Space, N>(node.rotary, n, q, q_dot, V, P, I, C, G, p, h);
   }
 }
 
-/// Elimination of q̈: leaves Y, y, L in the work memory and adds to I, p; false where G is not positive definite.
+/// Elimination of q̈: leaves Y, y, L in the work memory and adds to I, p; whether G is positive definite.
 template <class Space, int N, Flavor flavor>
-inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricState<Space>& s,
+inline auto eliminate_modes(const SymmetricNode<Space>& node, const SymmetricState<Space>& s,
                             const typename Space::Twist& V, typename Space::Inertia& I, typename Space::Twist& p) {
   using Twist = typename Space::Twist;
+  using Scalar = typename Space::Scalar;
   const int n = count<N>(node.modes);
-  const double* q = s.positions + node.mode_position;
-  const double* q_dot = s.speeds + node.mode_speed;
+  const auto* q = s.positions + node.mode_position;
+  const auto* q_dot = s.speeds + node.mode_speed;
   const auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
   // On the stack where the compiler knows their size: it then keeps them in registers.
   constexpr int size = N > 0 ? N : 1;
   Twist C_here[size];
-  double G_here[size * size], y_here[size];
+  Scalar G_here[size * size], y_here[size];
   Twist* C = N > 0 ? C_here : at<Twist>(s.work, node.work_C);
-  double* G = N > 0 ? G_here : at<double>(s.work, node.work_G);
-  double* y = N > 0 ? y_here : at<double>(s.work, node.work_y);
+  Scalar* G = N > 0 ? G_here : at<Scalar>(s.work, node.work_G);
+  Scalar* y = N > 0 ? y_here : at<Scalar>(s.work, node.work_y);
   bool constant = false;
   if constexpr (flavor == Flavor::frozen) {
     const auto square = Variation<Space>::bilinear(V, V);
@@ -180,20 +183,20 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
   }
   // q̈ = G⁻¹ (−K q − D q̇ − h − Cᵀ A), with G = L Δ Lᵀ, Y = L⁻¹ Cᵀ, y = L⁻¹ (…).
   for (int i = 0; i < n; ++i) {
-    double e = s.efforts[node.mode_speed + static_cast<std::size_t>(i)] - y[i];
+    Scalar e = s.efforts[node.mode_speed + static_cast<std::size_t>(i)] - y[i];
     for (int j = 0; j < n; ++j) {
       e -= node.stiffness[static_cast<std::size_t>(i * n + j)] * q[j] +
            node.damping[static_cast<std::size_t>(i * n + j)] * q_dot[j];
     }
     y[i] = e;
   }
-  double* y_kept = at<double>(s.work, node.work_y);
+  Scalar* y_kept = at<Scalar>(s.work, node.work_y);
   if (constant) {
-    const double* L = node.factor.data();
+    const Scalar* L = node.factor.data();
     solve_lower<N>(L, n, y);
     for (int i = 0; i < n; ++i) p += node.Y0[static_cast<std::size_t>(i)] * (L[i * n + i] * y[i]);
     for (int i = 0; i < n; ++i) y_kept[i] = y[i];
-    return true;
+    return everywhere<Scalar>();
   }
   if (s.delta > 0) {
     for (int i = 0; i < n; ++i) {
@@ -203,7 +206,8 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
       }
     }
   }
-  if (!factorize<N>(G, n)) return false;
+  const auto good = factorize<N>(G, n);
+  if (none(good)) return good;
   solve_lower<N>(G, n, C);
   solve_lower<N>(G, n, y);
   for (int i = 0; i < n; ++i) {
@@ -212,14 +216,14 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
   }
   if constexpr (N > 0) {
     Twist* C_kept = at<Twist>(s.work, node.work_C);
-    double* G_kept = at<double>(s.work, node.work_G);
+    Scalar* G_kept = at<Scalar>(s.work, node.work_G);
     for (int i = 0; i < n; ++i) {
       C_kept[i] = C[i];
       y_kept[i] = y[i];
       for (int j = 0; j <= i; ++j) G_kept[i * n + j] = G[i * n + j];
     }
   }
-  return true;
+  return good;
 }
 
 /// Elimination of ẍ of a hinge with several rates; Y, y, L stay in the work memory.
@@ -243,36 +247,40 @@ inline bool eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
   return true;
 }
 
-/// Elimination of ẍ, and what the hinge passes to the parent's station: inertia I, wrench p at zero A'. False where the
-/// articulated inertia along the hinge is not positive.
+/// Elimination of ẍ, and what the hinge passes to the parent's station: inertia I, wrench p at zero A'. Whether the
+/// articulated inertia along the hinge is positive.
 template <class Space>
-inline bool pass_inward(const SymmetricNode<Space>& node, const SymmetricState<Space>& s, NodeWork<Space>& w,
+inline auto pass_inward(const SymmetricNode<Space>& node, const SymmetricState<Space>& s, NodeWork<Space>& w,
                         typename Space::Inertia& I, typename Space::Twist& p) {
   using Twist = typename Space::Twist;
+  using Scalar = typename Space::Scalar;
+  auto good = everywhere<Scalar>();
   const JointData<Space>& joint = node.joint;
   if (joint.driven) [[unlikely]] {  // passes on everything
     *at<DrivenWork<Space>>(s.work, node.work_driven) = {I, p};
-    if (node.parent < 0) return true;
+    if (node.parent < 0) return good;
     p += I * w.sigma;
   } else if (single(joint.kind)) {
     const bool turns = joint.kind == Joint::rotate;
     const Twist U = turns ? I.turn_column() : I.slide_column();
-    const double inertia = turns ? U.turn() : U.slide();
-    if (!(inertia > 0)) return false;
-    const double inverse = 1 / inertia;
-    const double u = joint.direction * s.efforts[joint.speed] - (turns ? p.turn() : p.slide());
+    const Scalar inertia = turns ? U.turn() : U.slide();
+    good = positive(inertia);
+    if (none(good)) return good;
+    const Scalar inverse = 1 / inertia;
+    const Scalar u = joint.direction * s.efforts[joint.speed] - (turns ? p.turn() : p.slide());
     w.U = U;
     w.inverse = inverse;
     w.u = u;
-    if (node.parent < 0) return true;
+    if (node.parent < 0) return good;
     I.subtract_square(U, inverse);
     p += I * w.sigma + U * (inverse * u);
   } else if (joint.kind == Joint::fixed) {
-    if (node.parent < 0) return true;
+    if (node.parent < 0) return good;
     p += I * w.sigma;
-  } else if constexpr (Space::angular == 3) {  // a planar tree has no other hinges
-    if (!eliminate_joint(joint, s, *at<JointElimination<Space>>(s.work, node.work_elimination), I, p)) return false;
-    if (node.parent < 0) return true;
+  } else if constexpr (has_general_hinges<Space>) {
+    good = eliminate_joint(joint, s, *at<JointElimination<Space>>(s.work, node.work_elimination), I, p);
+    if (!good) return good;
+    if (node.parent < 0) return good;
     p += I * w.sigma;
   }
   auto& outer_I = *at<typename Space::Inertia>(s.work, node.work_outer_I);
@@ -287,32 +295,36 @@ inline bool pass_inward(const SymmetricNode<Space>& node, const SymmetricState<S
   } else {
     outer_p += Space::to_parent(w.SM, p);
   }
-  return true;
+  return good;
 }
 
 /// The same where modes were eliminated before, which takes longer than the call: one instance for any number of them.
-[[gnu::noinline, gnu::flatten]] inline bool pass_inward_apart(const SymmetricNode<Spatial>& node,
-                                                              const SymmetricState<Spatial>& s, NodeWork<Spatial>& w,
-                                                              Spatial::Inertia& I, Spatial::Twist& p) {
-  return pass_inward<Spatial>(node, s, w, I, p);
+template <class Space>
+[[gnu::noinline, gnu::flatten]] auto pass_inward_apart(const SymmetricNode<Space>& node, const SymmetricState<Space>& s,
+                                                       NodeWork<Space>& w, typename Space::Inertia& I,
+                                                       typename Space::Twist& p) {
+  return pass_inward<Space>(node, s, w, I, p);
 }
 
 template <class Space, int N, Flavor flavor>
-[[gnu::flatten]] inline bool inward_inertia(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
+[[gnu::flatten]] inline auto inward_inertia(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
   const bool constant = flavor == Flavor::frozen && is_constant(node, s);
   typename Space::Inertia I = constant ? node.reduced : node.base.inertia;
   if (node.has_children) I += *at<typename Space::Inertia>(s.work, node.work_I);
   Twist p = constant ? node.base.velocity_wrench(w.V) : w.p;
+  auto good = everywhere<typename Space::Scalar>();
   if constexpr (flavor != Flavor::rigid) {
-    if (!eliminate_modes<Space, N, flavor>(node, s, w.V, I, p)) return false;
+    good = eliminate_modes<Space, N, flavor>(node, s, w.V, I, p);
+    if (none(good)) return good;
   }
   if constexpr (flavor != Flavor::rigid && Space::angular == 3) {
-    return pass_inward_apart(node, s, w, I, p);
+    good = good & pass_inward_apart(node, s, w, I, p);
   } else {
-    return pass_inward<Space>(node, s, w, I, p);
+    good = good & pass_inward<Space>(node, s, w, I, p);
   }
+  return good;
 }
 
 /// What the inward pass has left for `forces` at rest: generalized forces alone, one for each speed, against the
@@ -370,6 +382,7 @@ inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<
 template <class Space, int N, Flavor flavor>
 [[gnu::flatten]] inline void outward_acceleration(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
+  using Scalar = typename Space::Scalar;
   const int n = count<N>(node.modes);
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
   const JointData<Space>& joint = node.joint;
@@ -385,13 +398,13 @@ template <class Space, int N, Flavor flavor>
       for (std::size_t i = 0; i < joint.speeds; ++i) s.result[joint.speed + i] = 0;
     }
   } else if (single(joint.kind)) {
-    const double x = (w.u - Space::dot(w.U, A)) * w.inverse;
+    const auto x = (w.u - Space::dot(w.U, A)) * w.inverse;
     A += along<Space>(joint.kind, x);
     s.result[joint.speed] = joint.direction * x;
-  } else if constexpr (Space::angular == 3) {
+  } else if constexpr (has_general_hinges<Space>) {
     if (joint.kind != Joint::fixed) {
       const auto& e = *at<JointElimination<Space>>(s.work, node.work_elimination);
-      double* x = s.result + joint.speed;
+      Scalar* x = s.result + joint.speed;
       back_substitute<-1, Space>(e.L, e.Y, e.y, static_cast<int>(joint.speeds), A, x);
       for (std::size_t i = 0; i < joint.speeds; ++i) A += e.H[i] * x[i];
     }
@@ -401,10 +414,10 @@ template <class Space, int N, Flavor flavor>
     return;
   } else {
     const bool constant = flavor == Flavor::frozen && is_constant(node, s);
-    const double* L = constant ? node.factor.data() : at<double>(s.work, node.work_G);
+    const Scalar* L = constant ? node.factor.data() : at<Scalar>(s.work, node.work_G);
     const Twist* Y = constant ? node.Y0.data() : at<Twist>(s.work, node.work_C);
-    double* a = s.result + node.mode_speed;
-    back_substitute<N, Space>(L, Y, at<double>(s.work, node.work_y), n, A, a);
+    Scalar* a = s.result + node.mode_speed;
+    back_substitute<N, Space>(L, Y, at<Scalar>(s.work, node.work_y), n, A, a);
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
     if constexpr (flavor == Flavor::frozen) {
       w.A = A;

@@ -1,10 +1,8 @@
 #include "withy/core/sweep/symmetric/symmetric_sweep.hpp"
 
-#include <map>
-
 #include "withy/core/sweep/symmetric/symmetric_inverse.hpp"
 #include "withy/core/sweep/symmetric/symmetric_kernel.hpp"
-#include "withy/core/sweep/with_modes.hpp"
+#include "withy/core/sweep/symmetric/symmetric_layout.hpp"
 
 namespace withy::sweep {
 namespace {
@@ -15,40 +13,6 @@ std::vector<double> row_major(const Eigen::MatrixXd& m) {
     for (Eigen::Index j = 0; j < m.cols(); ++j) a.push_back(m(i, j));
   }
   return a;
-}
-
-/// Calls action(n, flavor), both std::integral_constant, for a node of n modes; see with_modes.
-template <class Space, class Modes, class Action>
-inline void with_flavor_of(const SymmetricNode<Space>& node, Modes n, Action&& action) {
-  if (node.flavor == Flavor::frozen) {
-    action(n, std::integral_constant<Flavor, Flavor::frozen>{});
-  } else if (node.flavor == Flavor::exact) {
-    action(n, std::integral_constant<Flavor, Flavor::exact>{});
-  } else {
-    action(n, std::integral_constant<Flavor, Flavor::full>{});
-  }
-}
-
-/// For the passes of an evaluation: few modes are a number that the compiler knows.
-template <class Space, class Action>
-inline void with_flavor(const SymmetricNode<Space>& node, Action&& action) {
-  with_modes(node.modes, [&](auto n) {
-    if constexpr (n.value == 0) {
-      action(n, std::integral_constant<Flavor, Flavor::rigid>{});
-    } else {
-      with_flavor_of(node, n, action);
-    }
-  });
-}
-
-/// For the other passes: any number of modes in one instance.
-template <class Space, class Action>
-inline void with_flavor_alone(const SymmetricNode<Space>& node, Action&& action) {
-  if (node.modes == 0) {
-    action(std::integral_constant<int, 0>{}, std::integral_constant<Flavor, Flavor::rigid>{});
-  } else {
-    with_flavor_of(node, std::integral_constant<int, -1>{}, action);
-  }
 }
 
 }  // namespace
@@ -101,7 +65,6 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
 
 template <class Space>
 SymmetricSweep<Space>::SymmetricSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity) {
-  WorkLayout memory;
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) nodes_.emplace_back(tree.nodes[i], terms[i]);
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     SymmetricNode<Space>& node = nodes_[i];
@@ -121,57 +84,12 @@ SymmetricSweep<Space>::SymmetricSweep(const NodeTree& tree, const std::vector<Te
       }
     }
   }
-  place_sums(memory);
-  for (SymmetricNode<Space>& node : nodes_) {
-    using Twist = typename Space::Twist;
-    const auto n = static_cast<std::size_t>(node.modes);
-    node.work = memory.template take<NodeWork<Space>>(1);
-    node.work_stations = memory.template take<StationWork<Space>>(node.stations.size());
-    node.work_J = memory.template take<Twist>(n * (node.stations.size() + 1));
-    node.work_C = memory.template take<Twist>(n);
-    node.work_G = memory.template take<double>(n * n);
-    node.work_y = memory.template take<double>(n);
-    node.work_h = memory.template take<double>(n);
-    node.work_rod = memory.template take<Pack>(rod_work(node.rod, node.modes));
-    node.work_P = memory.template take<Pack>(n * Space::linear);
-    if (node.joint.driven) node.work_driven = memory.template take<DrivenWork<Space>>(1);
-    if (node.root_station >= 0) node.work_root = memory.template take<RootWork<Space>>(1);
-    if (!single(node.joint.kind) && node.joint.kind != Joint::fixed)
-      node.work_elimination = memory.template take<JointElimination<Space>>(1);
+  for (SymmetricNode<Space>& node : nodes_)
     if (node.flavor == Flavor::frozen && node.leaf) precompute(node);
-  }
-  work_size_ = memory.size();
+  work_size_ = lay_out(nodes_);
   const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
   world_acceleration_ = Space::Twist::of(Space::angle(Vector3::Zero()), Space::position(-g));
   for (SymmetricNode<Space>& node : nodes_) node.joint.pose_matters = node.parent >= 0 || !g.isZero(0);
-}
-
-template <class Space>
-void SymmetricSweep<Space>::place_sums(WorkLayout& memory) {
-  std::vector<std::size_t> vacant;
-  std::map<std::pair<int, int>, std::size_t> sums;  // of node and station
-  for (std::size_t i = nodes_.size(); i-- > 0;) {
-    SymmetricNode<Space>& node = nodes_[i];
-    // Its own have been read when it writes to the next.
-    for (int k = -1; k < static_cast<int>(node.stations.size()); ++k) {
-      const auto own = sums.find({static_cast<int>(i), k});
-      if (own == sums.end()) continue;
-      (k < 0 ? node.work_I : node.stations[static_cast<std::size_t>(k)].work_I) = own->second;
-      vacant.push_back(own->second);
-      sums.erase(own);
-    }
-    if (node.parent < 0) continue;
-    const auto [outer, first] = sums.try_emplace({node.parent, node.parent_station});
-    if (first) {
-      if (vacant.empty()) vacant.push_back(memory.template take<typename Space::Inertia>(1));
-      outer->second = vacant.back();
-      vacant.pop_back();
-    }
-    node.begins = first;
-    node.begins_frozen =
-        first && node.parent_station >= 0 && nodes_[static_cast<std::size_t>(node.parent)].flavor == Flavor::frozen;
-    node.work_outer_I = outer->second;
-  }
 }
 
 template <class Space>

@@ -47,25 +47,26 @@ struct SymmetricNode {
   std::size_t work_outer_I = 0;  ///< the same of what it hangs on
   std::size_t mode_position = 0, mode_speed = 0;
   JointData<Space> joint;
-  typename Space::Frame M;                 ///< hinge frame in the root station's section
-  std::vector<double> stiffness, damping;  ///< n×n
-  RigidPart<Space> base;                   ///< the rigid part; everything in a frozen node
+  typename Space::Frame M;                                 ///< hinge frame in the root station's section
+  std::vector<typename Space::Scalar> stiffness, damping;  ///< n×n
+  RigidPart<Space> base;                                   ///< the rigid part; everything in a frozen node
   MassTable<Space> mass;
   RodKinematics<Space> rod;  ///< in place of mass and rotary inertia where the kinematics is exact
   RotaryTable<Space> rotary;
   std::vector<SymmetricStation<Space>> stations;
   // Frozen nodes: theory (3) at order zero.
   std::vector<Twist> C0;
-  std::vector<double> G0;
+  std::vector<typename Space::Scalar> G0;
   std::vector<Variation<Space>> I1;  ///< h_k = −½ Vᵀ I1_k V
   // Frozen leaves: the eliminated modal block, once for ever.
-  std::vector<double> factor;       ///< of G0, see factorize
-  std::vector<Twist> Y0;            ///< L⁻¹ C0ᵀ, n twists
-  typename Space::Inertia reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
+  std::vector<typename Space::Scalar> factor;  ///< of G0, see factorize
+  std::vector<Twist> Y0;                       ///< L⁻¹ C0ᵀ, n twists
+  typename Space::Inertia reduced;             ///< base − Y0ᵀ Δ⁻¹ Y0
   // Work memory.
   std::size_t work = 0, work_J = 0, work_h = 0, work_C = 0, work_G = 0, work_y = 0, work_P = 0, work_stations = 0;
   std::size_t work_rod = 0, work_root = 0, work_elimination = 0, work_driven = 0;
 
+  SymmetricNode() = default;
   SymmetricNode(const NodeSpec& spec, Terms terms);
 };
 
@@ -80,6 +81,9 @@ class SymmetricSweep {
   SymmetricSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity);
   /// Bytes of work memory.
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
+  [[nodiscard]] const std::vector<SymmetricNode<Space>>& nodes() const { return nodes_; }
+  /// −g: weight as an acceleration of the world.
+  [[nodiscard]] const typename Space::Twist& world_acceleration() const { return world_acceleration_; }
   /// What was computed once for all evaluations, a line each.
   [[nodiscard]] std::vector<std::string> savings(const NodeTree& tree) const;
   /// Accelerations of all speeds from positions, speeds and applied efforts. Those of driven speeds are given in
@@ -97,14 +101,11 @@ class SymmetricSweep {
   void solve(const double* forces, double delta, double* result, std::byte* work) const noexcept;
 
  private:
-  /// Gives each sum of articulated inertias its place: one for each that is alive at a time on the way inward, so that
-  /// a chain needs one, which stays in the nearest cache.
-  void place_sums(WorkLayout& memory);
   Evaluation inward(const SymmetricState<Space>& state) const noexcept;
   void outward(const SymmetricState<Space>& state) const noexcept;
 
   std::vector<SymmetricNode<Space>> nodes_;
-  typename Space::Twist world_acceleration_;  ///< −g: weight as an acceleration of the world
+  typename Space::Twist world_acceleration_;
   std::size_t work_size_ = 0;
 };
 

@@ -22,7 +22,7 @@ template <class Space>
 struct JointElimination {
   static constexpr int most = Space::dim;
   typename Space::Twist H[most], Y[most];
-  double L[most * most], y[most];
+  typename Space::Scalar L[most * most], y[most];
 };
 
 /// Work of a node whose modes move its root station.
@@ -47,24 +47,25 @@ struct NodeWork {
   typename Space::Twist sigma;  ///< σ of (1)
   typename Space::Twist p;      ///< velocity wrench
   typename Space::Twist A;
-  typename Space::Twist U;  ///< one rate: column of the articulated inertia
-  double inverse;           ///< one rate: 1 / its articulated inertia
-  double u;                 ///< one rate: effort left
+  typename Space::Twist U;         ///< one rate: column of the articulated inertia
+  typename Space::Scalar inverse;  ///< one rate: 1 / its articulated inertia
+  typename Space::Scalar u;        ///< one rate: effort left
 };
 
 /// The arrays of one evaluation.
 template <class Space>
 struct SymmetricState {
-  const double* positions;
-  const double* speeds;
-  const double* efforts;
-  double* result;
+  using Scalar = typename Space::Scalar;
+  const Scalar* positions;
+  const Scalar* speeds;
+  const Scalar* efforts;
+  Scalar* result;
   std::byte* work;
   const SymmetricNode<Space>* nodes;
   const typename Space::Twist* world;
   double delta = 0;  ///< above 0: G + δ D + δ² K in the place of G
   /// Receives all efforts on driven rates, whose accelerations `result` holds; null: they do not accelerate.
-  double* driven = nullptr;
+  Scalar* driven = nullptr;
 };
 
 /// The quantities of what a node hangs on – a node's frame or a station – in the parent's work memory.
@@ -90,31 +91,33 @@ inline bool is_constant(const SymmetricNode<Space>& node, const SymmetricState<S
   return !node.factor.empty() && s.delta == 0;
 }
 
-/// Factors of the lower triangle of G = L Δ Lᵀ, in place: L below the diagonal, the inverse of Δ on it; false where G
-/// is not positive definite. Without square roots, whose latency a small block would feel.
-template <int N>
-inline bool factorize(double* G, int modes) {
+/// Factors of the lower triangle of G = L Δ Lᵀ, in place: L below the diagonal, the inverse of Δ on it; whether G is
+/// positive definite, of several cases for which. Without square roots, whose latency a small block would feel.
+template <int N, class S>
+inline auto factorize(S* G, int modes) {
   const int n = count<N>(modes);
+  auto good = everywhere<S>();
   for (int j = 0; j < n; ++j) {
     // Row j still holds L Δ to the left of the diagonal; it becomes L here.
-    double d = G[j * n + j];
+    S d = G[j * n + j];
     for (int k = 0; k < j; ++k) {
-      const double scaled = G[j * n + k];
+      const S scaled = G[j * n + k];
       G[j * n + k] = scaled * G[k * n + k];
       d -= scaled * G[j * n + k];
     }
-    if (!(d > 0)) return false;
+    good = good & positive(d);
+    if (none(good)) return good;
     G[j * n + j] = 1 / d;
     for (int i = j + 1; i < n; ++i) {
       for (int k = 0; k < j; ++k) G[i * n + j] -= G[i * n + k] * G[j * n + k];
     }
   }
-  return true;
+  return good;
 }
 
 /// L⁻¹ b in place, for scalars or twists.
-template <int N, class T>
-inline void solve_lower(const double* L, int modes, T* b) {
+template <int N, class S, class T>
+inline void solve_lower(const S* L, int modes, T* b) {
   const int n = count<N>(modes);
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k < i; ++k) b[i] -= b[k] * L[i * n + k];
@@ -123,8 +126,9 @@ inline void solve_lower(const double* L, int modes, T* b) {
 
 /// x = L⁻ᵀ Δ⁻¹ (y − Y A): the eliminated unknowns once A is known.
 template <int N, class Space>
-inline void back_substitute(const double* L, const typename Space::Twist* Y, const double* y, int modes,
-                            const typename Space::Twist& A, double* x) {
+inline void back_substitute(const typename Space::Scalar* L, const typename Space::Twist* Y,
+                            const typename Space::Scalar* y, int modes, const typename Space::Twist& A,
+                            typename Space::Scalar* x) {
   const int n = count<N>(modes);
   for (int i = 0; i < n; ++i) x[i] = L[i * n + i] * (y[i] - Space::dot(Y[i], A));
   for (int i = n; i-- > 0;) {
@@ -136,7 +140,8 @@ inline void back_substitute(const double* L, const typename Space::Twist* Y, con
 template <class Space, int N>
 inline void collect_station(const StationWork<Space>& sw, const typename Space::Inertia& IS,
                             const typename Space::Twist* J, int modes, typename Space::Inertia& I,
-                            typename Space::Twist& p, typename Space::Twist* C, double* G, double* h) {
+                            typename Space::Twist& p, typename Space::Twist* C, typename Space::Scalar* G,
+                            typename Space::Scalar* h) {
   const int n = count<N>(modes);
   const typename Space::Twist force = sw.p + IS * sw.sigma;
   I += Space::to_parent(sw.frame, IS);
@@ -153,7 +158,8 @@ inline void collect_station(const StationWork<Space>& sw, const typename Space::
 template <class Space, int N>
 inline void collect_frozen_station(const StationWork<Space>& sw, const typename Space::Inertia& IS,
                                    const SymmetricStation<Space>& station, int modes, typename Space::Inertia& I,
-                                   typename Space::Twist& p, typename Space::Twist* C, double* G, double* h) {
+                                   typename Space::Twist& p, typename Space::Twist* C, typename Space::Scalar* G,
+                                   typename Space::Scalar* h) {
   const int n = count<N>(modes);
   const typename Space::Twist* J = station.J.data();
   I += Space::shift_to_parent(station.fields.X, IS);
@@ -170,8 +176,8 @@ inline void collect_frozen_station(const StationWork<Space>& sw, const typename 
 template <class Space>
 [[gnu::noinline, gnu::flatten]] void move_to_root(const typename Space::Frame& root, const typename Space::Twist& sigma,
                                                   int n, const typename Space::Twist* JM, typename Space::Inertia& I,
-                                                  typename Space::Twist& p, typename Space::Twist* C, double* G,
-                                                  double* h) {
+                                                  typename Space::Twist& p, typename Space::Twist* C,
+                                                  typename Space::Scalar* G, typename Space::Scalar* h) {
   using Twist = typename Space::Twist;
   // Congruence with the pose of B in M.
   const typename Space::Frame B = Space::inverse(root);

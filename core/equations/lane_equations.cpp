@@ -1,0 +1,115 @@
+#include "withy/core/equations/lane_equations.hpp"
+
+#include <vector>
+
+#include "withy/core/equations/sweep_equations.hpp"
+#include "withy/core/sweep/lanes/lane_sweep.hpp"
+#include "withy/core/sweep/symmetric/symmetric_sweep.hpp"
+
+namespace withy {
+namespace {
+
+static_assert(LaneEquations::count == lanes);
+
+template <class Space>
+using One = equations::SweepEquations<sweep::SymmetricSweep<Space>>;
+
+/// The first numbers of four arrays, a lane each. In registers: a load waits for stores of its parts.
+template <class Number>
+void gather(const std::array<Number*, lanes>& from, std::size_t count, Lanes* to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] = Lanes::of(Pack{from[0][i], from[1][i], from[2][i], from[3][i]});
+}
+void scatter(const Lanes* from, std::size_t count, const std::array<double*, lanes>& to) {
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    for (std::size_t i = 0; i < count; ++i) to[lane][i] = from[i][lane];
+  }
+}
+
+template <class Space>
+class LanesOfSpace final : public LaneEquations {
+ public:
+  explicit LanesOfSpace(const One<Space>& first)
+      : sweep_(first.sweep()),
+        work_(sweep_.work_size()),
+        positions_(first.layout().positions),
+        speeds_(first.layout().speeds),
+        numbers_(positions_ + 3 * speeds_, Lanes(0)),
+        idle_(positions_ + speeds_, 0.0) {
+    equations_.fill(&first);
+  }
+
+  [[nodiscard]] bool fits(const EquationsOfMotion& equations) const override {
+    const auto* one = dynamic_cast<const One<Space>*>(&equations);
+    return one != nullptr && one->terms().products_of_speeds &&
+           sweep::LaneSweep<Space>::refusal(one->sweep()).empty() && one->layout().positions == positions_ &&
+           one->layout().speeds == speeds_ && sweep_.fits(one->sweep());
+  }
+
+  void put(std::size_t lane, const EquationsOfMotion& equations) override {
+    equations_[lane] = &dynamic_cast<const One<Space>&>(equations);
+    sweep_.put(lane, equations_[lane]->sweep());
+  }
+
+  void derivatives(const std::array<LaneCall*, count>& calls) noexcept override {
+    [[maybe_unused]] const equations::DenormalsAreZero guard;
+    const std::size_t n = positions_, m = speeds_;
+    Lanes *positions = numbers_.data(), *speeds = positions + n, *efforts = speeds + m, *result = efforts + m;
+    // A lane without a call takes part with what stands here.
+    std::array<double*, count> applied, rates;
+    std::array<const double*, count> y;
+    applied.fill(idle_.data()), rates.fill(idle_.data()), y.fill(idle_.data());
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      if (calls[lane] == nullptr) continue;
+      const LaneCall& call = *calls[lane];
+      applied[lane] = equations_[lane]->applied(call.t, call.y, call.y_dot, *call.work).data();
+      y[lane] = call.y.data();
+      rates[lane] = call.y_dot.data() + n;
+    }
+    gather(y, n + m, positions);  // the speeds follow
+    gather(applied, m, efforts);
+    if (sweep_.driven()) gather(rates, m, result);
+    std::array<Evaluation, count> evaluations;
+    sweep_.accelerations(positions, speeds, efforts, result, work_.data(), evaluations.data());
+    scatter(result, m, rates);
+    if (sweep_.driven()) scatter(efforts, m, applied);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      if (calls[lane] == nullptr) continue;
+      LaneCall& call = *calls[lane];
+      call.evaluation = evaluations[lane];
+      if (!call.evaluation.ok()) continue;
+      call.evaluation = equations_[lane]->finish(call.t, call.y, call.y.subspan(n, m), {applied[lane], m}, call.y_dot,
+                                                 evaluations[lane], *call.work);
+    }
+  }
+
+ private:
+  sweep::LaneSweep<Space> sweep_;
+  Work work_;
+  std::size_t positions_, speeds_;
+  std::vector<Lanes> numbers_;                        ///< positions, speeds, efforts, accelerations
+  std::vector<double> idle_;                          ///< state and results of lanes without a call; of no meaning
+  std::array<const One<Space>*, count> equations_{};  ///< those of a lane without a call may be gone
+};
+
+template <class Space>
+std::string refusal_of(const One<Space>& one) {
+  if (!one.terms().products_of_speeds) return "the formulation drops products of speeds";
+  return sweep::LaneSweep<Space>::refusal(one.sweep());
+}
+
+}  // namespace
+
+std::string lane_refusal(const EquationsOfMotion& equations) {
+  if (const auto* planar = dynamic_cast<const One<Planar>*>(&equations)) return refusal_of(*planar);
+  if (const auto* spatial = dynamic_cast<const One<Spatial>*>(&equations)) return refusal_of(*spatial);
+  return "the formulation is none of the symmetric ones";
+}
+
+std::unique_ptr<LaneEquations> lane_equations(const EquationsOfMotion& equations) {
+  if (!lane_refusal(equations).empty()) return nullptr;
+  if (const auto* planar = dynamic_cast<const One<Planar>*>(&equations))
+    return std::make_unique<LanesOfSpace<Planar>>(*planar);
+  return std::make_unique<LanesOfSpace<Spatial>>(dynamic_cast<const One<Spatial>&>(equations));
+}
+
+}  // namespace withy

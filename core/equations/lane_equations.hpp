@@ -1,0 +1,46 @@
+/// \file
+/// Equations of motion of several cases evaluated at once, a lane of a vector register each.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "withy/core/plugin/equations.hpp"
+
+namespace withy {
+
+/// An evaluation that a case asks for: EquationsOfMotion::derivatives with its arguments and its result.
+struct LaneCall {
+  double t = 0;  ///< [s]
+  std::span<const double> y;
+  std::span<double> y_dot;
+  Work* work = nullptr;  ///< of the case's own equations; holds afterwards what their own evaluation would leave there
+  Evaluation evaluation;
+};
+
+/// Four cases whose equations differ in numbers only. What a case gets does not depend, to the last bit, on its lane,
+/// on the others, on whether there are others or on when they came. It agrees with the case's own
+/// EquationsOfMotion::derivatives to rounding, not in every bit: sums are taken in another order. Of one thread.
+class LaneEquations {
+ public:
+  static constexpr std::size_t count = 4;
+
+  virtual ~LaneEquations() = default;
+  /// Whether these equations may be put into a lane: they differ from those there in numbers only.
+  [[nodiscard]] virtual bool fits(const EquationsOfMotion& equations) const = 0;
+  /// Puts equations that fit into a lane, in the place of those there; they must outlive their calls. May allocate.
+  virtual void put(std::size_t lane, const EquationsOfMotion& equations) = 0;
+  /// Evaluates the lanes that have a call; null: none. Allocates nothing.
+  virtual void derivatives(const std::array<LaneCall*, count>& calls) noexcept = 0;
+};
+
+/// Lanes that all begin with these equations; null where they have none (see lane_refusal).
+[[gnu::visibility("default")]] std::unique_ptr<LaneEquations> lane_equations(const EquationsOfMotion& equations);
+
+/// Why these equations are evaluated one at a time alone, as "the formulation is strict"; empty where they have lanes.
+[[gnu::visibility("default")]] std::string lane_refusal(const EquationsOfMotion& equations);
+
+}  // namespace withy

@@ -1,0 +1,106 @@
+/// \file
+/// Nodes of a symmetric sweep in the work memory, and the kernels that belong to each.
+#pragma once
+
+#include <map>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "withy/core/sweep/symmetric/symmetric_terms.hpp"
+#include "withy/core/sweep/with_modes.hpp"
+
+namespace withy::sweep {
+
+/// Calls action(n, flavor), both std::integral_constant, for a node of n modes; see with_modes.
+template <class Space, class Modes, class Action>
+inline void with_flavor_of(const SymmetricNode<Space>& node, Modes n, Action&& action) {
+  if (node.flavor == Flavor::frozen) {
+    action(n, std::integral_constant<Flavor, Flavor::frozen>{});
+    return;
+  }
+  if constexpr (has_rods<Space>) {
+    if (node.flavor == Flavor::exact) return action(n, std::integral_constant<Flavor, Flavor::exact>{});
+  }
+  action(n, std::integral_constant<Flavor, Flavor::full>{});
+}
+
+/// For the passes of an evaluation: few modes are a number that the compiler knows.
+template <class Space, class Action>
+inline void with_flavor(const SymmetricNode<Space>& node, Action&& action) {
+  with_modes(node.modes, [&](auto n) {
+    if constexpr (n.value == 0) {
+      action(n, std::integral_constant<Flavor, Flavor::rigid>{});
+    } else {
+      with_flavor_of(node, n, action);
+    }
+  });
+}
+
+/// For the other passes: any number of modes in one instance.
+template <class Space, class Action>
+inline void with_flavor_alone(const SymmetricNode<Space>& node, Action&& action) {
+  if (node.modes == 0) {
+    action(std::integral_constant<int, 0>{}, std::integral_constant<Flavor, Flavor::rigid>{});
+  } else {
+    with_flavor_of(node, std::integral_constant<int, -1>{}, action);
+  }
+}
+
+/// Gives each sum of articulated inertias its place: one for each that is alive at a time on the way inward, so that a
+/// chain needs one, which stays in the nearest cache.
+template <class Space>
+void place_sums(std::vector<SymmetricNode<Space>>& nodes, WorkLayout& memory) {
+  std::vector<std::size_t> vacant;
+  std::map<std::pair<int, int>, std::size_t> sums;  // of node and station
+  for (std::size_t i = nodes.size(); i-- > 0;) {
+    SymmetricNode<Space>& node = nodes[i];
+    // Its own have been read when it writes to the next.
+    for (int k = -1; k < static_cast<int>(node.stations.size()); ++k) {
+      const auto own = sums.find({static_cast<int>(i), k});
+      if (own == sums.end()) continue;
+      (k < 0 ? node.work_I : node.stations[static_cast<std::size_t>(k)].work_I) = own->second;
+      vacant.push_back(own->second);
+      sums.erase(own);
+    }
+    if (node.parent < 0) continue;
+    const auto [outer, first] = sums.try_emplace({node.parent, node.parent_station});
+    if (first) {
+      if (vacant.empty()) vacant.push_back(memory.template take<typename Space::Inertia>(1));
+      outer->second = vacant.back();
+      vacant.pop_back();
+    }
+    node.begins = first;
+    node.begins_frozen =
+        first && node.parent_station >= 0 && nodes[static_cast<std::size_t>(node.parent)].flavor == Flavor::frozen;
+    node.work_outer_I = outer->second;
+  }
+}
+
+/// Lays out the work memory of all nodes. \returns its size in bytes
+template <class Space>
+std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes) {
+  using Scalar = typename Space::Scalar;
+  WorkLayout memory;
+  place_sums(nodes, memory);
+  for (SymmetricNode<Space>& node : nodes) {
+    using Twist = typename Space::Twist;
+    const auto n = static_cast<std::size_t>(node.modes);
+    node.work = memory.template take<NodeWork<Space>>(1);
+    node.work_stations = memory.template take<StationWork<Space>>(node.stations.size());
+    node.work_J = memory.template take<Twist>(n * (node.stations.size() + 1));
+    node.work_C = memory.template take<Twist>(n);
+    node.work_G = memory.template take<Scalar>(n * n);
+    node.work_y = memory.template take<Scalar>(n);
+    node.work_h = memory.template take<Scalar>(n);
+    if constexpr (has_rods<Space>) node.work_rod = memory.template take<Pack>(rod_work(node.rod, node.modes));
+    node.work_P = memory.template take<typename Space::Group>(n * Space::linear);
+    if (node.joint.driven) node.work_driven = memory.template take<DrivenWork<Space>>(1);
+    if (node.root_station >= 0) node.work_root = memory.template take<RootWork<Space>>(1);
+    if (!single(node.joint.kind) && node.joint.kind != Joint::fixed)
+      node.work_elimination = memory.template take<JointElimination<Space>>(1);
+  }
+  return memory.size();
+}
+
+}  // namespace withy::sweep

@@ -1,0 +1,230 @@
+/// \file
+/// Four cases at once against each case by itself.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "random_case.hpp"
+#include "withy/core/equations/lane_equations.hpp"
+#include "withy/tests/conformance/allocations.hpp"
+
+namespace withy::test {
+namespace {
+
+constexpr std::size_t lane_count = LaneEquations::count;
+
+/// A chain of rigid links and beams on revolute and prismatic hinges under loads and, where asked, driven at its root.
+/// Text of one seed and another differs in numbers only.
+std::string lane_chain(unsigned seed, bool planar, const std::string& beam, bool driven) {
+  std::mt19937 random(seed);
+  const auto number = [&](double low, double high) {
+    return std::to_string(std::uniform_real_distribution<double>(low, high)(random));
+  };
+  const auto axis = [&] {
+    return planar ? "[0, 0, 1]" : "[" + number(0.2, 1) + ", " + number(-1, 1) + ", " + number(-1, 1) + "]";
+  };
+  std::string bodies, hinges;
+  for (int b = 0; b < 6; ++b) {
+    const std::string name = "b" + std::to_string(b);
+    if (b % 2 == 1 && !beam.empty()) {
+      bodies += "  " + name + ": {type: beam, length: " + number(0.5, 2) + ", mass_per_length: " + number(0.5, 2) +
+                ", damping_ratio: 0.01, bending_y: {stiffness: " + number(20, 90) + ", " + beam + "}" +
+                (planar ? "" : ", bending_z: {stiffness: " + number(20, 90) + ", " + beam + "}") +
+                ", frames: {a: {at: tip}}}\n";
+    } else {
+      bodies += "  " + name + ": {type: rigid, mass: " + number(0.5, 3) + ", center_of_mass: [" + number(-0.2, 0.2) +
+                ", " + number(-0.2, 0.2) + ", 0], inertia: [0.2, 0.25, " + number(0.2, 0.3) +
+                ", 0, 0, 0], frames: {a: {position: [" + number(0.1, 0.3) + ", " + number(0.1, 0.3) + ", 0]}}}\n";
+    }
+    const std::string parent = b == 0 ? "world" : "b" + std::to_string(b - 1) + ".a";
+    hinges += "  h" + std::to_string(b) +
+              ": {type: " + (b == 4 ? "prismatic, axis: [0.6, 0.8, 0]" : "revolute, axis: " + axis()) +
+              ", parent: " + parent + ", child: " + name + "}\n";
+  }
+  return "format: withy/1\ntime: {end: 1.0}\ngravity: [" + number(-9, 9) + ", -9.81, 0]\nbodies:\n" + bodies +
+         "hinges:\n" + hinges +
+         "loads:\n  motor: {type: hinge-effort, hinge: h2, law: sine, amplitude: " + number(1, 9) +
+         ", period: 0.7}\n  spring: {type: hinge-spring, hinge: h3, stiffness: " + number(1, 9) + "}\n" +
+         (driven ? "motions:\n  turn: {type: spin-up, hinge: h0, rate: " + number(1, 2) + ", duration: 0.6}\n" : "");
+}
+
+/// Four cases with states of their own, and what their evaluation gives.
+struct FourCases {
+  std::vector<std::unique_ptr<Case>> cases;
+  std::unique_ptr<LaneEquations> lanes;
+  std::vector<std::vector<double>> rates{lane_count};
+  std::vector<Work> work;
+  std::array<LaneCall, lane_count> calls;
+
+  FourCases(const std::string& formulation, const std::function<std::string(unsigned)>& text) {
+    for (unsigned k = 0; k < lane_count; ++k) {
+      cases.push_back(std::make_unique<Case>(text(k), formulation));
+      Case& c = *cases.back();
+      RandomScene random(100 + k, {});
+      c.state = random.state(*c.scene.model, c.scene.initial);
+      rates[k].resize(c.equations->size());
+      work.push_back(c.equations->make_work());
+      work.back().poison();
+    }
+    lanes = lane_equations(*cases[0]->equations);
+  }
+  [[nodiscard]] const EquationsOfMotion& equations(std::size_t k) const { return *cases[k]->equations; }
+
+  /// Evaluates case `of[lane]` in each lane; −1: nobody is there.
+  void evaluate(const std::array<int, lane_count>& of) {
+    std::array<LaneCall*, lane_count> asked{};
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+      if (of[lane] < 0) continue;
+      const auto k = static_cast<std::size_t>(of[lane]);
+      lanes->put(lane, equations(k));
+      calls[lane] = {0.3, cases[k]->state.y, rates[k], &work[k], {}};
+      asked[lane] = &calls[lane];
+    }
+    lanes->derivatives(asked);
+  }
+};
+
+void expect_bits(const std::vector<double>& a, const std::vector<double>& b, const std::string& what) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(a[i]), std::bit_cast<std::uint64_t>(b[i])) << what << ", element " << i;
+}
+
+/// The backward error of accelerations, and the other rates as the case's own equations have them.
+void expect_lane_solves(const Case& c, const std::vector<double>& lane, const std::string& what) {
+  Work work = c.equations->make_work();
+  std::vector<double> own(lane.size());
+  ASSERT_TRUE(c.equations->derivatives(0.3, c.state.y, own, work).ok());
+  const Layout& layout = c.equations->layout();
+  const DenseSystem s = c.equations->system(0.3, c.state.y);
+  for (std::size_t i = 0; i < s.size; ++i) {
+    double residual = 0, scale = std::abs(s.force[i]) + 1e-12;
+    for (std::size_t j = 0; j < s.size; ++j) {
+      const double m = s.mass[i * s.size + j];
+      residual += m * (lane[layout.positions + j] - own[layout.positions + j]);
+      scale += std::abs(m * own[layout.positions + j]);
+    }
+    EXPECT_LT(std::abs(residual), 1e-11 * scale) << what << ", row " << layout.speed_names[i];
+  }
+  for (std::size_t i = 0; i < layout.positions; ++i) EXPECT_EQ(lane[i], own[i]) << what;
+  EXPECT_NEAR(lane.back(), own.back(), 1e-9 * (1 + std::abs(own.back()))) << what << ": power";
+}
+
+struct LaneKind {
+  std::string formulation, beam;
+  bool planar = false, driven = false;
+  [[nodiscard]] std::string text() const {
+    return formulation + (planar ? ", in a plane, " : ", in space, ") + (beam.empty() ? "rigid" : beam) +
+           (driven ? ", driven" : "");
+  }
+};
+
+std::vector<LaneKind> lane_kinds() {
+  std::vector<LaneKind> all;
+  for (const std::string formulation : {"ruthless", "quadratic"}) {
+    for (const std::string beam : {"", "modes: 1", "modes: 2", "modes: 3", "modes: 2, family: free-free", "modes: 5"}) {
+      for (const bool planar : {true, false}) {
+        if (beam.ends_with('5') && !planar) continue;
+        all.push_back({formulation, beam, planar, beam.ends_with("2")});
+      }
+    }
+  }
+  return all;
+}
+
+TEST(Lanes, each_lane_solves_the_equations_of_its_own_case) {
+  for (const LaneKind& kind : lane_kinds()) {
+    FourCases four(kind.formulation, [&](unsigned k) { return lane_chain(k, kind.planar, kind.beam, kind.driven); });
+    ASSERT_NE(four.lanes, nullptr) << kind.text() << ": " << lane_refusal(four.equations(0));
+    for (std::size_t k = 0; k < lane_count; ++k) EXPECT_TRUE(four.lanes->fits(four.equations(k))) << kind.text();
+    four.evaluate({0, 1, 2, 3});
+    for (std::size_t k = 0; k < lane_count; ++k) {
+      EXPECT_TRUE(four.calls[k].evaluation.ok()) << kind.text();
+      expect_lane_solves(*four.cases[k], four.rates[k], kind.text() + ", case " + std::to_string(k));
+    }
+  }
+}
+
+/// Trees with branches, beams held at their tip and every mode family.
+TEST(Lanes, each_lane_solves_the_equations_of_random_trees_in_a_plane) {
+  int evaluated = 0;
+  for (const std::string formulation : {"ruthless", "quadratic"}) {
+    for (unsigned seed = 1; seed <= 25; ++seed) {
+      const SceneWish wish{
+          .bodies = 2 + static_cast<int>(seed % 6), .planar = true, .any_root = seed % 2 == 0, .any_family = true};
+      FourCases four(formulation, [&](unsigned) { return RandomScene(seed, wish).text(); });
+      if (four.equations(0).layout().speeds == 0) continue;
+      ASSERT_NE(four.lanes, nullptr) << lane_refusal(four.equations(0));
+      four.evaluate({0, 1, 2, 3});
+      ++evaluated;
+      for (std::size_t k = 0; k < lane_count; ++k)
+        expect_lane_solves(*four.cases[k], four.rates[k], formulation + ", seed " + std::to_string(seed));
+    }
+  }
+  EXPECT_GT(evaluated, 30);
+}
+
+TEST(Lanes, what_a_case_gets_depends_on_no_other_to_the_last_bit) {
+  for (const LaneKind& kind : lane_kinds()) {
+    FourCases four(kind.formulation, [&](unsigned k) { return lane_chain(k, kind.planar, kind.beam, kind.driven); });
+    four.evaluate({0, 1, 2, 3});
+    const std::vector<std::vector<double>> among = four.rates;
+    const auto expect_unchanged = [&](std::size_t k, const char* how) {
+      expect_bits(four.rates[k], among[k], kind.text() + ", case " + std::to_string(k) + how);
+    };
+    four.evaluate({3, 0, 1, 2});
+    for (std::size_t k = 0; k < lane_count; ++k) expect_unchanged(k, " in another lane");
+    for (int k = 0; k < static_cast<int>(lane_count); ++k) {
+      // A group that another case has begun, and what it has left in the other lanes.
+      four.lanes = lane_equations(four.equations(3));
+      four.evaluate({-1, -1, k, -1});
+      expect_unchanged(static_cast<std::size_t>(k), " alone");
+    }
+    // Beside cases that have no accelerations, or are far away.
+    std::vector<double>&lost = four.cases[1]->state.y, &far = four.cases[2]->state.y;
+    lost[0] = std::numeric_limits<double>::quiet_NaN();
+    far[0] = 3e7;
+    four.evaluate({1, 2, 0, 3});
+    expect_unchanged(0, " beside one without end");
+    expect_unchanged(3, " beside one without end");
+    EXPECT_FALSE(four.calls[0].evaluation.ok()) << kind.text();
+    expect_lane_solves(*four.cases[2], four.rates[2], kind.text() + ", far away");
+  }
+}
+
+TEST(Lanes, evaluations_allocate_nothing) {
+  FourCases four("quadratic", [](unsigned k) { return lane_chain(k, true, "modes: 2", true); });
+  four.evaluate({0, 1, 2, 3});
+  std::array<LaneCall*, lane_count> asked{};
+  for (std::size_t k = 0; k < lane_count; ++k) asked[k] = &four.calls[k];
+  const std::size_t before = allocations();
+  four.lanes->derivatives(asked);
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST(Lanes, a_case_with_another_structure_does_not_fit) {
+  const Case two(lane_chain(1, true, "modes: 2", false), "quadratic"),
+      three(lane_chain(1, true, "modes: 3", false), "quadratic");
+  const Case space(lane_chain(1, false, "modes: 2", false), "quadratic"),
+      ruthless(lane_chain(1, true, "modes: 2", false), "ruthless");
+  const auto lanes = lane_equations(*two.equations);
+  ASSERT_NE(lanes, nullptr);
+  EXPECT_FALSE(lanes->fits(*three.equations));
+  EXPECT_FALSE(lanes->fits(*space.equations));
+  EXPECT_FALSE(lanes->fits(*ruthless.equations));
+}
+
+TEST(Lanes, equations_without_lanes_say_why) {
+  const Case consistent(lane_chain(1, true, "modes: 2", false), "consistent"),
+      exact(lane_chain(1, true, "modes: 2", false), "exact");
+  EXPECT_EQ(lane_equations(*consistent.equations), nullptr);
+  EXPECT_EQ(lane_refusal(*consistent.equations), "the formulation is none of the symmetric ones");
+  EXPECT_EQ(lane_refusal(*exact.equations), "a beam moves by exact kinematics");
+}
+
+}  // namespace
+}  // namespace withy::test
