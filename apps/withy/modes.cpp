@@ -19,6 +19,7 @@
 #include "withy/results/output_file.hpp"
 #include "withy/results/report/modes_page.hpp"
 #include "withy/results/report/report_page.hpp"
+#include "withy/results/scene_edit.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/against_next.hpp"
 
@@ -32,6 +33,7 @@ struct ModesArguments : ConfigurationArguments, OutputArguments {
   bool as_is = false;             ///< about the state as it is given, steady or not
   bool poles = false;             ///< all eigenvalues are listed
   bool masses = false;            ///< effective masses are found
+  std::string write;              ///< the scene with the damping found; empty: nowhere
   std::vector<std::string> damp;  ///< ratios that the lowest vibrations shall have
   bool floquet = false;           ///< characteristic exponents over a turn
   std::optional<std::vector<std::string>> blades;  ///< equal blades by names, or `auto`; none: not asked
@@ -168,6 +170,9 @@ ExitStatus modes(const ModesArguments& arguments) {
   const study::Sweep sweep = parse_sweep(arguments.sweep, "--sweep");
   require_one_configuration(arguments, sweep);
   const std::vector<double> ratios = damping_ratios(arguments.damp);
+  if (!arguments.write.empty() && ratios.empty()) throw InputError("--write writes what --damp finds: give that too");
+  if (!arguments.write.empty() && !arguments.options.overrides.empty())
+    throw InputError("--write takes the scene as its file has it: put what --set changes into the file first");
   const Engine engine(arguments);
   const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
                                   {"modes.json", "modes.csv", "modes.svg", report_name});
@@ -181,6 +186,8 @@ ExitStatus modes(const ModesArguments& arguments) {
     masses = study::effective_masses(steady_configuration(engine, arguments, first));
   if (first.problem.empty() && !ratios.empty())
     damping = study::mounted_damping(steady_configuration(engine, arguments, first), engine.registry(), ratios);
+  if (damping && !arguments.write.empty())
+    write_changed(engine.prepared().values, damping->changes, arguments.write, engine.registry());
   Json j;
   j["scene"] = arguments.scene;
   j["sweep"] = sweep.none() ? Json() : Json(sweep.path);
@@ -199,6 +206,7 @@ ExitStatus modes(const ModesArguments& arguments) {
       print((i == 0 ? "" : "\n") + run_text(runs[i], arguments, sweep, against[i]));
     if (masses) print('\n' + effective_mass_text(*masses));
     if (damping) print('\n' + mounted_damping_text(*damping));
+    if (damping && !arguments.write.empty()) print("\nwritten to " + arguments.write + '\n');
     if (!arguments.out.empty()) print("\nResults: " + arguments.out + '\n');
   }
   return complain_of(runs, sweep) ? ExitStatus::stopped : ExitStatus::done;
@@ -221,6 +229,8 @@ std::function<ExitStatus()> add_modes(CLI::App& c) {
   c.add_option("--damp", a.damp, "Ratios that the lowest vibrations shall have: finds the bodies' damping for them")
       ->type_name("RATIO,...")
       ->delimiter(',');
+  c.add_option("--write", a.write, "File for the scene with the damping that --damp finds; comments are kept")
+      ->type_name("FILE");
   c.add_flag("--floquet", a.floquet, "Characteristic exponents over a whole turn, most unstable first");
   c.add_option("--blades", a.blades, "Equal blades seen from where the rotor does not turn: their names, or auto")
       ->type_name("NAME,...")
