@@ -38,7 +38,8 @@ class ErrorList {
   std::vector<Error> all_;
 };
 
-std::string error_text(const study::ErrorEstimate& e, const Model& model) {
+/// \param reached time [s] at which the run ended
+std::string error_text(const study::ErrorEstimate& e, const Model& model, double reached) {
   std::string out;
   ErrorList angles, positions;
   for (const HingeNode& hinge : model.hinges()) {
@@ -68,6 +69,8 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model) {
   out = fmt::format("against {}, estimated by coarse runs: {}", e.against, out);
   if (e.distances.until < e.end)
     out += fmt::format("; up to {:.4g} s, where the estimate's budget ended", e.distances.until);
+  else if (e.end < reached)
+    out += fmt::format("; up to {:.4g} s, the last state that can be trusted", e.end);
   return out;
 }
 
@@ -155,7 +158,7 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
                                  percent(n.rms), percent(n.peak), certificate.against, n.samples));
   }
   if (certificate.estimate) {
-    line("error", error_text(*certificate.estimate, model));
+    line("error", error_text(*certificate.estimate, model, summary.reached));
   } else if (!certificate.without_estimate.empty()) {
     line("error", certificate.without_estimate);
   }

@@ -44,7 +44,12 @@ class Planner {
 
   void run() {
     while (window() < reference_.windows.size() && !control_.stop()) {
-      if (!one_window()) go_back();
+      if (one_window()) continue;
+      if (strictness_ == 0 && rung_ + 1 < top()) {
+        start_over(rung_ + 1);
+      } else {
+        go_back();
+      }
     }
     make_stretches();
   }
@@ -142,6 +147,13 @@ class Planner {
                                        reference_.end);
     run_rung_ = rung;
     plan_.evaluations[rung] += run_->evaluations();
+  }
+
+  /// From the beginning in one rung throughout: where that holds the accuracy, no mix need be sought.
+  void start_over(std::size_t rung) {
+    marks_.resize(1);
+    rung_ = rung;
+    run_.reset();
   }
 
   /// To the last mark that keeps the next stricter shares, and one rung up from what was made there.
