@@ -17,13 +17,13 @@ export class Modes {
     this.figures = element('div', null, { class: 'figures' });
     this.card = element('aside', null, { class: 'card', id: 'mode', 'aria-live': 'polite' });
     const beside = element('div', null, { class: 'beside' }), left = element('div');
-    left.append(this.tools, this.names, this.figures);
+    left.append(...(this.swept ? [this.tools, this.names, this.figures] : [this.table()]));
     beside.append(left, this.card);
     const said = element('div', null, { class: 'answer' });
     for (const remark of data.remarks) said.append(element('p', remark));
-    said.append(element('p', `Branches are followed by shape: a name is of the coordinate that holds most of the kinetic energy, at the beginning and, where it becomes another, at the end. ${this.swept ? 'Triangles mark motions that grow. ' : ''}Click a mark for its shape.`, { class: 'soft' }));
+    said.append(element('p', this.swept ? 'Branches are followed by shape: a name is of the coordinate that holds most of the kinetic energy, at the beginning and, where it becomes another, at the end. Triangles mark motions that grow. Click a mark for its shape.'
+      : 'A mode is named after the coordinate that holds most of its kinetic energy. Click a row for its shape.', { class: 'soft' }));
     holder.append(said, beside);
-    if (!this.swept) holder.append(this.table());
     this.set_up();
     const first = this.branches[0];
     if (first) this.choose(first, first.at.find(Boolean));
