@@ -82,6 +82,7 @@ class TuneSearch {
       look_for_undetermined();
       if (active_ == before || active_.empty()) return;
       const std::vector<double> began = result_.starts.front().from;
+      for (const Undetermined& u : undetermined_) z_[static_cast<Index>(u.coordinate)] = 0;
       z_ = from(z_, result_.starts.front());
       result_.starts.front().from = began;
     }
@@ -89,9 +90,9 @@ class TuneSearch {
 
   void look_for_undetermined() {
     Sensitivity s;
-    active_ = all_;
-    undetermined_.clear();
+    if (active_.empty()) active_ = all_;
     if (!m_.sensitivity(z_, all_, s)) return;
+    active_ = all_;
     undetermined_ = undetermined(s);
     for (const Undetermined& u : undetermined_) std::erase(active_, u.coordinate);
   }

@@ -63,7 +63,8 @@ struct TuneResult {
   std::vector<double> singular_values;           ///< of the weighted derivatives by the fitted coordinates
   Measured data;
   std::vector<ColumnFit> columns;
-  double before = 0, after = 0;   ///< root of the mean square of all weighted residuals
+  /// Root of the mean square of all weighted residuals; before: of the scene as it is, 0 where that has no run.
+  double before = 0, after = 0;
   std::vector<SearchEnd> starts;  ///< the best first
   std::size_t agreeing = 0;       ///< of them that came to the same place
   std::size_t runs = 0, failed = 0;

@@ -91,7 +91,8 @@ std::string neighbours_text(const TuneResult& result) {
 std::string search_text(const TuneResult& result) {
   const SearchEnd& best = result.starts.front();
   std::string text = best.converged ? "The search ended where " + best.reason : "The search ended: " + best.reason;
-  text += fmt::format(". Weighted residual {:.4g}, of the scene's values {:.4g}", result.after, result.before);
+  text += fmt::format(". Weighted residual {:.4g}", result.after);
+  if (result.before > 0) text += fmt::format(", of the scene's values {:.4g}", result.before);
   text += fmt::format("; {} runs", result.runs);
   if (result.failed > 0) text += fmt::format(", {} of which failed, the last: {}", result.failed, result.last_failure);
   text += ".\n";

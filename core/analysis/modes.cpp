@@ -234,6 +234,9 @@ FirstOrderForm whole_first_order_form(const Tangents& tangents, const Held& held
   whole.A.block(n, m, k, m) = tangents.rate_by_speed(Eigen::all, free);
   whole.A.bottomRightCorner(k, k) = tangents.rate_by_state;
   whole.B.topRows(n) = form.B;
+  const Eigen::MatrixXd G = tangents.rate_by_acceleration(Eigen::all, free);
+  whole.A.bottomRows(k) += G * whole.A.middleRows(m, m);
+  whole.B.bottomRows(k) = G * form.B.bottomRows(m);
   return whole;
 }
 

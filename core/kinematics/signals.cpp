@@ -8,11 +8,13 @@
 #include <stdexcept>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/core/model/hinge_rates.hpp"
 
 namespace withy {
 namespace {
 
 constexpr std::size_t doubles_of_motion = sizeof(FrameMotion) / sizeof(double);
+constexpr std::size_t doubles_of_acceleration = sizeof(FrameAcceleration) / sizeof(double);
 constexpr std::size_t doubles_of_line = 8;  // 64 bytes, to which the work of paths is aligned
 
 /// What a load gives, by its name.
@@ -26,35 +28,40 @@ std::vector<std::string> names_of(const LoadNode& node) {
 
 }  // namespace
 
-/// A state of which positions and speeds are known. What would need accelerations or efforts is a given number.
+/// A state of which positions and speeds are known, and accelerations where the view has them. What else is asked for
+/// is a given number.
 class Signals::Seen final : public SensedState {
  public:
-  Seen(const Signals& signals, const LoadView& view, double unavailable, std::vector<FrameIndex>* asked)
-      : signals_(signals), view_(view), unavailable_(unavailable), asked_(asked) {
-    energies_.kinetic = energies_.potential = unavailable;
-    energies_.linear_momentum.fill(unavailable);
-    energies_.angular_momentum.fill(unavailable);
-    if (asked_ != nullptr) probed_.assign(view.layout.speeds, unavailable);
+  Seen(const Signals& signals, const LoadView& view, Unknown unknown, std::vector<FrameIndex>* asked)
+      : signals_(signals), view_(view), unknown_(unknown), unavailable_(unknown.effort), asked_(asked) {
+    energies_.kinetic = energies_.potential = unavailable_;
+    energies_.linear_momentum.fill(unavailable_);
+    energies_.angular_momentum.fill(unavailable_);
+    if (asked_ == nullptr) return;
+    probed_.assign(view.layout.speeds, unavailable_);
+    accelerating_.assign(view.layout.speeds, unknown.acceleration);
   }
   bool observe(const State& /*state*/) noexcept override { return true; }
   const Layout& layout() const noexcept override { return view_.layout; }
   double time() const noexcept override { return view_.t; }
   std::span<const double> y() const noexcept override { return view_.y; }
-  std::span<const double> accelerations() noexcept override { return of_speeds(); }
+  std::span<const double> accelerations() noexcept override {
+    if (asked_ != nullptr) return accelerating_;
+    return view_.accelerations.empty() ? std::span<const double>(signals_.zeros_) : view_.accelerations;
+  }
   Vector3 gravity() const noexcept override { return signals_.model_->gravity(); }
   FrameMotion motion(FrameIndex frame) noexcept override {
-    if (frame.body < 0) return {};
-    for (std::size_t i = 0; i < signals_.frames_.size(); ++i) {
-      const FrameIndex& known = signals_.frames_[i];
-      if (known.body == frame.body && known.frame == frame.frame)
-        return reinterpret_cast<const FrameMotion*>(view_.scratch.data() + signals_.numbers_)[i];
-    }
-    if (asked_ != nullptr) asked_->push_back(frame);
-    return {};
+    const std::size_t i = place_of(frame);
+    if (i == signals_.frames_.size()) return {};
+    return reinterpret_cast<const FrameMotion*>(view_.scratch.data() + signals_.numbers_)[i];
   }
   FrameAcceleration acceleration(FrameIndex frame) noexcept override {
+    const std::size_t i = place_of(frame);
     if (frame.body < 0) return {};
-    return {Vector3::Constant(unavailable_), Vector3::Constant(unavailable_)};
+    if (asked_ != nullptr) return {Vector3::Constant(unknown_.acceleration), Vector3::Constant(unknown_.acceleration)};
+    if (i == signals_.frames_.size() || view_.accelerations.empty()) return {};
+    const double* const first = view_.scratch.data() + signals_.numbers_ + signals_.frames_.size() * doubles_of_motion;
+    return reinterpret_cast<const FrameAcceleration*>(first)[i];
   }
   std::span<const double> load_efforts(int /*load*/) noexcept override { return of_speeds(); }
   std::span<const double> motion_efforts() noexcept override { return of_speeds(); }
@@ -76,17 +83,34 @@ class Signals::Seen final : public SensedState {
     return asked_ != nullptr ? std::span<const double>(probed_) : std::span<const double>(signals_.zeros_);
   }
 
+  /// Among the frames whose motion is found; their count where it is none of them, which is noted.
+  [[nodiscard]] std::size_t place_of(FrameIndex frame) {
+    const std::vector<FrameIndex>& known = signals_.frames_;
+    std::size_t i = 0;
+    while (i < known.size() && (known[i].body != frame.body || known[i].frame != frame.frame)) ++i;
+    if (i == known.size() && frame.body >= 0 && asked_ != nullptr) asked_->push_back(frame);
+    return i;
+  }
+
   const Signals& signals_;
   const LoadView& view_;
+  Unknown unknown_;
   double unavailable_;
   std::vector<FrameIndex>* asked_;  ///< null in a run, which allocates nothing
-  std::vector<double> probed_;
+  std::vector<double> probed_, accelerating_;
   Energies energies_;
 };
 
 Signals::Signals(const Model& model, const Terms& terms, std::vector<std::string> names) : names_(std::move(names)) {
   zeros_.assign(model.layout().speeds, 0.0);
   for (const std::string& name : names_) sources_.push_back(find(model, name));
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      if (rates[i].angular) turning_.push_back(model.layout().hinges[h].speed + i);
+  }
+  for (const Slot& slot : model.layout().bodies)
+    for (std::size_t i = 0; i < slot.speeds; ++i) turning_.push_back(slot.speed + i);
   choose_readings(model, terms);
 }
 Signals::Signals(Signals&&) noexcept = default;
@@ -94,6 +118,11 @@ Signals::~Signals() = default;
 
 bool Signals::of_loads() const {
   return std::any_of(sources_.begin(), sources_.end(), [](const Source& s) { return s.load != nullptr; });
+}
+
+bool Signals::needs_accelerations(std::size_t signal) const {
+  const Source& s = sources_[signal];
+  return s.accelerated || (s.load != nullptr && s.load->output()->needs_accelerations());
 }
 
 Signals::Source Signals::find(const Model& model, const std::string& name) const {
@@ -156,114 +185,77 @@ std::string Signals::known(const Model& model) const {
   return all.size() > 30 ? text + " ..." : text;
 }
 
-void Signals::choose_readings(const Model& model, const Terms& terms) {
-  const auto is_sensor = [](const Source& s) { return !s.element && s.load == nullptr; };
-  if (std::any_of(sources_.begin(), sources_.end(), is_sensor)) {
-    model_ = std::make_shared<const Model>(model);
-    for (const SensorNode& node : *model.measured()) {
-      if (node.sensor == nullptr) continue;
-      const std::size_t count = node.sensor->columns().size();
-      readings_.push_back({node.sensor, numbers_, count});
-      numbers_ += count;
-    }
-    lay_out();
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    // Only what the numbers depend on: a sensor whose numbers may be anything is not read.
-    const std::vector<Reading> all = readings_;
-    std::vector<FrameIndex> ignored;
-    for (std::size_t i = all.size(); i-- > 0;) {
-      const bool named = std::any_of(sources_.begin(), sources_.end(), [&](const Source& s) {
-        return is_sensor(s) && s.number >= all[i].first && s.number < all[i].first + all[i].count;
-      });
-      if (named) continue;
-      const auto at = readings_.begin() + static_cast<std::ptrdiff_t>(i);
-      const std::vector<double> with = probe(model, 0, &ignored);
-      const Reading reading = *at;
-      readings_.erase(at);
-      const std::vector<double> without = probe(model, 0, &ignored);
-      const bool needed = !std::equal(with.begin(), with.end(), without.begin(),
-                                      [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
-      if (needed) readings_.insert(readings_.begin() + static_cast<std::ptrdiff_t>(i), reading);
-    }
-    std::vector<FrameIndex> asked;
-    static_cast<void>(probe(model, 0, &asked));
-    for (const FrameIndex& f : asked) {
-      const auto same = [&](const FrameIndex& g) { return g.body == f.body && g.frame == f.frame; };
-      if (std::none_of(frames_.begin(), frames_.end(), same)) frames_.push_back(f);
-    }
-    if (!frames_.empty()) paths_ = std::make_unique<const FramePaths>(*model_, terms, frames_, true);
-    lay_out();
-    const std::vector<double> still = probe(model, 0, &ignored);
-    for (const double size : {nan, 1.7e3, -2.3e3}) {
-      const std::vector<double> changed = probe(model, size, &ignored);
-      for (std::size_t i = 0; i < sources_.size(); ++i) {
-        if (!is_sensor(sources_[i]) || changed[i] == still[i] || std::isnan(still[i])) continue;
-        throw std::invalid_argument(
-            "signal '" + names_[i] + "' depends on accelerations, efforts or energies: the loop " + names_[i] +
-            " -> this load -> accelerations -> " + names_[i] +
-            " would be algebraic; measure positions and rates (a gyro, a frame that shows its velocity)");
-      }
-    }
-  } else {
-    model_ = nullptr;
-  }
-  lay_out();
+std::size_t Signals::paths_doubles() const {
+  return paths_ == nullptr ? 0 : doubles_of_line + (paths_->work_size() + sizeof(double) - 1) / sizeof(double);
 }
 
 void Signals::lay_out() {
   own_ = numbers_ + frames_.size() * doubles_of_motion;
-  if (paths_ != nullptr) own_ += doubles_of_line + (paths_->work_size() + sizeof(double) - 1) / sizeof(double);
+  if (accelerates_)
+    own_ += frames_.size() * (doubles_of_acceleration + doubles_of_motion) + 2 * model_->layout().positions;
+  own_ += paths_doubles();
   scratch_ = own_;
   for (const Source& s : sources_) {
     if (s.load != nullptr) scratch_ = std::max(scratch_, own_ + s.load->output()->outputs() + s.load->scratch());
   }
 }
 
-std::vector<double> Signals::probe(const Model& model, double unavailable, std::vector<FrameIndex>* asked) const {
-  State state;
-  const Layout& layout = model.layout();
-  state.y.assign(layout.size(), 0.0);
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const Slot& slot = layout.hinges[h];
-    const auto x = std::span(state.y).subspan(slot.position, slot.positions);
-    model.hinges()[h].hinge->reference(x);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += 0.1 * std::sin(1.0 + static_cast<double>(slot.position + i));
-    model.hinges()[h].hinge->normalize(x);
-  }
-  for (const Slot& slot : layout.bodies) {
-    for (std::size_t i = 0; i < slot.positions; ++i)
-      state.y[slot.position + i] = 1e-3 * std::cos(static_cast<double>(slot.position + i));
-  }
-  for (std::size_t i = 0; i < layout.speeds; ++i)
-    state.y[layout.positions + i] = 0.1 * std::cos(1.0 + static_cast<double>(i));
-  std::vector<double> scratch(scratch_), values(sources_.size());
-  const LoadView view{0.1, layout, state.y, {}, {}, scratch};
-  read_sensors(view, unavailable, asked);
-  for (std::size_t i = 0; i < sources_.size(); ++i) {
-    if (!sources_[i].element && sources_[i].load == nullptr) values[i] = scratch[sources_[i].number];
-  }
-  return values;
-}
-
-void Signals::read_sensors(const LoadView& view, double unavailable, std::vector<FrameIndex>* asked) const noexcept {
+void Signals::read_sensors(const LoadView& view, Unknown unknown, std::vector<FrameIndex>* asked) const noexcept {
   const std::span<double> numbers = view.scratch.first(numbers_);
   if (asked != nullptr) std::fill(numbers.begin(), numbers.end(), std::numeric_limits<double>::quiet_NaN());
   if (paths_ != nullptr) {
     auto* const motions = reinterpret_cast<FrameMotion*>(view.scratch.data() + numbers_);
     for (std::size_t i = 0; i < frames_.size(); ++i) std::construct_at(motions + i);
-    auto address =
-        reinterpret_cast<std::uintptr_t>(view.scratch.data() + numbers_ + frames_.size() * doubles_of_motion);
+    auto address = reinterpret_cast<std::uintptr_t>(view.scratch.data() + own_ - paths_doubles());
     address = (address + 63) / 64 * 64;
-    paths_->motions(view.positions(), view.speeds(), {motions, frames_.size()},
-                    reinterpret_cast<std::byte*>(address));  // NOLINT(performance-no-int-to-ptr)
+    auto* const work = reinterpret_cast<std::byte*>(address);  // NOLINT(performance-no-int-to-ptr)
+    paths_->motions(view.positions(), view.speeds(), {motions, frames_.size()}, work);
+    if (accelerates_ && !view.accelerations.empty()) accelerate(view, work);
   }
-  Seen seen(*this, view, unavailable, asked);
+  Seen seen(*this, view, unknown, asked);
   for (const Reading& r : readings_)
     r.sensor->read(seen, {0, numbers.first(r.first)}, numbers.subspan(r.first, r.count));
 }
 
+void Signals::accelerate(const LoadView& view, std::byte* work) const noexcept {
+  constexpr double turn = 1e-3;  // rad
+  const Layout& layout = view.layout;
+  const std::size_t count = frames_.size();
+  double* at = view.scratch.data() + numbers_ + count * doubles_of_motion;
+  auto* const found = reinterpret_cast<FrameAcceleration*>(at);
+  auto* const motions = reinterpret_cast<FrameMotion*>(at += count * doubles_of_acceleration);
+  const std::span<double> x_dot(at += count * doubles_of_motion, layout.positions);
+  const std::span<double> x(at + layout.positions, layout.positions);
+  for (std::size_t i = 0; i < count; ++i) std::construct_at(motions + i);
+  paths_->motions(view.positions(), view.accelerations, {motions, count}, work);
+  for (std::size_t i = 0; i < count; ++i)
+    std::construct_at(found + i, FrameAcceleration{motions[i].angular_velocity, motions[i].velocity});
+  double fastest = 0;
+  for (const std::size_t s : turning_) fastest = std::max(fastest, std::abs(view.speeds()[s]));
+  if (fastest == 0) return;
+  const std::span<const double> now = view.positions();
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    const Slot& slot = layout.hinges[h];
+    if (slot.speeds > 0)
+      model_->hinges()[h].hinge->derivatives(now.subspan(slot.position, slot.positions),
+                                             view.speeds().subspan(slot.speed, slot.speeds),
+                                             x_dot.subspan(slot.position, slot.positions));
+  }
+  for (const Slot& slot : layout.bodies)
+    for (std::size_t i = 0; i < slot.positions; ++i) x_dot[slot.position + i] = view.speeds()[slot.speed + i];
+  const double step = turn / fastest;
+  for (const auto& [place, weight] : {std::pair(-2.0, 1.0), {-1.0, -8.0}, {1.0, 8.0}, {2.0, -1.0}}) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = now[i] + place * step * x_dot[i];
+    paths_->motions(x, view.speeds(), {motions, count}, work);
+    for (std::size_t i = 0; i < count; ++i) {
+      found[i].angular += weight / (12 * step) * motions[i].angular_velocity;
+      found[i].linear += weight / (12 * step) * motions[i].velocity;
+    }
+  }
+}
+
 void Signals::read(const LoadView& view, std::span<double> values) const noexcept {
-  if (!readings_.empty()) read_sensors(view, 0.0, nullptr);
+  if (!readings_.empty()) read_sensors(view, {}, nullptr);
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& source = sources_[i];
     if (source.element) {
@@ -279,7 +271,7 @@ void Signals::read(const LoadView& view, std::span<double> values) const noexcep
       const std::span<double> given = view.scratch.subspan(own_, output.outputs());
       output.read({view.t, view.layout, view.y, view.y.subspan(held.first, held.count),
                    view.y.subspan(source.continuous.first, source.continuous.count),
-                   view.scratch.subspan(own_ + output.outputs())},
+                   view.scratch.subspan(own_ + output.outputs()), view.accelerations},
                   given);
       values[i] = given[source.output];
     }

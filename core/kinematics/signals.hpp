@@ -15,7 +15,7 @@
 namespace withy {
 
 /// Chosen numbers of a model: columns of hinges (`shoulder` [rad], `shoulder.rate` [rad/s]), numbers of sensors that
-/// need no accelerations, efforts or energies (`imu.z`), and what other loads give (`servo`, of several numbers
+/// need no efforts or energies (`imu.z`), and what other loads give (`servo`, of several numbers
 /// `servo.0`). Immutable; the caller owns the scratch space.
 class [[gnu::visibility("default")]] Signals {
  public:
@@ -27,8 +27,7 @@ class [[gnu::visibility("default")]] Signals {
 
   /// The sensors are Model::measured(), the loads those that the model has.
   /// \param terms of the formulation; frames move by its strain kinematics without truncation, as outputs show them
-  /// \throws std::invalid_argument where there is no such number, or where it depends on accelerations or efforts: as
-  /// these depend on the load that measures it, the loop would be algebraic.
+  /// \throws std::invalid_argument where there is no such number, or where it depends on efforts or energies.
   Signals(const Model& model, const Terms& terms, std::vector<std::string> names);
   Signals(Signals &&) noexcept;
   ~Signals();
@@ -41,9 +40,12 @@ class [[gnu::visibility("default")]] Signals {
   [[nodiscard]] std::optional<Element> element(std::size_t signal) const { return sources_[signal].element; }
   /// Whether any is given by another load: a view of the whole state is then needed.
   [[nodiscard]] bool of_loads() const;
+  /// Whether a signal depends on accelerations, and so on the efforts of the same instant.
+  [[nodiscard]] bool needs_accelerations(std::size_t signal) const;
   /// Whether any depends on the place of a frame.
   [[nodiscard]] bool of_frames() const { return paths_ != nullptr; }
-  /// Sets the numbers, one a name, at the state of `view`, with its scratch space.
+  /// Sets the numbers, one a name, at the state of `view`, with its scratch space. Where the view has no accelerations,
+  /// those that need them mean nothing, but are finite.
   void read(const LoadView& view, std::span<double> values) const noexcept;
 
  private:
@@ -55,23 +57,31 @@ class [[gnu::visibility("default")]] Signals {
     std::size_t index = 0;                  ///< of that load in Model::loads()
     std::size_t output = 0;                 ///< among what it gives
     LoadSlot continuous = {};               ///< of its states
+    bool accelerated = false;               ///< of a sensor's number: whether it depends on accelerations
   };
   /// A sensor that is read, with the place of its numbers.
   struct Reading {
     std::shared_ptr<const BoundSensor> sensor;
     std::size_t first = 0, count = 0;
   };
-  struct Memory {
-    std::size_t numbers = 0, motions = 0, paths = 0, size = 0;  ///< first doubles of each
+  /// Where accelerations and efforts are not known: what stands for them.
+  struct Unknown {
+    double acceleration = 0, effort = 0;
   };
 
   Source find(const Model& model, const std::string& name) const;
   [[nodiscard]] std::string known(const Model& model) const;
   void choose_readings(const Model& model, const Terms& terms);
-  void read_sensors(const LoadView& view, double unavailable, std::vector<FrameIndex>* asked) const noexcept;
-  /// The numbers of the sources at a state about the reference, with accelerations and efforts of this size.
-  [[nodiscard]] std::vector<double> probe(const Model& model, double unavailable, std::vector<FrameIndex>* asked) const;
+  /// Refuses numbers that depend on efforts or energies, and marks those that depend on accelerations.
+  void sort_out(const Model& model);
+  void read_sensors(const LoadView& view, Unknown unknown, std::vector<FrameIndex>* asked) const noexcept;
+  /// Accelerations of the frames in the scratch space: J u̇ + J̇ u, the latter by the central difference of fourth order
+  /// of J(x) u along ẋ, over a thousandth of a radian.
+  void accelerate(const LoadView& view, std::byte* work) const noexcept;
+  /// The numbers of the sources at a state about the reference.
+  [[nodiscard]] std::vector<double> probe(const Model& model, Unknown unknown, std::vector<FrameIndex>* asked) const;
   void lay_out();
+  [[nodiscard]] std::size_t paths_doubles() const;  ///< of their work memory, with room to align it
 
   std::vector<std::string> names_;
   std::vector<Source> sources_;
@@ -81,6 +91,8 @@ class [[gnu::visibility("default")]] Signals {
   std::vector<FrameIndex> frames_;
   std::unique_ptr<const FramePaths> paths_;  ///< null: no frame is asked for
   std::vector<double> zeros_;                ///< one a speed
+  std::vector<std::size_t> turning_;         ///< speeds that are angular or of modes
+  bool accelerates_ = false;                 ///< accelerations of frames are needed
   std::size_t own_ = 0;                      ///< doubles for sensors
   std::size_t scratch_ = 0;
 };

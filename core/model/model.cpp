@@ -334,7 +334,9 @@ bool Model::continuous_rates(double t, std::span<const double> y, std::span<doub
   for (const LoadSlot& slot : layout_.continuous_slots) {
     const LoadNode& node = loads_[slot.load];
     const std::span<double> rates = y_dot.subspan(slot.first, slot.count);
-    node.continuous->rates(node.view(t, y, layout_, scratch), rates);
+    LoadView view = node.view(t, y, layout_, scratch);
+    view.accelerations = y_dot.subspan(layout_.positions, layout_.speeds);
+    node.continuous->rates(view, rates);
     for (const double rate : rates) sum += 0.0 * rate;
   }
   return sum == 0.0;

@@ -77,6 +77,8 @@ struct LoadView {
   std::span<const double> y;                     ///< as State::y
   std::span<const double> discrete, continuous;  ///< the load's own
   std::span<double> scratch;
+  /// Of all speeds, where rates are asked for; empty where efforts are, on which they depend.
+  std::span<const double> accelerations = {};
 
   [[nodiscard]] std::span<const double> positions() const { return y.first(layout.positions); }
   [[nodiscard]] std::span<const double> speeds() const { return y.subspan(layout.positions, layout.speeds); }
@@ -102,7 +104,7 @@ class ContinuousPart {
   [[nodiscard]] virtual std::string name(std::size_t state) const = 0;
   /// Sets them for the start of a motion at the state in `view`, whose `continuous` means nothing.
   virtual void begin(const LoadView& view, std::span<double> continuous) const noexcept = 0;
-  /// Sets ż, smooth but at BoundLoad::discontinuities and at instants.
+  /// Sets ż, with the accelerations in `view`; smooth but at BoundLoad::discontinuities and at instants.
   virtual void rates(const LoadView& view, std::span<double> rates) const noexcept = 0;
   /// Adds the efforts [N m, N] that depend on them, beside those of BoundLoad::add.
   virtual void add(const LoadView& view, std::span<double> efforts) const noexcept = 0;
@@ -120,6 +122,8 @@ class LoadOutput {
   virtual ~LoadOutput() = default;
   /// Count of them.
   [[nodiscard]] virtual std::size_t outputs() const = 0;
+  /// Whether they depend on accelerations at once, so that they have no meaning where LoadView has none.
+  [[nodiscard]] virtual bool needs_accelerations() const { return false; }
   /// Sets them from a view of the load whose output they are.
   virtual void read(const LoadView& view, std::span<double> values) const noexcept = 0;
 };

@@ -44,13 +44,14 @@ void add_differences(Function&& of, const Layout& layout, std::span<const double
 
 }  // namespace
 
-ContinuousTangents continuous_tangents(const Model& model, double t, std::span<const double> y, const Moving& displace,
+ContinuousTangents continuous_tangents(const Model& model, double t, std::span<const double> y,
+                                       std::span<const double> a, const Moving& displace,
                                        const std::function<Eigen::VectorXd(std::span<const double>)>& of_wrenches,
                                        std::vector<bool>& differenced) {
   const Layout& layout = model.layout();
   const auto n = static_cast<Eigen::Index>(layout.speeds), z = static_cast<Eigen::Index>(layout.continuous);
   const auto zero = [](Eigen::Index rows, Eigen::Index columns) { return Eigen::MatrixXd::Zero(rows, columns).eval(); };
-  ContinuousTangents all{zero(n, n), zero(n, n), zero(n, z), zero(z, n), zero(z, n), zero(z, z)};
+  ContinuousTangents all{zero(n, n), zero(n, n), zero(n, z), zero(z, n), zero(z, n), zero(z, z), zero(z, n)};
   std::vector<double> scratch(model.load_scratch());
   for (const LoadSlot& slot : layout.continuous_slots) {
     const LoadNode& node = model.loads()[slot.load];
@@ -67,13 +68,29 @@ ContinuousTangents continuous_tangents(const Model& model, double t, std::span<c
     differenced[slot.load] = true;
     const auto part = [&](std::span<const double> at) {
       Eigen::VectorXd both = Eigen::VectorXd::Zero(n + count);
-      const LoadView view = node.view(t, at, layout, scratch);
+      LoadView view = node.view(t, at, layout, scratch);
+      view.accelerations = a;
       node.continuous->add(view, {both.data(), layout.speeds});
       node.continuous->rates(view, {both.data() + n, slot.count});
       return both;
     };
+    // Rates are linear in the accelerations, but for limits.
+    const auto by_acceleration = [&](Eigen::Index j) {
+      return central_difference(
+          [&](double h) -> Eigen::VectorXd {
+            std::vector<double> moved(a.begin(), a.end());
+            moved[static_cast<std::size_t>(j)] += h;
+            Eigen::VectorXd rates(count);
+            LoadView view = node.view(t, y, layout, scratch);
+            view.accelerations = moved;
+            node.continuous->rates(view, {rates.data(), slot.count});
+            return rates;
+          },
+          analysis::difference_step);
+    };
     // What it measures may be given by any load: its states are all among the columns.
     add_differences(part, layout, y, displace, first, count, 0, layout.continuous, all);
+    for (Eigen::Index j = 0; j < n; ++j) all.rate_by_acceleration.col(j).segment(first, count) = by_acceleration(j);
   }
   if (of_wrenches) add_differences(of_wrenches, layout, y, displace, 0, 0, 0, layout.continuous, all);
   return all;

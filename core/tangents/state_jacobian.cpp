@@ -78,6 +78,11 @@ Evaluation StateJacobian::jacobian(double t, std::span<const double> y, std::spa
     J.block(positions, positions + n, n, z) = -lu.solve(by_state);
     J.block(positions + n, positions, z, n) = tangents.rate_by_speed;
     J.bottomRightCorner(z, z) = tangents.rate_by_state;
+    // What ż sees of u̇, which depends on all else.
+    const Eigen::MatrixXd& G = tangents.rate_by_acceleration;
+    by_displacement.bottomRows(z) += G * by_displacement.topRows(n);
+    J.block(positions + n, positions, z, n) += G * J.block(positions, positions, n, n);
+    J.bottomRightCorner(z, z) += G * J.block(positions, positions + n, n, z);
   }
   const auto identity = [&](const Slot& slot) {
     for (std::size_t i = 0; i < slot.positions; ++i) {

@@ -10,7 +10,8 @@ namespace withy {
 /// With the residual r(δ, u, a) = M a − f − τ of TangentDynamics at a = u̇, and ẋ = N(x) u,
 ///   ∂u̇/∂u = −M⁻¹ ∂r/∂u,  ∂u̇/∂x = −M⁻¹ ∂r/∂δ N⁺,  ∂ẋ/∂u = N,  ∂ẋ/∂x = ∂(N u)/∂x,
 /// N⁺ the pseudo-inverse; with continuous states z of loads, ż = g, also ∂u̇/∂z = −M⁻¹ ∂r/∂z, ∂ż/∂x = ∂g/∂δ N⁺ and
-/// the derivatives of g. Accelerations that motions prescribe do not depend on y.
+/// the derivatives of g; where g sees u̇, ∂g/∂u̇ times those of u̇ comes on top.
+/// Accelerations that motions prescribe do not depend on y.
 class StateJacobian final : public Linearization {
  public:
   StateJacobian(std::shared_ptr<const Model> model, Terms terms) : dynamics_(std::move(model), terms) {}

@@ -340,7 +340,7 @@ Stiffness TangentDynamics::stiffness(double t, std::span<const double> y, const 
   result.by_speed.setZero(n, n);
   result.residual = differentiate(t, y, a, 0, result.by_position, nullptr);
   add_elastic(result);
-  add_loads(t, y, result);
+  add_loads(t, y, a, result);
   return {std::move(result.residual), std::move(result.by_position)};
 }
 
@@ -364,7 +364,7 @@ Tangents TangentDynamics::tangents(double t, std::span<const double> y, const Ei
   for (std::size_t l = 0; l < differenced.size(); ++l) {
     if (differenced[l]) result.differenced.push_back(model_->loads()[l].name);
   }
-  add_loads(t, y, result);
+  add_loads(t, y, a, result);
   result.drift = drift(y);
   return result;
 }
@@ -379,7 +379,8 @@ void TangentDynamics::add_elastic(Tangents& result) const {
   }
 }
 
-void TangentDynamics::add_loads(double t, std::span<const double> y, Tangents& tangents) const {
+void TangentDynamics::add_loads(double t, std::span<const double> y, const Eigen::VectorXd& a,
+                                Tangents& tangents) const {
   const Layout& layout = model_->layout();
   const auto n = static_cast<Eigen::Index>(layout.speeds);
   Eigen::MatrixXd by_position = Eigen::MatrixXd::Zero(n, n), by_speed = by_position;
@@ -415,29 +416,32 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, Tangents& t
   }
   tangents.by_position -= by_position;
   tangents.by_speed -= by_speed;
-  if (!layout.continuous_slots.empty()) add_continuous(t, y, tangents);
+  if (!layout.continuous_slots.empty()) add_continuous(t, y, a, tangents);
 }
 
-void TangentDynamics::add_continuous(double t, std::span<const double> y, Tangents& tangents) const {
+void TangentDynamics::add_continuous(double t, std::span<const double> y, const Eigen::VectorXd& a,
+                                     Tangents& tangents) const {
   std::vector<bool> differenced(model_->loads().size(), false);
   const auto n = static_cast<Eigen::Index>(model_->layout().speeds);
   const auto move = [&](std::span<double> moved, std::size_t speed, double h) {
     displace(moved, h * Eigen::VectorXd::Unit(n, static_cast<Eigen::Index>(speed)));
   };
   // The residual has efforts on its other side.
-  const auto of_wrenches = [&, a = Eigen::VectorXd(Eigen::VectorXd::Zero(n))](std::span<const double> seen) {
+  const auto of_wrenches = [&, none = Eigen::VectorXd(Eigen::VectorXd::Zero(n))](std::span<const double> seen) {
     return Eigen::VectorXd(
-        -(symmetric_ ? first_order_efforts(t, y, a, seen) : efforts<double>(t, y, a, {}, nullptr, seen)));
+        -(symmetric_ ? first_order_efforts(t, y, none, seen) : efforts<double>(t, y, none, {}, nullptr, seen)));
   };
   std::function<Eigen::VectorXd(std::span<const double>)> at_frames;
   if (controlled_frames_) at_frames = of_wrenches;
-  ContinuousTangents own = continuous_tangents(*model_, t, y, move, at_frames, differenced);
+  ContinuousTangents own =
+      continuous_tangents(*model_, t, y, {a.data(), model_->layout().speeds}, move, at_frames, differenced);
   tangents.by_position -= own.effort_by_position;
   tangents.by_speed -= own.effort_by_speed;
   tangents.by_state = -own.effort_by_state;
   tangents.rate_by_position = std::move(own.rate_by_position);
   tangents.rate_by_speed = std::move(own.rate_by_speed);
   tangents.rate_by_state = std::move(own.rate_by_state);
+  tangents.rate_by_acceleration = std::move(own.rate_by_acceleration);
   for (std::size_t l = 0; l < differenced.size(); ++l) {
     const std::string& name = model_->loads()[l].name;
     const auto begin = tangents.differenced.begin(), end = tangents.differenced.end();

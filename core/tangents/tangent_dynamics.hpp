@@ -30,6 +30,8 @@ struct Tangents {
   Eigen::MatrixXd by_speed;     ///< ∂r/∂u: damping and gyroscopic terms
   /// With the continuous states z of loads, ż = g(t, δ, u, z): ∂r/∂z (speeds × z), ∂g/∂δ and ∂g/∂u (z × speeds), ∂g/∂z.
   Eigen::MatrixXd by_state, rate_by_position, rate_by_speed, rate_by_state;
+  /// ∂g/∂a where a load measures accelerations (z × speeds); the derivatives above are then those at a that stays.
+  Eigen::MatrixXd rate_by_acceleration;
   /// C of δ̇ = δu + C δ: zero but where speeds are no derivatives of coordinates (angular velocities).
   Eigen::MatrixXd drift;
   /// Loads whose derivatives are numerical: without BoundLoad::add_derivatives or those of their continuous part, or
@@ -101,8 +103,8 @@ class TangentDynamics {
   void differentiate_first_order(double t, std::span<const double> y, const Eigen::VectorXd& a, std::size_t from,
                                  Eigen::Ref<Eigen::MatrixXd> columns, std::vector<bool>* differenced) const;
   void add_elastic(Tangents& tangents) const;
-  void add_loads(double t, std::span<const double> y, Tangents& tangents) const;
-  void add_continuous(double t, std::span<const double> y, Tangents& tangents) const;
+  void add_loads(double t, std::span<const double> y, const Eigen::VectorXd& a, Tangents& tangents) const;
+  void add_continuous(double t, std::span<const double> y, const Eigen::VectorXd& a, Tangents& tangents) const;
   [[nodiscard]] Eigen::VectorXd load_efforts(double t, std::span<const double> y) const;
   [[nodiscard]] Eigen::VectorXd elastic(std::span<const double> y) const;
   [[nodiscard]] Eigen::MatrixXd drift(std::span<const double> y) const;

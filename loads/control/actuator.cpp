@@ -36,6 +36,7 @@ class Actuator final : public ControlBlock {
               std::span<double> v) const noexcept override {
     v[0] = limited(z[0], lag_.limit);
   }
+  bool feeds_through(std::size_t /*input*/) const override { return false; }
   bool slopes(double /*t*/, std::span<const double> w, std::span<const double> z, Slopes& s) const override {
     const double w2 = lag_.frequency * lag_.frequency;
     s.rate_by_state << 0, within(z[1], lag_.rate_limit), -w2, -2 * lag_.damping * lag_.frequency;
@@ -75,6 +76,7 @@ class DcMotor final : public ControlBlock {
               std::span<double> v) const noexcept override {
     v[0] = motor_.gear * motor_.constant * (z.empty() ? drop(t, w) / motor_.resistance : z[0]);
   }
+  bool feeds_through(std::size_t /*input*/) const override { return !(motor_.inductance > 0); }
   bool slopes(double t, std::span<const double> w, std::span<const double> z, Slopes& s) const override {
     Eigen::RowVectorXd by_input(static_cast<Eigen::Index>(inputs()));
     by_input[by_input.size() - 1] = -motor_.gear * motor_.back;

@@ -30,6 +30,8 @@ class ControlBlock {
                      std::span<double> /*rates*/) const noexcept {}
   virtual void output(double t, std::span<const double> w, std::span<const double> z,
                       std::span<double> v) const noexcept = 0;
+  /// Whether v depends on an input at once, not through z alone.
+  [[nodiscard]] virtual bool feeds_through(std::size_t /*input*/) const { return true; }
   /// Takes z from t [s] to a sample later, w held at what it is at t.
   virtual void advance(double /*t*/, std::span<const double> /*w*/, std::span<double> /*z*/) const noexcept {}
   /// Tells it of the period [s] of `advance`, before it is shared.

@@ -79,6 +79,7 @@ class BoundControl : public BoundLoad, public LoadOutput {
     if (ends_.acts) expect(places_.size(), block_->outputs(), "places to act", "to");
     for (const InputPlace& place : places_)
       if (place.speed < 0) frames_.push_back(place.frame);
+    follow_accelerations();
   }
 
   std::size_t scratch() const override { return block_->inputs() + block_->outputs() + signals_.scratch(); }
@@ -98,6 +99,7 @@ class BoundControl : public BoundLoad, public LoadOutput {
   void begin(State& /*state*/) const override {}
   const LoadOutput* output() const override { return this; }
   std::size_t outputs() const override { return block_->outputs(); }
+  bool needs_accelerations() const override { return follows_accelerations_; }
 
  protected:
   [[nodiscard]] const ControlEnds& ends() const { return ends_; }
@@ -136,6 +138,28 @@ class BoundControl : public BoundLoad, public LoadOutput {
   }
 
  private:
+  /// What is commanded may depend on accelerations at once where nothing acts by it at once.
+  void follow_accelerations() {
+    for (std::size_t i = 0; i < signals_.size(); ++i) {
+      const std::string& name = signals_.names()[i];
+      if (!signals_.needs_accelerations(i)) continue;
+      if (ends_.sample > 0)
+        throw std::invalid_argument(
+            "signal '" + name +
+            "' depends on accelerations; a sampled controller measures positions and rates: make "
+            "it continuous, with a lag behind it");
+      if (!block_->feeds_through(i)) continue;
+      follows_accelerations_ = true;
+      if (ends_.acts)
+        throw std::invalid_argument(
+            "signal '" + name +
+            "' depends on accelerations, and the effort follows it at once: "
+            "the loop " +
+            name + " -> this load -> accelerations -> " + name +
+            " is algebraic; put a lag between: 'to: nothing' and an actuator that measures this "
+            "load, or a transfer-function whose numerator has the lower degree");
+    }
+  }
   static void expect(std::size_t got, std::size_t needed, const char* what, const char* key) {
     if (got != needed)
       throw std::invalid_argument("got " + std::to_string(got) + " " + what + " ('" + key + "'); it has " +
@@ -147,6 +171,7 @@ class BoundControl : public BoundLoad, public LoadOutput {
   Signals signals_;
   std::vector<InputPlace> places_;
   std::vector<FrameIndex> frames_;
+  bool follows_accelerations_ = false;  ///< what it commands does, at once
 };
 
 /// In continuous time: the block's states are the load's.

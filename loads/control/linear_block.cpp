@@ -41,6 +41,10 @@ void LinearBlock::output(double t, std::span<const double> w, std::span<const do
   combine(system_.C, system_.D, t, w, z, v);
 }
 
+bool LinearBlock::feeds_through(std::size_t input) const {
+  return !system_.D.col(static_cast<Eigen::Index>(input)).isZero(0);
+}
+
 void LinearBlock::set_sample(double period) {
   const Eigen::Index n = system_.A.rows(), m = system_.B.cols();
   Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + m, n + m);

@@ -29,6 +29,7 @@ class LinearBlock final : public ControlBlock {
   std::vector<std::string> states() const override;
   void rates(double t, std::span<const double> w, std::span<const double> z,
              std::span<double> rates) const noexcept override;
+  bool feeds_through(std::size_t input) const override;
   void output(double t, std::span<const double> w, std::span<const double> z,
               std::span<double> v) const noexcept override;
   void set_sample(double period) override;

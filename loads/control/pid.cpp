@@ -49,6 +49,7 @@ class Pid final : public ControlBlock {
               std::span<double> v) const noexcept override {
     v[0] = demand(t, w, z).effort;
   }
+  bool feeds_through(std::size_t /*input*/) const override { return k_.proportional > 0 || k_.derivative > 0; }
   void set_sample(double period) override { period_ = period; }
   void advance(double t, std::span<const double> w, std::span<double> z) const noexcept override {
     const Demand a = demand(t, w, z);

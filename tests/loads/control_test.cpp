@@ -7,6 +7,7 @@
 #include "withy/core/analysis/modes.hpp"
 #include "withy/core/plugin/central_difference.hpp"
 #include "withy/core/plugin/sensor.hpp"
+#include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/loads/control/linear_block.hpp"
 #include "withy/tests/conformance/allocations.hpp"
 #include "withy/tests/loads/scene_run.hpp"
@@ -43,6 +44,29 @@ struct Method {
   double tolerance;
 };
 
+// A mass on a spring whose accelerometer feeds a force back through a lag: m ẍ = −k x − (g/T) z, ż = −z/T + ẍ.
+constexpr double m_felt = 2, k_felt = 30, g_felt = 1.5, T_felt = 0.1;
+const std::string felt = R"(format: withy/1
+time: {end: 2, output: 0.01}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+outputs: {imu: {type: accelerometer, of: block}}
+initial: {hinges: {slide: {position: [0.3]}}}
+loads:
+  spring: {type: hinge-spring, hinge: slide, stiffness: 30}
+  command: {type: input, hinge: slide}
+)";
+const std::string felt_lag =
+    felt + "  servo: {type: transfer-function, of: imu.x, to: command, numerator: [-1.5], denominator: [0.1, 1]}\n";
+
+/// Of x, ẋ, z.
+Eigen::Matrix3d felt_matrix() {
+  Eigen::Matrix3d A;
+  A << 0, 1, 0, -k_felt / m_felt, 0, -g_felt / T_felt / m_felt, 0, 0, -1 / T_felt;
+  A.row(2) += A.row(1);  // ż sees ẍ
+  return A;
+}
+
 class EveryIntegrator : public testing::TestWithParam<Method> {};
 
 TEST_P(EveryIntegrator, SolvesALinearLoopToItsTolerance) {
@@ -52,6 +76,16 @@ TEST_P(EveryIntegrator, SolvesALinearLoopToItsTolerance) {
   for (const State& state : all) {
     const Eigen::Vector4d x = closed_form(state.time);
     for (Eigen::Index i = 0; i < 4; ++i)
+      ASSERT_NEAR(state.y[static_cast<std::size_t>(i)], x[i], GetParam().tolerance)
+          << "element " << i << " at " << state.time;
+  }
+}
+
+TEST_P(EveryIntegrator, SolvesAFeedbackOfAccelerationToItsTolerance) {
+  LoadedScene s(felt_lag, {std::string("integrator=") + GetParam().integrator});
+  for (const State& state : s.run()) {
+    const Eigen::Vector3d x = matrix_exponential(felt_matrix() * state.time) * Eigen::Vector3d(0.3, 0, 0);
+    for (Eigen::Index i = 0; i < 3; ++i)
       ASSERT_NEAR(state.y[static_cast<std::size_t>(i)], x[i], GetParam().tolerance)
           << "element " << i << " at " << state.time;
   }
@@ -69,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Method{"radau_exact", "{name: radau, rtol: 1e-9, atol: 1e-9, jacobian: exact}", 1e-8},
                     Method{"gauss", "{name: gauss, step: 0.01, jacobian: exact}", 3e-6},
                     Method{"generalized_alpha", "{name: generalized-alpha, step: 0.0005, jacobian: exact}", 1e-4}),
-    [](const testing::TestParamInfo<Method>& info) { return std::string(info.param.name); });
+    [](const testing::TestParamInfo<Method>& tested) { return std::string(tested.param.name); });
 
 /// Jacobian of the scene at a state off its start, against differences of what moves.
 void expect_jacobian(const std::string& text, double tolerance) {
@@ -134,6 +168,62 @@ loads:
                   1e-7);
 }
 
+const std::string shaken_arm = arm + R"(outputs:
+  imu: {type: accelerometer, of: boom.tip}
+  end: {type: frame, of: boom.tip, show: all}
+  joint: {type: hinge, hinge: axle}
+loads:
+  jet: {type: input, frame: boom.tip, direction: [0, 1, 0], following: true}
+  servo: {type: pid, of: imu.y, to: nothing, proportional: 3, reference: 0.2}
+  drive: {type: actuator, of: servo, hinge: axle, frequency: 40}
+  damper: {type: transfer-function, of: imu.y, to: jet, numerator: [-0.2], denominator: [0.05, 1]}
+  seen: {type: state-space, of: [imu.x, imu.y, end.ax, end.wz, joint.acceleration], to: nothing, A: [[0, 0, 0, 0, 0], [0, 0, 0, 0, 0], [0, 0, 0, 0, 0], [0, 0, 0, 0, 0], [0, 0, 0, 0, 0]], B: [[1, 0, 0, 0, 0], [0, 1, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 1, 0], [0, 0, 0, 0, 1]], C: [[1, 0, 0, 0, 0]]}
+)";
+
+TEST(Control, AccelerationsThatAreMeasuredAreThoseOfTheOutputs) {
+  LoadedScene s(shaken_arm);
+  const Layout& layout = s.scene.model->layout();
+  State state = s.scene.initial;
+  for (std::size_t i = 0; i < layout.moving(); ++i) state.y[i] += 0.3 * std::sin(1.0 + 2.3 * static_cast<double>(i));
+  Work work = s.equations->make_work();
+  std::vector<double> y_dot(layout.size());
+  ASSERT_TRUE(s.equations->derivatives(0, state.y, y_dot, work).ok());
+  SensorReader reader(s.scene.outputs, *s.equations);
+  std::vector<double> values(reader.columns().size());
+  ASSERT_TRUE(reader.read(state, values));
+  const std::vector<std::string>& names = layout.continuous_names;
+  const auto first = static_cast<std::size_t>(std::find(names.begin(), names.end(), "seen.x0") - names.begin());
+  std::size_t k = first + layout.positions + layout.speeds;
+  for (const char* name : {"imu.x", "imu.y", "end.ax", "end.wz", "joint.acceleration"}) {
+    const auto column =
+        std::find_if(reader.columns().begin(), reader.columns().end(), [&](const Column& c) { return c.name == name; });
+    ASSERT_NE(column, reader.columns().end()) << name;
+    const double value = values[static_cast<std::size_t>(column - reader.columns().begin())];
+    EXPECT_NEAR(y_dot[k++], value, 1e-10 * (1 + std::abs(value))) << name;
+    EXPECT_NE(value, 0) << name;
+  }
+}
+
+TEST(Control, JacobiansKnowOfMeasuredAccelerations) {
+  expect_jacobian(felt_lag, 1e-7);
+  expect_jacobian(shaken_arm, 1e-6);
+}
+
+TEST(Control, AnActuatorBreaksTheLoopOfAnAccelerometer) {
+  LoadedScene s(felt +
+                "  servo: {type: pid, of: imu.x, to: nothing, proportional: 1.5}\n"
+                "  drive: {type: actuator, of: servo, to: command, frequency: 30, damping_ratio: 0.8}\n");
+  // x, ẋ, τ, v: v̇ = ω² (−P ẍ − τ) − 2 ζ ω v.
+  Eigen::Matrix4d A;
+  A << 0, 1, 0, 0, -k_felt / m_felt, 0, 1 / m_felt, 0, 0, 0, 0, 1, 0, 0, -900, -48;
+  A.row(3) -= 900 * 1.5 * A.row(1);
+  for (const State& state : s.run()) {
+    const Eigen::Vector4d x = matrix_exponential(A * state.time) * Eigen::Vector4d(0.3, 0, 0, 0);
+    for (Eigen::Index i = 0; i < 4; ++i)
+      ASSERT_NEAR(state.y[static_cast<std::size_t>(i)], x[i], 1e-4) << "element " << i << " at " << state.time;
+  }
+}
+
 TEST(Control, ResumesFromACheckpointBitByBit) {
   for (const char* integrator :
        {"dopri5", "{name: radau, jacobian: exact}", "{name: generalized-alpha, step: 0.01}", "imex"}) {
@@ -165,10 +255,11 @@ TEST(Control, StatesGoThroughStateFilesToTheBit) {
 }
 
 TEST(Control, StepsAllocateNothing) {
-  LoadedScene s(arm + R"(outputs: {turn: {type: gyro, of: boom.tip}}
+  LoadedScene s(arm + R"(outputs: {turn: {type: gyro, of: boom.tip}, imu: {type: accelerometer, of: boom.tip}}
 loads:
   servo: {type: pid, hinge: axle, proportional: 50, integral: 30, derivative: 5, limit: 3}
   damper: {type: transfer-function, of: turn.z, hinge: axle, numerator: [-2], denominator: [0.05, 1]}
+  feels: {type: transfer-function, of: imu.y, hinge: axle, numerator: [-0.1], denominator: [0.05, 1]}
   law: {type: expression, value: -2*axle.rate + servo / 10, hinge: axle}
 )");
   const auto stepper = s.scene.integrator->start(*s.equations, s.scene.initial);
@@ -307,6 +398,17 @@ TEST(Control, LinearFormHasTheStatesOfTheController) {
   EXPECT_TRUE(tangents.differenced.empty());
 }
 
+TEST(Control, LinearFormSeesMeasuredAccelerations) {
+  LoadedScene s(felt_lag);
+  const TangentDynamics dynamics(s.scene.model, s.scene.formulation->terms());
+  const Tangents tangents =
+      dynamics.tangents(0, s.scene.initial.y, Eigen::VectorXd::Constant(1, -0.3 * k_felt / m_felt));
+  const FirstOrderForm form = whole_first_order_form(tangents, {false});
+  EXPECT_LT((form.A - felt_matrix()).cwiseAbs().maxCoeff(), 1e-9);
+  // An effort moves the filter's state at once.
+  EXPECT_LT((form.B - Eigen::Vector3d(0, 1 / m_felt, 1 / m_felt)).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(Control, MistakesAreLocatedAndNamed) {
   const auto problem = [](const std::string& load, const std::string& outputs = "") {
     return test::problem_of(test::turntable + outputs + "loads:\n  command: {type: input, hinge: axle}\n  servo: {" +
@@ -322,6 +424,15 @@ TEST(Control, MistakesAreLocatedAndNamed) {
       "load: servo}}\n";
   EXPECT_THAT(problem("type: pid, of: imu.y, to: command, proportional: 1", imu),
               testing::AllOf(HasSubstr("imu.y -> this load -> accelerations -> imu.y"), HasSubstr("algebraic")));
+  const std::string felt_outputs = "outputs: {imu: {type: accelerometer, of: table}}\n";
+  EXPECT_EQ(problem("type: pid, of: imu.y, to: command, integral: 1", felt_outputs), "");
+  EXPECT_THAT(problem("type: pid, of: imu.y, to: command, integral: 1, sample: 0.01", felt_outputs),
+              HasSubstr("a sampled controller measures positions and rates"));
+  EXPECT_THAT(problem("type: pid, of: imu.y, to: nothing, proportional: 1}\n  second: {type: expression, to: command, "
+                      "value: 2 * servo",
+                      felt_outputs),
+              testing::AllOf(HasSubstr("/loads/second"), HasSubstr("servo -> this load -> accelerations -> servo"),
+                             HasSubstr("an actuator that measures this load")));
   EXPECT_THAT(problem("type: pid, of: drive, to: command, proportional: 1", imu), HasSubstr("algebraic"));
   EXPECT_THAT(problem("type: pid, of: of_servo, to: command, proportional: 1", imu), HasSubstr("algebraic"));
   EXPECT_THAT(problem("type: transfer-function, of: axle, to: command, numerator: [1, 0, 0], denominator: [1, 2]"),

@@ -66,6 +66,32 @@ TEST(LinearModel, OfAFreeBodyHasWhatForcesDoToAccelerometers) {
   EXPECT_NEAR((m.system.C * m.system.B)(find(m.outputs, "rate.z"), 1), 1.0 / 5, 1e-10);
 }
 
+TEST(Response, KnowsOfAccelerationsThatAreFedBack) {
+  constexpr double m = 2, k = 30, g = 1.5, T = 0.1;
+  const Prepared prepared = scene_of(R"(
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+outputs: {imu: {type: accelerometer, of: block}}
+loads:
+  spring: {type: hinge-spring, hinge: slide, stiffness: 30}
+  command: {type: input, hinge: slide}
+  servo: {type: transfer-function, of: imu.x, to: command, numerator: [-1.5], denominator: [0.1, 1]}
+)");
+  // m s² x + k x = F − g s² x/(T s + 1)
+  const Response closed = response(at_start(prepared), {"command", "imu.x", 0.1, 10, 20, {}});
+  const Response opened = response(at_start(prepared), {"servo", "", 0.1, 10, 20, {}});
+  EXPECT_TRUE(opened.opened);
+  for (std::size_t i = 0; i < closed.values.size(); ++i) {
+    const std::complex<double> s(0, closed.values[i].omega), lag = g * s * s / (T * s + 1.0);
+    const std::complex<double> G = s * s / (m * s * s + k + lag);
+    EXPECT_LT(std::abs(closed.values[i].value - G), 1e-7 * std::abs(G));
+  }
+  for (const ResponseAt& at : opened.values) {
+    const std::complex<double> s(0, at.omega), L = g * s * s / (T * s + 1.0) / (m * s * s + k);
+    EXPECT_LT(std::abs(std::abs(at.value) - std::abs(L)), 1e-7 * std::abs(L));
+  }
+}
+
 TEST(LinearModel, AccelerationsOfHingesAreRowsOfTheExactMatrices) {
   // Spinning, bent and swinging, with friction that saturates within a thousandth of a radian a second.
   const Prepared arm = prepare(
