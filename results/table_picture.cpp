@@ -53,6 +53,26 @@ Panel panel_of_column(const std::vector<NamedTable>& runs, const Column& column)
 
 bool changes(const Panel& panel) { return panel.y_range.first < panel.y_range.second; }
 
+double size_of(const Panel& panel) { return std::max(std::abs(panel.y_range.first), std::abs(panel.y_range.second)); }
+
+/// What a component of a vector is beside: its label without the component.
+std::string vector_of(const Panel& panel) {
+  const std::string name = panel.y_label.substr(0, panel.y_label.find(" ["));
+  return name.substr(0, name.find_last_of("._"));
+}
+
+/// A component that is rounding beside the others of its vector gets their range: it is zero there.
+void widen_rounding(std::vector<Panel>& panels) {
+  constexpr double rounding = 1e-12;
+  const std::vector<Panel> as_they_are = panels;
+  for (Panel& panel : panels) {
+    for (const Panel& other : as_they_are) {
+      const double size = size_of(other);
+      if (vector_of(other) == vector_of(panel) && size_of(panel) < rounding * size) panel.y_range = {-size, size};
+    }
+  }
+}
+
 /// Coordinates of hinges and deflections of tips.
 bool tells_most(const Column& column) {
   const bool length = column.unit == "m" || column.unit == "rad";
@@ -83,7 +103,10 @@ std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::
     throw ResultsError("there is no column " + in_quotes(name) +
                        (guess.empty() ? "" : "; did you mean " + in_quotes(guess) + "?"));
   }
-  if (!names.empty()) return panels;
+  if (!names.empty()) {
+    widen_rounding(panels);
+    return panels;
+  }
   for (const bool most : {true, false}) {
     for (const Column& column : all) {
       if (most != tells_most(column)) continue;
@@ -92,6 +115,7 @@ std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::
     }
     if (!panels.empty()) break;
   }
+  widen_rounding(panels);
   return panels;
 }
 
