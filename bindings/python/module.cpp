@@ -11,14 +11,13 @@
 #include <system_error>
 #include <utility>
 
+#include "withy/bindings/python/bindings.hpp"
 #include "withy/bindings/python/followed.hpp"
-#include "withy/bindings/python/sweep.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/host/equations.hpp"
 #include "withy/host/simulation.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/results/results_folder.hpp"
-#include "withy/scene/scene.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace py = pybind11;
@@ -27,36 +26,15 @@ namespace {
 
 using withy::host::Equations;
 using withy::host::Event;
-using withy::host::Follow;
-using withy::host::Library;
-using withy::host::LibraryOptions;
-using withy::host::Port;
-using withy::host::Result;
 using withy::host::Scene;
 using withy::host::Simulation;
 using withy::host::SimulationStopped;
 using withy::host::Snapshot;
-using withy::python::followed;
+using withy::python::Array;
+using withy::python::array_of;
+using withy::python::names_of;
 using withy::python::Signals;
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-py::list names_of(const std::vector<Port>& ports) {
-  py::list names;
-  for (const Port& port : ports) names.append(port.name);
-  return names;
-}
-py::list units_of(const std::vector<Port>& ports) {
-  py::list units;
-  for (const Port& port : ports) units.append(port.unit);
-  return units;
-}
-
-/// A vector as an array, without a copy.
-Array array_of(std::vector<double> numbers, std::vector<py::ssize_t> shape) {
-  auto* kept = new std::vector<double>(std::move(numbers));
-  const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<double>*>(p); });
-  return Array(std::move(shape), kept->data(), owner);
-}
+using withy::python::units_of;
 
 std::span<const double> span_of(const Array& a, std::size_t size, const char* what) {
   if (a.ndim() != 1 || static_cast<std::size_t>(a.size()) != size)
@@ -161,74 +139,6 @@ void translate(std::exception_ptr pointer) {
   }
 }
 
-py::tuple run(const Scene& scene, const py::object& progress) {
-  Result result = followed(progress, [&](const Follow& follow) { return scene.run(follow); });
-  const auto rows = static_cast<py::ssize_t>(result.rows()), columns = static_cast<py::ssize_t>(result.columns.size());
-  return py::make_tuple(result.status, result.message, names_of(result.columns), units_of(result.columns),
-                        array_of(std::move(result.values), {rows, columns}), result.json);
-}
-
-void bind_scene(py::module_& m) {
-  py::class_<Library>(m, "Library")
-      .def(py::init([](std::vector<std::filesystem::path> plugins, const py::object& log) {
-             LibraryOptions options{std::move(plugins), {}};
-             if (!log.is_none())
-               options.log = [log](std::string_view remark) {
-                 const py::gil_scoped_acquire held;
-                 try {
-                   log(py::str(remark.data(), remark.size()));
-                 } catch (py::error_already_set& e) {
-                   e.discard_as_unraisable("withy's log");
-                 }
-               };
-             return Library(std::move(options));
-           }),
-           py::arg("plugins"), py::arg("log"))
-      .def("schema", [](const Library& l) { return withy::schema(l.registry()); });
-  const auto axes = [](const std::vector<std::string>& formulations, const std::vector<std::string>& families,
-                       const std::vector<int>& modes, const std::vector<std::string>& integrators,
-                       const std::vector<double>& tolerances) {
-    return Scene::Axes{formulations, families, modes, integrators, tolerances};
-  };
-  using Names = std::vector<std::string>;
-  py::class_<Scene>(m, "Scene")
-      .def_static("read", &Scene::read)
-      .def_static("parse", [](const Library& l, const std::string& text,
-                              const std::string& name) { return Scene::parse(l, text, name); })
-      .def("copy", [](const Scene& s) { return Scene(s); })
-      .def("set", [](Scene& s, const std::string& path, const std::string& text) { s.set(path, text); })
-      .def("check", &Scene::check)
-      .def_property_readonly("text", &Scene::text)
-      .def_property_readonly("name", &Scene::name)
-      .def_property_readonly("changes", &Scene::changes)
-      .def("run", &run)
-      .def("compare",
-           [](const Scene& s, const Names& formulations, const std::string& reference, const py::object& progress) {
-             return followed(progress, [&](const Follow& f) { return s.compare(formulations, reference, f); });
-           })
-      .def("trade",
-           [axes](const Scene& s, const Names& formulations, const Names& families, const std::vector<int>& modes,
-                  const Names& integrators, const std::vector<double>& tolerances, std::size_t jobs,
-                  const py::object& progress) {
-             return followed(progress, [&](const Follow& f) {
-               return s.trade(axes(formulations, families, modes, integrators, tolerances), jobs, f);
-             });
-           })
-      .def("advise",
-           [axes](const Scene& s, const std::string& accuracy, const Names& outputs, const Names& formulations,
-                  const Names& families, const std::vector<int>& modes, const Names& integrators,
-                  const std::vector<double>& tolerances, const py::object& progress) {
-             return followed(progress, [&](const Follow& f) {
-               return s.advise(accuracy, outputs, axes(formulations, families, modes, integrators, tolerances), f);
-             });
-           })
-      .def_property_readonly("values", &Scene::values)
-      .def("linearize", &Scene::linearize, py::call_guard<py::gil_scoped_release>())
-      .def("modes", [](const Scene& s, const Names& lock, const py::object& progress) {
-        return followed(progress, [&](const Follow& f) { return s.modes(lock, f); });
-      });
-}
-
 void bind_equations(py::module_& m) {
   using E = SharedEquations;
   py::class_<E>(m, "Equations")
@@ -329,7 +239,7 @@ void bind_simulation(py::module_& m) {
 PYBIND11_MODULE(_withy, m) {
   m.doc() = "The engine of the package withy.";
   py::register_exception_translator(&translate);
-  bind_scene(m);
+  withy::python::bind_scene(m);
   bind_equations(m);
   bind_simulation(m);
   withy::python::bind_sweep(m);

@@ -1,7 +1,6 @@
-#include "withy/bindings/python/sweep.hpp"
-
 #include <pybind11/stl.h>
 
+#include "withy/bindings/python/bindings.hpp"
 #include "withy/bindings/python/followed.hpp"
 #include "withy/campaign/cases.hpp"
 #include "withy/campaign/plan.hpp"

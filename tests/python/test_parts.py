@@ -6,6 +6,7 @@ import inspect
 import os
 import pathlib
 import pickle
+import re
 import subprocess
 import sys
 import textwrap
@@ -140,6 +141,18 @@ def test_the_scene_of_the_documentation_runs(capsys):
     assert names["result"]["axle"][-1] == pytest.approx(0.5 / inertia * 10**2 / 2, rel=2e-3)
     assert names["linear"]["C"].shape == (2, 6)
     assert withy.loads(capsys.readouterr().out).run().status == "completed"
+
+
+def test_every_cell_of_the_tutorial_runs_and_says_what_comes_out():
+    text = (SCENES.parent / "docs/tutorial-python.md").read_text()
+    names = {}
+    for cell in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
+        exec(compile(cell, "docs/tutorial-python.md", "exec"), names)
+    assert numpy.allclose(names["frequencies"], [0, 0.55, 1.81], atol=0.01)
+    assert names["left_rigid"] == pytest.approx(0.68, abs=0.01)
+    assert names["left_with_modes"] == pytest.approx(0.0075, abs=0.0005)
+    assert names["tried"] == pytest.approx({300: 0.046, 400: names["left_with_modes"], 500: 0.004}, abs=0.0005)
+    assert names["returns"][0] == names["returns"][1]
 
 
 GOOD = """

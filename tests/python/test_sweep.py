@@ -121,6 +121,28 @@ def test_bad_plans_and_foreign_stores_are_refused_and_a_plan_may_stop_at_a_failu
         withy.sweep(plan, out=store, parts=0)
 
 
+class Meddler(concurrent.futures.Executor):
+    """Changes the plan before each task, as somebody does who edits it while a cluster is at work."""
+
+    def __init__(self, plan):
+        self.plan = plan
+
+    def submit(self, task, *arguments):
+        self.plan.write_text(PLAN.replace("deviation: 0.1", "deviation: 0.2"))
+        withy._sweep._open.clear()  # as a worker that has just been started
+        done = concurrent.futures.Future()
+        try:
+            done.set_result(task(*arguments))
+        except Exception as error:
+            done.set_exception(error)
+        return done
+
+
+def test_a_plan_that_changes_on_the_way_is_not_mixed_into_the_store(plan):
+    with pytest.raises(withy.StoreError, match="another plan"):
+        withy.sweep(plan, Meddler(plan), out=plan.parent / "mixed", parts=2)
+
+
 def test_dask_loses_no_case_with_a_killed_worker(plan, undisturbed):
     distributed = pytest.importorskip("distributed", reason="Dask is not there (Debian: python3-distributed)")
     import dask

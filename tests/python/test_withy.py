@@ -239,6 +239,21 @@ def test_results_are_drawn(slew, tmp_path):
     axes.figure.savefig(tmp_path / "run.svg")
 
 
+def test_results_are_kept_as_the_program_keeps_them(slew, tmp_path):
+    result = slew.run(time={"end": 0.2})
+    try:
+        result.to_hdf5(tmp_path / "run.h5")
+    except RuntimeError as missing:
+        pytest.skip(str(missing))
+    with pytest.raises(OSError):
+        result.to_hdf5(tmp_path / "none" / "run.h5")
+    h5py = pytest.importorskip("h5py", reason="h5py is not there (Debian: python3-h5py)")
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert file.attrs["status"] in (b"completed", "completed")
+        for name in ("t", "shoulder", "link1.tip.deflection_y"):
+            assert numpy.array_equal(file[name][:], result[name])
+
+
 def test_everything_is_documented():
     for name in withy.__all__:
         thing = getattr(withy, name)

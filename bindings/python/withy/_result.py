@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import difflib
 import json
+import os
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy
+
+from . import _withy
 
 
 def nearest(name: object, known: list[str]) -> str:
@@ -77,6 +80,16 @@ class Result(Mapping):
         import pandas
 
         return pandas.DataFrame(self.table, columns=list(self)).set_index("t")
+
+    def to_hdf5(self, path: str | os.PathLike[str]) -> None:
+        """Writes the table as ``withy run --hdf5`` does: a dataset for each column with its unit, status and run.json.
+
+        Raises:
+            RuntimeError: where the package was built without HDF5.
+            OSError: where the file cannot be written.
+        """
+        _withy.write_hdf5(os.fspath(path), list(self), list(self.units.values()), self.table,
+                          [("run", json.dumps(self.summary)), ("status", self.status)])
 
     def plot(self, *names: str, axes=None):
         """Draws columns over time with matplotlib, angles in degrees.

@@ -24,14 +24,15 @@ _open: dict[Key, _withy.Sweep] = {}
 
 
 def _opened(key: Key, fingerprint: str) -> _withy.Sweep:
-    if key not in _open or _open[key].fingerprint != fingerprint:
+    opened = _open.get(key)  # threads of several sweeps may be here at once
+    if opened is None or opened.fingerprint != fingerprint:
         plan, store, plugins = key
         opened = _withy.Sweep(library(plugins), plan, store, False)
         if opened.fingerprint != fingerprint:
             raise StoreError(f"{plan}: this process reads another plan, scene or plugins than the one that began the sweep")
         _open.clear()
         _open[key] = opened
-    return _open[key]
+    return opened
 
 
 def _run_part(key: Key, fingerprint: str, part: int, parts: int, jobs: int) -> tuple[int, int, str | None]:

@@ -1,0 +1,41 @@
+/// \file
+/// The parts of the extension module, and what they share.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <vector>
+
+#include "withy/host/library.hpp"
+
+namespace withy::python {
+
+namespace py = pybind11;
+using host::Port;
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+inline py::list names_of(const std::vector<Port>& ports) {
+  py::list names;
+  for (const Port& port : ports) names.append(port.name);
+  return names;
+}
+inline py::list units_of(const std::vector<Port>& ports) {
+  py::list units;
+  for (const Port& port : ports) units.append(port.unit);
+  return units;
+}
+
+/// A vector as an array, without a copy.
+inline Array array_of(std::vector<double> numbers, std::vector<py::ssize_t> shape) {
+  auto* kept = new std::vector<double>(std::move(numbers));
+  const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<double>*>(p); });
+  return Array(std::move(shape), kept->data(), owner);
+}
+
+/// Libraries, scenes, their runs and studies.
+void bind_scene(py::module_& m);
+/// Many cases of a scene, for executors of Python.
+void bind_sweep(py::module_& m);
+
+}  // namespace withy::python

@@ -1,0 +1,108 @@
+#include "withy/host/scene.hpp"
+
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <utility>
+
+#include "withy/bindings/python/bindings.hpp"
+#include "withy/bindings/python/followed.hpp"
+#include "withy/results/hdf5_recorder.hpp"
+#include "withy/scene/scene.hpp"
+
+namespace withy::python {
+namespace {
+
+using host::Follow;
+using host::Library;
+using host::LibraryOptions;
+using host::Result;
+using host::Scene;
+
+py::tuple run(const Scene& scene, const py::object& progress) {
+  Result result = followed(progress, [&](const Follow& follow) { return scene.run(follow); });
+  const auto rows = static_cast<py::ssize_t>(result.rows()), columns = static_cast<py::ssize_t>(result.columns.size());
+  return py::make_tuple(result.status, result.message, names_of(result.columns), units_of(result.columns),
+                        array_of(std::move(result.values), {rows, columns}), result.json);
+}
+
+/// The table of a run as results.h5 has it.
+void write_hdf5(const std::filesystem::path& path, const std::vector<std::string>& names,
+                const std::vector<std::string>& units, const Array& table,
+                const std::vector<std::pair<std::string, std::string>>& descriptions) {
+  if (const std::string missing = withy::hdf5_missing(); !missing.empty()) throw std::runtime_error(missing);
+  std::vector<withy::Column> columns;
+  for (std::size_t c = 0; c < names.size(); ++c) columns.push_back({names[c], units[c]});
+  const auto file = withy::make_hdf5_recorder(path);
+  file->begin(columns);
+  for (py::ssize_t row = 0; row < table.shape(0); ++row) file->row({table.data(row, 0), columns.size()});
+  for (const auto& [name, text] : descriptions) file->describe(name, text);
+  file->end();
+}
+
+}  // namespace
+
+void bind_scene(py::module_& m) {
+  py::class_<Library>(m, "Library")
+      .def(py::init([](std::vector<std::filesystem::path> plugins, const py::object& log) {
+             LibraryOptions options{std::move(plugins), {}};
+             if (!log.is_none())
+               options.log = [log](std::string_view remark) {
+                 const py::gil_scoped_acquire held;
+                 try {
+                   log(py::str(remark.data(), remark.size()));
+                 } catch (py::error_already_set& e) {
+                   e.discard_as_unraisable("withy's log");
+                 }
+               };
+             return Library(std::move(options));
+           }),
+           py::arg("plugins"), py::arg("log"))
+      .def("schema", [](const Library& l) { return withy::schema(l.registry()); });
+  const auto axes = [](const std::vector<std::string>& formulations, const std::vector<std::string>& families,
+                       const std::vector<int>& modes, const std::vector<std::string>& integrators,
+                       const std::vector<double>& tolerances) {
+    return Scene::Axes{formulations, families, modes, integrators, tolerances};
+  };
+  using Names = std::vector<std::string>;
+  m.def("write_hdf5", &write_hdf5);
+  py::class_<Scene>(m, "Scene")
+      .def_static("read", &Scene::read)
+      .def_static("parse", [](const Library& l, const std::string& text,
+                              const std::string& name) { return Scene::parse(l, text, name); })
+      .def("copy", [](const Scene& s) { return Scene(s); })
+      .def("set", [](Scene& s, const std::string& path, const std::string& text) { s.set(path, text); })
+      .def("check", &Scene::check)
+      .def_property_readonly("text", &Scene::text)
+      .def_property_readonly("name", &Scene::name)
+      .def_property_readonly("changes", &Scene::changes)
+      .def("run", &run)
+      .def("compare",
+           [](const Scene& s, const Names& formulations, const std::string& reference, const py::object& progress) {
+             return followed(progress, [&](const Follow& f) { return s.compare(formulations, reference, f); });
+           })
+      .def("trade",
+           [axes](const Scene& s, const Names& formulations, const Names& families, const std::vector<int>& modes,
+                  const Names& integrators, const std::vector<double>& tolerances, std::size_t jobs,
+                  const py::object& progress) {
+             return followed(progress, [&](const Follow& f) {
+               return s.trade(axes(formulations, families, modes, integrators, tolerances), jobs, f);
+             });
+           })
+      .def("advise",
+           [axes](const Scene& s, const std::string& accuracy, const Names& outputs, const Names& formulations,
+                  const Names& families, const std::vector<int>& modes, const Names& integrators,
+                  const std::vector<double>& tolerances, const py::object& progress) {
+             return followed(progress, [&](const Follow& f) {
+               return s.advise(accuracy, outputs, axes(formulations, families, modes, integrators, tolerances), f);
+             });
+           })
+      .def_property_readonly("values", &Scene::values)
+      .def("linearize", &Scene::linearize, py::call_guard<py::gil_scoped_release>())
+      .def("modes", [](const Scene& s, const Names& lock, const py::object& progress) {
+        return followed(progress, [&](const Follow& f) { return s.modes(lock, f); });
+      });
+}
+
+}  // namespace withy::python
