@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Union
@@ -15,6 +14,7 @@ from . import _withy
 from ._library import library
 from ._parts import plain
 from ._result import Result, unknown
+from ._yaml import written
 
 if TYPE_CHECKING:
     from . import Equations
@@ -47,41 +47,6 @@ def _as_text(value: Any) -> str:
     if isinstance(value, str):
         return value
     return json.dumps(plain(value), allow_nan=True)
-
-
-_SECTIONS = ("bodies", "hinges", "loads", "motions", "outputs", "events", "constraints")
-_PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_./-]*")
-_MEANT = {"true", "false", "yes", "no", "on", "off", "null", "y", "n"}
-
-
-def _scalar(value: Any) -> str:
-    if isinstance(value, str):
-        return value if _PLAIN.fullmatch(value) and value.lower() not in _MEANT else json.dumps(value, ensure_ascii=False)
-    if isinstance(value, float) and value != value or value in (float("inf"), -float("inf")):
-        return {"nan": ".nan", "inf": ".inf", "-inf": "-.inf"}[str(value)]
-    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
-        return str(int(value)) if value or str(value)[0] != "-" else "-0.0"
-    return json.dumps(value)
-
-
-def _flow(value: Any) -> str:
-    """On one line."""
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{_scalar(k)}: {_flow(v)}" for k, v in value.items()) + "}"
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(map(_flow, value)) + "]"
-    return _scalar(value)
-
-
-def _block(values: Mapping[str, Any], indent: str = "") -> str:
-    """A line for each member that fits on one."""
-    text = ""
-    for key, value in values.items():
-        line = f"{indent}{_scalar(key)}: {_flow(value)}"
-        if isinstance(value, Mapping) and value and (len(line) > 120 or not indent and key in _SECTIONS):
-            line = f"{indent}{_scalar(key)}:\n{_block(value, indent + '  ').rstrip()}"
-        text += line + "\n"
-    return text
 
 
 def _frozen(value: Any) -> Any:
@@ -210,7 +175,7 @@ class Scene:
         Raises:
             SceneError: where what was set cannot be understood.
         """
-        return _block(self._values_now())
+        return written(self._values_now())
 
     def set(self, path: str, value: Any) -> Scene:
         """Changes a value.
