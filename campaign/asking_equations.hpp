@@ -7,14 +7,17 @@
 #include <vector>
 
 #include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/forward_dynamics.hpp"
 
 namespace withy::campaign {
 
 /// Those of a model, but that `derivatives` asks: a run with them stops in the middle of a step and goes on when it has
 /// been answered. The equations must outlive it.
-class AskingEquations : public EquationsOfMotion {
+class AskingEquations : public EquationsOfMotion, public ForwardDynamics {
  public:
-  explicit AskingEquations(const EquationsOfMotion& own) : own_(own) {}
+  /// Of equations that take efforts, as all that have lanes do.
+  explicit AskingEquations(const EquationsOfMotion& own)
+      : own_(own), forward_(dynamic_cast<const ForwardDynamics&>(own)) {}
 
   [[nodiscard]] const Layout& layout() const override { return own_.layout(); }
   [[nodiscard]] Work make_work() const override { return own_.make_work(); }
@@ -37,6 +40,10 @@ class AskingEquations : public EquationsOfMotion {
                   Work& work) const override {
     own_.mass_times(y, a, product, work);
   }
+  Evaluation forward_dynamics(std::span<const double> y, std::span<const double> efforts, std::span<double> u_dot,
+                              Work& work) const noexcept override {
+    return forward_.forward_dynamics(y, efforts, u_dot, work);
+  }
   [[nodiscard]] const LinearlyImplicit* linearly_implicit() const override { return own_.linearly_implicit(); }
   [[nodiscard]] const Linearization* linearization() const override { return own_.linearization(); }
   Evaluation position_rates(double t, std::span<const double> y, std::span<double> y_dot,
@@ -58,6 +65,7 @@ class AskingEquations : public EquationsOfMotion {
 
  private:
   const EquationsOfMotion& own_;
+  const ForwardDynamics& forward_;
 };
 
 }  // namespace withy::campaign
