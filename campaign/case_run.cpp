@@ -2,37 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "withy/campaign/kept.hpp"
-#include "withy/core/simulation/run_times.hpp"
+#include "withy/core/equations/lane_equations.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy::campaign {
 namespace {
-
-RunSummary simulate_case(const study::Prepared& prepared, KeptNumbers& kept, Registry& registry,
-                         const study::Control& control) {
-  const Scene& scene = prepared.scene;
-  if (prepared.escalates()) {
-    study::RunSettings settings;
-    settings.look_beyond = false;
-    settings.output = [&](const State& state, std::size_t rung) { kept.see(state, rung); };
-    settings.control.interrupted = control.interrupted;  // progress is that of many cases
-    return study::run(prepared, registry, settings).summary;
-  }
-  RunOptions options = study::run_options(scene);
-  options.interrupted = control.interrupted;
-  if (kept.watches_steps()) {
-    // A checkpoint after every step has its state, and changes nothing in a run.
-    options.checkpoint_due = [] { return true; };
-    options.checkpoint = [&](const Checkpoint& checkpoint) { kept.see(checkpoint.state, 0); };
-  }
-  return withy::simulate(*scene.model, *prepared.equations, *scene.integrator, scene.initial, options,
-                         [&](const State& state) { kept.see(state, 0); });
-}
 
 /// Numbers that are none end a case as what they are.
 void check_finite(CaseResult& result) {
@@ -47,36 +26,76 @@ void check_finite(CaseResult& result) {
 
 }  // namespace
 
-CaseResult run_case(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry,
-                    const study::Control& control) {
-  const double began = thread_cpu_seconds();
-  CaseResult result;
-  result.index = index;
-  result.values = cases.values(index);
+template <class Action>
+void CaseRun::refusing(Action&& action) {
+  const auto refuse = [this](const char* why) {
+    result_.status = "refused";
+    result_.message = why;
+    kept_.reset();
+    prepared_.reset();
+  };
   try {
-    const study::Prepared prepared =
-        study::prepare(cases.scene(result.values, fmt::format("case {}", index)), registry);
-    KeptNumbers kept(plan, prepared);
-    const RunSummary summary = simulate_case(prepared, kept, registry, control);
-    result.status = name(summary.status);
-    if (result.completed()) {
-      result.numbers = kept.numbers(summary);
-      check_finite(result);
-    } else {
-      result.message = summary.message;
-    }
+    action();
   } catch (const SceneError& e) {
-    result.status = "refused";
-    result.message = e.what();
+    refuse(e.what());
   } catch (const study::InputError& e) {
-    result.status = "refused";
-    result.message = e.what();
+    refuse(e.what());
   } catch (const std::invalid_argument& e) {
-    result.status = "refused";
-    result.message = e.what();
+    refuse(e.what());
   }
-  result.seconds = thread_cpu_seconds() - began;
-  return result;
+}
+
+CaseRun::CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry)
+    : plan_(plan), registry_(registry) {
+  result_.index = index;
+  result_.values = cases.values(index);
+  refusing([&] {
+    prepared_.emplace(study::prepare(cases.scene(result_.values, fmt::format("case {}", index)), registry));
+    kept_.emplace(plan, *prepared_);
+  });
+}
+
+std::string CaseRun::alone_because() const {
+  if (!plan_.lanes) return "the plan says so";
+  if (prepared_->escalates()) return "the formulation changes along a run";
+  constexpr std::array<std::string_view, 3> explicit_ones = {"rk4", "dopri5", "dop853"};
+  const std::string& integrator = prepared_->scene.integrator_name;
+  if (std::find(explicit_ones.begin(), explicit_ones.end(), integrator) == explicit_ones.end())
+    return "the integrator is " + integrator + "; need rk4, dopri5 or dop853";
+  return lane_refusal(*prepared_->equations);
+}
+
+RunSummary CaseRun::simulate(const EquationsOfMotion& equations, const study::Control& control) {
+  const Scene& scene = prepared_->scene;
+  if (prepared_->escalates()) {
+    study::RunSettings settings;
+    settings.look_beyond = false;
+    settings.output = [this](const State& state, std::size_t rung) { kept_->see(state, rung); };
+    settings.control.interrupted = control.interrupted;  // progress is that of many cases
+    return study::run(*prepared_, registry_, settings).summary;
+  }
+  RunOptions options = study::run_options(scene);
+  options.interrupted = control.interrupted;
+  if (kept_->watches_steps()) {
+    // A checkpoint after every step has its state, and changes nothing in a run.
+    options.checkpoint_due = [] { return true; };
+    options.checkpoint = [this](const Checkpoint& checkpoint) { kept_->see(checkpoint.state, 0); };
+  }
+  return withy::simulate(*scene.model, equations, *scene.integrator, scene.initial, options,
+                         [this](const State& state) { kept_->see(state, 0); });
+}
+
+void CaseRun::run(const EquationsOfMotion& equations, const study::Control& control) {
+  refusing([&] {
+    const RunSummary summary = simulate(equations, control);
+    result_.status = name(summary.status);
+    if (result_.completed()) {
+      result_.numbers = kept_->numbers(summary);
+      check_finite(result_);
+    } else {
+      result_.message = summary.message;
+    }
+  });
 }
 
 }  // namespace withy::campaign

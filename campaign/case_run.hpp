@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "withy/campaign/cases.hpp"
+#include "withy/campaign/kept.hpp"
 #include "withy/study/control.hpp"
 
 namespace withy::campaign {
@@ -21,10 +24,34 @@ struct CaseResult {
   [[nodiscard]] bool completed() const { return status == "completed"; }
 };
 
-/// The same bits for the same case, alone or among others, whatever the thread. A case that is interrupted has that
-/// status and is no result.
-/// \throws PluginError; what a plugin throws.
-CaseResult run_case(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry,
-                    const study::Control& control);
+/// A case on its way.
+class CaseRun {
+ public:
+  /// Makes its scene and its equations; where they cannot be had, that is its result. The plan and the registry must
+  /// outlive it. \throws PluginError; what a plugin throws, as does the other.
+  CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry);
+  CaseRun(const CaseRun&) = delete;
+  CaseRun& operator=(const CaseRun&) = delete;
+
+  /// Null where it has its result already.
+  [[nodiscard]] const EquationsOfMotion* equations() const { return prepared_ ? prepared_->equations.get() : nullptr; }
+  /// Why it is evaluated by itself; empty where its equations have lanes and its integrator spends its time in them.
+  [[nodiscard]] std::string alone_because() const;
+  /// Runs it, with its own equations or with others of the same model.
+  void run(const EquationsOfMotion& equations, const study::Control& control);
+  /// Status "interrupted" is no result.
+  [[nodiscard]] CaseResult& result() { return result_; }
+
+ private:
+  template <class Action>
+  void refusing(Action&& action);
+  RunSummary simulate(const EquationsOfMotion& equations, const study::Control& control);
+
+  const Plan& plan_;
+  Registry& registry_;
+  std::optional<study::Prepared> prepared_;
+  std::optional<KeptNumbers> kept_;
+  CaseResult result_;
+};
 
 }  // namespace withy::campaign

@@ -14,8 +14,9 @@ namespace withy::campaign {
 
 /// Members of the maps of a plan, in the order of messages and schema.
 namespace keys {
-inline const std::vector<std::string> plan = {"format", "name", "scene",       "set",     "vary",   "cases",
-                                              "seed",   "keep", "correlation", "derived", "design", "failures"};
+inline const std::vector<std::string> plan = {"format", "name",     "scene",     "set",         "vary",
+                                              "cases",  "seed",     "keep",      "correlation", "derived",
+                                              "design", "failures", "evaluation"};
 inline const std::vector<std::string> axis = {"grid", "list", "uniform", "normal", "lognormal", "latin", "sobol"};
 inline const std::vector<std::string> range = {"from", "to", "count"};
 inline const std::vector<std::string> list = {"file", "column"};
@@ -27,6 +28,7 @@ inline const std::vector<std::string> correlation = {"of", "matrix"};
 inline const std::vector<std::string> design = {"type", "levels"};
 inline const std::vector<std::string> designs = {"product", "one-at-a-time", "morris", "saltelli"};
 inline const std::vector<std::string> failures = {"continue", "stop"};
+inline const std::vector<std::string> evaluations = {"in-lanes", "one-at-a-time"};
 }  // namespace keys
 
 inline constexpr double most_cases = 1e12;

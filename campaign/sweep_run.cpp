@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "withy/campaign/cases.hpp"
+#include "withy/campaign/case_lanes.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -55,18 +55,17 @@ class Workers {
 
   void work(SegmentWriter& segment, bool tells) {
     try {
-      while (!stop_ && !settings_.control.stop()) {
-        const std::uint64_t index = settings_.shard - 1 + next_++ * settings_.shards;
-        if (index >= cases_.size()) break;
-        if (done_[index]) continue;
-        const CaseResult result = run_case(plan_, cases_, index, registry_, settings_.control);
-        if (result.status == name(RunStatus::interrupted)) break;
+      CaseFlow flow;
+      flow.next = [this] { return next(); };
+      flow.alone = [this](const std::string& why) { note_alone(why); };
+      flow.done = [&](const CaseResult& result) {
         segment.append(result);
         ++ran_;
         if (!result.completed()) note(result);
         if (tells)
           settings_.control.tell(static_cast<double>(outcome_.before + ran_), static_cast<double>(outcome_.cases));
-      }
+      };
+      run_cases(plan_, cases_, registry_, settings_.control, flow);
       segment.close();
     } catch (...) {
       const std::lock_guard lock(mutex_);
@@ -75,6 +74,19 @@ class Workers {
     }
   }
 
+  std::optional<std::uint64_t> next() {
+    while (!stop_) {
+      const std::uint64_t index = settings_.shard - 1 + next_++ * settings_.shards;
+      if (index >= cases_.size()) break;
+      if (!done_[index]) return index;
+    }
+    return {};
+  }
+
+  void note_alone(const std::string& why) {
+    const std::lock_guard lock(mutex_);
+    if (outcome_.alone++ == 0) outcome_.alone_because = why;
+  }
   void note(const CaseResult& result) {
     ++failed_;
     if (plan_.stop_on_failure) stop_ = true;

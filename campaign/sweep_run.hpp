@@ -14,12 +14,14 @@ struct SweepSettings {
 };
 
 struct SweepOutcome {
-  std::uint64_t cases = 0;   ///< of the shard
-  std::uint64_t before = 0;  ///< of these, in the store already
-  std::uint64_t ran = 0;     ///< now
-  std::uint64_t failed = 0;  ///< of those that ran now
-  std::uint64_t lost = 0;    ///< bytes of the store that belong to no record
-  double seconds = 0;        ///< wall time
+  std::uint64_t cases = 0;    ///< of the shard
+  std::uint64_t before = 0;   ///< of these, in the store already
+  std::uint64_t ran = 0;      ///< now
+  std::uint64_t failed = 0;   ///< of those that ran now
+  std::uint64_t lost = 0;     ///< bytes of the store that belong to no record
+  double seconds = 0;         ///< wall time
+  std::uint64_t alone = 0;    ///< of those that ran now, evaluated one at a time; the others four at once
+  std::string alone_because;  ///< why the first of them that was met is
   /// The first that failed, if any did, in the order of the plan.
   std::optional<CaseResult> failure;
   [[nodiscard]] bool whole() const { return before + ran == cases; }

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/output.hpp"
-#include "withy/campaign/case_run.hpp"
+#include "withy/campaign/case_lanes.hpp"
 #include "withy/campaign/derived.hpp"
 #include "withy/campaign/kept.hpp"
 #include "withy/results/json_text.hpp"

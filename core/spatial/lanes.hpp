@@ -150,29 +150,66 @@ inline LaneBlock skew_times(const LaneTriple& a, const LaneBlock& m) {
   return {{cross(a, m.c[0]), cross(a, m.c[1]), cross(a, m.c[2])}};
 }
 inline LaneBlock turned(const LaneBlock& R, const LaneBlock& m) { return R * m * transpose(R); }
-/// Of a symmetric m, without what is there twice.
-inline LaneBlock turned_symmetric(const LaneBlock& R, const LaneBlock& m) {
-  const LaneBlock left = R * m;
+
+/// A symmetric 3×3 matrix, no element twice.
+struct LaneSymmetric {
+  Lanes xx, xy, xz, yy, yz, zz;
+
+  static LaneSymmetric zero() { return {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}; }
+  /// Of a matrix that is symmetric.
+  static LaneSymmetric of(const LaneBlock& m) { return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)}; }
+  LaneSymmetric& operator+=(const LaneSymmetric& b) {
+    xx += b.xx, xy += b.xy, xz += b.xz, yy += b.yy, yz += b.yz, zz += b.zz;
+    return *this;
+  }
+  LaneSymmetric& operator+=(const LaneBlock& b) { return *this += of(b); }
+  friend LaneTriple operator*(const LaneSymmetric& m, const LaneTriple& v) {
+    return {m.xx * v[0] + m.xy * v[1] + m.xz * v[2], m.xy * v[0] + m.yy * v[1] + m.yz * v[2],
+            m.xz * v[0] + m.yz * v[1] + m.zz * v[2]};
+  }
+  /// Subtracts a bᵀ, a along b.
+  void subtract_outer(const LaneTriple& a, const LaneTriple& b) {
+    xx -= a[0] * b[0], xy -= a[0] * b[1], xz -= a[0] * b[2];
+    yy -= a[1] * b[1], yz -= a[1] * b[2], zz -= a[2] * b[2];
+  }
+};
+inline LaneBlock full(const LaneSymmetric& m) {
+  return {{LaneTriple(m.xx, m.xy, m.xz), LaneTriple(m.xy, m.yy, m.yz), LaneTriple(m.xz, m.yz, m.zz)}};
+}
+inline const Block& full(const Block& m) { return m; }
+inline LaneTriple column(const LaneSymmetric& m, int j) { return full(m).c[j]; }
+inline const Triple& column(const Block& m, int j) { return m.c[j]; }
+inline LaneSymmetric turned_symmetric(const LaneBlock& R, const LaneSymmetric& m) {
+  const LaneBlock left = R * full(m);
   const auto element = [&](int i, int j) { return left(i, 0) * R(j, 0) + left(i, 1) * R(j, 1) + left(i, 2) * R(j, 2); };
-  const Lanes xy = element(0, 1), xz = element(0, 2), yz = element(1, 2);
-  return {{LaneTriple(element(0, 0), xy, xz), LaneTriple(xy, element(1, 1), yz), LaneTriple(xz, yz, element(2, 2))}};
+  return {element(0, 0), element(0, 1), element(0, 2), element(1, 1), element(1, 2), element(2, 2)};
 }
 inline Block turned_symmetric(const Block& R, const Block& m) { return turned(R, m); }
+/// A + m + mᵀ.
+inline LaneSymmetric with_both(const LaneSymmetric& A, const LaneBlock& m) {
+  return {A.xx + (m(0, 0) + m(0, 0)), A.xy + (m(0, 1) + m(1, 0)), A.xz + (m(0, 2) + m(2, 0)),
+          A.yy + (m(1, 1) + m(1, 1)), A.yz + (m(1, 2) + m(2, 1)), A.zz + (m(2, 2) + m(2, 2))};
+}
+inline Block with_both(const Block& A, const Block& m) { return A + m + transpose(m); }
 
 /// Vectors and matrices of a scalar.
 template <class S>
 struct VectorsOf {
   using Vector = Triple;
   using Matrix = withy::Block;
+  using Symmetric = withy::Block;
 };
 template <>
 struct VectorsOf<Lanes> {
   using Vector = LaneTriple;
   using Matrix = LaneBlock;
+  using Symmetric = LaneSymmetric;
 };
 template <class S>
 using TripleOf = typename VectorsOf<S>::Vector;
 template <class S>
 using BlockOf = typename VectorsOf<S>::Matrix;
+template <class S>
+using SymmetricOf = typename VectorsOf<S>::Symmetric;
 
 }  // namespace withy

@@ -84,14 +84,16 @@ struct SpatialOf {
 
   /// A symmetric map of twists to wrenches [A Lᵀ; L M].
   struct Inertia {
-    Block A, L, M;
-    static Inertia zero() { return {Block::zero(), Block::zero(), Block::zero()}; }
+    SymmetricOf<S> A;
+    Block L;
+    SymmetricOf<S> M;
+    static Inertia zero() { return {SymmetricOf<S>::zero(), Block::zero(), SymmetricOf<S>::zero()}; }
     Inertia& operator+=(const Inertia& b) { return A += b.A, L += b.L, M += b.M, *this; }
     friend Twist operator*(const Inertia& I, const Twist& V) {
       return {I.A * V.w + withy::transposed_times(I.L, V.v), I.L * V.w + I.M * V.v};
     }
-    [[nodiscard]] Twist turn_column() const { return {A.c[2], L.c[2]}; }
-    [[nodiscard]] Twist slide_column() const { return {Triple(L(0, 0), L(0, 1), L(0, 2)), M.c[0]}; }
+    [[nodiscard]] Twist turn_column() const { return {column(A, 2), L.c[2]}; }
+    [[nodiscard]] Twist slide_column() const { return {Triple(L(0, 0), L(0, 1), L(0, 2)), column(M, 0)}; }
     /// Subtracts (s u) uᵀ.
     void subtract_square(const Twist& u, S s) {
       const Twist v = u * s;
@@ -102,15 +104,14 @@ struct SpatialOf {
   };
   static Inertia shift_to_parent(const Position& p, const Inertia& I) {
     // Sᵀ I S with S = [1 0; −p̂ 1].
-    const Block Mp = times_skew(I.M, p);
+    const Block Mp = times_skew(full(I.M), p);
     Inertia N;
     N.M = I.M;
     N.L = I.L - Mp;
     // A + p̂L + (p̂L)ᵀ − p̂Mp̂, the last term halved and symmetrized with the others.
     Block half = I.L;
     for (int j = 0; j < 3; ++j) half.c[j] -= 0.5 * Mp.c[j];
-    const Block pL = skew_times(p, half);
-    N.A = I.A + pL + transpose(pL);
+    N.A = with_both(I.A, skew_times(p, half));
     return N;
   }
   static Inertia to_parent(const Frame& AB, const Inertia& I) {

@@ -95,6 +95,20 @@ inline void joint_motion(const JointData<Space>& joint, const typename Space::Sc
   if constexpr (has_general_hinges<Space>) general_joint_motion(joint, x, u, out);
 }
 
+/// V × H ẋ of a hinge, `rate` its H ẋ.
+template <class Space>
+inline typename Space::Twist cross_rate(Joint kind, const typename Space::Twist& V, const typename Space::Twist& rate) {
+  if constexpr (in_lanes<Space> && Space::angular == 3) {
+    // Three components are three operations there: none with the rate's zeros.
+    if (kind == Joint::fixed) return Space::Twist::zero();
+    const Lanes r = kind == Joint::rotate ? rate.turn() : rate.slide();
+    if (kind == Joint::rotate) return {{V.w[1] * r, -V.w[0] * r, 0.0}, {V.v[1] * r, -V.v[0] * r, 0.0}};
+    return {LaneTriple::zero(), {0.0, V.w[2] * r, -V.w[1] * r}};
+  } else {
+    return Space::cross(V, rate);
+  }
+}
+
 /// H a of a driven hinge at coordinates x and rates u (its own) for the accelerations a of its rates.
 template <class Space>
 [[gnu::noinline]] typename Space::Twist driven_acceleration(const JointData<Space>& joint,

@@ -25,10 +25,11 @@ inline typename Space::Inertia inertia_of(const RigidInertia& I) {
   if constexpr (Space::angular == 1) {
     return {I.inertia(2, 2), -I.moment.y(), I.moment.x(), I.mass, 0, I.mass};
   } else {
-    using Triple = typename Space::Triple;
-    return {Space::block(I.inertia),
-            Space::Block::skew(-Space::position(I.moment)),
-            {{Triple(I.mass, 0, 0), Triple(0, I.mass, 0), Triple(0, 0, I.mass)}}};
+    typename Space::Inertia sum = Space::Inertia::zero();
+    sum.A += Space::block(I.inertia);
+    sum.L = Space::Block::skew(-Space::position(I.moment));
+    sum.M += Space::block(I.mass * Matrix3::Identity());
+    return sum;
   }
 }
 

@@ -18,6 +18,11 @@ inline void put(std::size_t lane, const Triple& from, LaneTriple& to) {
 inline void put(std::size_t lane, const Block& from, LaneBlock& to) {
   for (int j = 0; j < 3; ++j) put(lane, from.c[j], to.c[j]);
 }
+/// Of a symmetric matrix.
+inline void put(std::size_t lane, const Block& from, LaneSymmetric& to) {
+  to.xx.set(lane, from(0, 0)), to.xy.set(lane, from(0, 1)), to.xz.set(lane, from(0, 2));
+  to.yy.set(lane, from(1, 1)), to.yz.set(lane, from(1, 2)), to.zz.set(lane, from(2, 2));
+}
 
 inline void put(std::size_t lane, const Planar::Position& from, PlanarOf<Lanes>::Position& to) {
   to.x.set(lane, from.x), to.y.set(lane, from.y);

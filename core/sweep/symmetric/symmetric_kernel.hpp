@@ -69,7 +69,7 @@ template <class Space, int N, Flavor flavor>
   Twist V = joint.rate;
   w.SM = joint.SM;
   if (node.parent >= 0) V += Space::to_child(joint.SM, *Outer(node, s).V);
-  w.sigma = node.parent >= 0 ? Space::cross(V, joint.rate) : Twist::zero();
+  w.sigma = node.parent >= 0 ? cross_rate<Space>(node.joint.kind, V, joint.rate) : Twist::zero();
   if (has_bias(node.joint.kind)) w.sigma += joint.bias;
   if (node.joint.driven && s.driven != nullptr) [[unlikely]]
     w.sigma += driven_acceleration<Space>(node.joint, s.positions + node.joint.position, s.speeds + node.joint.speed,

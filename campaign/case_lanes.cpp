@@ -1,0 +1,304 @@
+#include "withy/campaign/case_lanes.hpp"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/context/fiber.hpp>
+#include <boost/context/stack_context.hpp>
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <new>
+#include <utility>
+
+#include "withy/campaign/asking_equations.hpp"
+#include "withy/core/equations/lane_equations.hpp"
+#include "withy/core/plugin/sensor.hpp"
+#include "withy/core/simulation/run_times.hpp"
+
+namespace withy::campaign {
+namespace {
+
+namespace context = boost::context;
+
+/// Memory of stacks, with a page below that ends the process where one is too small.
+class StackMemory {
+ public:
+  context::stack_context allocate() {
+    void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    mprotect(memory, guard, PROT_NONE);
+    context::stack_context stack;
+    stack.size = bytes;
+    stack.sp = static_cast<std::byte*>(memory) + bytes;
+    return stack;
+  }
+  void deallocate(context::stack_context& stack) noexcept {
+    munmap(static_cast<std::byte*>(stack.sp) - stack.size, stack.size);
+  }
+
+ private:
+  /// A run uses some kilobytes; pages that are not touched cost nothing.
+  static constexpr std::size_t guard = 1 << 14, bytes = 1 << 20;
+};
+
+/// Stacks that hand the thread to each other: one of the thread's own and one of each lane.
+class Stacks {
+ public:
+  static constexpr std::size_t thread = LaneEquations::count;  ///< index of the thread's own
+  /// Begins a stack; its function returns to the thread's own.
+  void begin(std::size_t stack, std::function<void()> function) {
+    stacks_[stack] = context::fiber(std::allocator_arg, StackMemory(),
+                                    [this, stack, function = std::move(function)](context::fiber&& last) {
+                                      stacks_[from_] = std::move(last);
+                                      function();
+                                      from_ = stack;
+                                      return std::move(stacks_[thread]);
+                                    });
+  }
+  [[nodiscard]] bool ended(std::size_t stack) const { return !stacks_[stack]; }
+  /// Leaves `own`, on which this runs, for another, until somebody switches back.
+  void go_to(std::size_t own, std::size_t other) {
+    from_ = own;
+    context::fiber last = std::move(stacks_[other]).resume();
+    stacks_[from_] = std::move(last);
+  }
+
+ private:
+  std::array<context::fiber, thread + 1> stacks_;
+  std::size_t from_ = thread;  ///< the stack that has just been left
+};
+
+/// What a lane asks of those who evaluate.
+class Asked {
+ public:
+  virtual ~Asked() = default;
+  /// Comes back when the lane's call has been answered.
+  virtual void answer(std::size_t lane) noexcept = 0;
+};
+
+/// A case in a lane, with equations that leave its stack for each evaluation.
+class Lane final : public AskingEquations {
+ public:
+  Lane(std::unique_ptr<CaseRun> run, const study::Control& control, std::size_t lane, Asked& asked)
+      : AskingEquations(*run->equations()), run_(std::move(run)), control_(control), lane_(lane), asked_(asked) {}
+
+  /// To the end.
+  void run() noexcept {
+    try {
+      run_->run(*this, control_);
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+  }
+  /// From now on it is told that it cannot go on.
+  void abandon() { abandoned_ = true; }
+  [[nodiscard]] LaneCall* call() { return &call_; }
+  /// Of a run that has ended. \throws what the run has thrown.
+  CaseResult& result() {
+    if (error_) std::rethrow_exception(error_);
+    run_->result().seconds = seconds;
+    return run_->result();
+  }
+  double seconds = 0;    ///< its share of the thread's CPU time
+  bool waiting = false;  ///< for an answer
+
+  Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
+                         Work& work) const noexcept override {
+    if (!abandoned_) {
+      call_ = {t, y, y_dot, &work, {}};
+      asked_.answer(lane_);
+    }
+    return abandoned_ ? Evaluation{Evaluation::Outcome::nonfinite} : call_.evaluation;
+  }
+
+ private:
+  std::unique_ptr<CaseRun> run_;
+  const study::Control& control_;
+  std::size_t lane_;
+  Asked& asked_;
+  std::exception_ptr error_;
+  bool abandoned_ = false;
+  mutable LaneCall call_;
+};
+
+class CaseLanes final : public Asked {
+ public:
+  CaseLanes(const Plan& plan, const Cases& cases, Registry& registry, const study::Control& control,
+            const CaseFlow& flow)
+      : plan_(plan), cases_(cases), registry_(registry), control_(control), flow_(flow) {}
+  CaseLanes(const CaseLanes&) = delete;
+  CaseLanes& operator=(const CaseLanes&) = delete;
+  /// Runs that have not ended are told to end: a stack must be left in the way it was entered.
+  ~CaseLanes() override {
+    filling_ = true;
+    for (std::size_t i = 0; i < lanes_.size(); ++i) {
+      if (lanes_[i] == nullptr) continue;
+      lanes_[i]->abandon();
+      if (!stacks_.ended(i)) stacks_.go_to(Stacks::thread, i);
+    }
+  }
+
+  void run() {
+    while (true) {
+      while (more_ && waiting_ == nullptr && free_lane() < lanes_.size()) take();
+      if (none_at_work()) {
+        if (waiting_ == nullptr) return;
+        together_ = lane_equations(*waiting_->equations());
+        begin(0, std::move(waiting_));
+        continue;
+      }
+      go_on();
+    }
+  }
+
+  /// The lane that asks last evaluates for all; the others leave the thread to one that has its answer, or to the
+  /// thread's own stack while lanes are filled.
+  void answer(std::size_t lane) noexcept override {
+    lanes_[lane]->waiting = true;
+    if (filling_) {
+      stacks_.go_to(lane, Stacks::thread);
+    } else if (const std::size_t next = not_waiting(); next < lanes_.size()) {
+      stacks_.go_to(lane, next);
+    } else {
+      evaluate();
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t free_lane() const {
+    return static_cast<std::size_t>(std::find(lanes_.begin(), lanes_.end(), nullptr) - lanes_.begin());
+  }
+  [[nodiscard]] bool none_at_work() const {
+    return std::all_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane == nullptr; });
+  }
+
+  /// One more case, into a lane, or run by itself; one that does not fit waits until all lanes are free.
+  void take() {
+    const std::optional<std::uint64_t> index = flow_.next();
+    if (!index || control_.stop()) {
+      more_ = false;
+      return;
+    }
+    share_time();
+    const double began = thread_cpu_seconds();
+    auto run = std::make_unique<CaseRun>(plan_, cases_, *index, registry_);
+    if (run->equations() != nullptr) {
+      const std::string why = run->alone_because();
+      if (why.empty()) {
+        if (together_ != nullptr && together_->fits(*run->equations())) {
+          begin(free_lane(), std::move(run));
+        } else {
+          waiting_ = std::move(run);
+        }
+        return;
+      }
+      if (flow_.alone) flow_.alone(why);
+      run->run(*run->equations(), control_);
+    }
+    run->result().seconds = thread_cpu_seconds() - began;
+    finish(run->result());
+    shared_ = thread_cpu_seconds();
+  }
+
+  void begin(std::size_t lane, std::unique_ptr<CaseRun> run) {
+    together_->put(lane, *run->equations());
+    lanes_[lane] = std::make_unique<Lane>(std::move(run), control_, lane, *this);
+    stacks_.begin(lane, [this, lane] { lanes_[lane]->run(); });
+    stacks_.go_to(Stacks::thread, lane);
+    if (stacks_.ended(lane)) end(lane);
+  }
+
+  /// Until a case has ended.
+  void go_on() {
+    std::size_t lane = not_waiting();
+    if (lane == lanes_.size()) {
+      evaluate();
+      lane = not_waiting();
+    }
+    filling_ = false;
+    stacks_.go_to(Stacks::thread, lane);
+    filling_ = true;
+    for (std::size_t i = 0; i < lanes_.size(); ++i)
+      if (lanes_[i] != nullptr && stacks_.ended(i)) end(i);
+  }
+
+  /// A lane whose call has been answered.
+  [[nodiscard]] std::size_t not_waiting() const {
+    std::size_t i = 0;
+    while (i < lanes_.size() && (lanes_[i] == nullptr || lanes_[i]->waiting)) ++i;
+    return i;
+  }
+
+  void evaluate() noexcept {
+    std::array<LaneCall*, LaneEquations::count> calls{};
+    for (std::size_t i = 0; i < lanes_.size(); ++i) {
+      if (lanes_[i] == nullptr) continue;
+      calls[i] = lanes_[i]->call();
+      lanes_[i]->waiting = false;
+    }
+    together_->derivatives(calls);
+  }
+
+  void end(std::size_t lane) {
+    share_time();
+    const std::unique_ptr<Lane> ended = std::move(lanes_[lane]);
+    finish(ended->result());
+  }
+
+  void finish(const CaseResult& result) {
+    if (result.status == name(RunStatus::interrupted)) {
+      more_ = false;
+    } else {
+      flow_.done(result);
+    }
+  }
+
+  /// CPU time since the last call belongs to those at work, in equal parts.
+  void share_time() {
+    const double now = thread_cpu_seconds();
+    const auto at_work = lanes_.size() - static_cast<std::size_t>(std::count(lanes_.begin(), lanes_.end(), nullptr));
+    for (const auto& lane : lanes_)
+      if (lane != nullptr) lane->seconds += (now - shared_) / static_cast<double>(at_work);
+    shared_ = now;
+  }
+
+  const Plan& plan_;
+  const Cases& cases_;
+  Registry& registry_;
+  const study::Control& control_;
+  const CaseFlow& flow_;
+  std::unique_ptr<LaneEquations> together_;
+  std::unique_ptr<CaseRun> waiting_;  ///< for all lanes to be free
+  std::array<std::unique_ptr<Lane>, LaneEquations::count> lanes_;
+  Stacks stacks_;
+  bool filling_ = true;  ///< the thread's own stack puts cases into lanes
+  bool more_ = true;
+  double shared_ = thread_cpu_seconds();
+};
+
+}  // namespace
+
+std::unique_ptr<SensedState> AskingEquations::make_sensed_state(std::span<const SectionPlace> sections) const {
+  return own_.make_sensed_state(sections);
+}
+
+void run_cases(const Plan& plan, const Cases& cases, Registry& registry, const study::Control& control,
+               const CaseFlow& flow) {
+  CaseLanes(plan, cases, registry, control, flow).run();
+}
+
+CaseResult run_case(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry,
+                    const study::Control& control) {
+  std::optional<std::uint64_t> one = index;
+  CaseResult result;
+  result.status = name(RunStatus::interrupted);
+  result.index = index;
+  result.values = cases.values(index);
+  run_cases(plan, cases, registry, control,
+            {[&] { return std::exchange(one, std::nullopt); }, [&](const CaseResult& r) { result = r; }, {}});
+  return result;
+}
+
+}  // namespace withy::campaign
