@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/host/names.hpp"
 #include "withy/host/stopped.hpp"
@@ -161,7 +162,11 @@ void Equations::normalize(std::span<double> y) {
   Parts& p = *parts_;
   Parts::expect(y.size(), p.size, "y");
   std::copy(y.begin(), y.end(), p.full.begin());
-  p.equations.normalize(p.full);
+  if (const auto* loops = dynamic_cast<const ClosedLoops*>(&p.equations)) {
+    loops->close(p.full, p.work);
+  } else {
+    p.equations.normalize(p.full);
+  }
   std::copy_n(p.full.begin(), p.size, y.begin());
 }
 

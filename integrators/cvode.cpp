@@ -13,6 +13,7 @@
 
 #include "jacobian.hpp"
 #include "step_control.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/entry.hpp"
 
 namespace withy {
@@ -360,6 +361,8 @@ class Cvode final : public Integrator {
  public:
   explicit Cvode(const CvodeOptions& options) : options_(options) {}
   std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
+    if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr)
+      refuse_loops("cvode", "it goes on from a history of steps, which are not those of states that have been closed");
     return std::make_unique<CvodeStepper>(equations, state, options_);
   }
   /// The highest: the method chooses.

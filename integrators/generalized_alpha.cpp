@@ -195,6 +195,8 @@ class GeneralizedAlpha final : public Integrator {
  public:
   explicit GeneralizedAlpha(const AlphaOptions& options) : options_(options) {}
   std::unique_ptr<Stepper> start(const EquationsOfMotion& equations, const State& state) const override {
+    if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr)
+      refuse_loops("generalized-alpha", "it keeps accelerations of its own, which closing would not change");
     return std::make_unique<AlphaStepper>(equations, state, options_);
   }
   int order() const override { return 2; }

@@ -8,7 +8,9 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/memory.hpp"
 
@@ -19,16 +21,23 @@ namespace withy {
 /// A jump of the right-hand side at t_limit belongs to the steps after it: no stage of a step is evaluated later than
 /// at the last double below t_limit, so a step that lands there sees only the values before the jump. `restart` makes
 /// the next step evaluate at t_limit itself.
-class OneStep : public Stepper {
+class OneStep : public Stepper, public ClosingStepper {
  public:
   OneStep(const EquationsOfMotion& equations, const State& start)
       : state_(start),
         previous_time_(start.time),
         equations_(equations),
+        loops_(dynamic_cast<const ClosedLoops*>(&equations)),
         work_(equations.make_work()),
+        closing_work_(loops_ != nullptr ? equations.make_work() : Work(0)),
         size_(static_cast<Eigen::Index>(equations.size())) {
     check_size(start);
-    equations_.normalize(state_.y);
+    if (loops_ != nullptr) {
+      energy_ = equations.make_observation();
+      loops_->close(state_.y, closing_work_);
+    } else {
+      equations_.normalize(state_.y);
+    }
     previous_ = y();
     for (Eigen::ArrayXd* a : {&slope_, &previous_slope_, &next_, &next_slope_}) a->setZero(size_);
   }
@@ -64,9 +73,14 @@ class OneStep : public Stepper {
       values = previous_;
     } else {
       inside((t - previous_time_) / (state_.time - previous_time_), values);
-      equations_.normalize(out);
+      if (loops_ == nullptr) {
+        equations_.normalize(out);
+      } else {
+        loops_->close(out, closing_work_);
+      }
     }
   }
+  [[nodiscard]] const ClosingRecord& closing_record() const final { return closed_; }
 
  protected:
   using Values = Eigen::Map<Eigen::ArrayXd>;
@@ -82,6 +96,9 @@ class OneStep : public Stepper {
     memory(sign_);
     memory(slope_known_);
     memory(slope_);
+    if (loops_ == nullptr) return;
+    memory(closed_.gap);
+    memory(closed_.energy);
   }
 
   /// The interpolant at fraction theta in (0, 1) of the last accepted step.
@@ -109,6 +126,7 @@ class OneStep : public Stepper {
   Evaluation evaluate(double t, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) const {
     ++statistics_.evaluations;
     last_ = Last::elsewhere;
+    if (std::exchange(open_, false)) return {Evaluation::Outcome::singular};
     const auto n = static_cast<std::size_t>(size_);
     const Evaluation e = equations_.derivatives(std::min(t, latest_), {values.data(), n}, {slope.data(), n}, work_);
     sign_ = e.determinant_sign;
@@ -125,7 +143,18 @@ class OneStep : public Stepper {
                                        {slope.data(), n}, work_);
   }
 
-  void normalize(Eigen::ArrayXd& values) { equations_.normalize({values.data(), static_cast<std::size_t>(size_)}); }
+  /// Brings the end of a step to where quaternions have unit length and loops are closed. Where they cannot be, the
+  /// next evaluation fails.
+  void normalize(Eigen::ArrayXd& values) {
+    const std::span<double> y(values.data(), static_cast<std::size_t>(size_));
+    if (loops_ == nullptr) return equations_.normalize(y);
+    if (!finite(values)) return;
+    equations_.normalize(y);
+    const double before = energy(y);
+    const Closing closing = loops_->close(y, closing_work_);
+    open_ = !closing.closed;
+    closing_ = {closing.gap, energy(y) - before};
+  }
 
   /// Makes next_ and next_slope_ the state at t_new; the last evaluation was that of next_slope_.
   void accept(double t_new) {
@@ -137,6 +166,8 @@ class OneStep : public Stepper {
     Values(state_.y.data(), size_) = next_;
     previous_slope_.swap(slope_);
     slope_.swap(next_slope_);
+    closed_.gap = std::max(closed_.gap, closing_.gap);
+    closed_.energy += closing_.energy;
     statistics_.smallest_step = statistics_.accepted == 0 ? h : std::min(statistics_.smallest_step, h);
     statistics_.largest_step = std::max(statistics_.largest_step, h);
     ++statistics_.accepted;
@@ -149,6 +180,8 @@ class OneStep : public Stepper {
   /// What linearly implicit methods need of the equations.
   /// \throws std::invalid_argument where they have none.
   static const LinearlyImplicit& solver_of(const EquationsOfMotion& equations, const char* integrator) {
+    if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr)
+      refuse_loops(integrator, "its linear half knows nothing of the closing equations");
     const LinearlyImplicit* linear = equations.linearly_implicit();
     if (linear == nullptr)
       throw std::invalid_argument(std::string("integrator '") + integrator +
@@ -193,8 +226,18 @@ class OneStep : public Stepper {
     previous_ = y();
   }
 
+  [[nodiscard]] double energy(std::span<const double> y) {
+    energy_->observe(y);
+    const Energies e = energy_->energies();
+    return e.kinetic + e.potential;
+  }
+
   const EquationsOfMotion& equations_;
-  mutable Work work_;
+  const ClosedLoops* loops_;  ///< null: the equations are a tree's
+  mutable Work work_, closing_work_;
+  std::unique_ptr<Observation> energy_;  ///< where loops are closed
+  ClosingRecord closing_, closed_;       ///< of the step being tried, and of all that were accepted
+  mutable bool open_ = false;            ///< the end of the step being tried cannot be closed
   Eigen::Index size_;
   double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which the step may evaluate
   mutable int sign_ = 1;                                     ///< of det M in the last evaluation

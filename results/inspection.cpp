@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "withy/core/model/closing.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/results/json_text.hpp"
@@ -73,6 +75,31 @@ Json bodies_json(const Scene& scene) {
   return bodies;
 }
 
+/// Loops with the count of their equations at the state, and the degrees of freedom that they leave; null of trees.
+Json loops_json(const study::Prepared& prepared, const State& state) {
+  const auto* loops = dynamic_cast<const ClosedLoops*>(prepared.equations.get());
+  if (loops == nullptr) return {};
+  const Model& model = prepared.model();
+  Work work = prepared.equations->make_work();
+  std::size_t free = model.layout().speeds;
+  for (std::size_t h = 0; h < model.hinges().size(); ++h)
+    if (model.driven(h)) free -= model.layout().hinges[h].speeds;
+  Json all = Json::array();
+  for (const LoopCount& count : loops->counts(state.y, work)) {
+    free -= count.independent;
+    all.push_back({{"name", count.name},
+                   {"hinge", said(prepared.scene, "constraints", count.name, "hinge")},
+                   {"a", said(prepared.scene, "constraints", count.name, "a")},
+                   {"b", said(prepared.scene, "constraints", count.name, "b")},
+                   {"equations", count.equations},
+                   {"independent", count.independent}});
+  }
+  const Value* closing = prepared.scene.source.find("closing");
+  return {{"list", std::move(all)},
+          {"degrees_of_freedom", free},
+          {"remark", closing != nullptr ? Json(closing->text()) : Json()}};
+}
+
 /// Directions along which less than this of the coordinates' own inertia is left are shown.
 constexpr double nearly_massless = 1e-2;
 
@@ -111,7 +138,9 @@ Json inspection_json(const study::Prepared& prepared, const State& state, const 
   j["bodies"] = bodies_json(scene);
   j["loads"] = Json::array();
   for (const LoadNode& load : prepared.model().loads())
-    j["loads"].push_back({{"name", load.name}, {"type", type_of(scene, "loads", load.name)}});
+    if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr)
+      j["loads"].push_back({{"name", load.name}, {"type", type_of(scene, "loads", load.name)}});
+  if (Json loops = loops_json(prepared, state); !loops.is_null()) j["constraints"] = std::move(loops);
   j["motions"] = Json::array();
   for (const MotionNode& motion : prepared.model().motions())
     j["motions"].push_back({{"name", motion.name},
@@ -239,6 +268,16 @@ std::string inspection_text(const Scene& scene, const Json& j) {
   }
   for (const Json& load : j["loads"])
     out += fmt::format("\nload {}: {}\n", load["name"].get<std::string>(), load["type"].get<std::string>());
+  if (j.contains("constraints")) {
+    const Json& loops = j["constraints"];
+    for (const Json& loop : loops["list"])
+      out += fmt::format("\nconstraint {}: {} of {} and {}; the loop closes {} equations, {} independent\n",
+                         loop["name"].get<std::string>(), loop["hinge"].get<std::string>(),
+                         loop["a"].get<std::string>(), loop["b"].get<std::string>(),
+                         loop["equations"].get<std::size_t>(), loop["independent"].get<std::size_t>());
+    out += fmt::format("  {} degrees of freedom remain\n", loops["degrees_of_freedom"].get<std::size_t>());
+    if (!loops["remark"].is_null()) out += "  " + loops["remark"].get<std::string>() + '\n';
+  }
   for (const Json& output : j["outputs"]) {
     out += fmt::format("\noutput {}: {}", output["name"].get<std::string>(), output["type"].get<std::string>());
     const char* join = "\n  ";

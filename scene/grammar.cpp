@@ -51,7 +51,7 @@ std::vector<ParameterSpec> scene_members() {
 }
 
 std::vector<std::string> special_keys() {
-  return {"formulation", "integrator", "bodies", "hinges", "loads", "motions", "initial", "outputs"};
+  return {"formulation", "integrator", "bodies", "hinges", "loads", "motions", "constraints", "initial", "outputs"};
 }
 
 std::vector<ParameterSpec> body_members() {
@@ -79,6 +79,13 @@ std::vector<ParameterSpec> sensor_members() { return {text("type", "sensor plugi
 
 std::vector<ParameterSpec> motion_members() {
   return {motion_type(), text("hinge", "hinge that it moves").naming(ParameterSpec::Refers::hinge)};
+}
+
+std::vector<ParameterSpec> constraint_members() {
+  return {text("type", "what the constraint is").one_of({"hinge"}), text("hinge", "hinge plugin that closes the loop"),
+          text("a", "frame that carries the hinge frame F: world, a body, or body.frame"),
+          text("b", "frame that is the hinge frame M: world, a body, or body.frame"),
+          map("offset", pose_members(), "fixed pose of F in frame a").otherwise(Value::map({}))};
 }
 
 ParameterSpec choice_name(std::string_view kind, std::string_view otherwise) {

@@ -24,6 +24,8 @@ std::vector<ParameterSpec> body_members();
 std::vector<ParameterSpec> hinge_members();
 std::vector<ParameterSpec> load_members();
 std::vector<ParameterSpec> motion_members();
+/// Members of a constraint beside those of the hinge that closes the loop.
+std::vector<ParameterSpec> constraint_members();
 std::vector<ParameterSpec> sensor_members();
 /// The name of a chosen formulation or integrator beside the plugin's own options.
 ParameterSpec choice_name(std::string_view kind, std::string_view otherwise);

@@ -8,8 +8,10 @@
 #include <list>
 #include <set>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/file_notes.hpp"
+#include "withy/scene/constraints.hpp"
 #include "withy/scene/control_order.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/grammar.hpp"
@@ -50,12 +52,22 @@ class SceneBuilder {
     scene_.source.set("hinges", std::move(tree.hinges));
     scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);
+    if (document_.root.find("constraints") != nullptr) {
+      const Value constraints = part("constraints");
+      const Value* loads = document_.root.find("loads");
+      for (const auto& [name, given] : constraints.members())
+        if (loads != nullptr && loads->kind() == Value::Kind::map && loads->has(name))
+          checker_.key_error("/constraints/" + name, fmt::format("got name {}, which is that of a load; constraints "
+                                                                 "need their own",
+                                                                 in_quotes(name)));
+      scene_.source.set("constraints", add_constraints(constraints, tree, checker_));
+    }
     add_motions(tree.model.get());
     name_signals(document_, tree.model.get(), tree.names, checker_.registry());
     add_loads(tree.model.get());
     tree.names.loads = {};
     for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
-      tree.names.loads.add(load.name);
+      if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr) tree.names.loads.add(load.name);
     add_outputs(tree);
     if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model);
     if (tree.model != nullptr && diagnostics_.ok()) set_span(*tree.model);
@@ -233,13 +245,19 @@ class SceneBuilder {
   void set_start(const Model& model) {
     scene_.initial = model.reference_state();
     for (const LoadNode& l : model.loads()) l.load->begin(scene_.initial);
-    const Value* given = document_.root.find("initial");
+    const Value* initial = document_.root.find("initial");
+    const Value stated = initial != nullptr ? without_guess(*initial, model, checker_, scene_.initial) : Value();
+    const Value* given = initial != nullptr ? &stated : nullptr;
     if (given != nullptr) {
       set_state(*given, model, checker_, scene_.initial);
-      scene_.source.set("initial", *given);
+      scene_.source.set("initial", *initial);
       check_driven(model);
     }
     model.prescribe(scene_.initial);
+    if (diagnostics_.ok() && !loops_of(model).empty()) {
+      const Value remark = close_loops(model, scene_, given, checker_, scene_.initial);
+      if (remark.kind() == Value::Kind::text) scene_.source.set("closing", remark);
+    }
     if (model.layout().continuous == 0) return;
     // Where the loads' own states begin depends on all else; what the scene says of them goes first.
     model.begin_continuous(scene_.initial);

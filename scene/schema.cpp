@@ -59,7 +59,15 @@ class SchemaWriter {
     properties["hinges"] = plugins<Hinge>(grammar::hinge_members(), "hinges; each body is the child of exactly one");
     properties["loads"] = plugins<Load>(grammar::load_members(), "loads on the tree");
     properties["motions"] = plugins<Motion>(grammar::motion_members(), "prescribed motions of hinges");
+    properties["constraints"] = {
+        {"type", "object"},
+        {"description", "hinges that close loops beyond the tree"},
+        {"propertyNames", reference("name")},
+        {"additionalProperties", {{"anyOf", alternatives<Hinge>("hinge", grammar::constraint_members())}}}};
     properties["initial"] = state();
+    Json guess = state();
+    guess["description"] = "where closing the loops of constraints begins, for coordinates that the state does not say";
+    properties["initial"]["properties"]["guess"] = std::move(guess);
     properties["outputs"] = plugins<Sensor>(grammar::sensor_members(), "sensors, whose numbers are results");
     return {
         {"$schema", "https://json-schema.org/draft/2020-12/schema"},

@@ -3,6 +3,8 @@
 #include <stdexcept>
 
 #include "frame_sensor.hpp"
+#include "withy/core/model/closing.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
 
 namespace withy {
 namespace {
@@ -26,6 +28,36 @@ class BoundReaction final : public BoundSensor {
   int hinge_;
 };
 
+/// What closes a loop exerts on the body of its frame b.
+class BoundClosing final : public BoundSensor {
+ public:
+  explicit BoundClosing(std::size_t loop) : loop_(loop) {}
+  std::vector<SensorColumn> columns() const override { return BoundReaction(0).columns(); }
+  void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
+    auto* const loops = dynamic_cast<SensedLoops*>(&state);
+    const Wrench wrench = loops != nullptr ? loops->closing_reaction(loop_) : Wrench{};
+    put(wrench.force, values);
+    put(wrench.moment, values);
+  }
+
+ private:
+  std::size_t loop_;
+};
+
+class ClosingSensor final : public Sensor {
+ public:
+  explicit ClosingSensor(std::string constraint) : constraint_(std::move(constraint)) {}
+  std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
+    const auto loops = loops_of(model);
+    for (std::size_t i = 0; i < loops.size(); ++i)
+      if (loops[i]->name() == constraint_) return std::make_unique<BoundClosing>(i);
+    throw std::invalid_argument("there is no constraint '" + constraint_ + "'");
+  }
+
+ private:
+  std::string constraint_;
+};
+
 class ReactionSensor final : public Sensor {
  public:
   explicit ReactionSensor(std::string hinge) : hinge_(std::move(hinge)) {}
@@ -39,7 +71,14 @@ class ReactionSensor final : public Sensor {
   std::string hinge_;
 };
 
-std::unique_ptr<Sensor> make_reaction(const Value& p, const MakeContext& /*context*/) {
+std::unique_ptr<Sensor> make_reaction(const Value& p, const MakeContext& context) {
+  const bool hinge = p.has("hinge"), constraint = p.has("constraint");
+  if (hinge == constraint) {
+    context.diagnostics.error(p.place(), std::string("got ") + (hinge ? "both" : "neither") +
+                                             " of 'hinge' and 'constraint'; need one of them");
+    return nullptr;
+  }
+  if (constraint) return std::make_unique<ClosingSensor>(p.text_at("constraint"));
   return std::make_unique<ReactionSensor>(p.text_at("hinge"));
 }
 
@@ -48,8 +87,10 @@ std::unique_ptr<Sensor> make_reaction(const Value& p, const MakeContext& /*conte
 void enroll_reaction(Enrollment& enrollment) {
   enrollment.add<Sensor>(
       {.id = "reaction",
-       .summary = "Force and moment that the parent exerts on the child through a hinge or weld, in the axes of F",
-       .parameters = {text("hinge", "hinge or weld that carries them").naming(ParameterSpec::Refers::hinge)},
+       .summary = "Force and moment that the parent exerts on the child through a hinge or weld, or that a constraint "
+                  "exerts on its frame b, in the axes of F",
+       .parameters = {text("hinge", "hinge or weld that carries them").naming(ParameterSpec::Refers::hinge).optional(),
+                      text("constraint", "constraint that exerts them, in the place of a hinge").optional()},
        .make = &make_reaction});
 }
 

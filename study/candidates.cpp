@@ -6,6 +6,7 @@
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/trees_alone.hpp"
 
 namespace withy::study {
 namespace {
@@ -73,6 +74,7 @@ void check(const Axes& axes, Registry& registry) {
 Axes usual_axes() { return {{}, {}, {}, {}, {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, {}}; }
 
 Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes asked) {
+  refuse_loops(prepared, "'withy advise'");
   Candidates c{std::move(asked), {}};
   if (c.modes.empty()) {
     c.modes = {1, 2, 3, 4};

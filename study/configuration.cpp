@@ -9,6 +9,7 @@
 #include "withy/core/simulation/instants.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/trees_alone.hpp"
 
 namespace withy::study {
 namespace {
@@ -46,6 +47,7 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
       dynamics_(prepared.scene.model, prepared.scene.formulation->terms()),
       state_(std::move(state)),
       held_(layout().speeds, false) {
+  refuse_loops(prepared, "what linearizes a scene (modes, equilibrium, linearize, response)");
   const Model& model = prepared_.model();
   for (const LoadSlot& slot : layout().discrete_slots) require_continuous(prepared.scene.file, model, slot, sampling);
   model.prescribe(state_);

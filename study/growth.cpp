@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "withy/core/analysis/fastest_pole.hpp"
+#include "withy/core/model/closing.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
@@ -47,6 +48,7 @@ std::string growth_text(const Prepared& prepared, const RunSummary& summary) {
   const bool may_grow = summary.status == RunStatus::diverged || summary.status == RunStatus::step_underflow ||
                         summary.status == RunStatus::inaccurate;
   if (!may_grow || model.layout().speeds > largest_examined) return {};
+  if (!loops_of(model).empty()) return physical_cause(prepared, summary);  // tangents are a tree's
   try {
     const TangentDynamics dynamics(prepared.scene.model, prepared.scene.formulation->terms());
     const FastestPole pole = growing_pole(dynamics, summary.final, driven_speeds(model));

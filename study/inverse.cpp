@@ -4,11 +4,13 @@
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/trees_alone.hpp"
 
 namespace withy::study {
 
 InverseStudy::InverseStudy(const Prepared& prepared)
     : prepared_(prepared), work_(prepared.equations->make_work()), efforts_(prepared.model().layout().speeds) {
+  refuse_loops(prepared, "'withy inverse'");
   const Model& model = prepared.model();
   for (const MotionNode& motion : model.motions()) {
     const auto h = static_cast<std::size_t>(motion.hinge);

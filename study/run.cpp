@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/simulation/changing_equations.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/study/accuracy.hpp"
@@ -130,6 +131,8 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
                              const RunSettings& settings) {
   if (!flexible(prepared.model())) return "no body is flexible: all formulations are the same";
   if (summary.status == RunStatus::interrupted) return "not estimated: the run was interrupted";
+  if (!loops_of(prepared.model()).empty())
+    return "not estimated: loops are closed (constraints), and two formulations in one run know trees alone";
   if (has_switches(prepared.model()) && beyond)
     return "not estimated: loads switch at the zeros of functions, and two formulations have no common steps";
   if (prepared.scene.formulation->terms().strain == StrainOrder::exact && !beyond)
@@ -167,10 +170,12 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
   std::optional<Beyond> beyond;
   if (settings.look_beyond) beyond = next_model_up(prepared, registry);
   result.summary = run_plainly(prepared, settings, beyond ? beyond->equations.get() : nullptr);
+  if (const Value* closing = prepared.scene.source.find("closing"))
+    result.summary.message += (result.summary.message.empty() ? "" : " ") + closing->text();
   result.summary.message += growth_text(prepared, result.summary);
   std::optional<ErrorEstimate> estimate;
   if (beyond && wanted(settings.estimate, *beyond) && !has_switches(prepared.model()) &&
-      result.summary.status != RunStatus::interrupted)
+      loops_of(prepared.model()).empty() && result.summary.status != RunStatus::interrupted)
     estimate = estimate_error(prepared.scene, *prepared.equations, *beyond, result.summary, registry,
                               settings.control.interrupted);
   std::string why_not =

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "withy/core/analysis/fastest_pole.hpp"
+#include "withy/core/model/closing.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy::study {
@@ -12,7 +13,7 @@ namespace {
 /// keep the fastest mode.
 void find_fastest(const Prepared& prepared, const RunSummary& summary, StepLimit& s) {
   const Model& model = prepared.model();
-  if (model.layout().speeds > largest_examined || s.mean == 0) return;
+  if (model.layout().speeds > largest_examined || s.mean == 0 || !loops_of(model).empty()) return;
   try {
     const TangentDynamics dynamics(prepared.scene.model, prepared.scene.formulation->terms());
     const FastestPole pole = fastest_pole(dynamics, summary.final, driven_speeds(model));

@@ -4,6 +4,7 @@
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 
 namespace withy::app {
@@ -11,6 +12,15 @@ namespace withy::app {
 using Json = nlohmann::ordered_json;
 
 namespace {
+
+/// How far loops are from closed at a state [m, m/s], and their multipliers there [N].
+Json loops_at(const ClosedLoops& loops, std::size_t speeds, const State& state, Work& work) {
+  const std::size_t m = loops.closing_equations();
+  std::vector<double> gaps(m), rates(m), J(m * speeds), multipliers(m);
+  loops.see(state.y, gaps, rates, J, work);
+  loops.multipliers(state.time, state.y, multipliers, work);
+  return {{"gaps", gaps}, {"gap_rates", rates}, {"multipliers", multipliers}};
+}
 
 ExitStatus eval(const StateArguments& arguments) {
   const Engine engine(arguments);
@@ -50,6 +60,8 @@ ExitStatus eval(const StateArguments& arguments) {
     equations.motion_efforts(state.time, state.y, efforts, work);
     j["motion_efforts"] = efforts;
   }
+  if (const auto* loops = dynamic_cast<const ClosedLoops*>(&equations))
+    j["constraints"] = loops_at(*loops, layout.speeds, state, work);
   j["kinetic_energy"] = energies.kinetic;
   j["potential_energy"] = energies.potential;
   j["linear_momentum"] = energies.linear_momentum;

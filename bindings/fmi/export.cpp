@@ -10,6 +10,7 @@
 #include "withy/scene/document.hpp"
 #include "withy/scene/sha256.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/trees_alone.hpp"
 
 namespace withy::fmi {
 namespace {
@@ -78,6 +79,8 @@ void add_library(ZipFile& zip, const Description& d) {
 Exported export_fmu(const study::Prepared& prepared, const SceneOptions& options, Registry& registry,
                     const Export& what) {
   check_plugins(prepared);
+  if (what.model_exchange)
+    study::refuse_loops(prepared, "the solver of a host of model exchange (--kind cs exports the scene with its own)");
   Exported made{{what.version, what.model_exchange, what.co_simulation, identifier_of(what.out), {}},
                 variables_of(prepared, registry)};
   made.description.token = token_of(prepared, made.variables);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "withy/core/equations/closed_equations.hpp"
 #include "withy/core/equations/sweep_equations.hpp"
 #include "withy/core/sweep/first_order/first_order_sweep.hpp"
 #include "withy/core/sweep/strict/strict_sweep.hpp"
@@ -38,7 +39,9 @@ std::unique_ptr<EquationsOfMotion> compile_equations(std::shared_ptr<const Model
   refuse(symmetric, "truncated to first order of the kinetic energy", strict, "truncated to strict first order");
   const bool planar = tree.planar;
   const auto build = [&]<class Sweep>(std::type_identity<Sweep>) -> std::unique_ptr<EquationsOfMotion> {
-    return std::make_unique<equations::SweepEquations<Sweep>>(std::move(model), terms, tree, node_terms);
+    auto of_tree = std::make_unique<equations::SweepEquations<Sweep>>(model, terms, tree, node_terms);
+    if (loops_of(*model).empty()) return of_tree;
+    return std::make_unique<equations::ClosedEquations>(model, terms, std::move(of_tree));
   };
   if (strict != nullptr) {
     return planar ? build(std::type_identity<sweep::StrictSweep<Planar>>{})

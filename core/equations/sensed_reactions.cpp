@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "withy/core/kinematics/sensed_steps.hpp"
+#include "withy/core/model/closing.hpp"
 
 namespace withy::equations {
 
@@ -30,6 +31,7 @@ SensedReactions::SensedReactions(const sensed::Plan& plan, const AppliedLoads& l
   } else {
     plain_.emplace(plan);
   }
+  if (!loops_of(plan.model).empty()) untruncated_.emplace(plan);
 }
 
 void SensedReactions::observe(const State& state, std::span<const double> accelerations) noexcept {
@@ -84,13 +86,28 @@ void SensedReactions::find_applied(Part<S>& part, const State& state) noexcept {
     return Mode<S>{value, S(0.0)};
   });
   part.pass.outward();
-  for (std::size_t b = 0; b < plan_.bodies.size(); ++b)
-    part.total[b] = sensed::weight(part.pass, b, plan_, plan_.bodies[b]);
-  const std::span<const Wrench> wrenches = loads_.wrenches(state.time, state.y, work_.data());
-  for (std::size_t i = 0; i < wrenches.size(); ++i) {
-    const FrameIndex& at = loads_.frames()[i];
-    part.total[static_cast<std::size_t>(at.body)] += sensed::on_body(part.pass, at, wrenches[i]);
+  take_off(part, loads_.frames(), loads_.wrenches(state.time, state.y, work_.data()), true);
+}
+
+void SensedReactions::add(const State& state, std::span<const FrameIndex> frames,
+                          std::span<const Wrench> wrenches) noexcept {
+  const sensed::Kept kept{.ruthless = true, .speeds = false};
+  sensed::set_pass(untruncated_->pass, plan_, state.y, no_accelerations_, kept, [](double q, double, double) {
+    return Mode<double>{q, 0};
+  });
+  untruncated_->pass.outward();
+  take_off(*untruncated_, frames, wrenches, false);
+}
+
+template <class S>
+void SensedReactions::take_off(Part<S>& part, std::span<const FrameIndex> frames, std::span<const Wrench> wrenches,
+                               bool weight) noexcept {
+  for (std::size_t b = 0; b < plan_.bodies.size(); ++b) {
+    part.total[b] = {};
+    if (weight) part.total[b] = sensed::weight(part.pass, b, plan_, plan_.bodies[b]);
   }
+  for (std::size_t i = 0; i < wrenches.size(); ++i)
+    part.total[static_cast<std::size_t>(frames[i].body)] += sensed::on_body(part.pass, frames[i], wrenches[i]);
   sensed::gather(part.pass, plan_, part.total);
   for (std::size_t b = 0; b < plan_.bodies.size(); ++b) {
     const sensed::TwistOf<S> f = part.pass.bodies[b].BM.from_parent(part.total[b]);
@@ -101,9 +118,10 @@ void SensedReactions::find_applied(Part<S>& part, const State& state) noexcept {
   }
   for (std::size_t c = 0; c < plan_.cuts.size(); ++c) {
     const sensed::CutPlan& cut = plan_.cuts[c];
-    sensed::TwistOf<S> own = sensed::weight(part.pass, cut.body, plan_, cut);
+    sensed::TwistOf<S> own;
+    if (weight) own = sensed::weight(part.pass, cut.body, plan_, cut);
     for (std::size_t i = 0; i < wrenches.size(); ++i) {
-      const FrameIndex& at = loads_.frames()[i];
+      const FrameIndex& at = frames[i];
       if (static_cast<std::size_t>(at.body) == cut.body && cut.frames[static_cast<std::size_t>(at.frame)])
         own += sensed::on_body(part.pass, at, wrenches[i]);
     }

@@ -21,6 +21,9 @@ class SensedReactions {
 
   /// Goes to a state with these accelerations.
   void observe(const State& state, std::span<const double> accelerations) noexcept;
+  /// Adds what wrenches at frames, about their origins in world axes, ask of hinges and sections: wrenches that know no
+  /// truncation, as those of closed loops.
+  void add(const State& state, std::span<const FrameIndex> frames, std::span<const Wrench> wrenches) noexcept;
   /// What the parent exerts on the child through a hinge, about M's origin in F's axes.
   [[nodiscard]] Wrench of_hinge(std::size_t hinge) const noexcept { return reactions_[hinge]; }
   /// SectionLoad::inner of a cut of the plan.
@@ -37,6 +40,10 @@ class SensedReactions {
   void find_inertia(Part<S>& part, const State& state, std::span<const double> accelerations) noexcept;
   template <class S>
   void find_applied(Part<S>& part, const State& state) noexcept;
+  /// Takes wrenches at frames, and with `weight` that of the bodies, off what hinges and sections bear.
+  template <class S>
+  void take_off(Part<S>& part, std::span<const FrameIndex> frames, std::span<const Wrench> wrenches,
+                bool weight) noexcept;
   /// Of what hangs on the part beyond a cut, `own` being the part's own; about the section, in its axes.
   template <class S>
   [[nodiscard]] sensed::TwistOf<S> at_cut(const Part<S>& part, const sensed::CutPlan& cut,
@@ -47,7 +54,7 @@ class SensedReactions {
   Work work_;
   std::vector<Wrench> reactions_, sections_;
   std::vector<double> no_accelerations_;
-  std::optional<Part<double>> plain_;
+  std::optional<Part<double>> plain_, untruncated_;
   std::optional<Part<sensed::First>> first_, applied_first_;
   std::optional<Part<sensed::Second>> second_, applied_second_;
 };

@@ -2,6 +2,7 @@
 
 #include "withy/core/equations/sensed_reactions.hpp"
 #include "withy/core/kinematics/sensed_steps.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
 
 namespace withy::equations {
 namespace {
@@ -13,17 +14,20 @@ struct Found {
   bool motion = false, motion_efforts = false, energies = false, reactions = false;
 };
 
-class Sensing final : public SensedState {
+class Sensing final : public SensedState, public SensedLoops {
  public:
   Sensing(std::unique_ptr<const sensed::Plan> plan, const EquationsOfMotion& equations, const AppliedLoads& loads)
       : plan_(std::move(plan)),
         equations_(equations),
+        loops_(dynamic_cast<const ClosedLoops*>(&equations)),
         work_(equations.make_work()),
         seen_(equations.make_observation()),
         rates_(equations.size()),
         load_efforts_(layout().speeds),
         motion_efforts_(layout().speeds),
         pass_(*plan_),
+        multipliers_(loops_ != nullptr ? loops_->closing_equations() : 0),
+        wrenches_(loops_ != nullptr ? loops_->frames().size() : 0),
         reactions_(*plan_, loads) {}
 
   bool observe(const State& state) noexcept override {
@@ -70,6 +74,11 @@ class Sensing final : public SensedState {
     find_reactions();
     return reactions_.of_hinge(static_cast<std::size_t>(hinge));
   }
+  Wrench closing_reaction(std::size_t loop) noexcept override {
+    if (loops_ == nullptr) return {};
+    find_multipliers();
+    return loops_->reaction(loop, multipliers_, work_);
+  }
   SectionLoad section(std::size_t index) noexcept override {
     find_reactions();
     const sensed::CutPlan& cut = plan_->cuts[index];
@@ -114,9 +123,16 @@ class Sensing final : public SensedState {
   static double value(const First& x) { return x.value(); }
 
   void find_reactions() noexcept {
-    if (!found_.reactions) reactions_.observe(*state_, accelerations());
+    if (found_.reactions) return;
+    reactions_.observe(*state_, accelerations());
+    if (loops_ != nullptr) {
+      find_multipliers();
+      loops_->wrenches(multipliers_, wrenches_, work_);
+      reactions_.add(*state_, loops_->frames(), wrenches_);
+    }
     found_.reactions = true;
   }
+  void find_multipliers() noexcept { loops_->multipliers(state_->time, state_->y, multipliers_, work_); }
 
   void find_motion() noexcept {
     if (found_.motion) return;
@@ -135,6 +151,7 @@ class Sensing final : public SensedState {
 
   std::unique_ptr<const sensed::Plan> plan_;
   const EquationsOfMotion& equations_;
+  const ClosedLoops* loops_;  ///< null: the equations are a tree's
   Work work_;
   std::unique_ptr<Observation> seen_;
   const State* state_ = nullptr;
@@ -142,6 +159,8 @@ class Sensing final : public SensedState {
   std::vector<double> rates_, load_efforts_, motion_efforts_;
   Energies energies_;
   sensed::Pass<First> pass_;
+  std::vector<double> multipliers_;
+  std::vector<Wrench> wrenches_;  ///< of loops
   SensedReactions reactions_;
 };
 

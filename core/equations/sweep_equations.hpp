@@ -62,7 +62,7 @@ class Lazy {
 
 /// A sweep with its loads; for everything that is not hot, the reference, tangents and observations.
 template <class Sweep>
-class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, public ForwardDynamics {
+class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, public ForwardDynamics, public MassSolver {
  public:
   SweepEquations(std::shared_ptr<const Model> model, Terms terms, const NodeTree& tree,
                  const std::vector<Terms>& node_terms)
@@ -195,6 +195,16 @@ class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, 
     for (const Slot& slot : layout().bodies) {
       for (std::size_t i = 0; i < slot.speeds; ++i) r[slot.position + i] += delta * u[slot.speed + i];
     }
+  }
+
+  std::size_t mass_factors_size() const override { return has_modal_solver<Sweep> ? factors_size_ : 0; }
+  Evaluation factorize_mass(std::span<const double> y, Work& factors) const noexcept override {
+    return factorize(y, 0, factors);
+  }
+  void accelerate(std::span<const double> forces, std::span<double> accelerations,
+                  Work& factors) const noexcept override {
+    if constexpr (has_modal_solver<Sweep>)
+      sweep_.solve(forces.data(), 0, accelerations.data(), factor_sweep_.in(factors));
   }
 
   const Linearization* linearization() const override {

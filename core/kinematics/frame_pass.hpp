@@ -3,6 +3,8 @@
 /// duals. For frame_paths.cpp.
 #pragma once
 
+#include <utility>
+
 #include "withy/core/deformation/point_motion.hpp"
 #include "withy/core/kinematics/frame_paths.hpp"
 #include "withy/core/spatial/jet.hpp"
@@ -51,6 +53,7 @@ inline double on_hinge(const Second& x) { return on_mode(x) + 0.5 * x.derivative
 struct HingeStep {
   Matrix3 R;
   Vector3 p, w, v;  ///< twist of M relative to F in M axes
+  Vector6 bias;     ///< its derivative there where the rates do not change
   Eigen::Matrix<double, 3, 6> angular, linear;
 };
 
@@ -68,6 +71,7 @@ struct SectionMotion {
   V3<S> r;
   M3<S> R, left;  ///< left Jacobian of the rotation
   Vector3 r_rate, w_rate;
+  Vector3 r_bias, w_bias;  ///< r̈ and ẇ where the rates do not change; of untruncated paths, in numbers
 };
 
 inline Vector3 component(const std::array<Eigen::MatrixXd, 3>& m, Eigen::Index i, Eigen::Index j) {
@@ -156,6 +160,36 @@ class FramePaths::Pass {
     return f;
   }
 
+  /// Accelerations of the links' frames where no speed changes, after `outward`.
+  void turn(FrameAcceleration* of_links) const requires(std::is_same_v<S, double>) {
+    for (std::size_t l = 0; l < paths_.links_.size(); ++l) {
+      const Link& link = paths_.links_[l];
+      const LinkMotion& m = links_[l];
+      const HingeStep& hinge = hinges_[l];
+      Vector3 w = Vector3::Zero();  // of F
+      FrameAcceleration A;
+      if (!link.at_world) {
+        w = links_[link.F.link].w + links_[link.F.link].R_B * sections_[link.F.section].w_rate;
+        A = acceleration(link.F, of_links);
+      }
+      const Vector3 turn = m.R_M * hinge.w, slide = m.R_M * hinge.v;
+      A.linear += A.angular.cross(m.arm_h) + w.cross(w.cross(m.arm_h)) + 2 * w.cross(slide) + turn.cross(slide) +
+                  m.R_M * hinge.bias.tail<3>();
+      A.angular += w.cross(turn) + m.R_M * hinge.bias.head<3>();
+      // The frame follows M.
+      const Place root{l, link.M.section, link.M.pose};
+      const auto [turned, moved] = relative(root, m.arm_M);
+      of_links[l].angular = A.angular - turned;
+      of_links[l].linear = A.linear - of_links[l].angular.cross(m.arm_M) - moved;
+    }
+  }
+  [[nodiscard]] FrameAcceleration acceleration(const Place& at, const FrameAcceleration* of_links) const {
+    const Vector3 arm = links_[at.link].R_B * (sections_[at.section].r + sections_[at.section].R * at.pose.p);
+    const auto [turned, moved] = relative(at, arm);
+    const FrameAcceleration& link = of_links[at.link];
+    return {link.angular + turned, link.linear + link.angular.cross(arm) + moved};
+  }
+
   void inward(std::span<const Wrench> wrenches, std::span<double> efforts) {
     for (std::size_t l = 0; l < paths_.links_.size(); ++l) {
       links_[l].force.setZero();
@@ -185,6 +219,17 @@ class FramePaths::Pass {
   }
 
  private:
+  /// What of the accelerations of a frame at `arm` from its link's frame does not come from those of the latter.
+  [[nodiscard]] std::pair<Vector3, Vector3> relative(const Place& at, const Vector3& arm) const {
+    const LinkMotion& link = links_[at.link];
+    const SectionMotion& s = sections_[at.section];
+    const Vector3 offset = s.R * at.pose.p, spin = link.R_B * s.w_rate;
+    const Vector3 slide = link.R_B * (s.r_rate + s.w_rate.cross(offset));
+    const Vector3 bent = s.r_bias + s.w_bias.cross(offset) + s.w_rate.cross(s.w_rate.cross(offset));
+    return {link.R_B * s.w_bias + link.w.cross(spin),
+            link.w.cross(link.w.cross(arm)) + 2 * link.w.cross(slide) + link.R_B * bent};
+  }
+
   /// q, q̇ as far as the truncation keeps them, and the sections' motion.
   void deform(const Link& link, std::span<const double> positions, std::span<const double> speeds) {
     S* q = q_ + link.mode;
@@ -211,6 +256,8 @@ class FramePaths::Pass {
           out.r = frame_pass::vector(motion.frame.p);
           out.r_rate = out.R * frame_pass::vector(motion.rate.v);
           out.w_rate = out.R * frame_pass::vector(motion.rate.w);
+          out.r_bias = out.R * frame_pass::vector(motion.bias.v) + out.w_rate.cross(out.r_rate);
+          out.w_bias = out.R * frame_pass::vector(motion.bias.w);
         }
         return;
       }
@@ -225,9 +272,11 @@ class FramePaths::Pass {
     out.left.setIdentity();
     out.r_rate.setZero();
     out.w_rate.setZero();
+    out.r_bias.setZero();
+    out.w_bias.setZero();
     if (!section.moves) return;
     V3 theta = V3::Zero();
-    Vector3 theta_rate = Vector3::Zero();
+    Vector3 theta_rate = Vector3::Zero(), theta_bias = Vector3::Zero();
     for (Eigen::Index i = 0; i < link.modes; ++i) {
       V3 P = section.at.phi.col(i).template cast<S>(), T = section.at.psi.col(i).template cast<S>();
       const V3 P_0 = P, T_0 = T;
@@ -242,6 +291,10 @@ class FramePaths::Pass {
       if constexpr (std::is_same_v<S, double>) {
         out.r_rate += P * q_dot[i];
         theta_rate += T * q_dot[i];
+        for (Eigen::Index j = 0; paths_.untruncated_ && link.order != StrainOrder::linear && j < link.modes; ++j) {
+          out.r_bias += frame_pass::component(section.at.gamma, i, j) * (q_dot[i] * q_dot[j]);
+          theta_bias += frame_pass::component(section.at.theta, i, j) * (q_dot[i] * q_dot[j]);
+        }
       }
     }
     const detail::ExponentialCoefficients<S> k(S(theta.squaredNorm()));
@@ -249,7 +302,14 @@ class FramePaths::Pass {
     const M3 tt = t * t;
     out.left += t * k.b + tt * k.c;
     out.R += t * k.a + tt * k.b;
-    if constexpr (std::is_same_v<S, double>) out.w_rate = out.left * theta_rate;
+    if constexpr (std::is_same_v<S, double>) {
+      out.w_rate = out.left * theta_rate;
+      if (!paths_.untruncated_) return;
+      const Matrix3 turning = skew<double>(theta_rate);
+      const Matrix3 left_rate =
+          2 * theta.dot(theta_rate) * (k.db * t + k.dc * tt) + k.b * turning + k.c * (turning * t + t * turning);
+      out.w_bias = left_rate * theta_rate + out.left * theta_bias;
+    }
   }
 
   static void move(const Link& link, std::span<const double> positions, std::span<const double> speeds,
@@ -263,6 +323,7 @@ class FramePaths::Pass {
     step.p = motion.pose.p;
     step.angular.leftCols(n) = motion.H.topRows<3>();
     step.linear.leftCols(n) = motion.H.bottomRows<3>();
+    step.bias = motion.bias;
     step.w.setZero();
     step.v.setZero();
     for (Eigen::Index j = 0; j < n; ++j) {

@@ -34,6 +34,7 @@ FramePaths::FramePaths(const Model& model, Terms terms, const std::vector<FrameI
   full_offset_ = Pass<double>::take(*this, memory);
   if (strict_) first_order_offset_ = Pass<frame_pass::Dual>::take(*this, memory);
   if (symmetric_) first_order_offset_ = Pass<frame_pass::Second>::take(*this, memory);
+  turning_offset_ = memory.take<FrameAcceleration>(untruncated ? links_.size() : 0);
   work_size_ = memory.size();
 }
 
@@ -46,6 +47,13 @@ void FramePaths::motions(std::span<const double> positions, std::span<const doub
   for (std::size_t i = 0; i < frames_.size(); ++i) motions[i] = full.frame(frames_[i]);
   if (strict_) Pass<frame_pass::Dual>(*this, work, first_order_offset_).outward(positions, speeds);
   if (symmetric_) Pass<frame_pass::Second>(*this, work, first_order_offset_).outward(positions, speeds);
+}
+
+void FramePaths::velocity_accelerations(std::span<FrameAcceleration> accelerations, std::byte* work) const noexcept {
+  auto* const of_links = sweep::at<FrameAcceleration>(work, turning_offset_);
+  const Pass<double> full(*this, work, full_offset_);
+  full.turn(of_links);
+  for (std::size_t i = 0; i < frames_.size(); ++i) accelerations[i] = full.acceleration(frames_[i], of_links);
 }
 
 void FramePaths::add_efforts(std::span<const Wrench> wrenches, std::span<double> efforts,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/sensor.hpp"
 
 namespace withy {
 
@@ -29,6 +30,9 @@ class FramePaths {
   /// Motion of the frames, in their order, at positions and speeds as in State.
   void motions(std::span<const double> positions, std::span<const double> speeds, std::span<FrameMotion> motions,
                std::byte* work) const noexcept;
+  /// Accelerations J̇ u that the frames have where no speed changes, at the state that `motions` has left in the memory;
+  /// of untruncated paths.
+  void velocity_accelerations(std::span<FrameAcceleration> accelerations, std::byte* work) const noexcept;
   /// Adds the efforts of a wrench at each frame to `efforts`, at the state that `motions` has left in the memory.
   void add_efforts(std::span<const Wrench> wrenches, std::span<double> efforts, std::byte* work) const noexcept;
 
@@ -76,7 +80,8 @@ class FramePaths {
   std::size_t modes_ = 0;
   std::size_t partials_ = 0;
   bool untruncated_ = false, strict_ = false, symmetric_ = false;
-  std::size_t hinge_offset_ = 0, partials_offset_ = 0, full_offset_ = 0, first_order_offset_ = 0, work_size_ = 0;
+  std::size_t hinge_offset_ = 0, partials_offset_ = 0, full_offset_ = 0, first_order_offset_ = 0;
+  std::size_t turning_offset_ = 0, work_size_ = 0;
 };
 
 }  // namespace withy

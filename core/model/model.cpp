@@ -4,6 +4,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/validate.hpp"
 
 namespace withy {
@@ -262,6 +263,7 @@ std::shared_ptr<const Model> Model::in_kinematics(std::shared_ptr<const Model> m
 }
 
 Model Model::rigidified() const {
+  require_tree(*this, "a rigid tree");
   std::vector<BodyNode> bodies = bodies_;
   for (BodyNode& b : bodies) {
     b.body = std::make_shared<RigidifiedBody>(b.body);

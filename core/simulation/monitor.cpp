@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/simulation/cubic.hpp"
 
 namespace withy {
@@ -233,6 +234,7 @@ void Monitor::finish_momenta() {
     }
   }
   // On the rates of a free hinge acts what comes from outside the tree; what its bodies do to each other cancels there.
+  for (const LoopClosure* loop : loops_of(model_)) floats = floats && loop->a().body >= 0 && loop->b().body >= 0;
   constexpr double rounding = 1e-12;
   MomentumDrift& m = summary_.momentum;
   m.conserved = floats && outside <= rounding * all;

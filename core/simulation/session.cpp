@@ -24,6 +24,7 @@ Session::Session(const Model& model, const EquationsOfMotion& equations, const I
       initial_(begun(model, initial)),
       loop_(model, integrator.start(equations, initial_), {initial.time, infinity, options_.events}),
       monitor_(model, equations, loop_.state(), options_.deflection_limit, infinity, nullptr, summary_),
+      loops_(equations, loop_.state()),
       with_inputs_(loop_.state()) {
   for (std::size_t l = 0; l < model.loads().size(); ++l)
     if (model.loads()[l].load->input() != nullptr) settings_.push_back({l});
@@ -127,7 +128,9 @@ bool Session::output(const State& /*state*/) { return true; }
 bool Session::after_step(const Stepper& stepper, bool /*outputs*/) {
   monitor_.observe(stepper);
   monitor_.audit_mass_matrix(stepper.state(), stepper.statistics().determinant_sign);
-  if (monitor_.sign_change()) {
+  if (const std::string fault = loops_.fault(stepper.state()); !fault.empty()) {
+    stop_ = {RunStatus::singular, fault, false};
+  } else if (monitor_.sign_change()) {
     stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
   } else if (!monitor_.excess().empty()) {
     stop_ = {RunStatus::diverged, monitor_.excess()};
@@ -140,6 +143,7 @@ void Session::passed(const EventTime& event) { events_.push_back(event); }
 void Session::remember(Memory& memory) {
   monitor_.remember(memory);
   loop_.remember(memory);
+  loops_.remember(memory);
   for (Setting& s : settings_) {
     memory(s.waiting);
     memory(s.value);

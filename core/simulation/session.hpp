@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/monitor.hpp"
 #include "withy/core/simulation/stepping.hpp"
 #include "withy/core/simulation/stop.hpp"
@@ -82,6 +83,7 @@ class Session final : private SteppingObserver {
   RunSummary summary_;  ///< what the monitor notes
   Stepping loop_;
   Monitor monitor_;
+  LoopWatch loops_;
   std::vector<Setting> settings_;
   State with_inputs_;
   std::vector<EventTime> events_;

@@ -7,6 +7,7 @@
 
 #include "withy/core/simulation/changing_equations.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/monitor.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/core/simulation/stepping.hpp"
@@ -30,7 +31,8 @@ class Run final : public SteppingObserver {
               {options.end, options.output, options.events, hand_overs_}),
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
                  summary),
-        validity_(model, equations, options.beyond, summary.validity) {
+        validity_(model, equations, options.beyond, summary.validity),
+        loops_(equations, loop_.state()) {
     if (options.own_energy) monitor_.use_own_energy(loop_.state());
     if (std::isfinite(options.drift_limit)) monitor_.trust(options.drift_limit);
     if (options.resume != nullptr) {
@@ -62,6 +64,7 @@ class Run final : public SteppingObserver {
   }
 
   [[nodiscard]] const Stepper& stepper() const { return loop_.stepper(); }
+  [[nodiscard]] const EquationsOfMotion& equations() const { return equations_; }
   [[nodiscard]] Monitor& monitor() { return monitor_; }
   [[nodiscard]] const Monitor& monitor() const { return monitor_; }
   /// Names of the events that have ended the run.
@@ -97,7 +100,9 @@ class Run final : public SteppingObserver {
     if (audited(stepper.statistics().accepted)) monitor_.audit_energy(state);
     validity_.observe(state, loop_.step_evaluations(), monitor_.trusted().time);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
-    if (monitor_.sign_change()) {
+    if (const std::string fault = loops_.fault(state); !fault.empty()) {
+      stop_ = {RunStatus::singular, fault, false};
+    } else if (monitor_.sign_change()) {
       stop_ = {RunStatus::singular, "the determinant of the mass matrix changed its sign"};
     } else if (!monitor_.excess().empty()) {
       stop_ = {RunStatus::diverged, monitor_.excess()};
@@ -149,6 +154,7 @@ class Run final : public SteppingObserver {
     monitor_.remember(memory);
     validity_.remember(memory);
     loop_.remember(memory);
+    loops_.remember(memory);
     memory(emitted_);
     memory(summary_.switchings);
     std::size_t count = summary_.events.size();
@@ -173,6 +179,7 @@ class Run final : public SteppingObserver {
   Stepping loop_;
   Monitor monitor_;
   ValidityWatch validity_;
+  LoopWatch loops_;
   double emitted_ = 0;  ///< time of the last output
   Stop stop_;           ///< why this observer has ended the stepping
   std::vector<std::string> stopped_by_;
@@ -226,6 +233,7 @@ std::string message_of_completed(const Run& run, const RunSummary& summary) {
   }
   if (!summary.suspected_jumps.empty()) add(note_on_jumps(summary.suspected_jumps));
   for (const std::string& remark : run.stepper().remarks()) add("The integrator: " + remark + ".");
+  if (const std::string closing = closing_text(run.equations(), run.stepper()); !closing.empty()) add(closing);
   return text;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "withy/core/plugin/closed_loops.hpp"
+
 namespace withy {
 
 Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion& equations, const State& state,
@@ -21,6 +23,11 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
                                        (culprit.empty() ? culprit : ": " + culprit)};
     }
     case StepResult::Outcome::singular:
+      if (dynamic_cast<const ClosedLoops*>(&equations) != nullptr && result.body < 0)
+        return {RunStatus::singular,
+                "the loops cannot be closed at the end of a step, however small: they reach a configuration from which "
+                "they do not move on, or motions that leave them no way",
+                false};
       return {RunStatus::singular, "the mass matrix cannot be solved, however small the step" + body};
     case StepResult::Outcome::step_underflow:
       return {RunStatus::step_underflow, "the accuracy asked for needs steps below the resolution of time"};

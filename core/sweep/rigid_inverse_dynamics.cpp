@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/sweep/joint_step.hpp"
 #include "withy/core/tree/invariants.hpp"
 
@@ -112,6 +113,7 @@ class NewtonEuler final : public RigidInverseDynamics::Algorithm {
 }  // namespace
 
 RigidInverseDynamics::RigidInverseDynamics(const Model& model) {
+  require_tree(model, "the inverse dynamics of the rigid tree, which this load takes its efforts from,");
   const NodeTree tree = compile_tree(model);
   if (tree.planar) {
     algorithm_ = std::make_shared<NewtonEuler<Planar>>(tree, model.gravity());

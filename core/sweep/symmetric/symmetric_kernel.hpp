@@ -355,8 +355,9 @@ inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<
       const Twist* JM = J + n * static_cast<int>(node.stations.size());
       for (int i = 0; i < n; ++i) y[i] += Space::dot(JM[i], p);
     }
-    const double* L = at<double>(s.work, node.work_G);
-    const Twist* Y = at<Twist>(s.work, node.work_C);
+    const bool constant = flavor == Flavor::frozen && is_constant(node, s);
+    const double* L = constant ? node.factor.data() : at<double>(s.work, node.work_G);
+    const Twist* Y = constant ? node.Y0.data() : at<Twist>(s.work, node.work_C);
     solve_lower<N>(L, n, y);
     for (int i = 0; i < n; ++i) p += Y[i] * (L[i * n + i] * y[i]);
   }

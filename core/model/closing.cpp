@@ -1,0 +1,115 @@
+#include "withy/core/model/closing.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+namespace {
+
+/// Two unit vectors across a direction and each other.
+std::pair<Vector3, Vector3> across(const Vector3& n) {
+  Eigen::Index least = 0;
+  n.cwiseAbs().minCoeff(&least);
+  const Vector3 first = n.cross(Vector3::Unit(least)).normalized();
+  return {first, n.cross(first)};
+}
+
+double left_over(const ClosingEquation& e, const Pose& M) {
+  return (e.of_directions ? e.a.dot(M.R * e.b) : e.a.dot(M.p)) - e.value;
+}
+
+/// The directions that a hinge turns about and slides along, at its reference.
+struct Freedoms {
+  std::vector<Vector3> turns, slides;
+  bool pure = true;  ///< each rate does one of both
+};
+
+Freedoms freedoms_of(const HingeMotion& motion) {
+  Freedoms f;
+  for (Eigen::Index i = 0; i < motion.H.cols(); ++i) {
+    const Vector3 w = motion.H.col(i).head<3>(), v = motion.H.col(i).tail<3>();
+    f.pure = f.pure && (w.isZero(0) != v.isZero(0));
+    if (!w.isZero(0)) f.turns.emplace_back(w.normalized());
+    if (!v.isZero(0)) f.slides.emplace_back(v.normalized());
+  }
+  return f;
+}
+
+void add_directions(const std::vector<Vector3>& turns, std::vector<ClosingEquation>& equations) {
+  if (turns.empty()) {
+    for (Eigen::Index i = 0; i < 3; ++i) equations.push_back({true, Vector3::Unit(i), Vector3::Unit((i + 1) % 3), 0});
+  } else if (turns.size() == 1) {
+    const auto [first, second] = across(turns[0]);
+    equations.push_back({true, first, turns[0], 0});
+    equations.push_back({true, second, turns[0], 0});
+  } else if (turns.size() == 2) {
+    equations.push_back({true, turns[0], turns[1], turns[0].dot(turns[1])});
+  }
+}
+
+void add_positions(const std::vector<Vector3>& slides, std::vector<ClosingEquation>& equations) {
+  if (slides.empty()) {
+    for (Eigen::Index i = 0; i < 3; ++i) equations.push_back({false, Vector3::Unit(i), {0, 0, 0}, 0});
+  } else if (slides.size() == 1) {
+    const auto [first, second] = across(slides[0]);
+    equations.push_back({false, first, {0, 0, 0}, 0});
+    equations.push_back({false, second, {0, 0, 0}, 0});
+  } else if (slides.size() == 2) {
+    equations.push_back({false, slides[0].cross(slides[1]).normalized(), {0, 0, 0}, 0});
+  }
+}
+
+}  // namespace
+
+std::optional<std::vector<ClosingEquation>> closing_equations(const Hinge& hinge) {
+  constexpr double rounding = 1e-12;
+  std::vector<double> x(hinge.coordinates()), rates(hinge.speeds(), 0.0), x_dot(hinge.coordinates());
+  hinge.reference(x);
+  HingeMotion motion;
+  motion.H.resize(6, static_cast<Eigen::Index>(hinge.speeds()));
+  hinge.motion(x, rates, motion);
+  const Freedoms freedoms = freedoms_of(motion);
+  if (!freedoms.pure || !motion.pose.R.isIdentity(rounding) || !motion.pose.p.isZero(rounding)) return {};
+  std::vector<ClosingEquation> equations;
+  add_positions(freedoms.slides, equations);
+  add_directions(freedoms.turns, equations);
+  if (equations.empty() || equations.size() + hinge.speeds() != 6) return {};
+  // A hinge that moves otherwise elsewhere is none of those: it is taken through poses along all its rates.
+  for (int step = 1; step <= 24; ++step) {
+    for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = std::sin(1.7 * step + 2.3 * static_cast<double>(i));
+    hinge.derivatives(x, rates, x_dot);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += 0.4 * x_dot[i];
+    hinge.normalize(x);
+    hinge.motion(x, rates, motion);
+    for (const ClosingEquation& e : equations)
+      if (!(std::abs(left_over(e, motion.pose)) <= rounding * (1 + motion.pose.p.norm()))) return {};
+  }
+  return equations;
+}
+
+LoopClosure::LoopClosure(const Model& model, std::string name, FrameIndex a, FrameIndex b, Pose offset,
+                         std::vector<ClosingEquation> equations)
+    : name_(std::move(name)), a_(a), b_(b), offset_(std::move(offset)), equations_(std::move(equations)) {
+  if (a.body < 0 && b.body < 0) throw std::invalid_argument("both its frames are in the world: it closes nothing");
+  if (a.body == b.body)
+    throw std::invalid_argument("both its frames are on body '" +
+                                model.bodies()[static_cast<std::size_t>(a.body)].name +
+                                "'; a loop is closed between two bodies, or a body and the world");
+}
+
+std::vector<const LoopClosure*> loops_of(const Model& model) {
+  std::vector<const LoopClosure*> loops;
+  for (const LoadNode& load : model.loads())
+    if (const auto* loop = dynamic_cast<const LoopClosure*>(load.load.get())) loops.push_back(loop);
+  return loops;
+}
+
+void require_tree(const Model& model, const std::string& what) {
+  if (const auto loops = loops_of(model); !loops.empty())
+    throw std::invalid_argument(what + " knows nothing of closed loops (constraints." + loops.front()->name() + ")");
+}
+
+}  // namespace withy

@@ -1,0 +1,65 @@
+/// \file
+/// Constraints that close loops: a hinge between two frames of the tree, as equations that it leaves no freedom.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "withy/core/plugin/hinge.hpp"
+#include "withy/core/plugin/load.hpp"
+
+namespace withy {
+
+/// One scalar equation between the hinge frames F and M of a closing hinge, g = 0 with
+///   of positions:   g = a · p_FM − value,
+///   of directions:  g = a · (R_FM b) − value.
+struct ClosingEquation {
+  bool of_directions = false;
+  Vector3 a = Vector3::Zero();  ///< unit vector in F
+  Vector3 b = Vector3::Zero();  ///< unit vector in M; of directions alone
+  double value = 0;             ///< [m], or 1
+};
+
+/// The 6 − speeds equations that hold at every pose of a hinge and at no other near by; nothing where the hinge is not
+/// made of rotations about fixed axes and translations along fixed directions (screws), or leaves everything free.
+std::optional<std::vector<ClosingEquation>> closing_equations(const Hinge& hinge);
+
+/// A hinge that closes a loop: F is at `offset` in frame a, M is frame b. It is bound to a model where loads are, since
+/// what it exerts are wrenches at frames; their sizes are the multipliers of the equations of motion, so that of itself
+/// it gives none. A body −1 is the world.
+class LoopClosure final : public BoundLoad {
+ public:
+  /// \throws std::invalid_argument where both frames are on one body, or both in the world.
+  LoopClosure(const Model& model, std::string name, FrameIndex a, FrameIndex b, Pose offset,
+              std::vector<ClosingEquation> equations);
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const FrameIndex& a() const { return a_; }
+  [[nodiscard]] const FrameIndex& b() const { return b_; }
+  [[nodiscard]] const Pose& offset() const { return offset_; }
+  [[nodiscard]] const std::vector<ClosingEquation>& equations() const { return equations_; }
+
+  [[nodiscard]] std::size_t scratch() const override { return 0; }
+  void add(double, std::span<const double>, std::span<const double>, std::span<double>,
+           std::span<double>) const noexcept override {}
+  bool add_derivatives(double, std::span<const double>, std::span<const double>, Eigen::Ref<Eigen::MatrixXd>,
+                       Eigen::Ref<Eigen::MatrixXd>) const override {
+    return true;
+  }
+  [[nodiscard]] std::vector<double> discontinuities() const override { return {}; }
+  [[nodiscard]] double end() const override { return 0; }
+  void begin(State&) const override {}
+
+ private:
+  std::string name_;
+  FrameIndex a_, b_;
+  Pose offset_;
+  std::vector<ClosingEquation> equations_;
+};
+
+/// The loops of a model, in their order.
+std::vector<const LoopClosure*> loops_of(const Model& model);
+/// \throws std::invalid_argument where the model has loops; `what` knows nothing of them.
+void require_tree(const Model& model, const std::string& what);
+
+}  // namespace withy

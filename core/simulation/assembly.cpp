@@ -1,0 +1,212 @@
+#include "withy/core/simulation/assembly.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "withy/core/model/closing.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+
+namespace withy {
+namespace {
+
+using DenseMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Free = std::vector<Eigen::Index>;
+
+/// A state on its way to closure.
+class Assembler {
+ public:
+  Assembler(const Model& model, const EquationsOfMotion& equations, State& state)
+      : model_(model),
+        equations_(equations),
+        loops_(dynamic_cast<const ClosedLoops&>(equations)),
+        state_(state),
+        work_(equations.make_work()),
+        gaps_(static_cast<Eigen::Index>(loops_.closing_equations())),
+        rates_(gaps_.size()),
+        J_(gaps_.size(), static_cast<Eigen::Index>(model.layout().speeds)) {
+    look();
+  }
+
+  [[nodiscard]] double gap() const { return gaps_.cwiseAbs().maxCoeff(); }
+  [[nodiscard]] double gap_rate() const { return rates_.cwiseAbs().maxCoeff(); }
+  [[nodiscard]] const Eigen::VectorXd& gaps() const { return gaps_; }
+  [[nodiscard]] const Eigen::VectorXd& gap_rates() const { return rates_; }
+  [[nodiscard]] bool closed() const { return gap() <= closed_gap; }
+
+  /// Moves the coordinates of free speeds; where they do not close the loops, the state stays.
+  bool close_positions(const Free& free) {
+    if (closed()) return true;
+    if (free.empty()) return false;
+    constexpr int most = 200;
+    const State start = state_;
+    double best = gap();
+    for (int i = 0, idle = 0; i < most && idle < 30; ++i) {
+      Eigen::VectorXd change = smallest(free, gaps_);
+      constexpr double longest = 0.3;  // [rad, m]
+      const double most_moved = change.cwiseAbs().maxCoeff();
+      if (!std::isfinite(most_moved)) break;
+      if (most_moved > longest) change *= longest / most_moved;
+      move(change);
+      if (gap() <= finest_gap || (closed() && gap() >= 0.5 * best)) break;
+      idle = gap() < 0.9 * best ? 0 : idle + 1;
+      best = std::min(best, gap());
+    }
+    if (closed()) return true;
+    state_ = start;
+    look();
+    return false;
+  }
+  bool close_rates(const Free& free) {
+    const double before = gap_rate();
+    if (before <= closed_gap) return true;
+    if (free.empty()) return false;
+    const std::size_t first = model_.layout().positions;
+    const State start = state_;
+    for (int i = 0; i < 3 && gap_rate() > 0; ++i) {
+      const Eigen::VectorXd change = smallest(free, rates_);
+      for (Eigen::Index k = 0; k < change.size(); ++k) state_.y[first + static_cast<std::size_t>(k)] += change[k];
+      look();
+    }
+    if (gap_rate() <= 1e-9 * std::max(1.0, before)) return true;
+    state_ = start;
+    look();
+    return false;
+  }
+
+ private:
+  static constexpr double closed_gap = 1e-10, finest_gap = 1e-15;  ///< [m]
+
+  void look() {
+    J_.setZero();
+    loops_.see(state_.y, {gaps_.data(), static_cast<std::size_t>(gaps_.size())},
+               {rates_.data(), static_cast<std::size_t>(rates_.size())},
+               {J_.data(), static_cast<std::size_t>(J_.size())}, work_);
+  }
+  /// The change of free speeds with J change = −missing, or as near as they come to it, that is the smallest in M.
+  [[nodiscard]] Eigen::VectorXd smallest(const Free& free, const Eigen::VectorXd& missing) const {
+    const DenseSystem system = equations_.system(state_.time, state_.y);
+    const auto n = static_cast<Eigen::Index>(system.size);
+    const Eigen::MatrixXd M = Eigen::Map<const DenseMatrix>(system.mass.data(), n, n)(free, free);
+    const Eigen::LLT<Eigen::MatrixXd> factor(M);
+    const Eigen::MatrixXd S = factor.matrixL().solve(J_(Eigen::all, free).transpose()).transpose();
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+    solver.setThreshold(1e-9);
+    solver.compute(S);
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
+    const Eigen::VectorXd least = solver.solve(-missing);
+    change(free) = factor.matrixU().solve(least).eval();
+    return change;
+  }
+  void move(const Eigen::VectorXd& change) {
+    const std::size_t first = model_.layout().positions;
+    std::vector<double> there = state_.y, slopes(there.size());
+    std::copy(change.begin(), change.end(), there.begin() + static_cast<std::ptrdiff_t>(first));
+    equations_.position_rates(state_.time, there, slopes, work_);
+    for (std::size_t i = 0; i < first; ++i) state_.y[i] += slopes[i];
+    equations_.normalize(state_.y);
+    look();
+  }
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  const ClosedLoops& loops_;
+  State& state_;
+  Work work_;
+  Eigen::VectorXd gaps_, rates_;
+  DenseMatrix J_;
+};
+
+/// Speeds that may change: of hinges, with `modes` those of bodies too; what is given and what motions drive does not.
+Free free_speeds(const Model& model, const std::vector<bool>& given, bool modes) {
+  const Layout& layout = model.layout();
+  Free free;
+  const auto add = [&](const Slot& slot) {
+    for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i)
+      if (!given[i]) free.push_back(static_cast<Eigen::Index>(i));
+  };
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h)
+    if (!model.driven(h)) add(layout.hinges[h]);
+  if (modes)
+    for (const Slot& slot : layout.bodies) add(slot);
+  return free;
+}
+
+/// The coordinate or speed that has changed most, in words.
+std::string greatest_change(const Layout& layout, const State& before, const State& after, bool rates) {
+  const Slot* most = nullptr;
+  double change = 1e-12;
+  const auto look = [&](const Slot& slot) {
+    const std::size_t first = rates ? layout.positions + slot.speed : slot.position;
+    for (std::size_t i = first; i < first + (rates ? slot.speeds : slot.positions); ++i) {
+      if (std::abs(after.y[i] - before.y[i]) <= change) continue;
+      change = std::abs(after.y[i] - before.y[i]);
+      most = &slot;
+    }
+  };
+  for (const Slot& slot : layout.hinges) look(slot);
+  for (const Slot& slot : layout.bodies) look(slot);
+  return most == nullptr ? std::string() : "'" + most->name + "' by " + brief(change);
+}
+
+std::size_t farthest(const Model& model, const Eigen::VectorXd& gaps) {
+  Eigen::Index row = 0;
+  gaps.cwiseAbs().maxCoeff(&row);
+  std::size_t loop = 0;
+  for (const LoopClosure* c : loops_of(model)) {
+    const auto own = static_cast<Eigen::Index>(c->equations().size());
+    if (row < own) break;
+    row -= own;
+    ++loop;
+  }
+  return loop;
+}
+
+}  // namespace
+
+Assembly assemble(const Model& model, const EquationsOfMotion& equations, const GivenState& given, State& state) {
+  constexpr double near_enough = 1e-3;  // [m]
+  const Layout& layout = model.layout();
+  const State before = state;
+  const std::vector<bool> none(layout.speeds, false);
+  Assembler assembler(model, equations, state);
+  Assembly result;
+  const double gap = assembler.gap();
+  bool good = assembler.close_positions(free_speeds(model, given.positions, false)) ||
+              assembler.close_positions(free_speeds(model, given.positions, true)) ||
+              (gap <= near_enough && assembler.close_positions(free_speeds(model, none, true)));
+  if (!good) {
+    result.loop = farthest(model, assembler.gaps());
+    result.fault = "the loop cannot be closed from the initial state: its frames are " + brief(gap) +
+                   " m apart there (turns count with the length of the largest body), and what `initial` gives and "
+                   "motions prescribe leaves no way; give fewer coordinates, or a nearer `guess`";
+    return result;
+  }
+  auto& loops = dynamic_cast<const ClosedLoops&>(equations);
+  Work work = equations.make_work();
+  for (std::size_t i = 0; i < loops_of(model).size(); ++i) {
+    if (loops.right_way_round(state.y, i, work)) continue;
+    result.loop = i;
+    result.fault =
+        "the loop closes the wrong way round from the initial state, its hinge turned over by half a turn; "
+        "give a nearer `guess`";
+    return result;
+  }
+  const double rate = assembler.gap_rate();
+  good = assembler.close_rates(free_speeds(model, given.rates, false)) ||
+         assembler.close_rates(free_speeds(model, given.rates, true)) ||
+         (rate <= near_enough && assembler.close_rates(free_speeds(model, none, true)));
+  if (!good) {
+    result.loop = farthest(model, assembler.gap_rates());
+    result.fault = "the loop does not stay closed: the initial speeds part its frames at " + brief(rate) +
+                   " m/s, and what `initial` gives and motions prescribe leaves no way; give fewer rates";
+    return result;
+  }
+  const std::string moved = greatest_change(layout, before, state, false);
+  const std::string sped = greatest_change(layout, before, state, true);
+  if (!moved.empty()) result.remark = "positions changed, most " + moved;
+  if (!sped.empty()) result.remark += (moved.empty() ? "speeds changed, most " : "; speeds too, most ") + sped;
+  if (!result.remark.empty()) result.remark = "Loops were closed at the start: " + result.remark + ".";
+  return result;
+}
+
+}  // namespace withy

@@ -1,0 +1,31 @@
+/// \file
+/// Bringing the loops of a model to closure where it begins.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
+
+namespace withy {
+
+/// What of a state was given and is to stay, by speeds of the model.
+struct GivenState {
+  std::vector<bool> positions, rates;
+};
+
+struct Assembly {
+  std::string fault;     ///< why the loops cannot be closed, in a sentence; empty where they are
+  std::size_t loop = 0;  ///< of the fault: index of the loop that is farthest from closed
+  std::string remark;    ///< what was changed, in a sentence; empty where nothing was
+};
+
+/// Closes the loops of a state: positions by Newton's method, each step the smallest in the sense of M, then speeds by
+/// the smallest change. First the hinges that are not given move, then with them the modes that are not given. What is
+/// given stays, but where it lies within a thousandth of the largest body's length of closure and leaves no way: then
+/// all moves. Speeds that motions prescribe always stay.
+/// \param equations of the model; ClosedLoops
+Assembly assemble(const Model& model, const EquationsOfMotion& equations, const GivenState& given, State& state);
+
+}  // namespace withy
