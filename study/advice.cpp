@@ -69,7 +69,8 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   const Scene& scene = evaluator.base().scene;
   if (has_switches(*scene.model))
     throw InputError(scene.file +
-                     ": a load switches at zeros of a function of the state, at times of their own in every model; "
+                     ": a load switches at zeros of a function of the state, or an event acts, at times of their own in every "
+                     "model; "
                      "runs that are measured against each other need common ones");
   accuracy.require_something_of(evaluator.outputs());
   Advice advice;
