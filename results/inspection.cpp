@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "withy/core/model/event_plan.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/results/json_text.hpp"
@@ -111,7 +112,8 @@ Json inspection_json(const study::Prepared& prepared, const State& state, const 
   j["bodies"] = bodies_json(scene);
   j["loads"] = Json::array();
   for (const LoadNode& load : prepared.model().loads())
-    j["loads"].push_back({{"name", load.name}, {"type", type_of(scene, "loads", load.name)}});
+    if (load.name != name_of_event_states)
+      j["loads"].push_back({{"name", load.name}, {"type", type_of(scene, "loads", load.name)}});
   j["motions"] = Json::array();
   for (const MotionNode& motion : prepared.model().motions())
     j["motions"].push_back({{"name", motion.name},

@@ -47,8 +47,8 @@ std::optional<Setting> setting_of(const std::string& text) {
 
 }  // namespace
 
-SceneEvents::SceneEvents(const Value& events, const Document& document, const Checker& checker)
-    : events_(events), document_(document), checker_(checker) {
+SceneEvents::SceneEvents(Value events, const Document& document, const Checker& checker)
+    : events_(std::move(events)), document_(document), checker_(checker) {
   for (const auto& [name, event] : events_.members())
     if (const Value* after = event.find("after")) followed_.insert(after->text());
 }

@@ -18,8 +18,8 @@ namespace withy {
 /// Reads the events of one scene as its parts are made. Every problem goes to the checker's diagnostics.
 class SceneEvents {
  public:
-  /// \param events checked by grammar::scene_members, in the order of the file. All must outlive the object.
-  SceneEvents(const Value& events, const Document& document, const Checker& checker);
+  /// \param events checked by grammar::scene_members, in the order of the file. The others must outlive the object.
+  SceneEvents(Value events, const Document& document, const Checker& checker);
 
   /// Makes welds whose child is to be released hinges of type `free`, which are locked until then.
   void loosen(Value& hinges);
@@ -50,7 +50,7 @@ class SceneEvents {
   [[nodiscard]] Value changed(const std::string& event, const std::string& load, const Value& given,
                               bool& changes) const;
 
-  const Value& events_;
+  Value events_;
   const Document& document_;
   const Checker& checker_;
   std::set<std::string> followed_;                               ///< events that others come after

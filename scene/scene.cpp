@@ -46,9 +46,8 @@ class SceneBuilder {
     read_plain_values();
     scene_.formulation = choose<Formulation>("formulation", grammar::default_formulation, scene_.formulation_name);
     scene_.integrator = choose<Integrator>("integrator", grammar::default_integrator, scene_.integrator_name);
-    const Value no_events = Value::map({});
     const Value* given_events = scene_.source.find("events");
-    SceneEvents events(given_events == nullptr ? no_events : *given_events, document_, checker_);
+    SceneEvents events(given_events == nullptr ? Value::map({}) : *given_events, document_, checker_);
     Value hinges = part("hinges");
     events.loosen(hinges);
     SceneTree tree = build_tree(part("bodies"), hinges, gravity_, checker_);

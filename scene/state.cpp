@@ -4,12 +4,10 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <unordered_map>
 
-#include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
-#include "withy/core/model/switched_load.hpp"
+#include "withy/scene/events_done.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/orientation.hpp"
@@ -38,31 +36,10 @@ bool has_quaternion(const Hinge& hinge) {
   return kernel && (kernel->kind == HingeKernel::Kind::spherical || kernel->kind == HingeKernel::Kind::free);
 }
 
-/// Index in State::y of the form of a load that events switch; 0 where none does.
-std::size_t place_of_form(const Model& model, const std::string& name) {
-  for (const LoadNode& node : model.loads())
-    if (node.name == name && node.slot.count > 0) return SwitchedLoad::place_of_form(node.slot);
-  return 0;
-}
-
-/// What the settings of a load that events switch are called: "on", "off", and for what an event sets its name.
-std::vector<std::pair<std::string, double>> forms_of(const Model& model, const std::string& name) {
-  const EventBook book(model);
-  std::vector<std::pair<std::string, double>> forms;
-  if (!book.any()) return forms;
-  for (const ActingEvent& event : book.plan().events)
-    for (const EventAction& action : event.actions) {
-      if (action.kind != EventAction::Kind::form || model.loads()[action.index].name != name) continue;
-      if (forms.empty()) forms = {{"on", SwitchedLoad::as_stated}, {"off", SwitchedLoad::off}};
-      if (action.form > 0) forms.emplace_back(event.name, action.form);
-    }
-  return forms;
-}
-
 class StateReader {
  public:
   StateReader(const Model& model, const Checker& checker, State& state)
-      : model_(model), checker_(checker), state_(state), book_(model) {}
+      : model_(model), checker_(checker), state_(state) {}
 
   bool read(const Value& value) {
     if (!map_with(value, {"hinges", "bodies", "loads", "inputs", "locked", "settings", "events", "time", "work"}))
@@ -73,11 +50,8 @@ class StateReader {
     if (const Value* bodies = value.find("bodies")) read_bodies(*bodies);
     if (const Value* loads = value.find("loads")) read_loads(*loads);
     if (const Value* inputs = value.find("inputs")) read_inputs(*inputs);
-    if (const Value* locked = value.find("locked")) read_locked(*locked);
-    if (const Value* settings = value.find("settings")) read_settings(*settings);
-    if (const Value* events = value.find("events")) read_events(*events);
     scalar(value, number("work", "J", ""), state_.y.back());
-    if (book_.any()) check_locked(value);
+    good_ = read_events_done(value, model_, checker_, state_) && good_;
     return good_;
   }
 
@@ -248,103 +222,9 @@ class StateReader {
     }
   }
 
-  void read_locked(const Value& value) {
-    const auto refuse = [&](const Place& place, const std::string& why) {
-      checker_.diagnostics().error(place, why);
-      good_ = false;
-    };
-    if (value.kind() != Value::Kind::list)
-      return refuse(value.place(), fmt::format("got {}; need a list of hinge names", shown(value)));
-    std::vector<std::string> names;
-    for (const HingeNode& h : model_.hinges()) names.push_back(h.name);
-    std::vector<std::size_t> locked;
-    for (const Value& item : value.items()) {
-      const int hinge = model_.hinge(item.text());
-      if (hinge < 0)
-        return refuse(item.place(),
-                      fmt::format("no hinge {}{}", in_quotes(item.text()), checker_.suggest(item.text(), names)));
-      locked.push_back(static_cast<std::size_t>(hinge));
-    }
-    std::sort(locked.begin(), locked.end());
-    locked.erase(std::unique(locked.begin(), locked.end()), locked.end());
-    const int configuration = book_.any() ? book_.plan().configuration(locked) : (locked.empty() ? 0 : -1);
-    if (configuration < 0)
-      return refuse(value.place(),
-                    "no event locks or unlocks these hinges together; a hinge that stays locked has a motion 'locked'");
-    if (book_.any()) book_.set_configuration(state_.y, configuration);
-  }
-
-  /// Locked hinges are at rest.
-  void check_locked(const Value& value) {
-    const Value* hinges = value.find("hinges");
-    for (const std::size_t h : book_.locked(state_.y)) {
-      const Slot& slot = model_.layout().hinges[h];
-      for (std::size_t i = 0; i < slot.speeds; ++i) {
-        double& rate = state_.y[model_.layout().positions + slot.speed + i];
-        if (rate == 0) continue;
-        const Value* hinge = hinges == nullptr ? nullptr : hinges->find(slot.name);
-        checker_.diagnostics().error(hinge == nullptr ? value.place() : hinge->place(),
-                                     fmt::format("hinge '{}' is locked, and has a rate of {}", slot.name, rate));
-        good_ = false;
-        break;
-      }
-    }
-  }
-
-  void read_settings(const Value& value) {
-    if (!checker_.is_map(value, "a map of names of loads that events switch")) {
-      good_ = false;
-      return;
-    }
-    for (const auto& [name, member] : value.members()) {
-      const auto forms = forms_of(model_, name);
-      if (forms.empty()) {
-        key_error(member, fmt::format("no event switches a load {}", in_quotes(name)));
-        continue;
-      }
-      const auto form =
-          std::find_if(forms.begin(), forms.end(), [&, &m = member](const auto& f) { return f.first == m.text(); });
-      if (form == forms.end()) {
-        std::vector<std::string> names;
-        for (const auto& f : forms) names.push_back(f.first);
-        checker_.diagnostics().error(member.place(),
-                                     fmt::format("got {}; need one of: {}", shown(member), listed(names)));
-        good_ = false;
-        continue;
-      }
-      state_.y[place_of_form(model_, name)] = form->second;
-    }
-  }
-
-  void read_events(const Value& value) {
-    if (!checker_.is_map(value, "a map of names of events that act")) {
-      good_ = false;
-      return;
-    }
-    std::vector<std::string> names;
-    if (book_.any())
-      for (const ActingEvent& event : book_.plan().events) names.push_back(event.name);
-    for (const auto& [name, member] : value.members()) {
-      const auto at = std::find(names.begin(), names.end(), name);
-      if (at == names.end()) {
-        key_error(member, fmt::format("no event that acts {}{}", in_quotes(name), checker_.suggest(name, names)));
-        continue;
-      }
-      if (!map_with(member, {"happened", "due", "last", "loss"})) continue;
-      EventNumbers n;
-      scalar(member, number("happened", "1", "").least(0), n.happened);
-      scalar(member, number("due", "s", ""), n.due);
-      scalar(member, number("last", "s", ""), n.last);
-      scalar(member, number("loss", "J", ""), n.loss);
-      n.waiting = member.has("due") ? 1 : 0;
-      book_.set_numbers(state_.y, static_cast<std::size_t>(at - names.begin()), n);
-    }
-  }
-
   const Model& model_;
   const Checker& checker_;
   State& state_;
-  EventBook book_;
   bool good_ = true;
 };
 
@@ -360,31 +240,6 @@ std::vector<std::pair<std::string, NamedStates>> continuous_of(const Model& mode
       all.back().second.emplace_back(load.continuous->name(i), state.y[slot.first + i]);
   }
   return all;
-}
-
-/// What events have done up to a state, as `initial` says it.
-struct EventsDone {
-  std::vector<std::string> locked;
-  std::vector<std::pair<std::string, std::string>> settings;  ///< of loads that are not as the scene states them
-  std::vector<std::pair<std::string, NamedStates>> events;
-};
-std::optional<EventsDone> events_done(const Model& model, const State& state) {
-  const EventBook book(model);
-  if (!book.any()) return {};
-  EventsDone done;
-  for (const std::size_t hinge : book.locked(state.y)) done.locked.push_back(model.hinges()[hinge].name);
-  for (const LoadNode& node : model.loads())
-    for (const auto& [setting, form] : forms_of(model, node.name))
-      if (form != SwitchedLoad::as_stated && state.y[SwitchedLoad::place_of_form(node.slot)] == form)
-        done.settings.emplace_back(node.name, setting);
-  for (std::size_t i = 0; i < book.plan().events.size(); ++i) {
-    const EventNumbers n = book.numbers(state.y, i);
-    NamedStates numbers{{"happened", n.happened}};
-    if (n.waiting > 0) numbers.emplace_back("due", n.due);
-    if (n.happened > 0) numbers.insert(numbers.end(), {{"last", n.last}, {"loss", n.loss}});
-    done.events.emplace_back(book.plan().events[i].name, std::move(numbers));
-  }
-  return done;
 }
 
 /// The inputs that a host has set, with their values at the state.

@@ -91,9 +91,10 @@ Prepared prepare(SceneValues values, Registry& registry) {
   }
   if (prepared.scene.formulation_name == "auto") {
     if (EventBook(prepared.model()).any())
-      throw InputError(prepared.scene.file +
-                       ": /events: an event acts at a time of its own in every formulation, and 'auto' compares them along "
-                       "the run; name one formulation");
+      throw InputError(
+          prepared.scene.file +
+          ": /events: an event acts at a time of its own in every formulation, and 'auto' compares them along "
+          "the run; name one formulation");
     make_rungs(prepared, registry);
     if (prepared.rungs.empty()) throw InputError(prepared.scene.file + ": formulation auto: no formulation is found");
   }

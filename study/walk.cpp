@@ -141,7 +141,11 @@ Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserve
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();
   Watch watch(observer, equations.derivatives(start.time, start.y, rates, work).determinant_sign);
-  if (watch.output(start)) watch.finish(loop, loop.run(watch), model);
+  if (watch.output(start)) {
+    SteppingEnd ended = loop.run(watch);
+    while (ended.cause == SteppingEnd::Cause::event) ended = loop.run(watch);  // what stops a run stops no walk
+    watch.finish(loop, ended, model);
+  }
   return watch.walk;
 }
 

@@ -20,7 +20,7 @@ class Hold final : public Motion {
 };
 
 /// Which configuration a state is in.
-struct Place {
+struct ConfigurationPlace {
   std::size_t element = 0;  ///< of State::y
   std::size_t count = 1;    ///< of configurations
   std::size_t operator()(std::span<const double> y) const noexcept {
@@ -31,7 +31,7 @@ struct Place {
 /// Sensing of the configuration that a state is in.
 class ConfiguredSensing final : public SensedState {
  public:
-  ConfiguredSensing(std::vector<std::unique_ptr<SensedState>> all, Place place)
+  ConfiguredSensing(std::vector<std::unique_ptr<SensedState>> all, ConfigurationPlace place)
       : all_(std::move(all)), place_(place), now_(all_.front().get()) {}
   bool observe(const State& state) noexcept override {
     now_ = all_[place_(state.y)].get();
@@ -53,7 +53,7 @@ class ConfiguredSensing final : public SensedState {
 
  private:
   std::vector<std::unique_ptr<SensedState>> all_;
-  Place place_;
+  ConfigurationPlace place_;
   SensedState* now_;
 };
 
@@ -168,7 +168,7 @@ class ConfiguredEquations final : public EquationsOfMotion,
   }
 
   AllEquations all_;
-  Place place_;
+  ConfigurationPlace place_;
   std::vector<const ForwardDynamics*> forward_;
   std::size_t work_size_ = 0, factors_size_ = 0;
 };
@@ -188,6 +188,7 @@ std::unique_ptr<EquationsOfMotion> make_configured(
   for (const std::vector<std::size_t>& locked : events.plan().configurations) {
     auto configured = std::make_shared<Model>(model);
     for (const std::size_t hinge : locked) {
+      if (model.driven(hinge)) continue;  // an analysis holds it already
       const std::string& name = model.hinges()[hinge].name;
       configured->add_motion(name, name, std::make_shared<const Hold>());
     }

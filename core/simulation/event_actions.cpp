@@ -10,9 +10,6 @@
 
 namespace withy {
 
-using Kind = EventAction::Kind;
-using When = ActingEvent::When;
-
 EventActions::EventActions(const Model& model, const EquationsOfMotion& equations, std::span<const RunEvent> plain)
     : model_(model),
       equations_(equations),
@@ -33,7 +30,9 @@ EventActions::EventActions(const Model& model, const EquationsOfMotion& equation
     const ActingEvent& event = plan.events[i];
     watched_.push_back({event.name,
                         [this, &event, i](double t, std::span<const double> y) {
-                          return event.when != When::passes || over_at(i, y) ? 1.0 : value(event, t, y) - event.value;
+                          return event.when != ActingEvent::When::passes || over_at(i, y)
+                                     ? 1.0
+                                     : value(event, t, y) - event.value;
                         },
                         event.direction, event.stops});
   }
@@ -88,7 +87,7 @@ const EventActions::Done& EventActions::act(State& state, std::span<const std::s
         done_.crowded = true;
         return done_;
       }
-      n.waiting = 0;
+      n.waiting = n.due = 0;
       n.happened += 1;
       n.last = state.time;
       book_.set_numbers(state.y, i, n);
@@ -96,7 +95,7 @@ const EventActions::Done& EventActions::act(State& state, std::span<const std::s
       done_.acted.push_back(plain_ + i);
       done_.stops = done_.stops || events[i].stops;
       for (std::size_t k = 0; k < events.size(); ++k)
-        if (events[k].when == When::after && events[k].after == i && !over_at(k, state.y)) wait(k);
+        if (events[k].when == ActingEvent::When::after && events[k].after == i && !over_at(k, state.y)) wait(k);
     }
     if (done_.acted.size() == before) return done_;
   }
@@ -106,11 +105,11 @@ const EventActions::Done& EventActions::act(State& state, std::span<const std::s
 bool EventActions::perform(std::size_t event, State& state) {
   bool locks = false;
   for (const EventAction& action : book_.plan().events[event].actions) {
-    if (action.kind == Kind::form) {
+    if (action.kind == EventAction::Kind::form) {
       change_form(state, action);
     } else {
       change_configuration(state, action);
-      locks = locks || action.kind == Kind::lock;
+      locks = locks || action.kind == EventAction::Kind::lock;
     }
   }
   if (!locks) return true;
@@ -151,8 +150,8 @@ void EventActions::change_configuration(State& state, const EventAction& action)
   std::vector<std::size_t> locked = book_.locked(state.y);
   const auto at = std::lower_bound(locked.begin(), locked.end(), action.index);
   const bool held = at != locked.end() && *at == action.index;
-  if (action.kind == Kind::lock && !held) locked.insert(at, action.index);
-  if (action.kind == Kind::unlock && held) locked.erase(at);
+  if (action.kind == EventAction::Kind::lock && !held) locked.insert(at, action.index);
+  if (action.kind == EventAction::Kind::unlock && held) locked.erase(at);
   book_.set_configuration(state.y, book_.plan().configuration(locked));
 }
 

@@ -54,7 +54,7 @@ std::string discs(const std::string& rest) {
 integrator: {name: dopri5, rtol: 1e-11, atol: 1e-13}
 bodies:
   one: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}
-  two: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.3, 0, 0, 0]}
+  two: {type: rigid, mass: 1, inertia: [0.2, 0.2, 0.3, 0, 0, 0]}
 hinges:
   axle: {type: revolute, axis: [0, 0, 1], parent: world, child: one}
   clutch: {type: revolute, axis: [0, 0, 1], parent: one, child: two}
@@ -104,7 +104,7 @@ hinges:
   end: {type: weld, parent: boom.tip, child: tip}
 loads: {motor: {type: hinge-spring, hinge: root, stiffness: 4, free_position: 110 deg}}
 initial: {hinges: {base: {rate: [0.05, 0.1, 0.2, 0.3, -0.2, 0.1]}}}
-time: {end: 2.5, output: 0.1}
+time: {end: 4, output: 0.1}
 )" + rest;
 }
 
@@ -144,8 +144,11 @@ std::string bent_boom(const std::string& rest) {
 }
 
 TEST(ActingEvents, impulses_act_on_nothing_but_the_hinge_that_locks) {
-  for (const std::string formulation : {"quadratic", "exact", "linear", "ruthless", "strict", "symmetric"}) {
+  for (const std::string formulation :
+       {"quadratic", "exact", "linear", "ruthless", "inconsistent", "consistent", "symmetric"}) {
     SCOPED_TRACE(formulation);
+    // The dense reference of exact kinematics agrees with the recursion to this.
+    const double rounding = formulation == "exact" ? 1e-10 : 1e-12;
     const Made made(bent_boom("events: {now: {at: 0, do: {lock: root}}}\n"), formulation);
     const State after = after_events_at_start(made);
     const Layout& layout = made.scene.model->layout();
@@ -161,14 +164,14 @@ TEST(ActingEvents, impulses_act_on_nothing_but_the_hinge_that_locks) {
     EXPECT_EQ(std::abs(impulse[locked]), greatest);
     for (std::size_t i = 0; i < layout.speeds; ++i)
       if (i != locked) {
-        EXPECT_LT(std::abs(impulse[i]), 1e-13 * greatest) << layout.speed_names[i];
+        EXPECT_LT(std::abs(impulse[i]), rounding * greatest) << layout.speed_names[i];
       }
     EXPECT_EQ(after.y[layout.positions + locked], 0.0);
     if (formulation == "quadratic" || formulation == "exact") {
       const Energies a = made.equations->energies(made.scene.initial.y), b = made.equations->energies(after.y);
       for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_NEAR(a.linear_momentum[k], b.linear_momentum[k], 1e-13);
-        EXPECT_NEAR(a.angular_momentum[k], b.angular_momentum[k], 1e-13);
+        EXPECT_NEAR(a.linear_momentum[k], b.linear_momentum[k], rounding);
+        EXPECT_NEAR(a.angular_momentum[k], b.angular_momentum[k], rounding);
       }
     }
   }
@@ -224,7 +227,7 @@ gravity: [0, -9.81, 0]
 integrator: {name: dop853, rtol: 1e-12, atol: 1e-13}
 time: {end: 2, output: 0.25}
 bodies:
-  arm: {type: rigid, mass: 3, inertia: [0.1, 0.1, 0.4, 0, 0, 0], frames: {hand: {position: [0.8, 0, 0]}}}
+  arm: {type: rigid, mass: 3, inertia: [0.2, 0.2, 0.4, 0, 0, 0], frames: {hand: {position: [0.8, 0, 0]}}}
   ball: {type: rigid, mass: 0.5, inertia: [0.01, 0.02, 0.03, 0, 0, 0]}
 hinges:
   shoulder: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}
@@ -354,12 +357,12 @@ TEST(ActingEvents, happen_in_a_session_as_in_a_run_and_snapshots_go_over_them) {
   const double latched = run.summary.events.at(0).time;
   ASSERT_TRUE(session.advance(latched - 0.01, false).reached);
   const Checkpoint before = session.snapshot();
-  ASSERT_TRUE(session.advance(2.5, false).reached);
+  ASSERT_TRUE(session.advance(4, false).reached);
   ASSERT_EQ(session.events().size(), 1U);
   EXPECT_NEAR(session.events()[0].time, latched, 1e-10);
   const std::vector<double> end = session.state().y;
   session.restore(before);
-  ASSERT_TRUE(session.advance(2.5, false).reached);
+  ASSERT_TRUE(session.advance(4, false).reached);
   EXPECT_EQ(session.state().y, end);
 }
 

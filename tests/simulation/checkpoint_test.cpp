@@ -139,11 +139,11 @@ hinges:
 loads:
   spring: {type: hinge-spring, hinge: root, stiffness: 2, damping: 0.02}
   motor: {type: hinge-effort, hinge: axle, law: constant, value: 0.3}
-outputs: {root_m: {type: reaction, hinge: root}}
+outputs: {knee: {type: hinge, hinge: root}}
 events:
   latch: {hinge: root, value: 0.05, direction: up, repeat: true, do: {lock: root, switch_off: motor}}
   open: {after: latch, delay: 0.3, repeat: true, do: {unlock: root, switch_on: motor}}
-  pull: {signal: root_m.fx, value: 0.4, do: {set: loads.motor.value=0.5}}
+  pull: {signal: knee.acceleration, value: -2, do: {set: loads.motor.value=0.5}}
 initial: {hinges: {axle: {rate: [0.5]}, root: {rate: [0.8]}}}
 time: {end: 4, output: 0.05}
 integrator: {name: dopri5, rtol: 1.0e-6, atol: 1.0e-8}
