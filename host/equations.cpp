@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/host/names.hpp"
@@ -43,6 +44,11 @@ std::vector<Port> state_ports(const Model& model) {
 std::shared_ptr<const study::Prepared> continuous(const Scene& scene, const std::string& formulation) {
   std::shared_ptr<const study::Prepared> prepared =
       formulation.empty() ? scene.prepare() : Scene(scene).formulation(formulation).prepare();
+  if (EventBook(prepared->model()).any())
+    throw study::InputError(
+        fmt::format("{}: /events: an event acts on the motion, which an integrator of your own does not know; step a "
+                    "Simulation, or leave the event out",
+                    prepared->scene.file));
   for (const LoadNode& load : prepared->model().loads())
     if (load.slot.count > 0 && load.load->input() == nullptr)
       throw study::InputError(

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "withy/core/model/event_plan.hpp"
+
 namespace withy {
 namespace {
 
@@ -39,8 +41,22 @@ Json motion_effort_peaks(const Model& model, const RunSummary& summary) {
 
 Json events_json(const RunSummary& summary) {
   Json events = Json::array();
-  for (const EventTime& e : summary.events)
-    events.push_back({{"name", e.name}, {"time", e.time}, {"direction", e.direction > 0 ? "up" : "down"}});
+  for (const EventTime& e : summary.events) {
+    events.push_back({{"name", e.name}, {"time", e.time}});
+    if (e.direction != 0) events.back()["direction"] = e.direction > 0 ? "up" : "down";
+  }
+  return events;
+}
+
+/// How often each event that acts has acted, and the kinetic energy [J] that its impulses have taken.
+Json acted_json(const EventBook& book, const State& end) {
+  Json events = Json::object();
+  for (std::size_t i = 0; i < book.plan().events.size(); ++i) {
+    const EventNumbers n = book.numbers(end.y, i);
+    Json& event = events[book.plan().events[i].name] = {{"times", n.happened}};
+    if (n.happened > 0) event["last"] = n.last;
+    event["energy_lost"] = n.loss;
+  }
   return events;
 }
 
@@ -69,7 +85,9 @@ Json run_json(const Scene& scene, const RunSummary& summary) {
   j["evaluations"] = summary.steps.evaluations;
   j["cpu_seconds"] = summary.cpu_seconds;
   j["suspected_jumps"] = summary.suspected_jumps;
-  if (!scene.events.empty()) j["events"] = events_json(summary);
+  const EventBook book(*scene.model);
+  if (!scene.events.empty() || book.any()) j["events"] = events_json(summary);
+  if (book.any()) j["acted"] = acted_json(book, summary.final);
   j["condition"] = condition_json(summary.conditioning);
   j["determinant_sign"] = summary.conditioning.determinant_sign;
   return j;

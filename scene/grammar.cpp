@@ -9,6 +9,32 @@ Value numbers(std::initializer_list<double> xs) {
   return Value::list(std::move(items));
 }
 
+std::vector<ParameterSpec> event_members() {
+  return {
+      text("hinge", "hinge whose coordinate or rate passes a value").optional(),
+      integer("component", "which of the hinge's rates, counted from 0").least(0).otherwise(0.0),
+      text("of", "what is watched: the rate's coordinate or the rate itself")
+          .one_of({"position", "rate"})
+          .otherwise("position"),
+      text("signal", "number of an output, as imu.x, or column of a hinge that passes a value").optional(),
+      number("value", "rad", "value that it passes; of a rate in rad/s, of a signal in its own unit").otherwise(0.0),
+      text("direction", "from below, from above, or both").one_of({"up", "down", "both"}).otherwise("both"),
+      number("at", "s", "time at which it happens").optional(),
+      text("after", "event after which it happens").optional(),
+      number("delay", "s", "time from when it happens to when it acts").least(0).otherwise(0.0),
+      boolean("repeat", "whether it acts every time; else once").otherwise(Value(false)),
+      map("do",
+          {texts("lock", "hinges that are locked where they are, by impulses").optional(),
+           texts("unlock", "hinges that are free again").optional(),
+           texts("release", "bodies that are let go, with all that hangs on them; each is welded").optional(),
+           texts("switch_off", "loads that give no effort from then on").optional(),
+           texts("switch_on", "loads that act as the scene states them").optional(),
+           texts("set", "parameters of loads, as loads.motor.amplitude=5").optional()},
+          "what is done then")
+          .otherwise(Value::map({})),
+      boolean("stop", "whether the run ends there").otherwise(Value(false))};
+}
+
 }  // namespace
 
 std::vector<ParameterSpec> pose_members() {
@@ -36,16 +62,7 @@ std::vector<ParameterSpec> scene_members() {
                .otherwise(1.0)},
           "what ends a simulation early")
           .otherwise(Value::map({})),
-      named("events",
-            {text("hinge", "hinge that is watched"),
-             integer("component", "which of its rates, counted from 0").least(0).otherwise(0.0),
-             text("of", "what is watched: the rate's coordinate or the rate itself")
-                 .one_of({"position", "rate"})
-                 .otherwise("position"),
-             number("value", "rad", "value that it passes; of a rate in rad/s").otherwise(0.0),
-             text("direction", "from below, from above, or both").one_of({"up", "down", "both"}).otherwise("both"),
-             boolean("stop", "whether the run ends there").otherwise(Value(false))},
-            "what is looked for during a simulation and reported with its time")
+      named("events", event_members(), "what is looked for during a simulation, reported with its time, and done then")
           .otherwise(Value::map({})),
   };
 }

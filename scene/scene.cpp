@@ -9,11 +9,13 @@
 #include <set>
 
 #include "withy/core/model/closing.hpp"
+#include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/file_notes.hpp"
 #include "withy/scene/constraints.hpp"
 #include "withy/scene/control_order.hpp"
 #include "withy/scene/document.hpp"
+#include "withy/scene/events.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
@@ -47,7 +49,11 @@ class SceneBuilder {
     read_plain_values();
     scene_.formulation = choose<Formulation>("formulation", grammar::default_formulation, scene_.formulation_name);
     scene_.integrator = choose<Integrator>("integrator", grammar::default_integrator, scene_.integrator_name);
-    SceneTree tree = build_tree(part("bodies"), part("hinges"), gravity_, checker_);
+    const Value* given_events = scene_.source.find("events");
+    SceneEvents events(given_events == nullptr ? Value::map({}) : *given_events, document_, checker_);
+    Value hinges = part("hinges");
+    events.loosen(hinges);
+    SceneTree tree = build_tree(part("bodies"), hinges, gravity_, checker_);
     scene_.source.set("bodies", std::move(tree.bodies));
     scene_.source.set("hinges", std::move(tree.hinges));
     scene_.modes = std::move(tree.modes);
@@ -64,14 +70,14 @@ class SceneBuilder {
     }
     add_motions(tree.model.get());
     name_signals(document_, tree.model.get(), tree.names, checker_.registry());
-    add_loads(tree.model.get());
+    add_loads(tree.model.get(), events);
     tree.names.loads = {};
     for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
       if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr) tree.names.loads.add(load.name);
     add_outputs(tree);
+    if (tree.model != nullptr && diagnostics_.ok()) events.add_to(*tree.model, scene_.outputs, scene_.events);
     if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model);
     if (tree.model != nullptr && diagnostics_.ok()) set_span(*tree.model);
-    if (tree.model != nullptr && diagnostics_.ok()) set_events(*tree.model);
     scene_.model = std::move(tree.model);
     return std::move(scene_);
   }
@@ -155,14 +161,14 @@ class SceneBuilder {
     scene_.source.set(key, std::move(checked));
   }
 
-  void add_loads(Model* model) {
+  void add_loads(Model* model, SceneEvents& events) {
     std::list<PendingLoad> loads;
     std::set<std::string> names;
     if (const Value* given = document_.root.find("loads"))
       for (const auto& [name, load] : given->members()) names.insert(name);
     add_parts<Load>("loads", grammar::load_members(), model != nullptr,
                     [&](const std::string& name, const Value& value, std::unique_ptr<Load> load) {
-                      loads.push_back({name, needed_loads(value, names), std::move(load)});
+                      loads.push_back({name, needed_loads(value, names), events.with_forms(name, std::move(load))});
                     });
     for (const PendingLoad& pending : in_order_of_need(std::move(loads), checker_)) {
       try {
@@ -202,49 +208,11 @@ class SceneBuilder {
     return std::find(names.begin(), names.end(), name) != names.end();
   }
 
-  /// The functions that the scene's events watch.
-  void set_events(const Model& model) {
-    std::vector<std::string> names;
-    for (const HingeNode& h : model.hinges()) names.push_back(h.name);
-    for (const auto& [name, given] : scene_.source.at("events").members()) {
-      const std::string path = "/events/" + name;
-      const std::string& hinge = given.text_at("hinge");
-      const int number = model.hinge(hinge);
-      if (number < 0) {
-        checker_.key_error(path + "/hinge",
-                           fmt::format("no hinge {}{}", in_quotes(hinge), checker_.suggest(hinge, names)));
-        continue;
-      }
-      const Slot* slot = &model.layout().hinges[static_cast<std::size_t>(number)];
-      const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[static_cast<std::size_t>(number)].hinge);
-      const std::size_t component = given.count_at("component");
-      if (component >= rates.size()) {
-        checker_.key_error(path, fmt::format("hinge '{}' has {} rates; there is no component {} (they count from 0)",
-                                             hinge, rates.size(), component));
-        continue;
-      }
-      std::size_t index = model.layout().positions + slot->speed + component;
-      if (given.text_at("of") == "position") {
-        if (!rates[component].coordinate) {
-          checker_.key_error(
-              path,
-              fmt::format("rate {} of hinge '{}' is the derivative of no coordinate; need of: rate", component, hinge));
-          continue;
-        }
-        index = slot->position + *rates[component].coordinate;
-      }
-      const std::string& direction = given.text_at("direction");
-      scene_.events.push_back(
-          {name,
-           [index, value = given.number_at("value")](double, std::span<const double> y) { return y[index] - value; },
-           direction == "up" ? 1 : (direction == "down" ? -1 : 0), given.at("stop").boolean()});
-    }
-  }
-
   /// Where the loads begin, then what the scene says; driven hinges where their motions have them.
   void set_start(const Model& model) {
     scene_.initial = model.reference_state();
     for (const LoadNode& l : model.loads()) l.load->begin(scene_.initial);
+    if (const EventBook book(model); book.any()) book.begin(scene_.initial.y);
     const Value* initial = document_.root.find("initial");
     const Value stated = initial != nullptr ? without_guess(*initial, model, checker_, scene_.initial) : Value();
     const Value* given = initial != nullptr ? &stated : nullptr;

@@ -264,17 +264,21 @@ class SchemaWriter {
                     {"properties", {{first, of_first}, {second, reference("numbers")}}}}}};
     };
     const Json number = number_or_quantity({{"type", "number"}});
+    const auto by_name = [](const Json& of_each) {
+      return Json{{"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", of_each}};
+    };
+    const Json numbers_by_key = {{"type", "object"}, {"additionalProperties", number}};
     return {{"type", "object"},
             {"description", "state at the start; what is not named is as the loads begin, or at its reference"},
             {"additionalProperties", false},
             {"properties",
              {{"hinges", part("position", position(), "rate")},
               {"bodies", part("modes", reference("numbers"), "rates")},
-              {"loads",
-               {{"type", "object"},
-                {"propertyNames", reference("name")},
-                {"additionalProperties", {{"type", "object"}, {"additionalProperties", number}}}}},
-              {"inputs", {{"type", "object"}, {"propertyNames", reference("name")}, {"additionalProperties", number}}},
+              {"loads", by_name(numbers_by_key)},
+              {"inputs", by_name(number)},
+              {"locked", {{"type", "array"}, {"items", reference("name")}}},
+              {"settings", by_name({{"type", "string"}})},
+              {"events", by_name(numbers_by_key)},
               {"time", number},
               {"work", number}}}};
   }

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/scene/events_done.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/orientation.hpp"
@@ -41,7 +42,8 @@ class StateReader {
       : model_(model), checker_(checker), state_(state) {}
 
   bool read(const Value& value) {
-    if (!map_with(value, {"hinges", "bodies", "loads", "inputs", "time", "work"})) return false;
+    if (!map_with(value, {"hinges", "bodies", "loads", "inputs", "locked", "settings", "events", "time", "work"}))
+      return false;
     scalar(value, number("time", "s", ""), state_.time);
     model_.prescribe(state_);  // what the state does not say of driven hinges, their motions do
     if (const Value* hinges = value.find("hinges")) read_hinges(*hinges);
@@ -49,6 +51,7 @@ class StateReader {
     if (const Value* loads = value.find("loads")) read_loads(*loads);
     if (const Value* inputs = value.find("inputs")) read_inputs(*inputs);
     scalar(value, number("work", "J", ""), state_.y.back());
+    good_ = read_events_done(value, model_, checker_, state_) && good_;
     return good_;
   }
 
@@ -315,6 +318,19 @@ Value state_value(const Model& model, const State& state) {
   Value inputs = Value::map({});
   for (const auto& [name, value] : inputs_of(model, state)) inputs.members().emplace_back(name, Value(value));
   if (!inputs.members().empty()) all.set("inputs", std::move(inputs));
+  if (const auto done = events_done(model, state)) {
+    Value locked = Value::list({}), settings = Value::map({}), events = Value::map({});
+    for (const std::string& name : done->locked) locked.items().emplace_back(name);
+    for (const auto& [name, setting] : done->settings) settings.members().emplace_back(name, Value(setting));
+    for (const auto& [name, numbers] : done->events) {
+      Value own = Value::map({});
+      for (const auto& [key, value] : numbers) own.members().emplace_back(key, Value(value));
+      events.members().emplace_back(name, std::move(own));
+    }
+    all.set("locked", std::move(locked));
+    all.set("settings", std::move(settings));
+    all.set("events", std::move(events));
+  }
   return all;
 }
 
@@ -341,6 +357,13 @@ std::string write_state(const Model& model, const State& state) {
     for (const auto& [name, value] : states) json["loads"][load][name] = value;
   }
   for (const auto& [name, value] : inputs_of(model, state)) json["inputs"][name] = value;
+  if (const auto done = events_done(model, state)) {
+    json["locked"] = done->locked;
+    json["settings"] = nlohmann::ordered_json::object();
+    for (const auto& [name, setting] : done->settings) json["settings"][name] = setting;
+    for (const auto& [name, numbers] : done->events)
+      for (const auto& [key, value] : numbers) json["events"][name][key] = value;
+  }
   return json.dump();
 }
 

@@ -68,9 +68,11 @@ void finish(Search& search, Evaluator& evaluator, Advice& advice) {
 Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy) {
   const Scene& scene = evaluator.base().scene;
   if (has_switches(*scene.model))
-    throw InputError(scene.file +
-                     ": a load switches at zeros of a function of the state, at times of their own in every model; "
-                     "runs that are measured against each other need common ones");
+    throw InputError(
+        scene.file +
+        ": a load switches at zeros of a function of the state, or an event acts, at times of their own in every "
+        "model; "
+        "runs that are measured against each other need common ones");
   accuracy.require_something_of(evaluator.outputs());
   Advice advice;
   advice.limit_seconds = time_limit(evaluator);

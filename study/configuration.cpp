@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/scene/units.hpp"
@@ -33,7 +34,9 @@ void require_continuous(const std::string& file, const Model& model, const LoadS
   const LoadNode& node = model.loads()[slot.load];
   if (node.load->input() != nullptr) return;
   const DiscretePart& part = *node.load->discrete();
-  const bool switches = part.switches() > 0 || !(part.period() > 0);
+  // What events alone change is constant here.
+  if (part.switches() == 0 && !(part.period() > 0)) return;
+  const bool switches = part.switches() > 0;
   if (sampling == Sampling::kept && !switches) return;
   throw InputError(file + ": load '" + node.name + "' changes at instants (" + (switches ? "a relay" : "sampled") +
                    "); linear analyses need loads that are continuous in time: leave out " +
@@ -54,6 +57,10 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
   if (sampling == Sampling::kept) state_ = begun(model, std::move(state_));
   for (const MotionNode& motion : model.motions()) {
     const Slot& slot = layout().hinges[static_cast<std::size_t>(motion.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) held_[slot.speed + i] = true;
+  }
+  for (const std::size_t hinge : locked_hinges(model, state_)) {
+    const Slot& slot = layout().hinges[hinge];
     for (std::size_t i = 0; i < slot.speeds; ++i) held_[slot.speed + i] = true;
   }
   for (const std::string& name : holding.locked) {

@@ -51,7 +51,7 @@ std::string growth_text(const Prepared& prepared, const RunSummary& summary) {
   if (!loops_of(model).empty()) return physical_cause(prepared, summary);  // tangents are a tree's
   try {
     const TangentDynamics dynamics(prepared.scene.model, prepared.scene.formulation->terms());
-    const FastestPole pole = growing_pole(dynamics, summary.final, driven_speeds(model));
+    const FastestPole pole = growing_pole(dynamics, summary.final, driven_speeds(model, summary.final));
     const double lasted = summary.reached - prepared.scene.initial.time;
     if (!(pole.value.real() * lasted > 1)) return physical_cause(prepared, summary);
     return fmt::format(" About the state at t = {:.4g} s small motions grow by {:.3g}/s{}, most by {} on {}.{}",

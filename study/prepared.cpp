@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/input_error.hpp"
@@ -89,6 +90,11 @@ Prepared prepare(SceneValues values, Registry& registry) {
     throw InputError(prepared.scene.file + ": formulation " + prepared.scene.formulation_name + ": " + e.what());
   }
   if (prepared.scene.formulation_name == "auto") {
+    if (EventBook(prepared.model()).any())
+      throw InputError(
+          prepared.scene.file +
+          ": /events: an event acts at a time of its own in every formulation, and 'auto' compares them along "
+          "the run; name one formulation");
     make_rungs(prepared, registry);
     if (prepared.rungs.empty()) throw InputError(prepared.scene.file + ": formulation auto: no formulation is found");
   }

@@ -134,7 +134,8 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
   if (!loops_of(prepared.model()).empty())
     return "not estimated: loops are closed (constraints), and two formulations in one run know trees alone";
   if (has_switches(prepared.model()) && beyond)
-    return "not estimated: loads switch at the zeros of functions, and two formulations have no common steps";
+    return "not estimated: loads switch or events act at the zeros of functions, and two formulations have no common "
+           "steps";
   if (prepared.scene.formulation->terms().strain == StrainOrder::exact && !beyond)
     return "nothing is left out: kinematics is exact and nothing is truncated";
   if (beyond && !beyond->highest) return "not estimated: it was not asked for";

@@ -16,7 +16,7 @@ void find_fastest(const Prepared& prepared, const RunSummary& summary, StepLimit
   if (model.layout().speeds > largest_examined || s.mean == 0 || !loops_of(model).empty()) return;
   try {
     const TangentDynamics dynamics(prepared.scene.model, prepared.scene.formulation->terms());
-    const FastestPole pole = fastest_pole(dynamics, summary.final, driven_speeds(model));
+    const FastestPole pole = fastest_pole(dynamics, summary.final, driven_speeds(model, summary.final));
     if (!(std::abs(pole.value) > 0)) return;
     s.fastest = std::abs(pole.value);
     s.product = s.mean * s.fastest;

@@ -80,7 +80,7 @@ class Watch final : public SteppingObserver {
     if (ended.cause == SteppingEnd::Cause::reached) static_cast<void>(seen(observer_.output(loop.state())));
     if (ended.cause == SteppingEnd::Cause::failed) stop(reason_of(ended.step, model));
     if (ended.cause == SteppingEnd::Cause::crowded)
-      stop("loads switch again and again without time between the instants");
+      stop("loads switch or events act again and again without time between the instants");
   }
 
   Walk walk;
@@ -134,11 +134,18 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
 Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserver& observer) {
   const EquationsOfMotion& equations = *model.equations;
   const State start = begun(model.model(), model.scene.initial);
-  Stepping loop(model.model(), integrator.start(equations, start), {end_of_run(model.scene), model.scene.output});
+  EventActions actions(model.model(), equations, {});
+  Stepping loop(
+      model.model(), integrator.start(equations, start),
+      {.end = end_of_run(model.scene), .output = model.scene.output, .events = actions.watched(), .actions = &actions});
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();
   Watch watch(observer, equations.derivatives(start.time, start.y, rates, work).determinant_sign);
-  if (watch.output(start)) watch.finish(loop, loop.run(watch), model);
+  if (watch.output(start)) {
+    SteppingEnd ended = loop.run(watch);
+    while (ended.cause == SteppingEnd::Cause::event) ended = loop.run(watch);  // what stops a run stops no walk
+    watch.finish(loop, ended, model);
+  }
   return watch.walk;
 }
 

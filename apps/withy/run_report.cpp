@@ -8,6 +8,7 @@
 #include <span>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/core/model/event_plan.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy::app {
@@ -69,7 +70,12 @@ std::string run_table(const study::Prepared& prepared, const RunSummary& summary
                        model.layout().speed_names[slot.speed + i]));
   }
   for (const EventTime& e : summary.events)
-    line("event " + e.name, fmt::format("{:.6g} s, {}", e.time, e.direction > 0 ? "upwards" : "downwards"));
+    line("event " + e.name,
+         fmt::format("{:.6g} s{}", e.time, e.direction > 0 ? ", upwards" : (e.direction < 0 ? ", downwards" : "")));
+  const EventBook book(model);
+  for (std::size_t i = 0; book.any() && i < book.plan().events.size(); ++i)
+    if (const double loss = book.numbers(summary.final.y, i).loss; loss != 0)
+      line("energy lost in " + book.plan().events[i].name, readable(loss, "J"));
   if (summary.switchings > 0) line("switchings of loads", std::to_string(summary.switchings));
   line("energy drift", fmt::format("{:.2g}", summary.energy_drift));
   line("steps", fmt::format("{} ({} rejected), {} evaluations", summary.steps.accepted, summary.steps.rejected,

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "withy/bindings/fmi/scene_numbers.hpp"
+#include "withy/core/model/event_plan.hpp"
 #include "withy/results/result_columns.hpp"
 #include "withy/scene/sha256.hpp"
 #include "withy/study/input_error.hpp"
@@ -92,6 +93,9 @@ Variables variables_of(const study::Prepared& prepared, Registry& registry) {
     throw study::InputError(file +
                             ": /formulation: got 'auto', which changes the equations along a run; an FMU needs one "
                             "formulation by name");
+  if (EventBook(prepared.model()).any())
+    throw study::InputError(
+        file + ": /events: an event acts on the motion, which an FMU cannot carry; leave it to the importer");
   Variables v;
   v.all.push_back({Kind::time, 0, "t", "s", "time"});
   add_states(v, prepared.model(), prepared.scene.initial);

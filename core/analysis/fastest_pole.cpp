@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "withy/core/analysis/modes.hpp"
+#include "withy/core/model/event_plan.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy {
@@ -100,13 +101,15 @@ Cause cause_of(const std::vector<Part>& parts, const std::vector<Eigen::Index>& 
 
 }  // namespace
 
-Held driven_speeds(const Model& model) {
+Held driven_speeds(const Model& model, const State& state) {
   const Layout& layout = model.layout();
   Held held(layout.speeds, false);
-  for (const MotionNode& motion : model.motions()) {
-    const Slot& slot = layout.hinges[static_cast<std::size_t>(motion.hinge)];
+  const auto hold = [&](std::size_t hinge) {
+    const Slot& slot = layout.hinges[hinge];
     for (std::size_t i = 0; i < slot.speeds; ++i) held[slot.speed + i] = true;
-  }
+  };
+  for (const MotionNode& motion : model.motions()) hold(static_cast<std::size_t>(motion.hinge));
+  for (const std::size_t hinge : locked_hinges(model, state)) hold(hinge);
   return held;
 }
 

@@ -22,8 +22,8 @@ struct FastestPole {
   std::string cause;
 };
 
-/// Which speeds the model's motions prescribe.
-Held driven_speeds(const Model& model);
+/// Which speeds the model's motions prescribe, or belong to hinges that events have locked at a state.
+Held driven_speeds(const Model& model, const State& state);
 
 /// At a state, of the free speeds, with the accelerations they have there.
 /// \throws std::domain_error where the mass matrix of the free speeds is singular or anything is not finite.

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "withy/core/equations/closed_equations.hpp"
+#include "withy/core/equations/configured_equations.hpp"
 #include "withy/core/equations/sweep_equations.hpp"
 #include "withy/core/sweep/first_order/first_order_sweep.hpp"
 #include "withy/core/sweep/strict/strict_sweep.hpp"
@@ -12,7 +13,10 @@
 
 namespace withy {
 
-std::unique_ptr<EquationsOfMotion> compile_equations(std::shared_ptr<const Model> model, Terms terms) {
+namespace {
+
+/// Of one configuration of the model.
+std::unique_ptr<EquationsOfMotion> compile_configuration(std::shared_ptr<const Model> model, Terms terms) {
   model = Model::in_kinematics(std::move(model), terms);
   ReferenceDynamics::check(*model, terms);
   const NodeTree tree = compile_tree(*model);
@@ -53,6 +57,15 @@ std::unique_ptr<EquationsOfMotion> compile_equations(std::shared_ptr<const Model
   }
   return planar ? build(std::type_identity<sweep::SymmetricSweep<Planar>>{})
                 : build(std::type_identity<sweep::SymmetricSweep<Spatial>>{});
+}
+
+}  // namespace
+
+std::unique_ptr<EquationsOfMotion> compile_equations(std::shared_ptr<const Model> model, Terms terms) {
+  if (!equations::has_configurations(*model)) return compile_configuration(std::move(model), terms);
+  return equations::make_configured(*model, [&](std::shared_ptr<const Model> configured) {
+    return compile_configuration(std::move(configured), terms);
+  });
 }
 
 }  // namespace withy

@@ -4,6 +4,8 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
+#include "withy/core/model/event_plan.hpp"
+
 namespace withy {
 namespace {
 
@@ -23,6 +25,7 @@ std::span<const double> speeds(const Model& model, std::span<const double> y) {
 }  // namespace
 
 bool has_switches(const Model& model) {
+  if (EventBook(model).any()) return true;
   const auto& slots = model.layout().discrete_slots;
   return std::any_of(slots.begin(), slots.end(),
                      [&](const LoadSlot& slot) { return part_of(model, slot).switches() > 0; });
@@ -118,6 +121,17 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& state, std::spa
   for (std::size_t f = 0; f < signs_.size(); ++f) {
     const int now = sign(values_[f]);
     if (now == 0) continue;
+    if (signs_[f] * now < 0 && noticed(f, now)) zeros_.push_back({state.time, f, now});
+    signs_[f] = now;
+  }
+  return zeros_;
+}
+
+const std::vector<ZeroWatch::Zero>& ZeroWatch::leap(const State& state) {
+  zeros_.clear();
+  evaluate(state.time, state.y, values_);
+  for (std::size_t f = 0; f < signs_.size(); ++f) {
+    const int now = sign(values_[f]);
     if (signs_[f] * now < 0 && noticed(f, now)) zeros_.push_back({state.time, f, now});
     signs_[f] = now;
   }

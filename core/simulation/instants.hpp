@@ -16,7 +16,7 @@
 
 namespace withy {
 
-/// Whether any load switches where a function of the state is zero.
+/// Whether any load switches where a function of the state is zero, or events act.
 bool has_switches(const Model& model);
 
 /// The state with all discrete states set for the start of a run at its time.
@@ -70,6 +70,8 @@ class ZeroWatch {
   /// At a state that a step was made to end at because of one of the zeros `known`: the zeros of others passed with
   /// it. The functions of `known` have passed, whatever sign rounding leaves them here.
   const std::vector<Zero>& land(const State& state, std::span<const Zero> known);
+  /// At a state that events have changed: the zeros passed by that.
+  const std::vector<Zero>& leap(const State& state);
   /// Takes the signs at a state where discrete states have changed.
   void begin_at(const State& state);
 
@@ -77,6 +79,8 @@ class ZeroWatch {
   [[nodiscard]] std::optional<std::pair<LoadSlot, int>> switching(std::size_t function) const;
   /// The event of the caller that a function is.
   [[nodiscard]] const RunEvent& event(std::size_t function) const { return events_[function - switches_]; }
+  /// Its index among the events.
+  [[nodiscard]] std::size_t index(const Zero& zero) const { return zero.function - switches_; }
   void remember(Memory& memory) { memory(signs_); }
 
  private:

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "withy/core/model/closing.hpp"
+#include "withy/core/model/event_plan.hpp"
 #include "withy/core/simulation/cubic.hpp"
 
 namespace withy {
@@ -209,6 +210,21 @@ void Monitor::rebase_energy(const State& state, const std::function<void()>& cha
   initial_energies_.potential += jump;
 }
 
+void Monitor::pass_event(const State& before, const State& after) {
+  audit_energy(before);
+  if (own_energy_) {
+    // The work of impulses is that of the energy without truncation.
+    const auto own = [&](const State& state) {
+      seen_.observe(state.y);
+      const Energies e = seen_.energies();
+      return kinetic(state, e) - e.kinetic;
+    };
+    initial_energy_ += own(after) - own(before);
+  }
+  audit_energy(after);
+  look(after);
+}
+
 void Monitor::audit_momenta(const Energies& e) {
   const auto apart = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -222,6 +238,9 @@ void Monitor::audit_momenta(const Energies& e) {
 void Monitor::finish_momenta() {
   double outside = 0, all = 0;
   bool floats = model_.gravity().isZero(0);
+  if (const EventBook events(model_); events.any())
+    for (const std::vector<std::size_t>& locked : events.plan().configurations)
+      for (const std::size_t hinge : locked) floats = floats && model_.hinges()[hinge].parent >= 0;
   for (std::size_t h = 0; h < model_.hinges().size(); ++h) {
     const HingeNode& hinge = model_.hinges()[h];
     const Slot& slot = model_.layout().hinges[h];

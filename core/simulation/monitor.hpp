@@ -35,6 +35,8 @@ class Monitor {
   void audit_energy(const State& state);
   /// The equations change at a state, by `change`: what energy does there is no error of theirs.
   void rebase_energy(const State& state, const std::function<void()>& change);
+  /// Events have changed the state: what they did is in its work, and nothing is smooth across.
+  void pass_event(const State& before, const State& after);
   /// The kinetic energy is that of the equations' mass matrix (RunOptions::own_energy).
   void use_own_energy(const State& initial);
   /// To be called at the end: what the loads have done on the way decides whether momenta are conserved.

@@ -22,7 +22,9 @@ Session::Session(const Model& model, const EquationsOfMotion& equations, const I
       equations_(equations),
       options_(std::move(options)),
       initial_(begun(model, initial)),
-      loop_(model, integrator.start(equations, initial_), {initial.time, infinity, options_.events}),
+      actions_(model, equations, options_.events),
+      loop_(model, integrator.start(equations, initial_),
+            {.end = initial.time, .output = infinity, .events = actions_.watched(), .actions = &actions_}),
       monitor_(model, equations, loop_.state(), options_.deflection_limit, infinity, nullptr, summary_),
       loops_(equations, loop_.state()),
       with_inputs_(loop_.state()) {
@@ -139,6 +141,8 @@ bool Session::after_step(const Stepper& stepper, bool /*outputs*/) {
 }
 
 void Session::passed(const EventTime& event) { events_.push_back(event); }
+
+void Session::acted(const State& before, const State& after) { monitor_.pass_event(before, after); }
 
 void Session::remember(Memory& memory) {
   monitor_.remember(memory);

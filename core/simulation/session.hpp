@@ -69,6 +69,7 @@ class Session final : private SteppingObserver {
   bool output(const State& state) override;
   bool after_step(const Stepper& stepper, bool outputs) override;
   void passed(const EventTime& event) override;
+  void acted(const State& before, const State& after) override;
   void apply_settings(double t);
   [[nodiscard]] SessionEnd go(double t);
   [[nodiscard]] SessionEnd bad_end(Stop stop);
@@ -81,6 +82,7 @@ class Session final : private SteppingObserver {
   SessionOptions options_;
   State initial_;
   RunSummary summary_;  ///< what the monitor notes
+  EventActions actions_;
   Stepping loop_;
   Monitor monitor_;
   LoopWatch loops_;

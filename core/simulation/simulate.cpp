@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "withy/core/simulation/changing_equations.hpp"
+#include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/monitor.hpp"
@@ -27,8 +28,9 @@ class Run final : public SteppingObserver {
         output_(output),
         summary_(summary),
         hand_overs_(options.changing != nullptr ? options.changing->hand_overs() : std::vector<double>()),
+        actions_(model, equations, options.events),
         loop_(model, integrator.start(equations, begun(model, initial)),
-              {options.end, options.output, options.events, hand_overs_}),
+              {options.end, options.output, actions_.watched(), hand_overs_, &actions_}),
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
                  summary),
         validity_(model, equations, options.beyond, summary.validity),
@@ -112,9 +114,11 @@ class Run final : public SteppingObserver {
   void passed(const EventTime& event) override {
     summary_.events.push_back(event);
     const auto of_that_name = [&](const RunEvent& e) { return e.name == event.name; };
-    const auto stated = std::find_if(options_.events.begin(), options_.events.end(), of_that_name);
-    if (stated != options_.events.end() && stated->stops) stopped_by_.push_back(event.name);
+    const auto watched = actions_.watched();
+    const auto stated = std::find_if(watched.begin(), watched.end(), of_that_name);
+    if (stated != watched.end() && stated->stops) stopped_by_.push_back(event.name);
   }
+  void acted(const State& before, const State& after) override { monitor_.pass_event(before, after); }
   void switched() override { ++summary_.switchings; }
   void jumped() override {
     monitor_.pass_instant();
@@ -162,9 +166,14 @@ class Run final : public SteppingObserver {
     summary_.events.resize(count);
     for (EventTime& e : summary_.events) {
       const auto named = [&](const RunEvent& event) { return event.name == e.name; };
-      auto index = std::find_if(options_.events.begin(), options_.events.end(), named) - options_.events.begin();
+      const auto watched = actions_.watched();
+      auto index = std::find_if(watched.begin(), watched.end(), named) - watched.begin();
       memory(index);
-      if (memory.reading()) e.name = options_.events.at(static_cast<std::size_t>(index)).name;
+      if (memory.reading()) {
+        if (index >= std::ssize(watched))
+          throw std::invalid_argument("what was saved names an event that there is not");
+        e.name = watched[static_cast<std::size_t>(index)].name;
+      }
       memory(e.time);
       memory(e.direction);
     }
@@ -176,6 +185,7 @@ class Run final : public SteppingObserver {
   const std::function<void(const State&)>& output_;
   RunSummary& summary_;
   std::vector<double> hand_overs_;  ///< increasing
+  EventActions actions_;
   Stepping loop_;
   Monitor monitor_;
   ValidityWatch validity_;
@@ -222,7 +232,22 @@ MassMatrixHistory look_at_mass_matrix(const Run& run, const Model& model, const 
   return history;
 }
 
-std::string message_of_completed(const Run& run, const RunSummary& summary) {
+/// The events that were to do something and have not, in a sentence; empty where there are none.
+std::string note_on_missed_events(const Model& model, const State& end) {
+  const EventBook book(model);
+  if (!book.any()) return {};
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < book.plan().events.size(); ++i) {
+    const ActingEvent& event = book.plan().events[i];
+    if (book.numbers(end.y, i).happened > 0 || (event.actions.empty() && !event.stops)) continue;
+    names += (++count > 1 ? ", '" : "'") + event.name + "'";
+  }
+  if (count == 0) return {};
+  return (count > 1 ? "The events " : "The event ") + names + " did not happen.";
+}
+
+std::string message_of_completed(const Run& run, const RunSummary& summary, const std::string& missed) {
   std::string text;
   const auto add = [&text](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
   if (const std::vector<std::string>& names = run.stopped_by(); !names.empty()) {
@@ -231,6 +256,7 @@ std::string message_of_completed(const Run& run, const RunSummary& summary) {
     add((names.size() > 1 ? "The events " : "The event ") + list +
         " ended the run at t = " + brief(summary.final.time) + " s.");
   }
+  if (!missed.empty()) add(missed);
   if (!summary.suspected_jumps.empty()) add(note_on_jumps(summary.suspected_jumps));
   for (const std::string& remark : run.stepper().remarks()) add("The integrator: " + remark + ".");
   if (const std::string closing = closing_text(run.equations(), run.stepper()); !closing.empty()) add(closing);
@@ -275,7 +301,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   const double mean_step =
       (summary.reached - initial.time) / static_cast<double>(std::max<std::size_t>(summary.steps.accepted, 1));
   if (stop.status == RunStatus::completed) {
-    summary.message = message_of_completed(run, summary);
+    summary.message = message_of_completed(run, summary, note_on_missed_events(model, summary.final));
     const std::string imbalanced = run.monitor().greatest_speed() > options.least_speed
                                        ? imbalance(summary, options, integrator, mean_step)
                                        : std::string();

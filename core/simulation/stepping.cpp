@@ -12,6 +12,7 @@ Stepping::Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const S
       clocks_(model),
       jumps_(discontinuities(model)),
       zeros_(model, options.events, stepper_->state()),
+      actions_(options.actions),
       times_(stepper_->state().time, options.output, options.end),
       end_(options.end),
       sample_(stepper_->state()) {
@@ -24,13 +25,15 @@ Stepping::Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const S
 SteppingEnd Stepping::run(SteppingObserver& observer) {
   observer_ = &observer;
   ended_ = {};
+  if (actions_ != nullptr && actions_->next(state()) == state().time && !act({})) return ended_;
   while (state().time < end_) {
     const auto jump = std::upper_bound(jumps_.begin(), jumps_.end(), state().time);
     const bool jumps = jump != jumps_.end() && *jump <= end_;
     const double landing = jumps ? *jump : end_;
     while (state().time < landing) {
-      if (!to(std::min(landing, clocks_.next()), true)) return ended_;
+      if (!to(std::min(landing, next_instant()), true)) return ended_;
       if (state().time >= clocks_.next()) renew_clocks();
+      if (actions_ != nullptr && actions_->next(state()) == state().time && !act({})) return ended_;
     }
     if (!jumps) continue;
     observer_->landed(state());
@@ -43,6 +46,69 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
 bool Stepping::end(Cause cause) {
   ended_.cause = cause;
   return false;
+}
+
+double Stepping::next_instant() const {
+  return actions_ == nullptr ? clocks_.next() : std::min(clocks_.next(), actions_->next(state()));
+}
+
+/// Events happen at the present state, and others may be due: what they ask for is done. What passes its value because
+/// of that happens at the same time.
+bool Stepping::act(std::span<const std::size_t> happened) {
+  happened_.assign(happened.begin(), happened.end());
+  for (int round = 0;; ++round) {
+    acted_on_ = sample_ = state();
+    const EventActions::Done& done = actions_->act(sample_, happened_);
+    for (const std::size_t event : done.acted)
+      observer_->passed({actions_->watched()[event].name, sample_.time, direction_of(event)});
+    if (!done.evaluation.ok()) {
+      ended_.step = {StepResult::Outcome::singular, done.evaluation.body};
+      return end(Cause::failed);
+    }
+    if (done.crowded || round > most_zeros_at_once) return end(Cause::crowded);
+    stepper_->jump(sample_);
+    observer_->acted(acted_on_, state());
+    observer_->jumped();
+    if (done.stops) return end(Cause::event);
+    const std::vector<std::size_t> acted = done.acted;
+    if (!leap(acted)) return false;
+    if (happened_.empty()) return true;
+  }
+}
+
+/// Deals with what events have made pass its value, but for those that have just acted.
+bool Stepping::leap(const std::vector<std::size_t>& acted) {
+  handled_ = zeros_.leap(state());
+  happened_.clear();
+  sample_ = state();
+  bool stops = false;
+  for (const Zero& zero : handled_) {
+    if (const auto load = zeros_.switching(zero.function)) {
+      clocks_.renew(sample_, load->first, {load->second, zero.direction});
+      observer_->switched();
+    } else if (const std::size_t event = zeros_.index(zero); !actions_->acts(event)) {
+      note(zero);
+      stops = stops || zeros_.event(zero.function).stops;
+    } else if (!actions_->over(event, sample_) && std::find(acted.begin(), acted.end(), event) == acted.end()) {
+      happened_.push_back(event);
+    }
+  }
+  if (!handled_.empty()) stepper_->jump(sample_);
+  return !stops || end(Cause::event);
+}
+
+/// In which an event passes its value now; 0 where it acts for another reason.
+int Stepping::direction_of(std::size_t event) const {
+  if (std::find(happened_.begin(), happened_.end(), event) == happened_.end()) return 0;
+  for (const Zero& zero : handled_)
+    if (!zeros_.switching(zero.function) && zeros_.index(zero) == event) return zero.direction;
+  return 0;
+}
+
+/// Whether a step is cut at a zero.
+bool Stepping::changes_the_run(const Zero& zero) const {
+  if (zeros_.acts(zero)) return true;
+  return actions_ != nullptr && !zeros_.switching(zero.function) && actions_->acts(zeros_.index(zero));
 }
 
 void Stepping::renew_clocks() {
@@ -68,8 +134,9 @@ bool Stepping::to(double limit, bool watching) {
     if (ended_.step.outcome != StepResult::Outcome::ok) return end(Cause::failed);
     if (watching && !zeros_.empty()) {
       handled_ = zeros_.find(*stepper_, before_.time);
-      const bool cut = std::any_of(handled_.begin(), handled_.end(), [&](const Zero& z) { return zeros_.acts(z); });
+      const bool cut = std::any_of(handled_.begin(), handled_.end(), [&](const Zero& z) { return changes_the_run(z); });
       if (!act_on_zeros()) return false;
+      if (cut && next_instant() < limit) return true;  // an event has made another due
       if (cut) continue;
     }
     if (!after_step()) return false;
@@ -101,7 +168,7 @@ double Stepping::coincidence(const Zero& zero) const {
 /// Deals with the zeros of the last step; false where stepping ends. Where one of them changes the run the step is cut
 /// there.
 bool Stepping::act_on_zeros() {
-  const auto acts = [&](const Zero& z) { return zeros_.acts(z); };
+  const auto acts = [&](const Zero& z) { return changes_the_run(z); };
   const auto first = std::find_if(handled_.begin(), handled_.end(), acts);
   if (first == handled_.end()) {
     for (const Zero& zero : handled_) {
@@ -135,12 +202,15 @@ bool Stepping::cut_at(double time, std::size_t noted) {
   handled_.insert(handled_.end(), others.begin(), others.end());
   sample_ = state();
   bool stops = false;
+  happened_.clear();
   for (std::size_t i = noted; i < handled_.size(); ++i) {
     Zero& zero = handled_[i];
     zero.time = std::min(zero.time, sample_.time);
     if (const auto load = zeros_.switching(zero.function)) {
       clocks_.renew(sample_, load->first, {load->second, zero.direction});
       observer_->switched();
+    } else if (actions_ != nullptr && actions_->acts(zeros_.index(zero))) {
+      happened_.push_back(zeros_.index(zero));
     } else {
       note(zero);
       stops = stops || zeros_.event(zero.function).stops;
@@ -148,6 +218,7 @@ bool Stepping::cut_at(double time, std::size_t noted) {
   }
   stepper_->jump(sample_);
   observer_->jumped();
+  if (!happened_.empty() && !act(std::vector<std::size_t>(happened_))) return false;
   return !stops || end(Cause::event);
 }
 

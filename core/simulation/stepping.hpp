@@ -10,6 +10,7 @@
 
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/memory.hpp"
+#include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_event.hpp"
 #include "withy/core/simulation/run_times.hpp"
@@ -23,7 +24,7 @@ struct SteppingEnd {
     event,    ///< an event that stops the run
     stopped,  ///< the observer said so
     failed,   ///< no step can be made: `step` says why
-    crowded   ///< switching functions pass through zero again and again without time between them
+    crowded   ///< switches or events follow each other again and again without time between them
   };
   Cause cause = Cause::reached;
   StepResult step;
@@ -48,6 +49,8 @@ class SteppingObserver {
   virtual void switched() {}
   /// At the time of a discontinuity of loads or of SteppingOptions::hand_overs, before the stepper begins anew.
   virtual void landed(const State& /*state*/) {}
+  /// Events of the scene have acted: the state has changed from the first to the second, by impulses or otherwise.
+  virtual void acted(const State& /*before*/, const State& /*after*/) {}
   /// Discrete states of loads have been renewed or have switched: what follows is not smooth with what was before.
   virtual void jumped() {}
   /// A load or a motion jumps at the present time, as it has declared.
@@ -59,8 +62,9 @@ class SteppingObserver {
 struct SteppingOptions {
   double end = 0;                           ///< [s]
   double output = 0.01;                     ///< interval of outputs [s]; they fall on its multiples
-  std::span<const RunEvent> events = {};    ///< looked for on the dense output
+  std::span<const RunEvent> events = {};    ///< looked for on the dense output; of `actions` those that they watch
   std::span<const double> hand_overs = {};  ///< times [s] at which the equations change; increasing
+  EventActions* actions = nullptr;          ///< what the scene's events do; null: nothing
 };
 
 /// One integration under way.
@@ -90,6 +94,11 @@ class Stepping {
   using Zero = ZeroWatch::Zero;
   bool to(double limit, bool watching);
   bool after_step();
+  bool act(std::span<const std::size_t> happened);
+  bool leap(const std::vector<std::size_t>& acted);
+  [[nodiscard]] int direction_of(std::size_t event) const;
+  [[nodiscard]] double next_instant() const;
+  [[nodiscard]] bool changes_the_run(const Zero& zero) const;
   bool act_on_zeros();
   bool cut_at(double time, std::size_t noted);
   void note(const Zero& zero);
@@ -104,10 +113,13 @@ class Stepping {
   Clocks clocks_;
   std::vector<double> jumps_;  ///< times [s] of discontinuities, increasing
   ZeroWatch zeros_;
+  EventActions* actions_;
   OutputTimes times_;
   double end_;
   State sample_;
-  State before_;               ///< where the last step began; kept only where zeros are watched
+  State before_;    ///< where the last step began; kept only where zeros are watched
+  State acted_on_;  ///< before events have acted
+  std::vector<std::size_t> happened_;
   std::vector<Zero> handled_;  ///< zeros of the last step, or those up to where it is cut
   SteppingEnd ended_;
   double last_zero_ = -std::numeric_limits<double>::infinity();  ///< time of the last one that changed the run

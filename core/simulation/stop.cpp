@@ -11,7 +11,7 @@ namespace withy {
 Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion& equations, const State& state,
              const StepStatistics& steps) {
   if (end.cause == SteppingEnd::Cause::crowded)
-    return {RunStatus::step_underflow, "switches follow each other without time between them"};
+    return {RunStatus::step_underflow, "switches or events follow each other without time between them"};
   if (end.cause != SteppingEnd::Cause::failed) return {};
   const StepResult& result = end.step;
   const std::string body =

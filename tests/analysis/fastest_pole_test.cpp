@@ -43,7 +43,7 @@ double greatest_of_jacobian(const AnalysedScene& c) {
 TEST(FastestPole, is_the_greatest_eigenvalue_of_the_jacobian) {
   for (const std::string& formulation : differentiated_formulations()) {
     AnalysedScene c(servo_arm, formulation);
-    const FastestPole pole = fastest_pole(*c.dynamics, c.state, driven_speeds(*c.scene.model));
+    const FastestPole pole = fastest_pole(*c.dynamics, c.state, driven_speeds(*c.scene.model, c.state));
     EXPECT_NEAR(std::abs(pole.value) / greatest_of_jacobian(c), 1, 1e-6) << formulation;
   }
 }
@@ -51,7 +51,7 @@ TEST(FastestPole, is_the_greatest_eigenvalue_of_the_jacobian) {
 /// A hinge that only the bending of a light beam follows: the servo's damping works against little inertia.
 TEST(FastestPole, of_a_servo_without_inertia_behind_it_says_so) {
   AnalysedScene c(servo_arm, "quadratic");
-  const FastestPole pole = fastest_pole(*c.dynamics, c.state, driven_speeds(*c.scene.model));
+  const FastestPole pole = fastest_pole(*c.dynamics, c.state, driven_speeds(*c.scene.model, c.state));
   EXPECT_LT(pole.value.real(), -1e3);
   EXPECT_EQ(c.layout().speed_names[pole.speed], "shoulder.0");
   EXPECT_EQ(pole.cause, "damping of load 'servo'");

@@ -127,5 +127,28 @@ integrator: {name: dopri5, rtol: 1.0e-6, atol: 1.0e-8}
                   "quadratic");
 }
 
+/// Hinges that events lock and unlock, a load that they switch, and an event that waits.
+TEST(Checkpoints, restore_what_events_have_done) {
+  expect_restores(R"(format: withy/1
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}
+  boom: {type: beam, length: 1, mass_per_length: 0.5, bending_y: {stiffness: 3, modes: 1}}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: revolute, axis: [0, 0, 1], parent: hub, child: boom}
+loads:
+  spring: {type: hinge-spring, hinge: root, stiffness: 2, damping: 0.02}
+  motor: {type: hinge-effort, hinge: axle, law: constant, value: 0.3}
+outputs: {knee: {type: hinge, hinge: root}}
+events:
+  latch: {hinge: root, value: 0.05, direction: up, repeat: true, do: {lock: root, switch_off: motor}}
+  open: {after: latch, delay: 0.3, repeat: true, do: {unlock: root, switch_on: motor}}
+  pull: {signal: knee.acceleration, value: -2, do: {set: loads.motor.value=0.5}}
+initial: {hinges: {axle: {rate: [0.5]}, root: {rate: [0.8]}}}
+time: {end: 4, output: 0.05}
+integrator: {name: dopri5, rtol: 1.0e-6, atol: 1.0e-8}
+)");
+}
+
 }  // namespace
 }  // namespace withy

@@ -43,7 +43,8 @@ export function write_words(holder, runs) {
       ['steps', `${r.steps} (${r.rejected_steps} rejected), ${r.evaluations} evaluations`], ['CPU time', `${plain(r.cpu_seconds)} s`]];
     for (const [body, d] of Object.entries(r.peaks?.tip_deflection ?? {}))
       rows.push([`peak deflection ${body}`, `y ${plain(d.y)} m, z ${plain(d.z)} m`]);
-    for (const e of r.events ?? []) rows.push([`event ${e.name}`, `${plain(e.time)} s, ${e.direction}wards`]);
+    for (const e of r.events ?? []) rows.push([`event ${e.name}`, `${plain(e.time)} s${e.direction ? `, ${e.direction}wards` : ''}`]);
+    for (const [name, e] of Object.entries(r.acted ?? {})) if (e.energy_lost) rows.push([`energy lost in ${name}`, `${plain(e.energy_lost)} J`]);
     const more = element('details');
     more.append(element('summary', 'Numbers of the run'), table_of(rows));
     part.append(more);

@@ -1,0 +1,200 @@
+#include "withy/core/equations/configured_equations.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "withy/core/model/event_plan.hpp"
+#include "withy/core/plugin/forward_dynamics.hpp"
+#include "withy/core/plugin/sensor.hpp"
+
+namespace withy::equations {
+namespace {
+
+/// Holds a hinge at rest where it is.
+class Hold final : public Motion {
+ public:
+  bool locks() const override { return true; }
+  MotionPoint at(double /*t*/) const noexcept override { return {}; }
+  std::vector<double> discontinuities() const override { return {}; }
+  double end() const override { return 0; }
+};
+
+/// Which configuration a state is in.
+struct ConfigurationPlace {
+  std::size_t element = 0;  ///< of State::y
+  std::size_t count = 1;    ///< of configurations
+  std::size_t operator()(std::span<const double> y) const noexcept {
+    return std::min(static_cast<std::size_t>(std::max(y[element], 0.0)), count - 1);
+  }
+};
+
+/// Sensing of the configuration that a state is in.
+class ConfiguredSensing final : public SensedState {
+ public:
+  ConfiguredSensing(std::vector<std::unique_ptr<SensedState>> all, ConfigurationPlace place)
+      : all_(std::move(all)), place_(place), now_(all_.front().get()) {}
+  bool observe(const State& state) noexcept override {
+    now_ = all_[place_(state.y)].get();
+    return now_->observe(state);
+  }
+  const Layout& layout() const noexcept override { return now_->layout(); }
+  double time() const noexcept override { return now_->time(); }
+  std::span<const double> y() const noexcept override { return now_->y(); }
+  std::span<const double> accelerations() noexcept override { return now_->accelerations(); }
+  Vector3 gravity() const noexcept override { return now_->gravity(); }
+  FrameMotion motion(FrameIndex frame) noexcept override { return now_->motion(frame); }
+  FrameAcceleration acceleration(FrameIndex frame) noexcept override { return now_->acceleration(frame); }
+  std::span<const double> load_efforts(int load) noexcept override { return now_->load_efforts(load); }
+  std::span<const double> motion_efforts() noexcept override { return now_->motion_efforts(); }
+  Wrench reaction(int hinge) noexcept override { return now_->reaction(hinge); }
+  SectionLoad section(std::size_t index) noexcept override { return now_->section(index); }
+  BodyEnergies energies(int body) noexcept override { return now_->energies(body); }
+  const Energies& energies() noexcept override { return now_->energies(); }
+
+ private:
+  std::vector<std::unique_ptr<SensedState>> all_;
+  ConfigurationPlace place_;
+  SensedState* now_;
+};
+
+using AllEquations = std::vector<std::unique_ptr<EquationsOfMotion>>;
+
+class ConfiguredEquations final : public EquationsOfMotion,
+                                  public ForwardDynamics,
+                                  private LinearlyImplicit,
+                                  private Linearization {
+ public:
+  ConfiguredEquations(AllEquations all, std::size_t element) : all_(std::move(all)), place_{element, all_.size()} {
+    for (const auto& equations : all_) {
+      forward_.push_back(dynamic_cast<const ForwardDynamics*>(equations.get()));
+      work_size_ = std::max(work_size_, equations->make_work().size());
+      if (const LinearlyImplicit* linear = equations->linearly_implicit())
+        factors_size_ = std::max(factors_size_, linear->make_factors().size());
+    }
+  }
+
+  const Layout& layout() const override { return first().layout(); }
+  // Behind the work of the equations stands the configuration that it was last used in.
+  Work make_work() const override { return Work(work_size_ + sizeof(std::size_t)); }
+  Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
+                         Work& work) const noexcept override {
+    return note(y, work, work_size_).derivatives(t, y, y_dot, work);
+  }
+  void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
+                    Work& work) const noexcept override {
+    at(y).load_efforts(t, y, load, efforts, work);
+  }
+  Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
+                            Work& work) const noexcept override {
+    return note(y, work, work_size_).motion_efforts(t, y, efforts, work);
+  }
+  bool found_efforts(Work& work, std::span<double> loads, std::span<double> motions) const noexcept override {
+    return noted(work, work_size_).found_efforts(work, loads, motions);
+  }
+  void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
+                        Work& work) const override {
+    at(y).inverse_dynamics(y, u_dot, efforts, work);
+  }
+  void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> product,
+                  Work& work) const override {
+    at(y).mass_times(y, a, product, work);
+  }
+  Evaluation forward_dynamics(std::span<const double> y, std::span<const double> efforts, std::span<double> u_dot,
+                              Work& work) const noexcept override {
+    return forward_[place_(y)]->forward_dynamics(y, efforts, u_dot, work);
+  }
+  const LinearlyImplicit* linearly_implicit() const override {
+    return first().linearly_implicit() == nullptr ? nullptr : this;
+  }
+  const Linearization* linearization() const override { return first().linearization() == nullptr ? nullptr : this; }
+  Evaluation position_rates(double t, std::span<const double> y, std::span<double> y_dot,
+                            Work& work) const noexcept override {
+    return first().position_rates(t, y, y_dot, work);
+  }
+  void normalize(std::span<double> y) const noexcept override { first().normalize(y); }
+  // What is seen of a state does not depend on what is locked.
+  std::unique_ptr<Observation> make_observation() const override { return first().make_observation(); }
+  std::unique_ptr<SensedState> make_sensed_state(std::span<const SectionPlace> sections) const override {
+    std::vector<std::unique_ptr<SensedState>> all;
+    for (const auto& equations : all_) all.push_back(equations->make_sensed_state(sections));
+    return std::make_unique<ConfiguredSensing>(std::move(all), place_);
+  }
+  DenseSystem system(double t, std::span<const double> y) const override { return at(y).system(t, y); }
+  Energies energies(std::span<const double> y) const override { return first().energies(y); }
+  WorldPose frame_pose(std::span<const double> y, int body, int frame) const override {
+    return first().frame_pose(y, body, frame);
+  }
+  std::array<double, 3> deflection(std::span<const double> y, int body, int frame) const override {
+    return first().deflection(y, body, frame);
+  }
+  std::vector<std::string> savings() const override {
+    std::vector<std::string> lines = first().savings();
+    lines.push_back("events lock hinges in " + std::to_string(all_.size()) + " combinations, compiled each");
+    return lines;
+  }
+
+ private:
+  [[nodiscard]] const EquationsOfMotion& first() const { return *all_.front(); }
+  [[nodiscard]] const EquationsOfMotion& at(std::span<const double> y) const noexcept { return *all_[place_(y)]; }
+  /// The equations of a state, noted behind the memory that they are about to use.
+  const EquationsOfMotion& note(std::span<const double> y, Work& work, std::size_t offset) const noexcept {
+    const std::size_t index = place_(y);
+    std::memcpy(work.data() + offset, &index, sizeof index);
+    return *all_[index];
+  }
+  [[nodiscard]] const EquationsOfMotion& noted(Work& work, std::size_t offset) const noexcept {
+    std::size_t index = 0;
+    std::memcpy(&index, work.data() + offset, sizeof index);
+    return *all_[std::min(index, all_.size() - 1)];
+  }
+
+  Work make_factors() const override { return Work(factors_size_ + sizeof(std::size_t)); }
+  Evaluation factorize(std::span<const double> y, double delta, Work& factors) const noexcept override {
+    return note(y, factors, factors_size_).linearly_implicit()->factorize(y, delta, factors);
+  }
+  void solve(std::span<double> r, Work& factors) const noexcept override {
+    noted(factors, factors_size_).linearly_implicit()->solve(r, factors);
+  }
+  Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base, double delta,
+                                  std::span<double> y_dot, Work& work) const noexcept override {
+    return note(y, work, work_size_).linearly_implicit()->implicit_derivatives(t, y, base, delta, y_dot, work);
+  }
+  Evaluation jacobian(double t, std::span<const double> y, std::span<const double> y_dot,
+                      std::span<double> jacobian) const override {
+    return at(y).linearization()->jacobian(t, y, y_dot, jacobian);
+  }
+  std::vector<std::string> differenced(double t, std::span<const double> y) const override {
+    return at(y).linearization()->differenced(t, y);
+  }
+
+  AllEquations all_;
+  ConfigurationPlace place_;
+  std::vector<const ForwardDynamics*> forward_;
+  std::size_t work_size_ = 0, factors_size_ = 0;
+};
+
+}  // namespace
+
+bool has_configurations(const Model& model) {
+  const EventBook events(model);
+  return events.any() && events.plan().configurations.size() > 1;
+}
+
+std::unique_ptr<EquationsOfMotion> make_configured(
+    const Model& model,
+    const std::function<std::unique_ptr<EquationsOfMotion>(std::shared_ptr<const Model>)>& compile) {
+  const EventBook events(model);
+  AllEquations all;
+  for (const std::vector<std::size_t>& locked : events.plan().configurations) {
+    auto configured = std::make_shared<Model>(model);
+    for (const std::size_t hinge : locked) {
+      if (model.driven(hinge)) continue;  // an analysis holds it already
+      const std::string& name = model.hinges()[hinge].name;
+      configured->add_motion(name, name, std::make_shared<const Hold>());
+    }
+    all.push_back(compile(std::move(configured)));
+  }
+  return std::make_unique<ConfiguredEquations>(std::move(all), events.place());
+}
+
+}  // namespace withy::equations

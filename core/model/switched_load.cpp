@@ -1,0 +1,240 @@
+#include "withy/core/model/switched_load.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+namespace {
+
+using Forms = std::vector<std::shared_ptr<const BoundLoad>>;
+
+std::size_t discrete_states(const BoundLoad& load) {
+  return load.discrete() == nullptr ? 0 : load.discrete()->states();
+}
+std::size_t continuous_states(const BoundLoad& load) {
+  return load.continuous() == nullptr ? 0 : load.continuous()->states();
+}
+
+/// What of the forms changes at instants, and which of them acts.
+class SwitchedDiscrete final : public DiscretePart {
+ public:
+  explicit SwitchedDiscrete(const Forms& forms) : forms_(forms), own_(discrete_states(*forms.front())) {}
+  /// The form that acts; null where the load is off.
+  [[nodiscard]] const BoundLoad* acting(std::span<const double> discrete) const noexcept {
+    const double form = discrete[own_];
+    return form < 0 ? nullptr : forms_[std::min(static_cast<std::size_t>(form), forms_.size() - 1)].get();
+  }
+  template <class T>
+  [[nodiscard]] std::span<T> own(std::span<T> discrete) const noexcept {
+    return discrete.first(own_);
+  }
+  [[nodiscard]] LoadView inner(const LoadView& v) const noexcept {
+    return {v.t, v.layout, v.y, own(v.discrete), v.continuous, v.scratch};
+  }
+
+  std::size_t states() const override { return own_ + 1; }
+  double period() const override {
+    const DiscretePart* part = forms_.front()->discrete();
+    return part == nullptr ? 0 : part->period();
+  }
+  std::size_t switches() const override {
+    const DiscretePart* part = forms_.front()->discrete();
+    return part == nullptr ? 0 : part->switches();
+  }
+  void switching(double t, std::span<const double> positions, std::span<const double> speeds,
+                 std::span<const double> discrete, std::span<double> values) const noexcept override {
+    if (const BoundLoad* load = acting(discrete)) {
+      load->discrete()->switching(t, positions, speeds, own(discrete), values);
+    } else {
+      std::fill(values.begin(), values.end(), 1.0);
+    }
+  }
+  void renew(double t, std::span<const double> positions, std::span<const double> speeds, const Crossing& crossing,
+             std::span<double> discrete, std::span<double> scratch) const noexcept override {
+    const BoundLoad* load = acting(discrete);
+    if (load != nullptr && own_ > 0) load->discrete()->renew(t, positions, speeds, crossing, own(discrete), scratch);
+  }
+  void add(double t, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
+    const BoundLoad* load = acting(discrete);
+    if (load != nullptr && own_ > 0) load->discrete()->add(t, own(discrete), efforts);
+  }
+
+ private:
+  const Forms& forms_;
+  std::size_t own_;  ///< count of the forms' discrete states
+};
+
+/// All that the acting form gives from the whole state.
+class SwitchedContinuous final : public ContinuousPart {
+ public:
+  SwitchedContinuous(const Forms& forms, const SwitchedDiscrete& discrete)
+      : discrete_(discrete), first_(*forms.front()), states_(continuous_states(first_)) {}
+  std::size_t states() const override { return states_; }
+  std::string name(std::size_t state) const override { return first_.continuous()->name(state); }
+  void begin(const LoadView& view, std::span<double> continuous) const noexcept override {
+    const BoundLoad* load = discrete_.acting(view.discrete);
+    if (states_ > 0) (load != nullptr ? *load : first_).continuous()->begin(discrete_.inner(view), continuous);
+  }
+  void rates(const LoadView& view, std::span<double> rates) const noexcept override {
+    const BoundLoad* load = discrete_.acting(view.discrete);
+    if (load != nullptr && states_ > 0) {
+      load->continuous()->rates(discrete_.inner(view), rates);
+    } else {
+      std::fill(rates.begin(), rates.end(), 0.0);
+    }
+  }
+  void add(const LoadView& view, std::span<double> efforts) const noexcept override {
+    const BoundLoad* load = discrete_.acting(view.discrete);
+    if (load == nullptr) return;
+    load->add(view.t, view.positions(), view.speeds(), efforts, view.scratch.first(load->scratch()));
+    if (load->continuous() != nullptr) load->continuous()->add(discrete_.inner(view), efforts);
+  }
+  void add_wrenches(const LoadView& view, std::span<const FrameMotion> motions,
+                    std::span<Wrench> wrenches) const noexcept override {
+    const BoundLoad* load = discrete_.acting(view.discrete);
+    if (load == nullptr) return;
+    load->wrenches(view.t, motions, wrenches);
+    const LoadView inner = discrete_.inner(view);
+    if (!inner.discrete.empty()) load->discrete()->add_wrenches(view.t, inner.discrete, motions, wrenches);
+    if (load->continuous() != nullptr) load->continuous()->add_wrenches(inner, motions, wrenches);
+  }
+  bool add_derivatives(const LoadView& view, ContinuousDerivatives& to) const override {
+    const BoundLoad* load = discrete_.acting(view.discrete);
+    if (load == nullptr) return true;
+    // Of two parts one may have derivatives and the other none: then neither may be added.
+    if (load->continuous() != nullptr) return false;
+    return load->add_derivatives(view.t, view.positions(), view.speeds(), to.effort_by_position, to.effort_by_speed);
+  }
+
+ private:
+  const SwitchedDiscrete& discrete_;
+  const BoundLoad& first_;
+  std::size_t states_;
+};
+
+class SwitchedOutput final : public LoadOutput {
+ public:
+  SwitchedOutput(const Forms& forms, const SwitchedDiscrete& discrete) : discrete_(discrete), first_(*forms.front()) {}
+  std::size_t outputs() const override { return first_.output()->outputs(); }
+  void read(const LoadView& view, std::span<double> values) const noexcept override {
+    if (const BoundLoad* load = discrete_.acting(view.discrete)) {
+      load->output()->read(discrete_.inner(view), values);
+    } else {
+      std::fill(values.begin(), values.end(), 0.0);
+    }
+  }
+
+ private:
+  const SwitchedDiscrete& discrete_;
+  const BoundLoad& first_;
+};
+
+/// The value that a host sets is the same in all forms.
+class SwitchedInput final : public InputPort {
+ public:
+  SwitchedInput(const Forms& forms, const SwitchedDiscrete& discrete)
+      : discrete_(discrete), port_(*forms.front()->input()) {}
+  std::string unit() const override { return port_.unit(); }
+  InputPlace place() const override { return port_.place(); }
+  bool interpolates() const override { return port_.interpolates(); }
+  double value(double t, std::span<const double> discrete) const noexcept override {
+    return port_.value(t, discrete_.own(discrete));
+  }
+  bool is_set(std::span<const double> discrete) const noexcept override {
+    return port_.is_set(discrete_.own(discrete));
+  }
+  void set(double t, double reached, double value, std::span<double> discrete) const noexcept override {
+    port_.set(t, reached, value, discrete_.own(discrete));
+  }
+
+ private:
+  const SwitchedDiscrete& discrete_;
+  const InputPort& port_;
+};
+
+class BoundSwitchedLoad final : public BoundLoad {
+ public:
+  explicit BoundSwitchedLoad(Forms forms)
+      : forms_(std::move(forms)), discrete_(forms_), continuous_(forms_, discrete_) {
+    const BoundLoad& first = *forms_.front();
+    if (first.output() != nullptr) output_ = std::make_unique<SwitchedOutput>(forms_, discrete_);
+    if (first.input() != nullptr) input_ = std::make_unique<SwitchedInput>(forms_, discrete_);
+  }
+  std::size_t scratch() const override {
+    std::size_t most = 0;
+    for (const auto& form : forms_) most = std::max(most, form->scratch());
+    return most;
+  }
+  // What acts depends on the discrete states: all of it is in the parts that see them.
+  void add(double, std::span<const double>, std::span<const double>, std::span<double>,
+           std::span<double>) const noexcept override {}
+  bool add_derivatives(double, std::span<const double>, std::span<const double>, Eigen::Ref<Eigen::MatrixXd>,
+                       Eigen::Ref<Eigen::MatrixXd>) const override {
+    return true;
+  }
+  std::span<const FrameIndex> frames() const override { return forms_.front()->frames(); }
+  void wrenches(double, std::span<const FrameMotion>, std::span<Wrench> wrenches) const noexcept override {
+    std::fill(wrenches.begin(), wrenches.end(), Wrench{});
+  }
+  std::vector<double> discontinuities() const override {
+    std::vector<double> all;
+    for (const auto& form : forms_)
+      for (const double t : form->discontinuities()) all.push_back(t);
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+  }
+  const DiscretePart* discrete() const override { return &discrete_; }
+  const ContinuousPart* continuous() const override { return &continuous_; }
+  const LoadOutput* output() const override { return output_.get(); }
+  const InputPort* input() const override { return input_.get(); }
+  double end() const override { return forms_.front()->end(); }
+  void begin(State& state) const override { forms_.front()->begin(state); }
+  std::unique_ptr<BoundLoad> rebound(const Model& model, const Terms& terms) const override {
+    Forms forms = forms_;
+    bool changed = false;
+    for (auto& form : forms) {
+      std::unique_ptr<BoundLoad> other = form->rebound(model, terms);
+      changed = changed || other != nullptr;
+      if (other != nullptr) form = std::move(other);
+    }
+    if (!changed) return nullptr;
+    return std::make_unique<BoundSwitchedLoad>(std::move(forms));
+  }
+
+ private:
+  Forms forms_;
+  SwitchedDiscrete discrete_;
+  SwitchedContinuous continuous_;
+  std::unique_ptr<SwitchedOutput> output_;
+  std::unique_ptr<SwitchedInput> input_;
+};
+
+/// Whether two forms have the same states and act at the same frames.
+bool alike(const BoundLoad& a, const BoundLoad& b) {
+  const auto same = [](const FrameIndex& x, const FrameIndex& y) { return x.body == y.body && x.frame == y.frame; };
+  const auto period = [](const BoundLoad& load) { return load.discrete() == nullptr ? 0 : load.discrete()->period(); };
+  const auto switches = [](const BoundLoad& load) {
+    return load.discrete() == nullptr ? 0 : load.discrete()->switches();
+  };
+  return discrete_states(a) == discrete_states(b) && continuous_states(a) == continuous_states(b) &&
+         period(a) == period(b) && switches(a) == switches(b) &&
+         std::equal(a.frames().begin(), a.frames().end(), b.frames().begin(), b.frames().end(), same);
+}
+
+}  // namespace
+
+std::unique_ptr<BoundLoad> SwitchedLoad::bind(const Model& model) const {
+  Forms forms;
+  for (const auto& form : forms_) {
+    forms.push_back(form->bind(model));
+    if (!alike(*forms.front(), *forms.back()))
+      throw std::invalid_argument(
+          "an event changes where the load acts, its sample or its states; need a change of its numbers alone");
+  }
+  return std::make_unique<BoundSwitchedLoad>(std::move(forms));
+}
+
+}  // namespace withy

@@ -1,0 +1,353 @@
+#include "withy/scene/events.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "withy/core/model/columns.hpp"
+#include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/switched_load.hpp"
+#include "withy/scene/grammar.hpp"
+#include "withy/scene/make.hpp"
+#include "withy/scene/names.hpp"
+
+namespace withy {
+namespace {
+
+using Kind = EventAction::Kind;
+using When = ActingEvent::When;
+
+/// The items of a list of texts; none where it is not there.
+std::vector<Value> items_of(const Value& map, const char* key) {
+  const Value* given = map.find(key);
+  return given == nullptr ? std::vector<Value>{} : given->items();
+}
+
+int direction_of(const Value& event) {
+  const std::string& direction = event.text_at("direction");
+  return direction == "up" ? 1 : (direction == "down" ? -1 : 0);
+}
+
+std::string where(const std::string& event) { return "/events/" + event; }
+
+/// "loads.motor.amplitude=5" in its parts; nothing where it is not of that form.
+struct Setting {
+  std::string load, key, text;
+};
+std::optional<Setting> setting_of(const std::string& text) {
+  constexpr std::string_view root = "loads.";
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || !text.starts_with(root)) return {};
+  const std::string path = text.substr(root.size(), equals - root.size());
+  const std::size_t dot = path.find('.');
+  if (dot == 0 || dot == std::string::npos || dot + 1 == path.size()) return {};
+  const std::string key = path.substr(dot + 1);
+  return Setting{path.substr(0, dot), key.substr(0, key.find_last_not_of(' ') + 1), text.substr(equals + 1)};
+}
+
+}  // namespace
+
+SceneEvents::SceneEvents(Value events, const Document& document, const Checker& checker)
+    : events_(std::move(events)), document_(document), checker_(checker) {
+  for (const auto& [name, event] : events_.members())
+    if (const Value* after = event.find("after")) followed_.insert(after->text());
+}
+
+bool SceneEvents::acts(const std::string& name, const Value& event) const {
+  return !event.at("do").members().empty() || !event.has("hinge") || event.number_at("delay") > 0 ||
+         event.at("repeat").boolean() || followed_.contains(name);
+}
+
+void SceneEvents::loosen(Value& hinges) {
+  std::set<std::string> released;
+  for (const auto& [name, event] : events_.members())
+    for (const Value& body : items_of(event.at("do"), "release")) released.insert(body.text());
+  for (auto& [name, hinge] : hinges.members()) {
+    const Value *child = hinge.find("child"), *type = hinge.find("type");
+    if (child == nullptr || type == nullptr || type->kind() != Value::Kind::text || type->text() != "weld") continue;
+    if (child->kind() != Value::Kind::text || !released.contains(child->text().substr(0, child->text().find('.'))))
+      continue;
+    hinge.set("type", Value(std::string("free"), type->place()));
+    held_.push_back(name);
+  }
+}
+
+/// What a load is given in the scene with what an event sets of it.
+Value SceneEvents::changed(const std::string& event, const std::string& load, const Value& given, bool& changes) const {
+  Value form = given;
+  for (const Value& item : items_of(events_.at(event).at("do"), "set")) {
+    const std::optional<Setting> setting = setting_of(item.text());
+    if (!setting || setting->load != load) continue;
+    Value* target = &form;
+    std::string key = setting->key;
+    for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.')) {
+      const auto next = std::find_if(target->members().begin(), target->members().end(),
+                                     [&](const Value::Member& m) { return m.first == key.substr(0, dot); });
+      if (next == target->members().end()) break;
+      target = &next->second;
+      key.erase(0, dot + 1);
+    }
+    Document read;
+    if (read_document(setting->text, {item.place().line, given.place().path + "/" + setting->key}, read,
+                      checker_.diagnostics()))
+      target->set(key, read.root);
+    changes = true;
+  }
+  return form;
+}
+
+std::unique_ptr<Load> SceneEvents::with_forms(const std::string& name, std::unique_ptr<Load> load) {
+  const Value* loads = document_.root.find("loads");
+  const Value* given = loads == nullptr ? nullptr : loads->find(name);
+  bool switched = false;
+  std::vector<std::unique_ptr<Load>> forms;
+  forms.push_back(std::move(load));
+  for (const auto& [event, value] : events_.members()) {
+    const Value& asked = value.at("do");
+    for (const char* key : {"switch_on", "switch_off"})
+      for (const Value& item : items_of(asked, key)) switched = switched || item.text() == name;
+    if (given == nullptr) continue;
+    bool changes = false;
+    const Value form = changed(event, name, *given, changes);
+    if (!changes) continue;
+    switched = true;
+    Made<Load> made;
+    const auto checked = check_plugin_map(form, "type", grammar::load_members(), checker_, made);
+    if (!checked) continue;
+    auto object = make_object(*made.plugin, *checked, checker_);
+    if (object == nullptr) continue;
+    forms_[{event, name}] = static_cast<double>(forms.size());
+    forms.push_back(std::move(object));
+  }
+  if (!switched) return std::move(forms.front());
+  return std::make_unique<SwitchedLoad>(std::move(forms));
+}
+
+std::optional<SceneEvents::Watched> SceneEvents::hinge_number(const Model& model, const Value& event) const {
+  const std::string path = event.place().path;
+  const std::string& hinge = event.text_at("hinge");
+  const int number = model.hinge(hinge);
+  if (number < 0) {
+    std::vector<std::string> names;
+    for (const HingeNode& h : model.hinges()) names.push_back(h.name);
+    checker_.key_error(path + "/hinge", fmt::format("no hinge {}{}", in_quotes(hinge), checker_.suggest(hinge, names)));
+    return {};
+  }
+  const Slot& slot = model.layout().hinges[static_cast<std::size_t>(number)];
+  const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[static_cast<std::size_t>(number)].hinge);
+  const std::size_t component = event.count_at("component");
+  if (component >= rates.size()) {
+    checker_.key_error(path, fmt::format("hinge '{}' has {} rates; there is no component {} (they count from 0)", hinge,
+                                         rates.size(), component));
+    return {};
+  }
+  if (event.text_at("of") == "rate")
+    return Watched{static_cast<int>(model.layout().positions + slot.speed + component), 0};
+  if (!rates[component].coordinate) {
+    checker_.key_error(
+        path, fmt::format("rate {} of hinge '{}' is the derivative of no coordinate; need of: rate", component, hinge));
+    return {};
+  }
+  return Watched{static_cast<int>(slot.position + *rates[component].coordinate), 0};
+}
+
+std::optional<SceneEvents::Watched> SceneEvents::signal(const Model& model, const std::vector<SensorNode>& outputs,
+                                                        const Value& event) const {
+  const std::string& name = event.text_at("signal");
+  std::vector<std::string> known;
+  std::size_t column = 0;
+  for (const SensorNode& node : outputs) {
+    for (const Column& c : columns_of(node)) {
+      if (c.name == name) return Watched{-1, column};
+      known.push_back(c.name);
+      ++column;
+    }
+  }
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    const auto find = [&](const std::vector<Column>& columns, std::size_t first) -> std::optional<Watched> {
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        if (columns[i].name == name) return Watched{static_cast<int>(first + i), 0};
+        known.push_back(columns[i].name);
+      }
+      return {};
+    };
+    if (const auto at = find(coordinate_columns(model.hinges()[h]), slot.position)) return at;
+    if (const auto at = find(rate_columns(model.hinges()[h]), model.layout().positions + slot.speed)) return at;
+  }
+  checker_.key_error(event.place().path + "/signal", fmt::format("no number of an output or a hinge {}{}",
+                                                                 in_quotes(name), checker_.suggest(name, known)));
+  return {};
+}
+
+std::optional<SceneEvents::Watched> SceneEvents::watched(const Model& model, const std::vector<SensorNode>& outputs,
+                                                         const Value& event) const {
+  int triggers = 0;
+  for (const char* key : {"hinge", "signal", "at", "after"}) triggers += event.has(key) ? 1 : 0;
+  if (triggers != 1) {
+    checker_.key_error(event.place().path, fmt::format("says {} when it happens; need one of: hinge, signal, at, after",
+                                                       triggers == 0 ? "nothing of" : "more than one thing of"));
+    return {};
+  }
+  if (event.has("hinge")) return hinge_number(model, event);
+  if (event.has("signal")) return signal(model, outputs, event);
+  return Watched{};
+}
+
+void SceneEvents::add_hinge_actions(const Model& model, const Value& asked, const char* key, Kind kind,
+                                    ActingEvent& event) const {
+  for (const Value& item : items_of(asked, key)) {
+    const int hinge = model.hinge(item.text());
+    if (hinge < 0) {
+      std::vector<std::string> names;
+      for (const HingeNode& h : model.hinges()) names.push_back(h.name);
+      checker_.diagnostics().error(
+          item.place(), fmt::format("no hinge {}{}", in_quotes(item.text()), checker_.suggest(item.text(), names)));
+      continue;
+    }
+    const auto h = static_cast<std::size_t>(hinge);
+    if (model.layout().hinges[h].speeds == 0) {
+      checker_.diagnostics().error(item.place(), fmt::format("hinge '{}' does not move", item.text()));
+    } else if (model.driven(h)) {
+      checker_.diagnostics().error(
+          item.place(),
+          fmt::format("hinge '{}' is moved by a motion; a hinge that is locked at first has no motion but "
+                      "stands under initial: {{locked: …}}",
+                      item.text()));
+    } else {
+      event.actions.push_back({kind, h, 0});
+    }
+  }
+}
+
+void SceneEvents::add_releases(const Model& model, const Value& asked, ActingEvent& event) const {
+  for (const Value& item : items_of(asked, "release")) {
+    const std::vector<int> body = model.segments(item.text());
+    std::string problem;
+    if (body.empty()) {
+      std::vector<std::string> names;
+      for (const BodyNode& b : model.bodies()) names.push_back(b.segment ? b.segment->whole : b.name);
+      problem = fmt::format("no body {}{}", in_quotes(item.text()), checker_.suggest(item.text(), names));
+    } else if (const std::string& hinge = model.hinges()[static_cast<std::size_t>(body.front())].name;
+               std::find(held_.begin(), held_.end(), hinge) == held_.end()) {
+      problem =
+          fmt::format("body '{}' hangs on hinge '{}', which is no weld; need a weld to let go", item.text(), hinge);
+    }
+    if (!problem.empty()) {
+      checker_.diagnostics().error(item.place(), problem);
+      continue;
+    }
+    event.actions.push_back({Kind::unlock, static_cast<std::size_t>(body.front()), 0});
+  }
+}
+
+void SceneEvents::add_load_actions(const Model& model, const std::string& name, const Value& asked,
+                                   ActingEvent& event) const {
+  const auto index_of = [&](const Value& item, const std::string& load) -> std::optional<std::size_t> {
+    std::vector<std::string> names;
+    for (const LoadNode& node : model.loads()) names.push_back(node.name);
+    const auto at = std::find(names.begin(), names.end(), load);
+    if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
+    checker_.diagnostics().error(item.place(),
+                                 fmt::format("no load {}{}", in_quotes(load), checker_.suggest(load, names)));
+    return {};
+  };
+  for (const auto& [key, form] : {std::pair{"switch_on", SwitchedLoad::as_stated}, {"switch_off", SwitchedLoad::off}})
+    for (const Value& item : items_of(asked, key))
+      if (const auto load = index_of(item, item.text())) event.actions.push_back({Kind::form, *load, form});
+  std::set<std::string> set;
+  for (const Value& item : items_of(asked, "set")) {
+    const std::optional<Setting> setting = setting_of(item.text());
+    if (!setting) {
+      checker_.diagnostics().error(item.place(),
+                                   fmt::format("got {}; need loads.NAME.PARAMETER=VALUE", in_quotes(item.text())));
+      continue;
+    }
+    const auto load = index_of(item, setting->load);
+    const auto form = forms_.find({name, setting->load});
+    if (load && form != forms_.end() && set.insert(setting->load).second)
+      event.actions.push_back({Kind::form, *load, form->second});
+  }
+}
+
+void SceneEvents::add_actions(const Model& model, const std::string& name, const Value& asked,
+                              ActingEvent& event) const {
+  add_hinge_actions(model, asked, "unlock", Kind::unlock, event);
+  add_releases(model, asked, event);
+  add_hinge_actions(model, asked, "lock", Kind::lock, event);
+  add_load_actions(model, name, asked, event);
+}
+
+std::vector<std::size_t> SceneEvents::locked_at_start(const Model& model) const {
+  std::vector<std::string> names = held_;
+  const Value* initial = document_.root.find("initial");
+  const Value* given = initial == nullptr ? nullptr : initial->find("locked");
+  if (given != nullptr) {  // what is wrong with it is said where the state is read
+    names.clear();
+    for (const Value& item : given->items()) names.push_back(item.text());
+  }
+  std::set<std::size_t> locked;
+  for (const std::string& name : names)
+    if (const int hinge = model.hinge(name); hinge >= 0) locked.insert(static_cast<std::size_t>(hinge));
+  return {locked.begin(), locked.end()};
+}
+
+void SceneEvents::resolve_after(EventPlan& plan) const {
+  std::vector<std::string> names;
+  for (const ActingEvent& event : plan.events) names.push_back(event.name);
+  for (ActingEvent& event : plan.events) {
+    if (event.when != When::after) continue;
+    const std::string& after = events_.at(event.name).text_at("after");
+    const auto at = std::find(names.begin(), names.end(), after);
+    if (at == names.end()) {
+      checker_.key_error(where(event.name) + "/after",
+                         fmt::format("no event {}{}", in_quotes(after), checker_.suggest(after, names)));
+    } else {
+      event.after = static_cast<std::size_t>(at - names.begin());
+    }
+  }
+}
+
+void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, std::vector<RunEvent>& plain) {
+  EventPlan plan;
+  bool senses = false;
+  for (const auto& [name, given] : events_.members()) {
+    const std::optional<Watched> number = watched(model, outputs, given);
+    if (!number) continue;
+    if (!acts(name, given)) {
+      const auto function = [index = static_cast<std::size_t>(number->element), value = given.number_at("value")](
+                                double, std::span<const double> y) { return y[index] - value; };
+      plain.push_back({name, function, direction_of(given), given.at("stop").boolean()});
+      continue;
+    }
+    ActingEvent event;
+    event.name = name;
+    event.when = given.has("at") ? When::at : given.has("after") ? When::after : When::passes;
+    event.element = number->element;
+    event.column = number->column;
+    senses = senses || (event.when == When::passes && event.element < 0);
+    event.value = given.number_at("value");
+    event.direction = direction_of(given);
+    if (event.when == When::at) event.time = given.number_at("at");
+    event.delay = given.number_at("delay");
+    event.stops = given.at("stop").boolean();
+    add_actions(model, name, given.at("do"), event);
+    // What is only looked for is told every time.
+    event.repeats = given.at("repeat").boolean() || (given.at("do").members().empty() && !event.stops);
+    plan.events.push_back(std::move(event));
+  }
+  if (plan.events.empty()) return;
+  resolve_after(plan);
+  if (senses) plan.sensors = outputs;
+  try {
+    const std::vector<std::size_t> locked = locked_at_start(model);
+    plan.find_configurations({locked});
+    plan.start = plan.configuration(locked);
+  } catch (const std::invalid_argument& e) {
+    checker_.key_error("/events", e.what());
+    return;
+  }
+  add_events(model, std::move(plan));
+}
+
+}  // namespace withy
