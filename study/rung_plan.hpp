@@ -2,10 +2,10 @@
 /// Which formulation a run of `auto` is in and when: goal-oriented model adaptivity (Oden & Prudhomme, J. Comput. Phys.
 /// 182, 2002, 496–515). The goals are the outputs, each within a share of its own range. Before the run two coarse runs
 /// of it are compared: one in the highest rung, and one that begins in the least rung and lands on the steps of the
-/// first, so that the errors of both steps are nearly the same and their difference is that of the models. It is made in
-/// each rung throughout until one holds the accuracy. Where none does, it goes back over a window of time one rung up
-/// where its error has used up more than the window's share. As it goes on to the end from every error that it has made,
-/// later growth of errors counts.
+/// first, so that the errors of both steps are nearly the same and their difference is that of the models. It is made
+/// in each rung throughout until one holds the accuracy. Where none does, it goes back over a window of time one rung
+/// up where its error has used up more than the window's share. As it goes on to the end from every error that it has
+/// made, later growth of errors counts.
 #pragma once
 
 #include <string>
