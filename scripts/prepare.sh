@@ -3,9 +3,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-build_packages=(g++ cmake ninja-build pkg-config libeigen3-dev libspectra-dev libboost-dev libboost-context-dev libfmt-dev libspdlog-dev libyaml-cpp-dev libminizip-dev zlib1g-dev
+build_packages=(g++ cmake ninja-build libeigen3-dev libspectra-dev libboost-dev libboost-context-dev libfmt-dev libspdlog-dev libyaml-cpp-dev libminizip-dev zlib1g-dev
   nlohmann-json3-dev libcli11-dev libsundials-dev libhdf5-dev libgtest-dev libgmock-dev libbenchmark-dev
-  python3-dev python3-numpy python3-pytest python3-mypy pybind11-dev)
+  python3-dev python3-numpy python3-pytest python3-mypy pybind11-dev pkg-config)
 
 # need_packages NAME...: installs those that are missing (Debian); silent where there is nothing to do.
 need_packages() {
