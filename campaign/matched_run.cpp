@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/stepping.hpp"
 #include "withy/core/simulation/stop.hpp"
 #include "withy/results/result_columns.hpp"
@@ -90,7 +91,9 @@ MatchedRun run_prepared(const study::Prepared& prepared, const Measured& data, c
   const EquationsOfMotion& equations = *prepared.equations;
   const State start = begun(*scene.model, scene.initial);
   const double end = std::max(data.times.back(), start.time);
-  Stepping loop(*scene.model, scene.integrator->start(equations, start), {end, scene.output, scene.events});
+  EventActions actions(*scene.model, equations, scene.events);
+  Stepping loop(*scene.model, scene.integrator->start(equations, start),
+                {.end = end, .output = scene.output, .events = actions.watched(), .actions = &actions});
   MatchingObserver observer(prepared, data, control);
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();

@@ -31,7 +31,7 @@ class SwitchedDiscrete final : public DiscretePart {
     return discrete.first(own_);
   }
   [[nodiscard]] LoadView inner(const LoadView& v) const noexcept {
-    return {v.t, v.layout, v.y, own(v.discrete), v.continuous, v.scratch};
+    return {v.t, v.layout, v.y, own(v.discrete), v.continuous, v.scratch, v.accelerations};
   }
 
   std::size_t states() const override { return own_ + 1; }
@@ -116,8 +116,13 @@ class SwitchedContinuous final : public ContinuousPart {
 
 class SwitchedOutput final : public LoadOutput {
  public:
-  SwitchedOutput(const Forms& forms, const SwitchedDiscrete& discrete) : discrete_(discrete), first_(*forms.front()) {}
+  SwitchedOutput(const Forms& forms, const SwitchedDiscrete& discrete)
+      : discrete_(discrete),
+        first_(*forms.front()),
+        needs_accelerations_(std::any_of(forms.begin(), forms.end(),
+                                         [](const auto& form) { return form->output()->needs_accelerations(); })) {}
   std::size_t outputs() const override { return first_.output()->outputs(); }
+  bool needs_accelerations() const override { return needs_accelerations_; }
   void read(const LoadView& view, std::span<double> values) const noexcept override {
     if (const BoundLoad* load = discrete_.acting(view.discrete)) {
       load->output()->read(discrete_.inner(view), values);
@@ -129,6 +134,7 @@ class SwitchedOutput final : public LoadOutput {
  private:
   const SwitchedDiscrete& discrete_;
   const BoundLoad& first_;
+  bool needs_accelerations_;  ///< in any of its forms
 };
 
 /// The value that a host sets is the same in all forms.
