@@ -62,7 +62,10 @@ class Lazy {
 
 /// A sweep with its loads; for everything that is not hot, the reference, tangents and observations.
 template <class Sweep>
-class SweepEquations final : public EquationsOfMotion, public LinearlyImplicit, public ForwardDynamics, public MassSolver {
+class SweepEquations final : public EquationsOfMotion,
+                             public LinearlyImplicit,
+                             public ForwardDynamics,
+                             public MassSolver {
  public:
   SweepEquations(std::shared_ptr<const Model> model, Terms terms, const NodeTree& tree,
                  const std::vector<Terms>& node_terms)
