@@ -18,8 +18,8 @@ using test::Made;
 using testing::HasSubstr;
 
 /// A scene run to its end.
-struct Ran : Made {
-  explicit Ran(const std::string& text, const std::string& formulation = "") : Made(text, formulation) {
+struct ActedRun : Made {
+  explicit ActedRun(const std::string& text, const std::string& formulation = "") : Made(text, formulation) {
     RunOptions options;
     options.end = end_of_run(scene);
     options.output = scene.output;
@@ -65,7 +65,7 @@ initial: {hinges: {axle: {rate: [1]}, clutch: {rate: [4]}}}
 
 // ω⁺ = (I₁ω₁ + I₂ω₂)/(I₁ + I₂), and ½ I₁I₂/(I₁ + I₂) Δω² is lost.
 TEST(ActingEvents, a_clutch_that_locks_keeps_the_momentum_and_says_what_it_lost) {
-  const Ran run(discs(R"(time: {end: 3, output: 0.25}
+  const ActedRun run(discs(R"(time: {end: 3, output: 0.25}
 events:
   grip: {hinge: clutch, value: 2, direction: up, do: {lock: clutch}}
   let_go: {after: grip, delay: 1, do: {unlock: clutch}}
@@ -113,7 +113,7 @@ TEST(ActingEvents, a_boom_that_latches_keeps_the_momenta_of_its_satellite) {
   const std::string latch = "events: {latch: {hinge: root, value: 90 deg, direction: up, do: {lock: root}}}\n";
   for (const std::string formulation : {"quadratic", "exact"}) {
     SCOPED_TRACE(formulation);
-    const Ran run(deployment(latch), formulation);
+    const ActedRun run(deployment(latch), formulation);
     ASSERT_EQ(run.summary.status, RunStatus::completed) << run.summary.message;
     ASSERT_EQ(run.summary.events.size(), 1U);
     EXPECT_TRUE(run.summary.momentum.conserved);
@@ -209,7 +209,7 @@ TEST(ActingEvents, a_latch_is_the_limit_of_a_stiff_damper) {
 
 // J ω̇ = A sin(2πt/P): ω = AP/(2πJ) (1 − cos(2πt/P)), and the acceleration is half of its greatest at P/12.
 TEST(ActingEvents, times_are_found_to_the_accuracy_of_the_integrator) {
-  const Ran run(R"(format: withy/1
+  const ActedRun run(R"(format: withy/1
 integrator: {name: dop853, rtol: 1e-12, atol: 1e-14}
 time: {end: 2, output: 0.5}
 bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
@@ -228,7 +228,7 @@ events:
 }
 
 TEST(ActingEvents, a_body_that_is_released_flies_by_its_weight_alone) {
-  const Ran run(R"(format: withy/1
+  const ActedRun run(R"(format: withy/1
 gravity: [0, -9.81, 0]
 integrator: {name: dop853, rtol: 1e-12, atol: 1e-13}
 time: {end: 2, output: 0.25}
@@ -266,7 +266,7 @@ events: {throw: {at: 1, do: {release: ball}}}
 }
 
 TEST(ActingEvents, loads_are_switched_and_their_numbers_set) {
-  const Ran run(R"(format: withy/1
+  const ActedRun run(R"(format: withy/1
 integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
 time: {end: 9, output: 1}
 bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
@@ -292,13 +292,13 @@ events:
   hold: {at: 0.5, do: {lock: clutch}}
   free: {at: 0.5, do: {unlock: clutch}}
 )";
-  const Ran run(discs(both));
+  const ActedRun run(discs(both));
   ASSERT_EQ(run.summary.events.size(), 2U);
   EXPECT_EQ(run.summary.events[0].name, "hold");
   EXPECT_EQ(run.summary.events[1].time, 0.5);
   EXPECT_NEAR(run.rate("axle"), 3.4, 1e-12) << "what locks for no time at all has its impulse";
 
-  const Ran chatter(discs(R"(time: {end: 1, output: 0.5}
+  const ActedRun chatter(discs(R"(time: {end: 1, output: 0.5}
 loads: {motor: {type: hinge-effort, hinge: clutch, law: constant, value: -1}}
 outputs: {lever: {type: effort, hinge: clutch}}
 events:
@@ -310,7 +310,7 @@ events:
   EXPECT_THAT(chatter.summary.message, HasSubstr("events follow each other without time between them"));
   EXPECT_EQ(chatter.summary.final.time, 0.5);
 
-  const Ran missed(
+  const ActedRun missed(
       discs("time: {end: 1, output: 0.5}\nevents: {late: {hinge: clutch, value: 9, do: {lock: clutch}}}\n"));
   EXPECT_EQ(missed.summary.status, RunStatus::completed);
   EXPECT_THAT(missed.summary.message, HasSubstr("'late' did not happen"));
@@ -342,12 +342,13 @@ TEST(ActingEvents, a_final_state_goes_on_as_the_run_would_have) {
   let_go: {after: grip, delay: 1, do: {unlock: clutch}}
 loads: {motor: {type: hinge-effort, hinge: axle, law: constant, value: 0.3}}
 )";
-  const Ran whole(discs("time: {end: 3, output: 1}\n" + events)), half(discs("time: {end: 1, output: 1}\n" + events));
+  const ActedRun whole(discs("time: {end: 3, output: 1}\n" + events)),
+      half(discs("time: {end: 1, output: 1}\n" + events));
   const std::string state = write_state(*half.scene.model, half.summary.final);
   EXPECT_THAT(state, HasSubstr(R"("locked":["clutch"],"settings":{"motor":"off"})"));
   std::string rest = discs("time: {end: 3, output: 1}\n" + events);
   rest.replace(rest.find("initial:"), rest.find("time:") - rest.find("initial:"), "initial: " + state + "\n");
-  const Ran other(rest);
+  const ActedRun other(rest);
   ASSERT_EQ(other.scene.initial.y, half.summary.final.y);
   EXPECT_EQ(other.summary.events.size(), 1U);
   for (std::size_t i = 0; i < whole.summary.final.y.size(); ++i)
@@ -357,7 +358,7 @@ loads: {motor: {type: hinge-effort, hinge: axle, law: constant, value: 0.3}}
 TEST(ActingEvents, happen_in_a_session_as_in_a_run_and_snapshots_go_over_them) {
   const std::string text =
       deployment("events: {latch: {hinge: root, value: 90 deg, direction: up, do: {lock: root, switch_off: motor}}}\n");
-  const Ran run(text);
+  const ActedRun run(text);
   const Made made(text);
   Session session(*made.scene.model, *made.equations, *made.scene.integrator, made.scene.initial, {});
   const double latched = run.summary.events.at(0).time;

@@ -201,9 +201,10 @@ TEST(Validity, watching_allocates_nothing_after_construction) {
   const auto beyond = m.in("quadratic");
   Validity validity;
   ValidityWatch watch(*m.scene.model, *m.equations, beyond.get(), validity);
-  watch.observe(m.scene.initial, 0);
+  watch.observe(m.scene.initial, 0, m.scene.initial.time);
   const std::size_t before = allocations();
-  for (std::size_t i = 1; i <= 20; ++i) watch.observe(m.scene.initial, i * 1'000'000);
+  for (std::size_t i = 1; i <= 20; ++i) watch.observe(m.scene.initial, i * 1'000'000, m.scene.initial.time);
+  watch.settle();
   EXPECT_EQ(allocations(), before);
   EXPECT_EQ(validity.samples, 21U);
 }
@@ -215,7 +216,7 @@ TEST(Validity, indicators_of_one_state_are_its_closed_forms) {
   const auto beyond = m.in("quadratic");
   Validity validity;
   ValidityWatch watch(*m.scene.model, *m.equations, beyond.get(), validity);
-  watch.finish(m.scene.initial, 0, true);
+  watch.finish(m.scene.initial, m.scene.initial.time, true);
   ASSERT_EQ(validity.bodies.size(), 1U);
   const BodyValidity& b = validity.bodies[0];
   EXPECT_NEAR(b.rate_ratio, 1.5 / held_frequency(m), 1e-5);
