@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "withy/core/kinematics/observation.hpp"
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/model.hpp"
 
 namespace withy {
@@ -37,7 +38,13 @@ Arrows::Arrows(const Scene& scene, const Terms& terms, const std::vector<Column>
 
 void Arrows::add(const std::string& output, const Value& value, const Model& model, std::vector<BodyNode>& bodies) {
   const std::string& type = value.text_at("type");
-  if (type == "reaction") {
+  if (const Value* constraint = value.find("constraint"); type == "reaction" && constraint != nullptr) {
+    for (const LoopClosure* loop : loops_of(model)) {
+      if (loop->name() != constraint->text() || loop->b().body < 0) continue;
+      add_vector(output, "force", ".fx", loop->b(), loop->a(), loop->offset().R);
+      add_vector(output, "moment", ".mx", loop->b(), loop->a(), loop->offset().R);
+    }
+  } else if (type == "reaction") {
     const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(model.hinge(value.text_at("hinge")))];
     const FrameIndex at{hinge.child, hinge.child_frame}, axes{hinge.parent, hinge.parent_frame};
     add_vector(output, "force", ".fx", at, axes, hinge.offset.R);

@@ -42,6 +42,18 @@ std::vector<std::string> all_cells(const std::string& table) {
   return all;
 }
 
+TEST(Run, OfClosedLoopsAndOfActingEventsLeavesWhatTheyDid) {
+  const Folder folder;
+  Finished f = withy(folder, {"run", "scenes/gallery/four-bar.yaml", "--set", "time.end=0.1", "--out", "loop"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(folder.read("loop/run.json"), HasSubstr("Loops were closed at the start"));
+  EXPECT_THAT(lines(folder.read("loop/results.csv")).front(), HasSubstr("pin.fx[N]"));
+  f = withy(folder, {"run", "scenes/boom-latch.yaml", "--set", "time.end=6", "--out", "latch"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("energy lost in elbow_latch"));
+  EXPECT_EQ(json::parse(folder.read("latch/run.json")).at("events").size(), 4U) << "three at times, the elbow's latch";
+}
+
 /// Sensors look at accepted states: a run goes the same way with and without them, to the last digit.
 TEST(Run, OutputsAreColumnsAndChangeNothingElse) {
   const Folder folder;
