@@ -72,6 +72,11 @@ void SceneEvents::loosen(Value& hinges) {
   }
 }
 
+void SceneEvents::fasten(Value& hinges) const {
+  for (auto& [name, hinge] : hinges.members())
+    if (std::find(held_.begin(), held_.end(), name) != held_.end()) hinge.set("type", Value(std::string("weld")));
+}
+
 /// What a load is given in the scene with what an event sets of it.
 Value SceneEvents::changed(const std::string& event, const std::string& load, const Value& given, bool& changes) const {
   Value form = given;

@@ -23,6 +23,8 @@ class SceneEvents {
 
   /// Makes welds whose child is to be released hinges of type `free`, which are locked until then.
   void loosen(Value& hinges);
+  /// Takes that back, in the values that the scene is kept as: they are to make the same scene again.
+  void fasten(Value& hinges) const;
   /// The load in all forms that events give it; as it is where they give it none.
   std::unique_ptr<Load> with_forms(const std::string& name, std::unique_ptr<Load> load);
   /// Adds the events that act to the model, which has its loads; the others to `plain`.

@@ -55,6 +55,7 @@ class SceneBuilder {
     events.loosen(hinges);
     SceneTree tree = build_tree(part("bodies"), hinges, gravity_, checker_);
     scene_.source.set("bodies", std::move(tree.bodies));
+    events.fasten(tree.hinges);
     scene_.source.set("hinges", std::move(tree.hinges));
     scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);

@@ -63,7 +63,7 @@ Eigen::VectorXcd eigenvalues_with_zeros(Eigen::MatrixXd A) {
     const Eigen::Index kept = rows.rank();
     if (kept == A.rows()) break;
     const Eigen::MatrixXd Z = rows.matrixZ();
-    const Eigen::MatrixXd V = Z.topRows(kept).transpose();
+    const Eigen::MatrixXd V = rows.colsPermutation() * Z.topRows(kept).transpose();
     A = V.transpose() * A * V;
   }
   values.head(A.rows()) = eigenvalues(A);

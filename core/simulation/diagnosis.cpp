@@ -147,16 +147,22 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
     text = "The mass matrix of this formulation lost its positive definiteness: det M is " +
            sign_text(h.end.determinant_sign) + ", at the start it was " + sign_text(h.start.determinant_sign);
   } else {
-    return std::string("The mass matrix is not the reason: it is ") +
-           (h.end.smallest_eigenvalue > 0 ? "positive definite" : "indefinite") +
-           " as it was at the start. Condition of M " + brief(h.end.condition) + " (at the start " +
-           brief(h.start.condition) + ").";
+    text = std::string("The mass matrix is ") + (h.end.smallest_eigenvalue > 0 ? "positive definite" : "indefinite") +
+           " as it was at the start: det M is " + sign_text(h.end.determinant_sign);
   }
   const Eigen::VectorXd direction = weakest_direction(h, negative);
   return text + ". Condition of M " + brief(h.end.condition) + " (at the start " + brief(h.start.condition) +
          "), smallest eigenvalue of its symmetric part " + brief(h.end.smallest_eigenvalue) + " (" +
          brief(h.start.smallest_eigenvalue) + "); the direction of " + (negative ? "negative" : "least") + " mass is " +
          owners_of(layout, {direction.data(), static_cast<std::size_t>(direction.size())}) + ".";
+}
+
+std::string describe_sound(const MassMatrixHistory& h) {
+  if (h.last.size == 0) return "Nothing moves.";
+  return std::string("The mass matrix is not the reason: it is ") +
+         (h.end.smallest_eigenvalue > 0 ? "positive definite" : "indefinite") +
+         " as it was at the start. Condition of M " + brief(h.end.condition) + " (at the start " +
+         brief(h.start.condition) + ").";
 }
 
 double fastest_mode(const Model& model, const DenseSystem& system) {

@@ -41,6 +41,8 @@ MassMatrixHistory examine(const EquationsOfMotion& equations, const State& first
 /// found with each coordinate in the unit in which its own inertia at the start is one, so that it does not depend on
 /// whether angles and modal coordinates are measured in radians, metres or inches.
 std::string describe(const MassMatrixHistory& history, const Layout& layout);
+/// In short, of a run that ended for another reason.
+std::string describe_sound(const MassMatrixHistory& history);
 
 /// Greatest √ of the eigenvalues of M⁻¹K [rad/s], K the stiffness of all bodies: how fast the modes retained can
 /// vibrate in the tree. 0 where the symmetric part of M is not positive definite.

@@ -66,8 +66,10 @@ std::string explain(Stop& stop, double time, const MassMatrixHistory* history, c
     stop.status = RunStatus::singular;
   std::string text = "t = " + brief(time) + " s: " + stop.reason + ".";
   if (!stop.physical) return text;
-  return text + (history != nullptr ? " " + describe(*history, layout)
-                                    : " The mass matrix, with so many rows, was not examined.");
+  if (history == nullptr) return text + " The mass matrix, with so many rows, was not examined.";
+  const bool sound =
+      stop.status != RunStatus::singular && !history->lost_definiteness() && !history->end.weakest.empty();
+  return text + " " + (sound ? describe_sound(*history) : describe(*history, layout));
 }
 
 }  // namespace withy

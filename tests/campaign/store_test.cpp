@@ -164,7 +164,7 @@ keep: {final: [shoulder, elbow], peak: [link2.tip.deflection_y, elbow.rate]}
 
 TEST(Sweeps, InLanesAreTheSameToTheLastByteWhateverTheCompany) {
   const PlanFolder folder;
-  const Plan plan = arm_plan(folder, "");
+  const Plan plan = arm_plan(folder, "evaluation: in-lanes\n");
   const SweepOutcome one = run(folder, plan, "one", {1, 1, 1, {}});
   EXPECT_EQ(one.ran, 36U);
   EXPECT_EQ(one.alone, 12U);
@@ -188,7 +188,7 @@ TEST(Sweeps, InLanesAreTheSameToTheLastByteWhateverTheCompany) {
 
 TEST(Sweeps, InLanesAgreeWithCasesByThemselvesToRounding) {
   const PlanFolder folder;
-  const Plan in_lanes = arm_plan(folder, "");
+  const Plan in_lanes = arm_plan(folder, "evaluation: in-lanes\n");
   run(folder, in_lanes, "lanes", {1, 1, 1, {}});
   const Plan alone = arm_plan(folder, "evaluation: one-at-a-time\n");
   EXPECT_THROW(Store(folder / "lanes", alone, false), ResultsError) << "one store has results of one kind";
@@ -211,7 +211,7 @@ TEST(Sweeps, InLanesAgreeWithCasesByThemselvesToRounding) {
 
 TEST(Sweeps, EndLanesThatAreAtWorkWhereTheyAreInterrupted) {
   const PlanFolder folder;
-  const Plan plan = arm_plan(folder, "");
+  const Plan plan = arm_plan(folder, "evaluation: in-lanes\n");
   SweepSettings settings{1, 1, 1, {}};
   int asked = 0;
   settings.control.interrupted = [&] { return ++asked > 300; };

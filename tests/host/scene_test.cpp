@@ -106,7 +106,7 @@ TEST(HostedScene, with_inputs_runs_in_the_formulation_that_is_needed) {
   Scene arm = Scene::read(library(), WITHY_SOURCES "/scenes/commanded-arm.yaml");
   arm.set("initial", "{inputs: {command: 2}}").set("time.end", 1.5);
   const host::Result quadratic = arm.run();
-  const host::Result automatic = arm.set("formulation", "{name: auto, accuracy: 0.1%}").run();
+  const host::Result automatic = arm.set("formulation", "{name: auto, accuracy: 0.01%}").run();
   ASSERT_EQ(automatic.status, "completed") << automatic.message;
   EXPECT_GT(json::parse(automatic.json)["certificate"]["stretches"]["list"].size(), 1U);
   EXPECT_NEAR(automatic.column("shoulder").back(), quadratic.column("shoulder").back(), 0.01);
