@@ -51,7 +51,7 @@ class PlanBuilder {
     if (const Value* given = find("derived")) read_derived(*given, reader_, plan_);
     if (const Value* given = find("correlation")) read_correlation(*given, reader_, plan_);
     plan_.stop_on_failure = reader_.choice(find("failures"), keys::failures).value_or(0) == 1;
-    plan_.lanes = reader_.choice(find("evaluation"), keys::evaluations).value_or(1) == 0;
+    plan_.lanes = reader_.choice(find("evaluation"), keys::evaluations).value_or(0) == 1;
     if (const Value* keep = find("keep"); keep != nullptr && reader_.is_map(*keep, keys::keep)) {
       plan_.final = reader_.texts(keep->find("final"));
       plan_.peak = reader_.texts(keep->find("peak"));

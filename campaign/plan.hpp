@@ -67,7 +67,7 @@ struct Plan {
   std::vector<double> cholesky;          ///< of their correlations: lower triangle by rows, as many columns as rows
   std::vector<std::string> final, peak;  ///< names of what is kept
   bool stop_on_failure = false;
-  bool lanes = true;        ///< cases that can are evaluated several at once, see case_lanes.hpp
+  bool lanes = false;       ///< cases that can are evaluated several at once, see case_lanes.hpp
   std::string fingerprint;  ///< SHA-256 of all that decides on the bits of the cases: plan, scene, files, programs
 };
 

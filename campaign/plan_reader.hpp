@@ -28,7 +28,7 @@ inline const std::vector<std::string> correlation = {"of", "matrix"};
 inline const std::vector<std::string> design = {"type", "levels"};
 inline const std::vector<std::string> designs = {"product", "one-at-a-time", "morris", "saltelli"};
 inline const std::vector<std::string> failures = {"continue", "stop"};
-inline const std::vector<std::string> evaluations = {"in-lanes", "one-at-a-time"};
+inline const std::vector<std::string> evaluations = {"one-at-a-time", "in-lanes"};
 }  // namespace keys
 
 inline constexpr double most_cases = 1e12;

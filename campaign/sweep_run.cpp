@@ -85,7 +85,7 @@ class Workers {
 
   void note_alone(const std::string& why) {
     const std::lock_guard lock(mutex_);
-    if (outcome_.alone++ == 0) outcome_.alone_because = why;
+    if (outcome_.alone++ == 0 && plan_.lanes) outcome_.alone_because = why;
   }
   void note(const CaseResult& result) {
     ++failed_;

@@ -87,7 +87,7 @@ ExitStatus sweep_run(const SweepArguments& arguments) {
       fmt::format("{} cases{}: {} now in {:.3g} s, {} before\n", outcome.cases,
                   settings.shards > 1 ? fmt::format(" of part {} of {}", settings.shard, settings.shards) : "",
                   outcome.ran, outcome.seconds, outcome.before);
-  if (outcome.alone > 0)
+  if (outcome.alone > 0 && !outcome.alone_because.empty())
     text += fmt::format("{} evaluated one at a time, not four at once: {}\n", outcome.alone, outcome.alone_because);
   if (outcome.failure)
     text += fmt::format("{} failed, the first of them case {}: {}\n", outcome.failed, outcome.failure->index,
@@ -95,7 +95,7 @@ ExitStatus sweep_run(const SweepArguments& arguments) {
   Json j = {{"cases", outcome.cases},   {"before", outcome.before},   {"ran", outcome.ran},
             {"failed", outcome.failed}, {"seconds", outcome.seconds}, {"store", arguments.store}};
   j["one_at_a_time"] = outcome.alone;
-  if (outcome.alone > 0) j["one_at_a_time_because"] = outcome.alone_because;
+  if (!outcome.alone_because.empty()) j["one_at_a_time_because"] = outcome.alone_because;
   if (whole) {
     const campaign::Collected collected = collected_with_page(arguments.store);
     text += collected_text(collected, arguments.store);

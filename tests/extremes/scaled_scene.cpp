@@ -58,6 +58,18 @@ class Scaler {
     return json;
   }
 
+  /// Those that act make the equations what they are. Their values are angles in the scenes that are compared.
+  Json events(const Value* all) const {
+    Json json = Json::object();
+    if (all == nullptr) return json;
+    for (const auto& [name, event] : all->members()) {
+      json[name] = plain(event);
+      for (const char* key : {"at", "delay"})
+        if (json[name].contains(key)) json[name][key] = event.number_at(key) * gauge_.factor("s");
+    }
+    return json;
+  }
+
   /// Bodies, hinges, loads or motions: each has its plugin's members and the common ones.
   template <class Interface>
   Json parts(const Value* all, const std::vector<ParameterSpec>& common) const {
@@ -152,6 +164,7 @@ std::string scaled_text(const Scene& scene, Registry& registry, const Gauge& gau
   json["bodies"] = scaler.parts<Body>(scene.source.find("bodies"), grammar::body_members());
   json["hinges"] = scaler.parts<Hinge>(scene.source.find("hinges"), grammar::hinge_members());
   json["loads"] = scaler.parts<Load>(scene.source.find("loads"), grammar::load_members());
+  json["events"] = scaler.events(scene.source.find("events"));
   json["motions"] = scaler.parts<Motion>(scene.source.find("motions"), grammar::motion_members());
   return json.dump(1);
 }
