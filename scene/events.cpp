@@ -242,7 +242,7 @@ void SceneEvents::add_releases(const Model& model, const Value& asked, ActingEve
       checker_.diagnostics().error(item.place(), problem);
       continue;
     }
-    event.actions.push_back({Kind::unlock, static_cast<std::size_t>(body.front()), 0});
+    event.actions.push_back({Kind::unlock, static_cast<std::size_t>(body.front()), 0, true});
   }
 }
 
@@ -287,8 +287,8 @@ std::vector<std::size_t> SceneEvents::locked_at_start(const Model& model) const 
   std::vector<std::string> names = held_;
   const Value* initial = document_.root.find("initial");
   const Value* given = initial == nullptr ? nullptr : initial->find("locked");
-  if (given != nullptr) {  // what is wrong with it is said where the state is read
-    names.clear();
+  if (given != nullptr) {                       // what is wrong with it is said where the state is read
+    if (initial->has("events")) names.clear();  // a state that a run has written: it says all
     for (const Value& item : given->items()) names.push_back(item.text());
   }
   std::set<std::size_t> locked;

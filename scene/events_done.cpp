@@ -39,7 +39,7 @@ class EventsDoneReader {
       : model_(model), checker_(checker), state_(state), book_(model) {}
 
   bool read(const Value& value) {
-    if (const Value* locked = value.find("locked")) read_locked(*locked);
+    if (const Value* locked = value.find("locked")) read_locked(*locked, value.has("events"));
     if (const Value* settings = value.find("settings")) read_settings(*settings);
     if (const Value* events = value.find("events")) read_events(*events);
     if (book_.any()) check_locked(value);
@@ -52,7 +52,8 @@ class EventsDoneReader {
     good_ = false;
   }
 
-  void read_locked(const Value& value) {
+  /// \param whole the list says all; else bodies that are to be released hang on their welds still
+  void read_locked(const Value& value, bool whole) {
     const auto refuse = [&](const Place& place, const std::string& why) {
       checker_.diagnostics().error(place, why);
       good_ = false;
@@ -68,6 +69,11 @@ class EventsDoneReader {
         return refuse(item.place(),
                       fmt::format("no hinge {}{}", in_quotes(item.text()), checker_.suggest(item.text(), names)));
       locked.push_back(static_cast<std::size_t>(hinge));
+    }
+    if (!whole && book_.any()) {
+      for (const ActingEvent& event : book_.plan().events)
+        for (const EventAction& action : event.actions)
+          if (action.releases) locked.push_back(action.index);
     }
     std::sort(locked.begin(), locked.end());
     locked.erase(std::unique(locked.begin(), locked.end()), locked.end());

@@ -22,6 +22,7 @@ struct EventAction {
   Kind kind = Kind::lock;
   std::size_t index = 0;  ///< of the hinge or the load
   double form = 0;
+  bool releases = false;  ///< what is unlocked is a weld to the scene, and held until then
 };
 
 /// An event of a scene.

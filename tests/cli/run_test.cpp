@@ -52,6 +52,13 @@ TEST(Run, OfClosedLoopsAndOfActingEventsLeavesWhatTheyDid) {
   ASSERT_EQ(f.status, 0) << f.err;
   EXPECT_THAT(f.out, HasSubstr("energy lost in elbow_latch"));
   EXPECT_EQ(json::parse(folder.read("latch/run.json")).at("events").size(), 4U) << "three at times, the elbow's latch";
+  // The cover hangs on its weld until it is released, whatever else is locked at first.
+  const auto rows = lines(folder.read("latch/results.csv"));
+  const auto head = cells(rows.front());
+  const auto y = static_cast<std::size_t>(std::find(head.begin(), head.end(), "clasp.y[m]") - head.begin());
+  ASSERT_LT(y, head.size());
+  EXPECT_EQ(cells(rows.at(11)).at(y), "0") << "at 0.5 s";
+  EXPECT_LT(std::stod(cells(rows.at(41)).at(y)), -0.1) << "at 2 s";
 }
 
 /// Sensors look at accepted states: a run goes the same way with and without them, to the last digit.
