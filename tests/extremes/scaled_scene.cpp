@@ -159,6 +159,8 @@ std::string scaled_text(const Scene& scene, Registry& registry, const Gauge& gau
   const Scaler scaler(scene, registry, gauge, folder);
   Json json = scaler.members(scene.source, grammar::scene_members());
   json.erase("initial");
+  if (const Value* initial = scene.source.find("initial"); initial != nullptr && initial->has("locked"))
+    json["initial"] = {{"locked", plain(initial->at("locked"))}};
   json["formulation"] = plain(scene.source.at("formulation"));
   json["integrator"] = {{"name", "dopri5"}};
   json["bodies"] = scaler.parts<Body>(scene.source.find("bodies"), grammar::body_members());
