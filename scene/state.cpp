@@ -210,7 +210,9 @@ class StateReader {
     for (const LoadNode& load : model_.loads())
       if (load.load->input() != nullptr) names.push_back(load.name);
     for (const auto& [name, member] : value.members()) {
-      const auto named = [&](const LoadNode& load) { return load.name == name && load.load->input() != nullptr; };
+      const auto named = [&, &wanted = name](const LoadNode& load) {
+        return load.name == wanted && load.load->input() != nullptr;
+      };
       const auto load = std::find_if(model_.loads().begin(), model_.loads().end(), named);
       if (load == model_.loads().end()) {
         key_error(member, fmt::format("no load of type 'input' {}{}", in_quotes(name), checker_.suggest(name, names)));

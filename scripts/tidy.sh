@@ -7,5 +7,5 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cmake --preset release -B build/tidy -DWITHY_PRECOMPILE_HEADERS=OFF --log-level=WARNING >/dev/null
 # The build's flags are those of g++: clang need not know all of its warnings. What it counts in system headers is noise.
 printf '%s\0' "${files[@]:-$@}" |
-  xargs -0 -n 2 -P "$(nproc)" clang-tidy -p build/tidy --quiet --extra-arg=-Wno-unknown-warning-option \
+  xargs -0 -n 2 -P "$(nproc)" clang-tidy -p build/tidy --quiet --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-unused-command-line-argument \
     2> >(grep -vE '^[0-9]+ warnings? generated\.$' >&2)
