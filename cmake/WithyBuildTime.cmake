@@ -31,6 +31,9 @@ if(WITHY_PRECOMPILE_HEADERS STREQUAL "")
   endif()
 endif()
 
+# Who works on a room changes one source at a time: -DWITHY_UNITE_SOURCES=OFF compiles file by file.
+option(WITHY_UNITE_SOURCES "Compile several sources of a room as one" ON)
+
 add_library(withy-precompiled INTERFACE)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Warnings that follow the flow through inlined functions of the library: false ones (GCC bug 105651 and its like),
@@ -49,7 +52,7 @@ endif()
 
 # withy_unite(TARGET [COUNT]): compiles its sources twelve (COUNT) at a time.
 function(withy_unite target)
-  if(precompile)
+  if(precompile AND WITHY_UNITE_SOURCES)
     set(count 12)
     if(ARGC GREATER 1)
       set(count ${ARGV1})
