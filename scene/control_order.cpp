@@ -5,6 +5,8 @@
 
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/model/signal_source.hpp"
+#include "withy/core/plugin/sampled_part.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 
@@ -89,6 +91,20 @@ void name_signals(const Document& document, Model* model, SceneNames& names, Reg
     for (const auto& [name, given] : map_of(key).members()) names.signals.add(name);
   if (std::any_of(loads.begin(), loads.end(), [](const Value::Member& load) { return measures(load.second); }))
     model->set_measured(measurable(map_of("outputs"), *model, document, names, registry));
+}
+
+void give_outputs(Model& model, const std::vector<SensorNode>& outputs, const Checker& checker) {
+  if (model.measured() == nullptr) return;
+  model.set_measured(std::make_shared<const std::vector<SensorNode>>(outputs));
+  for (const LoadNode& node : model.loads()) {
+    const auto* sampled = dynamic_cast<const SampledPart*>(node.load->discrete());
+    try {
+      for (const std::string& name : sampled == nullptr ? std::vector<std::string>{} : sampled->measures())
+        static_cast<void>(find_signal(model, name));
+    } catch (const std::invalid_argument& e) {
+      checker.key_error("/loads/" + node.name, e.what());
+    }
+  }
 }
 
 std::set<std::string> needed_loads(const Value& load, const std::set<std::string>& loads) {

@@ -107,7 +107,7 @@ ReferenceTrack track_reference(const Prepared& prepared, Registry& registry, con
                                const Control& control, std::vector<std::size_t>& evaluations) {
   ReferenceTrack track;
   track.tolerance = std::clamp(of_accuracy * accuracy, 1e-7, 1e-2);
-  track.start = begun(prepared.model(), prepared.scene.initial);
+  track.start = begun(prepared.model(), *prepared.rungs.front().equations, prepared.scene.initial);
   track.end = end_of_run(prepared.scene);
   track.integrator =
       cheapest_integrator(prepared, registry, outputs, track.tolerance, track.start,

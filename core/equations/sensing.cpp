@@ -1,8 +1,11 @@
 #include "withy/core/equations/sensing.hpp"
 
+#include <algorithm>
+
 #include "withy/core/equations/sensed_reactions.hpp"
 #include "withy/core/kinematics/sensed_steps.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/sampled_part.hpp"
 
 namespace withy::equations {
 namespace {
@@ -14,7 +17,15 @@ struct Found {
   bool motion = false, motion_efforts = false, energies = false, reactions = false;
 };
 
-class Sensing final : public SensedState, public SensedLoops {
+/// Count of numbers that a load gives, of the load that gives most.
+std::size_t most_given(const Model& model) {
+  std::size_t most = 0;
+  for (const LoadNode& node : model.loads())
+    if (node.load->output() != nullptr) most = std::max(most, node.load->output()->outputs());
+  return most;
+}
+
+class Sensing final : public SensedState, public SensedLoops, public SensedLoads {
  public:
   Sensing(std::unique_ptr<const sensed::Plan> plan, const EquationsOfMotion& equations, const AppliedLoads& loads)
       : plan_(std::move(plan)),
@@ -25,6 +36,7 @@ class Sensing final : public SensedState, public SensedLoops {
         rates_(equations.size()),
         load_efforts_(layout().speeds),
         motion_efforts_(layout().speeds),
+        load_scratch_(plan_->model.load_scratch() + most_given(plan_->model)),
         pass_(*plan_),
         multipliers_(loops_ != nullptr ? loops_->closing_equations() : 0),
         wrenches_(loops_ != nullptr ? loops_->frames().size() : 0),
@@ -88,6 +100,15 @@ class Sensing final : public SensedState, public SensedLoops {
       load.curvature += cut.curvature.col(i) * state_->y[body.modal.position + static_cast<std::size_t>(i)];
     load.elastic = Vector3::Zero() - cut.stiffness.cwiseProduct(load.curvature);  // no −0
     return load;
+  }
+  double given(std::size_t load, std::size_t number, std::span<const double> y) noexcept override {
+    const LoadNode& node = plan_->model.loads()[load];
+    const std::span<double> scratch(load_scratch_);
+    const std::size_t count = node.load->output()->outputs();
+    LoadView view = node.view(state_->time, y, layout(), scratch.subspan(count));
+    view.accelerations = accelerations();
+    node.load->output()->read(view, scratch.first(count));
+    return scratch[number];
   }
   BodyEnergies energies(int index) noexcept override {
     find_motion();
@@ -156,7 +177,7 @@ class Sensing final : public SensedState, public SensedLoops {
   std::unique_ptr<Observation> seen_;
   const State* state_ = nullptr;
   Found found_;
-  std::vector<double> rates_, load_efforts_, motion_efforts_;
+  std::vector<double> rates_, load_efforts_, motion_efforts_, load_scratch_;
   Energies energies_;
   sensed::Pass<First> pass_;
   std::vector<double> multipliers_;

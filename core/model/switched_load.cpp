@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/sampled_part.hpp"
 
 namespace withy {
 namespace {
@@ -17,10 +18,15 @@ std::size_t continuous_states(const BoundLoad& load) {
   return load.continuous() == nullptr ? 0 : load.continuous()->states();
 }
 
+const SampledPart* sampled_part(const BoundLoad& load) { return dynamic_cast<const SampledPart*>(load.discrete()); }
+
 /// What of the forms changes at instants, and which of them acts.
-class SwitchedDiscrete final : public DiscretePart {
+class SwitchedDiscrete final : public DiscretePart, public SampledPart {
  public:
-  explicit SwitchedDiscrete(const Forms& forms) : forms_(forms), own_(discrete_states(*forms.front())) {}
+  explicit SwitchedDiscrete(const Forms& forms) : forms_(forms), own_(discrete_states(*forms.front())) {
+    for (const auto& form : forms)
+      if (const SampledPart* part = sampled_part(*form)) measured_.push_back(part->measures().size());
+  }
   /// The form that acts; null where the load is off.
   [[nodiscard]] const BoundLoad* acting(std::span<const double> discrete) const noexcept {
     const double form = discrete[own_];
@@ -56,6 +62,23 @@ class SwitchedDiscrete final : public DiscretePart {
     const BoundLoad* load = acting(discrete);
     if (load != nullptr && own_ > 0) load->discrete()->renew(t, positions, speeds, crossing, own(discrete), scratch);
   }
+  std::vector<std::string> measures() const override {
+    std::vector<std::string> all;
+    for (const auto& form : forms_)
+      if (const SampledPart* part = sampled_part(*form))
+        for (const std::string& name : part->measures()) all.push_back(name);
+    return all;
+  }
+  void renew_measured(double t, const Crossing& crossing, std::span<const double> measured,
+                      std::span<double> discrete) const noexcept override {
+    const BoundLoad* load = acting(discrete);
+    std::size_t first = 0;
+    for (std::size_t f = 0; f < measured_.size(); ++f) {
+      if (forms_[f].get() == load)
+        sampled_part(*load)->renew_measured(t, crossing, measured.subspan(first, measured_[f]), own(discrete));
+      first += measured_[f];
+    }
+  }
   void add(double t, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
     const BoundLoad* load = acting(discrete);
     if (load != nullptr && own_ > 0) load->discrete()->add(t, own(discrete), efforts);
@@ -63,7 +86,8 @@ class SwitchedDiscrete final : public DiscretePart {
 
  private:
   const Forms& forms_;
-  std::size_t own_;  ///< count of the forms' discrete states
+  std::size_t own_;                    ///< count of the forms' discrete states
+  std::vector<std::size_t> measured_;  ///< one a form, where they are sampled: how many numbers it measures
 };
 
 /// All that the acting form gives from the whole state.
