@@ -69,7 +69,8 @@ std::shared_ptr<const std::vector<SensorNode>> measurable(const Value& outputs, 
 
 bool measures(const Value& load) {
   const Value* type = load.find("type");
-  return load.has("of") || (type != nullptr && type->kind() == Value::Kind::text && type->text() == "expression");
+  return load.has("of") || load.has("schedule") ||
+         (type != nullptr && type->kind() == Value::Kind::text && type->text() == "expression");
 }
 
 }  // namespace
@@ -117,8 +118,9 @@ std::set<std::string> needed_loads(const Value& load, const std::set<std::string
       if (loads.contains(name)) found.insert(name);
     }
   }
-  if (const Value* formula = load.find("value"); formula != nullptr && formula->kind() == Value::Kind::text)
-    add_words(formula->text(), loads, found);
+  for (const char* key : {"value", "schedule"})
+    if (const Value* text = load.find(key); text != nullptr && text->kind() == Value::Kind::text)
+      add_words(text->text(), loads, found);
   return found;
 }
 

@@ -5,6 +5,7 @@
 #include "withy/core/equations/sensed_reactions.hpp"
 #include "withy/core/kinematics/sensed_steps.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/load_numbers.hpp"
 #include "withy/core/plugin/sampled_part.hpp"
 
 namespace withy::equations {
@@ -25,6 +26,16 @@ std::size_t most_given(const Model& model) {
   return most;
 }
 
+const LoadNumbers* numbers_of(const LoadNode& node) { return dynamic_cast<const LoadNumbers*>(node.load.get()); }
+
+/// How many numbers each load tells of itself.
+std::vector<std::size_t> counts_of_numbers(const Model& model) {
+  std::vector<std::size_t> counts;
+  for (const LoadNode& node : model.loads())
+    counts.push_back(numbers_of(node) == nullptr ? 0 : numbers_of(node)->numbers().size());
+  return counts;
+}
+
 class Sensing final : public SensedState, public SensedLoops, public SensedLoads {
  public:
   Sensing(std::unique_ptr<const sensed::Plan> plan, const EquationsOfMotion& equations, const AppliedLoads& loads)
@@ -37,6 +48,8 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
         load_efforts_(layout().speeds),
         motion_efforts_(layout().speeds),
         load_scratch_(plan_->model.load_scratch() + most_given(plan_->model)),
+        counts_(counts_of_numbers(plan_->model)),
+        load_numbers_(counts_.empty() ? 0 : *std::max_element(counts_.begin(), counts_.end())),
         pass_(*plan_),
         multipliers_(loops_ != nullptr ? loops_->closing_equations() : 0),
         wrenches_(loops_ != nullptr ? loops_->frames().size() : 0),
@@ -110,6 +123,14 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
     node.load->output()->read(view, scratch.first(count));
     return scratch[number];
   }
+  std::span<const double> numbers(std::size_t load) noexcept override {
+    const LoadNode& node = plan_->model.loads()[load];
+    const std::span<double> own = std::span(load_numbers_).first(counts_[load]);
+    LoadView view = node.view(state_->time, y(), layout(), load_scratch_);
+    view.accelerations = accelerations();
+    if (const LoadNumbers* told = numbers_of(node)) told->show(view, own);
+    return own;
+  }
   BodyEnergies energies(int index) noexcept override {
     find_motion();
     const auto b = static_cast<std::size_t>(index);
@@ -178,6 +199,8 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
   const State* state_ = nullptr;
   Found found_;
   std::vector<double> rates_, load_efforts_, motion_efforts_, load_scratch_;
+  std::vector<std::size_t> counts_;  ///< of the numbers that each load tells of itself
+  std::vector<double> load_numbers_;
   Energies energies_;
   sensed::Pass<First> pass_;
   std::vector<double> multipliers_;

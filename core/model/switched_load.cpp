@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/load_numbers.hpp"
 #include "withy/core/plugin/sampled_part.hpp"
 
 namespace withy {
@@ -184,7 +185,7 @@ class SwitchedInput final : public InputPort {
   const InputPort& port_;
 };
 
-class BoundSwitchedLoad final : public BoundLoad {
+class BoundSwitchedLoad final : public BoundLoad, public LoadNumbers {
  public:
   explicit BoundSwitchedLoad(Forms forms)
       : forms_(std::move(forms)), discrete_(forms_), continuous_(forms_, discrete_) {
@@ -220,6 +221,18 @@ class BoundSwitchedLoad final : public BoundLoad {
   const ContinuousPart* continuous() const override { return &continuous_; }
   const LoadOutput* output() const override { return output_.get(); }
   const InputPort* input() const override { return input_.get(); }
+  std::vector<SensorColumn> numbers() const override {
+    const auto* told = dynamic_cast<const LoadNumbers*>(forms_.front().get());
+    return told == nullptr ? std::vector<SensorColumn>{} : told->numbers();
+  }
+  void show(const LoadView& view, std::span<double> values) const noexcept override {
+    const auto* told = dynamic_cast<const LoadNumbers*>(discrete_.acting(view.discrete));
+    if (told != nullptr) {
+      told->show(discrete_.inner(view), values);
+    } else {
+      std::fill(values.begin(), values.end(), 0.0);
+    }
+  }
   double end() const override { return forms_.front()->end(); }
   void begin(State& state) const override { forms_.front()->begin(state); }
   std::unique_ptr<BoundLoad> rebound(const Model& model, const Terms& terms) const override {

@@ -39,6 +39,9 @@ class ChosenSensing final : public SensedState, public SensedLoads {
   double given(std::size_t load, std::size_t number, std::span<const double> y) noexcept override {
     return dynamic_cast<SensedLoads&>(*now_).given(load, number, y);
   }
+  std::span<const double> numbers(std::size_t load) noexcept override {
+    return dynamic_cast<SensedLoads&>(*now_).numbers(load);
+  }
 
  private:
   std::vector<std::unique_ptr<SensedState>> all_;

@@ -29,6 +29,8 @@ class SensedLoads {
   /// One of the numbers of the load's LoadOutput, with the accelerations of the state observed and other discrete
   /// states: those of `y`, laid out as State::y.
   [[nodiscard]] virtual double given(std::size_t load, std::size_t number, std::span<const double> y) noexcept = 0;
+  /// What a load that has LoadNumbers tells of itself at the state observed; until the next call.
+  [[nodiscard]] virtual std::span<const double> numbers(std::size_t load) noexcept = 0;
 };
 
 }  // namespace withy

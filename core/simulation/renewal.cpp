@@ -24,7 +24,7 @@ std::vector<SensorNode> up_to(const Model& model, std::size_t number) {
 
 }  // namespace
 
-Renewal::Renewal(const Model& model, const EquationsOfMotion& equations) : model_(model), equations_(equations) {
+Renewal::Renewal(const Model& model, const EquationsOfMotion& equations) : model_(model) {
   std::size_t scratch = 0, most = 0, last = 0;
   bool outputs = false, loads = false;
   for (const LoadSlot& slot : model.layout().discrete_slots) {

@@ -37,7 +37,6 @@ class Renewal {
   void measure(const Measured& measured, const State& state);
 
   const Model& model_;
-  const EquationsOfMotion& equations_;
   std::vector<Measured> measured_;        ///< one a slot of discrete states
   std::unique_ptr<SensorReader> reader_;  ///< null: no load measures outputs
   std::unique_ptr<SensedState> sensed_;   ///< for what loads give; null: none measures it

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/core/model/hinge_rates.hpp"
 
 namespace withy {
 namespace {
@@ -49,7 +50,47 @@ std::vector<std::string> measured(const Model& model, const ControlEnds& ends) {
     const auto h = static_cast<std::size_t>(model.hinge(ends.hinge->hinge));
     names.push_back(rate_columns(model.hinges()[h])[speed - model.layout().hinges[h].speed].name);
   }
+  names.insert(names.end(), ends.also.begin(), ends.also.end());
   return names;
+}
+
+/// SI unit of a signal; "1" where it is not known.
+std::string unit_of(const Model& model, const std::string& signal) {
+  const auto find = [&](const std::vector<Column>& columns) -> std::string {
+    for (const Column& c : columns)
+      if (c.name == signal) return c.unit;
+    return {};
+  };
+  for (const HingeNode& hinge : model.hinges())
+    for (const auto& columns : {coordinate_columns(hinge), rate_columns(hinge)})
+      if (std::string unit = find(columns); !unit.empty()) return unit;
+  if (model.measured() != nullptr) {
+    for (const SensorNode& node : *model.measured())
+      if (node.sensor != nullptr)
+        if (std::string unit = find(columns_of(node)); !unit.empty()) return unit;
+  }
+  return "1";
+}
+
+/// Of what is commanded.
+std::string unit_of(const Model& model, const std::vector<InputPlace>& places) {
+  if (places.empty()) return "1";
+  const InputPlace& place = places.front();
+  if (place.speed < 0) return place.moment ? "N m" : "N";
+  const auto speed = static_cast<std::size_t>(place.speed);
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const Slot& slot = model.layout().hinges[h];
+    if (speed >= slot.speed && speed < slot.speed + slot.speeds)
+      return hinge_rates(*model.hinges()[h].hinge)[speed - slot.speed].angular ? "N m" : "N";
+  }
+  return "1";
+}
+
+/// A unit with its words replaced.
+std::string in_words(std::string unit, const std::string& command, const std::string& signal) {
+  for (const auto& [word, meaning] : {std::pair<std::string, std::string>("command", command), {"signal", signal}})
+    if (const std::size_t at = unit.find(word); at != std::string::npos) unit.replace(at, word.size(), meaning);
+  return unit;
 }
 
 std::vector<InputPlace> places_of(const Model& model, const ControlEnds& ends) {
@@ -83,6 +124,20 @@ BoundControl::BoundControl(const Model& model, ControlEnds ends, std::shared_ptr
   if (ends_.acts) expect(places_.size(), block_->outputs(), "places to act", "to");
   for (const InputPlace& place : places_)
     if (place.speed < 0) frames_.push_back(place.frame);
+  const std::string signal = names_.empty() ? "1" : unit_of(model, names_.front());
+  const std::string command =
+      places_.empty() ? in_words(block_->unit_of_output(), "1", signal) : unit_of(model, places_);
+  const auto unit = [&](const std::string& given) { return in_words(given, command, signal); };
+  for (std::size_t i = 0; i < outputs(); ++i)
+    numbers_.push_back({outputs() == 1 ? "command" : "command." + std::to_string(i), command});
+  for (const ControlBlock::Shown& s : block_->shown()) numbers_.push_back({s.name, unit(s.unit)});
+  const std::vector<std::string> states = block_->states();
+  for (std::size_t i = 0; i < states.size(); ++i) numbers_.push_back({states[i], unit(block_->unit_of_state(i))});
+}
+
+void BoundControl::show_states_alone() {
+  const auto first = numbers_.begin() + static_cast<std::ptrdiff_t>(outputs());
+  numbers_.erase(first, first + static_cast<std::ptrdiff_t>(block_->shown().size()));
 }
 
 void BoundControl::wrenches(double /*t*/, std::span<const FrameMotion> /*motions*/,

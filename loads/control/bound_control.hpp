@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/load_numbers.hpp"
 #include "withy/loads/control/control_load.hpp"
 
 namespace withy {
 
 /// A controller of one model: what it measures by name, and where it acts. It adds nothing by itself.
-class BoundControl : public BoundLoad, public LoadOutput {
+class BoundControl : public BoundLoad, public LoadOutput, public LoadNumbers {
  public:
   /// \throws std::invalid_argument where the ends do not fit the model or the block.
   BoundControl(const Model& model, ControlEnds ends, std::shared_ptr<const ControlBlock> block);
@@ -31,8 +32,12 @@ class BoundControl : public BoundLoad, public LoadOutput {
   void begin(State& /*state*/) const override {}
   const LoadOutput* output() const override { return this; }
   std::size_t outputs() const override { return block_->outputs(); }
+  /// Commands, what the block shows, its states.
+  std::vector<SensorColumn> numbers() const override { return numbers_; }
 
  protected:
+  /// Leaves away what the block shows of its inputs, which are not known at all times.
+  void show_states_alone();
   [[nodiscard]] const ControlEnds& ends() const { return ends_; }
   [[nodiscard]] const ControlBlock& block() const { return *block_; }
   [[nodiscard]] const std::shared_ptr<const ControlBlock>& shared_block() const { return block_; }
@@ -50,6 +55,7 @@ class BoundControl : public BoundLoad, public LoadOutput {
   std::vector<std::string> names_;
   std::vector<InputPlace> places_;
   std::vector<FrameIndex> frames_;
+  std::vector<SensorColumn> numbers_;
 };
 
 /// The controller of a model by the clock.

@@ -47,6 +47,12 @@ class ContinuousControl final : public BoundControl, public ContinuousPart {
     const std::span<const double> v = command(view);
     std::copy(v.begin(), v.end(), values.begin());
   }
+  void show(const LoadView& view, std::span<double> values) const noexcept override {
+    const std::span<const double> w = measure(view);
+    block().output(view.t, w, view.continuous, values.first(outputs()));
+    block().show(view.t, w, view.continuous, values.subspan(outputs()));
+    std::copy(view.continuous.begin(), view.continuous.end(), values.end() - std::ssize(states_));
+  }
   bool add_derivatives(const LoadView& view, ContinuousDerivatives& to) const override {
     if (std::any_of(along_.begin(), along_.end(), [](int speed) { return speed < 0; })) return false;
     const auto m = static_cast<Eigen::Index>(block().inputs()), p = static_cast<Eigen::Index>(block().outputs()),

@@ -13,10 +13,14 @@ class SampledControl final : public BoundControl, public DiscretePart, public Sa
  public:
   SampledControl(const Model& model, ControlEnds ends, std::shared_ptr<const ControlBlock> block)
       : BoundControl(model, std::move(ends), std::move(block)), count_(this->block().states().size()) {
-    for (const std::string& name : names()) static_cast<void>(find_signal(model, name));  // throws where there is none
+    for (const std::string& name : names()) sources_.push_back(find_signal(model, name));  // throws where there is none
+    sees_inputs_ = std::all_of(sources_.begin(), sources_.end(), [](const SignalSource& s) {
+      return s.kind == SignalSource::Kind::position || s.kind == SignalSource::Kind::rate;
+    });
+    if (!sees_inputs_) show_states_alone();
   }
 
-  std::size_t scratch() const override { return 0; }
+  std::size_t scratch() const override { return names().size(); }
   const DiscretePart* discrete() const override { return this; }
   std::vector<double> discontinuities() const override { return {}; }  // seen at the samples alone
   std::size_t states() const override { return 1 + count_ + (ends().delay + 1) * outputs(); }
@@ -46,10 +50,23 @@ class SampledControl final : public BoundControl, public DiscretePart, public Sa
     const std::span<const double> v = view.discrete.subspan(1 + count_, outputs());
     std::copy(v.begin(), v.end(), values.begin());
   }
+  /// The command that acts, what the block shows of the state as it is, its states since the last sample.
+  void show(const LoadView& view, std::span<double> values) const noexcept override {
+    const std::span<const double> z = view.discrete.subspan(1, count_);
+    read(view, values.first(outputs()));
+    std::copy(z.begin(), z.end(), values.end() - static_cast<std::ptrdiff_t>(count_));
+    if (!sees_inputs_) return;
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+      view.scratch[i] = sources_[i].kind == SignalSource::Kind::rate ? view.speeds()[sources_[i].index]
+                                                                     : view.positions()[sources_[i].index];
+    block().show(view.t, view.scratch.first(sources_.size()), z, values.subspan(outputs()));
+  }
   using BoundControl::add;
 
  private:
   std::size_t count_;  ///< states of the block
+  std::vector<SignalSource> sources_;
+  bool sees_inputs_ = false;  ///< all are coordinates and rates
 };
 
 }  // namespace

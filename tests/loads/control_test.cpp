@@ -157,6 +157,17 @@ TEST(Control, JacobiansAreThoseOfTheWholeLoop) {
   expect_jacobian(
       arm + "loads: {servo: {type: pid, hinge: axle, proportional: 50, integral: 30, derivative: 5, limit: 3}}\n",
       1e-7);
+  expect_jacobian(arm +
+                      "loads: {servo: {type: pid, hinge: axle, proportional: [[-1, 30], [1, 50]], integral: "
+                      "[[-1, 10], [1, 40]], derivative: [[-1, 2], [1, 7]], filter: 0.1, schedule: axle.rate}}\n",
+                  1e-7);
+  for (const char* lag : {"0", "0.1"})
+    expect_jacobian(arm +
+                        "loads:\n  law: {type: expression, value: 20 - axle, to: nothing}\n  wheel: {type: "
+                        "reaction-wheel, of: law, hinge: axle, viscous: 0.2, coulomb: 0.5, coulomb_speed: 0.3, "
+                        "speed_limit: 300, time_constant: " +
+                        std::string(lag) + "}\n",
+                    1e-7);
   // What is measured at a frame of a flexible body, and acts at one, is differentiated numerically.
   expect_jacobian(arm + R"(outputs: {end: {type: frame, of: boom.tip, show: velocity}, turn: {type: gyro, of: boom.tip}}
 loads:
