@@ -81,16 +81,26 @@ Matrix3 inertia_matrix(double xx, double yy, double zz, double xy, double xz, do
   return I;
 }
 
-std::string inertia_problem(double mass, const Matrix3& inertia) {
-  if (!(mass >= 0)) return fmt::format("got the mass {} kg; need at least 0", mass);
-  const Vector3 I = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+void InertiaRule::settle(const std::string& link, const Place& place, double mass, Matrix3& inertia) const {
+  if (!(mass >= 0)) return diagnostics.error(place, fmt::format("got the mass {} kg; need at least 0", mass));
+  const Eigen::SelfAdjointEigenSolver<Matrix3> principal(inertia);
+  const Vector3 I = principal.eigenvalues();
   const double rounding = 1e-12 * inertia.cwiseAbs().maxCoeff();
-  if (I[0] >= -rounding && I[2] - I[0] - I[1] <= rounding) return {};
-  return fmt::format(
-      "no distribution of mass has principal moments {:.6g}, {:.6g}, {:.6g} kg m^2 about its centre: need each at "
-      "least 0 and none "
-      "above the sum of the other two",
-      I[0], I[1], I[2]);
+  if (I[0] >= -rounding && I[2] - I[0] - I[1] <= rounding) return;
+  if (!mend)
+    return diagnostics.error(
+        place, fmt::format("no distribution of mass has principal moments {:.6g}, {:.6g}, {:.6g} kg m^2 about its "
+                           "centre: need each at least 0 and none above the sum of the other two (--mend-inertias "
+                           "takes the nearest that are so)",
+                           I[0], I[1], I[2]));
+  // Second moments along the principal axes, ∫ x² dm = (I_y + I_z − I_x)/2: none may be negative.
+  const Vector3 second = (Vector3::Constant(I.sum() / 2) - I).cwiseMax(0.0);
+  const Vector3 mended = Vector3::Constant(second.sum()) - second;
+  inertia = principal.eigenvectors() * mended.asDiagonal() * principal.eigenvectors().transpose();
+  remarks.push_back(
+      fmt::format("link {}: no distribution of mass has its principal moments {:.4g}, {:.4g}, {:.4g} kg m^2; taken are "
+                  "{:.4g}, {:.4g}, {:.4g}",
+                  in_quotes(link), I[0], I[1], I[2], mended[0], mended[1], mended[2]));
 }
 
 }  // namespace withy::exchange

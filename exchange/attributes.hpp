@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -36,7 +37,14 @@ class Attributes {
 inline Matrix3 turned(const Matrix3& R, const Matrix3& inertia) { return R * inertia * R.transpose(); }
 /// Elements in the order xx, yy, zz, xy, xz, yz.
 Matrix3 inertia_matrix(double xx, double yy, double zz, double xy, double xz, double yz);
-/// Empty where a distribution of mass may have this central inertia [kg m²], else what is wrong with it.
-std::string inertia_problem(double mass, const Matrix3& inertia);
+/// What becomes of inertias that no distribution of mass can have.
+struct InertiaRule {
+  bool mend = false;  ///< the nearest takes their place, with a remark; else they are errors
+  Diagnostics& diagnostics;
+  std::vector<std::string>& remarks;
+
+  /// \param inertia about the centre of mass [kg m²]; mended where that is asked for
+  void settle(const std::string& link, const Place& place, double mass, Matrix3& inertia) const;
+};
 
 }  // namespace withy::exchange

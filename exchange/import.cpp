@@ -66,11 +66,11 @@ ImportedScene import_tree(const ModelImport& what, const std::string& text, Regi
   ImportedScene scene;
   if (root.name == "robot") {
     scene.from = "URDF";
-    tree = read_urdf(root, what.free_base, diagnostics);
+    tree = read_urdf(root, what.free_base, what.mend_inertias, diagnostics);
   } else if (root.name == "mujoco") {
     if (what.free_base) throw std::invalid_argument("--free-base is for URDF; in MJCF a free joint says so");
     scene.from = "MJCF";
-    tree = read_mjcf(root, diagnostics);
+    tree = read_mjcf(root, what.mend_inertias, diagnostics);
   } else {
     diagnostics.error(root.place, "got <" + root.name + ">; need <robot> (URDF) or <mujoco> (MJCF)");
   }
@@ -95,8 +95,8 @@ ImportedScene import_model(const ModelImport& what, Registry& registry) {
   if (text.size() > DocumentLimits::bytes)
     throw SceneError(what.file, {{{}, fmt::format("more than {} MiB", DocumentLimits::bytes >> 20U)}});
   if (extension_of(what.file) != ".dat") return import_tree(what, text, registry);
-  if (!what.flexible.empty() || what.free_base)
-    throw std::invalid_argument("--flexible and --free-base are for URDF and MJCF");
+  if (!what.flexible.empty() || what.free_base || what.mend_inertias)
+    throw std::invalid_argument("--flexible, --free-base and --mend-inertias are for URDF and MJCF");
   if (!(what.length > 0))
     throw std::invalid_argument(
         "--length is missing: ElastoDyn's files of blades and towers have fractions of it alone");

@@ -12,11 +12,12 @@ class Registry;
 namespace withy::exchange {
 
 struct ModelImport {
-  std::string file;        ///< .urdf, .xml (URDF or MJCF, by its root element), .dat (ElastoDyn)
-  std::string flexible;    ///< file that makes links flexible; empty: none. Of URDF and MJCF.
-  bool free_base = false;  ///< whether the root link of a URDF floats
-  double length = 0;       ///< of an ElastoDyn blade or tower [m]
-  double tip_mass = 0;     ///< on the tip of it [kg]
+  std::string file;            ///< .urdf, .xml (URDF or MJCF, by its root element), .dat (ElastoDyn)
+  std::string flexible;        ///< file that makes links flexible; empty: none. Of URDF and MJCF.
+  bool free_base = false;      ///< whether the root link of a URDF floats
+  double length = 0;           ///< of an ElastoDyn blade or tower [m]
+  double tip_mass = 0;         ///< on the tip of it [kg]
+  bool mend_inertias = false;  ///< of URDF and MJCF: the nearest in the place of those that no mass can have
 };
 
 struct ImportedScene {

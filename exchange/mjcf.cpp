@@ -18,7 +18,8 @@ const std::set<std::string, std::less<>> without_mass_or_motion = {"geom",  "sit
 
 class MjcfReader {
  public:
-  MjcfReader(const Element& mujoco, Diagnostics& diagnostics) : mujoco_(mujoco), diagnostics_(diagnostics) {}
+  MjcfReader(const Element& mujoco, bool mend_inertias, Diagnostics& diagnostics)
+      : mujoco_(mujoco), mend_inertias_(mend_inertias), diagnostics_(diagnostics) {}
 
   Tree read() {
     if (const std::string* model = mujoco_.find("model")) tree_.name = *model;
@@ -88,7 +89,7 @@ class MjcfReader {
     for (const Element& child : e.children)
       if (child.name == "joint" || child.name == "freejoint")
         joints.push_back(defaults_.completed(child, around, diagnostics_));
-    const MassProperties mass = masses(e, around);
+    const MassProperties mass = masses(e, name, around);
     for (std::size_t j = 0; j < std::max<std::size_t>(joints.size(), 1); ++j) {
       const bool last = j + 1 >= joints.size();
       Link link{last ? name : fmt::format("{}_{}", name, j + 1), e.place, 0, Vector3::Zero(), Matrix3::Zero()};
@@ -151,7 +152,7 @@ class MjcfReader {
       tree_.remarks.push_back(fmt::format("joint {}: {} {} is left out", in_quotes(joint.name), key, value));
   }
 
-  MassProperties masses(const Element& e, const std::string& around) {
+  MassProperties masses(const Element& e, const std::string& name, const std::string& around) {
     const Element* inertial = e.child("inertial");
     MassProperties m;
     if (inertial != nullptr && from_geoms_ != "true") {
@@ -164,8 +165,7 @@ class MjcfReader {
         m.inertia = a.vector("diaginertia", Vector3::Zero()).asDiagonal();
       }
       m.inertia = turned(angles_.rotation(*inertial, diagnostics_), m.inertia);
-      const std::string problem = inertia_problem(m.mass, m.inertia);
-      if (!problem.empty()) diagnostics_.error(inertial->place, problem);
+      InertiaRule{mend_inertias_, diagnostics_, tree_.remarks}.settle(name, inertial->place, m.mass, m.inertia);
     } else if (from_geoms_ != "false") {
       for (const Element& geom : e.children)
         if (geom.name == "geom")
@@ -176,6 +176,7 @@ class MjcfReader {
   }
 
   const Element& mujoco_;
+  bool mend_inertias_;
   Diagnostics& diagnostics_;
   Tree tree_;
   MjcfDefaults defaults_;
@@ -185,6 +186,8 @@ class MjcfReader {
 
 }  // namespace
 
-Tree read_mjcf(const Element& mujoco, Diagnostics& diagnostics) { return MjcfReader(mujoco, diagnostics).read(); }
+Tree read_mjcf(const Element& mujoco, bool mend_inertias, Diagnostics& diagnostics) {
+  return MjcfReader(mujoco, mend_inertias, diagnostics).read();
+}
 
 }  // namespace withy::exchange

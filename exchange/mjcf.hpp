@@ -9,7 +9,7 @@ namespace withy::exchange {
 
 /// Reads <mujoco>. A body has the frame of its file; a body with several joints hangs on links without mass between
 /// them, in their order. Masses come from <inertial>, else from geoms. What has no place in a scene is remarked upon;
-/// what would change the tree (<include>, <frame>, <replicate>, …) is an error.
-Tree read_mjcf(const Element& mujoco, Diagnostics& diagnostics);
+/// what would change the tree (<include>, <frame>, <replicate>, …) is an error. \param mend_inertias as InertiaRule
+Tree read_mjcf(const Element& mujoco, bool mend_inertias, Diagnostics& diagnostics);
 
 }  // namespace withy::exchange

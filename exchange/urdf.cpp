@@ -23,7 +23,8 @@ Pose origin_of(const Element& parent, Diagnostics& diagnostics) {
   return {R, a.vector("xyz", Vector3::Zero())};
 }
 
-Link urdf_link(const Element& element, Diagnostics& diagnostics) {
+Link urdf_link(const Element& element, const InertiaRule& rule) {
+  Diagnostics& diagnostics = rule.diagnostics;
   Link link{Attributes(element, diagnostics).required("name"), element.place, 0, Vector3::Zero(), Matrix3::Zero()};
   const Element* inertial = element.child("inertial");
   if (inertial == nullptr) return link;
@@ -39,8 +40,7 @@ Link urdf_link(const Element& element, Diagnostics& diagnostics) {
   for (const char* key : {"ixx", "iyy", "izz"}) static_cast<void>(a.required(key));
   const auto n = [&](const char* key) { return a.number(key, 0); };
   link.inertia = turned(at.R, inertia_matrix(n("ixx"), n("iyy"), n("izz"), n("ixy"), n("ixz"), n("iyz")));
-  const std::string problem = inertia_problem(link.mass, link.inertia);
-  if (!problem.empty()) diagnostics.error(inertial->place, problem);
+  rule.settle(link.name, inertial->place, link.mass, link.inertia);
   return link;
 }
 
@@ -173,7 +173,7 @@ void check_circles(const Tree& tree, Diagnostics& diagnostics) {
 
 }  // namespace
 
-Tree read_urdf(const Element& robot, bool free_base, Diagnostics& diagnostics) {
+Tree read_urdf(const Element& robot, bool free_base, bool mend_inertias, Diagnostics& diagnostics) {
   Tree tree;
   if (const std::string* name = robot.find("name")) tree.name = *name;
   tree.gravity_remark = "URDF has none: that of the Earth along -z";
@@ -182,7 +182,7 @@ Tree read_urdf(const Element& robot, bool free_base, Diagnostics& diagnostics) {
     if (e.name.starts_with("xacro:")) {
       diagnostics.error(e.place, "a macro; expand the file with xacro first");
     } else if (e.name == "link") {
-      tree.links.push_back(urdf_link(e, diagnostics));
+      tree.links.push_back(urdf_link(e, {mend_inertias, diagnostics, tree.remarks}));
       if (!links.emplace(tree.links.back().name, static_cast<int>(tree.links.size()) - 1).second)
         diagnostics.error(e.place, "a second link of the name " + in_quotes(tree.links.back().name));
     }

@@ -71,6 +71,8 @@ std::function<ExitStatus()> add_import(CLI::App& c) {
       ->required();
   c.add_option("--flexible", a.model.flexible, "Of a model: file with the links that are beams")->type_name("FILE");
   c.add_flag("--free-base", a.model.free_base, "Of a URDF: its root link floats");
+  c.add_flag("--mend-inertias", a.model.mend_inertias,
+             "Of a model: the nearest inertias in the place of those that no mass can have, each with a remark");
   c.add_option("--length", a.model.length, "Of a blade or tower of ElastoDyn")
       ->type_name("M")
       ->check(CLI::PositiveNumber);

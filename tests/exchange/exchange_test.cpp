@@ -326,6 +326,12 @@ TEST(Import, ErrorsHaveTheirPlacesAndAllComeAtOnce) {
               HasSubstr("the mass -1 kg"));
   EXPECT_THAT(urdf("<link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='9'/></inertial></link>"),
               HasSubstr("no distribution of mass"));
+  // The nearest that a mass can have: second moments 5.5, 3.5, -2.5 become 5.5, 3.5, 0, so that 1, 3, 9
+  // become 3.5, 5.5, 9.
+  file.write(
+      "<robot><link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='3' izz='9'/></inertial></link></robot>");
+  EXPECT_THAT(problems_of({file.file(), {}, false, 0, 0}), HasSubstr("principal moments 1, 3, 9"));
+  EXPECT_THAT(imported({file.file(), {}, false, 0, 0, true}).text, HasSubstr("inertia: [3.5, 5.5, 9, 0, 0, 0]"));
   EXPECT_THAT(urdf("<link name='a'>"), HasSubstr("mismatched tag"));
   file.write("<!DOCTYPE r [<!ENTITY a 'aa'>]><robot/>");
   EXPECT_THAT(problems_of({file.file(), {}, false, 0, 0}), HasSubstr("a document type declaration"));
