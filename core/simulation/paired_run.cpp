@@ -100,9 +100,15 @@ class PairedEquations final : public EquationsOfMotion {
 /// Gives both states at outputs, and renews the discrete states of each.
 class PairObserver final : public SteppingObserver {
  public:
-  PairObserver(const PairedEquations& pair, const PairedRunOptions& options, const State& initial,
-               const std::function<void(const State&, const State&)>& output)
-      : pair_(pair), options_(options), output_(output), first_(initial), second_(initial), emitted_(initial.time) {}
+  PairObserver(const PairedEquations& pair, std::array<Renewal, 2> renewals, const PairedRunOptions& options,
+               const State& initial, const std::function<void(const State&, const State&)>& output)
+      : pair_(pair),
+        renewals_(std::move(renewals)),
+        options_(options),
+        output_(output),
+        first_(initial),
+        second_(initial),
+        emitted_(initial.time) {}
 
   bool before_step(const Stepper& stepper) override {
     const bool spent = options_.most_evaluations > 0 && stepper.statistics().evaluations >= options_.most_evaluations;
@@ -116,8 +122,8 @@ class PairObserver final : public SteppingObserver {
   }
   void renew(Clocks& clocks, State& both) override {
     take(both);
-    clocks.renew(first_);
-    clocks.renew(second_);
+    clocks.renew(first_, renewals_[0]);
+    clocks.renew(second_, renewals_[1]);
     pair_.put(first_.y, 0, both.y);
     pair_.put(second_.y, 1, both.y);
   }
@@ -131,6 +137,7 @@ class PairObserver final : public SteppingObserver {
   }
 
   const PairedEquations& pair_;
+  std::array<Renewal, 2> renewals_;
   const PairedRunOptions& options_;
   const std::function<void(const State&, const State&)>& output_;
   State first_, second_;
@@ -155,12 +162,11 @@ PairedRun run_paired(const Model& model, const EquationsOfMotion& first, const E
   if (has_switches(model)) throw std::invalid_argument("loads with switching functions have no common steps");
   const double began = thread_cpu_seconds();
   const PairedEquations pair(first, second);
-  const State one = begun(model, initial);
   State both{initial.time, std::vector<double>(pair.size())};
-  pair.put(one.y, 0, both.y);
-  pair.put(one.y, 1, both.y);
-  PairObserver observer(pair, options, initial, output);
-  Stepping loop(model, integrator.start(pair, both), {options.end, options.output});
+  pair.put(begun(model, first, initial).y, 0, both.y);
+  pair.put(begun(model, second, initial).y, 1, both.y);
+  PairObserver observer(pair, {Renewal(model, first), Renewal(model, second)}, options, initial, output);
+  Stepping loop(model, pair, integrator.start(pair, both), {options.end, options.output});
   loop.run(observer);
   if (loop.state().time > observer.emitted()) observer.output(loop.state());
   return {loop.state().time, loop.stepper().statistics().evaluations, thread_cpu_seconds() - began};
