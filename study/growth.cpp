@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <stdexcept>
 
 #include "withy/core/analysis/fastest_pole.hpp"
 #include "withy/core/model/closing.hpp"
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
@@ -14,6 +19,68 @@
 
 namespace withy::study {
 namespace {
+
+/// What bends a body by its own length, at its tip: by its static stiffness there.
+struct Strength {
+  std::size_t body = 0;
+  double force = std::numeric_limits<double>::infinity();   ///< [N]
+  double moment = std::numeric_limits<double>::infinity();  ///< of that force over the length [N m]
+};
+
+/// Of the weakest body; infinite where none has a tip.
+Strength weakest_body(const Model& model) {
+  Strength weakest;
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const ModalShape& shape = model.bodies()[b].body->shape();
+    const auto tip = model.bodies()[b].body->station("tip");
+    const Eigen::LLT<Eigen::MatrixXd> factors(shape.stiffness);
+    if (shape.modes() == 0 || !tip || !(shape.length > 0) || factors.info() != Eigen::Success) continue;
+    const Eigen::Matrix3d give = tip->phi * factors.solve(tip->phi.transpose());
+    const double most = give.diagonal().maxCoeff();
+    if (!(most > 0) || shape.length * shape.length / most >= weakest.moment) continue;
+    weakest = {b, shape.length / most, shape.length * shape.length / most};
+  }
+  return weakest;
+}
+
+/// The load that pushes a hinge hardest at one of some times, where that is more than what bends the weakest body by
+/// its length: no such motion is one of this structure.
+std::string wild_load(const Prepared& prepared, const State& state, std::initializer_list<double> times) {
+  const Model& model = prepared.model();
+  const Strength strength = weakest_body(model);
+  if (!std::isfinite(strength.moment)) return {};
+  Work work = prepared.equations->make_work();
+  double most = 1;
+  std::string text;
+  for (const double t : times) {
+    for (std::size_t l = 0; l < model.loads().size(); ++l) {
+      std::vector<double> efforts(model.layout().speeds);
+      prepared.equations->load_efforts(t, state.y, static_cast<int>(l), efforts, work);
+      for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+        const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
+        for (std::size_t i = 0; i < rates.size(); ++i) {
+          const std::size_t speed = model.layout().hinges[h].speed + i;
+          const double times_strength =
+              std::abs(efforts[speed]) / (rates[i].angular ? strength.moment : strength.force);
+          if (!(times_strength > most)) continue;
+          most = times_strength;
+          text = fmt::format(
+              " Load '{}' gives {:.3g} {} on {} at t = {:.4g} s, {:.2g} times what bends '{}' by its length.",
+              model.loads()[l].name, efforts[speed], rates[i].angular ? "N m" : "N", model.layout().speed_names[speed],
+              t, most, model.bodies()[strength.body].name);
+        }
+      }
+    }
+  }
+  return text;
+}
+
+/// Whether a body's formulation has the centrifugal force on deflections and nothing that stiffens.
+bool softens(const Prepared& prepared, const BodyNode& body) {
+  const Terms terms = body.terms.value_or(prepared.scene.formulation->terms());
+  return terms.strain == StrainOrder::linear && terms.products_of_speeds &&
+         (terms.truncation == Truncation::strict || terms.truncation == Truncation::none);
+}
 
 /// What the motion of the bodies explains at the last trusted state: behind it a body may turn as fast as it likes.
 std::string physical_cause(const Prepared& prepared, const RunSummary& summary) {
@@ -25,16 +92,20 @@ std::string physical_cause(const Prepared& prepared, const RunSummary& summary) 
   if (!equations.derivatives(state.time, state.y, rates, work).ok()) return {};
   TreeMotion motion(model);
   motion.update(state.y, std::span<const double>(rates).subspan(model.layout().positions, model.layout().speeds));
-  std::string text;
+  // Where steps collapse the reason lies ahead.
+  const double ahead = summary.status == RunStatus::step_underflow ? summary.steps.largest_step : 0;
+  std::string text = wild_load(prepared, state, {state.time, summary.reached, summary.reached + ahead});
   for (const BodyValidity& b : summary.validity.bodies) {
     const auto index = static_cast<std::size_t>(model.body(b.name));
     const double rate = b.fundamental > 0 ? motion.bodies()[index].rate.norm() / b.fundamental : 0;
     const double buckling = -MotionStiffness(model, index).evaluate(motion.bodies()).least;
     if (rate >= 1)
-      text += fmt::format(
-          " There '{}' turns at {:.3g} times its fundamental frequency of {:.4g} rad/s: where a formulation knows the "
-          "inertia of rotation and not the stiffening it causes, its stiffness is negative from there on.",
-          b.name, rate, b.fundamental);
+      text += fmt::format(" There '{}' turns at {:.3g} times its fundamental frequency of {:.4g} rad/s{}.", b.name,
+                          rate, b.fundamental,
+                          softens(prepared, model.bodies()[index])
+                              ? ": its formulation knows the inertia of rotation and not the stiffening it causes, and "
+                                "its stiffness is negative from there on"
+                              : "");
     if (buckling >= 1)
       text += fmt::format(" There '{}' is compressed by {:.3g} times its buckling load.", b.name, buckling);
   }

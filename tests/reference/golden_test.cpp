@@ -75,5 +75,11 @@ INSTANTIATE_TEST_SUITE_P(Data, Golden,
                          testing::Combine(testing::ValuesIn(golden_scenes), testing::ValuesIn(golden_formulations)),
                          case_name);
 
+/// The kinetic energy to first order: by symmetric_arm.py of this folder, for the planar arms.
+INSTANTIATE_TEST_SUITE_P(FirstOrder, Golden,
+                         testing::Combine(testing::Values("arm-1", "arm-2", "arm-4"),
+                                          testing::Values("symmetric", "symmetric-linear")),
+                         case_name);
+
 }  // namespace
 }  // namespace withy::test

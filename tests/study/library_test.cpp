@@ -146,6 +146,30 @@ TEST(StudyRun, NamesBuckling) {
   EXPECT_NE(r.summary.message.find("column.bending_y[1]"), std::string::npos) << r.summary.message;
 }
 
+/// A torque that rises from 1 N m to a billion within a hundredth of a second, beside one that does nothing wild.
+TEST(StudyRun, NamesALoadThatIsWild) {
+  for (const double torque : {1e4, 1e9, 1e30}) {
+    SceneValues values = SceneValues::parse(
+        "format: withy/1\ntime: {end: 2}\nbodies:\n"
+        "  arm: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 50, modes: 2}}\n"
+        "  bob: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}\nhinges:\n"
+        "  pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}\n"
+        "  tip: {type: weld, parent: arm.tip, child: bob}\nloads:\n"
+        "  calm: {type: hinge-spring, hinge: pivot, stiffness: 3, damping: 0.1}\n"
+        "  motor: {type: hinge-effort, hinge: pivot, law: table, table: [[0, 0], [1, 1], [1.01, 1], [3, 1]]}\n",
+        "wild");
+    const auto row = [](double t, double x) { return Value::list({Value(t), Value(x)}); };
+    values.set("loads.motor.table", Value::list({row(0, 0), row(1, 1), row(1.01, torque), row(3, torque)}), "the test");
+    const CertifiedRun r = run(prepare(values, plugins()), plugins());
+    EXPECT_TRUE(r.summary.status == RunStatus::diverged || r.summary.status == RunStatus::step_underflow);
+    EXPECT_NEAR(r.summary.reached, 1, 0.01);
+    EXPECT_NE(r.summary.message.find("Load 'motor' gives"), std::string::npos) << r.summary.message;
+    EXPECT_NE(r.summary.message.find("times what bends 'arm' by its length"), std::string::npos) << r.summary.message;
+    EXPECT_EQ(r.summary.message.find("'calm'"), std::string::npos) << r.summary.message;
+    EXPECT_EQ(r.summary.message.find("stiffness is negative"), std::string::npos) << "quadratic stiffens";
+  }
+}
+
 TEST(StudyRun, StepsThatAreTooLongAreNamedFirst) {
   const Value rk4 = Value::map({{"name", Value(std::string("rk4"))}, {"step", Value(1e300)}});
   const CertifiedRun r = run_of("two-link-slew", {{"integrator", rk4}}, "quadratic");
