@@ -5,6 +5,7 @@
 
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/report/gltf.hpp"
 #include "withy/results/report/paraview.hpp"
@@ -22,6 +23,7 @@ struct ReportArguments {
   std::string out = report_name;
   int reference = 0;  ///< number of a run; 0: none
   bool force = false;
+  bool json = false;
 };
 
 /// The page of a folder, or the file itself.
@@ -47,8 +49,9 @@ std::string title_of(const std::vector<std::string>& runs) {
   return all;
 }
 
-std::string counted(std::size_t runs, const std::string& file) {
-  return std::to_string(runs) + (runs == 1 ? " run in " : " runs in ") + file + '\n';
+void print_counted(std::size_t runs, const ReportArguments& arguments) {
+  print(arguments.json ? json_text({{"file", arguments.out}, {"runs", runs}})
+                       : std::to_string(runs) + (runs == 1 ? " run in " : " runs in ") + arguments.out + '\n');
 }
 
 /// The motion of runs for other programs, by the ending of the file's name; false where it is that of a page.
@@ -61,7 +64,7 @@ bool wrote_motion(const ReportArguments& arguments, const std::vector<std::strin
     write_file(out, gltf_binary(animations));
   else
     write_paraview(out, animations);
-  print(counted(runs.size(), arguments.out));
+  print_counted(runs.size(), arguments);
   return true;
 }
 
@@ -84,7 +87,7 @@ ExitStatus report(const ReportArguments& arguments) {
   content.title = title_of(content.runs);
   content.reference = arguments.reference - 1;
   write_report(arguments.out, content);
-  print(counted(content.runs.size(), arguments.out));
+  print_counted(content.runs.size(), arguments);
   return ExitStatus::done;
 }
 
@@ -102,6 +105,7 @@ std::function<ExitStatus()> add_report(CLI::App& c) {
       ->type_name("N")
       ->check(CLI::PositiveNumber);
   c.add_flag("--force", a.force, "Replace a file that is no report");
+  add_json(c, a.json);
   return [arguments] { return report(*arguments); };
 }
 
