@@ -226,6 +226,26 @@ class Builder final : public YAML::EventHandler {
   bool whole_ = true;
 };
 
+/// What the parser complains of, as who wrote the file would say it.
+std::string syntax_problem(const YAML::Exception& e, std::string_view text) {
+  namespace Says = YAML::ErrorMsg;
+  const std::string& says = e.msg;
+  if (says == Says::END_OF_MAP_FLOW)
+    return "a map in braces goes on where it should end; is a ',' missing before here, or a '}'?";
+  if (says == Says::END_OF_SEQ_FLOW)
+    return "a list in brackets goes on where it should end; is a ',' missing before here, or a ']'?";
+  if (says == Says::FLOW_END)
+    return "this bracket or brace closes none that is open; is one of another kind still open?";
+  if (says == Says::MAP_VALUE || says == Says::MAP_KEY)
+    return "a ':' where none can stand; does the line before lack its own, or a text with ': ' its quotes?";
+  if (says == Says::BLOCK_ENTRY) return "a '-' where no list can begin; is the line indented as those around it?";
+  const bool tab = says == Says::TAB_IN_INDENTATION || text.find("\n\t") != std::string_view::npos;
+  if (tab) return "a tab; indent with spaces, not tabs";
+  if (says == Says::END_OF_MAP || says == Says::END_OF_SEQ)
+    return "this line is indented otherwise than those that it belongs to, or a line before lacks its ':'";
+  return e.msg;
+}
+
 }  // namespace
 
 Place Document::key_place(const std::string& path) const {
@@ -255,8 +275,7 @@ bool read_document(std::string_view text, const Origin& origin, Document& docume
   } catch (const Stop&) {
     return false;
   } catch (const YAML::Exception& e) {
-    const bool tab = text.find("\n\t") != std::string_view::npos;
-    diagnostics.error(builder.place(e.mark, ""), "syntax: " + e.msg + (tab ? "; indent with spaces, not tabs" : ""));
+    diagnostics.error(builder.place(e.mark, ""), "syntax: " + syntax_problem(e, text));
     return false;
   }
   if (builder.documents() == 0) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "withy/core/plugin/value.hpp"
+
 namespace withy {
 namespace {
 
@@ -85,6 +87,24 @@ std::string in_quotes(std::string_view text) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
   }
   return fmt::format("\"{}{}\"", shown, text.size() > most ? "…" : "");
+}
+
+bool mentions(const Value& value, const std::set<std::string>& names) {
+  if (value.kind() == Value::Kind::text) {
+    const std::string& text = value.text();
+    const auto in_name = [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    };
+    for (auto at = text.begin(); at != text.end();) {
+      at = std::find_if(at, text.end(), in_name);
+      const auto end = std::find_if_not(at, text.end(), in_name);
+      if (names.contains(std::string(at, end))) return true;
+      at = end;
+    }
+  }
+  return std::any_of(value.items().begin(), value.items().end(), [&](const Value& v) { return mentions(v, names); }) ||
+         std::any_of(value.members().begin(), value.members().end(),
+                     [&](const Value::Member& m) { return mentions(m.second, names); });
 }
 
 }  // namespace withy

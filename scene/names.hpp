@@ -2,11 +2,14 @@
 /// Names in scenes: what they may be, and the nearest known one for messages.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace withy {
+
+class Value;
 
 /// The candidate with the least edit distance (insertion, deletion, substitution, transposition), capitals counting
 /// little; empty where none is near enough to be meant.
@@ -20,5 +23,8 @@ std::string listed(const std::vector<std::string>& names);
 
 /// Text for a message: quoted, control characters replaced, cut at 60 bytes.
 std::string in_quotes(std::string_view text);
+
+/// Whether a text in a value holds one of the names, whole.
+bool mentions(const Value& value, const std::set<std::string>& names);
 
 }  // namespace withy

@@ -68,11 +68,15 @@ class SceneBuilder {
                                                                  "need their own",
                                                                  in_quotes(name)));
       scene_.source.set("constraints", add_constraints(constraints, tree, checker_));
+      if (tree.model != nullptr) note_refused(constraints, *tree.model);
     }
     add_motions(tree.model.get());
     name_signals(document_, tree.model.get(), tree.names, checker_.registry());
     add_loads(tree.model.get(), events);
     tree.names.loads = {};
+    if (const Value* loads = document_.root.find("loads"))
+      for (const auto& [name, given] : loads->members())
+        if (refused_.contains(name)) tree.names.loads.add(name);
     for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
       if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr) tree.names.loads.add(load.name);
     add_outputs(tree);
@@ -149,18 +153,27 @@ class SceneBuilder {
         checker_.key_error(path, fmt::format("got name {}; {}", in_quotes(name), problem));
       }
       Made<Interface> made;
+      refused_.insert(name);
       const auto value = check_plugin_map(given, "type", members, checker_, made);
       if (!value) continue;
       auto object = make_object(*made.plugin, *value, checker_);
       checked.members().emplace_back(name, *value);
       if (object == nullptr || !to_model) continue;
+      refused_.erase(name);
       try {
         add(name, *value, std::move(object));
       } catch (const std::invalid_argument& e) {
-        checker_.key_error(path, e.what());
+        // What rests on a part that is reported needs no report of its own.
+        if (!mentions(*value, refused_)) checker_.key_error(path, e.what());
+        refused_.insert(name);
       }
     }
     scene_.source.set(key, std::move(checked));
+  }
+
+  void note_refused(const Value& constraints, const Model& model) {
+    for (const auto& [name, given] : constraints.members()) refused_.insert(name);
+    for (const LoopClosure* loop : loops_of(model)) refused_.erase(loop->name());
   }
 
   void add_loads(Model* model, SceneEvents& events) {
@@ -281,6 +294,7 @@ class SceneBuilder {
   Checker checker_;
   Scene scene_;
   Vector3 gravity_ = Vector3::Zero();
+  std::set<std::string> refused_;  ///< loads, motions, constraints and outputs that are reported already
 };
 
 }  // namespace

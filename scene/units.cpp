@@ -172,7 +172,9 @@ class UnitParser {
     }
     if (n == 0 && rest_.starts_with('1')) n = 1;
     if (n == 0) {
-      fail(rest_.empty() ? "a unit is missing" : fmt::format("'{}' is no unit", rest_));
+      fail(rest_.empty()            ? "a unit is missing"
+           : rest_.starts_with(',') ? "decimals stand behind a point, not a comma"
+                                    : fmt::format("'{}' is no unit", rest_));
       return {};
     }
     const std::string_view name = rest_.substr(0, n);

@@ -44,7 +44,13 @@ void Progress::show(const std::string& text) {
 }
 
 void Progress::at(double t, double end) {
-  if (due()) show(fmt::format("{:.3f} of {:g} s ({:.0f} %)", t, end, end > 0 ? 100 * t / end : 100.0));
+  if (!std::exchange(told_, true)) first_ = t;
+  if (!due()) return;
+  std::string text = fmt::format("{:.3f} of {:g} s ({:.0f} %)", t, end, end > 0 ? 100 * t / end : 100.0);
+  const double passed = std::chrono::duration<double>(Clock::now() - began_).count();
+  if (const double rate = (t - first_) / passed; passed > 0.5 && rate > 0)
+    text += fmt::format(", {:.3g} s a second, about {:.0f} s left", rate, (end - t) / rate);
+  show(text);
 }
 
 void Progress::of_points(double done, double all) {

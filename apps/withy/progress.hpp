@@ -20,7 +20,7 @@ class Progress {
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// Simulated time reached [s], of a run to `end`.
+  /// Simulated time reached [s], of a run to `end`; with its rate [s/s] and the time that is left at it.
   void at(double t, double end);
   /// Points that are done, of all; with the time that is left at this rate.
   void of_points(double done, double all);
@@ -34,6 +34,8 @@ class Progress {
   bool terminal_;
   bool shown_ = false;
   Clock::time_point began_, next_;
+  double first_ = 0;  ///< time simulated when it was first told
+  bool told_ = false;
 };
 
 }  // namespace withy::app

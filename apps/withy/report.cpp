@@ -6,6 +6,9 @@
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/output.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/report/gltf.hpp"
+#include "withy/results/report/paraview.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/study/input_error.hpp"
@@ -46,6 +49,25 @@ std::string title_of(const std::vector<std::string>& runs) {
   return all;
 }
 
+void print_counted(std::size_t runs, const ReportArguments& arguments) {
+  print(arguments.json ? json_text({{"file", arguments.out}, {"runs", runs}})
+                       : std::to_string(runs) + (runs == 1 ? " run in " : " runs in ") + arguments.out + '\n');
+}
+
+/// The motion of runs for other programs, by the ending of the file's name; false where it is that of a page.
+bool wrote_motion(const ReportArguments& arguments, const std::vector<std::string>& runs) {
+  const fs::path out = arguments.out;
+  if (out.extension() != ".glb" && out.extension() != ".pvd") return false;
+  std::vector<Animation> animations;
+  for (const std::string& run : runs) animations.emplace_back(run);
+  if (out.extension() == ".glb")
+    write_file(out, gltf_binary(animations));
+  else
+    write_paraview(out, animations);
+  print_counted(runs.size(), arguments);
+  return true;
+}
+
 ExitStatus report(const ReportArguments& arguments) {
   if (!has_report_page()) {
     complain("this build has no page for reports: it was made without npm. withy plot draws runs as SVG");
@@ -57,13 +79,15 @@ ExitStatus report(const ReportArguments& arguments) {
   if (arguments.reference > static_cast<int>(content.runs.size()))
     throw study::InputError("--reference: need a number from 1 to " + std::to_string(content.runs.size()) +
                             ", the count of runs, got " + std::to_string(arguments.reference));
+  if (wrote_motion(arguments, content.runs)) return ExitStatus::done;
+  if (const std::string end = fs::path(arguments.out).extension().string(); end != ".html" && end != ".htm")
+    throw study::InputError("--out: need a name that ends with .html (a page), .glb (glTF) or .pvd (ParaView), got '" +
+                            arguments.out + "'");
   if (fs::exists(arguments.out) && !arguments.force) static_cast<void>(read_report(arguments.out));
   content.title = title_of(content.runs);
   content.reference = arguments.reference - 1;
   write_report(arguments.out, content);
-  const std::size_t count = content.runs.size();
-  print(arguments.json ? json_text({{"file", arguments.out}, {"runs", count}})
-                       : std::to_string(count) + (count == 1 ? " run in " : " runs in ") + arguments.out + '\n');
+  print_counted(content.runs.size(), arguments);
   return ExitStatus::done;
 }
 
@@ -71,7 +95,11 @@ std::function<ExitStatus()> add_report(CLI::App& c) {
   const auto arguments = std::make_shared<ReportArguments>();
   ReportArguments& a = *arguments;
   c.add_option("RUN", a.runs, "Folders of finished runs and comparisons, or their report.html")->required();
-  c.add_option("--out", a.out, "File of the page")->type_name("FILE")->capture_default_str();
+  c.add_option("--out", a.out,
+               "File of the page; a name that ends with .glb gets the motion as glTF, one with .pvd as a series for "
+               "ParaView")
+      ->type_name("FILE")
+      ->capture_default_str();
   c.add_option("--reference", a.reference,
                "Number of the run that differences are taken from, from 1; default: the last")
       ->type_name("N")
@@ -83,11 +111,12 @@ std::function<ExitStatus()> add_report(CLI::App& c) {
 
 }  // namespace
 
-const Command report_command = {"report", "Show several finished runs on one page",
+const Command report_command = {"report", "Show several finished runs on one page, or export their motion",
                                 "  withy run scenes/two-link-slew.yaml\n"
                                 "  withy run scenes/two-link-slew.yaml --formulation ruthless\n"
                                 "  withy report results/two-link-slew-quadratic results/two-link-slew-ruthless "
-                                "--reference 1 --out slews.html",
+                                "--reference 1 --out slews.html\n"
+                                "  withy report results/two-link-slew-quadratic --out slew.glb",
                                 &add_report};
 
 }  // namespace withy::app

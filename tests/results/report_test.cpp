@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "scratch.hpp"
@@ -12,6 +14,7 @@
 #include "withy/results/report/base64.hpp"
 #include "withy/results/report/decimated_table.hpp"
 #include "withy/results/report/report_page.hpp"
+#include "withy/results/report/solids.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/results/table_picture.hpp"
 #include "withy/results/terminal_plot.hpp"
@@ -62,7 +65,30 @@ TEST(Base64, IsThatOfTheStandard) {
   // RFC 4648, section 10.
   const std::vector<std::pair<std::string, std::string>> vectors = {
       {"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foob", "Zm9vYg=="}, {"foobar", "Zm9vYmFy"}};
-  for (const auto& [bytes, text] : vectors) EXPECT_EQ(base64(std::as_bytes(std::span(bytes))), text);
+  for (const auto& [bytes, text] : vectors) {
+    EXPECT_EQ(base64(std::as_bytes(std::span(bytes))), text);
+    EXPECT_EQ(numbers_of<char>(text), std::vector<char>(bytes.begin(), bytes.end()));
+  }
+  EXPECT_THROW(bytes_of_base64("Zm 9v"), ResultsError);
+}
+
+TEST(Solids, AreClosedAndTheirTrianglesLookOutwards) {
+  // What a closed surface encloses, by the divergence theorem; triangles that look inwards count against it.
+  const auto volume = [](const auto& add) {
+    Surface surface;
+    add(surface);
+    double sum = 0;
+    for (const auto& [a, b, c] : surface.triangles)
+      sum += surface.vertices[a].dot(surface.vertices[b].cross(surface.vertices[c])) / 6;
+    return sum;
+  };
+  const Pose pose{Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()).toRotationMatrix(), Vector3(4, -5, 6)};
+  EXPECT_NEAR(volume([&](Surface& s) { add_box({1, 2, 3}, pose, s); }), 6, 1e-12);
+  EXPECT_NEAR(volume([&](Surface& s) { add_bead(pose.p, 0.5, s); }), 4.0 / 3 * 0.125, 1e-13);
+  const std::vector<Vector3> line = {pose.p, (pose * Pose{Matrix3::Identity(), {0, 0, 1}}).p,
+                                     (pose * Pose{Matrix3::Identity(), {0, 0, 3}}).p};
+  const double octagon = 8 * 0.5 * 0.01 * std::sin(std::numbers::pi / 4);
+  EXPECT_NEAR(volume([&](Surface& s) { add_tube(line, 0.1, 8, Vector3::UnitZ(), s); }), 3 * octagon, 1e-13);
 }
 
 TEST(Csv, IsReadBackAsItWasWrittenButForALastLineThatWasCut) {

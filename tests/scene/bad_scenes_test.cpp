@@ -19,10 +19,17 @@ void PrintTo(const BadScene& scene, std::ostream* out) { *out << scene.kind; }
 
 const BadScene bad_scenes[] = {
     {"syntax_unclosed_list", "gravity: [0, -9.81, 0]", "gravity: [0, -9.81, 0",
-     "3:5: syntax: end of sequence flow not found"},
-    {"syntax_tab_indentation", "    type: rigid", "\ttype: rigid",
-     "6:2: syntax: end of map not found; indent with spaces, not tabs"},
-    {"syntax_bad_indentation", "    mass: 20.0", "   mass: 20.0", "7:4: syntax: end of map not found"},
+     "3:5: syntax: a list in brackets goes on where it should end; is a ',' missing before here, or a ']'?"},
+    {"syntax_tab_indentation", "    type: rigid", "\ttype: rigid", "6:2: syntax: a tab; indent with spaces, not tabs"},
+    {"syntax_bad_indentation", "    mass: 20.0", "   mass: 20.0",
+     "7:4: syntax: this line is indented otherwise than those that it belongs to, or a line before lacks its ':'"},
+    {"syntax_missing_comma", "type: revolute, axis: [0, 0, 1], parent: world,",
+     "type: revolute, axis: [0, 0, 1], parent: world",
+     "18:66: syntax: a map in braces goes on where it should end; is a ',' missing before here, or a '}'?"},
+    {"syntax_missing_colon", "    length: 0.9", "    length 0.9",
+     "14:20: syntax: a ':' where none can stand; does the line before lack its own, or a text with ': ' its quotes?"},
+    {"decimal_comma", "    length: 0.9", "    length: 0,9",
+     "13:13: /bodies/boom/length: got \"0,9\": decimals stand behind a point, not a comma; need finite > 0 [m]"},
     {"syntax_unclosed_quote", "type: beam", R"(type: "beam)",
      "12:11: /bodies/boom/type: the quote that begins here is never closed"},
     {"control_byte", "mass: 20.0", "mass: \001", "7:11: byte 0x01 is not UTF-8 text; a scene is YAML or JSON"},
@@ -295,6 +302,27 @@ TEST_F(BadDocuments, ProblemsAreReportedAllAtOnceInTheOrderOfTheFile) {
             "s.yaml:15:40: /bodies/boom/bending_y/modes: got \"many\"; need whole number >= 0 and <= 1000\n"
             "s.yaml:19:30: /hinges/root/parent: no body \"hubb\"; did you mean 'hub'?\n"
             "s.yaml:21:82: /loads/motor/period: got \"5 kg\": 'kg' is a wrong unit here; need finite > 0 [s]");
+}
+
+TEST_F(BadDocuments, WhatRestsOnAPartThatIsReportedIsNotReportedToo) {
+  const std::string parts = R"(
+constraints:
+  loop: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: boom.tpi, b: world}
+  other: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: boom.tip, b: world}
+outputs:
+  closing: {type: reaction, constraint: loop}
+  place: {type: frame, of: boom.tpi}
+  twice: {type: expression, value: "2 * place.x", unit: m}
+  drive: {type: effort, hinge: shoulder, of: motor}
+  other_closing: {type: reaction, constraint: otter}
+)";
+  // Each fault alone is reported, once; so is a name that nothing bears.
+  EXPECT_EQ(problems(replaced(good_scene, "law: sine", "law: sinus") + parts, registry),
+            "s.yaml:21:53: /loads/motor/law: got \"sinus\": did you mean 'sine'?; need one of: constant, sine, table, "
+            "steps\n"
+            "s.yaml:24:60: /constraints/loop/a: no frame \"boom.tpi\"; did you mean 'boom.tip'?\n"
+            "s.yaml:28:28: /outputs/place/of: no frame \"boom.tpi\"; did you mean 'boom.tip'?\n"
+            "s.yaml:31:3: /outputs/other_closing: there is no constraint 'otter'");
 }
 
 TEST_F(BadDocuments, TheErrorCarriesPlaceAndMessageForPrograms) {

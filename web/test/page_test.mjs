@@ -6,6 +6,7 @@ import { join } from 'node:path';
 import { unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
 import { in_browser, opened, text } from './browser.mjs';
+import { check_gltf } from './gltf.mjs';
 
 const [withy, scenes, chromium] = process.argv.slice(2);
 let folder, run;
@@ -155,7 +156,12 @@ await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   simulate('loads-of-the-slew.yaml', 'loads');
   check_arrows(join(folder, 'loads/report.html'));
   simulate('imported-boom.yaml', 'boom');
-  for (const name of ['arm', 'craft', 'panel', 'boom']) check_motion(join(folder, name, 'report.html'));
+  for (const name of ['arm', 'craft', 'panel', 'boom']) {
+    const page = join(folder, name, 'report.html'), motion = join(folder, `${name}.glb`);
+    check_motion(page);
+    run('report', join(folder, name), '--out', motion);
+    await check_gltf(motion, data_of(page));
+  }
   const troubles = [];
   await check_controls(browser, troubles);
   await check_columns(browser, troubles);

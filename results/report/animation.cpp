@@ -1,0 +1,163 @@
+#include "withy/results/report/animation.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "withy/results/report/base64.hpp"
+#include "withy/results/report/solids.hpp"
+#include "withy/results/results_error.hpp"
+
+namespace withy {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Of tubes and beads; the rings of a deep tree are many.
+constexpr std::size_t sides = 8;
+
+template <class Number>
+std::vector<Number> array_of(const Json& run, const Json& index) {
+  return numbers_of<Number>(run.at("arrays").at(index.get<std::size_t>()).get_ref<const std::string&>());
+}
+
+Vector3 vector_of(const Json& json, std::size_t at = 0) {
+  return {json.at(at).get<double>(), json.at(at + 1).get<double>(), json.at(at + 2).get<double>()};
+}
+
+template <class Numbers>
+Pose pose_from(const Numbers& n, std::size_t at) {
+  const auto number = [&](std::size_t i) { return static_cast<double>(n[at + i]); };
+  return {Eigen::Quaterniond(number(3), number(4), number(5), number(6)).normalized().toRotationMatrix(),
+          Vector3(number(0), number(1), number(2))};
+}
+
+/// Points that a tube joins: those of a line, and of a body of data where they lie in a plane, in order of their way
+/// from the root; of a body of data that has a volume none.
+std::vector<std::size_t> joined(const std::string& kind, const std::vector<Vector3>& points) {
+  std::vector<std::size_t> order;
+  if ((kind != "line" && kind != "points") || points.size() < 2) return order;
+  order.resize(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (kind == "line") return order;
+  Matrix3 spread = Matrix3::Zero();
+  const Vector3 center =
+      std::accumulate(points.begin(), points.end(), Vector3(Vector3::Zero())) / double(points.size());
+  for (const Vector3& p : points) spread += (p - center) * (p - center).transpose();
+  const Vector3 along = Eigen::SelfAdjointEigenSolver<Matrix3>(spread).eigenvalues();
+  if (along[0] > 1e-9 * along[2]) return {};
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return points[i].squaredNorm() < points[j].squaredNorm(); });
+  return order;
+}
+
+}  // namespace
+
+Animation::Body Animation::body_of(const nlohmann::json& part) {
+  Body body;
+  body.name = part.at("name");
+  body.kind = part.at("kind");
+  body.flexible = part.at("flexible");
+  body.columns = part.value("columns", std::size_t{1});
+  const Json& points = part.at("points");
+  for (std::size_t i = 0; i + 2 < points.size(); i += 3) body.points.push_back(vector_of(points, i));
+  body.line = joined(body.kind, body.points);
+  if (part.contains("box") && !part.at("box").is_null()) {
+    body.has_box = true;
+    body.edges = vector_of(part.at("box").at("edges"));
+    body.box = pose_from(part.at("box").at("pose"), 0);
+  }
+  body.ends.emplace_back(Vector3::Zero());
+  for (const Json& hung : part.at("hung")) body.ends.push_back(vector_of(hung));
+  if (part.contains("tip")) body.ends.push_back(vector_of(part.at("tip")));
+  return body;
+}
+
+Animation::Animation(std::string_view text) try {
+  const Json run = Json::parse(text);
+  const Json& motion = run.at("animation");
+  title_ = run.at("title");
+  size_ = motion.at("size");
+  numbers_ = array_of<float>(run, motion.at("numbers"));
+  const std::vector<double> times = array_of<double>(run, motion.at("times"));
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    // 32 bits tell times apart in what is written of this.
+    if (!times_.empty() && !(static_cast<float>(times[i]) > static_cast<float>(times_.back()))) {
+      moments_.back() = i;
+      continue;
+    }
+    times_.push_back(times[i]);
+    moments_.push_back(i);
+  }
+  if (times.empty() || numbers_.size() != times.size() * size_) throw ResultsError("the report holds no motion");
+  if (const Vector3 g = vector_of(motion.at("gravity")); g.norm() > 0) up_ = -g.normalized();
+  std::size_t at = 0;
+  for (const Json& part : motion.at("parts")) {
+    bodies_.push_back(body_of(part));
+    bodies_.back().at = at;
+    at += 7 + (bodies_.back().flexible ? part.at("points").size() + 7 * part.at("hung").size() : 0);
+  }
+  if (at != size_) throw ResultsError("the report holds other numbers than it says");
+  radius_ = 0.011 * extent();
+} catch (const Json::exception&) {
+  throw ResultsError("the report holds no motion that this program can read");
+}
+
+Pose Animation::pose(std::size_t body, std::size_t moment) const {
+  return pose_from(numbers_, moments_[moment] * size_ + bodies_[body].at);
+}
+
+std::vector<Vector3> Animation::points(const Body& body, std::size_t moment) const {
+  std::vector<Vector3> points = body.points;
+  if (!body.flexible) return points;
+  const float* u = numbers_.data() + moments_[moment] * size_ + body.at + 7;
+  for (Vector3& p : points) {
+    p += Eigen::Map<const Eigen::Vector3f>(u).cast<double>();
+    u += 3;
+  }
+  return points;
+}
+
+/// Of the system at the first moment [m].
+double Animation::extent() const {
+  Eigen::AlignedBox3d room;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Pose X = pose(b, 0);
+    room.extend(X.p);
+    for (const Vector3& p : points(bodies_[b], 0)) room.extend(X.p + X.R * p);
+    for (const Vector3& p : bodies_[b].ends) room.extend(X.p + X.R * p);
+  }
+  return std::max(room.diagonal().norm(), 1e-3);
+}
+
+Surface Animation::drawn(const Body& body, const std::vector<Vector3>& points) const {
+  Surface surface;
+  if (body.kind == "strip") {
+    add_sheet(points, body.columns, surface);
+    return surface;
+  }
+  if (body.line.size() > 1) {
+    std::vector<Vector3> line;
+    for (const std::size_t i : body.line) line.push_back(points[i]);
+    add_tube(line, radius_, sides, Vector3::UnitZ(), surface);
+    return surface;
+  }
+  if (body.kind == "points")
+    for (const Vector3& p : points) add_bead(p, radius_, surface);
+  if (body.kind != "box") return surface;
+  if (body.has_box) add_box(body.edges.cwiseMax(1.6 * radius_), body.box, surface);
+  const Vector3 from = body.has_box ? body.box.p : Vector3(Vector3::Zero());
+  for (const Vector3& end : body.ends)
+    if ((end - from).norm() > radius_) add_tube({from, end}, 0.5 * radius_, sides, Vector3::UnitZ(), surface);
+  return surface;
+}
+
+Surface Animation::surface(std::size_t body) const { return drawn(bodies_[body], bodies_[body].points); }
+
+std::vector<Vector3> Animation::vertices(std::size_t body, std::size_t moment) const {
+  return drawn(bodies_[body], points(bodies_[body], moment)).vertices;
+}
+
+}  // namespace withy

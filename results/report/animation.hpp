@@ -1,0 +1,75 @@
+/// \file
+/// The motion that a report holds, for programs that draw motions: bodies as surfaces, moment by moment.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "withy/core/spatial/pose.hpp"
+
+namespace withy {
+
+/// A surface of triangles, vertices [m] in the axes of its body.
+struct Surface {
+  std::vector<Vector3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// One run in motion, as RunReport has put it on a page.
+class Animation {
+ public:
+  /// \param run one of those of read_report. \throws ResultsError where it holds no motion
+  explicit Animation(std::string_view run);
+
+  [[nodiscard]] const std::string& title() const { return title_; }
+  /// Times of the moments [s], each later than the one before: of an instant at which states jump, the state after it.
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }
+  /// Which way is up, world axes: against gravity; z where there is none.
+  [[nodiscard]] const Vector3& up() const { return up_; }
+
+  [[nodiscard]] std::size_t bodies() const { return bodies_.size(); }
+  [[nodiscard]] const std::string& name(std::size_t body) const { return bodies_[body].name; }
+  [[nodiscard]] bool flexible(std::size_t body) const { return bodies_[body].flexible; }
+  /// Whether its surface is a sheet, to be seen from both sides.
+  [[nodiscard]] bool sheet(std::size_t body) const { return bodies_[body].kind == "strip"; }
+  /// Of a body at a moment, in the world.
+  [[nodiscard]] Pose pose(std::size_t body, std::size_t moment) const;
+  /// Its surface at rest: a tube along a beam, the sheet of a plate, beads at the points of a body of data, the box of
+  /// a rigid body's mass and inertia with rods to what hangs on it. Without triangles where there is nothing to draw.
+  [[nodiscard]] Surface surface(std::size_t body) const;
+  /// Its vertices, deformed as at a moment, body axes; those of `surface`, in their order.
+  [[nodiscard]] std::vector<Vector3> vertices(std::size_t body, std::size_t moment) const;
+
+ private:
+  struct Body {
+    std::string name, kind;
+    bool flexible = false;
+    std::vector<Vector3> points;  ///< at rest
+    std::size_t columns = 1;      ///< points across a sheet
+    bool has_box = false;
+    Vector3 edges = Vector3::Zero();
+    Pose box;
+    std::vector<Vector3> ends;      ///< of rods from a rigid body's box
+    std::vector<std::size_t> line;  ///< points that a tube goes along
+    std::size_t at = 0;             ///< of its numbers in those of a moment
+  };
+  static Body body_of(const nlohmann::json& part);
+  [[nodiscard]] std::vector<Vector3> points(const Body& body, std::size_t moment) const;
+  [[nodiscard]] Surface drawn(const Body& body, const std::vector<Vector3>& points) const;
+  [[nodiscard]] double extent() const;
+
+  std::string title_;
+  std::vector<double> times_;
+  std::vector<std::size_t> moments_;  ///< of each time, its place in numbers_
+  std::vector<float> numbers_;
+  std::size_t size_ = 0;  ///< numbers of a moment
+  Vector3 up_ = Vector3::UnitZ();
+  std::vector<Body> bodies_;
+  double radius_ = 0;  ///< of tubes [m]
+};
+
+}  // namespace withy

@@ -1,0 +1,87 @@
+#include "withy/results/report/solids.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace withy {
+namespace {
+
+using Index = std::uint32_t;
+
+Index next_vertex(const Surface& surface) { return static_cast<Index>(surface.vertices.size()); }
+
+/// Two triangles, seen counter-clockwise from outside.
+void add_quadrilateral(Index a, Index b, Index c, Index d, Surface& surface) {
+  surface.triangles.push_back({a, b, c});
+  surface.triangles.push_back({a, c, d});
+}
+
+/// The part of a vector across a direction, of unit length; any such direction where there is none.
+Vector3 across(const Vector3& v, const Vector3& direction) {
+  const Vector3 rest = v - v.dot(direction) * direction;
+  if (rest.norm() > 1e-6) return rest.normalized();
+  return direction.unitOrthogonal();
+}
+
+}  // namespace
+
+void add_tube(const std::vector<Vector3>& line, double radius, std::size_t sides, Vector3 side, Surface& surface) {
+  const Index first = next_vertex(surface);
+  const auto n = static_cast<Index>(sides);
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const Vector3 chord = line[std::min(k + 1, line.size() - 1)] - line[k > 0 ? k - 1 : 0];
+    const Vector3 along = chord.norm() > 0 ? Vector3(chord.normalized()) : Vector3(Vector3::UnitX());
+    side = across(side, along);
+    const Vector3 other = along.cross(side);
+    for (std::size_t j = 0; j < sides; ++j) {
+      const double angle = 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(sides);
+      surface.vertices.push_back(line[k] + radius * (std::cos(angle) * side + std::sin(angle) * other));
+    }
+  }
+  const Index begin = next_vertex(surface), end = begin + 1, last = begin - n;
+  surface.vertices.push_back(line.front());
+  surface.vertices.push_back(line.back());
+  for (Index ring = first; ring < last; ring += n)
+    for (Index j = 0; j < n; ++j)
+      add_quadrilateral(ring + j, ring + (j + 1) % n, ring + n + (j + 1) % n, ring + n + j, surface);
+  for (Index j = 0; j < n; ++j) {
+    surface.triangles.push_back({begin, first + (j + 1) % n, first + j});
+    surface.triangles.push_back({end, last + j, last + (j + 1) % n});
+  }
+}
+
+void add_bead(const Vector3& center, double radius, Surface& surface) {
+  const Index x = next_vertex(surface), y = x + 2, z = x + 4;
+  for (int i = 0; i < 3; ++i)
+    for (const double sign : {1.0, -1.0}) surface.vertices.push_back(center + sign * radius * Vector3::Unit(i));
+  for (Index i = 0; i < 2; ++i)
+    for (Index j = 0; j < 2; ++j)
+      for (Index k = 0; k < 2; ++k) {
+        const bool mirrored = (i + j + k) % 2 == 1;
+        surface.triangles.push_back({x + i, mirrored ? z + k : y + j, mirrored ? y + j : z + k});
+      }
+}
+
+void add_box(const Vector3& edges, const Pose& pose, Surface& surface) {
+  const Index v = next_vertex(surface);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3 signs(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
+    surface.vertices.push_back(pose.p + pose.R * edges.cwiseProduct(signs));
+  }
+  static constexpr Index faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                        {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& f : faces) add_quadrilateral(v + f[0], v + f[1], v + f[2], v + f[3], surface);
+}
+
+void add_sheet(const std::vector<Vector3>& points, std::size_t columns, Surface& surface) {
+  const Index v = next_vertex(surface);
+  surface.vertices.insert(surface.vertices.end(), points.begin(), points.end());
+  const auto n = static_cast<Index>(columns);
+  for (Index row = 0; row + 2 * n <= points.size(); row += n)
+    for (Index k = 0; k + 1 < n; ++k)
+      add_quadrilateral(v + row + k, v + row + k + 1, v + row + n + k + 1, v + row + n + k, surface);
+}
+
+}  // namespace withy

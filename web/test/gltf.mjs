@@ -1,0 +1,64 @@
+// The glTF of a run, read by three.js' loader, against the numbers on the run's page.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { AnimationMixer, Vector3 } from 'three';
+import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { unpack } from '../src/data.js';
+import { Motion } from '../src/motion.js';
+
+const sides = 8; // of tubes
+
+async function loaded(file) {
+  globalThis.self ??= globalThis; // the loader was made for browsers
+  const bytes = readFileSync(file);
+  return new GLTFLoader().parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength), '');
+}
+
+// Points of a body, body axes, as its surface has them: the middles of a tube's rings, corners of a sheet.
+function middles(body, mesh) {
+  const position = mesh.geometry.attributes.position, at = v => mesh.getVertexPosition(v, new Vector3());
+  const mean = (first, count) => {
+    const sum = new Vector3();
+    for (let v = first; v < first + count; ++v) sum.add(at(v));
+    return sum.divideScalar(count);
+  };
+  if (body.kind === 'strip') return Array.from({ length: body.count }, (_, k) => at(k));
+  if (position.count === body.count * sides + 2) return Array.from({ length: body.count }, (_, k) => mean(sides * k, sides));
+  assert.equal(position.count, 6 * body.count, 'beads');
+  return Array.from({ length: body.count }, (_, k) => mean(6 * k, 6));
+}
+
+// Every body is where the page has it, at moments and, of flexible ones, with every point that it draws.
+export async function check_gltf(file, data) {
+  const gltf = await loaded(file), run = unpack(data.runs[0]), motion = new Motion(run.animation);
+  const root = gltf.scene.children[0], mixer = new AnimationMixer(gltf.scene);
+  mixer.clipAction(gltf.animations[0]).play();
+  assert.equal(root.children.length, motion.bodies.length);
+  const scale = Math.max(...motion.numbers.slice(0, motion.size).map(Math.abs), 1);
+  for (const i of [0, 1, motion.times.length >> 1, motion.times.length - 2]) {
+    mixer.setTime(motion.times[i]);
+    gltf.scene.updateMatrixWorld(true);
+    motion.go(motion.times[i], 1);
+    motion.bodies.forEach((body, b) => {
+      const node = root.children[b];
+      const what = `${body.name} at ${motion.times[i]} s`;
+      assert.ok(node.position.distanceTo(body.pose.p) < 1e-4 * scale, what);
+      assert.ok(node.quaternion.angleTo(body.pose.q) < 1e-3, what);
+      if (!body.flexible) return;
+      const greatest = Math.max(...body.displacements.map(Math.abs), 1e-9);
+      const place = new Map(body.kind === 'points' ? chain(body).map((k, j) => [k, j]) : []);
+      const points = middles(body, node), beads = node.geometry.attributes.position.count === 6 * body.count;
+      for (let k = 0; k < body.count; ++k) {
+        const given = points[place.size && !beads ? place.get(k) : k];
+        for (let c = 0; c < 3; ++c)
+          assert.ok(Math.abs(given.getComponent(c) - body.points[3 * k + c] - body.displacements[3 * k + c]) < 1e-3 * greatest + 1e-6 * scale, `point ${k} of ${what}`);
+      }
+    });
+  }
+}
+
+// Points of a body of data one behind the other, as a tube joins them.
+function chain(body) {
+  const away = k => body.points[3 * k] ** 2 + body.points[3 * k + 1] ** 2 + body.points[3 * k + 2] ** 2;
+  return Array.from({ length: body.count }, (_, k) => k).sort((k, l) => away(k) - away(l));
+}
