@@ -12,7 +12,7 @@ namespace withy {
 namespace {
 
 /// Both equations as one system for a stepper, of one thread: y holds the positions of both, the
-/// speeds of both, the continuous and the discrete states of both, then the work of both together.
+/// speeds of both, the continuous and the discrete states of both, then the work of the first.
 class PairedEquations final : public EquationsOfMotion {
  public:
   PairedEquations(const EquationsOfMotion& first, const EquationsOfMotion& second)
@@ -29,15 +29,14 @@ class PairedEquations final : public EquationsOfMotion {
   const Layout& layout() const override { return layout_; }
   Work make_work() const override { return Work(0); }
   Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot, Work&) const noexcept override {
-    y_dot.back() = 0;
     for (std::size_t i = 0; i < 2; ++i) {
       Half& half = halves_[i];
       take(y, i, half.y);
       const Evaluation e = half.equations->derivatives(t, half.y, half.y_dot, half.work);
       if (!e.ok()) return e;
       put(half.y_dot, i, y_dot);
-      y_dot.back() += half.y_dot.back();
     }
+    y_dot.back() = halves_[0].y_dot.back();
     return {};
   }
   void normalize(std::span<double> y) const noexcept override {
@@ -47,11 +46,11 @@ class PairedEquations final : public EquationsOfMotion {
       put(halves_[i].y, i, y);
     }
   }
-  /// One of the two states, without its work.
+  /// One of the two states; the work is known of the first alone.
   void take(std::span<const double> y, std::size_t i, std::span<double> own) const noexcept {
     for (const Part& part : parts())
       std::copy_n(y.data() + 2 * part.first + i * part.count, part.count, own.data() + part.first);
-    own.back() = 0;
+    own.back() = i == 0 ? y.back() : 0;
   }
   void put(std::span<const double> own, std::size_t i, std::span<double> y) const noexcept {
     for (const Part& part : parts())

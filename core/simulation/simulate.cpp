@@ -64,7 +64,8 @@ class Run final : public SteppingObserver {
     }
     monitor_.audit_energy(state);
     monitor_.finish_momenta();
-    validity_.finish(state, monitor_.trusted().time, status == RunStatus::completed);
+    const bool completed = status == RunStatus::completed;
+    validity_.finish(completed ? state : monitor_.trusted(), status != RunStatus::singular);
   }
 
   [[nodiscard]] const Stepper& stepper() const { return loop_.stepper(); }
