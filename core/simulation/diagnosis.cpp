@@ -57,8 +57,8 @@ std::string nonfinite_rates(const Model& model, const State& state) {
   std::string text;
   for (std::size_t i = 0; i < layout.continuous; ++i)
     if (!std::isfinite(rates[first + i]))
-      text += (text.empty() ? "" : "; ") + ("the rate of '" + layout.continuous_names[i] + "' of a load is " +
-                                            brief(rates[first + i]) + ": look at what it measures");
+      text += (text.empty() ? "" : "; ") +
+              ("the rate of '" + layout.continuous_names[i] + "' is not finite: look at what that load measures");
   return text;
 }
 

@@ -560,7 +560,7 @@ TEST(Control, FormulasThatRunAwayAreNamedWhereTheyEndARun) {
               HasSubstr("load 'wild' gives 1e+300 on axle.0"));
   EXPECT_THAT(message("  wild: {type: expression, value: log(axle - 1), to: nothing}\n"
                       "  drive: {type: actuator, of: wild, hinge: axle, frequency: 3}\n"),
-              HasSubstr("the rate of 'drive.rate' of a load is nan: look at what it measures"));
+              HasSubstr("the rate of 'drive.rate' is not finite: look at what that load measures"));
 }
 
 // Three joints of a flexible arm under its weight: the integrals take it up, the shoulder's motor has a limit.
