@@ -9,6 +9,7 @@
 #include "withy/results/certificate_json.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/recorded_run.hpp"
+#include "withy/results/run_json.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/scene_values.hpp"
 #include "withy/study/run.hpp"
@@ -101,10 +102,14 @@ Result Scene::run(const Follow& follow) const {
       table.add(state, rung);
     }
   };
+  std::vector<OutputStatistics> statistics;
+  settings.statistics = &statistics;
   const auto [summary, certificate] = study::run(*prepared, library().registry(), settings);
   result.status = withy::name(summary.status);
   result.message = summary.message;
-  result.json = run_json(prepared->scene, summary, certificate).dump();
+  nlohmann::ordered_json json = run_json(prepared->scene, summary, certificate);
+  if (!statistics.empty()) json["outputs"] = statistics_json(statistics);
+  result.json = json.dump();
   if (summary.status == RunStatus::completed && !summary.message.empty()) library().log(summary.message);
   return result;
 }

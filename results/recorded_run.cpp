@@ -11,6 +11,7 @@
 #include "withy/results/output_file.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/report/run_report.hpp"
+#include "withy/results/run_json.hpp"
 
 namespace withy {
 namespace {
@@ -64,8 +65,11 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
     if (also) also(state, rung);
   };
   RecordedRun recorded;
+  std::vector<OutputStatistics> statistics;
+  settings.statistics = &statistics;
   recorded.run = study::run(prepared, registry, settings);
   recorded.json = run_json(prepared.scene, recorded.run.summary, recorded.run.certificate);
+  if (!statistics.empty()) recorded.json["outputs"] = statistics_json(statistics);
   recorded.json.update(provenance_json(provenance));
   if (hdf5 != nullptr) describe_end(prepared, recorded, *hdf5);
   recorders.end();

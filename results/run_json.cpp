@@ -67,6 +67,18 @@ Json condition_json(const Conditioning& c) { return c.condition > 0 ? Json(c.con
 
 Json state_json(const Model& model, const State& state) { return Json::parse(write_state(model, state)); }
 
+Json statistics_json(const std::vector<OutputStatistics>& outputs) {
+  Json all = Json::object();
+  for (const OutputStatistics& o : outputs)
+    all[o.name] = {{"unit", o.unit},
+                   {"min", {{"value", o.least}, {"t", o.least_at}}},
+                   {"max", {{"value", o.greatest}, {"t", o.greatest_at}}},
+                   {"mean", o.mean()},
+                   {"rms", o.rms()},
+                   {"integral", o.integral}};
+  return all;
+}
+
 Json run_json(const Scene& scene, const RunSummary& summary) {
   Json j;
   j["scene"] = scene.file;

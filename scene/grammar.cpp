@@ -92,7 +92,12 @@ std::vector<ParameterSpec> hinge_members() {
 
 std::vector<ParameterSpec> load_members() { return {text("type", "load plugin")}; }
 
-std::vector<ParameterSpec> sensor_members() { return {text("type", "sensor plugin")}; }
+std::vector<ParameterSpec> sensor_members() {
+  return {
+      text("type", "sensor plugin"),
+      boolean("statistics", "whether its extremes, mean and root mean square over a run are found, between outputs too")
+          .optional()};
+}
 
 std::vector<ParameterSpec> motion_members() {
   return {motion_type(), text("hinge", "hinge that it moves").naming(ParameterSpec::Refers::hinge)};

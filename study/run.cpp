@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/simulation/changing_equations.hpp"
@@ -44,6 +45,15 @@ class Timer {
   int asked_ = 0, enough_ = 1;
 };
 
+/// Names of the outputs whose statistics the scene asks for.
+std::vector<std::string> watched_outputs(const Scene& scene) {
+  std::vector<std::string> names;
+  const Value* outputs = scene.source.find("outputs");
+  for (const auto& [name, output] : outputs == nullptr ? std::vector<Value::Member>{} : outputs->members())
+    if (const Value* asked = output.find("statistics"); asked != nullptr && asked->boolean()) names.push_back(name);
+  return names;
+}
+
 /// The run of some equations, which may change.
 RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, const EquationsOfMotion& equations,
                          ChangingEquations* changing, const EquationsOfMotion* beyond,
@@ -61,11 +71,20 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
   options.resume = settings.resume;
   options.seen = settings.seen;
   if (settings.checkpoint_seconds > 0) options.checkpoint_due = [&] { return timer.due(); };
-  return withy::simulate(*scene.model, equations, *scene.integrator, scene.initial, options, [&](const State& state) {
-    settings.control.tell(state.time, options.end);
-    output(state);
-    if (settings.output) settings.output(state, changing != nullptr ? changing->rung() : 0);
-  });
+  std::optional<StatisticsWatch> watch;
+  if (const std::vector<std::string> watched = watched_outputs(scene);
+      !watched.empty() && settings.statistics != nullptr)
+    watch.emplace(scene.outputs, watched, equations);
+  RunSummary summary = withy::simulate(
+      *scene.model, equations, *scene.integrator, scene.initial, options,
+      [&](const State& state) {
+        settings.control.tell(state.time, options.end);
+        output(state);
+        if (settings.output) settings.output(state, changing != nullptr ? changing->rung() : 0);
+      },
+      watch ? &*watch : nullptr);
+  if (watch) *settings.statistics = watch->results();
+  return summary;
 }
 
 /// How far the run is from the coarse one that its formulations were chosen by.

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "withy/core/simulation/output_statistics.hpp"
 #include "withy/study/certificate.hpp"
 #include "withy/study/control.hpp"
 
@@ -28,6 +29,8 @@ struct RunSettings {
   double checkpoint_seconds = 0;                      ///< wall time between checkpoints; 0: only where interrupted
   std::function<void(const Checkpoint&)> checkpoint;  ///< takes them; may be empty
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: at the scene's initial state
+  /// Set at the end of a run: of the outputs for which the scene asks for them. Null: they are not wanted.
+  std::vector<OutputStatistics>* statistics = nullptr;
   Control control;
 };
 

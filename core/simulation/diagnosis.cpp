@@ -48,8 +48,24 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Loads that give an effort that is not finite, with the first such time found.
+/// Loads with states of their own whose rates are not finite: what they measure is not, or is out of all range.
+std::string nonfinite_rates(const Model& model, const State& state) {
+  const Layout& layout = model.layout();
+  const std::size_t first = layout.positions + layout.speeds;
+  std::vector<double> rates(layout.size()), scratch(model.load_scratch());
+  static_cast<void>(model.continuous_rates(state.time, state.y, rates, scratch));
+  std::string text;
+  for (std::size_t i = 0; i < layout.continuous; ++i)
+    if (!std::isfinite(rates[first + i]))
+      text += (text.empty() ? "" : "; ") +
+              ("the rate of '" + layout.continuous_names[i] + "' is not finite: look at what that load measures");
+  return text;
+}
+
+/// Loads that give an effort that is not finite, or more than motion can be computed with, with the first such time
+/// found.
 std::string nonfinite_loads(const Model& model, const EquationsOfMotion& equations, const State& state, double ahead) {
+  constexpr double unbearable = 1e100;  // its square, and what masses divide it by, leave the range of numbers
   const Layout& layout = model.layout();
   Work work = equations.make_work();
   std::string text;
@@ -58,7 +74,8 @@ std::string nonfinite_loads(const Model& model, const EquationsOfMotion& equatio
     // From just after the state on, at intervals that double: a load may fail from some time on.
     for (double after = 0; after <= ahead; after = after > 0 ? 2 * after : ahead * 0x1p-30) {
       equations.load_efforts(state.time + after, state.y, static_cast<int>(load), efforts, work);
-      const auto bad = std::find_if(efforts.begin(), efforts.end(), [](double e) { return !std::isfinite(e); });
+      const auto bad =
+          std::find_if(efforts.begin(), efforts.end(), [](double e) { return !(std::abs(e) < unbearable); });
       if (bad != efforts.end()) {
         text += (text.empty() ? "" : "; ") + ("load '" + model.loads()[load].name + "' gives " + brief(*bad) + " on ") +
                 layout.speed_names[static_cast<std::size_t>(bad - efforts.begin())] +
@@ -68,6 +85,8 @@ std::string nonfinite_loads(const Model& model, const EquationsOfMotion& equatio
       if (!(ahead > 0)) break;
     }
   }
+  if (const std::string rates = nonfinite_rates(model, state); !rates.empty())
+    text += (text.empty() ? "" : "; ") + rates;
   return text;
 }
 

@@ -11,6 +11,7 @@
 #include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/monitor.hpp"
 #include "withy/core/simulation/run_times.hpp"
+#include "withy/core/simulation/step_watch.hpp"
 #include "withy/core/simulation/stepping.hpp"
 #include "withy/core/simulation/stop.hpp"
 
@@ -21,11 +22,12 @@ namespace {
 class Run final : public SteppingObserver {
  public:
   Run(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator, const State& initial,
-      const RunOptions& options, const std::function<void(const State&)>& output, RunSummary& summary)
+      const RunOptions& options, const std::function<void(const State&)>& output, StepWatch* watch, RunSummary& summary)
       : model_(model),
         equations_(equations),
         options_(options),
         output_(output),
+        watch_(watch),
         summary_(summary),
         hand_overs_(options.changing != nullptr ? options.changing->hand_overs() : std::vector<double>()),
         actions_(model, equations, options.events),
@@ -41,7 +43,7 @@ class Run final : public SteppingObserver {
       restore(*options.resume);
       return;
     }
-    monitor_.begin_efforts(loop_.state());
+    begin_watches();
     output_at(loop_.state());
     validity_.observe(loop_.state(), 0, loop_.state().time);
   }
@@ -99,6 +101,7 @@ class Run final : public SteppingObserver {
     const State& state = stepper.state();
     monitor_.audit_steps(state, stepper.statistics());
     monitor_.observe(stepper);
+    if (watch_ != nullptr) watch_->observe(stepper);
     monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
     if (audited(stepper.statistics().accepted)) monitor_.audit_energy(state);
     validity_.observe(state, loop_.step_evaluations(), monitor_.trusted().time);
@@ -123,11 +126,15 @@ class Run final : public SteppingObserver {
   void switched() override { ++summary_.switchings; }
   void jumped() override {
     monitor_.pass_instant();
-    monitor_.begin_efforts(loop_.state());
+    begin_watches();
   }
-  void restarted() override { monitor_.begin_efforts(loop_.state()); }
+  void restarted() override { begin_watches(); }
 
  private:
+  void begin_watches() {
+    monitor_.begin_efforts(loop_.state());
+    if (watch_ != nullptr) watch_->begin_at(loop_.state());
+  }
   /// Energy is looked at after each of the first steps, then after every fourth, whatever the output interval.
   static bool audited(std::size_t accepted) {
     constexpr std::size_t first = 256, interval = 4;
@@ -160,6 +167,7 @@ class Run final : public SteppingObserver {
     validity_.remember(memory);
     loop_.remember(memory);
     loops_.remember(memory);
+    if (watch_ != nullptr) watch_->remember(memory);
     memory(emitted_);
     memory(summary_.switchings);
     std::size_t count = summary_.events.size();
@@ -184,6 +192,7 @@ class Run final : public SteppingObserver {
   const EquationsOfMotion& equations_;
   const RunOptions& options_;
   const std::function<void(const State&)>& output_;
+  StepWatch* watch_;  ///< null: there is none
   RunSummary& summary_;
   std::vector<double> hand_overs_;  ///< increasing
   EventActions actions_;
@@ -286,12 +295,18 @@ std::string_view name(RunStatus status) {
 
 RunSummary simulate(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator,
                     const State& initial, const RunOptions& options, const std::function<void(const State&)>& output) {
+  return simulate(model, equations, integrator, initial, options, output, nullptr);
+}
+
+RunSummary simulate(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator,
+                    const State& initial, const RunOptions& options, const std::function<void(const State&)>& output,
+                    StepWatch* watch) {
   if (!(options.end >= initial.time)) throw std::invalid_argument("the end lies before the initial time");
   if (!(options.output > 0)) throw std::invalid_argument("the output interval is not positive");
   const double began = thread_cpu_seconds();
   RunSummary summary;
   if (options.changing != nullptr) options.changing->go_over(initial.time);
-  Run run(model, equations, integrator, initial, options, output, summary);
+  Run run(model, equations, integrator, initial, options, output, watch, summary);
   Stop stop = run.to_end();
   run.finish(stop.status);
   summary.final = run.stepper().state();

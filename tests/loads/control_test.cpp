@@ -544,6 +544,25 @@ TEST(Control, MistakesAreLocatedAndNamed) {
               HasSubstr("algebraic"));
 }
 
+TEST(Control, FormulasThatRunAwayAreNamedWhereTheyEndARun) {
+  const auto message = [](const std::string& loads) {
+    LoadedScene s(test::turntable + "loads:\n" + loads);
+    RunOptions options;
+    options.end = 2;
+    const RunSummary summary =
+        simulate(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options, {});
+    EXPECT_EQ(summary.status, RunStatus::diverged);
+    return summary.message;
+  };
+  EXPECT_THAT(message("  wild: {type: expression, value: 1/(axle - axle), hinge: axle}\n"),
+              HasSubstr("load 'wild' gives"));
+  EXPECT_THAT(message("  wild: {type: expression, value: 1e300 * exp(t), hinge: axle}\n"),
+              HasSubstr("load 'wild' gives 1e+300 on axle.0"));
+  EXPECT_THAT(message("  wild: {type: expression, value: log(axle - 1), to: nothing}\n"
+                      "  drive: {type: actuator, of: wild, hinge: axle, frequency: 3}\n"),
+              HasSubstr("the rate of 'drive.rate' is not finite: look at what that load measures"));
+}
+
 // Three joints of a flexible arm under its weight: the integrals take it up, the shoulder's motor has a limit.
 TEST(Control, AManipulatorHoldsItsPose) {
   LoadedScene s(test::shipped("manipulator-pid.yaml"));

@@ -1,0 +1,153 @@
+#include "withy/core/simulation/output_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace withy {
+namespace {
+
+/// The sensors up to the last that is watched: formulas refer to those before them.
+std::vector<SensorNode> needed(const std::vector<SensorNode>& sensors, const std::vector<std::string>& watched) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    if (std::find(watched.begin(), watched.end(), sensors[i].name) != watched.end()) count = i + 1;
+  return {sensors.begin(), sensors.begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
+/// Where the parabola through three points has its extreme, clamped to their span.
+double vertex(const std::array<double, 3>& t, const std::array<double, 3>& x) {
+  const double a = (x[1] - x[0]) / (t[1] - t[0]), b = (x[2] - x[1]) / (t[2] - t[1]);
+  const double bend = (b - a) / (t[2] - t[0]);
+  if (bend == 0) return t[1];
+  return std::clamp((t[0] + t[1]) / 2 - a / (2 * bend), t[0], t[2]);
+}
+
+/// The value of that parabola.
+double along(const std::array<double, 3>& t, const std::array<double, 3>& x, double at) {
+  const double a = (x[1] - x[0]) / (t[1] - t[0]), b = (x[2] - x[1]) / (t[2] - t[1]);
+  return x[0] + a * (at - t[0]) + (b - a) / (t[2] - t[0]) * (at - t[0]) * (at - t[1]);
+}
+
+}  // namespace
+
+double OutputStatistics::rms() const { return span > 0 ? std::sqrt(std::max(0.0, square / span)) : std::abs(least); }
+
+StatisticsWatch::StatisticsWatch(const std::vector<SensorNode>& sensors, const std::vector<std::string>& watched,
+                                 const EquationsOfMotion& equations)
+    : reader_(needed(sensors, watched), equations) {
+  std::size_t column = 0;
+  for (const SensorNode& node : needed(sensors, watched)) {
+    const bool asked = std::find(watched.begin(), watched.end(), node.name) != watched.end();
+    for (const Column& c : columns_of(node)) {
+      if (asked) {
+        columns_.push_back(column);
+        results_.push_back({.name = c.name, .unit = c.unit});
+      }
+      ++column;
+    }
+  }
+  all_.resize(column);
+  now_.resize(results_.size());
+  for (std::vector<double>& values : within_) values.resize(results_.size());
+  between_.y.resize(equations.size());
+}
+
+bool StatisticsWatch::read(const State& state, std::vector<double>& values) {
+  if (!reader_.read(state, all_)) return false;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    values[i] = all_[columns_[i]];
+    if (!std::isfinite(values[i])) return false;
+  }
+  return true;
+}
+
+void StatisticsWatch::note(double t, const std::vector<double>& values) {
+  for (std::size_t i = 0; i < results_.size(); ++i) {
+    OutputStatistics& r = results_[i];
+    if (!any_ || values[i] < r.least) r.least = values[i], r.least_at = t;
+    if (!any_ || values[i] > r.greatest) r.greatest = values[i], r.greatest_at = t;
+  }
+  any_ = true;
+}
+
+void StatisticsWatch::begin_at(const State& state) {
+  from_ = state.time;
+  known_ = read(state, within_.front());
+  if (known_) note(from_, within_.front());
+}
+
+void StatisticsWatch::observe(const Stepper& stepper) {
+  const double to = stepper.state().time, h = to - from_;
+  bool good = known_ && h > 0;
+  for (std::size_t k = 1; k + 1 < places && good; ++k) {
+    between_.time = from_ + h * static_cast<double>(k) / (places - 1);
+    stepper.interpolate(between_.time, between_.y);
+    good = read(between_, within_[k]);
+  }
+  good = good && read(stepper.state(), within_.back());
+  if (!good) {
+    begin_at(stepper.state());
+    return;
+  }
+  constexpr std::array<double, places> boole{7 / 90.0, 32 / 90.0, 12 / 90.0, 32 / 90.0, 7 / 90.0};
+  for (std::size_t k = 0; k < places; ++k) {
+    note(from_ + h * static_cast<double>(k) / (places - 1), within_[k]);
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      results_[i].integral += h * boole[k] * within_[k][i];
+      results_[i].square += h * boole[k] * within_[k][i] * within_[k][i];
+    }
+  }
+  for (std::size_t i = 0; i < results_.size(); ++i) {
+    results_[i].span += h;
+    refine(stepper, i, 1);
+    refine(stepper, i, -1);
+  }
+  within_.front() = within_.back();
+  from_ = to;
+}
+
+/// Looks for a greatest (sign 1) or least (−1) value between the places.
+void StatisticsWatch::refine(const Stepper& stepper, std::size_t result, double sign) {
+  const OutputStatistics& r = results_[result];
+  const double h = (stepper.state().time - from_) / (places - 1);
+  std::size_t top = 0;
+  for (std::size_t k = 1; k < places; ++k)
+    if (sign * within_[k][result] > sign * within_[top][result]) top = k;
+  const std::size_t middle = std::clamp<std::size_t>(top, 1, places - 2);
+  std::array<double, 3> t{}, x{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    t[k] = from_ + h * static_cast<double>(middle + k - 1);
+    x[k] = within_[middle + k - 1][result];
+  }
+  for (int look = 0; look < 2; ++look) {
+    const double at = vertex(t, x), known = sign > 0 ? r.greatest : -r.least;
+    if (at == t[0] || at == t[1] || at == t[2] || sign * along(t, x, at) <= known) return;
+    between_.time = at;
+    stepper.interpolate(at, between_.y);
+    if (!read(between_, now_)) return;
+    note(at, now_);
+    // The point farthest from the new one goes.
+    const std::size_t out = at - t[0] > t[2] - at ? 0 : 2;
+    const bool behind = at > t[1];
+    const double value = now_[result], t1 = t[1], x1 = x[1];
+    if (out == 0) {
+      t = {behind ? t1 : at, behind ? at : t1, t[2]};
+      x = {behind ? x1 : value, behind ? value : x1, x[2]};
+    } else {
+      t = {t[0], behind ? t1 : at, behind ? at : t1};
+      x = {x[0], behind ? x1 : value, behind ? value : x1};
+    }
+  }
+}
+
+void StatisticsWatch::remember(Memory& memory) {
+  for (OutputStatistics& r : results_)
+    for (double* number : {&r.least, &r.least_at, &r.greatest, &r.greatest_at, &r.integral, &r.square, &r.span})
+      memory(*number);
+  memory(within_.front());
+  memory(from_);
+  memory(known_);
+  memory(any_);
+}
+
+}  // namespace withy
