@@ -42,6 +42,12 @@ std::string json_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
+void append_member(Json& object, std::string key, Json value) {
+  // operator[] looks through all members that are there.
+  std::vector<Json::object_t::value_type>& members = object.get_ref<Json::object_t&>();
+  members.emplace_back(std::move(key), std::move(value));
+}
+
 std::string plain_text(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
@@ -64,7 +70,7 @@ Json value_json(const Value& value) {
     }
     case Value::Kind::map: {
       Json map = Json::object();
-      for (const auto& [key, member] : value.members()) map[key] = value_json(member);
+      for (const auto& [key, member] : value.members()) append_member(map, key, value_json(member));
       return map;
     }
   }

@@ -12,6 +12,8 @@ namespace withy {
 
 /// The text of a result, indented, ending its line. Numbers that are not finite become null.
 std::string json_text(const nlohmann::ordered_json& json);
+/// Appends a member to an object that has none of that name, in constant time.
+void append_member(nlohmann::ordered_json& object, std::string key, nlohmann::ordered_json value);
 /// A value for people: a text without its quotes, a whole number without its fraction.
 std::string plain_text(const nlohmann::ordered_json& value);
 nlohmann::ordered_json value_json(const Value& value);

@@ -76,7 +76,10 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
   write_file(folder / summary_name, json_text(recorded.json));
   if (has_report_page()) {
     recorded.report = report.text(recorded.run, recorded.json);
-    write_report(folder / report_name, {prepared.title(), {recorded.report}});
+    ReportContent page{prepared.title(), {}};
+    page.runs.push_back(std::move(recorded.report));
+    write_report(folder / report_name, page);
+    recorded.report = std::move(page.runs.front());
   } else {
     write_file(folder / picture_name, report.picture());
   }

@@ -34,7 +34,7 @@ ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equati
       tips_(tips(model)),
       seen_(equations.make_observation()),
       sensors_(sensors, equations),
-      work_(equations.make_work()),
+      work_(model.motions().empty() ? Work(0) : equations.make_work()),
       efforts_(model.layout().speeds) {
   const Layout& layout = model.layout();
   columns_.push_back({"t", "s"});

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "withy/core/model/event_plan.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/scene/scene_values.hpp"
 
 namespace withy {
 namespace {
@@ -11,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 Json tip_peaks(const RunSummary& summary) {
   Json peaks = Json::object();
-  for (const auto& [body, d] : summary.peak_deflection) peaks[body] = {{"y", d[1]}, {"z", d[2]}};
+  for (const auto& [body, d] : summary.peak_deflection) append_member(peaks, body, {{"y", d[1]}, {"z", d[2]}});
   return peaks;
 }
 
@@ -25,7 +27,7 @@ Json peaks_of(const Slot& hinge, const std::vector<double>& peaks) {
 Json effort_peaks(const Model& model, const RunSummary& summary) {
   Json peaks = Json::object();
   for (const Slot& hinge : model.layout().hinges) {
-    if (hinge.speeds > 0) peaks[hinge.name] = peaks_of(hinge, summary.peak_effort);
+    if (hinge.speeds > 0) append_member(peaks, hinge.name, peaks_of(hinge, summary.peak_effort));
   }
   return peaks;
 }
@@ -65,7 +67,7 @@ Json condition_json(const Conditioning& c) { return c.condition > 0 ? Json(c.con
 
 }  // namespace
 
-Json state_json(const Model& model, const State& state) { return Json::parse(write_state(model, state)); }
+Json state_json(const Model& model, const State& state) { return value_json(state_value(model, state)); }
 
 Json statistics_json(const std::vector<OutputStatistics>& outputs) {
   Json all = Json::object();

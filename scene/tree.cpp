@@ -9,7 +9,7 @@
 #include "withy/core/model/validate.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/scene/grammar.hpp"
-#include "withy/scene/make.hpp"
+#include "withy/scene/made_once.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/state.hpp"
 #include "withy/scene/topology.hpp"
@@ -118,13 +118,13 @@ class TreeBuilder {
       good_ = false;
       return;
     }
-    made.object = make_object(*made.plugin, *value, checker_);
-    if (made.object == nullptr) {
+    const std::shared_ptr<const Body> body = bodies_.of(*made.plugin, *value, checker_);
+    if (body == nullptr) {
       good_ = false;
       return;
     }
-    if (!check_shape(*made.object, made.plugin->id, *value)) return;
-    node.body = std::move(made.object);
+    if (!check_shape(*body, made.plugin->id, *value)) return;
+    node.body = body;
     if (node.body->segments().size() > 1) {
       add_segments(made.plugin->id, *value);
     } else {
@@ -186,7 +186,7 @@ class TreeBuilder {
       hinge.name = nodes_[static_cast<std::size_t>(i)].name + ".weld";
       hinge.parent_frame = nodes_[static_cast<std::size_t>(hinge.parent)].frame(outwards ? "tip" : "root");
       hinge.child_frame = nodes_[static_cast<std::size_t>(i)].frame(outwards ? "root" : "tip");
-      hinge.hinge = make_object(*plugin, Value::map({}, entry.place), checker_);
+      hinge.hinge = hinges_.of(*plugin, Value::map({}, entry.place), checker_);
       if (hinge.hinge == nullptr) good_ = false;
     }
   }
@@ -354,7 +354,7 @@ class TreeBuilder {
       return;
     }
     node.offset = pose_of(value->at("offset"));
-    node.hinge = make_object(*made.plugin, *value, checker_);
+    node.hinge = hinges_.of(*made.plugin, *value, checker_);
     if (node.hinge == nullptr) good_ = false;
     hinge_nodes_.push_back(std::move(node));
     hinge_values_.emplace_back(name, *value);
@@ -362,6 +362,8 @@ class TreeBuilder {
 
   const Checker& checker_;
   SceneTree tree_;
+  MadeOnce<Body> bodies_;
+  MadeOnce<Hinge> hinges_;
   std::vector<BodyNode> nodes_;
   std::vector<HingeNode> hinge_nodes_;
   std::vector<Link> links_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <unordered_set>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/core/plugin/mode_family.hpp"
@@ -110,15 +111,12 @@ std::string reference_family(const Candidates& candidates) {
 }
 
 std::vector<std::string> flexible_bodies(const Scene& scene) {
+  std::unordered_set<std::string> flexible;
+  for (const BodyNode& b : scene.model->bodies())
+    if (b.body->shape().modes() > 0) flexible.insert(b.segment ? b.segment->whole : b.name);
   std::vector<std::string> names;
-  for (const auto& [name, body] : scene.source.at("bodies").members()) {
-    const std::string& of = name;
-    const auto is_part = [&](const BodyNode& b) {
-      return b.body->shape().modes() > 0 && (b.segment ? b.segment->whole : b.name) == of;
-    };
-    const auto& nodes = scene.model->bodies();
-    if (std::any_of(nodes.begin(), nodes.end(), is_part)) names.push_back(name);
-  }
+  for (const auto& [name, body] : scene.source.at("bodies").members())
+    if (flexible.contains(name)) names.push_back(name);
   return names;
 }
 

@@ -130,15 +130,14 @@ std::shared_ptr<const Integrator> make_integrator(Registry& registry, const std:
 
 Beyond compile_throughout(const Prepared& prepared, Registry& registry, const std::string& formulation) {
   const Scene& scene = prepared.scene;
+  const auto& bodies = scene.model->bodies();
+  if (std::none_of(bodies.begin(), bodies.end(), [](const BodyNode& b) { return b.terms.has_value(); }))
+    return {formulation, scene.model, make_formulation(registry, formulation)->compile(scene.model), false};
   SceneValues values = prepared.values;
-  bool own = false;
-  for (const BodyNode& body : scene.model->bodies()) {
+  for (const BodyNode& body : bodies) {
     const std::string& name = body.segment ? body.segment->whole : body.name;
-    if (!body.terms) continue;
-    values.body_formulation(name, formulation, "every body in one formulation");
-    own = true;
+    if (body.terms) values.body_formulation(name, formulation, "every body in one formulation");
   }
-  if (!own) return {formulation, scene.model, make_formulation(registry, formulation)->compile(scene.model), false};
   const Scene all = make_scene(values.choose_formulation(formulation, "every body in one formulation"), registry);
   return {formulation, all.model, all.formulation->compile(all.model), false};
 }

@@ -49,7 +49,11 @@ Plugins::Plugins(const CommonArguments& arguments)
 }
 
 SceneValues read_values(const SceneArguments& arguments) {
-  return as_input([&] { return SceneValues::read(arguments.scene).apply(arguments.options); });
+  return as_input([&] {
+    SceneValues values = SceneValues::read(arguments.scene);
+    values.apply(arguments.options);
+    return values;
+  });
 }
 
 Engine::Engine(const SceneArguments& arguments)

@@ -52,7 +52,7 @@ struct Node {
   sweep::JointData<Space> joint;
   typename Space::Frame M;  ///< hinge frame in the root station's section
   Fixed<Space> base;
-  std::vector<double> stiffness;  ///< n×n
+  sweep::SharedNumbers<double> stiffness;  ///< n×n
   std::vector<Station<Space>> stations;
   sweep::MassTable<Space> mass;
   sweep::RotaryTable<Space> rotary;
@@ -60,7 +60,8 @@ struct Node {
   double flexible_height = 0;       ///< of the flexible part's mass above the plane [m]
 
   /// \param spec with the stations of all frames, the first `carrying` of them those that bodies hang on
-  Node(const NodeSpec& spec, StrainOrder order, std::size_t carrying, double height);
+  /// \param twin a node whose body's mass is the same, in the same place and terms; null: there is none
+  Node(const NodeSpec& spec, StrainOrder order, std::size_t carrying, double height, const Node* twin);
   [[nodiscard]] bool is_rod() const { return rod.integrals.packs > 0; }
 };
 

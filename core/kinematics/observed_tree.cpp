@@ -45,8 +45,9 @@ bool is_flat(const NodeSpec& node) {
   constexpr double rounding = 1e-12;
   const Vector3 normal = Vector3::UnitZ();
   double extent = 0, low = 0, high = 0;
-  for (std::size_t k = 0; k < node.particles.size(); ++k) {
-    const Vector3& X = node.particles[k].at.X;
+  const std::vector<Section> sections = node.mass.sections();
+  for (std::size_t k = 0; k < node.mass.size(); ++k) {
+    const Vector3 X = node.mass.place(k);
     extent = std::max(extent, X.norm());
     low = k > 0 ? std::min(low, X.z()) : X.z();
     high = k > 0 ? std::max(high, X.z()) : X.z();
@@ -55,7 +56,7 @@ bool is_flat(const NodeSpec& node) {
     return std::abs(s.inertia(0, 2)) + std::abs(s.inertia(1, 2)) > rounding * s.inertia.trace();
   };
   const auto leaves = [&](const StationSpec& s) { return !compilation::fields_in_plane(s.at, normal); };
-  return high - low <= rounding * extent && std::none_of(node.sections.begin(), node.sections.end(), across) &&
+  return high - low <= rounding * extent && std::none_of(sections.begin(), sections.end(), across) &&
          std::none_of(node.stations.begin(), node.stations.end(), leaves);
 }
 
@@ -70,7 +71,7 @@ std::vector<double> row_major(const Eigen::MatrixXd& m) {
 }  // namespace
 
 template <class Space>
-Node<Space>::Node(const NodeSpec& given, StrainOrder order, std::size_t carrying, double height)
+Node<Space>::Node(const NodeSpec& given, StrainOrder order, std::size_t carrying, double height, const Node* twin)
     : parent(given.parent),
       parent_station(given.parent_station),
       root_station(given.root_station),
@@ -86,16 +87,19 @@ Node<Space>::Node(const NodeSpec& given, StrainOrder order, std::size_t carrying
     const double above = height + s.at.X.z();
     Station<Space> station{{}, {s.carried, above}, above, stations.size() < carrying};
     if (order != StrainOrder::exact) station.fields = sweep::Fields<Space>(s.at);
+    if (twin != nullptr && stations.size() < twin->stations.size())
+      station.fields.share(twin->stations[stations.size()].fields);
     stations.push_back(std::move(station));
   }
   if (modes == 0) return;
-  flexible_height = height + (spec.particles.empty() ? 0.0 : spec.particles.front().at.X.z());
+  flexible_height = height + (spec.mass.size() == 0 ? 0.0 : spec.mass.place(0).z());
   if (order == StrainOrder::exact) {
-    rod = sweep::RodKinematics<Space>(spec);
+    rod = twin != nullptr && twin->rod.fits(spec) ? twin->rod : sweep::RodKinematics<Space>(spec);
   } else {
-    mass = sweep::MassTable<Space>(spec);
-    rotary = sweep::RotaryTable<Space>(spec);
+    mass = twin != nullptr ? twin->mass : sweep::MassTable<Space>(spec);
+    rotary = twin != nullptr ? twin->rotary : sweep::RotaryTable<Space>(spec);
   }
+  if (twin != nullptr) stiffness.share(twin->stiffness);
 }
 
 template <class Space>
@@ -107,13 +111,15 @@ Tree<Space>::Tree(const Model& model, Terms terms, const PlacedTree& tree, const
       positions(model.layout().positions),
       frames_(frames) {
   nodes.reserve(tree.nodes.size());
+  Twins twins;
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const NodeSpec& spec = tree.nodes[i];
     const Terms own = model.bodies()[static_cast<std::size_t>(spec.body)].terms.value_or(terms);
     // Exact kinematics is that of equations without truncation; else `exact` is the expansion.
     const bool rod = spec.modes > 0 && own.strain == StrainOrder::exact && own.truncation == Truncation::none;
     const bool linear = own.strain == StrainOrder::linear;
-    add_node(spec, rod ? StrainOrder::exact : (linear ? StrainOrder::linear : StrainOrder::quadratic), carrying[i]);
+    add_node(spec, rod ? StrainOrder::exact : (linear ? StrainOrder::linear : StrainOrder::quadratic), carrying[i],
+             twins);
   }
   std::size_t next = 0;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
@@ -135,7 +141,7 @@ Tree<Space>::Tree(const Model& model, Terms terms, const PlacedTree& tree, const
 }
 
 template <class Space>
-void Tree<Space>::add_node(const NodeSpec& spec, StrainOrder order, std::size_t carrying) {
+void Tree<Space>::add_node(const NodeSpec& spec, StrainOrder order, std::size_t carrying, Twins& twins) {
   // In a plane frames have their third axis along its normal, so that heights add up.
   double height = spec.F.p.z();
   if (spec.parent >= 0) {
@@ -146,7 +152,8 @@ void Tree<Space>::add_node(const NodeSpec& spec, StrainOrder order, std::size_t 
   if (spec.root_station >= 0)
     height -= spec.stations[static_cast<std::size_t>(spec.root_station)].at.X.z() + spec.M.p.z();
   heights_.push_back(height);
-  Node<Space> node(spec, order, carrying, height);
+  const std::optional<std::size_t> twin = twins.of(spec, order, Truncation::none);
+  Node<Space> node(spec, order, carrying, height, twin ? &nodes[*twin] : nullptr);
   node.first_station = stations;
   node.rod_work = rod_packs;
   stations += node.stations.size();
@@ -157,7 +164,7 @@ void Tree<Space>::add_node(const NodeSpec& spec, StrainOrder order, std::size_t 
   };
   add(node.base);
   for (const Station<Space>& s : node.stations) add(s.carried);
-  for (const Particle& p : spec.particles) height_moment += p.mass * node.flexible_height;
+  for (std::size_t k = 0; k < spec.mass.size(); ++k) height_moment += spec.mass.mass(k) * node.flexible_height;
   nodes.push_back(std::move(node));
 }
 

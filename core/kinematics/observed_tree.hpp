@@ -8,6 +8,7 @@
 #include "withy/core/kinematics/observation.hpp"
 #include "withy/core/kinematics/observed_node.hpp"
 #include "withy/core/tree/placed_tree.hpp"
+#include "withy/core/tree/twins.hpp"
 
 namespace withy::observed {
 
@@ -49,7 +50,7 @@ class Tree final : public ObservedModel, public std::enable_shared_from_this<Tre
   std::size_t stations = 0, rod_packs = 0, most_modes = 0;
 
  private:
-  void add_node(const NodeSpec& spec, StrainOrder order, std::size_t carrying);
+  void add_node(const NodeSpec& spec, StrainOrder order, std::size_t carrying, Twins& twins);
 
   std::vector<std::size_t> first_frame_;  ///< of each body among all frames
   std::vector<FramePlace> frames_;

@@ -35,7 +35,7 @@ SectionFrame placed_at(BodyPlan& body, const PointExpansion& section, const Pose
 std::vector<PointFields> points_of(const ModalShape& shape, StrainOrder order) {
   NodeSpec node;
   node.modes = static_cast<std::size_t>(shape.modes());
-  node.particles = shape.particles;
+  node.mass = PlacedMass(std::make_shared<ModalShape>(shape));
   const sweep::MassTable<Spatial> table(in_strain_order(std::move(node), order));
   const auto n = static_cast<std::size_t>(shape.modes());
   std::vector<PointFields> points(table.rank);

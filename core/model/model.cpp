@@ -1,8 +1,10 @@
 #include "withy/core/model/model.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/validate.hpp"
@@ -233,11 +235,13 @@ State Model::reference_state() const {
 
 std::shared_ptr<const Model> Model::in_kinematics(std::shared_ptr<const Model> model, const Terms& scene) {
   std::shared_ptr<Model> changed;
+  std::map<std::pair<const Body*, const StrainKinematics*>, std::shared_ptr<const Body>> made;  // equal bodies are one
   for (std::size_t b = 0; b < model->bodies_.size(); ++b) {
     const BodyNode& node = model->bodies_[b];
     const Terms& terms = node.terms ? *node.terms : scene;
     if (terms.kinematics == nullptr || node.body->shape().modes() == 0) continue;
-    auto body = node.body->expanded(*terms.kinematics);
+    std::shared_ptr<const Body>& body = made[{node.body.get(), terms.kinematics.get()}];
+    if (body == nullptr) body = node.body->expanded(*terms.kinematics);
     if (body == nullptr) {
       throw std::invalid_argument("body '" + node.name + "' cannot be in strain kinematics '" +
                                   std::string(terms.kinematics->name()) +
@@ -246,7 +250,7 @@ std::shared_ptr<const Model> Model::in_kinematics(std::shared_ptr<const Model> m
     }
     if (changed == nullptr) changed = std::make_shared<Model>(*model);
     BodyNode& own = changed->bodies_[b];
-    own.body = std::move(body);
+    own.body = body;
     for (Frame& frame : own.frames) frame.section = own.body->station(frame.section.X.x()).value();
   }
   for (std::size_t l = 0; l < model->loads_.size(); ++l) {
@@ -265,8 +269,11 @@ std::shared_ptr<const Model> Model::in_kinematics(std::shared_ptr<const Model> m
 Model Model::rigidified() const {
   require_tree(*this, "a rigid tree");
   std::vector<BodyNode> bodies = bodies_;
+  std::map<const Body*, std::shared_ptr<const Body>> made;  // equal bodies are one
   for (BodyNode& b : bodies) {
-    b.body = std::make_shared<RigidifiedBody>(b.body);
+    std::shared_ptr<const Body>& rigid = made[b.body.get()];
+    if (rigid == nullptr) rigid = std::make_shared<RigidifiedBody>(b.body);
+    b.body = rigid;
     for (Frame& f : b.frames) f.section = PointExpansion::rigid(f.section.X, 0);
   }
   return Model(std::move(bodies), hinges_, gravity_);

@@ -14,7 +14,7 @@ EffortWatch::EffortWatch(const Model& model, const EquationsOfMotion& equations,
       longest_(span / 50),
       rates_(equations.size()),
       rates_before_(equations.size()),
-      work_(equations.make_work()) {
+      work_(model.loads().empty() && model.motions().empty() ? Work(0) : equations.make_work()) {
   summary.peak_effort.assign(speeds_, 0.0);
   summary.peak_motion_effort.assign(speeds_, 0.0);
   if (!model.loads().empty()) loads_ = summary.peak_effort;

@@ -16,7 +16,7 @@ EventActions::EventActions(const Model& model, const EquationsOfMotion& equation
       book_(model),
       plain_(plain.size()),
       watched_(plain.begin(), plain.end()),
-      work_(equations.make_work()),
+      work_(book_.any() ? equations.make_work() : Work(0)),
       at_rest_(equations.size()),
       base_(model.layout().speeds) {
   if (!book_.any()) return;

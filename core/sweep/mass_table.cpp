@@ -37,23 +37,23 @@ template <class Space>
 MassTable<Space>::MassTable(const NodeSpec& node) {
   constexpr Eigen::Index L = Space::linear;
   const auto n = static_cast<Eigen::Index>(node.modes);
-  if (node.particles.empty()) return;
-  const auto rows = static_cast<Eigen::Index>(node.particles.size());
+  if (node.mass.size() == 0) return;
+  const auto rows = static_cast<Eigen::Index>(node.mass.size());
   const Eigen::Index columns = 1 + L * (1 + n + n * (n + 1) / 2);
   Eigen::MatrixXd fields(rows, columns);
   for (Eigen::Index k = 0; k < rows; ++k) {
-    const Particle& p = node.particles[static_cast<std::size_t>(k)];
-    const double root = std::sqrt(p.mass);
+    const PointExpansion at = node.mass.at(static_cast<std::size_t>(k));
+    const double root = std::sqrt(node.mass.mass(static_cast<std::size_t>(k)));
     Eigen::Index column = 0;
     fields(k, column++) = root;
     const auto put = [&](const Vector3& a) {
       for (Eigen::Index c = 0; c < L; ++c) fields(k, column++) = root * a[c];
     };
-    put(p.at.X);
-    for (Eigen::Index i = 0; i < n; ++i) put(p.at.phi.col(i));
+    put(at.X);
+    for (Eigen::Index i = 0; i < n; ++i) put(at.phi.col(i));
     for (Eigen::Index i = 0; i < n; ++i) {
       for (Eigen::Index j = i; j < n; ++j) {
-        const Vector3 g(p.at.gamma[0](i, j), p.at.gamma[1](i, j), p.at.gamma[2](i, j));
+        const Vector3 g(at.gamma[0](i, j), at.gamma[1](i, j), at.gamma[2](i, j));
         second_order = second_order || !g.isZero(0);
         put(g);
       }
@@ -64,13 +64,14 @@ MassTable<Space>::MassTable(const NodeSpec& node) {
   rank = static_cast<std::size_t>(R.rows());
   packs = (rank + lanes - 1) / lanes;
   stride = static_cast<std::size_t>(columns - 1);
-  data.assign(packs * stride, spread(0.0));
+  std::vector<typename Space::Group> numbers(packs * stride, spread(0.0));
   for (Eigen::Index k = 0; k < R.rows(); ++k) {
     const auto row = static_cast<std::size_t>(k);
     for (std::size_t c = 0; c < stride; ++c) {
-      set_lane(data[(row / lanes) * stride + c], row % lanes, R(k, static_cast<Eigen::Index>(c) + 1));
+      set_lane(numbers[(row / lanes) * stride + c], row % lanes, R(k, static_cast<Eigen::Index>(c) + 1));
     }
   }
+  data = std::move(numbers);
 }
 
 template struct MassTable<Spatial>;

@@ -20,7 +20,7 @@ struct MassTable {
   bool second_order = false;             ///< some Γ is there
   typename Space::Scalar root_mass = 0;  ///< √mass; 0: no particles
   /// For each pack: X (linear), then Φ_i (n·linear), then Γ_ij for i ≤ j (pairs·linear), components innermost.
-  std::vector<typename Space::Group> data;
+  SharedNumbers<typename Space::Group> data;
   std::size_t stride = 0;  ///< packs of `data` for each pack of particles
 
   MassTable() = default;

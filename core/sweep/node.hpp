@@ -10,6 +10,7 @@
 
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/spatial/space.hpp"
+#include "withy/core/sweep/shared_numbers.hpp"
 #include "withy/core/tree/invariants.hpp"
 #include "withy/core/tree/tree.hpp"
 
@@ -113,22 +114,29 @@ template <class Space>
 struct Fields {
   using Twist = typename Space::Twist;
   typename Space::Position X = Space::Position::zero();
-  std::vector<Twist> first;   ///< (Ψ_i; Φ_i)
-  std::vector<Twist> second;  ///< (Θ_ij; Γ_ij) for i ≤ j; empty where all are zero
+  SharedNumbers<Twist> first;   ///< (Ψ_i; Φ_i)
+  SharedNumbers<Twist> second;  ///< (Θ_ij; Γ_ij) for i ≤ j; empty where all are zero
 
   Fields() = default;
   explicit Fields(const PointExpansion& e) : X(Space::position(e.X)) {
     bool curved = false;
+    std::vector<Twist> linear, quadratic;
     for (Eigen::Index i = 0; i < e.phi.cols(); ++i) {
-      first.push_back(Twist::of(Space::angle(e.psi.col(i)), Space::position(e.phi.col(i))));
+      linear.push_back(Twist::of(Space::angle(e.psi.col(i)), Space::position(e.phi.col(i))));
       for (Eigen::Index j = i; j < e.phi.cols(); ++j) {
         const Vector3 g(e.gamma[0](i, j), e.gamma[1](i, j), e.gamma[2](i, j));
         const Vector3 t(e.theta[0](i, j), e.theta[1](i, j), e.theta[2](i, j));
-        second.push_back(Twist::of(Space::angle(t), Space::position(g)));
+        quadratic.push_back(Twist::of(Space::angle(t), Space::position(g)));
         curved = curved || !g.isZero(0) || !t.isZero(0);
       }
     }
-    if (!curved) second.clear();
+    first = std::move(linear);
+    if (curved) second = std::move(quadratic);
+  }
+  /// Takes from `other` what is equal.
+  void share(const Fields& other) {
+    first.share(other.first);
+    second.share(other.second);
   }
 };
 

@@ -21,10 +21,8 @@ struct Dependents {
 /// Gives a node's frame a new place: X_AN of the old frame N in the new frame A.
 void rebase(PlacedTree& tree, const Dependents& dependents, std::size_t index, const Pose& AN) {
   NodeSpec& n = tree.nodes[index];
-  const auto turn = [&](const Matrix3& I) { return Matrix3(AN.R * I * AN.R.transpose()); };
   n.base = n.base.seen_from(AN);
-  for (Particle& p : n.particles) p.at = moved(p.at, AN);
-  for (Section& s : n.sections) s = {turn(s.inertia), moved(s.at, AN)};
+  n.mass.move(AN);
   for (StationSpec& s : n.stations) s = {moved(s.at, AN), s.carried.seen_from(turned(AN.R))};
   n.rod_frame = AN * n.rod_frame;
   n.M = n.root_station < 0 ? AN * n.M : turned(AN.R) * n.M;
@@ -112,10 +110,10 @@ std::optional<Vector3> plane_normal(const NodeTree& tree) {
         return {};
     }
     const Vector3 in_node = R[i].transpose() * *normal;
-    for (const Particle& p : n.particles) {
-      if (!fields_in_plane(p.at, in_node)) return {};
+    for (std::size_t k = 0; k < n.mass.size(); ++k) {
+      if (!fields_in_plane(n.mass.at(k), in_node)) return {};
     }
-    for (const Section& s : n.sections) {
+    for (const Section& s : n.mass.sections()) {
       if (!fields_in_plane(s.at, in_node)) return {};
     }
     for (const StationSpec& s : n.stations) {

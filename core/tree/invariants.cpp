@@ -46,8 +46,8 @@ void add_rotary(std::vector<Piece>& pieces, const PointExpansion& section, const
 
 std::vector<Piece> pieces_of(const NodeSpec& node) {
   std::vector<Piece> pieces;
-  for (const Particle& p : node.particles) pieces.push_back({p.mass, 1.0, p.at});
-  for (const Section& s : node.sections) add_rotary(pieces, s.at, s.inertia);
+  for (std::size_t k = 0; k < node.mass.size(); ++k) pieces.push_back({node.mass.mass(k), 1.0, node.mass.at(k)});
+  for (const Section& s : node.mass.sections()) add_rotary(pieces, s.at, s.inertia);
   for (const StationSpec& s : node.stations) {
     const RigidInertia& c = s.carried;
     Vector3 center = Vector3::Zero();
@@ -131,8 +131,7 @@ NodeSpec in_strain_order(NodeSpec node, StrainOrder order) {
       e.theta[c].setZero();
     }
   };
-  for (Particle& p : node.particles) strip(p.at);
-  for (Section& s : node.sections) strip(s.at);
+  node.mass.make_linear();
   for (StationSpec& s : node.stations) strip(s.at);
   return node;
 }
@@ -142,8 +141,12 @@ NodeSpec rooted(NodeSpec node) {
   const PointExpansion root = node.stations[static_cast<std::size_t>(node.root_station)].at;
   const Pose M = node.M;
   const Matrix3 turn = M.R.transpose();
-  for (Particle& p : node.particles) p.at = relative_to(p.at, root, M);
-  for (Section& s : node.sections) s = {turn * s.inertia * turn.transpose(), relative_to(s.at, root, M)};
+  auto about_hinge = std::make_shared<ModalShape>();
+  for (std::size_t k = 0; k < node.mass.size(); ++k)
+    about_hinge->particles.push_back({node.mass.mass(k), relative_to(node.mass.at(k), root, M)});
+  for (const Section& s : node.mass.sections())
+    about_hinge->sections.push_back({turn * s.inertia * turn.transpose(), relative_to(s.at, root, M)});
+  node.mass = PlacedMass(std::move(about_hinge));
   for (StationSpec& s : node.stations) {
     s = {relative_to(s.at, root, M), s.carried.seen_from({turn, Vector3::Zero()})};
   }

@@ -153,10 +153,8 @@ class Merger {
     n.damping = shape.damping;
     n.rod = body.body->rod();
     n.rod_frame = where;
-    for (const Particle& p : shape.particles) n.particles.push_back({p.mass, moved(p.at, where)});
-    for (const Section& s : shape.sections) {
-      n.sections.push_back({where.R * s.inertia * where.R.transpose(), moved(s.at, where)});
-    }
+    n.mass = PlacedMass(std::shared_ptr<const ModalShape>(body.body, &shape));
+    n.mass.move(where);
   }
 
   void absorb_flexible(std::size_t b, const BodyPlace& where) {

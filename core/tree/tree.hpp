@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/tree/placed_mass.hpp"
 
 namespace withy {
 
@@ -49,8 +50,7 @@ struct NodeSpec {
   std::size_t mode_position = 0;  ///< first modal coordinate among the positions
   std::size_t mode_speed = 0;
   RigidInertia base;  ///< rigid bodies fixed to the node's frame
-  std::vector<Particle> particles;
-  std::vector<Section> sections;
+  PlacedMass mass;
   Eigen::MatrixXd stiffness, damping;
   std::vector<StationSpec> stations;
   const Rod* rod = nullptr;  ///< of the model's body

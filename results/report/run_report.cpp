@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <unordered_map>
 
 #include "withy/results/certificate_text.hpp"
 #include "withy/results/csv.hpp"
@@ -28,10 +30,15 @@ class Arrays {
     text_ += (count_ == 0 ? "\"" : ",\"") + base64_of(numbers) + '"';
     return count_++;
   }
-  /// An object's text with the arrays as its last member.
-  [[nodiscard]] std::string behind(std::string object) const {
+  /// An object's text with the run and the arrays as its last members.
+  [[nodiscard]] std::string behind(std::string object, const std::string& run) const {
     object.pop_back();
-    return object + ",\"arrays\":[" + text_ + "]}";
+    object.reserve(object.size() + run.size() + text_.size() + 30);
+    object += ",\"run\":" + run;
+    object += ",\"arrays\":[";
+    object += text_;
+    object += "]}";
+    return object;
   }
 
  private:
@@ -63,19 +70,25 @@ Json table_json(const DecimatedTable& table, const std::vector<std::vector<doubl
 /// What was measured of one kind, moment by moment; each series has the limit of the indicator of its name.
 void add_validity(const std::vector<std::string>& bodies, const std::vector<double>& values, const char* before,
                   const char* after, const study::Certificate& certificate, Json& series, Arrays& data) {
+  std::unordered_map<std::string_view, const study::Indicator*> indicators;
+  for (const study::Indicator& i : certificate.indicators) indicators.try_emplace(i.text, &i);
+  std::unordered_map<std::string_view, double> fundamentals;
+  for (const BodyValidity& b : certificate.bodies) fundamentals[b.name] = b.fundamental;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const std::string name = before + bodies[k] + after;
-    const auto indicator = std::find_if(certificate.indicators.begin(), certificate.indicators.end(),
-                                        [&](const study::Indicator& i) { return i.text == name; });
-    if (indicator == certificate.indicators.end()) continue;
-    double scale = 1;
-    for (const BodyValidity& b : certificate.bodies)
-      if (indicator->text.starts_with("rate") && b.name == bodies[k]) scale = 1 / b.fundamental;
+    const auto found = indicators.find(name);
+    if (found == indicators.end()) continue;
+    const study::Indicator* indicator = found->second;
+    const auto fundamental = fundamentals.find(bodies[k]);
+    const bool of_rate = indicator->text.starts_with("rate") && fundamental != fundamentals.end();
+    const double scale = of_rate ? 1 / fundamental->second : 1;
     std::vector<double> own;
     for (std::size_t i = k; i < values.size(); i += bodies.size()) own.push_back(scale * values[i]);
     series.push_back({{"name", name}, {"limit", indicator->limit}, {"data", data.add(own)}});
   }
 }
+
+std::string dumped_page(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
 
 /// Places and vectors moment by moment, six numbers each.
 Json arrows_json(const Arrows& arrows, Arrays& data) {
@@ -117,21 +130,22 @@ std::string RunReport::text(const study::CertifiedRun& ended, const Json& run) c
   add_validity(drawing.deflections(), deflections, "tip deflection of '", "' over its length", ended.certificate,
                validity, data);
   const Vector3& g = model.gravity();
-  const Json part{{"title", prepared_.title()},
-                  {"outcome", study::outcome_text(ended.summary)},
-                  {"scene", prepared_.values.text()},
-                  {"run", run},
-                  {"certificate", certificate_text(model, ended.summary, ended.certificate)},
-                  {"table", table_json(table_, samples, data)},
-                  {"animation",
-                   {{"gravity", {g.x(), g.y(), g.z()}},
-                    {"parts", drawing.parts()},
-                    {"size", drawing.size()},
-                    {"times", data.add(times)},
-                    {"numbers", data.add(numbers)},
-                    {"arrows", arrows_json(arrows, data)}}},
-                  {"validity", std::move(validity)}};
-  return data.behind(part.dump(-1, ' ', true, Json::error_handler_t::replace));
+  Json part{{"title", prepared_.title()},
+            {"outcome", study::outcome_text(ended.summary)},
+            {"scene", prepared_.values.text()},
+            {"certificate", certificate_text(model, ended.summary, ended.certificate)},
+            {"table", table_json(table_, samples, data)},
+            {"animation",
+             {{"gravity", {g.x(), g.y(), g.z()}},
+              {"parts", drawing.parts()},
+              {"size", drawing.size()},
+              {"times", data.add(times)},
+              {"numbers", data.add(numbers)},
+              {"arrows", arrows_json(arrows, data)}}},
+            {"validity", std::move(validity)}};
+  std::string text = dumped_page(part);
+  part = nullptr;  // it is as large as the page
+  return data.behind(std::move(text), dumped_page(run));
 }
 
 }  // namespace withy

@@ -13,6 +13,7 @@
 
 #include "random_case.hpp"
 #include "withy/core/tree/tree.hpp"
+#include "withy/core/tree/twins.hpp"
 #include "withy/tests/conformance/allocations.hpp"
 
 namespace withy::test {
@@ -281,6 +282,62 @@ hinges: {spindle: {type: screw, axis: [0, 0, 1], pitch: "200 mm/rev", parent: wo
                "quadratic");
   const double h = 0.1 / std::numbers::pi;
   EXPECT_NEAR(c.derivatives(c.state)[1], -5 * 9.81 * h / (0.03 + 5 * h * h), 1e-12);
+}
+
+/// A body that is equal to another and yet not the same: nothing is shared with it.
+class EqualBody final : public Body {
+ public:
+  explicit EqualBody(std::shared_ptr<const Body> body) : body_(std::move(body)), shape_(body_->shape()) {}
+  const ModalShape& shape() const override { return shape_; }
+  std::optional<PointExpansion> station(const StationName& name) const override { return body_->station(name); }
+  std::string stations() const override { return body_->stations(); }
+  const Rod* rod() const override { return body_->rod(); }
+  std::shared_ptr<const Body> expanded(const StrainKinematics& kinematics) const override {
+    const auto other = body_->expanded(kinematics);
+    return other == nullptr ? nullptr : std::make_shared<const EqualBody>(other);
+  }
+
+ private:
+  std::shared_ptr<const Body> body_;
+  ModalShape shape_;
+};
+
+/// Six equal links about two axes in turn: from the third on each has what an earlier one has. The last carries a tool,
+/// so that its stations are others.
+TEST_P(RandomTrees, what_equal_links_share_changes_no_bit) {
+  for (const bool planar : {true, false}) {
+    std::string text = "format: withy/1\ntime: {end: 1}\ngravity: [0.3, -9.81, 0]\nbodies:\n";
+    std::string hinges = "hinges:\n";
+    const std::string across =
+        planar ? "" : ", bending_z: {stiffness: 90, modes: 2}, torsion: {stiffness: 20, modes: 1, inertia: 0.01}";
+    for (int i = 0; i < 6; ++i) {
+      const std::string n = std::to_string(i);
+      text += "  b" + n + ": {type: beam, length: 0.7, mass_per_length: 0.9, bending_y: {stiffness: 60, modes: 2}" +
+              across + "}\n";
+      hinges += "  h" + n + ": {type: revolute, axis: " + (planar || i % 2 == 0 ? "[0, 0, 1]" : "[0, 1, 0]") +
+                ", parent: " + (i == 0 ? "world" : "b" + std::to_string(i - 1) + ".tip") + ", child: b" + n + "}\n";
+    }
+    text += "  tool: {type: rigid, mass: 0.4, inertia: [0.01, 0.02, 0.03, 0, 0, 0]}\n";
+    hinges += "  grip: {type: weld, parent: b5.tip, child: tool}\n";
+    Case c(text + hinges, GetParam());
+    const Model& model = *c.scene.model;
+    Twins twins;
+    std::size_t found = 0;
+    for (const NodeSpec& node : compile_tree(model).nodes)
+      found += twins.of(node, StrainOrder::quadratic, Truncation::none).has_value() ? 1 : 0;
+    EXPECT_EQ(found, planar ? 5U : 4U);
+
+    std::vector<BodyNode> bodies = model.bodies();
+    for (BodyNode& b : bodies) b.body = std::make_shared<EqualBody>(b.body);
+    const auto apart =
+        c.scene.formulation->compile(std::make_shared<const Model>(std::move(bodies), model.hinges(), model.gravity()));
+    for (std::size_t i = 0; i + 1 < c.state.y.size(); ++i)
+      c.state.y[i] = 0.03 * std::sin(1.0 + 7.0 * static_cast<double>(i));
+    std::vector<double> y_dot(apart->size());
+    Work work = apart->make_work();
+    ASSERT_TRUE(apart->derivatives(0, c.state.y, y_dot, work).ok());
+    EXPECT_EQ(c.derivatives(c.state), y_dot) << (planar ? "in a plane" : "in space");
+  }
 }
 
 class Untruncated : public testing::TestWithParam<std::string> {};

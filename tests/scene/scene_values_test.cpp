@@ -176,5 +176,42 @@ TEST_F(SceneValuesTest, ContentIsTheSameWhateverTheOrderAndPlaces) {
     EXPECT_FALSE(same_content(root("{a: 1, b: [x, 2]}"), root(other))) << other;
 }
 
+/// Bodies whose plugins are given the same are one object, with its modes and integrals; frames and names are their
+/// own.
+TEST(EqualBodies, AreOneObjectAndTheirProblemsEachTheirOwn) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const std::string text = R"(format: withy/1
+time: {end: 1}
+bodies:
+  a: {type: beam, length: 0.9, mass_per_length: 1.3, bending_y: {stiffness: 112, modes: 2}}
+  b: {type: beam, length: "90 cm", mass_per_length: 1.3, bending_y: {stiffness: 112, modes: 2}, frames: {eye: {at: 0.5}}}
+  c: {type: beam, length: 0.9, mass_per_length: 1.3, bending_y: {stiffness: 112.00000000000001, modes: 2}}
+hinges:
+  a: {type: revolute, axis: [0, 0, 1], parent: world, child: a}
+  b: {type: revolute, axis: [0, 0, 1], parent: a.tip, child: b}
+  c: {type: revolute, axis: [0, 1, 0], parent: b.eye, child: c}
+)";
+  const Scene scene = parse_scene(text, "s.yaml", registry);
+  const Model& model = *scene.model;
+  const auto body = [&](const char* name) { return model.bodies()[static_cast<std::size_t>(model.body(name))].body; };
+  const auto hinge = [&](const char* name) {
+    return model.hinges()[static_cast<std::size_t>(model.hinge(name))].hinge;
+  };
+  EXPECT_EQ(body("a"), body("b"));
+  EXPECT_NE(body("a"), body("c"));
+  EXPECT_EQ(hinge("a"), hinge("b"));
+  EXPECT_NE(hinge("a"), hinge("c"));
+  EXPECT_TRUE(model.find_frame("b.eye"));
+  EXPECT_FALSE(model.find_frame("a.eye"));
+
+  // A plugin's own complaint comes once for each body that gives cause for it.
+  std::string bad = replaced(text, "stiffness: 112,", "stiffness: [[0, 112], [0.5, 112]],");
+  bad = replaced(bad, "stiffness: 112,", "stiffness: [[0, 112], [0.5, 112]],");
+  const std::string found = problems(bad, registry);
+  EXPECT_THAT(found, testing::HasSubstr("/bodies/a/bending_y/stiffness"));
+  EXPECT_THAT(found, testing::HasSubstr("/bodies/b/bending_y/stiffness"));
+}
+
 }  // namespace
 }  // namespace withy::test

@@ -28,9 +28,9 @@ namespace withy::sweep {
 /// A station: everything at q = 0 and its first derivatives.
 template <class Space>
 struct FirstOrderStation {
-  Fields<Space> fields;                   ///< its axes parallel to the node's frame
-  std::vector<typename Space::Twist> J;   ///< at q = 0, section axes
-  std::vector<typename Space::Twist> J1;  ///< ∂J_i/∂q_k, element k n + i
+  Fields<Space> fields;                    ///< its axes parallel to the node's frame
+  SharedNumbers<typename Space::Twist> J;  ///< at q = 0, section axes
+  std::vector<typename Space::Twist> J1;   ///< ∂J_i/∂q_k, element k n + i
   bool has_children = false;
   double carried = 0;  ///< mass of all that hangs on it [kg]
 };

@@ -61,6 +61,14 @@ void put(std::size_t lane, const std::vector<From>& from, std::vector<To>& to) {
   for (std::size_t i = 0; i < from.size(); ++i) put(lane, from[i], to[i]);
 }
 
+template <class From, class To>
+void put(std::size_t lane, const SharedNumbers<From>& from, SharedNumbers<To>& to) {
+  to.edit([&](std::vector<To>& numbers) {
+    numbers.resize(from.size());
+    for (std::size_t i = 0; i < from.size(); ++i) put(lane, from[i], numbers[i]);
+  });
+}
+
 template <class Space, class Many>
 void put(std::size_t lane, const RigidPart<Space>& from, RigidPart<Many>& to) {
   put(lane, from.inertia, to.inertia);
@@ -69,12 +77,15 @@ void put(std::size_t lane, const RigidPart<Space>& from, RigidPart<Many>& to) {
 }
 
 /// Numbers of `count` points that come four a pack, `stride` packs a pack of points, as groups of one point each.
-inline void put(std::size_t lane, const std::vector<Pack>& from, std::size_t stride, std::size_t count,
-                std::vector<Lanes>& to) {
-  to.resize(count * stride);
-  for (std::size_t k = 0; k < count; ++k) {
-    for (std::size_t i = 0; i < stride; ++i) to[k * stride + i].set(lane, from[(k / lanes) * stride + i][k % lanes]);
-  }
+inline void put(std::size_t lane, const SharedNumbers<Pack>& from, std::size_t stride, std::size_t count,
+                SharedNumbers<Lanes>& to) {
+  to.edit([&](std::vector<Lanes>& numbers) {
+    numbers.resize(count * stride);
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t i = 0; i < stride; ++i)
+        numbers[k * stride + i].set(lane, from[(k / lanes) * stride + i][k % lanes]);
+    }
+  });
 }
 
 template <class Space, class Many>
@@ -91,8 +102,10 @@ inline void put(std::size_t lane, const RotaryTable<Planar>& from, RotaryTable<P
   to.second_order = from.second_order;
   to.stride = from.stride;
   put(lane, from.fields, from.stride, from.sections, to.fields);
-  to.axes.resize(from.sections);
-  for (std::size_t k = 0; k < from.sections; ++k) to.axes[k].J.set(lane, from.axes[k / lanes].J[k % lanes]);
+  to.axes.edit([&](auto& axes) {
+    axes.resize(from.sections);
+    for (std::size_t k = 0; k < from.sections; ++k) axes[k].J.set(lane, from.axes[k / lanes].J[k % lanes]);
+  });
 }
 
 template <class Space, class Many>

@@ -26,24 +26,28 @@ template <class Space>
 RodStation<Space> rod_station(const Pose& frame, double x, const RodSection& section) {
   RodStation<Space> station;
   station.X = Space::position(frame.p + x * frame.R.col(0));
+  std::vector<typename Space::Twist> first;
   for (Eigen::Index i = 0; i < section.rotation.cols(); ++i) {
-    station.first.push_back(Space::Twist::of(Space::angle(frame.R * section.rotation.col(i)),
-                                             Space::position(frame.R * section.deflection.col(i))));
+    first.push_back(Space::Twist::of(Space::angle(frame.R * section.rotation.col(i)),
+                                     Space::position(frame.R * section.deflection.col(i))));
   }
+  station.first = std::move(first);
   return station;
 }
 
 }  // namespace
 
-RodIntegrals::RodIntegrals(const RodTable& table, const std::vector<double>& station_x) {
+RodIntegrals::RodIntegrals(const RodTable& table, const std::vector<double>& along) : station_x(along) {
   const PanelQuadrature& quadrature = table.quadrature;
   const std::size_t nodes = quadrature.nodes().size();
   packs = static_cast<int>(nodes / lanes);
   // By columns: the weights of one node in the integrals to all.
   running = packed(quadrature.running().data(), RodTable::order * RodTable::order);
   weights = packed(quadrature.weights().data(), RodTable::order);
+  std::vector<double> lengths;
   for (std::size_t k = 0; k < nodes; k += RodTable::order)
-    scale.push_back(quadrature.weights()[k] / quadrature.weights()[0]);
+    lengths.push_back(quadrature.weights()[k] / quadrature.weights()[0]);
+  scale = std::move(lengths);
   std::vector<double> root(nodes);
   for (std::size_t k = 0; k < nodes; ++k) {
     const double m = quadrature.weights()[k] * table.sections[k].mass_per_length;
@@ -54,6 +58,13 @@ RodIntegrals::RodIntegrals(const RodTable& table, const std::vector<double>& sta
   for (const double x : station_x) stations.push_back(packed(quadrature.weights_to(x).data(), nodes));
 }
 
+bool RodKinematics<Planar>::fits(const NodeSpec& spec) const {
+  return integrals.station_x == station_coordinates(spec);
+}
+bool RodKinematics<Spatial>::fits(const NodeSpec& spec) const {
+  return integrals.station_x == station_coordinates(spec);
+}
+
 RodKinematics<Planar>::RodKinematics(const NodeSpec& spec) {
   const RodTable table(*spec.rod);
   const std::vector<double> x = station_coordinates(spec);
@@ -61,16 +72,18 @@ RodKinematics<Planar>::RodKinematics(const NodeSpec& spec) {
   const Pose& frame = spec.rod_frame;
   heading = std::atan2(frame.R(1, 0), frame.R(0, 0));
   const std::size_t n = spec.modes;
-  X.resize(static_cast<std::size_t>(integrals.packs) * 2);
-  first.resize(static_cast<std::size_t>(integrals.packs) * n * 3);
+  std::vector<Pack> places(static_cast<std::size_t>(integrals.packs) * 2);
+  std::vector<Pack> linear(static_cast<std::size_t>(integrals.packs) * n * 3);
   for (std::size_t k = 0; k < table.sections.size(); ++k) {
     const RodStation<Planar> node = rod_station<Planar>(frame, table.quadrature.nodes()[k], table.sections[k]);
-    for (int c = 0; c < 2; ++c) set_lane(X[(k / lanes) * 2 + static_cast<std::size_t>(c)], k % lanes, node.X[c]);
+    for (int c = 0; c < 2; ++c) set_lane(places[(k / lanes) * 2 + static_cast<std::size_t>(c)], k % lanes, node.X[c]);
     for (std::size_t i = 0; i < n; ++i) {
       for (int c = 0; c < 3; ++c)
-        set_lane(first[((k / lanes) * n + i) * 3 + static_cast<std::size_t>(c)], k % lanes, node.first[i][c]);
+        set_lane(linear[((k / lanes) * n + i) * 3 + static_cast<std::size_t>(c)], k % lanes, node.first[i][c]);
     }
   }
+  X = std::move(places);
+  first = std::move(linear);
   for (const double at : x) stations.push_back(rod_station<Planar>(frame, at, spec.rod->section(at)));
 }
 
@@ -83,43 +96,47 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
   direction = Spatial::position(R.col(0));
   const std::size_t n = spec.modes;
   const std::vector<double>& nodes = table.quadrature.nodes();
-  X.resize(static_cast<std::size_t>(integrals.packs) * 3);
-  first.resize(static_cast<std::size_t>(integrals.packs) * n * 12);
+  std::vector<Pack> places(static_cast<std::size_t>(integrals.packs) * 3);
+  std::vector<Pack> linear(static_cast<std::size_t>(integrals.packs) * n * 12);
   std::vector<double> section_inertia(nodes.size());
   bool rotary = false;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const RodSection& section = table.sections[k];
     const Vector3 place = frame.p + nodes[k] * R.col(0);
     for (std::size_t c = 0; c < 3; ++c)
-      set_lane(X[(k / lanes) * 3 + c], k % lanes, place[static_cast<Eigen::Index>(c)]);
+      set_lane(places[(k / lanes) * 3 + c], k % lanes, place[static_cast<Eigen::Index>(c)]);
     for (std::size_t i = 0; i < n; ++i) {
       const auto mode = static_cast<Eigen::Index>(i);
       const Vector3 psi = section.rotation.col(mode);
       Matrix3X fields(3, 4);
       fields << section.strain.col(mode), psi, psi.cross(Vector3::UnitX()), section.deflection.col(mode);
       fields = R * fields;
-      for (std::size_t c = 0; c < 12; ++c) set_lane(first[((k / lanes) * n + i) * 12 + c], k % lanes, fields.data()[c]);
+      for (std::size_t c = 0; c < 12; ++c)
+        set_lane(linear[((k / lanes) * n + i) * 12 + c], k % lanes, fields.data()[c]);
     }
     section_inertia[k] = table.quadrature.weights()[k] * section.inertia_per_length;
     rotary = rotary || section_inertia[k] > 0;
   }
+  X = std::move(places);
+  first = std::move(linear);
   if (rotary) inertia = packed(section_inertia.data(), nodes.size());
   for (const double at : x) stations.push_back(rod_station<Spatial>(frame, at, spec.rod->section(at)));
 
   // Turns: from node to node, then from the node before each station to it.
   first_station = nodes.size();
+  std::vector<int> order;
   std::vector<std::pair<double, double>> intervals;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     intervals.emplace_back(k > 0 ? nodes[k - 1] : 0.0, nodes[k]);
-    after.push_back(static_cast<int>(k) - 1);
+    order.push_back(static_cast<int>(k) - 1);
   }
   for (const double at : x) {
     const auto before = std::lower_bound(nodes.begin(), nodes.end(), at) - nodes.begin();
-    after.push_back(static_cast<int>(before) - 1);
+    order.push_back(static_cast<int>(before) - 1);
     intervals.emplace_back(before > 0 ? nodes[static_cast<std::size_t>(before - 1)] : 0.0, at);
   }
-  while (after.size() % lanes != 0) after.push_back(-1);
-  step.assign(after.size() / lanes * n * 9, spread(0.0));
+  while (order.size() % lanes != 0) order.push_back(-1);
+  std::vector<Pack> moments(order.size() / lanes * n * 9, spread(0.0));
   for (std::size_t s = 0; s < intervals.size(); ++s) {
     const auto [from, to] = intervals[s];
     const double h = to - from;
@@ -138,7 +155,7 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
     const Matrix3X a1 = 12 * B1, a2 = 180 * B2 - 15 * B0;
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t c = 0; c < 3; ++c) {
-        Pack* moment = step.data() + ((s / lanes) * n + i) * 9 + c;
+        Pack* moment = moments.data() + ((s / lanes) * n + i) * 9 + c;
         const auto row = static_cast<Eigen::Index>(c), column = static_cast<Eigen::Index>(i);
         set_lane(moment[0], s % lanes, turn(row, column));
         set_lane(moment[3], s % lanes, a1(row, column));
@@ -146,6 +163,8 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
       }
     }
   }
+  after = std::move(order);
+  step = std::move(moments);
 }
 
 }  // namespace withy::sweep

@@ -22,12 +22,13 @@ namespace withy::sweep {
 struct RodIntegrals {
   static constexpr int packs_per_panel = RodTable::order / static_cast<int>(lanes);
 
-  int packs = 0;                            ///< nodes / 4; 0: no rod
-  std::vector<Pack> running;                ///< of the first panel, j·4 + k: what node j gives to the nodes of pack k
-  std::vector<Pack> weights;                ///< of the first panel
-  std::vector<double> scale;                ///< lengths of the panels over that of the first
-  std::vector<std::vector<Pack>> stations;  ///< ∫₀ˣ to each station, weights of all nodes
-  std::vector<Pack> root_mass;              ///< square roots of the nodes' masses
+  int packs = 0;                ///< nodes / 4; 0: no rod
+  SharedNumbers<Pack> running;  ///< of the first panel, j·4 + k: what node j gives to the nodes of pack k
+  SharedNumbers<Pack> weights;  ///< of the first panel
+  SharedNumbers<double> scale;  ///< lengths of the panels over that of the first
+  std::vector<SharedNumbers<Pack>> stations;  ///< ∫₀ˣ to each station, weights of all nodes
+  SharedNumbers<Pack> root_mass;              ///< square roots of the nodes' masses
+  std::vector<double> station_x;              ///< where the stations are [m]
   double mass = 0;
 
   RodIntegrals() = default;
@@ -63,7 +64,7 @@ struct RodIntegrals {
   }
   /// ∫₀ˣ f to a station.
   [[nodiscard]] double to(std::size_t station, const Pack* f) const {
-    const std::vector<Pack>& w = stations[station];
+    const SharedNumbers<Pack>& w = stations[station];
     Pack total = spread(0.0);
     for (std::size_t k = 0; k < w.size(); ++k) total += w[k] * f[k];
     return sum(total);
@@ -78,19 +79,21 @@ struct RodKinematics {};
 template <class Space>
 struct RodStation {
   typename Space::Position X = Space::Position::zero();  ///< undeformed
-  std::vector<typename Space::Twist> first;              ///< (ψ_i; Φ_i)
+  SharedNumbers<typename Space::Twist> first;            ///< (ψ_i; Φ_i)
 };
 
 template <>
 struct RodKinematics<Planar> {
   RodIntegrals integrals;
-  double heading = 0;       ///< angle of the undeformed rod
-  std::vector<Pack> X;      ///< undeformed place of node pack k: element 2k
-  std::vector<Pack> first;  ///< ψ_i, Φ_i at node pack k: element (k·n + i)·3
+  double heading = 0;         ///< angle of the undeformed rod
+  SharedNumbers<Pack> X;      ///< undeformed place of node pack k: element 2k
+  SharedNumbers<Pack> first;  ///< ψ_i, Φ_i at node pack k: element (k·n + i)·3
   std::vector<RodStation<Planar>> stations;
 
   RodKinematics() = default;
   explicit RodKinematics(const NodeSpec& spec);
+  /// Whether it is that of a node with the same rod in the same place.
+  [[nodiscard]] bool fits(const NodeSpec& spec) const;
 
   // Functions and where they stand: t or r, then P_i, then a.
   static constexpr int P = 2;
@@ -102,16 +105,18 @@ template <>
 struct RodKinematics<Spatial> {
   RodIntegrals integrals;
   Triple direction = Triple::zero();  ///< of the undeformed rod
-  std::vector<Pack> X;                ///< undeformed place of node pack k: element 3k
-  std::vector<Pack> first;            ///< κ_i, ψ_i, Φ_i′, Φ_i at node pack k: element (k·n + i)·12
-  std::vector<Pack> step;             ///< nine moments (see magnus) for each i of four turns: element (s·n + i)·9
-  std::vector<int> after;             ///< for each turn the turn before it, −1: the root; those to nodes come first
-  std::vector<Pack> inertia;          ///< of the nodes' sections about their axis; empty where they have none
+  SharedNumbers<Pack> X;              ///< undeformed place of node pack k: element 3k
+  SharedNumbers<Pack> first;          ///< κ_i, ψ_i, Φ_i′, Φ_i at node pack k: element (k·n + i)·12
+  SharedNumbers<Pack> step;           ///< nine moments (see magnus) for each i of four turns: element (s·n + i)·9
+  SharedNumbers<int> after;           ///< for each turn the turn before it, −1: the root; those to nodes come first
+  SharedNumbers<Pack> inertia;        ///< of the nodes' sections about their axis; empty where they have none
   std::size_t first_station = 0;      ///< turn to the first station
   std::vector<RodStation<Spatial>> stations;
 
   RodKinematics() = default;
   explicit RodKinematics(const NodeSpec& spec);
+  /// Whether it is that of a node with the same rod in the same place.
+  [[nodiscard]] bool fits(const NodeSpec& spec) const;
 
   // Functions and where they stand: t or r, then u_i or w_i, P_i, b, a. Slopes keep t at `axis` as well.
   static constexpr int w = 3;

@@ -10,7 +10,8 @@ RotaryTable<Space>::RotaryTable(const NodeSpec& node) {
   const auto n = static_cast<Eigen::Index>(node.modes);
   const auto angle = [](const Vector3& v, std::size_t c) { return v[A == 1 ? 2 : static_cast<Eigen::Index>(c)]; };
   std::vector<const Section*> turning;
-  for (const Section& s : node.sections) {
+  const std::vector<Section> all = node.mass.sections();
+  for (const Section& s : all) {
     if (A == 1 ? s.inertia(2, 2) != 0 : !s.inertia.isZero(0)) turning.push_back(&s);
   }
   sections = turning.size();
@@ -20,7 +21,7 @@ RotaryTable<Space>::RotaryTable(const NodeSpec& node) {
   for (const Section* s : turning)
     second_order = second_order || !s->at.theta[0].isZero(0) || !s->at.theta[1].isZero(0) || !s->at.theta[2].isZero(0);
   stride = A * (modes + (second_order ? pairs : 0));
-  fields.assign(packs * stride, spread(0.0));
+  std::vector<Pack> angles(packs * stride, spread(0.0));
   // Principal axes, those with inertia first.
   std::vector<Eigen::SelfAdjointEigenSolver<Matrix3>> principal;
   for (const Section* s : turning) {
@@ -28,10 +29,10 @@ RotaryTable<Space>::RotaryTable(const NodeSpec& node) {
     const auto with_inertia = static_cast<std::size_t>((principal.back().eigenvalues().array() != 0).count());
     axes_each = std::max(axes_each, A == 1 ? 1 : with_inertia);
   }
-  axes.assign(packs * axes_each, Axis{spread(0.0), {spread(0.0), spread(0.0), spread(0.0)}});
+  std::vector<Axis> principal_axes(packs * axes_each, Axis{spread(0.0), {spread(0.0), spread(0.0), spread(0.0)}});
   for (std::size_t s = 0; s < sections; ++s) {
     const std::size_t pack = s / lanes, lane = s % lanes;
-    Axis* axis = axes.data() + pack * axes_each;
+    Axis* axis = principal_axes.data() + pack * axes_each;
     if (A == 1) {
       set_lane(axis->J, lane, turning[s]->inertia(2, 2));
     } else {
@@ -44,7 +45,7 @@ RotaryTable<Space>::RotaryTable(const NodeSpec& node) {
         ++axis;
       }
     }
-    Pack* field = fields.data() + pack * stride;
+    Pack* field = angles.data() + pack * stride;
     const PointExpansion& at = turning[s]->at;
     for (Eigen::Index i = 0; i < n; ++i) {
       for (std::size_t c = 0; c < A; ++c) set_lane(*field++, lane, angle(at.psi.col(i), c));
@@ -56,6 +57,8 @@ RotaryTable<Space>::RotaryTable(const NodeSpec& node) {
       }
     }
   }
+  axes = std::move(principal_axes);
+  fields = std::move(angles);
 }
 
 template struct RotaryTable<Spatial>;

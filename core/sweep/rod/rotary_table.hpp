@@ -21,9 +21,9 @@ struct RotaryTable {
   std::size_t sections = 0, packs = 0;
   bool second_order = false;  ///< some Θ is there
   std::size_t axes_each = 0;  ///< axes of each pack, the greatest number that one of its sections has
-  std::vector<Axis> axes;
+  SharedNumbers<Axis> axes;
   /// For each pack: Ψ_i (n·angular), then, of second order, Θ_ij for i ≤ j (pairs·angular), components innermost.
-  std::vector<typename Space::Group> fields;
+  SharedNumbers<typename Space::Group> fields;
   std::size_t stride = 0;  ///< packs of `fields` for each pack of sections
 
   RotaryTable() = default;

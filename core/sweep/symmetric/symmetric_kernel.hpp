@@ -16,8 +16,8 @@ namespace withy::sweep {
 /// Constant elimination of a frozen leaf's modes.
 template <class Space>
 void precompute(SymmetricNode<Space>& node) {
-  node.factor = node.G0;
-  node.Y0 = node.C0;
+  node.factor.assign(node.G0.begin(), node.G0.end());
+  node.Y0.assign(node.C0.begin(), node.C0.end());
   node.reduced = node.base.inertia;
   if (!factorize<-1>(node.factor.data(), node.modes)) {
     node.factor.clear();  // the sweep meets the same pivot and reports it

@@ -1,8 +1,12 @@
 #include "withy/core/sweep/symmetric/symmetric_sweep.hpp"
 
+#include <algorithm>
+#include <optional>
+
 #include "withy/core/sweep/symmetric/symmetric_inverse.hpp"
 #include "withy/core/sweep/symmetric/symmetric_kernel.hpp"
 #include "withy/core/sweep/symmetric/symmetric_layout.hpp"
+#include "withy/core/tree/twins.hpp"
 
 namespace withy::sweep {
 namespace {
@@ -18,7 +22,7 @@ std::vector<double> row_major(const Eigen::MatrixXd& m) {
 }  // namespace
 
 template <class Space>
-SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
+SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms, const SymmetricNode* twin)
     : body(given.body),
       parent(given.parent),
       parent_station(given.parent_station),
@@ -49,23 +53,53 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms)
     const Invariants invariants(given, terms.strain);
     base = RigidPart<Space>(invariants.I0);
     G0 = row_major(invariants.G0);
+    std::vector<Twist> coupling;
+    std::vector<Variation<Space>> inertias;
     for (int i = 0; i < modes; ++i) {
-      C0.push_back(Space::Twist::of(invariants.C0.col(i)));
-      I1.push_back(Variation<Space>::of(invariants.I1[static_cast<std::size_t>(i)]));
+      coupling.push_back(Space::Twist::of(invariants.C0.col(i)));
+      inertias.push_back(Variation<Space>::of(invariants.I1[static_cast<std::size_t>(i)]));
     }
-  } else if (terms.strain == StrainOrder::exact && modes > 0) {
-    rod = RodKinematics<Space>(spec);
-    flavor = rod.integrals.packs > 0 ? Flavor::exact : Flavor::full;
+    C0 = std::move(coupling);
+    I1 = std::move(inertias);
   } else {
-    flavor = modes > 0 ? Flavor::full : Flavor::rigid;
-    mass = MassTable<Space>(spec);
-    rotary = RotaryTable<Space>(spec);
+    take_mass(spec, terms, twin);
+  }
+  if (twin != nullptr) share(*twin);
+}
+
+template <class Space>
+void SymmetricNode<Space>::take_mass(const NodeSpec& spec, Terms terms, const SymmetricNode* twin) {
+  if (terms.strain == StrainOrder::exact && modes > 0) {
+    rod = twin != nullptr && twin->rod.fits(spec) ? twin->rod : RodKinematics<Space>(spec);
+    flavor = rod.integrals.packs > 0 ? Flavor::exact : Flavor::full;
+    return;
+  }
+  flavor = modes > 0 ? Flavor::full : Flavor::rigid;
+  mass = twin != nullptr ? twin->mass : MassTable<Space>(spec);
+  rotary = twin != nullptr ? twin->rotary : RotaryTable<Space>(spec);
+}
+
+template <class Space>
+void SymmetricNode<Space>::share(const SymmetricNode& twin) {
+  stiffness.share(twin.stiffness);
+  damping.share(twin.damping);
+  C0.share(twin.C0);
+  G0.share(twin.G0);
+  I1.share(twin.I1);
+  for (std::size_t k = 0; k < std::min(stations.size(), twin.stations.size()); ++k) {
+    stations[k].fields.share(twin.stations[k].fields);
+    stations[k].J.share(twin.stations[k].J);
   }
 }
 
 template <class Space>
 SymmetricSweep<Space>::SymmetricSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity) {
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i) nodes_.emplace_back(tree.nodes[i], terms[i]);
+  nodes_.reserve(tree.nodes.size());
+  Twins twins;
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    const std::optional<std::size_t> twin = twins.of(tree.nodes[i], terms[i].strain, terms[i].truncation);
+    nodes_.emplace_back(tree.nodes[i], terms[i], twin ? &nodes_[*twin] : nullptr);
+  }
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     SymmetricNode<Space>& node = nodes_[i];
     const NodeSpec& spec = tree.nodes[i];
@@ -103,7 +137,7 @@ std::vector<std::string> SymmetricSweep<Space>::savings(const NodeTree& tree) co
     } else if (node.flavor == Flavor::frozen) {
       lines.push_back(name + "mass integrals are those of the undeformed body, computed once");
     } else if (node.mass.packs > 0) {
-      lines.push_back(name + std::to_string(tree.nodes[i].particles.size()) + " mass points became " +
+      lines.push_back(name + std::to_string(tree.nodes[i].mass.size()) + " mass points became " +
                       std::to_string(node.mass.rank) + " generalized particles");
     }
     if (node.rotary.packs > 0)

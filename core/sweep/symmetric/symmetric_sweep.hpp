@@ -27,8 +27,8 @@ struct SymmetricStation {
   RigidPart<Space> carried;  ///< rigid bodies it carries; nothing in a frozen node
   bool loaded = false;       ///< it carries mass or children
   bool has_children = false;
-  std::size_t work_I = 0;                ///< where its children sum their articulated inertia
-  std::vector<typename Space::Twist> J;  ///< at q = 0
+  std::size_t work_I = 0;                  ///< where its children sum their articulated inertia
+  SharedNumbers<typename Space::Twist> J;  ///< at q = 0
 };
 
 /// Constants of a node.
@@ -47,17 +47,17 @@ struct SymmetricNode {
   std::size_t work_outer_I = 0;  ///< the same of what it hangs on
   std::size_t mode_position = 0, mode_speed = 0;
   JointData<Space> joint;
-  typename Space::Frame M;                                 ///< hinge frame in the root station's section
-  std::vector<typename Space::Scalar> stiffness, damping;  ///< n×n
-  RigidPart<Space> base;                                   ///< the rigid part; everything in a frozen node
+  typename Space::Frame M;                                   ///< hinge frame in the root station's section
+  SharedNumbers<typename Space::Scalar> stiffness, damping;  ///< n×n
+  RigidPart<Space> base;                                     ///< the rigid part; everything in a frozen node
   MassTable<Space> mass;
   RodKinematics<Space> rod;  ///< in place of mass and rotary inertia where the kinematics is exact
   RotaryTable<Space> rotary;
   std::vector<SymmetricStation<Space>> stations;
   // Frozen nodes: theory (3) at order zero.
-  std::vector<Twist> C0;
-  std::vector<typename Space::Scalar> G0;
-  std::vector<Variation<Space>> I1;  ///< h_k = −½ Vᵀ I1_k V
+  SharedNumbers<Twist> C0;
+  SharedNumbers<typename Space::Scalar> G0;
+  SharedNumbers<Variation<Space>> I1;  ///< h_k = −½ Vᵀ I1_k V
   // Frozen leaves: the eliminated modal block, once for ever.
   std::vector<typename Space::Scalar> factor;  ///< of G0, see factorize
   std::vector<Twist> Y0;                       ///< L⁻¹ C0ᵀ, n twists
@@ -67,7 +67,12 @@ struct SymmetricNode {
   std::size_t work_rod = 0, work_root = 0, work_elimination = 0, work_driven = 0;
 
   SymmetricNode() = default;
-  SymmetricNode(const NodeSpec& spec, Terms terms);
+  /// \param twin a node whose body's mass is the same, in the same place and terms; null: there is none
+  SymmetricNode(const NodeSpec& spec, Terms terms, const SymmetricNode* twin = nullptr);
+
+ private:
+  void take_mass(const NodeSpec& spec, Terms terms, const SymmetricNode* twin);
+  void share(const SymmetricNode& twin);
 };
 
 template <class Space>

@@ -1,0 +1,60 @@
+#include "withy/core/tree/placed_mass.hpp"
+
+#include "withy/core/tree/tree.hpp"
+
+namespace withy {
+namespace {
+
+void drop_second_order(PointExpansion& e) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    e.gamma[c].setZero();
+    e.theta[c].setZero();
+  }
+}
+
+}  // namespace
+
+PointExpansion PlacedMass::placed(const PointExpansion& e) const {
+  PointExpansion result = e;
+  for (const Pose& AB : moves_) result = moved(result, AB);
+  if (linear_) drop_second_order(result);
+  return result;
+}
+
+Vector3 PlacedMass::place(std::size_t particle) const {
+  Vector3 X = shape_->particles[particle].at.X;
+  for (const Pose& AB : moves_) X = AB.p + AB.R * X;
+  return X;
+}
+
+void PlacedMass::move(const Pose& AB) {
+  if (AB.R != Matrix3::Identity() || !AB.p.isZero(0)) moves_.push_back(AB);
+}
+
+std::vector<Section> PlacedMass::sections() const {
+  std::vector<Section> result;
+  if (shape_ == nullptr) return result;
+  result.reserve(shape_->sections.size());
+  for (const Section& s : shape_->sections) {
+    Matrix3 inertia = s.inertia;
+    for (const Pose& AB : moves_) inertia = Matrix3(AB.R * inertia * AB.R.transpose());
+    result.push_back({inertia, placed(s.at)});
+  }
+  return result;
+}
+
+std::string PlacedMass::identity() const {
+  std::string bytes;
+  if (shape_ == nullptr) return bytes;
+  const auto append = [&](const void* from, std::size_t size) { bytes.append(static_cast<const char*>(from), size); };
+  const ModalShape* shape = shape_.get();
+  append(&shape, sizeof shape);
+  append(&linear_, sizeof linear_);
+  for (const Pose& AB : moves_) {
+    append(AB.R.data(), 9 * sizeof(double));
+    append(AB.p.data(), 3 * sizeof(double));
+  }
+  return bytes;
+}
+
+}  // namespace withy
