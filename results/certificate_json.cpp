@@ -11,8 +11,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 using study::Certificate;
 
-Json body_json(const BodyValidity& b, const RunSummary& summary) {
+/// The formulation that a body is modelled in: its own, else the scene's.
+std::string formulation_of(const std::string& body, const Certificate& certificate) {
+  for (const study::OwnFormulation& own : certificate.own)
+    if (own.body == body) return own.formulation;
+  return certificate.formulation;
+}
+
+Json body_json(const BodyValidity& b, const Certificate& certificate, const RunSummary& summary) {
   Json j{{"name", b.name},
+         {"formulation", formulation_of(b.name, certificate)},
          {"fundamental_frequency", b.fundamental},
          {"rate_over_fundamental", {{"value", b.rate_ratio}, {"time", b.rate_time}}}};
   Json shares = Json::object();
@@ -33,6 +41,22 @@ Json body_json(const BodyValidity& b, const RunSummary& summary) {
         {"frequency", h.frequency}, {"modes", h.modes}, {"energy_share", h.modes > 1 ? Json(h.share) : Json()}};
   }
   return j;
+}
+
+Json drifts_json(const study::Drifts& d, bool momenta) {
+  Json j{{"energy", d.energy}};
+  if (momenta) j.update({{"linear", d.linear}, {"angular", d.angular}});
+  return j;
+}
+
+Json dropped_json(const Certificate& c) {
+  Json groups = Json::object();
+  for (const study::DroppedForces& d : c.dropped) {
+    Json terms = Json::object();
+    for (const study::DroppedTerm& t : d.terms) terms[t.term] = t.share;
+    groups[d.group] = {{"share", d.share}, {"terms", std::move(terms)}};
+  }
+  return groups;
 }
 
 /// Rungs over time, the accuracy asked and what finding them has cost.
@@ -98,13 +122,18 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
   c["momentum_drift"] = certificate.momentum.conserved
                             ? Json{{"linear", certificate.momentum.linear}, {"angular", certificate.momentum.angular}}
                             : Json();
+  const bool momenta = certificate.momentum.conserved;
+  c["drift_by"] = certificate.shares ? Json{{"model", drifts_json(certificate.shares->model, momenta)},
+                                            {"integration", drifts_json(certificate.shares->integration, momenta)}}
+                                     : Json();
+  c["dropped"] = dropped_json(certificate);
   c["families"] = Json::array();
   for (const study::BodyFamilies& f : certificate.families)
-    c["families"].push_back({{"body", f.body}, {"family", f.family}, {"modes", f.modes}});
+    c["families"].push_back({{"body", f.body}, {"strain", f.strain}, {"family", f.family}, {"modes", f.modes}});
   c["acceleration_rounding"] = certificate.rounding ? Json(*certificate.rounding) : Json();
   c["samples"] = certificate.samples;
   c["bodies"] = Json::array();
-  for (const BodyValidity& b : certificate.bodies) c["bodies"].push_back(body_json(b, summary));
+  for (const BodyValidity& b : certificate.bodies) c["bodies"].push_back(body_json(b, certificate, summary));
   const NeglectedAcceleration& n = certificate.neglected;
   c["neglected_acceleration"] =
       !certificate.against.empty() && n.samples > 0

@@ -119,7 +119,7 @@ ReferenceTracker::ReferenceTracker(const Prepared& prepared, Registry& registry,
       control_(control),
       evaluations_(evaluations),
       tolerance_(std::clamp(accuracy, 1e-7, loosest)),
-      start_(begun(prepared.model(), prepared.scene.initial)),
+      start_(begun(prepared.model(), *prepared.rungs.front().equations, prepared.scene.initial)),
       end_(end_of_run(prepared.scene)),
       ends_(window_ends(start_.time, end_, prepared.scene.output)),
       integrator_(

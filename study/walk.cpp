@@ -137,10 +137,10 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
 
 Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserver& observer) {
   const EquationsOfMotion& equations = *model.equations;
-  const State start = begun(model.model(), model.scene.initial);
+  const State start = begun(model.model(), equations, model.scene.initial);
   EventActions actions(model.model(), equations, {});
   Stepping loop(
-      model.model(), integrator.start(equations, start),
+      model.model(), equations, integrator.start(equations, start),
       {.end = end_of_run(model.scene), .output = model.scene.output, .events = actions.watched(), .actions = &actions});
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();

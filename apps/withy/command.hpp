@@ -12,7 +12,8 @@
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's name
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace withy::app {
 
@@ -36,7 +37,7 @@ struct Command {
 extern const Command run_command, compare_command, inverse_command, terms_command, trade_command, advise_command,
     eval_command, inspect_command, equilibrium_command, linearize_command, response_command, modes_command,
     bench_command, import_command, plugins_command, schema_command, report_command, plot_command, check_command,
-    new_command, completion_command, manual_command, fmu_command, tune_command;
+    new_command, completion_command, manual_command, fmu_command, tune_command, export_command;
 
 struct CommonArguments {
   std::vector<std::string> plugin_directories;  ///< searched before the program's own
@@ -60,6 +61,8 @@ struct OutputArguments {
   bool force = false;  ///< another result there is replaced
 };
 
+/// `--json`.
+CLI::Option* add_json(CLI::App& parser, bool& json);
 void add_common(CLI::App& parser, CommonArguments& arguments);
 /// The scene, `--integrator`, `--set` and what is common to all commands.
 void add_scene(CLI::App& parser, SceneArguments& arguments);
