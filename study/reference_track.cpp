@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "withy/core/simulation/instants.hpp"
+#include "withy/study/accuracy.hpp"
 
 namespace withy::study {
 namespace {
@@ -17,15 +18,12 @@ constexpr double readings = 400;
 /// steps, so that their difference is right to about the tolerance of itself.
 constexpr double loosest = 1e-2;
 
-/// An integrator that coarse runs may take.
-struct Contender {
-  const char* id;
-  double weight;  ///< of an evaluation with its share of the step, over one of dopri5
-};
-/// Measured: imex 1.3, radau 2.2. imex counts for less, since its steps grow as vibrations that the start has raised
-/// decay or no longer matter, which the beginning of a run does not show.
-constexpr std::array<Contender, 4> contenders = {{{"imex", 0.9}, {"radau", 2.2}, {"dopri5", 1}, {"dop853", 1}}};
-
+/// What an evaluation of radau costs with its share of the step, over one of imex: measured, 2.2 over 1.3; less for
+/// imex, whose steps grow as vibrations of the start decay or no longer matter, which the beginning of a run does not
+/// show.
+constexpr double radau_weight = 2.4;
+/// The least rung is compared with the reference over so many windows at a time: each landing costs steps.
+constexpr std::size_t together = 3;
 /// Third-order terms beyond this part of the accuracy are looked at: (deflection over length)² of the range (spin-up:
 /// 0.36 % at 0.057, 0.49 % at 0.067).
 constexpr double worth_a_look = 0.02;
@@ -43,35 +41,39 @@ std::vector<double> window_ends(double start, double end, double output) {
   return ends;
 }
 
-/// A number of evaluations for a cost; all that a run may need where there is no limit.
-std::size_t evaluations_within(double cost) {
-  constexpr double most = 1e15;
-  return static_cast<std::size_t>(std::min(cost, most));
-}
+/// What a coarse run takes over the first two windows; the first one has its first steps.
+struct Beginning {
+  std::size_t first = 0, second = 0;  ///< evaluations
+  bool reached = false;
+};
 
-/// The integrator that costs least in the least rung over the second window; the first one has its first steps.
+/// `imex`, which modes do not limit (`dopri5` for equations that have no such way), or `radau` where stiff loads make
+/// it the cheaper one over the second window, in the least rung. \param per_window evaluations of the one chosen
 std::string cheapest_integrator(const Prepared& prepared, Registry& registry, const Outputs& outputs, double tolerance,
-                                const State& start, const std::vector<double>& ends,
+                                const State& start, const std::vector<double>& ends, std::size_t& per_window,
                                 std::vector<std::size_t>& evaluations) {
-  std::string best = "dopri5";
-  double least = std::numeric_limits<double>::infinity();
-  const EquationsOfMotion& equations = *prepared.rungs.front().equations;
-  const double until = ends[std::min<std::size_t>(1, ends.size() - 1)];
-  for (const Contender& c : contenders) {
-    if (std::string(c.id) == "imex" && equations.linearly_implicit() == nullptr) continue;
-    const auto integrator = make_integrator(registry, c.id, tolerance);
-    CoarseRun run(prepared, equations, outputs, *integrator, start, until);
-    const auto affordable = [&](double factor) { return evaluations_within(factor * least / c.weight); };
-    bool reached = run.to(ends.front(), {}, affordable(3));
-    const std::size_t before = ends.size() > 1 ? run.evaluations() : 0;
-    reached = reached && run.to(until, {}, before + affordable(1));
-    evaluations.front() += run.evaluations();
-    const double cost = c.weight * static_cast<double>(run.evaluations() - before);
-    if (!reached || cost >= least) continue;
-    least = cost;
-    best = c.id;
-  }
-  return best;
+  const auto begin = [&](const char* id, std::size_t most_first, std::size_t most_second) {
+    const auto integrator = make_integrator(registry, id, tolerance);
+    const double until = ends[std::min<std::size_t>(1, ends.size() - 1)];
+    CoarseRun run(prepared, 0, 0, outputs, *integrator, start, until);
+    Beginning b;
+    b.reached = run.to(ends.front(), {}, most_first);
+    b.first = run.evaluations();
+    b.reached = b.reached && run.to(until, {}, b.first + most_second);
+    b.second = ends.size() > 1 ? run.evaluations() - b.first : b.first;
+    run.charge(evaluations);
+    return b;
+  };
+  constexpr std::size_t any = 1'000'000'000;
+  const bool implicit = prepared.rungs.front().equations->linearly_implicit() != nullptr;
+  const char* usual = implicit ? "imex" : "dopri5";
+  const Beginning of_usual = begin(usual, any, any);
+  per_window = of_usual.second;
+  const auto part = [](std::size_t n) { return static_cast<std::size_t>(static_cast<double>(n) / radau_weight); };
+  const Beginning of_radau = begin("radau", part(of_usual.first + of_usual.second), part(of_usual.second));
+  if (of_usual.reached && (!of_radau.reached || of_radau.second >= part(of_usual.second))) return usual;
+  if (of_radau.reached) per_window = of_radau.second;
+  return of_radau.reached ? "radau" : usual;
 }
 
 /// What is to be known of readings as they come.
@@ -97,52 +99,116 @@ class Extremes {
   std::vector<double> first_;
 };
 
-/// Runs it in its rung. False where deflections pass a limit.
-bool track_in(const Prepared& prepared, Registry& registry, const Outputs& outputs, ReferenceTrack& track,
-              double most_deflection, const Control& control, std::vector<std::size_t>& evaluations) {
-  const auto integrator = make_integrator(registry, track.integrator, track.tolerance);
-  CoarseRun run(prepared, *prepared.rungs[track.rung].equations, outputs, *integrator, track.start, track.end);
-  track.windows.clear();
-  track.ranges = outputs.none();
-  Extremes extremes(outputs, track, run.read());
-  for (const double end : window_ends(track.start.time, track.end, prepared.scene.output)) {
-    WindowTrack window;
-    const bool reached = run.track(end, control, (track.end - track.start.time) / readings, window);
-    for (const std::vector<double>& values : window.readings)
-      if (!values.empty()) extremes.raise(values);
-    track.energy = std::max(track.energy, run.kinetic_energy());
-    if (!reached) {
-      track.problem = control.stop() ? "interrupted" : "it cannot go on";
-      break;
-    }
-    track.windows.push_back(std::move(window));
-    if (track.deflection > most_deflection) break;
-  }
-  evaluations[track.rung] += run.evaluations();
-  return !(track.deflection > most_deflection);
+/// Whether what went along is too far off to go on with, by the ranges so far.
+bool far_off(const Outputs& outputs, const ReferenceTrack& track, const Distances& errors, double accuracy) {
+  constexpr double far = 3;
+  const Distances limits = Accuracy{accuracy, {}, {}}.limits(outputs, scales(outputs, track.ranges, track.energy));
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (errors[i] > far * limits[i]) return true;
+  return false;
 }
 
 }  // namespace
 
-ReferenceTrack track_reference(const Prepared& prepared, Registry& registry, const Outputs& outputs, double accuracy,
-                               const Control& control, std::vector<std::size_t>& evaluations) {
+ReferenceTracker::ReferenceTracker(const Prepared& prepared, Registry& registry, const Outputs& outputs,
+                                   double accuracy, const Control& control, std::vector<std::size_t>& evaluations)
+    : prepared_(prepared),
+      registry_(registry),
+      outputs_(outputs),
+      accuracy_(accuracy),
+      control_(control),
+      evaluations_(evaluations),
+      tolerance_(std::clamp(accuracy, 1e-7, loosest)),
+      start_(begun(prepared.model(), *prepared.rungs.front().equations, prepared.scene.initial)),
+      end_(end_of_run(prepared.scene)),
+      ends_(window_ends(start_.time, end_, prepared.scene.output)),
+      integrator_(
+          cheapest_integrator(prepared, registry, outputs, tolerance_, start_, ends_, per_window_, evaluations)) {
+  const bool exact = prepared.rungs.back().terms.strain == StrainOrder::exact;
+  second_ = prepared.rungs.size() - (exact ? 2 : 1);
+  small_ = exact ? std::sqrt(worth_a_look * accuracy) : std::numeric_limits<double>::infinity();
+}
+
+ReferenceTrack ReferenceTracker::blank() const {
   ReferenceTrack track;
-  track.tolerance = std::clamp(accuracy, 1e-7, loosest);
-  track.start = begun(prepared.model(), *prepared.rungs.front().equations, prepared.scene.initial);
-  track.end = end_of_run(prepared.scene);
-  track.integrator = cheapest_integrator(prepared, registry, outputs, track.tolerance, track.start,
-                                         window_ends(track.start.time, track.end, prepared.scene.output), evaluations);
-  const auto& rungs = prepared.rungs;
-  const bool exact = rungs.back().terms.strain == StrainOrder::exact;
-  track.rung = rungs.size() - (exact ? 2 : 1);
-  const double small = exact ? std::sqrt(worth_a_look * accuracy) : std::numeric_limits<double>::infinity();
-  if (track_in(prepared, registry, outputs, track, small, control, evaluations)) {
+  track.rung = track.low = second_;
+  track.integrator = integrator_;
+  track.tolerance = tolerance_;
+  track.start = start_;
+  track.end = end_;
+  track.ranges = outputs_.none();
+  return track;
+}
+
+/// False where deflections pass a limit, or what goes along beside is far off.
+bool ReferenceTracker::run(ReferenceTrack& track, double most_deflection, bool beside) {
+  const auto integrator = make_integrator(registry_, integrator_, tolerance_);
+  const auto following = make_integrator(registry_, integrator_, std::min(looser * tolerance_, 1.0));
+  CoarseRun run(prepared_, track.low, track.rung, outputs_, *integrator, start_, end_);
+  CoarseRun least(prepared_, 0, 0, outputs_, *following, start_, end_);
+  Extremes extremes(outputs_, track, run.read());
+  Distances errors = outputs_.none();
+  bool good = true;
+  for (std::size_t k = 0; good && k < ends_.size(); ++k) {
+    if (beside && (k + 1) % together != 0 && k + 1 < ends_.size()) continue;
+    WindowTrack window;
+    const std::size_t most =
+        beside && track.low != track.rung ? too_many() : std::numeric_limits<std::size_t>::max() / 2;
+    const bool reached = run.track(ends_[k], control_, (end_ - start_.time) / readings, most, window);
+    for (const std::vector<double>& values : window.readings)
+      if (!values.empty()) extremes.raise(values);
+    track.energy = std::max(track.energy, run.kinetic_energy());
+    if (!reached) {
+      track.problem = control_.stop() ? "interrupted" : "it cannot go on";
+      break;
+    }
+    track.windows.push_back(std::move(window));
+    good = !(track.deflection > most_deflection);
+    if (!good || !beside) continue;
+    WindowTrack along;
+    good = least.follow(track.windows.back(), control_, along);
+    for (std::size_t i = 0; good && i < along.readings.size(); ++i)
+      if (!along.readings[i].empty()) outputs_.raise(along.readings[i], track.windows.back().readings[i], errors);
+    good = good && !far_off(outputs_, track, errors, accuracy_);
+    track.beside.push_back(std::move(along));
+  }
+  run.charge(evaluations_);
+  least.charge(evaluations_);
+  return good && track.problem.empty();
+}
+
+std::size_t ReferenceTracker::too_many() const {
+  constexpr std::size_t shorter = 2, at_first = 100;
+  return together * shorter * per_window_ + at_first;
+}
+
+ReferenceTrack ReferenceTracker::beside_least() {
+  ReferenceTrack track = blank();
+  if (second_ == 0) return track;
+  const auto made = [&](std::size_t low) {
+    track = blank();
+    track.low = low;
+    const bool good = run(track, small_, true);
+    if (!good) track.beside.clear();
+    track.third_order = track.deflection * track.deflection;
+    return good;
+  };
+  // Where only the correction failed, the reference is made in its own rung.
+  if (corrects() && (made(0) || track.problem.empty() || control_.stop())) return track;
+  made(second_);
+  return track;
+}
+
+ReferenceTrack ReferenceTracker::highest() {
+  ReferenceTrack track = blank();
+  if (run(track, small_, false) || !track.problem.empty()) {
     track.third_order = track.deflection * track.deflection;
     return track;
   }
-  track.rung = rungs.size() - 1;
-  track.problem.clear();
-  track_in(prepared, registry, outputs, track, std::numeric_limits<double>::infinity(), control, evaluations);
+  track = blank();
+  track.rung = prepared_.rungs.size() - 1;
+  if (!corrects()) track.low = track.rung;
+  run(track, std::numeric_limits<double>::infinity(), false);
   return track;
 }
 

@@ -22,8 +22,6 @@ constexpr double usable = 0.9;
 constexpr std::array<double, 2> theta = {usable, 0.2};
 /// A lower rung is tried where no more than this part of the share is used up.
 constexpr double hardly_used = 0.5;
-/// What lands on the steps of the reference takes them as they are unless they are worse by this.
-constexpr double looser = 10;
 
 /// The composite run: it changes its rung, and goes back.
 class Planner {
@@ -40,6 +38,21 @@ class Planner {
     plan_.scales = scales(outputs, reference.ranges, reference.energy);
     limits_ = Accuracy{accuracy, {}, {}}.limits(outputs, plan_.scales);
     marks_.push_back({reference.start, outputs.none(), 0, true});
+  }
+
+  /// The whole way in the least rung, as it went beside the reference. False where it does not hold the accuracy.
+  bool least_holds() {
+    if (reference_.beside.size() != reference_.windows.size() || reference_.windows.empty()) return false;
+    for (std::size_t k = 0; k < reference_.windows.size(); ++k) {
+      Distances errors = marks_.back().errors;
+      const auto& a = reference_.beside[k].readings;
+      for (std::size_t i = 0; i < a.size(); ++i)
+        if (!a[i].empty()) outputs_.raise(a[i], reference_.windows[k].readings[i], errors);
+      if (use(errors) > allowed_) return false;
+      marks_.push_back({reference_.beside[k].end, errors, 0, false});
+    }
+    make_stretches();
+    return true;
   }
 
   void run() {
@@ -129,7 +142,7 @@ class Planner {
       outputs_.raise(run_->read(), track.readings[i], errors);
       good = use(errors) <= share;
     }
-    plan_.evaluations[rung] += run_->evaluations() - before;
+    run_->charge(plan_.evaluations);
     if (good) {
       marks_.push_back({run_->state(), errors, rung, false});
     } else {
@@ -138,15 +151,10 @@ class Planner {
     }
     return good;
   }
-  [[nodiscard]] static std::size_t most_evaluations(const WindowTrack& track) {
-    return 1000 + 100 * track.times.size();
-  }
-
   void begin(std::size_t rung, const State& state) {
-    run_ = std::make_unique<CoarseRun>(prepared_, *prepared_.rungs[rung].equations, outputs_, *integrator_, state,
-                                       reference_.end);
+    run_ = std::make_unique<CoarseRun>(prepared_, rung == top() ? reference_.low : rung, rung, outputs_, *integrator_,
+                                       state, reference_.end);
     run_rung_ = rung;
-    plan_.evaluations[rung] += run_->evaluations();
   }
 
   /// From the beginning in one rung throughout: where that holds the accuracy, no mix need be sought.
@@ -236,17 +244,25 @@ RungPlan plan_rungs(const Prepared& prepared, Registry& registry, double accurac
   }
   const double began = thread_cpu_seconds();
   const Outputs outputs(prepared.model());
-  const ReferenceTrack reference = track_reference(prepared, registry, outputs, accuracy, control, plan.evaluations);
-  Planner planner(prepared, registry, outputs, reference, accuracy, control, plan);
-  planner.run();
+  ReferenceTracker tracker(prepared, registry, outputs, accuracy, control, plan.evaluations);
+  ReferenceTrack reference = tracker.beside_least();
+  auto planner = std::make_unique<Planner>(prepared, registry, outputs, reference, accuracy, control, plan);
+  if (!planner->least_holds()) {
+    reference = tracker.highest();
+    planner = std::make_unique<Planner>(prepared, registry, outputs, reference, accuracy, control, plan);
+    planner->run();
+  }
   plan.integrator = reference.integrator;
   plan.windows = reference.windows.size();
-  plan.use = planner.use(planner.errors());
-  plan.worst = planner.worst();
+  plan.use = planner->use(planner->errors());
+  plan.worst = planner->worst();
   const double until = plan.stretches.empty() ? start : plan.stretches.back().stretch.end;
-  plan.estimate = {prepared.rungs[reference.rung].name, named(outputs, planner.errors(), until), end,
+  plan.estimate = {prepared.rungs[reference.rung].name, named(outputs, planner->errors(), until), end,
                    thread_cpu_seconds() - began};
-  for (const WindowTrack& w : reference.windows) plan.readings.push_back({w.times.back(), w.readings.back()});
+  // In the highest rung throughout nothing is estimated, and the run need not agree with the reference.
+  const bool highest = plan.stretches.size() == 1 && plan.stretches.front().stretch.rung == reference.rung;
+  if (!highest)
+    for (const WindowTrack& w : reference.windows) plan.readings.push_back({w.times.back(), w.readings.back()});
   fill_up(plan, reference.rung, start, end);
   judge(plan, reference, prepared);
   return plan;

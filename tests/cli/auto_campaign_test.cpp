@@ -1,7 +1,7 @@
 // The promise of `formulation: auto`: outputs within twice the accuracy asked or a status that says otherwise, and
 // nothing among the fixed formulations that holds it is much cheaper. Truth is the highest formulation at a finer
-// tolerance; costs are counted evaluations times what one costs in its formulation and integrator. Scenes 1 to 13 were
-// there when the choice was tuned; 14 to 20 were not, and what follows are random machines.
+// tolerance; costs are counted evaluations times what one costs in its formulation and integrator. The choice was tuned
+// on scenes 1 to 13, and 14 to 20 were looked at; those after them are random machines.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,0 +1,94 @@
+/// \file
+/// A cheap formulation with the accelerations of a dearer one, found once a step: what coarse references are made in.
+#pragma once
+
+#include <vector>
+
+#include "withy/core/plugin/equations.hpp"
+#include "withy/core/simulation/rungs.hpp"
+
+namespace withy::study {
+
+/// ẏ = f_low(t, y) + d(t): d is f_high − f_low at the ends of accepted steps, where `sample` takes it, and goes on
+/// beyond the last of them as it went between the last two, for as long as that took. A step so costs an evaluation of
+/// each more than one in `low`, where a step in `high` may be ten times as dear. What the extrapolation is off by is
+/// small against d where steps resolve what moves; so the run is a good reference where d does little. Of one thread.
+class CorrectedEquations final : public EquationsOfMotion, private LinearlyImplicit {
+ public:
+  /// \param rungs of one model; they must outlive it. With low = high they are the equations of that rung.
+  CorrectedEquations(const std::vector<Rung>& rungs, std::size_t low, std::size_t high);
+
+  /// Forgets what was sampled, and samples.
+  void begin(const State& state);
+  /// Takes the difference at the end of a step. Where it cannot be found, what was known stays.
+  void sample(const State& state);
+
+  [[nodiscard]] std::size_t low() const { return low_; }
+  [[nodiscard]] std::size_t high() const { return high_; }
+  /// What an integrator is to be given: these, or the rung's own where low = high.
+  [[nodiscard]] const EquationsOfMotion& faces() const {
+    return low_ == high_ ? cheap_ : static_cast<const EquationsOfMotion&>(*this);
+  }
+  /// Evaluations made by samples, of each of the two.
+  [[nodiscard]] std::size_t samples() const { return samples_; }
+
+  [[nodiscard]] const Layout& layout() const override { return cheap_.layout(); }
+  [[nodiscard]] Work make_work() const override { return cheap_.make_work(); }
+  Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
+                         Work& work) const noexcept override;
+  void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
+                    Work& work) const noexcept override {
+    cheap_.load_efforts(t, y, load, efforts, work);
+  }
+  Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
+                            Work& work) const noexcept override {
+    return cheap_.motion_efforts(t, y, efforts, work);
+  }
+  void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
+                        Work& work) const override {
+    cheap_.inverse_dynamics(y, u_dot, efforts, work);
+  }
+  void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> product,
+                  Work& work) const override {
+    cheap_.mass_times(y, a, product, work);
+  }
+  [[nodiscard]] const LinearlyImplicit* linearly_implicit() const override {
+    return implicit_ != nullptr ? this : nullptr;
+  }
+  void normalize(std::span<double> y) const noexcept override { cheap_.normalize(y); }
+  [[nodiscard]] std::unique_ptr<Observation> make_observation() const override { return dear_.make_observation(); }
+  [[nodiscard]] DenseSystem system(double t, std::span<const double> y) const override { return cheap_.system(t, y); }
+  [[nodiscard]] Energies energies(std::span<const double> y) const override { return dear_.energies(y); }
+  [[nodiscard]] WorldPose frame_pose(std::span<const double> y, int body, int frame) const override {
+    return dear_.frame_pose(y, body, frame);
+  }
+  [[nodiscard]] std::array<double, 3> deflection(std::span<const double> y, int body, int frame) const override {
+    return dear_.deflection(y, body, frame);
+  }
+  [[nodiscard]] std::vector<std::string> savings() const override { return cheap_.savings(); }
+
+ private:
+  [[nodiscard]] Work make_factors() const override { return implicit_->make_factors(); }
+  Evaluation factorize(std::span<const double> y, double delta, Work& factors) const noexcept override {
+    return implicit_->factorize(y, delta, factors);
+  }
+  void solve(std::span<double> r, Work& factors) const noexcept override { implicit_->solve(r, factors); }
+  /// ẏ = ẏ′ + d with z = (base + δ d) + δ ẏ′.
+  Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base, double delta,
+                                  std::span<double> y_dot, Work& work) const noexcept override;
+  /// How far d goes on at a time, over what it changed by between the last two samples.
+  [[nodiscard]] double ahead(double t) const noexcept;
+
+  std::size_t low_, high_;
+  const EquationsOfMotion& cheap_;
+  const EquationsOfMotion& dear_;
+  const LinearlyImplicit* implicit_;  ///< of the cheap ones
+  Work cheap_work_, dear_work_;
+  double time_ = 0, span_ = 0;         ///< of the last sample [s]; from the one before to it, 0: there is none
+  std::vector<double> last_, change_;  ///< d there, and since the one before; of all elements of y but the work
+  std::vector<double> f_, g_;
+  mutable std::vector<double> base_;
+  std::size_t samples_ = 0;
+};
+
+}  // namespace withy::study
