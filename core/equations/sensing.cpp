@@ -1,5 +1,6 @@
 #include "withy/core/equations/sensing.hpp"
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/equations/sensed_reactions.hpp"
 #include "withy/core/kinematics/sensed_steps.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
@@ -14,7 +15,7 @@ struct Found {
   bool motion = false, motion_efforts = false, energies = false, reactions = false;
 };
 
-class Sensing final : public SensedState, public SensedLoops {
+class Sensing final : public SensedState, public SensedLoops, public SensedFields {
  public:
   Sensing(std::unique_ptr<const sensed::Plan> plan, const EquationsOfMotion& equations, const AppliedLoads& loads)
       : plan_(std::move(plan)),
@@ -42,6 +43,10 @@ class Sensing final : public SensedState, public SensedLoops {
     return std::span<const double>(rates_).subspan(layout().positions, layout().speeds);
   }
   Vector3 gravity() const noexcept override { return plan_->model.gravity(); }
+
+  Vector3 field(FrameIndex frame) noexcept override {
+    return field_acceleration(plan_->model, state_->time, motion(frame));
+  }
 
   FrameMotion motion(FrameIndex frame) noexcept override {
     FrameMotion motion;
@@ -144,7 +149,7 @@ class Sensing final : public SensedState, public SensedLoops {
   sensed::StepOf<First> moving(FrameIndex frame) noexcept {
     find_motion();
     const auto body = static_cast<std::size_t>(frame.body);
-    sensed::StepOf<First> step = pass_.frame(body, static_cast<std::size_t>(frame.frame));
+    sensed::StepOf<First> step = pass_.frame(body, plan_->bodies[body].frame(frame.frame));
     step.X = pass_.bodies[body].WB * step.X;
     return step;
   }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 
@@ -30,7 +31,7 @@ std::vector<std::string> names_of(const LoadNode& node) {
 
 /// A state of which positions and speeds are known, and accelerations where the view has them. What else is asked for
 /// is a given number.
-class Signals::Seen final : public SensedState {
+class Signals::Seen final : public SensedState, public SensedFields {
  public:
   Seen(const Signals& signals, const LoadView& view, Unknown unknown, std::vector<FrameIndex>* asked)
       : signals_(signals), view_(view), unknown_(unknown), unavailable_(unknown.effort), asked_(asked) {
@@ -50,6 +51,10 @@ class Signals::Seen final : public SensedState {
     return view_.accelerations.empty() ? std::span<const double>(signals_.zeros_) : view_.accelerations;
   }
   Vector3 gravity() const noexcept override { return signals_.model_->gravity(); }
+  Vector3 field(FrameIndex frame) noexcept override {
+    if (asked_ != nullptr) return Vector3::Zero();
+    return field_acceleration(*signals_.model_, view_.t, motion(frame));
+  }
   FrameMotion motion(FrameIndex frame) noexcept override {
     const std::size_t i = place_of(frame);
     if (i == signals_.frames_.size()) return {};
