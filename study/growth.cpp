@@ -9,8 +9,8 @@
 #include "withy/core/model/closing.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/felt_motion.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
-#include "withy/core/simulation/tree_motion.hpp"
 
 namespace withy::study {
 namespace {
@@ -25,11 +25,12 @@ std::string physical_cause(const Prepared& prepared, const RunSummary& summary) 
   if (!equations.derivatives(state.time, state.y, rates, work).ok()) return {};
   TreeMotion motion(model);
   motion.update(state.y, std::span<const double>(rates).subspan(model.layout().positions, model.layout().speeds));
+  const std::vector<BodyMotion> felt = felt_motions(model, equations, state, motion.bodies());
   std::string text;
   for (const BodyValidity& b : summary.validity.bodies) {
     const auto index = static_cast<std::size_t>(model.body(b.name));
     const double rate = b.fundamental > 0 ? motion.bodies()[index].rate.norm() / b.fundamental : 0;
-    const double buckling = -MotionStiffness(model, index).evaluate(motion.bodies()).least;
+    const double buckling = -MotionStiffness(model, index).evaluate(felt).least;
     if (rate >= 1)
       text += fmt::format(
           " There '{}' turns at {:.3g} times its fundamental frequency of {:.4g} rad/s: where a formulation knows the "

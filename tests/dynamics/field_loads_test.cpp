@@ -96,8 +96,9 @@ TEST_P(FieldLoads, have_the_efforts_of_explicit_jacobians) {
 
 /// Of eighth order, as the differences of the dense reference's residual are; nothing is said to be differenced.
 TEST_P(FieldLoads, have_exact_derivatives) {
-  for (unsigned seed = 1; seed <= (GetParam().starts_with("symmetric") ? 1 : 3); ++seed) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
     const Case c = random_tree(seed, {.bodies = 2}, every_field, GetParam());
+    if (GetParam().starts_with("symmetric") && seed != 2) continue;  // differences of the dense reference take long
     const TangentDynamics dynamics(c.scene.model, c.scene.formulation->terms());
     const auto n = static_cast<Eigen::Index>(c.scene.model->layout().speeds);
     const Eigen::VectorXd a = Eigen::VectorXd::LinSpaced(n, -1, 1);
