@@ -11,8 +11,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 using study::Certificate;
 
-Json body_json(const BodyValidity& b, const RunSummary& summary) {
+/// The formulation that a body is modelled in: its own, else the scene's.
+std::string formulation_of(const std::string& body, const Certificate& certificate) {
+  for (const study::OwnFormulation& own : certificate.own)
+    if (own.body == body) return own.formulation;
+  return certificate.formulation;
+}
+
+Json body_json(const BodyValidity& b, const Certificate& certificate, const RunSummary& summary) {
   Json j{{"name", b.name},
+         {"formulation", formulation_of(b.name, certificate)},
          {"fundamental_frequency", b.fundamental},
          {"rate_over_fundamental", {{"value", b.rate_ratio}, {"time", b.rate_time}}}};
   Json shares = Json::object();
@@ -104,7 +112,7 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
   c["acceleration_rounding"] = certificate.rounding ? Json(*certificate.rounding) : Json();
   c["samples"] = certificate.samples;
   c["bodies"] = Json::array();
-  for (const BodyValidity& b : certificate.bodies) c["bodies"].push_back(body_json(b, summary));
+  for (const BodyValidity& b : certificate.bodies) c["bodies"].push_back(body_json(b, certificate, summary));
   const NeglectedAcceleration& n = certificate.neglected;
   c["neglected_acceleration"] =
       !certificate.against.empty() && n.samples > 0

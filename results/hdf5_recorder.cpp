@@ -22,7 +22,7 @@ Library load() {
   const auto file = std::filesystem::canonical(own.dli_fname).parent_path() / "libwithy-hdf5.so";
   if (!std::filesystem::exists(file))
     return {nullptr, nullptr, "this build is without HDF5; on Debian: apt install libhdf5-dev, then build again"};
-  void* handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* handle = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (handle == nullptr) return {nullptr, nullptr, std::string("HDF5 cannot be loaded: ") + ::dlerror()};
   Library library;
   library.make = reinterpret_cast<decltype(library.make)>(::dlsym(handle, "withy_hdf5_make_recorder"));

@@ -4,13 +4,17 @@
 
 namespace withy::app {
 
+CLI::Option* add_json(CLI::App& command, bool& json) {
+  return command.add_flag("--json", json, "Give the result as JSON on standard output");
+}
+
 void add_common(CLI::App& command, CommonArguments& a) {
   command.add_option("--plugins", a.plugin_directories, "Folder with plugins, searched before the program's own")
       ->type_name("DIR")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1)
       ->allow_extra_args(false);
-  command.add_flag("--json", a.json, "Give the result as JSON on standard output");
+  add_json(command, a.json);
   command.add_flag("-v,--verbose", a.verbose, "Log on standard error what is read, loaded and compiled");
 }
 

@@ -12,7 +12,8 @@
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's name
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace withy::app {
 
@@ -60,6 +61,8 @@ struct OutputArguments {
   bool force = false;  ///< another result there is replaced
 };
 
+/// `--json`.
+CLI::Option* add_json(CLI::App& parser, bool& json);
 void add_common(CLI::App& parser, CommonArguments& arguments);
 /// The scene, `--integrator`, `--set` and what is common to all commands.
 void add_scene(CLI::App& parser, SceneArguments& arguments);

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/study/input_error.hpp"
@@ -26,6 +28,7 @@ struct NewArguments {
   std::string kind;
   std::string file;  ///< empty: <kind>.yaml
   bool force = false;
+  bool json = false;
 };
 
 const Template& template_of(const std::string& kind) {
@@ -46,7 +49,8 @@ ExitStatus write_new(const NewArguments& arguments) {
   if (std::filesystem::exists(file) && !arguments.force)
     throw study::InputError(file + " is there already: name another file, or add --force to replace it");
   write_file(file, chosen.text);
-  print(file + " is yours to change. Then:\n  withy check " + file + "\n  withy run " + file + '\n');
+  print(arguments.json ? json_text({{"file", file}})
+                       : file + " is yours to change. Then:\n  withy check " + file + "\n  withy run " + file + '\n');
   return ExitStatus::done;
 }
 
@@ -56,6 +60,7 @@ std::function<ExitStatus()> add_new(CLI::App& c) {
   c.add_option("KIND", a.kind, "beam, satellite, arm or turbine")->required();
   c.add_option("FILE", a.file, "Where to write it; default: KIND.yaml in the current folder");
   c.add_flag("--force", a.force, "Replace the file where there is one");
+  add_json(c, a.json);
   return [arguments] { return write_new(*arguments); };
 }
 

@@ -6,6 +6,7 @@
 #include "withy/apps/withy/output.hpp"
 #include "withy/results/csv_recorder.hpp"
 #include "withy/results/hdf5_recorder.hpp"
+#include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/table_picture.hpp"
 #include "withy/results/terminal_plot.hpp"
@@ -24,6 +25,7 @@ struct PlotArguments {
   std::string out;
   bool terminal = false;
   std::vector<double> over;  ///< a place [m] a column; empty: over time
+  bool json = false;
 };
 
 /// What is given, taken apart: a folder or a table is a run, all else a column.
@@ -85,7 +87,9 @@ ExitStatus plot(const PlotArguments& arguments) {
   const fs::path out =
       arguments.out.empty() ? asked.tables.front().parent_path() / "plot.svg" : fs::path(arguments.out);
   write_file(out, svg_plot(legend.size() == 1 ? legend.front() : "", legend, panels));
-  print(std::to_string(panels.size()) + (panels.size() == 1 ? " column in " : " columns in ") + out.string() + '\n');
+  const std::size_t count = panels.size();
+  print(arguments.json ? json_text({{"file", out.string()}, {"columns", count}})
+                       : std::to_string(count) + (count == 1 ? " column in " : " columns in ") + out.string() + '\n');
   return ExitStatus::done;
 }
 
@@ -97,11 +101,12 @@ std::function<ExitStatus()> add_plot(CLI::App& c) {
                "coordinates of hinges and the deflections of tips")
       ->required();
   c.add_option("--out", a.out, "File of the picture; default: plot.svg in the first folder")->type_name("FILE");
-  c.add_flag("--terminal", a.terminal, "Draw in the terminal");
   c.add_option("--over", a.over,
                "A place [m] for each column: their least and greatest over these in place of time, an envelope")
       ->delimiter(',')
       ->type_name("X,…");
+  CLI::Option* const terminal = c.add_flag("--terminal", a.terminal, "Draw in the terminal");
+  add_json(c, a.json)->excludes(terminal);
   return [arguments] { return plot(*arguments); };
 }
 

@@ -5,6 +5,7 @@
 
 #include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/results/json_text.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/study/input_error.hpp"
@@ -19,6 +20,7 @@ struct ReportArguments {
   std::string out = report_name;
   int reference = 0;  ///< number of a run; 0: none
   bool force = false;
+  bool json = false;
 };
 
 /// The page of a folder, or the file itself.
@@ -59,8 +61,9 @@ ExitStatus report(const ReportArguments& arguments) {
   content.title = title_of(content.runs);
   content.reference = arguments.reference - 1;
   write_report(arguments.out, content);
-  print(std::to_string(content.runs.size()) + (content.runs.size() == 1 ? " run in " : " runs in ") + arguments.out +
-        '\n');
+  const std::size_t count = content.runs.size();
+  print(arguments.json ? json_text({{"file", arguments.out}, {"runs", count}})
+                       : std::to_string(count) + (count == 1 ? " run in " : " runs in ") + arguments.out + '\n');
   return ExitStatus::done;
 }
 
@@ -74,6 +77,7 @@ std::function<ExitStatus()> add_report(CLI::App& c) {
       ->type_name("N")
       ->check(CLI::PositiveNumber);
   c.add_flag("--force", a.force, "Replace a file that is no report");
+  add_json(c, a.json);
   return [arguments] { return report(*arguments); };
 }
 

@@ -26,7 +26,7 @@ struct RunArguments : SceneArguments, OutputArguments {
   std::string estimate = "auto";
   /// Wall time between checkpoints [s]; 0: only where the run is interrupted; not given: 60.
   std::optional<double> checkpoint;
-  bool hdf5 = false;    ///< results.h5 too
+  bool hdf5 = true;     ///< results.h5 too
   bool resume = false;  ///< go on from the checkpoint in the folder
 };
 
@@ -120,10 +120,15 @@ std::function<ExitStatus()> add_run(CLI::App& c) {
             return seconds && *seconds >= 0 ? std::string() : "need a number of seconds, 0 or more";
           },
           ""));
-  c.add_flag("--hdf5", a.hdf5, "Write the table as results.h5 too, with scene, certificate and versions");
+  const CLI::Option* const hdf5 = c.add_flag(
+      "--hdf5,!--no-hdf5", a.hdf5,
+      "Write the table as results.h5 too, with scene, certificate and versions; default: yes, where HDF5 is there");
   c.add_flag("--resume", a.resume,
              "Go on from the checkpoint in the folder of the results: the same command as before, and this");
-  return [arguments] { return run(*arguments); };
+  return [arguments, hdf5] {
+    if (hdf5->count() == 0) arguments->hdf5 = hdf5_missing().empty();
+    return run(*arguments);
+  };
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ void add_case(CLI::App& part, SweepArguments& a) {
 
 void add_run_part(CLI::App& part, SweepArguments& a) {
   add_plan(part, a);
-  part.add_option("--out", a.store, "Folder that keeps the results; the same command goes on with what is there")
+  part.add_option("--out,--store", a.store, "Folder that keeps the results; the same command goes on with what is there")
       ->type_name("STORE")
       ->required();
   part.add_option("--jobs", a.jobs, "Cases run at once; default: one a core")->type_name("N");
@@ -100,7 +100,7 @@ void add_run_part(CLI::App& part, SweepArguments& a) {
 
 void add_submit(CLI::App& part, SweepArguments& a) {
   add_plan(part, a);
-  part.add_option("--out", a.store, "Folder that keeps the results, on a file system that all nodes share")
+  part.add_option("--out,--store", a.store, "Folder that keeps the results, on a file system that all nodes share")
       ->type_name("STORE")
       ->required();
   part.add_flag("--slurm", a.slurm, "As an array job of Slurm, and a job that collects after it");
@@ -121,7 +121,7 @@ void add_submit(CLI::App& part, SweepArguments& a) {
 }
 
 void add_store(CLI::App& part, SweepArguments& a) {
-  part.add_option("STORE,--out", a.store, "Folder of the results")->type_name("STORE")->required();
+  part.add_option("STORE,--out,--store", a.store, "Folder of the results")->type_name("STORE")->required();
 }
 
 /// A command of the command: what it does, what it takes, an example.

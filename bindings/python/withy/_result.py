@@ -82,7 +82,7 @@ class Result(Mapping):
         return pandas.DataFrame(self.table, columns=list(self)).set_index("t")
 
     def to_hdf5(self, path: str | os.PathLike[str]) -> None:
-        """Writes the table as ``withy run --hdf5`` does: a dataset for each column with its unit, status and run.json.
+        """Writes the table as ``withy run`` does to ``results.h5``: a dataset for each column with its unit, status and run.json.
 
         Raises:
             RuntimeError: where the package was built without HDF5.
