@@ -39,6 +39,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["loads"] = inner "|withy/loads/.*|fmt/.*"
     may["sensors"] = inner "|withy/sensors/.*|fmt/.*"
     may["fem"] = inner "|withy/fem/.*|withy/bodies/modal/.*|fmt/.*|nlohmann/.*|Spectra/.*"
+    may["exchange"] = inner "|withy/(scene|exchange)/.*|fmt/.*|expat[.]h"
     may["cmake"] = inner "|withy/(scene|plugins/host)/.*|fmt/.*|nlohmann/.*|gmock/.*|gtest/.*"
     may["withy.hpp"] = inner "|withy/(scene|study|results|plugins/host|host)/.*"
     may["apps"] = ".*"
@@ -50,6 +51,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     only["hdf5.h"] = "results"
     only["boost/dll"] = "plugins/host"
     only["Spectra/"] = "fem"
+    only["expat.h"] = "exchange"
     only["pybind11/"] = "bindings/python"
     only["cvode/"] = "integrators"
   }

@@ -37,7 +37,7 @@ struct Command {
 extern const Command run_command, compare_command, inverse_command, terms_command, trade_command, advise_command,
     eval_command, inspect_command, equilibrium_command, linearize_command, response_command, modes_command,
     bench_command, import_command, plugins_command, schema_command, report_command, plot_command, check_command,
-    new_command, completion_command, manual_command, fmu_command, tune_command;
+    new_command, completion_command, manual_command, fmu_command, tune_command, export_command;
 
 struct CommonArguments {
   std::vector<std::string> plugin_directories;  ///< searched before the program's own

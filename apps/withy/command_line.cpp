@@ -19,12 +19,13 @@ namespace {
 constexpr const char* meaning = "Dynamics of trees of rigid and flexible bodies";
 
 /// In the order of the help.
-const std::array commands = {
-    &new_command,       &check_command,    &run_command,    &report_command,     &plot_command,
-    &compare_command,   &inverse_command,  &terms_command,  &trade_command,      &sweep_command,
-    &advise_command,    &tune_command,     &eval_command,   &inspect_command,    &equilibrium_command,
-    &linearize_command, &response_command, &modes_command,  &bench_command,      &import_command,
-    &fmu_command,       &plugins_command,  &schema_command, &completion_command, &manual_command};
+const std::array commands = {&new_command,        &check_command,   &run_command,         &report_command,
+                             &plot_command,       &compare_command, &inverse_command,     &terms_command,
+                             &trade_command,      &sweep_command,   &advise_command,      &tune_command,
+                             &eval_command,       &inspect_command, &equilibrium_command, &linearize_command,
+                             &response_command,   &modes_command,   &bench_command,       &import_command,
+                             &export_command,     &fmu_command,     &plugins_command,     &schema_command,
+                             &completion_command, &manual_command};
 
 /// Parses with this parser; what is not the command's to answer is printed, and its status returned.
 std::optional<ExitStatus> parse(CLI::App& program, int argc, const char* const* argv) {

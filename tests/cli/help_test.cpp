@@ -12,7 +12,7 @@ using testing::StartsWith;
 const std::vector<std::string> commands = {
     "run",         "compare",   "inverse",  "terms", "trade",      "advise", "tune",    "eval",   "inspect",
     "equilibrium", "linearize", "response", "modes", "import",     "bench",  "plugins", "schema", "new",
-    "check",       "report",    "plot",     "sweep", "completion", "manual", "fmu"};
+    "check",       "report",    "plot",     "sweep", "completion", "manual", "fmu",     "export"};
 
 /// The command lines under "Examples:" in a help text, without the program's name.
 std::vector<std::vector<std::string>> examples(const std::string& help) {

@@ -1,0 +1,227 @@
+#include "elastodyn.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "withy/scene/names.hpp"
+#include "withy/scene/scene_error.hpp"
+
+namespace withy::exchange {
+namespace {
+
+/// Words of a line, without the quotes that some files put round their headings.
+std::vector<std::string> words_of(std::string_view line) {
+  std::vector<std::string> words;
+  for (;;) {
+    const std::size_t first = line.find_first_not_of(" \t\r,");
+    if (first == std::string_view::npos) return words;
+    line.remove_prefix(first);
+    const std::size_t end = std::min(line.find_first_of(" \t\r,"), line.size());
+    std::string word(line.substr(0, end));
+    std::erase(word, '"');
+    words.push_back(std::move(word));
+    line.remove_prefix(end);
+  }
+}
+
+std::optional<double> fortran_number(std::string text) {
+  for (char& c : text)
+    if (c == 'd' || c == 'D') c = 'e';
+  const std::size_t sign = text.starts_with('+') ? 1 : 0;
+  double x = 0;
+  const auto [at, wrong] = std::from_chars(text.data() + sign, text.data() + text.size(), x);
+  if (wrong != std::errc{} || at != text.data() + text.size() || !std::isfinite(x)) return {};
+  return x;
+}
+
+class ElastoDynReader {
+ public:
+  ElastoDynReader(std::string_view text, Diagnostics& diagnostics) : diagnostics_(diagnostics) {
+    while (!text.empty()) {
+      const std::size_t end = text.find('\n');
+      lines_.emplace_back(text.substr(0, end));
+      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    }
+  }
+
+  ElastoDynBeam read() {
+    find_table();
+    if (heading_ == lines_.size()) {
+      error(1, "no table of distributed properties, whose heading begins with BlFract or HtFract");
+      return beam_;
+    }
+    if (lines_.size() > 1 && words_of(lines_[1]).size() > 1) beam_.title = lines_[1];
+    if (!beam_.title.empty() && beam_.title.back() == '\r') beam_.title.pop_back();
+    table();
+    if (diagnostics_.ok()) adjust();
+    return std::move(beam_);
+  }
+
+ private:
+  struct Keyed {
+    double value = 0;
+    int line = 0;
+  };
+
+  void error(int line, std::string what) const { diagnostics_.error({line, 1, "/"}, std::move(what)); }
+
+  /// Values before their keywords, as "1.04536 AdjBlMs - Factor…", up to the heading of the table.
+  void find_table() {
+    for (heading_ = 0; heading_ < lines_.size(); ++heading_) {
+      const auto words = words_of(lines_[heading_]);
+      if (words.empty() || words[0].starts_with("--")) continue;
+      if (words[0] == "BlFract" || words[0] == "HtFract") {
+        beam_.tower = words[0] == "HtFract";
+        return;
+      }
+      const auto value = fortran_number(words[0]);
+      if (value && words.size() > 1) keyed_[words[1]] = {*value, static_cast<int>(heading_) + 1};
+    }
+  }
+
+  double keyed(const std::string& key, double otherwise) const {
+    const auto found = keyed_.find(key);
+    return found != keyed_.end() ? found->second.value : otherwise;
+  }
+
+  void table() {
+    const std::vector<std::string> heading = words_of(lines_[heading_]);
+    const auto column = [&](const char* name) {
+      const auto found = std::find(heading.begin(), heading.end(), name);
+      if (found == heading.end())
+        error(static_cast<int>(heading_) + 1, fmt::format("the table has no column {}", name));
+      return static_cast<std::size_t>(found - heading.begin());
+    };
+    const std::size_t mass = column(beam_.tower ? "TMassDen" : "BMassDen"),
+                      y = column(beam_.tower ? "TwFAStif" : "FlpStff"),
+                      z = column(beam_.tower ? "TwSSStif" : "EdgStff"), twist = beam_.tower ? 0 : column("StrcTwst");
+    const char* counter = beam_.tower ? "NTwInpSt" : "NBlInpSt";
+    const double count = keyed(counter, 0);
+    if (!(count >= 2 && count <= 100000 && count == std::floor(count)))
+      error(1, fmt::format("got {} stations; need {}, a whole number of at least 2", count, counter));
+    if (!diagnostics_.ok()) return;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      const std::size_t line = heading_ + 2 + i;  // a line of units stands between
+      const auto numbers = line < lines_.size() ? row(line, heading.size()) : std::nullopt;
+      if (!numbers) return;
+      beam_.fraction.push_back((*numbers)[0]);
+      beam_.mass_per_length.push_back((*numbers)[mass]);
+      beam_.along_y.push_back((*numbers)[y]);
+      beam_.along_z.push_back((*numbers)[z]);
+      if (!beam_.tower) beam_.twist.push_back((*numbers)[twist] * std::numbers::pi / 180);
+      check_row(i, static_cast<int>(line) + 1);
+    }
+    if (beam_.fraction.front() != 0 || std::abs(beam_.fraction.back() - 1) > 1e-9)
+      error(static_cast<int>(heading_) + 1, fmt::format("got stations from {} to {} of the length; need 0 to 1",
+                                                        beam_.fraction.front(), beam_.fraction.back()));
+  }
+
+  std::optional<std::vector<double>> row(std::size_t line, std::size_t columns) const {
+    const auto words = words_of(lines_[line]);
+    std::vector<double> numbers;
+    for (std::size_t c = 0; c < columns && c < words.size(); ++c) {
+      const auto x = fortran_number(words[c]);
+      if (!x) {
+        error(static_cast<int>(line) + 1, fmt::format("got {}; need a finite number", in_quotes(words[c])));
+        return {};
+      }
+      numbers.push_back(*x);
+    }
+    if (numbers.size() == columns) return numbers;
+    error(static_cast<int>(line) + 1,
+          fmt::format("got {} numbers; need {}, one for each column", numbers.size(), columns));
+    return {};
+  }
+
+  void check_row(std::size_t i, int line) const {
+    if (i > 0 && !(beam_.fraction[i] > beam_.fraction[i - 1])) error(line, "need stations in ascending order");
+    for (const auto* column : {&beam_.mass_per_length, &beam_.along_y, &beam_.along_z})
+      if (!((*column)[i] > 0)) error(line, fmt::format("got {}; need mass and stiffness above 0", (*column)[i]));
+  }
+
+  void adjust() {
+    const bool t = beam_.tower;
+    const double m = keyed(t ? "AdjTwMa" : "AdjBlMs", 1), y = keyed(t ? "AdjFASt" : "AdjFlSt", 1),
+                 z = keyed(t ? "AdjSSSt" : "AdjEdSt", 1);
+    for (double& x : beam_.mass_per_length) x *= m;
+    for (double& x : beam_.along_y) x *= y;
+    for (double& x : beam_.along_z) x *= z;
+    beam_.damping_y = keyed(t ? "TwrFADmp(1)" : "BldFlDmp(1)", 0) / 100;
+    beam_.damping_z = keyed(t ? "TwrSSDmp(1)" : "BldEdDmp(1)", 0) / 100;
+    beam_.remarks.emplace_back("The file's mode shapes are left out: polynomials take their place, as many as wanted.");
+    for (const auto& [key, keyed] : keyed_)
+      if (key.find("StTunr") != std::string::npos && keyed.value != 1)
+        beam_.remarks.push_back(
+            fmt::format("{} = {} on line {} is left out: it tunes a single mode.", key, keyed.value, keyed.line));
+    const auto [least, most] = std::minmax_element(beam_.twist.begin(), beam_.twist.end());
+    if (!beam_.twist.empty() && *most != *least)
+      beam_.remarks.push_back(
+          fmt::format("Structural twist from {:.4g} to {:.4g} deg is left out: the sections bend flapwise and edgewise "
+                      "throughout, as at zero twist.",
+                      beam_.twist.front() * 180 / std::numbers::pi, beam_.twist.back() * 180 / std::numbers::pi));
+  }
+
+  Diagnostics& diagnostics_;
+  std::vector<std::string> lines_;
+  std::map<std::string, Keyed> keyed_;
+  std::size_t heading_ = 0;
+  ElastoDynBeam beam_;
+};
+
+/// Rows [x, value] of a table over the beam, four in a line.
+std::string rows_text(const ElastoDynBeam& beam, const std::vector<double>& values, double length, const char* indent) {
+  std::string text = "\n" + std::string(indent) + "[";
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) text += i % 4 == 0 ? ",\n" + std::string(indent) + " " : ", ";
+    const double x = i + 1 == values.size() ? length : beam.fraction[i] * length;
+    text += fmt::format("[{}, {}]", x, values[i]);
+  }
+  return text + "]\n";
+}
+
+}  // namespace
+
+ElastoDynBeam read_elastodyn(std::string_view text, const std::string& file) {
+  Diagnostics diagnostics;
+  ElastoDynBeam beam = ElastoDynReader(text, diagnostics).read();
+  if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors());
+  return beam;
+}
+
+std::string scene_text(const ElastoDynBeam& beam, double length, double tip_mass, const std::string& source) {
+  const std::string name = beam.tower ? "tower" : "blade";
+  std::string out =
+      fmt::format("# Made by `withy import` from {}{}. Edit it as any scene.\n",
+                  std::filesystem::path(source).filename().string(), beam.title.empty() ? "" : ": " + beam.title);
+  out += beam.tower
+             ? "# Axes of the tower: x up, y fore-aft (downwind), z side to side. Metres, kilograms, N m^2.\n"
+             : "# Axes of the blade: x to the tip, y flapwise (downwind), z edgewise. Metres, kilograms, N m^2.\n";
+  for (const std::string& remark : beam.remarks) out += "# " + remark + "\n";
+  out += fmt::format("format: withy/1\nname: {}\n", name);
+  if (beam.tower) out += "gravity: [0, 0, -9.80665]\n";
+  out += fmt::format(
+      "time: {{end: 10, output: 0.01}}\n\nbodies:\n  {}:\n    type: beam\n    length: {}\n    mass_per_length:{}", name,
+      length, rows_text(beam, beam.mass_per_length, length, "      "));
+  out += fmt::format("    damping_ratio: {}   # of the first mode {}; {}: {}\n", beam.damping_y,
+                     beam.tower ? "fore-aft" : "flapwise", beam.tower ? "side to side" : "edgewise", beam.damping_z);
+  for (const bool y : {true, false})
+    out +=
+        fmt::format("    bending_{}:   # {}\n      modes: 4\n      family: orthogonal-polynomials\n      stiffness:{}",
+                    y ? 'y' : 'z', beam.tower ? (y ? "fore-aft" : "side to side") : (y ? "flapwise" : "edgewise"),
+                    rows_text(beam, y ? beam.along_y : beam.along_z, length, "        "));
+  if (tip_mass > 0)
+    out += fmt::format("  top: {{type: rigid, mass: {}}}   # what the tip carries, as a point\n", tip_mass);
+  out += fmt::format("\nhinges:\n  root: {{type: weld, parent: world, child: {}{}}}\n", name,
+                     beam.tower ? ", offset: {orientation: [0.5, -0.5, -0.5, -0.5]}" : "");
+  if (tip_mass > 0) out += fmt::format("  head: {{type: weld, parent: {}.tip, child: top}}\n", name);
+  return out;
+}
+
+}  // namespace withy::exchange

@@ -1,0 +1,32 @@
+/// \file
+/// Blades and towers of OpenFAST's ElastoDyn: tables of distributed properties to beams.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "withy/core/plugin/value.hpp"
+
+namespace withy::exchange {
+
+/// A blade or tower file (ElastoDyn 1.00 and later, FAST 7), with its adjustment factors applied. The beam's axes x, y,
+/// z are OpenFAST's z, x, y of the same part: `along_y` is flapwise or fore-aft, `along_z` edgewise or side to side.
+struct ElastoDynBeam {
+  bool tower = false;
+  std::string title;
+  std::vector<double> fraction;          ///< of the length, from 0 to 1
+  std::vector<double> mass_per_length;   ///< [kg/m]
+  std::vector<double> along_y, along_z;  ///< bending stiffness of deflections along y and z [N m²]
+  std::vector<double> twist;             ///< structural twist [rad]; empty for a tower
+  double damping_y = 0, damping_z = 0;   ///< of critical, in the first mode of each direction
+  std::vector<std::string> remarks;      ///< what has no place in a beam, a sentence each
+};
+
+/// \throws SceneError with every problem and its line.
+ElastoDynBeam read_elastodyn(std::string_view text, const std::string& file);
+
+/// A scene of the beam, clamped at its root, of this length [m], with a rigid mass [kg] at its tip where there is one.
+std::string scene_text(const ElastoDynBeam& beam, double length, double tip_mass, const std::string& source);
+
+}  // namespace withy::exchange

@@ -1,0 +1,110 @@
+#include "import.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "elastodyn.hpp"
+#include "mjcf.hpp"
+#include "scene_text.hpp"
+#include "urdf.hpp"
+#include "withy/scene/document.hpp"
+#include "withy/scene/scene.hpp"
+
+namespace withy::exchange {
+namespace {
+
+constexpr const char* made = "the scene made of it";
+
+std::string extension_of(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+/// The place in the files that a path of the scene comes from, as "booms.yaml:4:7"; empty where there is none.
+std::string origin_of_path(const std::string& path, const Tree& tree, const FlexibleLinks& flexible,
+                           const std::string& file) {
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const std::string begin = "/bodies/" + tree.links[i].name;
+    if (path != begin && !path.starts_with(begin + "/")) continue;
+    if (!flexible.of_link.contains(static_cast<int>(i))) return fmt::format("{}:{}", file, tree.links[i].place.line);
+    const Place at = flexible.document.key_place("/links" + path.substr(std::string("/bodies").size()));
+    return fmt::format("{}:{}:{}", flexible.file, at.line, at.column);
+  }
+  for (const Joint& joint : tree.joints)
+    if (path.starts_with("/hinges/" + joint.name) || path.starts_with("/loads/" + joint.name + "_spring"))
+      return fmt::format("{}:{}", file, joint.place.line);
+  return {};
+}
+
+/// Makes the scene; what is wrong with it is said of the files it comes from.
+void check_made(const std::string& text, const Tree& tree, const FlexibleLinks& flexible, const std::string& file,
+                Registry& registry) {
+  try {
+    static_cast<void>(parse_scene(text, made, registry));
+  } catch (const SceneError& e) {
+    std::vector<Diagnostic> problems;
+    std::vector<std::string> origins;
+    for (Diagnostic problem : e.problems()) {
+      const std::string origin = origin_of_path(problem.place.path, tree, flexible, file);
+      origins.push_back(origin.empty() ? fmt::format("{}, line {}", made, problem.place.line) : origin);
+      problem.place.line = -static_cast<int>(origins.size());
+      problems.push_back(std::move(problem));
+    }
+    throw SceneError(file, std::move(problems), origins);
+  }
+}
+
+ImportedScene import_tree(const ModelImport& what, const std::string& text, Registry& registry) {
+  if (what.length > 0 || what.tip_mass > 0)
+    throw std::invalid_argument("--length and --tip-mass are for blades and towers of ElastoDyn");
+  const Element root = read_xml(text, what.file);
+  Diagnostics diagnostics;
+  Tree tree;
+  ImportedScene scene;
+  if (root.name == "robot") {
+    scene.from = "URDF";
+    tree = read_urdf(root, what.free_base, diagnostics);
+  } else if (root.name == "mujoco") {
+    if (what.free_base) throw std::invalid_argument("--free-base is for URDF; in MJCF a free joint says so");
+    scene.from = "MJCF";
+    tree = read_mjcf(root, diagnostics);
+  } else {
+    diagnostics.error(root.place, "got <" + root.name + ">; need <robot> (URDF) or <mujoco> (MJCF)");
+  }
+  if (!diagnostics.ok()) throw SceneError(what.file, diagnostics.errors());
+  FlexibleLinks flexible;
+  if (!what.flexible.empty()) flexible = read_flexible(read_bytes(what.flexible), what.flexible, tree);
+  scene.text = scene_text(tree, flexible, what.file);
+  scene.remarks = tree.remarks;
+  check_made(scene.text, tree, flexible, what.file, registry);
+  return scene;
+}
+
+}  // namespace
+
+bool is_model_file(const std::string& file) {
+  const std::string ending = extension_of(file);
+  return ending == ".urdf" || ending == ".xml" || ending == ".mjcf" || ending == ".dat";
+}
+
+ImportedScene import_model(const ModelImport& what, Registry& registry) {
+  const std::string text = read_bytes(what.file);
+  if (text.size() > DocumentLimits::bytes)
+    throw SceneError(what.file, {{{}, fmt::format("more than {} MiB", DocumentLimits::bytes >> 20U)}});
+  if (extension_of(what.file) != ".dat") return import_tree(what, text, registry);
+  if (!what.flexible.empty() || what.free_base)
+    throw std::invalid_argument("--flexible and --free-base are for URDF and MJCF");
+  if (!(what.length > 0))
+    throw std::invalid_argument(
+        "--length is missing: ElastoDyn's files of blades and towers have fractions of it alone");
+  const ElastoDynBeam beam = read_elastodyn(text, what.file);
+  ImportedScene scene{scene_text(beam, what.length, what.tip_mass, what.file),
+                      beam.tower ? "ElastoDyn tower" : "ElastoDyn blade", beam.remarks};
+  check_made(scene.text, {}, {}, what.file, registry);
+  return scene;
+}
+
+}  // namespace withy::exchange

@@ -1,0 +1,190 @@
+#include "mjcf.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "attributes.hpp"
+#include "mjcf_geoms.hpp"
+#include "withy/scene/names.hpp"
+
+namespace withy::exchange {
+namespace {
+
+const std::set<std::string, std::less<>> without_mass_or_motion = {"geom",  "site",      "camera", "light", "inertial",
+                                                                   "joint", "freejoint", "body",   "plugin"};
+
+class MjcfReader {
+ public:
+  MjcfReader(const Element& mujoco, Diagnostics& diagnostics) : mujoco_(mujoco), diagnostics_(diagnostics) {}
+
+  Tree read() {
+    if (const std::string* model = mujoco_.find("model")) tree_.name = *model;
+    tree_.gravity_remark = "of <option>, or MuJoCo's default";
+    for (const Element& e : mujoco_.children) {
+      if (e.name == "compiler") compiler(e);
+      if (e.name == "default") defaults_.add(e);
+      if (e.name == "option") tree_.gravity = Attributes(e, diagnostics_).vector("gravity", tree_.gravity);
+      if (e.name == "include") diagnostics_.error(e.place, "<include> is not followed; put the files into one");
+    }
+    for (const char* left_out : {"actuator", "tendon", "equality", "contact", "deformable"})
+      for (const Element& e : mujoco_.children)
+        if (e.name == left_out && !e.children.empty())
+          tree_.remarks.push_back(
+              fmt::format("<{}> with {} is left out", left_out, counted(e.children.size(), "element")));
+    bool any = false;
+    for (const Element& e : mujoco_.children) {
+      if (e.name != "worldbody") continue;
+      any = true;
+      children(e, -1, {});
+    }
+    if (!any) diagnostics_.error(mujoco_.place, "no <worldbody>");
+    if (any && tree_.links.empty()) diagnostics_.error(mujoco_.place, "no <body> in <worldbody>");
+    if (diagnostics_.ok()) check_tree(tree_, diagnostics_);
+    return std::move(tree_);
+  }
+
+ private:
+  static std::string counted(std::size_t n, const char* what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  }
+
+  void compiler(const Element& e) {
+    const Attributes a(e, diagnostics_);
+    if (const std::string* angle = e.find("angle")) angles_.unit = *angle == "radian" ? 1 : angles_.unit;
+    if (const std::string* sequence = e.find("eulerseq")) {
+      angles_.euler = *sequence;
+      if (sequence->size() != 3 || sequence->find_first_not_of("xyzXYZ") != std::string::npos) {
+        a.error("eulerseq", fmt::format("got {}; need three letters of xyzXYZ", in_quotes(*sequence)));
+        angles_.euler = "xyz";
+      }
+    }
+    if (const std::string* from = e.find("inertiafromgeom")) from_geoms_ = *from;
+    if (const std::string* where = e.find("coordinate"); where != nullptr && *where != "local")
+      a.error("coordinate", "need local");
+    for (const char* key : {"settotalmass", "inertiagrouprange", "boundmass", "boundinertia"})
+      if (e.find(key) != nullptr) a.error(key, "changes masses in a way that is not read; take it out");
+  }
+
+  void children(const Element& element, int link, const std::string& around) {
+    for (const Element& e : element.children) {
+      if (e.name == "body") {
+        body(e, link, around);
+      } else if (!without_mass_or_motion.contains(e.name)) {
+        diagnostics_.error(e.place, fmt::format("<{}> is not read here; write its bodies out", e.name));
+      }
+    }
+  }
+
+  void body(const Element& e, int parent, const std::string& around_parent) {
+    const std::string* childclass = e.find("childclass");
+    const std::string around = childclass != nullptr ? *childclass : around_parent;
+    const std::string* called = e.find("name");
+    const std::string name = called != nullptr ? *called : fmt::format("body_{}", e.place.line);
+    Pose at{angles_.rotation(e, diagnostics_), Attributes(e, diagnostics_).vector("pos", Vector3::Zero())};
+    std::vector<Element> joints;
+    for (const Element& child : e.children)
+      if (child.name == "joint" || child.name == "freejoint")
+        joints.push_back(defaults_.completed(child, around, diagnostics_));
+    const MassProperties mass = masses(e, around);
+    for (std::size_t j = 0; j < std::max<std::size_t>(joints.size(), 1); ++j) {
+      const bool last = j + 1 >= joints.size();
+      Link link{last ? name : fmt::format("{}_{}", name, j + 1), e.place, 0, Vector3::Zero(), Matrix3::Zero()};
+      if (last) link.mass = mass.mass, link.center = mass.center, link.inertia = mass.inertia;
+      Joint joint =
+          joints.empty() ? weld(e, name) : moving(joints[j], name, joints.size() > 1 ? fmt::format("_{}", j + 1) : "");
+      joint.parent = parent;
+      joint.offset = at * Pose{Matrix3::Identity(), joint.point};
+      parent = joint.child = static_cast<int>(tree_.links.size());
+      at = {};  // the links between two joints have the frame of the body
+      tree_.links.push_back(std::move(link));
+      tree_.joints.push_back(std::move(joint));
+    }
+    children(e, parent, around);
+  }
+
+  static Joint weld(const Element& e, const std::string& body_name) {
+    Joint joint;
+    joint.name = "root_of_" + body_name;
+    joint.place = e.place;
+    return joint;
+  }
+
+  Joint moving(const Element& e, const std::string& body_name, const std::string& number) {
+    const Attributes a(e, diagnostics_);
+    const std::string *called = e.find("name"), *given = e.find("type");
+    const std::string type = e.name == "freejoint" ? "free" : given != nullptr ? *given : "hinge";
+    Joint joint;
+    joint.name = called != nullptr ? *called : body_name + "_joint" + number;
+    joint.place = e.place;
+    static const std::array<std::pair<const char*, const char*>, 4> types = {
+        {{"hinge", "revolute"}, {"slide", "prismatic"}, {"ball", "spherical"}, {"free", "free"}}};
+    const auto* const known = std::find_if(types.begin(), types.end(), [&](const auto& t) { return type == t.first; });
+    if (known == types.end()) {
+      a.error("type", fmt::format("got {}; need one of: hinge, slide, ball, free", in_quotes(type)));
+      return joint;
+    }
+    joint.type = known->second;
+    if (type != "free") joint.point = a.vector("pos", Vector3::Zero());
+    if (type == "hinge" || type == "slide") {
+      const double unit = type == "hinge" ? angles_.unit : 1;
+      joint.axis = a.direction("axis", Vector3::UnitZ());
+      joint.stiffness = a.number("stiffness", 0);
+      joint.damping = a.number("damping", 0);
+      joint.free_position = unit * (a.number("springref", 0) - a.number("ref", 0));
+      if (const auto range = a.numbers("range", 2, 2))
+        joint.remark =
+            fmt::format("its range {} to {} is not enforced: see hinge-limit", unit * (*range)[0], unit * (*range)[1]);
+    } else {
+      leave_out(a, joint, "damping");
+      leave_out(a, joint, "stiffness");
+    }
+    leave_out(a, joint, "armature");
+    leave_out(a, joint, "frictionloss");
+    return joint;
+  }
+
+  void leave_out(const Attributes& a, const Joint& joint, const char* key) {
+    if (const double value = a.number(key, 0); value != 0)
+      tree_.remarks.push_back(fmt::format("joint {}: {} {} is left out", in_quotes(joint.name), key, value));
+  }
+
+  MassProperties masses(const Element& e, const std::string& around) {
+    const Element* inertial = e.child("inertial");
+    MassProperties m;
+    if (inertial != nullptr && from_geoms_ != "true") {
+      const Attributes a(*inertial, diagnostics_);
+      m.mass = a.number("mass", 0);
+      m.center = a.vector("pos", Vector3::Zero());
+      if (const auto full = a.numbers("fullinertia", 6, 6)) {
+        m.inertia = inertia_matrix((*full)[0], (*full)[1], (*full)[2], (*full)[3], (*full)[4], (*full)[5]);
+      } else {
+        m.inertia = a.vector("diaginertia", Vector3::Zero()).asDiagonal();
+      }
+      m.inertia = turned(angles_.rotation(*inertial, diagnostics_), m.inertia);
+      const std::string problem = inertia_problem(m.mass, m.inertia);
+      if (!problem.empty()) diagnostics_.error(inertial->place, problem);
+    } else if (from_geoms_ != "false") {
+      for (const Element& geom : e.children)
+        if (geom.name == "geom")
+          if (const auto more = mass_of_geom(defaults_.completed(geom, around, diagnostics_), angles_, diagnostics_))
+            m.add(*more);
+    }
+    return m;
+  }
+
+  const Element& mujoco_;
+  Diagnostics& diagnostics_;
+  Tree tree_;
+  MjcfDefaults defaults_;
+  MjcfAngles angles_;
+  std::string from_geoms_ = "auto";
+};
+
+}  // namespace
+
+Tree read_mjcf(const Element& mujoco, Diagnostics& diagnostics) { return MjcfReader(mujoco, diagnostics).read(); }
+
+}  // namespace withy::exchange

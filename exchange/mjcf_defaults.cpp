@@ -1,0 +1,79 @@
+#include "mjcf_defaults.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+#include "withy/scene/names.hpp"
+
+namespace withy::exchange {
+
+void MjcfDefaults::add(const Element& element, const std::string& around) {
+  const std::string* called = element.find("class");
+  const std::string name = called != nullptr ? *called : "main";
+  auto& mine = classes_[name];
+  if (!around.empty()) mine = classes_[around];
+  for (const Element& e : element.children)
+    if (e.name != "default")
+      for (const auto& [key, value] : e.attributes) mine[e.name][key] = value;
+  for (const Element& e : element.children)
+    if (e.name == "default") add(e, name);
+}
+
+Element MjcfDefaults::completed(const Element& element, const std::string& around, Diagnostics& diagnostics) const {
+  const std::string* own = element.find("class");
+  const std::string name = own != nullptr ? *own : around.empty() ? "main" : around;
+  Element whole{element.name, element.attributes, {}, element.place};
+  const auto found = classes_.find(name);
+  if (found == classes_.end()) {
+    if (name != "main") diagnostics.error(element.place, "there is no default class " + in_quotes(name));
+    return whole;
+  }
+  const auto of_element = found->second.find(element.name);
+  if (of_element == found->second.end()) return whole;
+  for (const auto& [key, value] : of_element->second)
+    if (element.find(key) == nullptr) whole.attributes.emplace_back(key, value);
+  return whole;
+}
+
+Matrix3 MjcfAngles::rotation(const Element& element, Diagnostics& diagnostics) const {
+  const Attributes a(element, diagnostics);
+  if (const auto q = a.numbers("quat", 4, 4)) {
+    const Eigen::Quaterniond quaternion((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
+    if (quaternion.norm() > 0) return quaternion.normalized().toRotationMatrix();
+    a.error("quat", "got 0 0 0 0; need a quaternion");
+  }
+  if (const auto v = a.numbers("axisangle", 4, 4)) {
+    const Vector3 axis((*v)[0], (*v)[1], (*v)[2]);
+    if (axis.norm() > 0) return Eigen::AngleAxisd(unit * (*v)[3], axis.normalized()).toRotationMatrix();
+    a.error("axisangle", "got the axis 0 0 0; need a direction");
+  }
+  if (element.find("euler") != nullptr) {
+    const Vector3 angles = a.vector("euler", Vector3::Zero());
+    Matrix3 R = Matrix3::Identity();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto letter = static_cast<unsigned char>(euler[i]);
+      const Vector3 axis = Vector3::Unit(std::tolower(letter) - 'x');
+      const Matrix3 turn = Eigen::AngleAxisd(unit * angles[static_cast<Eigen::Index>(i)], axis).toRotationMatrix();
+      R = std::islower(letter) != 0 ? Matrix3(R * turn) : Matrix3(turn * R);  // capitals: about fixed axes
+    }
+    return R;
+  }
+  if (const auto v = a.numbers("xyaxes", 6, 6)) {
+    const Vector3 x((*v)[0], (*v)[1], (*v)[2]), y((*v)[3], (*v)[4], (*v)[5]);
+    if (x.cross(y).norm() > 0) {
+      Matrix3 R;
+      R.col(0) = x.normalized();
+      R.col(2) = x.cross(y).normalized();
+      R.col(1) = R.col(2).cross(R.col(0));
+      return R;
+    }
+    a.error("xyaxes", "got parallel axes; need two directions");
+  }
+  if (element.find("zaxis") != nullptr)
+    return Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), a.direction("zaxis", Vector3::UnitZ()))
+        .toRotationMatrix();
+  return Matrix3::Identity();
+}
+
+}  // namespace withy::exchange
