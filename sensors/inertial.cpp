@@ -1,7 +1,7 @@
 /// \file
 /// What an inertial measurement unit measures: proper acceleration and angular velocity in its own axes.
 #include "frame_sensor.hpp"
-#include "withy/core/deformation/mass_points.hpp"
+#include "withy/core/plugin/sensed_fields.hpp"
 
 namespace withy {
 namespace {

@@ -66,14 +66,6 @@ const FieldLoad* field_of(const Model& model);
 /// What all of these loads of a model give mass that moves so, at time t [s]: an acceleration [m/s²], world axes.
 Vector3 field_acceleration(const Model& model, double t, const FrameMotion& motion) noexcept;
 
-/// A SensedState of a model with loads on distributed mass is this too (dynamic_cast).
-class SensedFields {
- public:
-  virtual ~SensedFields() = default;
-  /// `field_acceleration` at a frame; the body −1 is the world.
-  [[nodiscard]] virtual Vector3 field(FrameIndex frame) noexcept = 0;
-};
-
 /// Where a frame or, under a load on distributed mass, a mass point is fixed: at `pose` in a section of its body.
 struct FramePlace {
   const PointExpansion& section;

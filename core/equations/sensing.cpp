@@ -8,6 +8,7 @@
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/load_numbers.hpp"
 #include "withy/core/plugin/sampled_part.hpp"
+#include "withy/core/plugin/sensed_fields.hpp"
 
 namespace withy::equations {
 namespace {

@@ -10,6 +10,7 @@
 #include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/model/signal_source.hpp"
+#include "withy/core/plugin/sensed_fields.hpp"
 
 namespace withy {
 namespace {
