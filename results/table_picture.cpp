@@ -80,9 +80,8 @@ bool tells_most(const Column& column) {
   return length && (!place || column.name.find(".tip.deflection_") != std::string::npos);
 }
 
-}  // namespace
-
-std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::vector<std::string>& names) {
+/// Of all runs, each once; without time.
+std::vector<Column> columns_of(const std::vector<NamedTable>& runs) {
   std::vector<Column> all;
   for (const NamedTable& run : runs) {
     for (std::size_t c = 1; c < run.table->columns().size(); ++c) {
@@ -91,18 +90,65 @@ std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::
         all.push_back(column);
     }
   }
-  std::vector<Panel> panels;
-  for (const std::string& name : names) {
-    const std::size_t before = panels.size();
-    for (const Column& column : all)
-      if (asked(column.name, name)) panels.push_back(panel_of_column(runs, column));
-    if (panels.size() > before) continue;
-    std::vector<std::string> known;
-    for (const Column& column : all) known.push_back(column_name(column.name));
-    const std::string guess = nearest(name, known);
-    throw ResultsError("there is no column " + in_quotes(name) +
-                       (guess.empty() ? "" : "; did you mean " + in_quotes(guess) + "?"));
+  return all;
+}
+
+/// At least one.
+std::vector<Column> asked_for(const std::vector<Column>& all, const std::string& name) {
+  std::vector<Column> found;
+  for (const Column& column : all)
+    if (asked(column.name, name)) found.push_back(column);
+  if (!found.empty()) return found;
+  std::vector<std::string> known;
+  for (const Column& column : all) known.push_back(column_name(column.name));
+  const std::string guess = nearest(name, known);
+  throw ResultsError("there is no column " + in_quotes(name) +
+                     (guess.empty() ? "" : "; did you mean " + in_quotes(guess) + "?"));
+}
+
+}  // namespace
+
+Panel envelope_panel(const std::vector<NamedTable>& runs, const std::vector<std::string>& columns,
+                     const std::vector<double>& places) {
+  const std::vector<Column> all = columns_of(runs);
+  Panel envelope{"x [m]", {}, {}, {}};
+  envelope.free_x = true;
+  std::vector<Panel> of_columns;
+  for (const std::string& name : columns) {
+    const std::vector<Column> found = asked_for(all, name);
+    if (found.size() > 1) throw ResultsError(in_quotes(name) + " is several columns; need one at each place");
+    of_columns.push_back(panel_of_column(runs, found.front()));
+    const std::string& label = of_columns.back().y_label;
+    const std::string unit = label.substr(label.rfind(" ["));
+    if (envelope.y_label.empty()) envelope.y_label = "least and greatest" + unit;
+    if (!envelope.y_label.ends_with(unit))
+      throw ResultsError(in_quotes(name) + " has another unit than the columns before");
+    envelope.y_range.first = std::min(envelope.y_range.first, of_columns.back().y_range.first);
+    envelope.y_range.second = std::max(envelope.y_range.second, of_columns.back().y_range.second);
   }
+  for (std::size_t run = 0; run < runs.size(); ++run) {
+    Curve least, greatest;
+    least.pen = greatest.pen = run;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const std::vector<double>& y = of_columns[k].curves[run].y;
+      if (y.empty()) continue;
+      const auto [low, high] = std::minmax_element(y.begin(), y.end());
+      least.x.push_back(places[k]);
+      greatest.x.push_back(places[k]);
+      least.y.push_back(*low);
+      greatest.y.push_back(*high);
+    }
+    envelope.curves.push_back(std::move(least));
+    envelope.curves.push_back(std::move(greatest));
+  }
+  return envelope;
+}
+
+std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::vector<std::string>& names) {
+  const std::vector<Column> all = columns_of(runs);
+  std::vector<Panel> panels;
+  for (const std::string& name : names)
+    for (const Column& column : asked_for(all, name)) panels.push_back(panel_of_column(runs, column));
   if (!names.empty()) {
     widen_rounding(panels);
     return panels;

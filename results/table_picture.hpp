@@ -22,4 +22,11 @@ struct NamedTable {
 /// \throws ResultsError where no run has such a column: it names the nearest
 std::vector<Panel> table_panels(const std::vector<NamedTable>& runs, const std::vector<std::string>& names);
 
+/// The least and the greatest that each of the columns has in a run, over the place [m] that it is given: an envelope,
+/// as of the inner moments along a beam. Two curves a run, in one pen; angles in degrees.
+/// \param columns one a place, places increasing
+/// \throws ResultsError where no run has a column, or they have not one unit
+Panel envelope_panel(const std::vector<NamedTable>& runs, const std::vector<std::string>& columns,
+                     const std::vector<double>& places);
+
 }  // namespace withy

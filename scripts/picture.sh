@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes the picture at the head of the README: the two-link arm in the middle of a fast slew, and how far its tip is from
-# that of exact kinematics, in four formulations; and the moving one below it, a strip swinging on a pin.
+# that of exact kinematics, in four formulations; the moving one below it, a strip swinging on a pin; and those of
+# docs/outputs.md, torques and load envelopes of the slew.
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 need_packages "${build_packages[@]}"
 build release withy
@@ -14,3 +15,12 @@ sed -E '1s/height="[0-9.]+" viewBox="0 0 ([0-9.]+) [0-9.]+"/height="835" viewBox
 build/release/bin/withy compare scenes/gallery/flexible-pendulum.yaml --formulations ruthless,linear,quadratic,exact \
   --reference exact --set time.output=0.02 --out results/moving-picture --force
 cp results/moving-picture/motion.svg docs/pictures/flexible-pendulum-motion.svg
+
+# Torques over time, as figure 4 of Padilla and von Flotow, and the greatest moments along link 1.
+for scale in 1.0 1.2; do
+  build/release/bin/withy run scenes/loads-of-the-slew.yaml --set loads.slew.time_scale=$scale \
+    --out "results/slew, alpha = $scale" --force
+done
+build/release/bin/withy plot "results/slew, alpha = 1.0" shoulder_torque elbow_torque --out docs/pictures/slew-torques.svg
+build/release/bin/withy plot "results/slew, alpha = 1.0" "results/slew, alpha = 1.2" root.mz inner.mz middle.mz outer.mz end.mz \
+  --over 0,0.2286,0.4572,0.6858,0.9144 --out docs/pictures/slew-envelope.svg

@@ -1,6 +1,7 @@
 /// \file
 /// What an inertial measurement unit measures: proper acceleration and angular velocity in its own axes.
 #include "frame_sensor.hpp"
+#include "withy/core/plugin/sensed_fields.hpp"
 
 namespace withy {
 namespace {
@@ -19,7 +20,9 @@ class BoundInertial final : public BoundSensor {
   void read(SensedState& state, const SensorInputs& /*inputs*/, std::span<double> values) const noexcept override {
     const FrameMotion motion = state.motion(frame_);
     if constexpr (quantity == Quantity::proper_acceleration) {
-      put(motion.R.transpose() * (state.acceleration(frame_).linear - state.gravity()), values);
+      Vector3 free = state.gravity();
+      if (auto* fields = dynamic_cast<SensedFields*>(&state)) free += fields->field(frame_);
+      put(motion.R.transpose() * (state.acceleration(frame_).linear - free), values);
     } else {
       put(motion.R.transpose() * motion.angular_velocity, values);
     }
@@ -49,10 +52,11 @@ std::unique_ptr<Sensor> make_inertial(const Value& p, const MakeContext& /*conte
 }  // namespace
 
 void enroll_inertial(Enrollment& enrollment) {
-  enrollment.add<Sensor>({.id = "accelerometer",
-                          .summary = "Proper acceleration of a frame's origin, without gravity's, in the frame's axes",
-                          .parameters = {frame_parameter("of", "frame that carries it")},
-                          .make = &make_inertial<Quantity::proper_acceleration>});
+  enrollment.add<Sensor>(
+      {.id = "accelerometer",
+       .summary = "Proper acceleration of a frame's origin, without that of gravity and fields, in the frame's axes",
+       .parameters = {frame_parameter("of", "frame that carries it")},
+       .make = &make_inertial<Quantity::proper_acceleration>});
   enrollment.add<Sensor>({.id = "gyro",
                           .summary = "Angular velocity of a frame in its own axes",
                           .parameters = {frame_parameter("of", "frame that carries it")},

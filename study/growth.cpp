@@ -14,8 +14,8 @@
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/felt_motion.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
-#include "withy/core/simulation/tree_motion.hpp"
 
 namespace withy::study {
 namespace {
@@ -95,10 +95,11 @@ std::string physical_cause(const Prepared& prepared, const RunSummary& summary) 
   // Where steps collapse the reason lies ahead.
   const double ahead = summary.status == RunStatus::step_underflow ? summary.steps.largest_step : 0;
   std::string text = wild_load(prepared, state, {state.time, summary.reached, summary.reached + ahead});
+  const std::vector<BodyMotion> felt = felt_motions(model, equations, state, motion.bodies());
   for (const BodyValidity& b : summary.validity.bodies) {
     const auto index = static_cast<std::size_t>(model.body(b.name));
     const double rate = b.fundamental > 0 ? motion.bodies()[index].rate.norm() / b.fundamental : 0;
-    const double buckling = -MotionStiffness(model, index).evaluate(motion.bodies()).least;
+    const double buckling = -MotionStiffness(model, index).evaluate(felt).least;
     if (rate >= 1)
       text += fmt::format(" There '{}' turns at {:.3g} times its fundamental frequency of {:.4g} rad/s{}.", b.name,
                           rate, b.fundamental,

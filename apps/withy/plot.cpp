@@ -24,6 +24,7 @@ struct PlotArguments {
   std::vector<std::string> given;  ///< folders of runs, then columns
   std::string out;
   bool terminal = false;
+  std::vector<double> over;  ///< a place [m] a column; empty: over time
   bool json = false;
 };
 
@@ -67,7 +68,14 @@ ExitStatus plot(const PlotArguments& arguments) {
     legend.push_back(name_of(file));
     runs.push_back({legend.back(), tables.back().get()});
   }
-  const std::vector<Panel> panels = table_panels(runs, asked.names);
+  if (!arguments.over.empty() && arguments.over.size() != asked.names.size()) {
+    complain("--over has " + std::to_string(arguments.over.size()) + " places for " +
+             std::to_string(asked.names.size()) + " columns; need one each");
+    return ExitStatus::bad_input;
+  }
+  const std::vector<Panel> panels = arguments.over.empty()
+                                        ? table_panels(runs, asked.names)
+                                        : std::vector<Panel>{envelope_panel(runs, asked.names, arguments.over)};
   if (panels.empty()) {
     complain("nothing changes in what was recorded: name the columns to draw");
     return ExitStatus::bad_input;
@@ -93,6 +101,10 @@ std::function<ExitStatus()> add_plot(CLI::App& c) {
                "coordinates of hinges and the deflections of tips")
       ->required();
   c.add_option("--out", a.out, "File of the picture; default: plot.svg in the first folder")->type_name("FILE");
+  c.add_option("--over", a.over,
+               "A place [m] for each column: their least and greatest over these in place of time, an envelope")
+      ->delimiter(',')
+      ->type_name("X,…");
   CLI::Option* const terminal = c.add_flag("--terminal", a.terminal, "Draw in the terminal");
   add_json(c, a.json)->excludes(terminal);
   return [arguments] { return plot(*arguments); };
@@ -104,7 +116,9 @@ const Command plot_command = {"plot", "Draw columns of finished runs",
                               "  withy run scenes/pendulum.yaml\n"
                               "  withy plot results/pendulum-quadratic\n"
                               "  withy plot results/pendulum-quadratic pivot kinetic_energy --terminal\n"
-                              "  withy plot results/pendulum-quadratic rod.tip --out tip.svg",
+                              "  withy plot results/pendulum-quadratic rod.tip --out tip.svg\n"
+                              "  withy plot results/loads-of-the-slew-quadratic root.mz middle.mz end.mz --over "
+                              "0,0.4572,0.9144",
                               &add_plot};
 
 }  // namespace withy::app

@@ -107,7 +107,7 @@ void SensedReactions::take_off(Part<S>& part, std::span<const FrameIndex> frames
     if (weight) part.total[b] = sensed::weight(part.pass, b, plan_, plan_.bodies[b]);
   }
   for (std::size_t i = 0; i < wrenches.size(); ++i)
-    part.total[static_cast<std::size_t>(frames[i].body)] += sensed::on_body(part.pass, frames[i], wrenches[i]);
+    part.total[static_cast<std::size_t>(frames[i].body)] += sensed::on_body(part.pass, plan_, frames[i], wrenches[i]);
   sensed::gather(part.pass, plan_, part.total);
   for (std::size_t b = 0; b < plan_.bodies.size(); ++b) {
     const sensed::TwistOf<S> f = part.pass.bodies[b].BM.from_parent(part.total[b]);
@@ -122,8 +122,11 @@ void SensedReactions::take_off(Part<S>& part, std::span<const FrameIndex> frames
     if (weight) own = sensed::weight(part.pass, cut.body, plan_, cut);
     for (std::size_t i = 0; i < wrenches.size(); ++i) {
       const FrameIndex& at = frames[i];
-      if (static_cast<std::size_t>(at.body) == cut.body && cut.frames[static_cast<std::size_t>(at.frame)])
-        own += sensed::on_body(part.pass, at, wrenches[i]);
+      if (static_cast<std::size_t>(at.body) != cut.body) continue;
+      const double share = cut.frames[plan_.bodies[cut.body].frame(at.frame)];
+      if (share == 0) continue;
+      const Wrench beyond{share * wrenches[i].moment, share * wrenches[i].force};
+      own += sensed::on_body(part.pass, plan_, at, beyond);
     }
     const sensed::TwistOf<S> f = at_cut(part, cut, own);
     sections_[c].moment -= sensed::on_hinge(f.w);

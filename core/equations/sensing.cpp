@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/equations/sensed_reactions.hpp"
 #include "withy/core/kinematics/sensed_steps.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/load_numbers.hpp"
 #include "withy/core/plugin/sampled_part.hpp"
+#include "withy/core/plugin/sensed_fields.hpp"
 
 namespace withy::equations {
 namespace {
@@ -36,7 +38,7 @@ std::vector<std::size_t> counts_of_numbers(const Model& model) {
   return counts;
 }
 
-class Sensing final : public SensedState, public SensedLoops, public SensedLoads {
+class Sensing final : public SensedState, public SensedLoops, public SensedLoads, public SensedFields {
  public:
   Sensing(std::unique_ptr<const sensed::Plan> plan, const EquationsOfMotion& equations, const AppliedLoads& loads)
       : plan_(std::move(plan)),
@@ -67,6 +69,10 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
     return std::span<const double>(rates_).subspan(layout().positions, layout().speeds);
   }
   Vector3 gravity() const noexcept override { return plan_->model.gravity(); }
+
+  Vector3 field(FrameIndex frame) noexcept override {
+    return field_acceleration(plan_->model, state_->time, motion(frame));
+  }
 
   FrameMotion motion(FrameIndex frame) noexcept override {
     FrameMotion motion;
@@ -186,7 +192,7 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
   sensed::StepOf<First> moving(FrameIndex frame) noexcept {
     find_motion();
     const auto body = static_cast<std::size_t>(frame.body);
-    sensed::StepOf<First> step = pass_.frame(body, static_cast<std::size_t>(frame.frame));
+    sensed::StepOf<First> step = pass_.frame(body, plan_->bodies[body].frame(frame.frame));
     step.X = pass_.bodies[body].WB * step.X;
     return step;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/kinematics/frame_pass.hpp"
 
 namespace withy {
@@ -102,7 +103,7 @@ std::size_t FramePaths::link(const Model& model, Terms terms, int body) {
 
 FramePaths::Place FramePaths::place(const Model& model, Terms terms, FrameIndex frame, const Pose& offset) {
   const std::size_t l = link(model, terms, frame.body);
-  const Frame& f = model.bodies()[static_cast<std::size_t>(frame.body)].frames[static_cast<std::size_t>(frame.frame)];
+  const FramePlace f = place_of(model, frame);
   const Pose pose = f.pose * offset;
   const auto same = [&](const PointExpansion& e) {
     bool equal = e.X == f.section.X && e.phi == f.section.phi && e.psi == f.section.psi;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/sweep/mass_table.hpp"
 #include "withy/core/tree/invariants.hpp"
 
@@ -103,10 +104,20 @@ void Plan::add_cut(const SectionPlace& place) {
   // What is at the section is beyond it, but for the body's own hinge.
   const double close = 1e-9 * node.body->shape().length;
   const auto x_of = [&](std::size_t frame) { return body.sections[body.frames[frame].section].at.X.x(); };
-  for (std::size_t f = 0; f < body.frames.size(); ++f) cut.frames.push_back(x_of(f) >= place.x - close);
+  for (std::size_t f = 0; f < body.named; ++f) cut.frames.push_back(x_of(f) >= place.x - close ? 1 : 0);
+  if (body.frames.size() > body.named) {
+    const std::vector<double> shares = mass_beyond(*node.body, place.x);
+    if (shares.empty()) {
+      throw std::invalid_argument("body '" + node.name +
+                                  "' cannot be cut under a load on distributed mass; need a beam with modes, clamped "
+                                  "at its root, without extension and shear");
+    }
+    cut.frames.insert(cut.frames.end(), shares.begin(), shares.end());
+  }
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const HingeNode& hinge = model.hinges()[h];
-    if (hinge.parent == place.body && cut.frames[static_cast<std::size_t>(hinge.parent_frame)]) cut.hinges.push_back(h);
+    if (hinge.parent == place.body && cut.frames[static_cast<std::size_t>(hinge.parent_frame)] > 0)
+      cut.hinges.push_back(h);
   }
   cut.inboard = x_of(body.M) > place.x + close;
   cuts.push_back(std::move(cut));
@@ -141,6 +152,11 @@ void Plan::add_body(std::size_t index, Terms terms) {
   body.order = own.strain;
   body.truncation = own.truncation;
   for (const Frame& frame : node.frames) body.frames.push_back(placed_at(body, frame.section, frame.pose));
+  body.named = body.frames.size();
+  if (const FieldLoad* field = field_of(model)) {
+    for (const MassPoint& point : field->points_of(static_cast<int>(index)))
+      body.frames.push_back(placed_at(body, point.at, Pose{}));
+  }
   body.M = static_cast<std::size_t>(hinge.child_frame);
   body.F.pose = hinge.offset;
   if (hinge.parent >= 0) {

@@ -53,13 +53,19 @@ struct BodyPlan {
   StrainOrder order = StrainOrder::quadratic;
   Truncation truncation = Truncation::none;
   std::vector<SectionFields> sections;
-  std::vector<SectionFrame> frames;  ///< of the body, in its order
+  std::vector<SectionFrame> frames;  ///< of the body, in its order, then its mass points under loads on mass
+  std::size_t named = 0;             ///< those that are not mass points
   SectionFrame F;      ///< of the inboard hinge, on the parent; at `F.pose` in the world where there is none
   std::size_t M = 0;   ///< of the inboard hinge, on this body: index in `frames`
   RigidInertia rigid;  ///< of a rigid body
   std::vector<PointFields> points;  ///< mass of a flexible one
   std::vector<RotarySection> rotary;
   std::shared_ptr<const RodPlan> rod;
+
+  /// Index in `frames` of a frame of the body.
+  [[nodiscard]] std::size_t frame(int index) const {
+    return index >= 0 ? static_cast<std::size_t>(index) : named + static_cast<std::size_t>(-1 - index);
+  }
 };
 
 /// A body cut across: what belongs to the part beyond.
@@ -71,7 +77,7 @@ struct CutPlan {
   std::vector<RotarySection> rotary;
   std::vector<double> rod_share;    ///< of a rod: the share of each node's mass
   std::vector<std::size_t> hinges;  ///< that hang on the part
-  std::vector<bool> frames;         ///< of the body: whether the part has it
+  std::vector<double> frames;       ///< of the body: the share that the part has of what acts there
   bool inboard = false;             ///< the body's own hinge holds the part beyond
   Matrix3X curvature;               ///< as BodyCut
   Vector3 stiffness;                ///< as BodyCut

@@ -247,9 +247,9 @@ TwistOf<S> weight(Pass<S>& pass, std::size_t index, const Plan& plan, const Mass
 
 /// A wrench about the origin of a frame, world axes, about the frame of the body.
 template <class S>
-TwistOf<S> on_body(const Pass<S>& pass, FrameIndex at, const Wrench& wrench) {
+TwistOf<S> on_body(const Pass<S>& pass, const Plan& plan, FrameIndex at, const Wrench& wrench) {
   const auto b = static_cast<std::size_t>(at.body);
-  const V3<S> p = pass.frame(b, static_cast<std::size_t>(at.frame)).X.p;
+  const V3<S> p = pass.frame(b, plan.bodies[b].frame(at.frame)).X.p;
   const M3<S> back = pass.bodies[b].WB.R.transpose();
   const V3<S> force = back * V3<S>(wrench.force.cast<S>());
   return {back * V3<S>(wrench.moment.cast<S>()) + p.cross(force), force};

@@ -7,8 +7,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/model/signal_source.hpp"
+#include "withy/core/plugin/sensed_fields.hpp"
 
 namespace withy {
 namespace {
@@ -21,7 +23,7 @@ constexpr std::size_t doubles_of_line = 8;  // 64 bytes, to which the work of pa
 
 /// A state of which positions and speeds are known, and accelerations where the view has them. What else is asked for
 /// is a given number.
-class Signals::Seen final : public SensedState {
+class Signals::Seen final : public SensedState, public SensedFields {
  public:
   Seen(const Signals& signals, const LoadView& view, Unknown unknown, std::vector<FrameIndex>* asked)
       : signals_(signals), view_(view), unknown_(unknown), unavailable_(unknown.effort), asked_(asked) {
@@ -41,6 +43,10 @@ class Signals::Seen final : public SensedState {
     return view_.accelerations.empty() ? std::span<const double>(signals_.zeros_) : view_.accelerations;
   }
   Vector3 gravity() const noexcept override { return signals_.model_->gravity(); }
+  Vector3 field(FrameIndex frame) noexcept override {
+    if (asked_ != nullptr) return Vector3::Zero();
+    return field_acceleration(*signals_.model_, view_.t, motion(frame));
+  }
   FrameMotion motion(FrameIndex frame) noexcept override {
     const std::size_t i = place_of(frame);
     if (i == signals_.frames_.size()) return {};

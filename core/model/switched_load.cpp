@@ -276,6 +276,8 @@ std::unique_ptr<BoundLoad> SwitchedLoad::bind(const Model& model) const {
     if (!alike(*forms.front(), *forms.back()))
       throw std::invalid_argument(
           "an event changes where the load acts, its sample or its states; need a change of its numbers alone");
+    for (const FrameIndex& at : forms.back()->frames())
+      if (at.frame < 0) throw std::invalid_argument("an event cannot change a load on distributed mass");
   }
   return std::make_unique<BoundSwitchedLoad>(std::move(forms));
 }

@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "withy/core/plugin/sampled_part.hpp"
+#include "withy/core/plugin/sensed_fields.hpp"
 #include "withy/core/plugin/sensor.hpp"
 
 namespace withy {
 
 /// That of the equations that hold at the state observed.
-class ChosenSensing final : public SensedState, public SensedLoads {
+class ChosenSensing final : public SensedState, public SensedLoads, public SensedFields {
  public:
   /// \param all not empty. \param choose the index that holds at a state
   ChosenSensing(std::vector<std::unique_ptr<SensedState>> all, std::function<std::size_t(const State&)> choose)
@@ -28,6 +29,7 @@ class ChosenSensing final : public SensedState, public SensedLoads {
   std::span<const double> y() const noexcept override { return now_->y(); }
   std::span<const double> accelerations() noexcept override { return now_->accelerations(); }
   Vector3 gravity() const noexcept override { return now_->gravity(); }
+  Vector3 field(FrameIndex frame) noexcept override { return dynamic_cast<SensedFields&>(*now_).field(frame); }
   FrameMotion motion(FrameIndex frame) noexcept override { return now_->motion(frame); }
   FrameAcceleration acceleration(FrameIndex frame) noexcept override { return now_->acceleration(frame); }
   std::span<const double> load_efforts(int load) noexcept override { return now_->load_efforts(load); }

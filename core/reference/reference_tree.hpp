@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/deformation/rod_motion.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/equations.hpp"
@@ -153,7 +154,7 @@ class ReferenceTree {
 
   [[nodiscard]] PointMotionOf<S> relative(int body, int frame_index, const Pose& offset) const {
     const auto b = static_cast<std::size_t>(body);
-    const Frame& f = model_.bodies()[b].frames[static_cast<std::size_t>(frame_index)];
+    const FramePlace f = place_of(model_, {body, frame_index});
     return offset_motion<S>(section(b, f.section), f.pose * offset);
   }
   [[nodiscard]] WorldMotion<S> frame(int body, int frame_index, const Pose& offset) const {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/simulation/elastic_modes.hpp"
+#include "withy/core/simulation/felt_motion.hpp"
 
 namespace withy {
 namespace {
@@ -74,6 +76,9 @@ void ValidityWatch::sample(const State& state) {
   ++validity_.samples;
   const Layout& layout = model_.layout();
   motion_.update(state.y, std::span<const double>(rates_).subspan(layout.positions, layout.speeds));
+  std::vector<BodyMotion> felt;
+  if (field_of(model_) != nullptr) felt = felt_motions(model_, equations_, state, motion_.bodies());
+  const std::vector<BodyMotion>& motions = felt.empty() ? motion_.bodies() : felt;
   if (!bodies_.empty()) frequency_.update(state.y);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Watched& w = bodies_[i];
@@ -86,7 +91,7 @@ void ValidityWatch::sample(const State& state) {
         v.rate_time = state.time;
       }
     }
-    const LoadRatio load = w.stiffness.evaluate(motion_.bodies());
+    const LoadRatio load = w.stiffness.evaluate(motions);
     v.buckling = std::max(v.buckling, -load.least);
     if (load.size() > v.load.size()) {
       v.load = load;

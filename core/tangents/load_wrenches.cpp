@@ -1,5 +1,6 @@
 #include "withy/core/tangents/load_wrenches.hpp"
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/plugin/central_difference.hpp"
 
 namespace withy::analysis {
@@ -18,6 +19,73 @@ std::vector<AppliedWrench<double>> wrenches_of(const LoadNode& load, const Model
   return result;
 }
 
+namespace {
+
+/// The change along each direction of an element of a frame's motion, `part` 0 to 3: a turn, the position, the angular
+/// velocity, the velocity. A turn is Ṙ Rᵀ, whose axial vector it is.
+JetDerivatives change_of(const FrameState<Jet>& frame, const FrameMotion& m, int part, Eigen::Index axis) {
+  if (part > 0) {
+    const auto& x = part == 1 ? frame.p : part == 2 ? frame.w : frame.v;
+    return derivatives_of(x[axis]);
+  }
+  JetDerivatives change = JetDerivatives::Zero();
+  const Eigen::Index i = (axis + 1) % 3, j = (axis + 2) % 3;
+  for (Eigen::Index c = 0; c < 3; ++c) change += derivatives_of(frame.R(j, c)) * m.R(i, c);
+  return change;
+}
+
+using Wrenches = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// A load on distributed mass says its own slopes, and the wrench of each of its points is of that point alone.
+void add_slopes(const FieldLoad& field, double t, const std::vector<FrameMotion>& motions,
+                const std::vector<FrameState<Jet>>& frames, Eigen::Matrix<Jet, 6, Eigen::Dynamic>& all) {
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const FieldLoad::Slope slope = field.slope(t, field.point(field.frames()[k]), motions[k]);
+    for (Eigen::Index column = 0; column < slope.cols(); ++column) {
+      const JetDerivatives change = change_of(frames[k], motions[k], static_cast<int>(column / 3), column % 3);
+      for (Eigen::Index e = 0; e < slope.rows(); ++e)
+        derivatives_of(all(e, static_cast<Eigen::Index>(k))) += slope(e, column) * change;
+    }
+  }
+}
+
+FrameMotion moved(const FrameMotion& m, int part, const Vector3& step) {
+  FrameMotion n = m;
+  if (part == 0) n.R = Eigen::AngleAxisd(step.norm(), step.normalized()) * m.R;
+  if (part == 1) n.position += step;
+  if (part == 2) n.angular_velocity += step;
+  if (part == 3) n.velocity += step;
+  return n;
+}
+
+/// Of any other load by differences. \returns whether there are any.
+template <class WrenchesAt>
+bool add_differences(const WrenchesAt& wrenches_at, const std::vector<FrameMotion>& motions,
+                     const std::vector<FrameState<Jet>>& frames, Eigen::Matrix<Jet, 6, Eigen::Dynamic>& all) {
+  bool depends = false;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    for (int part = 0; part < 4; ++part) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const JetDerivatives change = change_of(frames[k], motions[k], part, axis);
+        if (change.isZero(0)) continue;
+        const Wrenches slope = central_difference(
+            [&](double h) {
+              std::vector<FrameMotion> changed = motions;
+              changed[k] = moved(motions[k], part, h * Vector3::Unit(axis));
+              return wrenches_at(changed);
+            },
+            difference_step);
+        if (slope.isZero(0)) continue;
+        depends = true;
+        for (Eigen::Index e = 0; e < slope.size(); ++e) derivatives_of(all(e)) += slope(e) * change;
+      }
+    }
+  }
+  return depends;
+}
+
+}  // namespace
+
 std::vector<AppliedWrench<Jet>> wrenches_of(const LoadNode& load, const Model& model, double t,
                                             std::span<const double> y, const std::vector<FrameState<Jet>>& frames,
                                             bool& depends) {
@@ -29,44 +97,16 @@ std::vector<AppliedWrench<Jet>> wrenches_of(const LoadNode& load, const Model& m
   const auto wrenches_at = [&](const std::vector<FrameMotion>& at) {
     std::vector<Wrench> values(at.size());
     load.wrenches(t, y, model.layout(), at, values, scratch);
-    Eigen::Matrix<double, 6, Eigen::Dynamic> all(6, static_cast<Eigen::Index>(at.size()));
+    Wrenches all(6, static_cast<Eigen::Index>(at.size()));
     for (std::size_t k = 0; k < at.size(); ++k)
       all.col(static_cast<Eigen::Index>(k)) << values[k].moment, values[k].force;
     return all;
   };
-  const Eigen::Matrix<double, 6, Eigen::Dynamic> here = wrenches_at(motions);
-  Eigen::Matrix<Jet, 6, Eigen::Dynamic> all = here.cast<Jet>();
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    const FrameMotion& m = motions[k];
-    for (int part = 0; part < 4; ++part) {
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        // The change of this element along each direction; a turn is Ṙ Rᵀ, whose axial vector it is.
-        JetDerivatives change;
-        if (part == 0) {
-          const Eigen::Index i = (axis + 1) % 3, j = (axis + 2) % 3;
-          change.setZero();
-          for (Eigen::Index c = 0; c < 3; ++c) change += derivatives_of(frames[k].R(j, c)) * m.R(i, c);
-        } else {
-          const auto& x = part == 1 ? frames[k].p : part == 2 ? frames[k].w : frames[k].v;
-          change = derivatives_of(x[axis]);
-        }
-        if (change.isZero(0)) continue;
-        const Eigen::Matrix<double, 6, Eigen::Dynamic> slope = central_difference(
-            [&](double h) {
-              std::vector<FrameMotion> moved = motions;
-              const Vector3 step = h * Vector3::Unit(axis);
-              if (part == 0) moved[k].R = Eigen::AngleAxisd(h, Vector3::Unit(axis)) * m.R;
-              if (part == 1) moved[k].position += step;
-              if (part == 2) moved[k].angular_velocity += step;
-              if (part == 3) moved[k].velocity += step;
-              return wrenches_at(moved);
-            },
-            difference_step);
-        if (slope.isZero(0)) continue;
-        depends = true;
-        for (Eigen::Index e = 0; e < slope.size(); ++e) derivatives_of(all(e)) += slope(e) * change;
-      }
-    }
+  Eigen::Matrix<Jet, 6, Eigen::Dynamic> all = wrenches_at(motions).cast<Jet>();
+  if (const auto* field = dynamic_cast<const FieldLoad*>(load.load.get())) {
+    add_slopes(*field, t, motions, frames, all);
+  } else {
+    depends = add_differences(wrenches_at, motions, frames, all);
   }
   std::vector<AppliedWrench<Jet>> result;
   for (std::size_t k = 0; k < frames.size(); ++k) {

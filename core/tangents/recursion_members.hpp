@@ -2,6 +2,7 @@
 /// Members of Recursion, for the files that instantiate it.
 #pragma once
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/tangents/recursion.hpp"
 
 namespace withy::analysis {
@@ -220,7 +221,7 @@ PointMotionOf<S> Recursion<S>::path(std::size_t b, const PointExpansion& e) cons
 template <class S>
 PointMotionOf<S> Recursion<S>::relative(int body, int frame, const Pose& offset) const {
   const auto b = static_cast<std::size_t>(body);
-  const withy::Frame& f = model_.bodies()[b].frames[static_cast<std::size_t>(frame)];
+  const FramePlace f = place_of(model_, {body, frame});
   return offset_motion<S>(section(b, f.section), f.pose * offset);
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "random_scene.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
@@ -30,6 +31,13 @@ struct Case {
     scene = parse_scene(random.text(), "random", registry, {formulation, "", {}});
     equations = scene.formulation->compile(scene.model);
     state = random.state(*scene.model, scene.initial);
+  }
+  /// A scene file as it is.
+  explicit Case(const std::filesystem::path& file) {
+    enroll_static_plugins(registry);
+    scene = read_scene(file, registry);
+    equations = scene.formulation->compile(scene.model);
+    state = scene.initial;
   }
   std::vector<double> derivatives(const State& s) const {
     std::vector<double> y_dot(equations->size());

@@ -1,10 +1,9 @@
 /// \file
-/// Reactions of hinges and inner forces of beams against the dense reference of a tree whose hinge is freed, Newton's
-/// and Euler's laws, and closed forms.
+/// Reactions of hinges and inner forces of beams against the dense reference of a tree whose hinge is freed, and closed
+/// forms.
 #include <Eigen/Geometry>
 
 #include "sensed_case.hpp"
-#include "withy/core/reference/reference_tree.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
 
 namespace withy::test {
@@ -258,84 +257,6 @@ TEST_P(Reactions, the_effort_that_locks_a_revolute_hinge_is_the_reaction_of_the_
   EXPECT_GT(std::abs(effort), 0.1);
   EXPECT_NEAR(effort, along, 1e-9 * std::abs(effort));
   EXPECT_LT((weld.moment - held.moment).norm() + (weld.force - held.force).norm(), 1e-9 * weld.force.norm());
-}
-
-/// Of one body, from the motion of all its mass: linear momentum, angular momentum about the world's origin, and the
-/// first moment of its mass.
-using MassSums = Eigen::Matrix<double, 9, 1>;
-MassSums sums_of(const Case& c, std::size_t body, StrainOrder order, const State& s) {
-  const Model& model = *c.scene.model;
-  std::vector<RodTable> tables;
-  tables.reserve(model.bodies().size());
-  std::vector<reference::BodyTerms<double>> terms;
-  for (const BodyNode& node : model.bodies()) {
-    const bool rod = order == StrainOrder::exact && node.body->shape().modes() > 0;
-    if (rod) tables.emplace_back(*node.body->rod());
-    terms.push_back({order, 1.0, rod ? &tables.back() : nullptr});
-  }
-  const reference::ReferenceTree<double> tree(model, terms, s.y);
-  MassSums sum = MassSums::Zero();
-  using Motion = reference::WorldMotion<double>;
-  tree.each(
-      body,
-      [&](double mass, const Motion& A) {
-        sum.head<3>() += mass * A.v;
-        sum.segment<3>(3) += mass * A.p.cross(A.v);
-        sum.tail<3>() += mass * A.p;
-      },
-      [&](const Matrix3& inertia, const Motion& A) { sum.segment<3>(3) += A.R * inertia * A.R.transpose() * A.w; });
-  return sum;
-}
-
-/// The wrench of a hinge on its child in the world, about its origin.
-Vector6 in_world(SensedState& sensed, const Model& model, std::size_t hinge) {
-  const HingeNode& node = model.hinges()[hinge];
-  const Matrix3 R = sensed.motion({node.parent, node.parent_frame}).R * node.offset.R;
-  const Wrench w = sensed.reaction(static_cast<int>(hinge));
-  const Vector3 force = R * w.force;
-  Vector6 both;
-  both << force, R * w.moment + sensed.motion({node.child, node.child_frame}).position.cross(force);
-  return both;
-}
-
-/// Rate of momentum of every body = what its hinge and the hinges on it exert + weight + loads.
-TEST(Balances, close_newtons_and_eulers_laws_for_every_body) {
-  for (unsigned seed = 1; seed <= 30; ++seed) {
-    const std::vector<std::pair<std::string, StrainOrder>> untruncated = {
-        {"linear", StrainOrder::linear}, {"quadratic", StrainOrder::quadratic}, {"exact", StrainOrder::exact}};
-    const auto& [formulation, order] = untruncated[seed % 3];
-    const int bodies = 3 + static_cast<int>(seed % 5);
-    RandomScene random(seed, {.bodies = bodies, .planar = seed % 4 == 0});
-    const std::string last = "b" + std::to_string(bodies - 1);
-    const bool loaded = seed % 4 != 0;
-    Case c(
-        random.text() +
-            (loaded ? "loads: {dead: {type: force, frame: " + last + ".m, law: constant, value: [1, 2, -3]}}\n" : ""),
-        formulation);
-    c.state = random.state(*c.scene.model, c.scene.initial);
-    const Model& model = *c.scene.model;
-    const auto sensed = c.equations->make_sensed_state({});
-    ASSERT_TRUE(sensed->observe(c.state));
-    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-      const Vector6 rate = central_difference(
-          [&, order = order](double h) -> Vector6 { return sums_of(c, b, order, moved(c, h)).head<6>(); }, 2e-3);
-      Vector6 sum = in_world(*sensed, model, b);
-      for (std::size_t child = 0; child < model.hinges().size(); ++child) {
-        if (model.hinges()[child].parent == static_cast<int>(b)) sum -= in_world(*sensed, model, child);
-      }
-      if (loaded && model.bodies()[b].name == last) {
-        const Vector3 force(1, 2, -3);
-        sum.head<3>() += force;
-        sum.tail<3>() += sensed->motion(*model.find_frame(last + ".m")).position.cross(force);
-      }
-      double mass = 0;
-      for (const Particle& p : model.bodies()[b].body->shape().particles) mass += p.mass;
-      sum.head<3>() += mass * model.gravity();
-      sum.tail<3>() += sums_of(c, b, order, c.state).tail<3>().cross(model.gravity());
-      const double close = (formulation == "exact" ? 1e-7 : 1e-9) * (1 + rate.norm());
-      EXPECT_LT((rate - sum).norm(), close) << "seed " << seed << " " << formulation << " body " << b;
-    }
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Formulations, Reactions, testing::ValuesIn(formulations), formulation_name);

@@ -141,6 +141,12 @@ TEST(TablePicture, DrawsWhatIsAskedForAndNamesWhatIsNear) {
   } catch (const ResultsError& e) {
     EXPECT_STREQ(e.what(), "there is no column \"sholder\"; did you mean \"shoulder\"?");
   }
+  const Panel envelope = envelope_panel({{"run", &table}}, {"link.tip.x", "link.tip.deflection_y"}, {0.5, 2});
+  ASSERT_EQ(envelope.curves.size(), 2U);
+  EXPECT_EQ(envelope.curves[1].x, (std::vector<double>{0.5, 2}));
+  EXPECT_EQ(envelope.curves[0].y, (std::vector<double>{1, std::sin(4.7)}));
+  EXPECT_EQ(envelope.curves[1].y, (std::vector<double>{1, std::sin(1.6)}));
+  EXPECT_THROW(envelope_panel({{"run", &table}}, {"shoulder", "work"}, {0, 1}), ResultsError);
   const std::string text = terminal_plot({"run"}, table_panels({{"run", &table}}, {"shoulder"}));
   EXPECT_THAT(text, HasSubstr("shoulder [deg]"));
   EXPECT_THAT(text, HasSubstr("28.07 |")) << "the greatest value";

@@ -1,0 +1,101 @@
+#include "withy/core/deformation/mass_points.hpp"
+
+#include <algorithm>
+
+#include "withy/core/deformation/rod_table.hpp"
+
+namespace withy {
+namespace {
+
+/// Σ m ρ ρᵀ of an inertia Σ m (ρ·ρ 1 − ρ ρᵀ).
+Matrix3 second_moment(const Matrix3& inertia) { return 0.5 * inertia.trace() * Matrix3::Identity() - inertia; }
+
+}  // namespace
+
+std::vector<MassPoint> mass_points(const Body& body) {
+  std::vector<MassPoint> points;
+  if (const Rod* rod = body.rod()) {
+    const RodTable table(*rod);
+    for (std::size_t k = 0; k < table.sections.size(); ++k) {
+      const double weight = table.quadrature.weights()[k];
+      const Matrix3 inertia = Vector3(weight * table.sections[k].inertia_per_length, 0, 0).asDiagonal();
+      points.push_back({weight * table.sections[k].mass_per_length, second_moment(inertia),
+                        body.station(table.quadrature.nodes()[k]).value()});
+    }
+    return points;
+  }
+  for (const Particle& p : body.shape().particles) points.push_back({p.mass, Matrix3::Zero(), p.at});
+  const bool rigid = body.shape().modes() == 0;
+  for (const Section& s : body.shape().sections) {
+    const auto same = std::find_if(points.begin(), points.end(), [&](const MassPoint& p) { return p.at.X == s.at.X; });
+    if (rigid && same != points.end()) {
+      same->second += second_moment(s.inertia);
+    } else {
+      points.push_back({0, second_moment(s.inertia), s.at});
+    }
+  }
+  return points;
+}
+
+std::vector<double> mass_beyond(const Body& body, double x) {
+  std::vector<double> shares;
+  const Rod* rod = body.rod();
+  if (rod == nullptr) return shares;
+  const RodTable table(*rod);
+  const Eigen::RowVectorXd before = table.quadrature.weights_to(x);
+  for (std::size_t k = 0; k < table.sections.size(); ++k)
+    shares.push_back(1 - before[static_cast<Eigen::Index>(k)] / table.quadrature.weights()[k]);
+  return shares;
+}
+
+FieldLoad::FieldLoad(const Model& model) {
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    bodies_.push_back(model.bodies()[b].body);
+    first_.push_back(points_.size());
+    for (MassPoint& point : mass_points(*bodies_.back())) {
+      frames_.push_back({static_cast<int>(b), -1 - static_cast<int>(points_.size() - first_.back())});
+      points_.push_back(std::move(point));
+    }
+  }
+  first_.push_back(points_.size());
+}
+
+const MassPoint& FieldLoad::point(FrameIndex at) const {
+  return points_of(at.body)[static_cast<std::size_t>(-1 - at.frame)];
+}
+
+std::span<const MassPoint> FieldLoad::points_of(int body) const {
+  const auto b = static_cast<std::size_t>(body);
+  return std::span(points_).subspan(first_[b], first_[b + 1] - first_[b]);
+}
+
+bool FieldLoad::is_of(const Model& model) const {
+  bool same = model.bodies().size() == bodies_.size();
+  for (std::size_t b = 0; same && b < bodies_.size(); ++b) same = model.bodies()[b].body == bodies_[b];
+  return same;
+}
+
+void FieldLoad::wrenches(double t, std::span<const FrameMotion> motions, std::span<Wrench> wrenches) const noexcept {
+  for (std::size_t k = 0; k < points_.size(); ++k) wrenches[k] = wrench(t, points_[k], motions[k]);
+}
+
+const FieldLoad* field_of(const Model& model) {
+  for (const LoadNode& node : model.loads())
+    if (const auto* field = dynamic_cast<const FieldLoad*>(node.load.get())) return field;
+  return nullptr;
+}
+
+Vector3 field_acceleration(const Model& model, double t, const FrameMotion& motion) noexcept {
+  Vector3 sum = Vector3::Zero();
+  for (const LoadNode& node : model.loads())
+    if (const auto* field = dynamic_cast<const FieldLoad*>(node.load.get())) sum += field->acceleration(t, motion);
+  return sum;
+}
+
+FramePlace place_of(const Model& model, FrameIndex at) {
+  if (at.frame < 0) return {field_of(model)->point(at).at, Pose{}};
+  const Frame& frame = model.bodies()[static_cast<std::size_t>(at.body)].frames[static_cast<std::size_t>(at.frame)];
+  return {frame.section, frame.pose};
+}
+
+}  // namespace withy

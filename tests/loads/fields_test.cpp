@@ -1,0 +1,201 @@
+/// \file
+/// Fields on distributed mass against closed forms: orbits, libration, booms, shaken bases.
+#include <cmath>
+#include <numbers>
+
+#include "scene_run.hpp"
+#include "withy/core/analysis/modes.hpp"
+#include "withy/core/simulation/sensor_reader.hpp"
+#include "withy/core/tangents/tangent_dynamics.hpp"
+
+namespace withy::test {
+namespace {
+
+/// Frequencies [rad/s] of small motions about the initial state, nothing held, in increasing order.
+std::vector<double> frequencies(const LoadedScene& c) {
+  const TangentDynamics dynamics(c.scene.model, c.scene.formulation->terms());
+  const std::size_t n = c.scene.model->layout().speeds;
+  const Tangents t = dynamics.tangents(0, c.scene.initial.y, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n)));
+  EXPECT_LT(t.residual.cwiseAbs().maxCoeff(), 1e-9) << "not in equilibrium";
+  EXPECT_TRUE(t.differenced.empty());
+  std::vector<double> all;
+  for (const Mode& mode : natural_modes(t, Held(n, false))) all.push_back(mode.frequency());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// Moments 2 (up), 5 (along the orbit), 6 (normal): pitch n √3 √((5 − 2)/6), roll and yaw by
+/// s⁴ + (1 + 3 k₁ + k₁k₃) n² s² + 4 k₁k₃ n⁴ = 0, k₁ = (6 − 2)/5, k₃ = (6 − 5)/2 (Hughes 1986, section 9.2).
+TEST(GravityGradient, librates_a_satellite_as_the_closed_form_says) {
+  constexpr double n = 0.3;
+  const LoadedScene c(R"(format: withy/1
+time: {end: 1}
+bodies: {bus: {type: rigid, mass: 3, inertia: [2, 5, 6, 0, 0, 0]}}
+hinges: {attitude: {type: spherical, parent: world, child: bus}}
+loads: {earth: {type: gravity-gradient, rate: 0.3, axes: orbit}}
+)");
+  constexpr double k1 = (6.0 - 2) / 5, k3 = (6.0 - 5) / 2;
+  constexpr double b = 1 + 3 * k1 + k1 * k3;
+  const double root = std::sqrt(b * b - 16 * k1 * k3);
+  const std::vector<double> found = frequencies(c);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_NEAR(found[0], n * std::sqrt((b - root) / 2), 1e-12);
+  EXPECT_NEAR(found[1], n * std::sqrt(3.0 * (5 - 2) / 6), 1e-12);
+  EXPECT_NEAR(found[2], n * std::sqrt((b + root) / 2), 1e-12);
+}
+
+/// A boom held across axes that do not turn, stretched by the field as by a spin of √2 n, and pulled back across by n²:
+/// ω² = ω_flap²(η = √2 n) + n², with the flap frequencies of a rotating cantilever (Wright et al. 1982).
+TEST(GravityGradient, stretches_a_boom_as_the_textbook_says_of_a_rotating_one) {
+  for (const auto& [eta, flap] : {std::pair(2.0, 4.13732), std::pair(6.0, 7.36037)}) {
+    const double n = eta / std::numbers::sqrt2;
+    const LoadedScene c(R"(format: withy/1
+time: {end: 1}
+formulation: consistent
+bodies: {boom: {type: beam, length: 1, mass_per_length: 1, bending_z: {stiffness: 1, modes: 7}}}
+hinges: {root: {type: weld, parent: world, child: boom}}
+loads: {earth: {type: gravity-gradient, rate: )" +
+                        std::to_string(n) + "}}\n");
+    EXPECT_NEAR(frequencies(c)[0], std::sqrt(flap * flap + n * n), 2e-4) << eta;
+  }
+}
+
+/// A hub with a boom that stands up, flexible or as a chain of rigid links with springs at their joints. What the links
+/// leave falls with the square of their length: two chains, extrapolated.
+TEST(GravityGradient, librates_a_flexible_boom_as_a_chain_of_rigid_links) {
+  constexpr double length = 8, rho = 0.4, stiffness = 6;
+  const std::string head =
+      "format: withy/1\ntime: {end: 1}\nloads:\n  earth: {type: gravity-gradient, rate: 0.05, axes: orbit}\n";
+  const std::string hub = "  hub: {type: rigid, mass: 20, inertia: [200, 200, 200, 0, 0, 0]}\n";
+  const std::string axle = "  pitch: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}\n";
+  const auto chain = [&](int links) {
+    const double h = length / links, m = rho * h, I = m * h * h / 12;
+    std::ostringstream loads, bodies, hinges;
+    loads.precision(17), bodies.precision(17);
+    for (int i = 0; i < links; ++i) {
+      const std::string before = i == 0 ? "hub" : "l" + std::to_string(i - 1) + ".end";
+      bodies << "  l" << i << ": {type: rigid, mass: " << m << ", center_of_mass: [" << h / 2
+             << ", 0, 0], inertia: [0, " << I << ", " << I << ", 0, 0, 0], frames: {end: {position: [" << h
+             << ", 0, 0]}}}\n";
+      hinges << "  j" << i << ": {type: revolute, axis: [0, 0, 1], parent: " << before << ", child: l" << i << "}\n";
+      loads << "  s" << i << ": {type: hinge-spring, hinge: j" << i
+            << ", stiffness: " << stiffness / h * (i == 0 ? 2 : 1) << "}\n";
+    }
+    const LoadedScene c(head + loads.str() + "bodies:\n" + hub + bodies.str() + "hinges:\n" + axle + hinges.str());
+    return frequencies(c);
+  };
+  const LoadedScene boom(head + "bodies:\n" + hub +
+                         "  boom: {type: beam, length: 8, mass_per_length: 0.4, bending_y: {stiffness: 6, modes: 5}}\n"
+                         "hinges:\n" +
+                         axle + "  root: {type: weld, parent: hub, child: boom}\n");
+  const std::vector<double> mine = frequencies(boom), coarse = chain(20), fine = chain(40);
+  const double inertia = rho * length * length * length / 3, rigid = 0.05 * std::sqrt(3 * inertia / (200 + inertia));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double theirs = fine[i] + (fine[i] - coarse[i]) / 3;
+    EXPECT_NEAR(mine[i], theirs, 2e-5 * theirs) << i;
+  }
+  EXPECT_GT(std::abs(mine[0] - rigid), 1e-3 * rigid) << "the boom is to be flexible enough to be seen";
+}
+
+/// Of eccentricity 0.3; a sphere, which is attracted as a point, is where it began, and a dumbbell that tumbles keeps
+/// its energy as well.
+TEST(PointGravity, keeps_the_energy_of_a_hundred_orbits) {
+  // μ = 1, half axis 1: period 2π, perigee 0.7, speed √(1.3/0.7) there.
+  for (const bool sphere : {true, false}) {
+    const std::string inertia = sphere ? "[0.002, 0.002, 0.002, 0, 0, 0]" : "[0.001, 0.002, 0.002, 0, 0, 0]";
+    const LoadedScene made(
+        "format: withy/1\ntime: {end: 1, output: 1}\n"
+        "integrator: {name: dopri5, rtol: 1e-12, atol: 1e-14}\n"
+        "bodies: {a: {type: rigid, mass: 1, inertia: " +
+        inertia +
+        "}}\nhinges: {orbit: {type: free, parent: world, child: a}}\n"
+        "loads: {sun: {type: point-gravity, parameter: 1}}\n");
+    const Layout& layout = made.scene.model->layout();
+    State start = made.scene.initial;
+    const Slot& slot = *layout.hinge("orbit");
+    start.y[slot.position + 4] = 0.7;
+    start.y[layout.positions + slot.speed + 4] = std::sqrt(1.3 / 0.7);
+    start.y[layout.positions + slot.speed + 2] = 0.8;
+    RunOptions options;
+    options.end = 200 * std::numbers::pi;
+    options.output = options.end / 100;
+    const RunSummary run =
+        simulate(*made.scene.model, *made.equations, *made.scene.integrator, start, options, [](const State&) {});
+    ASSERT_EQ(run.status, RunStatus::completed) << run.message;
+    EXPECT_LT(run.energy_drift, 1e-9);
+    if (!sphere) continue;
+    const Eigen::Map<const Vector3> p(run.final.y.data() + slot.position + 4);
+    const Eigen::Map<const Vector3> v(run.final.y.data() + layout.positions + slot.speed + 3);
+    EXPECT_LT((p - Vector3(0.7, 0, 0)).norm(), 1e-6);
+    EXPECT_NEAR(0.5 * v.squaredNorm() - 1 / p.norm(), -0.5, 1e-9);
+  }
+}
+
+/// A boom on a slide that is driven, or on a base that is shaken as the slide would be: motion relative to it is one.
+TEST(BaseExcitation, moves_a_tree_as_a_driven_slide_does) {
+  const std::string head = R"(format: withy/1
+time: {end: 1.5, output: 0.05}
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+gravity: [0, -9.81, 0]
+bodies:
+  boom: {type: beam, length: 1.5, mass_per_length: 0.7, bending_y: {stiffness: 9, modes: 2}}
+)";
+  const double w = 2 * std::numbers::pi * 2;
+  std::ostringstream law;
+  law.precision(17);
+  law << -0.05 * w * w << "*sin(2*pi*2*t)";
+  LoadedScene shaken(head + "hinges: {pin: {type: revolute, axis: [0, 0, 1], parent: world, child: boom}}\n" +
+                     "loads: {base: {type: base-excitation, formula: [\"" + law.str() + "\", \"0\", \"0\"]}}\n");
+  LoadedScene driven(head + "  cart: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}\nhinges:\n" +
+                     "  slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}\n"
+                     "  pin: {type: revolute, axis: [0, 0, 1], parent: cart, child: boom}\n"
+                     "motions: {shake: {hinge: slide, type: sine, amplitude: 0.05, period: 0.5}}\n");
+  const std::vector<State> a = shaken.run(), b = driven.run();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    EXPECT_NEAR(shaken.position(a[i], "pin"), driven.position(b[i], "pin"), 1e-8);
+  EXPECT_GT(std::abs(shaken.position(a[5], "pin")), 0.1);
+}
+
+/// In free fall an accelerometer at the centre of mass shows nothing; 10 m further up it is held back by 3 n² · 10 m.
+TEST(Fields, are_not_felt_by_an_accelerometer) {
+  const LoadedScene c(R"(format: withy/1
+time: {end: 1}
+bodies: {bus: {type: rigid, mass: 3, inertia: [2, 5, 6, 0, 0, 0], frames: {up: {position: [10, 0, 0]}}}}
+hinges: {orbit: {type: free, parent: world, child: bus}}
+loads: {earth: {type: gravity-gradient, rate: 0.3, axes: orbit}}
+outputs: {here: {type: accelerometer, of: bus}, up: {type: accelerometer, of: bus.up}}
+)");
+  SensorReader reader(c.scene.outputs, *c.equations);
+  std::vector<double> values(reader.columns().size());
+  ASSERT_TRUE(reader.read(c.scene.initial, values));
+  const std::vector<double> expected{0, 0, 0, -0.27 * 10, 0, 0};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(values[i], expected[i], 1e-13) << i;
+}
+
+/// What is wrong is said with its place, and is no exception from deeper down.
+TEST(Fields, refuse_what_has_no_meaning) {
+  const std::string head =
+      "format: withy/1\ntime: {end: 1}\nbodies: {a: {type: rigid, mass: 1}}\n"
+      "hinges: {h: {type: free, parent: world, child: a}}\nloads: {f: {";
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"type: gravity-gradient, rate: 1, vertical: [1, 0, 1]", "is not perpendicular to 'normal'"},
+      {"type: gravity-gradient, rate: 1, normal: [0, 0, 0]", "has no length"},
+      {"type: point-gravity, parameter: -1", "need"},
+      {"type: base-excitation", "need one of 'law' and 'formula'"},
+      {"type: base-excitation, formula: [\"x\", \"0\", \"0\"]", "there is nothing called 'x'"},
+      {"type: base-excitation, formula: [\"0\", \"0\"]", "three formulas"},
+      {"type: rotating-frame, rate: 1, axis: [0, 0, 0]", "has no length"}};
+  for (const auto& [load, message] : wrong) {
+    try {
+      const LoadedScene c(head + load + "}}\n");
+      ADD_FAILURE() << load;
+    } catch (const std::exception& e) {
+      EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("test.yaml:5"), std::string::npos) << e.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace withy::test
