@@ -89,10 +89,10 @@ class MatchingObserver final : public SteppingObserver {
 MatchedRun run_prepared(const study::Prepared& prepared, const Measured& data, const study::Control& control) {
   const Scene& scene = prepared.scene;
   const EquationsOfMotion& equations = *prepared.equations;
-  const State start = begun(*scene.model, scene.initial);
+  const State start = begun(*scene.model, equations, scene.initial);
   const double end = std::max(data.times.back(), start.time);
   EventActions actions(*scene.model, equations, scene.events);
-  Stepping loop(*scene.model, scene.integrator->start(equations, start),
+  Stepping loop(*scene.model, equations, scene.integrator->start(equations, start),
                 {.end = end, .output = scene.output, .events = actions.watched(), .actions = &actions});
   MatchingObserver observer(prepared, data, control);
   std::vector<double> rates(equations.size());

@@ -43,6 +43,22 @@ Json body_json(const BodyValidity& b, const Certificate& certificate, const RunS
   return j;
 }
 
+Json drifts_json(const study::Drifts& d, bool momenta) {
+  Json j{{"energy", d.energy}};
+  if (momenta) j.update({{"linear", d.linear}, {"angular", d.angular}});
+  return j;
+}
+
+Json dropped_json(const Certificate& c) {
+  Json groups = Json::object();
+  for (const study::DroppedForces& d : c.dropped) {
+    Json terms = Json::object();
+    for (const study::DroppedTerm& t : d.terms) terms[t.term] = t.share;
+    groups[d.group] = {{"share", d.share}, {"terms", std::move(terms)}};
+  }
+  return groups;
+}
+
 /// Rungs over time, the accuracy asked and what finding them has cost.
 Json plan_json(const Certificate& c) {
   const study::RungPlan& plan = *c.plan;
@@ -106,9 +122,14 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
   c["momentum_drift"] = certificate.momentum.conserved
                             ? Json{{"linear", certificate.momentum.linear}, {"angular", certificate.momentum.angular}}
                             : Json();
+  const bool momenta = certificate.momentum.conserved;
+  c["drift_by"] = certificate.shares ? Json{{"model", drifts_json(certificate.shares->model, momenta)},
+                                            {"integration", drifts_json(certificate.shares->integration, momenta)}}
+                                     : Json();
+  c["dropped"] = dropped_json(certificate);
   c["families"] = Json::array();
   for (const study::BodyFamilies& f : certificate.families)
-    c["families"].push_back({{"body", f.body}, {"family", f.family}, {"modes", f.modes}});
+    c["families"].push_back({{"body", f.body}, {"strain", f.strain}, {"family", f.family}, {"modes", f.modes}});
   c["acceleration_rounding"] = certificate.rounding ? Json(*certificate.rounding) : Json();
   c["samples"] = certificate.samples;
   c["bodies"] = Json::array();

@@ -13,7 +13,7 @@
 namespace withy {
 namespace {
 
-std::string percent(double ratio) { return fmt::format("{:.2g} %", 100 * ratio); }
+std::string percent(double ratio) { return fmt::format("{:.{}g} %", 100 * ratio, ratio < 0.995 ? 2 : 3); }
 
 /// Errors of one kind, in the order of the model; of many the greatest.
 class ErrorList {
@@ -93,10 +93,47 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
 
 /// Families are named after the ends they are made for, the root's first.
 std::string families_text(const study::Certificate& certificate) {
-  std::string text;
-  for (const study::BodyFamilies& f : certificate.families)
-    text += fmt::format("{}{} {} {}", text.empty() ? "" : ", ", f.body, f.modes, f.family);
+  std::string text, body;
+  for (const study::BodyFamilies& f : certificate.families) {
+    text += f.body == body ? ", " : fmt::format("{}{}: ", text.empty() ? "" : "; ", f.body);
+    text += fmt::format("{}{}{}{}{}", f.modes, f.strain.empty() ? "" : " ", f.strain, f.family.empty() ? "" : " ",
+                        f.family);
+    body = f.body;
+  }
   return text;
+}
+
+/// Of a drift, whose it is.
+std::string whose(const study::Certificate& c, double study::Drifts::*drift) {
+  if (!c.shares) return "";
+  const double model = c.shares->model.*drift, integration = c.shares->integration.*drift;
+  if (model == 0) return integration == 0 ? "" : ", all of it by integration";
+  if (integration > model) return "";  // not resolved
+  return fmt::format(", {} by what the model leaves out and at most {} by integration", percent(model),
+                     percent(integration));
+}
+
+std::string energy_text(const study::Certificate& c) {
+  std::string text = fmt::format("off by {} of the greatest", percent(c.energy_drift));
+  if (c.untruncated_drift > 2 * c.energy_drift)
+    return text + fmt::format(" by integration; the energy without truncation by {}, which the model leaves out",
+                              percent(c.untruncated_drift));
+  return text + whose(c, &study::Drifts::energy);
+}
+
+/// What the formulation drops, in shares of the greatest term on the same coordinates.
+std::string dropped_text(const study::Certificate& c) {
+  constexpr std::size_t named = 3;
+  std::string text;
+  for (const study::DroppedForces& d : c.dropped) {
+    text += fmt::format("{}on {} {}", text.empty() ? "" : "; ", d.group, percent(d.share));
+    std::string terms;
+    for (std::size_t i = 0; i < std::min(named, d.terms.size()); ++i)
+      if (d.terms[i].share > 0)
+        terms += fmt::format("{}{} {}", terms.empty() ? "" : ", ", d.terms[i].term, percent(d.terms[i].share));
+    if (!terms.empty()) text += fmt::format(" ({})", terms);
+  }
+  return text + " of the greatest force there";
 }
 
 std::vector<std::string> plan_text(const study::Certificate& certificate) {
@@ -142,18 +179,16 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
          "a mix conserves no more than each of its formulations does, and may be further off than any of them alone");
   for (const std::string& text : plan_text(certificate)) line("", text);
   if (!certificate.families.empty()) line("modes", families_text(certificate));
-  line("energy", fmt::format("off by {} of the greatest{}", percent(certificate.energy_drift),
-                             certificate.untruncated_drift > 2 * certificate.energy_drift
-                                 ? fmt::format("; the energy without truncation by {}, which the model leaves out",
-                                               percent(certificate.untruncated_drift))
-                                 : ""));
+  line("energy", energy_text(certificate));
   if (certificate.momentum.conserved)
-    line("momentum", fmt::format("linear off by {}, angular by {}: nothing outside acts on the tree, and it is to be "
-                                 "conserved",
-                                 percent(certificate.momentum.linear), percent(certificate.momentum.angular)));
+    line("momentum", fmt::format("linear off by {}{}; angular by {}{}: nothing outside acts on the tree, and it is to "
+                                 "be conserved",
+                                 percent(certificate.momentum.linear), whose(certificate, &study::Drifts::linear),
+                                 percent(certificate.momentum.angular), whose(certificate, &study::Drifts::angular)));
+  if (!certificate.dropped.empty()) line("dropped", dropped_text(certificate));
   const NeglectedAcceleration& n = certificate.neglected;
   // Vibrations that hardly move an output are in it: where the error of outputs is known, that says it.
-  if (!certificate.estimate && !certificate.against.empty() && n.samples > 0) {
+  if (!certificate.estimate && !certificate.against.empty() && n.samples > 0 && n.rms > 0) {
     line("left out", fmt::format("{} of the accelerations in the mean, {} at the peaks, against {} ({} samples)",
                                  percent(n.rms), percent(n.peak), certificate.against, n.samples));
   }

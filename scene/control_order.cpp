@@ -5,6 +5,8 @@
 
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/model/signal_source.hpp"
+#include "withy/core/plugin/sampled_part.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 
@@ -67,7 +69,8 @@ std::shared_ptr<const std::vector<SensorNode>> measurable(const Value& outputs, 
 
 bool measures(const Value& load) {
   const Value* type = load.find("type");
-  return load.has("of") || (type != nullptr && type->kind() == Value::Kind::text && type->text() == "expression");
+  return load.has("of") || load.has("schedule") ||
+         (type != nullptr && type->kind() == Value::Kind::text && type->text() == "expression");
 }
 
 }  // namespace
@@ -91,6 +94,20 @@ void name_signals(const Document& document, Model* model, SceneNames& names, Reg
     model->set_measured(measurable(map_of("outputs"), *model, document, names, registry));
 }
 
+void give_outputs(Model& model, const std::vector<SensorNode>& outputs, const Checker& checker) {
+  if (model.measured() == nullptr) return;
+  model.set_measured(std::make_shared<const std::vector<SensorNode>>(outputs));
+  for (const LoadNode& node : model.loads()) {
+    const auto* sampled = dynamic_cast<const SampledPart*>(node.load->discrete());
+    try {
+      for (const std::string& name : sampled == nullptr ? std::vector<std::string>{} : sampled->measures())
+        static_cast<void>(find_signal(model, name));
+    } catch (const std::invalid_argument& e) {
+      checker.key_error("/loads/" + node.name, e.what());
+    }
+  }
+}
+
 std::set<std::string> needed_loads(const Value& load, const std::set<std::string>& loads) {
   std::set<std::string> found;
   for (const char* key : {"of", "to"}) {
@@ -101,8 +118,9 @@ std::set<std::string> needed_loads(const Value& load, const std::set<std::string
       if (loads.contains(name)) found.insert(name);
     }
   }
-  if (const Value* formula = load.find("value"); formula != nullptr && formula->kind() == Value::Kind::text)
-    add_words(formula->text(), loads, found);
+  for (const char* key : {"value", "schedule"})
+    if (const Value* text = load.find(key); text != nullptr && text->kind() == Value::Kind::text)
+      add_words(text->text(), loads, found);
   return found;
 }
 

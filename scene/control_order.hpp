@@ -32,4 +32,8 @@ std::list<PendingLoad> in_order_of_need(std::list<PendingLoad> loads, const Chec
 /// tree has faults
 void name_signals(const Document& document, Model* model, SceneNames& names, Registry& registry);
 
+/// Gives the model all its outputs in the place of those known before loads were bound, where loads measure. Reports
+/// numbers that a sampled load measures and no output has.
+void give_outputs(Model& model, const std::vector<SensorNode>& outputs, const Checker& checker);
+
 }  // namespace withy

@@ -76,6 +76,7 @@ class SceneBuilder {
     for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
       if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr) tree.names.loads.add(load.name);
     add_outputs(tree);
+    if (tree.model != nullptr && diagnostics_.ok()) give_outputs(*tree.model, scene_.outputs, checker_);
     if (tree.model != nullptr && diagnostics_.ok()) events.add_to(*tree.model, scene_.outputs, scene_.events);
     if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model);
     if (tree.model != nullptr && diagnostics_.ok()) set_span(*tree.model);

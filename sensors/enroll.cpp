@@ -5,6 +5,7 @@
 namespace withy {
 
 void enroll_angle(Enrollment& enrollment);
+void enroll_control_sensor(Enrollment& enrollment);
 void enroll_distance(Enrollment& enrollment);
 void enroll_effort(Enrollment& enrollment);
 void enroll_energy(Enrollment& enrollment);
@@ -20,6 +21,7 @@ namespace {
 
 void enroll(Enrollment& enrollment) {
   enroll_angle(enrollment);
+  enroll_control_sensor(enrollment);
   enroll_distance(enrollment);
   enroll_effort(enrollment);
   enroll_energy(enrollment);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/simulation/accuracy.hpp"
@@ -46,6 +48,38 @@ void add_rounding(Certificate& c) {
   c.indicators.insert(after, rounding);
 }
 
+/// Whether the equations keep energy and momenta in balance themselves: nothing is truncated.
+bool conserves(const Scene& scene) {
+  const auto whole = [](const Terms& terms) {
+    return terms.truncation == Truncation::none && terms.products_of_speeds;
+  };
+  const auto& bodies = scene.model->bodies();
+  return whole(scene.formulation->terms()) &&
+         std::all_of(bodies.begin(), bodies.end(), [&](const BodyNode& b) { return !b.terms || whole(*b.terms); });
+}
+
+/// Where the equations conserve, drifts are the integration's. Elsewhere the coarse run of the estimate, in the same
+/// equations, drifts by what they leave out; what the run itself drifts by beside that is the integration's.
+std::optional<DriftShares> shares_of(const Prepared& prepared, const Evidence& evidence) {
+  const RunSummary& s = *evidence.summary;
+  if (evidence.plan || s.status != RunStatus::completed) return {};
+  const Drifts all{s.energy_drift, s.momentum.linear, s.momentum.angular};
+  if (conserves(prepared.scene)) return DriftShares{{}, all};
+  if (!evidence.estimate || evidence.estimate->distances.until < evidence.estimate->end) return {};
+  // The coarse run may drift by its own errors too: no share is more than the whole.
+  const Drifts& coarse = evidence.estimate->drifts;
+  const auto split = [](double whole, double by_model) {
+    return std::pair(std::min(by_model, whole), std::min(std::abs(whole - by_model), whole));
+  };
+  DriftShares shares;
+  std::tie(shares.model.energy, shares.integration.energy) = split(s.untruncated_drift, coarse.energy);
+  std::tie(shares.model.linear, shares.integration.linear) = split(all.linear, coarse.linear);
+  std::tie(shares.model.angular, shares.integration.angular) = split(all.angular, coarse.angular);
+  if (prepared.scene.formulation->terms().truncation == Truncation::symmetric)
+    shares.integration.energy = s.energy_drift;  // of its own energy, which it conserves
+  return shares;
+}
+
 }  // namespace
 
 Certificate certify(const Prepared& prepared, Evidence evidence, Registry& registry) {
@@ -64,9 +98,11 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.energy_drift = summary.energy_drift;
   c.untruncated_drift = summary.untruncated_drift;
   c.momentum = summary.momentum;
+  c.shares = shares_of(prepared, evidence);
+  c.dropped = std::move(evidence.dropped);
   for (const BodyModes& body : scene.modes)
     for (const ModeCount& count : body.counts)
-      if (count.modes > 0) c.families.push_back({body.body, count.family_id(), static_cast<std::size_t>(count.modes)});
+      if (count.modes > 0) c.families.push_back({body.body, count.strain, count.family_id(), count.modes});
   const EquationsOfMotion& equations = last != nullptr ? *last->equations : *prepared.equations;
   const double rounding = rounding_error(prepared.model(), equations, summary.final).relative;
   if (std::isfinite(rounding)) c.rounding = rounding;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/study/dropped_terms.hpp"
 #include "withy/study/error_estimate.hpp"
 #include "withy/study/indicators.hpp"
 #include "withy/study/rung_plan.hpp"
@@ -20,11 +21,18 @@ struct OwnFormulation {
   std::string meaning;  ///< in a sentence
 };
 
-/// The mode families of a body with their numbers of modes and the ends they are made for.
+/// The modes of a body in one strain, with the family they are of, named after the ends it is made for.
 struct BodyFamilies {
   std::string body;
-  std::string family;
+  std::string strain;  ///< as "bending_y"; empty: of the whole body
+  std::string family;  ///< empty where there is no choice of one
   std::size_t modes = 0;
+};
+
+/// Drifts of energy and momenta, told apart.
+struct DriftShares {
+  Drifts model;        ///< what the formulation leaves out makes of them
+  Drifts integration;  ///< no more than this is the integration's; zero where `model` is all of it
 };
 
 struct Certificate {
@@ -37,6 +45,8 @@ struct Certificate {
   double energy_drift = 0;             ///< RunSummary::energy_drift
   double untruncated_drift = 0;        ///< RunSummary::untruncated_drift
   MomentumDrift momentum;              ///< RunSummary::momentum
+  std::optional<DriftShares> shares;   ///< of these drifts; none where they cannot be told apart
+  std::vector<DroppedForces> dropped;  ///< along the coarse run of the estimate; empty where there is none
   std::vector<BodyFamilies> families;  ///< of every body that has modes
   std::optional<double> rounding;      ///< relative error that rounding leaves the final accelerations; none: no digit
   std::size_t samples = 0;             ///< of validity
@@ -56,6 +66,7 @@ struct Evidence {
   std::optional<RungPlan> plan;    ///< of formulation `auto`
   std::optional<ErrorEstimate> estimate;
   std::string without_estimate = {};  ///< why there is none
+  std::vector<DroppedForces> dropped = {};
 };
 Certificate certify(const Prepared& prepared, Evidence evidence, Registry& registry);
 

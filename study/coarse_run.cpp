@@ -30,7 +30,8 @@ class CoarseObserver final : public SteppingObserver {
 CoarseRun::CoarseRun(const Prepared& prepared, const EquationsOfMotion& equations, const Outputs& outputs,
                      const Integrator& integrator, const State& start, double end)
     : reader_(outputs, prepared.model(), equations),
-      loop_(prepared.model(), integrator.start(equations, start), {.end = end, .output = end - start.time + 1}),
+      loop_(prepared.model(), equations, integrator.start(equations, start),
+            {.end = end, .output = end - start.time + 1}),
       read_at_(-std::numeric_limits<double>::infinity()) {}
 
 bool CoarseRun::to(double time, const Control& control, std::size_t most) {

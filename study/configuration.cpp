@@ -54,7 +54,7 @@ Configuration::Configuration(const Prepared& prepared, State state, const Holdin
   const Model& model = prepared_.model();
   for (const LoadSlot& slot : layout().discrete_slots) require_continuous(prepared.scene.file, model, slot, sampling);
   model.prescribe(state_);
-  if (sampling == Sampling::kept) state_ = begun(model, std::move(state_));
+  if (sampling == Sampling::kept) state_ = begun(model, *prepared_.equations, std::move(state_));
   for (const MotionNode& motion : model.motions()) {
     const Slot& slot = layout().hinges[static_cast<std::size_t>(motion.hinge)];
     for (std::size_t i = 0; i < slot.speeds; ++i) held_[slot.speed + i] = true;

@@ -101,16 +101,18 @@ LinearModel about(const Configuration& c, const SmallMotions& motions, const Sam
   return linear;
 }
 
-void sample(const SampledLoads& sampled, const Eigen::MatrixXd& A, const Eigen::MatrixXd& by_held,
-            const Eigen::MatrixXd& B, LinearSystem& system) {
+void sample(const SampledLoads& sampled, const SampledLoads::Held& held, LinearModel& linear) {
+  LinearSystem& system = linear.system;
   if (sampled.none()) {
-    system.A = A, system.B = B;
+    system.A = held.A, system.B = held.B;
     return;
   }
-  auto [Phi, Gamma] = sampled.map(A, by_held, B);
+  auto [Phi, Gamma] = sampled.map(held);
   system.A = std::move(Phi), system.B = std::move(Gamma);
-  system.C = system.C * sampled.renewal();
+  system.C = system.C * sampled.renewal(held);
   system.period = sampled.period();
+  if (held.felt.empty()) return;
+  for (const Column& input : linear.inputs) linear.states.push_back(input.name + ".before");
 }
 
 LinearModel linear_model(const Configuration& c, const Ports& ports) {
@@ -118,15 +120,18 @@ LinearModel linear_model(const Configuration& c, const Ports& ports) {
   const bool sensors = std::any_of(outputs.begin(), outputs.end(), [](const LinearOutput& o) { return o.sensed >= 0; });
   SmallMotions motions(c, sensors ? c.prepared().scene.outputs : std::vector<SensorNode>());
   const std::vector<LinearInput> inputs = chosen_inputs(c, motions, ports.inputs);
-  const SampledLoads sampled(motions);
+  SampledLoads sampled(motions);
   LinearModel linear = about(c, motions, sampled);
   look(motions, sampled, inputs, outputs, linear);
-  Eigen::MatrixXd B(motions.size(), static_cast<Eigen::Index>(inputs.size()));
+  Eigen::MatrixXd efforts(motions.by_effort().cols(), static_cast<Eigen::Index>(inputs.size()));
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     linear.inputs.push_back(inputs[k].column);
-    B.col(static_cast<Eigen::Index>(k)) = motions.by_effort() * inputs[k].efforts;
+    efforts.col(static_cast<Eigen::Index>(k)) = inputs[k].efforts;
   }
-  sample(sampled, motions.A(), motions.by_effort() * sampled.efforts(), B, linear.system);
+  sample(
+      sampled,
+      {motions.A(), motions.by_effort() * sampled.efforts(), motions.by_effort() * efforts, sampled.felt(efforts), {}},
+      linear);
   return linear;
 }
 

@@ -114,7 +114,8 @@ class OutputReader {
   /// The numbers of all outputs; an effort or a sensor that cannot be found is no number.
   [[nodiscard]] std::vector<double> read(const State& state);
   /// At the state read last [J].
-  [[nodiscard]] double kinetic_energy() const { return seen_->energies().kinetic; }
+  [[nodiscard]] double kinetic_energy() const { return energies().kinetic; }
+  [[nodiscard]] Energies energies() const { return seen_->energies(); }
 
  private:
   const Outputs& outputs_;

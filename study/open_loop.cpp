@@ -104,7 +104,7 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
   SmallMotions motions(c, {});
   const Model& model = motions.model();
   const auto [load, hinge] = load_and_hinge(model, name);
-  const SampledLoads sampled(motions);
+  SampledLoads sampled(motions);
   const bool is_sampled = sampled.period_of(load) > 0;
   if (!is_sampled && !sampled.none())
     throw OptionError("input",
@@ -127,15 +127,18 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
   const Eigen::VectorXd push = motions.by_effort() * answer.along;
   linear.system.C.setZero(1, motions.size() + sampled.size());
   linear.system.D.setZero(1, 1);
+  Eigen::MatrixXd replaced;
   if (is_sampled) {
     const auto [first, count] = sampled.held_by(load);
     linear.system.C.block(0, motions.size() + first, 1, count) = -answer.row;
+    replaced.setZero(1, sampled.size());
+    replaced.middleCols(first, count) = answer.row;
     held.middleCols(first, count) = difference(held.middleCols(first, count), answer.along * answer.row);
   } else {
     linear.system.C.leftCols(motions.size()) = -answer.row;
     A = difference(A, push * answer.row);
   }
-  sample(sampled, A, motions.by_effort() * held, push, linear.system);
+  sample(sampled, {A, motions.by_effort() * held, push, sampled.felt(answer.along), replaced}, linear);
   return linear;
 }
 

@@ -12,7 +12,7 @@ namespace withy::study {
 /// A coarse run in a rung that neglects nothing which the accuracy asked can see.
 struct ReferenceTrack {
   std::size_t rung = 0;
-  std::string integrator;  ///< the one that takes the fewest evaluations
+  std::string integrator;  ///< the one that costs least
   double tolerance = 0;    ///< relative; the absolute one is a hundredth of it
   State start;
   double end = 0;                    ///< of the run [s]

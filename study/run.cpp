@@ -136,6 +136,7 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
   if (has_switches(prepared.model()) && beyond)
     return "not estimated: loads switch or events act at the zeros of functions, and two formulations have no common "
            "steps";
+  if (!(summary.final.time > prepared.scene.initial.time)) return "not estimated: no motion of this run can be trusted";
   if (prepared.scene.formulation->terms().strain == StrainOrder::exact && !beyond)
     return "nothing is left out: kinematics is exact and nothing is truncated";
   if (beyond && !beyond->highest) return "not estimated: it was not asked for";
@@ -176,13 +177,18 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
   result.summary.message += growth_text(prepared, result.summary);
   std::optional<ErrorEstimate> estimate;
   if (beyond && wanted(settings.estimate, *beyond) && !has_switches(prepared.model()) &&
-      loops_of(prepared.model()).empty() && result.summary.status != RunStatus::interrupted)
+      loops_of(prepared.model()).empty() && result.summary.status != RunStatus::interrupted &&
+      result.summary.final.time > prepared.scene.initial.time)
     estimate = estimate_error(prepared.scene, *prepared.equations, *beyond, result.summary, registry,
                               settings.control.interrupted);
+  std::vector<DroppedForces> dropped;
+  if (estimate) dropped = dropped_terms(prepared, *beyond, estimate->along, registry);
   std::string why_not =
       estimate || !settings.look_beyond ? std::string() : without_estimate(prepared, result.summary, beyond, settings);
   result.certificate = certify(
-      prepared, {&result.summary, beyond ? &*beyond : nullptr, {}, std::move(estimate), std::move(why_not)}, registry);
+      prepared,
+      {&result.summary, beyond ? &*beyond : nullptr, {}, std::move(estimate), std::move(why_not), std::move(dropped)},
+      registry);
   return result;
 }
 

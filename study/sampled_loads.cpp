@@ -22,7 +22,8 @@ const DiscretePart& part_of(const Model& model, const LoadSlot& slot) {
 
 }  // namespace
 
-SampledLoads::SampledLoads(const SmallMotions& motions) : motions_(motions) {
+SampledLoads::SampledLoads(const SmallMotions& motions)
+    : motions_(motions), renewal_(motions.model(), motions.equations()) {
   const Model& model = motions.model();
   for (const LoadSlot& slot : model.layout().discrete_slots) {
     const double period = part_of(model, slot).period();
@@ -61,15 +62,26 @@ void SampledLoads::find_period() {
   instants_.erase(std::unique(instants_.begin(), instants_.end(), same), instants_.end());
 }
 
-Eigen::VectorXd SampledLoads::renewed(const Part& part, State state) const {
-  const Layout& layout = motions_.model().layout();
-  const BoundLoad& load = *motions_.model().loads()[part.slot.load].load;
-  std::vector<double> scratch(load.scratch());
-  const std::span<double> y(state.y);
-  const auto held = y.subspan(part.slot.first, part.slot.count);
-  load.discrete()->renew(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), {}, held,
-                         scratch);
-  return Eigen::Map<const Eigen::VectorXd>(held.data(), static_cast<Eigen::Index>(held.size()));
+/// Which loads are renewed at an instant.
+std::vector<bool> SampledLoads::due(double t) const {
+  std::vector<bool> all;
+  for (const Part& part : loads_) all.push_back(whole(t / part.period));
+  return all;
+}
+
+Eigen::VectorXd SampledLoads::held(const State& state) const {
+  Eigen::VectorXd d(size());
+  for (const Part& part : loads_)
+    for (std::size_t i = 0; i < part.slot.count; ++i)
+      d[part.first + static_cast<Eigen::Index>(i)] = state.y[part.slot.first + i];
+  return d;
+}
+
+Eigen::VectorXd SampledLoads::renewed(State state, const std::vector<bool>& due) {
+  renewal_.at(state);
+  for (std::size_t i = 0; i < loads_.size(); ++i)
+    if (due[i]) renewal_(state, loads_[i].slot, {});
+  return held(state);
 }
 
 State SampledLoads::displaced(Eigen::Index i, double h) const {
@@ -82,41 +94,62 @@ State SampledLoads::displaced(Eigen::Index i, double h) const {
   return state;
 }
 
-void SampledLoads::differentiate() {
+Eigen::MatrixXd SampledLoads::differentiated(const std::vector<bool>& due) {
   const Eigen::Index n = motions_.size();
-  efforts_.setZero(motions_.by_effort().cols(), size());
-  renewal_.setZero(n + size(), n + size());
-  renewal_.topLeftCorner(n, n).setIdentity();
+  Eigen::MatrixXd R = Eigen::MatrixXd::Identity(n + size(), n + size());
+  const auto slope = [&](auto&& state_at, double step) {
+    return adaptive_difference([&](double h) { return renewed(state_at(h), due); }, step).slope;
+  };
+  for (Eigen::Index i = 0; i < n; ++i)
+    R.col(i).tail(size()) = slope([&](double h) { return motions_.displaced(i, h); }, motions_.step(i));
+  const Eigen::VectorXd now = held(motions_.state());
   for (const Part& part : loads_) {
     const auto count = static_cast<Eigen::Index>(part.slot.count);
-    const Eigen::Map<const Eigen::VectorXd> held(motions_.state().y.data() + part.slot.first, count);
-    const double size_of_held = std::max(1.0, held.cwiseAbs().maxCoeff());
-    if ((renewed(part, motions_.state()) - held).cwiseAbs().maxCoeff() > 1e-9 * size_of_held) steady_ = false;
-    const auto by = [&](auto&& state_at, double step) {
-      return adaptive_difference([&](double h) { return renewed(part, state_at(h)); }, step).slope;
-    };
-    for (Eigen::Index i = 0; i < n; ++i)
-      renewal_.block(n + part.first, i, count, 1) =
-          by([&](double h) { return motions_.displaced(i, h); }, motions_.step(i));
-    for (Eigen::Index i = part.first; i < part.first + count; ++i) {
-      const auto at = [&](double h) { return displaced(i, h); };
-      renewal_.block(n + part.first, n + i, count, 1) = by(at, size_of_held);
+    const double size_of_held = std::max(1.0, now.segment(part.first, count).cwiseAbs().maxCoeff());
+    for (Eigen::Index i = part.first; i < part.first + count; ++i)
+      R.col(n + i).tail(size()) = slope([&](double h) { return displaced(i, h); }, size_of_held);
+  }
+  return R;
+}
+
+void SampledLoads::differentiate() {
+  efforts_.setZero(motions_.by_effort().cols(), size());
+  const Eigen::VectorXd now = held(motions_.state());
+  const Eigen::VectorXd change = renewed(motions_.state(), due(0)) - now;
+  for (const Part& part : loads_) {
+    const auto count = static_cast<Eigen::Index>(part.slot.count);
+    const double size_of_held = std::max(1.0, now.segment(part.first, count).cwiseAbs().maxCoeff());
+    if (change.segment(part.first, count).cwiseAbs().maxCoeff() > 1e-9 * size_of_held) steady_ = false;
+    for (Eigen::Index i = part.first; i < part.first + count; ++i)
       efforts_.col(i) =
-          adaptive_difference([&](double h) { return motions_.efforts(at(h), part.slot.load); }, size_of_held).slope;
-    }
+          adaptive_difference([&](double h) { return motions_.efforts(displaced(i, h), part.slot.load); }, size_of_held)
+              .slope;
+  }
+  for (const double t : instants_) {
+    const std::vector<bool> now_due = due(t);
+    const auto at = std::find(due_.begin(), due_.end(), now_due);
+    kinds_.push_back(static_cast<std::size_t>(at - due_.begin()));
+    if (at != due_.end()) continue;
+    due_.push_back(now_due);
+    renewals_.push_back(differentiated(now_due));
   }
 }
 
-Eigen::MatrixXd SampledLoads::renewal(double t) const {
-  const Eigen::Index n = motions_.size();
-  Eigen::MatrixXd R = renewal_;
-  for (const Part& part : loads_) {
-    if (whole(t / part.period)) continue;
-    const auto count = static_cast<Eigen::Index>(part.slot.count);
-    R.middleRows(n + part.first, count).setZero();
-    R.block(n + part.first, n + part.first, count, count).setIdentity();
+std::vector<Eigen::MatrixXd> SampledLoads::felt(const Eigen::MatrixXd& efforts) {
+  bool any = false;
+  std::vector<Eigen::MatrixXd> all;
+  for (const std::vector<bool>& due : due_) {
+    Eigen::MatrixXd by_effort = Eigen::MatrixXd::Zero(size(), efforts.rows());
+    for (Eigen::Index s = 0; s < efforts.rows(); ++s) {
+      if (efforts.row(s).isZero(0)) continue;
+      const double moved = motions_.by_effort().col(s).cwiseAbs().maxCoeff();
+      const auto pushed = [&](double h) { return renewed(motions_.pushed(static_cast<std::size_t>(s), h), due); };
+      by_effort.col(s) = adaptive_difference(pushed, moved > 0 ? 1 / moved : 1.0).slope;
+    }
+    any = any || !by_effort.isZero(0);
+    all.push_back(by_effort * efforts);
   }
-  return R;
+  return any ? all : std::vector<Eigen::MatrixXd>();
 }
 
 double SampledLoads::period_of(std::size_t load) const {
@@ -131,22 +164,36 @@ std::pair<Eigen::Index, Eigen::Index> SampledLoads::held_by(std::size_t load) co
   return {0, 0};
 }
 
-std::pair<Eigen::MatrixXd, Eigen::MatrixXd> SampledLoads::map(const Eigen::MatrixXd& A, const Eigen::MatrixXd& by_held,
-                                                              const Eigen::MatrixXd& B) const {
-  const Eigen::Index n = A.rows(), all = n + size();
-  Eigen::MatrixXd both(n, size() + B.cols());
-  both << by_held, B;
-  Eigen::MatrixXd map = Eigen::MatrixXd::Identity(all, all), input = Eigen::MatrixXd::Zero(all, B.cols());
+Eigen::MatrixXd SampledLoads::renewal(const Held& system, std::size_t kind) const {
+  const Eigen::Index n = motions_.size(), d = size();
+  if (system.felt.empty()) return renewals_[kind];
+  const Eigen::MatrixXd& felt = system.felt[kind];
+  Eigen::MatrixXd R(n + d, n + d + felt.cols());
+  R.leftCols(n + d) = renewals_[kind];
+  R.rightCols(felt.cols()) << Eigen::MatrixXd::Zero(n, felt.cols()), felt;
+  // The efforts in whose place v stands are felt no longer.
+  if (system.replaced.size() > 0) R.block(n, n, d, d) -= felt * system.replaced;
+  return R;
+}
+
+std::pair<Eigen::MatrixXd, Eigen::MatrixXd> SampledLoads::map(const Held& system) const {
+  const Eigen::Index n = motions_.size(), d = size(), m = system.B.cols(), h = system.felt.empty() ? 0 : m;
+  Eigen::MatrixXd both(n, d + m);
+  both << system.by_held, system.B;
+  Eigen::MatrixXd map = Eigen::MatrixXd::Identity(n + d + h, n + d + h), input = Eigen::MatrixXd::Zero(n + d + h, m);
   for (std::size_t k = 0; k < instants_.size(); ++k) {
     const double next = k + 1 < instants_.size() ? instants_[k + 1] : period_;
-    const auto [Phi, Gamma] = hold(A, both, next - instants_[k]);
-    Eigen::MatrixXd step = Eigen::MatrixXd::Identity(all, all);
+    const auto [Phi, Gamma] = hold(system.A, both, next - instants_[k]);
+    Eigen::MatrixXd step = Eigen::MatrixXd::Identity(n + d, n + d);
     step.topLeftCorner(n, n) = Phi;
-    step.topRightCorner(n, size()) = Gamma.leftCols(size());
-    step = step * renewal(instants_[k]);
-    map = step * map;
-    input = step * input;
-    input.topRows(n) += Gamma.rightCols(B.cols());
+    step.topRightCorner(n, d) = Gamma.leftCols(d);
+    const Eigen::MatrixXd renewed = step * renewal(system, kinds_[k]);
+    // At the first instant h is what v was before; then it is v.
+    map.topRows(n + d) = (renewed * map).eval();
+    input.topRows(n + d) = (renewed * input).eval();
+    input.topRows(n) += Gamma.rightCols(m);
+    map.bottomRows(h).setZero();
+    input.bottomRows(h) = Eigen::MatrixXd::Identity(h, m);
   }
   return {map, input};
 }

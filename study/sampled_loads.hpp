@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "withy/core/analysis/linear_system.hpp"
+#include "withy/core/simulation/renewal.hpp"
 #include "withy/study/small_motions.hpp"
 
 namespace withy::study {
 
 /// With x the small motions and d what the loads hold, beside x in one vector (x, d):
-///   at an instant   d⁺ = R (x, d)   of the loads whose instant it is,
+///   at an instant   d⁺ = R (x, d)   of the loads whose instant it is; what they measure may depend on all efforts,
 ///   until the next  ẋ = A x + B_τ E d,   d constant.
 class SampledLoads {
  public:
@@ -34,12 +35,20 @@ class SampledLoads {
   [[nodiscard]] bool steady() const { return steady_; }
   /// The state with d_i = h.
   [[nodiscard]] State displaced(Eigen::Index i, double h) const;
-  /// (x, d) just after the instant at which all are renewed, from (x, d) just before.
-  [[nodiscard]] Eigen::MatrixXd renewal() const { return renewal(0); }
-  /// Φ and Γ of (x, d) just before one common instant to just before the next, v held, ẋ = A x + by_held d + B v.
-  [[nodiscard]] std::pair<Eigen::MatrixXd, Eigen::MatrixXd> map(const Eigen::MatrixXd& A,
-                                                                const Eigen::MatrixXd& by_held,
-                                                                const Eigen::MatrixXd& B) const;
+  /// Derivatives of d⁺ by the efforts of v just before instants, for efforts (speeds × v) of v: one a kind of instant.
+  /// Empty where loads measure nothing that follows these efforts at once.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> felt(const Eigen::MatrixXd& efforts);
+  /// A linear system from what is held from one common instant to the next, and what it takes at once.
+  struct Held {
+    Eigen::MatrixXd A, by_held, B;      ///< ẋ = A x + by_held d + B v
+    std::vector<Eigen::MatrixXd> felt;  ///< as from `felt`
+    Eigen::MatrixXd replaced;           ///< v × d: v stands in the place of this times d; empty: in none
+  };
+  /// Φ and Γ of (x, d) just before one common instant to just before the next, v held. Where v is felt, (x, d, h) with
+  /// h the v before.
+  [[nodiscard]] std::pair<Eigen::MatrixXd, Eigen::MatrixXd> map(const Held& system) const;
+  /// (x, d) just after the instant at which all are renewed, from (x, d) or (x, d, h) just before.
+  [[nodiscard]] Eigen::MatrixXd renewal(const Held& system) const { return renewal(system, 0); }
 
  private:
   struct Part {
@@ -48,17 +57,24 @@ class SampledLoads {
     Eigen::Index first;  ///< of its numbers in d
   };
   void find_period();
-  [[nodiscard]] Eigen::VectorXd renewed(const Part& part, State state) const;
+  [[nodiscard]] std::vector<bool> due(double t) const;
+  [[nodiscard]] Eigen::VectorXd held(const State& state) const;
+  [[nodiscard]] Eigen::VectorXd renewed(State state, const std::vector<bool>& due);
+  [[nodiscard]] Eigen::MatrixXd differentiated(const std::vector<bool>& due);
+  [[nodiscard]] Eigen::MatrixXd renewal(const Held& system, std::size_t kind) const;
   void differentiate();
-  [[nodiscard]] Eigen::MatrixXd renewal(double t) const;
 
   const SmallMotions& motions_;
   std::vector<Part> loads_;
   std::vector<std::string> names_;
-  std::vector<double> instants_;  ///< within the common period, from 0
+  Renewal renewal_;
+  std::vector<double> instants_;           ///< within the common period, from 0
+  std::vector<std::size_t> kinds_;         ///< of the instants
+  std::vector<std::vector<bool>> due_;     ///< one a kind: the loads that are renewed; all of them first
+  std::vector<Eigen::MatrixXd> renewals_;  ///< one a kind: R
   double period_ = 0;
   bool steady_ = true;
-  Eigen::MatrixXd efforts_, renewal_;  ///< of all loads
+  Eigen::MatrixXd efforts_;  ///< of all loads
 };
 
 }  // namespace withy::study

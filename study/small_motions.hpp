@@ -23,6 +23,7 @@ class SmallMotions {
   SmallMotions(const Configuration& configuration, std::vector<SensorNode> sensors);
 
   [[nodiscard]] const Model& model() const { return *model_; }
+  [[nodiscard]] const EquationsOfMotion& equations() const { return *equations_; }
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] Eigen::Index size() const { return A_.rows(); }
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }

@@ -27,12 +27,9 @@ bool same(const Terms& a, const Terms& b) {
 
 /// M u̇ − f of the equations.
 std::vector<double> balance(const EquationsOfMotion& equations, const State& state, std::span<const double> u_dot) {
-  const DenseSystem s = equations.system(state.time, state.y);
-  std::vector<double> force(s.size);
-  for (std::size_t i = 0; i < s.size; ++i) {
-    force[i] = -s.force[i];
-    for (std::size_t j = 0; j < s.size; ++j) force[i] += s.mass[i * s.size + j] * u_dot[j];
-  }
+  std::vector<double> force(u_dot.size());
+  Work work = equations.make_work();
+  equations.inverse_dynamics(state.y, u_dot, force, work);
   return force;
 }
 

@@ -59,6 +59,7 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
   TurningModes result;
   try {
     result.check = check_turn(c.dynamics(), steady, c.held(), wish.period);
+    if (!result.check.steady) result.passing = moving_freely(c, steady);
     if (!wish.floquet && !wish.blades) return result;
     const Turning& turning = result.check.turning;
     if (turning.period == 0) {
@@ -84,8 +85,30 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
   return result;
 }
 
-std::string turn_text(const TurnCheck& check) {
+std::vector<std::string> moving_freely(const Configuration& c, const State& state) {
+  std::vector<std::string> hinges;
+  for (const Slot& slot : c.layout().hinges) {
+    bool moves = false;
+    for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i)
+      moves = moves || (!c.held()[i] && state.y[c.layout().positions + i] != 0);
+    if (moves) hinges.push_back(slot.name);
+  }
+  return hinges;
+}
+
+std::string passing_text(const std::vector<std::string>& hinges) {
+  return fmt::format(
+      "{} '{}' {} and nothing holds {}: this is an instant of a motion and no state that stays. Give one at rest or in "
+      "steady motion (--at), or hold hinges (--lock, --spin).",
+      hinges.size() > 1 ? "The hinges" : "The hinge", fmt::join(hinges, "', '"), hinges.size() > 1 ? "move" : "moves",
+      hinges.size() > 1 ? "them at their rates" : "it at its rate");
+}
+
+std::string turn_text(const TurningModes& turn) {
+  const TurnCheck& check = turn.check;
   const Turning& turning = check.turning;
+  if (!turn.passing.empty())
+    return passing_text(turn.passing) + " Growth and decay are those of this instant and tell no stability.";
   if (!turning.problem.empty())
     return "Whether the equations change as the hinges turn was not looked at: " + turning.problem + ".";
   if (turning.period == 0) return {};

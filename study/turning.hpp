@@ -44,6 +44,9 @@ struct TurningModes {
   double greatest_displacement = 0;  ///< from the state at the start, of a modal coordinate or hinge [m, rad]
   std::optional<FloquetModes> floquet;
   std::optional<BladeModes> blades;
+  /// Hinges that move and that nothing holds at their rates, where this balances at one angle alone: the state is an
+  /// instant of a motion, and none that stays.
+  std::vector<std::string> passing;
   std::string problem;        ///< why there are no exponents; empty where there are
   std::string blade_problem;  ///< why no blades are seen; empty where they are, or nobody asked
 };
@@ -60,6 +63,11 @@ TurningModes turning_modes(const Configuration& configuration, const State& stea
 
 /// One sentence: that the equations of small motions are constant over a turn, or how they change, or why that is not
 /// known; empty where nothing turns.
-std::string turn_text(const TurnCheck& check);
+std::string turn_text(const TurningModes& turn);
+
+/// Hinges that are not held and whose rates do not vanish.
+std::vector<std::string> moving_freely(const Configuration& configuration, const State& state);
+/// That a state with such hinges does not stay, and what to do.
+std::string passing_text(const std::vector<std::string>& hinges);
 
 }  // namespace withy::study

@@ -66,6 +66,7 @@ class Watch final : public SteppingObserver {
     if (stepper.statistics().accepted % steps_between_looks != 0) return true;
     pause();
     walk.time = stepper.state().time;
+    count(stepper);
     const bool on = may_go_on();
     began_ = thread_cpu_seconds();
     return on;
@@ -75,8 +76,7 @@ class Watch final : public SteppingObserver {
   void finish(const Stepping& loop, const SteppingEnd& ended, const Prepared& model) {
     pause();
     walk.time = loop.state().time;
-    walk.steps = loop.stepper().statistics().accepted;
-    walk.evaluations = loop.stepper().statistics().evaluations;
+    count(loop.stepper());
     if (ended.cause == SteppingEnd::Cause::reached) static_cast<void>(seen(observer_.output(loop.state())));
     if (ended.cause == SteppingEnd::Cause::failed) stop(reason_of(ended.step, model));
     if (ended.cause == SteppingEnd::Cause::crowded)
@@ -86,6 +86,10 @@ class Watch final : public SteppingObserver {
   Walk walk;
 
  private:
+  void count(const Stepper& stepper) {
+    walk.steps = stepper.statistics().accepted;
+    walk.evaluations = stepper.statistics().evaluations;
+  }
   void pause() { walk.seconds += thread_cpu_seconds() - began_; }
   void stop(std::string why) {
     walk.end = Walk::End::stopped;
@@ -133,10 +137,10 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
 
 Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserver& observer) {
   const EquationsOfMotion& equations = *model.equations;
-  const State start = begun(model.model(), model.scene.initial);
+  const State start = begun(model.model(), equations, model.scene.initial);
   EventActions actions(model.model(), equations, {});
   Stepping loop(
-      model.model(), integrator.start(equations, start),
+      model.model(), equations, integrator.start(equations, start),
       {.end = end_of_run(model.scene), .output = model.scene.output, .events = actions.watched(), .actions = &actions});
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();

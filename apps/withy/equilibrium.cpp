@@ -14,6 +14,7 @@
 #include "withy/results/text_table.hpp"
 #include "withy/study/against_next.hpp"
 #include "withy/study/continuous_states.hpp"
+#include "withy/study/turning.hpp"
 
 namespace withy::app {
 namespace {
@@ -63,9 +64,12 @@ ExitStatus equilibrium(const EquilibriumArguments& arguments) {
   }
   const study::Holding holding = holding_of(c.prepared().model(), arguments.lock, arguments.spin);
   const auto against = study::deflections_against_next(c, steady, holding, engine.registry());
+  const std::vector<std::string> passing =
+      steady_for_good ? std::vector<std::string>() : study::moving_freely(c, steady.state);
   const std::string changing =
-      steady_for_good
-          ? ""
+      steady_for_good ? ""
+      : !passing.empty()
+          ? study::passing_text(passing)
           : "The hinges turn and what acts on the free coordinates turns with them (gravity in the plane of "
             "rotation, as a rule): this state is steady at this angle alone.";
   if (arguments.json) {
@@ -80,8 +84,9 @@ ExitStatus equilibrium(const EquilibriumArguments& arguments) {
     j["message"] = problem.empty() ? changing : problem;
     print(json_text(j));
   } else if (steady.converged) {
-    std::string text = fmt::format("{} in {}: steady after {} steps of Newton's method\n\n{}", scene.file,
-                                   scene.formulation_name, steady.iterations, hinge_table(c, steady).str());
+    std::string text = fmt::format("{} in {}: {} after {} steps of Newton's method\n\n{}", scene.file,
+                                   scene.formulation_name, passing.empty() ? "steady" : "balanced at this instant",
+                                   steady.iterations, hinge_table(c, steady).str());
     if (!deflections.empty()) {
       TextTable table({"<tip", "deflection x\n[mm]", "y\n[mm]", "z\n[mm]"});
       for (const auto& [name, d] : deflections.items()) {

@@ -89,7 +89,7 @@ std::string run_text(const study::ModesOf& run, const ModesArguments& arguments,
   const auto frozen = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return at.frozen(); });
   const study::ModesAt& spoken_of = frozen != run.points.end() ? *frozen : run.points.back();
   if (spoken_of.turn) {
-    if (const std::string words = study::turn_text(spoken_of.turn->check); !words.empty()) text += '\n' + words + '\n';
+    if (const std::string words = study::turn_text(*spoken_of.turn); !words.empty()) text += '\n' + words + '\n';
   }
   if (arguments.poles && !run.points.front().modes.empty()) text += '\n' + poles_text(run.points.front());
   for (const study::ModesAt& at : run.points) {

@@ -64,7 +64,7 @@ Dynamics::Dynamics(std::shared_ptr<const study::Prepared> prepared, double t)
       driven_(driven_states(prepared_->model(), states_)),
       y_dot_(state_.y.size()),
       jacobian_(states_ * states_),
-      clocks_(prepared_->model()),
+      clocks_(prepared_->model(), equations_),
       zeros_(prepared_->model(), prepared_->scene.events, state_),
       jumps_(jump_times(prepared_->model())),
       signs_(indicator_count(prepared_->scene)),

@@ -8,14 +8,6 @@ namespace {
 
 using Forces = std::vector<double>;
 
-Forces product(const DenseSystem& s, std::span<const double> a) {
-  Forces f(s.size);
-  for (std::size_t i = 0; i < s.size; ++i) {
-    for (std::size_t j = 0; j < s.size; ++j) f[i] += s.mass[i * s.size + j] * a[j];
-  }
-  return f;
-}
-
 Forces minus(const Forces& a, const Forces& b) {
   Forces f(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) f[i] = a[i] - b[i];
@@ -31,11 +23,16 @@ Forces plus(const Forces& a, const Forces& b) {
 /// What one formulation makes of a state: M u̇, its velocity terms with damping, and the rest with weight and −K q.
 struct Parts {
   Forces inertia, velocity, rest;
-  Parts(const EquationsOfMotion& equations, const State& state, const State& at_rest, std::span<const double> u_dot) {
-    const DenseSystem moving = equations.system(state.time, state.y), still = equations.system(state.time, at_rest.y);
-    inertia = product(moving, u_dot);
-    velocity = minus(moving.force, still.force);
-    rest = still.force;
+  Parts(const EquationsOfMotion& equations, const State& state, const State& at_rest, std::span<const double> u_dot)
+      : inertia(u_dot.size()), rest(u_dot.size()) {
+    Work work = equations.make_work();
+    equations.mass_times(state.y, u_dot, inertia, work);
+    const Forces none(u_dot.size());
+    Forces moving(u_dot.size());
+    equations.inverse_dynamics(state.y, none, moving, work);
+    equations.inverse_dynamics(at_rest.y, none, rest, work);
+    velocity = minus(rest, moving);
+    for (double& f : rest) f = -f;
   }
 };
 
@@ -82,10 +79,11 @@ TermForces TermLedger::evaluate(const State& state, std::span<const double> u_do
   set(Term::weight, std::move(weight));
   set(Term::stiffness, std::move(stiffness));
   set(Term::damping, std::move(damping));
-  Forces loads = of_.quadratic->system(state.time, state.y).applied;
+  Forces loads(layout.speeds);
+  Work work = of_.quadratic->make_work();
+  of_.quadratic->load_efforts(state.time, state.y, EquationsOfMotion::all_loads, loads, work);
   if (!model_.motions().empty()) {
     Forces motions(layout.speeds);
-    Work work = of_.quadratic->make_work();
     if (of_.quadratic->motion_efforts(state.time, state.y, motions, work).ok()) loads = plus(loads, motions);
   }
   set(Term::loads, std::move(loads));

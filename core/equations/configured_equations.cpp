@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/plugin/chosen_sensing.hpp"
 #include "withy/core/plugin/forward_dynamics.hpp"
-#include "withy/core/plugin/sensor.hpp"
 
 namespace withy::equations {
 namespace {
@@ -26,35 +26,6 @@ struct ConfigurationPlace {
   std::size_t operator()(std::span<const double> y) const noexcept {
     return std::min(static_cast<std::size_t>(std::max(y[element], 0.0)), count - 1);
   }
-};
-
-/// Sensing of the configuration that a state is in.
-class ConfiguredSensing final : public SensedState {
- public:
-  ConfiguredSensing(std::vector<std::unique_ptr<SensedState>> all, ConfigurationPlace place)
-      : all_(std::move(all)), place_(place), now_(all_.front().get()) {}
-  bool observe(const State& state) noexcept override {
-    now_ = all_[place_(state.y)].get();
-    return now_->observe(state);
-  }
-  const Layout& layout() const noexcept override { return now_->layout(); }
-  double time() const noexcept override { return now_->time(); }
-  std::span<const double> y() const noexcept override { return now_->y(); }
-  std::span<const double> accelerations() noexcept override { return now_->accelerations(); }
-  Vector3 gravity() const noexcept override { return now_->gravity(); }
-  FrameMotion motion(FrameIndex frame) noexcept override { return now_->motion(frame); }
-  FrameAcceleration acceleration(FrameIndex frame) noexcept override { return now_->acceleration(frame); }
-  std::span<const double> load_efforts(int load) noexcept override { return now_->load_efforts(load); }
-  std::span<const double> motion_efforts() noexcept override { return now_->motion_efforts(); }
-  Wrench reaction(int hinge) noexcept override { return now_->reaction(hinge); }
-  SectionLoad section(std::size_t index) noexcept override { return now_->section(index); }
-  BodyEnergies energies(int body) noexcept override { return now_->energies(body); }
-  const Energies& energies() noexcept override { return now_->energies(); }
-
- private:
-  std::vector<std::unique_ptr<SensedState>> all_;
-  ConfigurationPlace place_;
-  SensedState* now_;
 };
 
 using AllEquations = std::vector<std::unique_ptr<EquationsOfMotion>>;
@@ -117,7 +88,7 @@ class ConfiguredEquations final : public EquationsOfMotion,
   std::unique_ptr<SensedState> make_sensed_state(std::span<const SectionPlace> sections) const override {
     std::vector<std::unique_ptr<SensedState>> all;
     for (const auto& equations : all_) all.push_back(equations->make_sensed_state(sections));
-    return std::make_unique<ConfiguredSensing>(std::move(all), place_);
+    return std::make_unique<ChosenSensing>(std::move(all), [place = place_](const State& s) { return place(s.y); });
   }
   DenseSystem system(double t, std::span<const double> y) const override { return at(y).system(t, y); }
   Energies energies(std::span<const double> y) const override { return first().energies(y); }

@@ -1,8 +1,12 @@
 #include "withy/core/equations/sensing.hpp"
 
+#include <algorithm>
+
 #include "withy/core/equations/sensed_reactions.hpp"
 #include "withy/core/kinematics/sensed_steps.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/load_numbers.hpp"
+#include "withy/core/plugin/sampled_part.hpp"
 
 namespace withy::equations {
 namespace {
@@ -14,7 +18,25 @@ struct Found {
   bool motion = false, motion_efforts = false, energies = false, reactions = false;
 };
 
-class Sensing final : public SensedState, public SensedLoops {
+/// Count of numbers that a load gives, of the load that gives most.
+std::size_t most_given(const Model& model) {
+  std::size_t most = 0;
+  for (const LoadNode& node : model.loads())
+    if (node.load->output() != nullptr) most = std::max(most, node.load->output()->outputs());
+  return most;
+}
+
+const LoadNumbers* numbers_of(const LoadNode& node) { return dynamic_cast<const LoadNumbers*>(node.load.get()); }
+
+/// How many numbers each load tells of itself.
+std::vector<std::size_t> counts_of_numbers(const Model& model) {
+  std::vector<std::size_t> counts;
+  for (const LoadNode& node : model.loads())
+    counts.push_back(numbers_of(node) == nullptr ? 0 : numbers_of(node)->numbers().size());
+  return counts;
+}
+
+class Sensing final : public SensedState, public SensedLoops, public SensedLoads {
  public:
   Sensing(std::unique_ptr<const sensed::Plan> plan, const EquationsOfMotion& equations, const AppliedLoads& loads)
       : plan_(std::move(plan)),
@@ -25,6 +47,9 @@ class Sensing final : public SensedState, public SensedLoops {
         rates_(equations.size()),
         load_efforts_(layout().speeds),
         motion_efforts_(layout().speeds),
+        load_scratch_(plan_->model.load_scratch() + most_given(plan_->model)),
+        counts_(counts_of_numbers(plan_->model)),
+        load_numbers_(counts_.empty() ? 0 : *std::max_element(counts_.begin(), counts_.end())),
         pass_(*plan_),
         multipliers_(loops_ != nullptr ? loops_->closing_equations() : 0),
         wrenches_(loops_ != nullptr ? loops_->frames().size() : 0),
@@ -88,6 +113,23 @@ class Sensing final : public SensedState, public SensedLoops {
       load.curvature += cut.curvature.col(i) * state_->y[body.modal.position + static_cast<std::size_t>(i)];
     load.elastic = Vector3::Zero() - cut.stiffness.cwiseProduct(load.curvature);  // no −0
     return load;
+  }
+  double given(std::size_t load, std::size_t number, std::span<const double> y) noexcept override {
+    const LoadNode& node = plan_->model.loads()[load];
+    const std::span<double> scratch(load_scratch_);
+    const std::size_t count = node.load->output()->outputs();
+    LoadView view = node.view(state_->time, y, layout(), scratch.subspan(count));
+    view.accelerations = accelerations();
+    node.load->output()->read(view, scratch.first(count));
+    return scratch[number];
+  }
+  std::span<const double> numbers(std::size_t load) noexcept override {
+    const LoadNode& node = plan_->model.loads()[load];
+    const std::span<double> own = std::span(load_numbers_).first(counts_[load]);
+    LoadView view = node.view(state_->time, y(), layout(), load_scratch_);
+    view.accelerations = accelerations();
+    if (const LoadNumbers* told = numbers_of(node)) told->show(view, own);
+    return own;
   }
   BodyEnergies energies(int index) noexcept override {
     find_motion();
@@ -156,7 +198,9 @@ class Sensing final : public SensedState, public SensedLoops {
   std::unique_ptr<Observation> seen_;
   const State* state_ = nullptr;
   Found found_;
-  std::vector<double> rates_, load_efforts_, motion_efforts_;
+  std::vector<double> rates_, load_efforts_, motion_efforts_, load_scratch_;
+  std::vector<std::size_t> counts_;  ///< of the numbers that each load tells of itself
+  std::vector<double> load_numbers_;
   Energies energies_;
   sensed::Pass<First> pass_;
   std::vector<double> multipliers_;

@@ -66,7 +66,7 @@ void Signals::sort_out(const Model& model) {
         throw std::invalid_argument("signal '" + names_[i] + "' depends on efforts or energies: the loop " + names_[i] +
                                     " -> this load -> efforts -> " + names_[i] +
                                     " would be algebraic; measure positions, rates or accelerations (a gyro, an "
-                                    "accelerometer, a frame that shows its velocity)");
+                                    "accelerometer, a frame that shows its velocity), or give this load a 'sample'");
       sources_[i].accelerated = sources_[i].accelerated || moved(by_acceleration, i);
     }
   }

@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "withy/core/model/columns.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/signal_source.hpp"
 
 namespace withy {
 namespace {
@@ -16,15 +16,6 @@ namespace {
 constexpr std::size_t doubles_of_motion = sizeof(FrameMotion) / sizeof(double);
 constexpr std::size_t doubles_of_acceleration = sizeof(FrameAcceleration) / sizeof(double);
 constexpr std::size_t doubles_of_line = 8;  // 64 bytes, to which the work of paths is aligned
-
-/// What a load gives, by its name.
-std::vector<std::string> names_of(const LoadNode& node) {
-  const std::size_t count = node.load->output() == nullptr ? 0 : node.load->output()->outputs();
-  if (count == 1) return {node.name};
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < count; ++i) names.push_back(node.name + "." + std::to_string(i));
-  return names;
-}
 
 }  // namespace
 
@@ -125,64 +116,30 @@ bool Signals::needs_accelerations(std::size_t signal) const {
   return s.accelerated || (s.load != nullptr && s.load->output()->needs_accelerations());
 }
 
-Signals::Source Signals::find(const Model& model, const std::string& name) const {
-  const auto at = [&](const std::vector<Column>& columns) {
-    std::size_t i = 0;
-    while (i < columns.size() && columns[i].name != name) ++i;
-    return i;
-  };
+Signals::Source Signals::find(const Model& model, const std::string& name) {
+  const SignalSource found = find_signal(model, name);
   Source source;
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const Slot& slot = model.layout().hinges[h];
-    if (const std::size_t i = at(coordinate_columns(model.hinges()[h])); i < slot.positions)
-      source.element = Element{false, slot.position + i};
-    if (const std::size_t i = at(rate_columns(model.hinges()[h])); i < slot.speeds)
-      source.element = Element{true, slot.speed + i};
-    if (source.element) return source;
+  switch (found.kind) {
+    case SignalSource::Kind::position:
+    case SignalSource::Kind::rate:
+      source.element = Element{found.kind == SignalSource::Kind::rate, found.index};
+      break;
+    case SignalSource::Kind::load:
+      source.load = model.loads()[found.index].load;
+      source.index = found.index;
+      source.output = found.number;
+      source.continuous = model.loads()[found.index].continuous_slot;
+      break;
+    case SignalSource::Kind::output:
+      source.number = found.index;
+      break;
+    case SignalSource::Kind::unbound:
+      throw std::invalid_argument("signal '" + name +
+                                  "' depends on efforts of loads, and so on this load's own: the loop " + name +
+                                  " -> this load -> " + name +
+                                  " would be algebraic; measure positions and rates, or give this load a 'sample'");
   }
-  for (std::size_t l = 0; l < model.loads().size(); ++l) {
-    const LoadNode& node = model.loads()[l];
-    const std::vector<std::string> given = names_of(node);
-    const auto output = std::find(given.begin(), given.end(), name);
-    if (output == given.end()) continue;
-    source.load = node.load;
-    source.index = l;
-    source.output = static_cast<std::size_t>(output - given.begin());
-    source.continuous = node.continuous_slot;
-    return source;
-  }
-  std::size_t first = 0;
-  for (const SensorNode& node : model.measured() == nullptr ? std::vector<SensorNode>{} : *model.measured()) {
-    if (node.sensor == nullptr) {
-      if (name.substr(0, name.find('.')) == node.name)
-        throw std::invalid_argument("signal '" + name +
-                                    "' depends on efforts of loads, and so on this load's own: the loop " + name +
-                                    " -> this load -> " + name + " would be algebraic; measure positions and rates");
-      continue;
-    }
-    const std::vector<Column> columns = columns_of(node);
-    if (const std::size_t i = at(columns); i < columns.size()) {
-      source.number = first + i;
-      return source;
-    }
-    first += columns.size();
-  }
-  throw std::invalid_argument("no signal '" + name + "'; known: " + known(model));
-}
-
-std::string Signals::known(const Model& model) const {
-  std::vector<std::string> all;
-  for (const HingeNode& hinge : model.hinges()) {
-    for (const Column& c : coordinate_columns(hinge)) all.push_back(c.name);
-    for (const Column& c : rate_columns(hinge)) all.push_back(c.name);
-  }
-  for (const SensorNode& node : model.measured() == nullptr ? std::vector<SensorNode>{} : *model.measured())
-    for (const Column& c : node.sensor == nullptr ? std::vector<Column>{} : columns_of(node)) all.push_back(c.name);
-  for (const LoadNode& node : model.loads())
-    for (const std::string& name : names_of(node)) all.push_back(name);
-  std::string text;
-  for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 30); ++i) text += (i == 0 ? "" : ", ") + all[i];
-  return all.size() > 30 ? text + " ..." : text;
+  return source;
 }
 
 std::size_t Signals::paths_doubles() const {

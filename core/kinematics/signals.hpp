@@ -1,5 +1,6 @@
 /// \file
-/// What controllers measure: numbers of a state by their names, found from positions and speeds alone.
+/// What continuous controllers measure: numbers of a state by their names, found from positions and speeds alone, and
+/// from accelerations where these are known.
 #pragma once
 
 #include <cstddef>
@@ -69,8 +70,7 @@ class [[gnu::visibility("default")]] Signals {
     double acceleration = 0, effort = 0;
   };
 
-  Source find(const Model& model, const std::string& name) const;
-  [[nodiscard]] std::string known(const Model& model) const;
+  static Source find(const Model& model, const std::string& name);
   void choose_readings(const Model& model, const Terms& terms);
   /// Refuses numbers that depend on efforts or energies, and marks those that depend on accelerations.
   void sort_out(const Model& model);

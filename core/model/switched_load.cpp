@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/load_numbers.hpp"
+#include "withy/core/plugin/sampled_part.hpp"
 
 namespace withy {
 namespace {
@@ -17,10 +19,15 @@ std::size_t continuous_states(const BoundLoad& load) {
   return load.continuous() == nullptr ? 0 : load.continuous()->states();
 }
 
+const SampledPart* sampled_part(const BoundLoad& load) { return dynamic_cast<const SampledPart*>(load.discrete()); }
+
 /// What of the forms changes at instants, and which of them acts.
-class SwitchedDiscrete final : public DiscretePart {
+class SwitchedDiscrete final : public DiscretePart, public SampledPart {
  public:
-  explicit SwitchedDiscrete(const Forms& forms) : forms_(forms), own_(discrete_states(*forms.front())) {}
+  explicit SwitchedDiscrete(const Forms& forms) : forms_(forms), own_(discrete_states(*forms.front())) {
+    for (const auto& form : forms)
+      if (const SampledPart* part = sampled_part(*form)) measured_.push_back(part->measures().size());
+  }
   /// The form that acts; null where the load is off.
   [[nodiscard]] const BoundLoad* acting(std::span<const double> discrete) const noexcept {
     const double form = discrete[own_];
@@ -56,6 +63,23 @@ class SwitchedDiscrete final : public DiscretePart {
     const BoundLoad* load = acting(discrete);
     if (load != nullptr && own_ > 0) load->discrete()->renew(t, positions, speeds, crossing, own(discrete), scratch);
   }
+  std::vector<std::string> measures() const override {
+    std::vector<std::string> all;
+    for (const auto& form : forms_)
+      if (const SampledPart* part = sampled_part(*form))
+        for (const std::string& name : part->measures()) all.push_back(name);
+    return all;
+  }
+  void renew_measured(double t, const Crossing& crossing, std::span<const double> measured,
+                      std::span<double> discrete) const noexcept override {
+    const BoundLoad* load = acting(discrete);
+    std::size_t first = 0;
+    for (std::size_t f = 0; f < measured_.size(); ++f) {
+      if (forms_[f].get() == load)
+        sampled_part(*load)->renew_measured(t, crossing, measured.subspan(first, measured_[f]), own(discrete));
+      first += measured_[f];
+    }
+  }
   void add(double t, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
     const BoundLoad* load = acting(discrete);
     if (load != nullptr && own_ > 0) load->discrete()->add(t, own(discrete), efforts);
@@ -63,7 +87,8 @@ class SwitchedDiscrete final : public DiscretePart {
 
  private:
   const Forms& forms_;
-  std::size_t own_;  ///< count of the forms' discrete states
+  std::size_t own_;                    ///< count of the forms' discrete states
+  std::vector<std::size_t> measured_;  ///< one a form, where they are sampled: how many numbers it measures
 };
 
 /// All that the acting form gives from the whole state.
@@ -160,7 +185,7 @@ class SwitchedInput final : public InputPort {
   const InputPort& port_;
 };
 
-class BoundSwitchedLoad final : public BoundLoad {
+class BoundSwitchedLoad final : public BoundLoad, public LoadNumbers {
  public:
   explicit BoundSwitchedLoad(Forms forms)
       : forms_(std::move(forms)), discrete_(forms_), continuous_(forms_, discrete_) {
@@ -196,6 +221,18 @@ class BoundSwitchedLoad final : public BoundLoad {
   const ContinuousPart* continuous() const override { return &continuous_; }
   const LoadOutput* output() const override { return output_.get(); }
   const InputPort* input() const override { return input_.get(); }
+  std::vector<SensorColumn> numbers() const override {
+    const auto* told = dynamic_cast<const LoadNumbers*>(forms_.front().get());
+    return told == nullptr ? std::vector<SensorColumn>{} : told->numbers();
+  }
+  void show(const LoadView& view, std::span<double> values) const noexcept override {
+    const auto* told = dynamic_cast<const LoadNumbers*>(discrete_.acting(view.discrete));
+    if (told != nullptr) {
+      told->show(discrete_.inner(view), values);
+    } else {
+      std::fill(values.begin(), values.end(), 0.0);
+    }
+  }
   double end() const override { return forms_.front()->end(); }
   void begin(State& state) const override { forms_.front()->begin(state); }
   std::unique_ptr<BoundLoad> rebound(const Model& model, const Terms& terms) const override {

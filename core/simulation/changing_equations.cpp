@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "withy/core/plugin/chosen_sensing.hpp"
+
 namespace withy {
 
 /// Of the rung that is in force when it is brought to a state.
@@ -74,5 +76,11 @@ const Linearization* ChangingEquations::linearization() const {
 }
 
 std::unique_ptr<Observation> ChangingEquations::make_observation() const { return std::make_unique<Seen>(*this); }
+
+std::unique_ptr<SensedState> ChangingEquations::make_sensed_state(std::span<const SectionPlace> sections) const {
+  std::vector<std::unique_ptr<SensedState>> all;
+  for (const Rung& rung : rungs_) all.push_back(rung.equations->make_sensed_state(sections));
+  return std::make_unique<ChosenSensing>(std::move(all), [this](const State&) { return rung_; });
+}
 
 }  // namespace withy

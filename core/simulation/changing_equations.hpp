@@ -60,6 +60,7 @@ class ChangingEquations final : public EquationsOfMotion, private LinearlyImplic
   }
   void normalize(std::span<double> y) const noexcept override { now().normalize(y); }
   [[nodiscard]] std::unique_ptr<Observation> make_observation() const override;
+  [[nodiscard]] std::unique_ptr<SensedState> make_sensed_state(std::span<const SectionPlace> sections) const override;
   [[nodiscard]] DenseSystem system(double t, std::span<const double> y) const override { return now().system(t, y); }
   [[nodiscard]] Energies energies(std::span<const double> y) const override { return now().energies(y); }
   [[nodiscard]] WorldPose frame_pose(std::span<const double> y, int body, int frame) const override {

@@ -26,6 +26,7 @@ EventActions::EventActions(const Model& model, const EquationsOfMotion& equation
     readings_.resize(reader_->columns().size());
   }
   seen_ = equations.make_observation();
+  renewal_ = std::make_unique<Renewal>(model, equations);
   for (std::size_t i = 0; i < plan.events.size(); ++i) {
     const ActingEvent& event = plan.events[i];
     watched_.push_back({event.name,
@@ -129,18 +130,17 @@ bool EventActions::perform(std::size_t event, State& state) {
   return true;
 }
 
-void EventActions::change_form(State& state, const EventAction& action) const {
+void EventActions::change_form(State& state, const EventAction& action) {
   const LoadNode& node = model_.loads()[action.index];
   double& form = state.y[SwitchedLoad::place_of_form(node.slot)];
   const bool was_off = form == SwitchedLoad::off;
+  renewal_->at(state);  // what it is to measure is as it was while it was off
   form = action.form;
   if (!was_off || form == SwitchedLoad::off) return;
   // What has stood still begins anew.
   const Layout& layout = model_.layout();
-  const std::span<double> y(state.y);
   std::vector<double> scratch(model_.load_scratch());
-  node.load->discrete()->renew(state.time, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), {},
-                               node.discrete(y), scratch);
+  (*renewal_)(state, node.slot, {});
   std::vector<double> begun(node.continuous_slot.count);
   node.continuous->begin(node.view(state.time, state.y, layout, scratch), begun);
   std::copy(begun.begin(), begun.end(), state.y.begin() + static_cast<std::ptrdiff_t>(node.continuous_slot.first));

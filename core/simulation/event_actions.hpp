@@ -9,6 +9,7 @@
 
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/equations.hpp"
+#include "withy/core/simulation/renewal.hpp"
 #include "withy/core/simulation/run_event.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
 
@@ -46,7 +47,7 @@ class EventActions {
   [[nodiscard]] double value(const ActingEvent& event, double t, std::span<const double> y);
   [[nodiscard]] bool over_at(std::size_t event, std::span<const double> y) const;
   bool perform(std::size_t event, State& state);
-  void change_form(State& state, const EventAction& action) const;
+  void change_form(State& state, const EventAction& action);
   void change_configuration(State& state, const EventAction& action) const;
   Evaluation settle(State& state);
   void respond(std::span<const double> y, std::span<const double> driven, std::span<const double> efforts,
@@ -63,6 +64,7 @@ class EventActions {
   bool readable_ = false;  ///< `read_` has finite accelerations
   Work work_;
   std::unique_ptr<Observation> seen_;
+  std::unique_ptr<Renewal> renewal_;
   std::vector<double> at_rest_, base_;
   Evaluation responded_;
   Done done_;

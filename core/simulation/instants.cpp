@@ -31,22 +31,19 @@ bool has_switches(const Model& model) {
                      [&](const LoadSlot& slot) { return part_of(model, slot).switches() > 0; });
 }
 
-State begun(const Model& model, State state) {
-  Clocks(model).begin(state);
+State begun(const Model& model, const EquationsOfMotion& equations, State state) {
+  Clocks(model, equations).begin(state);
   return state;
 }
 
-Clocks::Clocks(const Model& model) : model_(model) {
-  std::size_t scratch = 0;
-  for (const LoadSlot& slot : model.layout().discrete_slots) {
-    scratch = std::max(scratch, model.loads()[slot.load].load->scratch());
+Clocks::Clocks(const Model& model, const EquationsOfMotion& equations) : model_(model), renewal_(model, equations) {
+  for (const LoadSlot& slot : model.layout().discrete_slots)
     if (const double period = part_of(model, slot).period(); period > 0) clocks_.push_back({slot, period, 0});
-  }
-  scratch_.resize(scratch);
 }
 
 void Clocks::begin(State& state) {
-  for (const LoadSlot& slot : model_.layout().discrete_slots) renew(state, slot, {});
+  renewal_.at(state);
+  for (const LoadSlot& slot : model_.layout().discrete_slots) renewal_(state, slot, {});
   go_on_after(state.time);
 }
 
@@ -65,17 +62,15 @@ double Clocks::next() const {
   return first;
 }
 
-void Clocks::renew(State& state) {
-  for (const Clock& clock : clocks_) {
-    if (clock.index * clock.period == state.time) renew(state, clock.slot, {});
-  }
+void Clocks::renew(State& state, Renewal& renewal) {
+  renewal.at(state);
+  for (const Clock& clock : clocks_)
+    if (clock.index * clock.period == state.time) renewal(state, clock.slot, {});
 }
 
 void Clocks::renew(State& state, const LoadSlot& slot, const Crossing& crossing) {
-  const std::span<double> y(state.y);
-  part_of(model_, slot)
-      .renew(state.time, positions(model_, y), speeds(model_, y), crossing, y.subspan(slot.first, slot.count),
-             scratch_);
+  renewal_.at(state);
+  renewal_(state, slot, crossing);
 }
 
 ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const State& start)

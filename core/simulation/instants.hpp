@@ -12,6 +12,7 @@
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/memory.hpp"
+#include "withy/core/simulation/renewal.hpp"
 #include "withy/core/simulation/run_event.hpp"
 
 namespace withy {
@@ -19,13 +20,14 @@ namespace withy {
 /// Whether any load switches where a function of the state is zero, or events act.
 bool has_switches(const Model& model);
 
-/// The state with all discrete states set for the start of a run at its time.
-State begun(const Model& model, State state);
+/// The state with all discrete states set for the start of a run of the equations at its time.
+State begun(const Model& model, const EquationsOfMotion& equations, State state);
 
 /// Renews discrete states by their loads' clocks.
 class Clocks {
  public:
-  explicit Clocks(const Model& model);
+  /// The model and its equations must outlive the clocks.
+  Clocks(const Model& model, const EquationsOfMotion& equations);
   /// Sets all discrete states for the start of a run at the state's time.
   void begin(State& state);
   /// Goes on from a state whose instants up to its time have been.
@@ -33,7 +35,9 @@ class Clocks {
   /// The next instant [s] of any clock; infinity where there is none.
   [[nodiscard]] double next() const;
   /// Renews what is due at the state's time.
-  void renew(State& state);
+  void renew(State& state) { renew(state, renewal_); }
+  /// The same, of a state of other equations of the model.
+  void renew(State& state, Renewal& renewal);
   /// Renews the states of one load at the zero of a switching function of its own.
   void renew(State& state, const LoadSlot& slot, const Crossing& crossing);
 
@@ -45,7 +49,7 @@ class Clocks {
   };
   const Model& model_;
   std::vector<Clock> clocks_;
-  std::vector<double> scratch_;
+  Renewal renewal_;
 };
 
 /// Watches functions for zeros within accepted steps.

@@ -229,8 +229,6 @@ void Monitor::audit_momenta(const Energies& e) {
   const auto apart = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
   };
-  greatest_linear_ = std::max(greatest_linear_, apart(e.linear_momentum, {}));
-  greatest_angular_ = std::max(greatest_angular_, apart(e.angular_momentum, {}));
   linear_error_ = std::max(linear_error_, apart(e.linear_momentum, initial_energies_.linear_momentum));
   angular_error_ = std::max(angular_error_, apart(e.angular_momentum, initial_energies_.angular_momentum));
 }
@@ -258,8 +256,7 @@ void Monitor::finish_momenta() {
   MomentumDrift& m = summary_.momentum;
   m.conserved = floats && outside <= rounding * all;
   if (!m.conserved) return;
-  // A tree at rest as a whole has momenta of rounding alone: they are measured by what its energy could carry,
-  // |P|² ≤ 2 m T and |L|² ≤ 2 T Σ m r².
+  // A tree at rest as a whole has no momenta to measure by, only what rounding and truncation make of them.
   double mass = 0, inertia = 0;
   for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
     double away = 0;  // of the body
@@ -272,12 +269,15 @@ void Monitor::finish_momenta() {
       inertia += p.mass * std::pow(away + p.at.X.norm(), 2);
     }
   }
-  const auto relative = [&](double error, double greatest, double most) {
-    const double scale = greatest > 1e-9 * most ? greatest : most;
-    return scale > 0 ? error / scale : 0.0;
+  constexpr double least_share = 0.1;
+  const auto scale = [](const std::array<double, 3>& initial, double most) {
+    const double own = std::hypot(initial[0], initial[1], initial[2]);
+    return own < least_share * most ? most : own;
   };
-  m.linear = relative(linear_error_, greatest_linear_, std::sqrt(2 * mass * energy_scale_));
-  m.angular = relative(angular_error_, greatest_angular_, std::sqrt(2 * inertia * energy_scale_));
+  m.linear_scale = scale(initial_energies_.linear_momentum, std::sqrt(2 * mass * energy_scale_));
+  m.angular_scale = scale(initial_energies_.angular_momentum, std::sqrt(2 * inertia * energy_scale_));
+  m.linear = m.linear_scale > 0 ? linear_error_ / m.linear_scale : 0;
+  m.angular = m.angular_scale > 0 ? angular_error_ / m.angular_scale : 0;
 }
 
 void Monitor::audit_energy(const State& state) {
@@ -295,6 +295,7 @@ void Monitor::audit_energy(const State& state) {
   untruncated_error_ = std::max(untruncated_error_, std::abs(untruncated));
   const auto relative = [&](double x) { return energy_scale_ > 0 ? x / energy_scale_ : 0; };
   summary_.energy_drift = relative(energy_error_);
+  summary_.energy_scale = energy_scale_;
   summary_.untruncated_drift = relative(untruncated_error_);
   for (std::size_t i = 0; i < model_.layout().speeds; ++i)
     greatest_speed_ = std::max(greatest_speed_, std::abs(state.y[model_.layout().positions + i]));
@@ -334,8 +335,6 @@ void Monitor::remember(Memory& memory) {
   memory(energy_error_);
   memory(energy_scale_);
   memory(summary_.untruncated_drift);
-  memory(greatest_linear_);
-  memory(greatest_angular_);
   memory(linear_error_);
   memory(angular_error_);
   memory(untruncated_error_);

@@ -119,7 +119,6 @@ class Monitor {
 
   bool own_energy_ = false;
   Energies initial_energies_;
-  double greatest_linear_ = 0, greatest_angular_ = 0;
   double linear_error_ = 0, angular_error_ = 0, untruncated_error_ = 0;
   double initial_energy_ = 0, initial_work_ = 0;
   double energy_error_ = 0, energy_scale_ = 0;

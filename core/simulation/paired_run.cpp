@@ -12,7 +12,7 @@ namespace withy {
 namespace {
 
 /// Both equations as one system for a stepper, of one thread: y holds the positions of both, the
-/// speeds of both, the continuous and the discrete states of both, then the work of both together.
+/// speeds of both, the continuous and the discrete states of both, then the work of the first.
 class PairedEquations final : public EquationsOfMotion {
  public:
   PairedEquations(const EquationsOfMotion& first, const EquationsOfMotion& second)
@@ -29,15 +29,14 @@ class PairedEquations final : public EquationsOfMotion {
   const Layout& layout() const override { return layout_; }
   Work make_work() const override { return Work(0); }
   Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot, Work&) const noexcept override {
-    y_dot.back() = 0;
     for (std::size_t i = 0; i < 2; ++i) {
       Half& half = halves_[i];
       take(y, i, half.y);
       const Evaluation e = half.equations->derivatives(t, half.y, half.y_dot, half.work);
       if (!e.ok()) return e;
       put(half.y_dot, i, y_dot);
-      y_dot.back() += half.y_dot.back();
     }
+    y_dot.back() = halves_[0].y_dot.back();
     return {};
   }
   void normalize(std::span<double> y) const noexcept override {
@@ -47,11 +46,11 @@ class PairedEquations final : public EquationsOfMotion {
       put(halves_[i].y, i, y);
     }
   }
-  /// One of the two states, without its work.
+  /// One of the two states; the work is known of the first alone.
   void take(std::span<const double> y, std::size_t i, std::span<double> own) const noexcept {
     for (const Part& part : parts())
       std::copy_n(y.data() + 2 * part.first + i * part.count, part.count, own.data() + part.first);
-    own.back() = 0;
+    own.back() = i == 0 ? y.back() : 0;
   }
   void put(std::span<const double> own, std::size_t i, std::span<double> y) const noexcept {
     for (const Part& part : parts())
@@ -101,9 +100,15 @@ class PairedEquations final : public EquationsOfMotion {
 /// Gives both states at outputs, and renews the discrete states of each.
 class PairObserver final : public SteppingObserver {
  public:
-  PairObserver(const PairedEquations& pair, const PairedRunOptions& options, const State& initial,
-               const std::function<void(const State&, const State&)>& output)
-      : pair_(pair), options_(options), output_(output), first_(initial), second_(initial), emitted_(initial.time) {}
+  PairObserver(const PairedEquations& pair, std::array<Renewal, 2> renewals, const PairedRunOptions& options,
+               const State& initial, const std::function<void(const State&, const State&)>& output)
+      : pair_(pair),
+        renewals_(std::move(renewals)),
+        options_(options),
+        output_(output),
+        first_(initial),
+        second_(initial),
+        emitted_(initial.time) {}
 
   bool before_step(const Stepper& stepper) override {
     const bool spent = options_.most_evaluations > 0 && stepper.statistics().evaluations >= options_.most_evaluations;
@@ -117,8 +122,8 @@ class PairObserver final : public SteppingObserver {
   }
   void renew(Clocks& clocks, State& both) override {
     take(both);
-    clocks.renew(first_);
-    clocks.renew(second_);
+    clocks.renew(first_, renewals_[0]);
+    clocks.renew(second_, renewals_[1]);
     pair_.put(first_.y, 0, both.y);
     pair_.put(second_.y, 1, both.y);
   }
@@ -132,6 +137,7 @@ class PairObserver final : public SteppingObserver {
   }
 
   const PairedEquations& pair_;
+  std::array<Renewal, 2> renewals_;
   const PairedRunOptions& options_;
   const std::function<void(const State&, const State&)>& output_;
   State first_, second_;
@@ -156,12 +162,11 @@ PairedRun run_paired(const Model& model, const EquationsOfMotion& first, const E
   if (has_switches(model)) throw std::invalid_argument("loads with switching functions have no common steps");
   const double began = thread_cpu_seconds();
   const PairedEquations pair(first, second);
-  const State one = begun(model, initial);
   State both{initial.time, std::vector<double>(pair.size())};
-  pair.put(one.y, 0, both.y);
-  pair.put(one.y, 1, both.y);
-  PairObserver observer(pair, options, initial, output);
-  Stepping loop(model, integrator.start(pair, both), {options.end, options.output});
+  pair.put(begun(model, first, initial).y, 0, both.y);
+  pair.put(begun(model, second, initial).y, 1, both.y);
+  PairObserver observer(pair, {Renewal(model, first), Renewal(model, second)}, options, initial, output);
+  Stepping loop(model, pair, integrator.start(pair, both), {options.end, options.output});
   loop.run(observer);
   if (loop.state().time > observer.emitted()) observer.output(loop.state());
   return {loop.state().time, loop.stepper().statistics().evaluations, thread_cpu_seconds() - began};

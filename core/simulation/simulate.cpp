@@ -29,7 +29,7 @@ class Run final : public SteppingObserver {
         summary_(summary),
         hand_overs_(options.changing != nullptr ? options.changing->hand_overs() : std::vector<double>()),
         actions_(model, equations, options.events),
-        loop_(model, integrator.start(equations, begun(model, initial)),
+        loop_(model, equations, integrator.start(equations, begun(model, equations, initial)),
               {options.end, options.output, actions_.watched(), hand_overs_, &actions_}),
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
                  summary),
@@ -62,7 +62,8 @@ class Run final : public SteppingObserver {
     }
     monitor_.audit_energy(state);
     monitor_.finish_momenta();
-    validity_.finish(state, monitor_.trusted().time, status == RunStatus::completed);
+    const bool completed = status == RunStatus::completed;
+    validity_.finish(completed ? state : monitor_.trusted(), status != RunStatus::singular);
   }
 
   [[nodiscard]] const Stepper& stepper() const { return loop_.stepper(); }

@@ -72,8 +72,11 @@ struct RunOptions {
 /// Greatest change of the momenta of a tree that nothing outside acts on, over the states that energy is looked at in.
 struct MomentumDrift {
   bool conserved = false;  ///< the tree floats freely: no weight, and no load pushes or turns its free hinges
-  double linear = 0;       ///< |P(t) − P(0)| over the greatest |P|; 0 where there is none
-  double angular = 0;      ///< |L(t) − L(0)| about the world origin over the greatest |L|
+  double linear = 0;       ///< |P(t) − P(0)| over `linear_scale`
+  double angular = 0;      ///< |L(t) − L(0)| about the world origin over `angular_scale`
+  /// |P(0)|, |L(0)|, or, where that is less than a tenth of it, what the energy could carry, |P|² ≤ 2 m T and
+  /// |L|² ≤ 2 T Σ m r²: the momenta of a tree at rest as a whole are none to measure by [kg m/s, kg m²/s].
+  double linear_scale = 0, angular_scale = 0;
 };
 
 /// What a run leaves behind, whatever its end.
@@ -98,6 +101,7 @@ struct RunSummary {
   /// Greatest |E(t) − E(0) − work| over the first 256 accepted states, every fourth of the others and the last,
   /// relative to the greatest of |E|, |work| and kinetic energy seen.
   double energy_drift = 0;
+  double energy_scale = 0;  ///< that greatest [J]
   /// The same of the energy without truncation: what a formulation with an energy of its own leaves out shows there.
   double untruncated_drift = 0;
   MomentumDrift momentum;

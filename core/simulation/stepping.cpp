@@ -7,9 +7,10 @@ namespace withy {
 
 using Cause = SteppingEnd::Cause;
 
-Stepping::Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const SteppingOptions& options)
+Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::unique_ptr<Stepper> stepper,
+                   const SteppingOptions& options)
     : stepper_(std::move(stepper)),
-      clocks_(model),
+      clocks_(model, equations),
       jumps_(discontinuities(model)),
       zeros_(model, options.events, stepper_->state()),
       actions_(options.actions),

@@ -71,8 +71,9 @@ struct SteppingOptions {
 class Stepping {
  public:
   /// \param stepper begun at a state whose discrete states are set (see `begun`)
-  /// The model and the events must outlive the object.
-  Stepping(const Model& model, std::unique_ptr<Stepper> stepper, const SteppingOptions& options);
+  /// The model, its equations and the events must outlive the object.
+  Stepping(const Model& model, const EquationsOfMotion& equations, std::unique_ptr<Stepper> stepper,
+           const SteppingOptions& options);
   /// Steps to the end. Steps land on discontinuities of loads and motions, on the instants of discrete states and on
   /// the end bit by bit. The states at the start and at the end are no outputs.
   SteppingEnd run(SteppingObserver& observer);

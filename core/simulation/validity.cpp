@@ -166,11 +166,10 @@ void ValidityWatch::remember(Memory& memory) {
   memory(due_);
 }
 
-void ValidityWatch::finish(const State& state, double trusted, bool completed) {
+void ValidityWatch::finish(const State& trusted, bool sampled) {
   if (bodies_.empty()) return;
-  if (completed || held_.time <= trusted) settle();
-  // Accelerations at the pole of a singular mass matrix say nothing of the motion before.
-  if (completed) sample(state);
+  if (held_.time <= trusted.time) settle();
+  if (sampled) sample(trusted);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     for (std::size_t f = 0; f < bodies_[i].families.size(); ++f) {
       const Family& family = bodies_[i].families[f];

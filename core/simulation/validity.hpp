@@ -66,8 +66,9 @@ class ValidityWatch {
   }
   /// Samples what is due: the equations are about to change.
   void settle();
-  /// At the last state; where the run went well that is a sample too. Sums become ratios.
-  void finish(const State& state, double trusted, bool completed);
+  /// At the last state that can be trusted, which is a sample too where its accelerations say something: at the pole of
+  /// a singular mass matrix they do not. Sums become ratios.
+  void finish(const State& trusted, bool sampled);
   /// What has been seen so far.
   void remember(Memory& memory);
 

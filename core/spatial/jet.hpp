@@ -39,8 +39,19 @@ class DualNumber {
   DualNumber& operator/=(const DualNumber& b) { return *this = *this / b; }
 
   friend DualNumber operator-(const DualNumber& a) { return a.chained(-a.value_, T(-1.0)); }
-  friend DualNumber operator+(DualNumber a, const DualNumber& b) { return a += b; }
-  friend DualNumber operator-(DualNumber a, const DualNumber& b) { return a -= b; }
+  // Into a result of its own: a copy that is added to is written number by number and read again by pairs, which stalls.
+  friend DualNumber operator+(const DualNumber& a, const DualNumber& b) {
+    DualNumber c;
+    c.value_ = a.value_ + b.value_;
+    for (std::size_t k = 0; k < N; ++k) c.derivatives_[k] = a.derivatives_[k] + b.derivatives_[k];
+    return c;
+  }
+  friend DualNumber operator-(const DualNumber& a, const DualNumber& b) {
+    DualNumber c;
+    c.value_ = a.value_ - b.value_;
+    for (std::size_t k = 0; k < N; ++k) c.derivatives_[k] = a.derivatives_[k] - b.derivatives_[k];
+    return c;
+  }
   friend DualNumber operator*(const DualNumber& a, const DualNumber& b) {
     DualNumber c;
     c.value_ = a.value_ * b.value_;

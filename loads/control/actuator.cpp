@@ -23,6 +23,7 @@ class Actuator final : public ControlBlock {
   explicit Actuator(const Lag& lag) : lag_(lag) {}
   std::size_t inputs() const override { return 1; }
   std::vector<std::string> states() const override { return {"effort", "rate"}; }
+  std::string unit_of_state(std::size_t state) const override { return state == 0 ? "command" : "command/s"; }
   void begin(double /*t*/, std::span<const double> w, std::span<double> z) const noexcept override {
     z[0] = limited(w[0], lag_.limit);
     z[1] = 0;
@@ -65,6 +66,12 @@ class DcMotor final : public ControlBlock {
   std::vector<std::string> states() const override {
     return motor_.inductance > 0 ? std::vector<std::string>{"current"} : std::vector<std::string>{};
   }
+  std::vector<Shown> shown() const override { return {{"voltage", "V"}}; }
+  void show(double t, std::span<const double> w, std::span<const double> /*z*/,
+            std::span<double> values) const noexcept override {
+    values[0] = std::clamp(asked(t, w), -motor_.limit, motor_.limit);
+  }
+  std::string unit_of_state(std::size_t /*state*/) const override { return "A"; }
   void begin(double t, std::span<const double> w, std::span<double> z) const noexcept override {
     if (!z.empty()) z[0] = drop(t, w) / motor_.resistance;
   }

@@ -30,6 +30,18 @@ class ControlBlock {
                      std::span<double> /*rates*/) const noexcept {}
   virtual void output(double t, std::span<const double> w, std::span<const double> z,
                       std::span<double> v) const noexcept = 0;
+  /// A number that outputs show of it. In units the words "command" and "signal" stand for those of what it commands
+  /// and of what it measures.
+  struct Shown {
+    std::string name, unit;
+  };
+  /// What it tells beside commands and states.
+  [[nodiscard]] virtual std::vector<Shown> shown() const { return {}; }
+  virtual void show(double /*t*/, std::span<const double> /*w*/, std::span<const double> /*z*/,
+                    std::span<double> /*values*/) const noexcept {}
+  /// As those of Shown; of a command that acts nowhere.
+  [[nodiscard]] virtual std::string unit_of_output() const { return "1"; }
+  [[nodiscard]] virtual std::string unit_of_state(std::size_t /*state*/) const { return "1"; }
   /// Whether v depends on an input at once, not through z alone.
   [[nodiscard]] virtual bool feeds_through(std::size_t /*input*/) const { return true; }
   /// Takes z from t [s] to a sample later, w held at what it is at t.

@@ -37,6 +37,19 @@ std::vector<ParameterSpec> control_parameters(std::vector<ParameterSpec> own) {
   return all;
 }
 
+std::optional<ControlEnds> read_signal_ends(const Value& p, const MakeContext& context, std::size_t signals) {
+  Value with_end = p;
+  if (!p.has("to") && !p.has("hinge")) with_end.set("to", Value::list({Value(std::string("nothing"))}));
+  std::optional<ControlEnds> ends = read_ends(with_end, context);
+  if (!ends) return {};
+  if (ends->of.size() > signals || (ends->of.empty() && signals > 0 && !ends->hinge)) {
+    context.diagnostics.error(p.place(), "needs 'of' with one signal");
+    return {};
+  }
+  ends->measures_nothing = ends->of.empty() && signals == 0;
+  return ends;
+}
+
 std::optional<ControlEnds> read_ends(const Value& p, const MakeContext& context) {
   ControlEnds ends;
   bool good = true;

@@ -21,6 +21,7 @@ struct ControlEnds {
   bool rate_of_hinge = false;     ///< behind all signals the rate that `hinge` names
   std::vector<std::string> to;    ///< loads of type input; empty: the rate that `hinge` names
   bool acts = true;               ///< false: its command is for loads that measure it
+  std::vector<std::string> also;  ///< measured behind all else
   std::optional<RateName> hinge;  ///< the rate it acts on, or is about
   double sample = 0;              ///< [s]; 0: continuous in time
   std::size_t delay = 0;          ///< samples between a measurement and its effort
@@ -30,6 +31,8 @@ struct ControlEnds {
 std::vector<ParameterSpec> control_parameters(std::vector<ParameterSpec> own);
 /// What `control_parameters` has read; nothing after a reported error.
 std::optional<ControlEnds> read_ends(const Value& p, const MakeContext& context);
+/// Of a block that others measure: it acts on nothing where the scene names no place. \param signals that it measures
+std::optional<ControlEnds> read_signal_ends(const Value& p, const MakeContext& context, std::size_t signals);
 /// The load of these ends around a block.
 std::unique_ptr<Load> make_control(ControlEnds ends, std::shared_ptr<const ControlBlock> block);
 

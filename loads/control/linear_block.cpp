@@ -1,5 +1,6 @@
 #include "withy/loads/control/linear_block.hpp"
 
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 
@@ -7,8 +8,10 @@
 
 namespace withy {
 
-LinearBlock::LinearBlock(StateSpace system, std::optional<Trajectory> reference)
-    : system_(std::move(system)), reference_(std::move(reference)) {}
+LinearBlock::LinearBlock(StateSpace system, std::optional<Trajectory> reference, Start start)
+    : system_(std::move(system)), reference_(std::move(reference)) {
+  if (start == Start::settled) settled_ = -system_.A.partialPivLu().solve(system_.B);
+}
 
 std::vector<std::string> LinearBlock::states() const {
   std::vector<std::string> names;
@@ -28,6 +31,14 @@ void LinearBlock::combine(const Eigen::MatrixXd& by_state, const Eigen::MatrixXd
     sum[i] = 0;
     for (Eigen::Index j = 0; j < by_state.cols(); ++j) sum[i] += by_state(row, j) * z[static_cast<std::size_t>(j)];
     for (Eigen::Index j = 0; j < by_input.cols(); ++j) sum[i] += by_input(row, j) * input(t, w, j);
+  }
+}
+
+void LinearBlock::begin(double t, std::span<const double> w, std::span<double> z) const noexcept {
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    z[i] = 0;
+    for (Eigen::Index j = 0; j < settled_.cols(); ++j)
+      z[i] += settled_(static_cast<Eigen::Index>(i), j) * input(t, w, j);
   }
 }
 

@@ -21,12 +21,26 @@ struct StateSpace {
 /// inputs held over a sample.
 class LinearBlock final : public ControlBlock {
  public:
+  enum class Start {
+    zero,
+    settled  ///< in the steady state of what is measured then; A is regular
+  };
   /// \param reference with one input: w is the reference less what is measured
-  explicit LinearBlock(StateSpace system, std::optional<Trajectory> reference = {});
+  explicit LinearBlock(StateSpace system, std::optional<Trajectory> reference = {}, Start start = Start::zero);
 
   std::size_t inputs() const override { return static_cast<std::size_t>(system_.B.cols()); }
   std::size_t outputs() const override { return static_cast<std::size_t>(system_.C.rows()); }
   std::vector<std::string> states() const override;
+  std::string unit_of_output() const override { return settled_.size() > 0 ? "signal" : "1"; }
+  std::string unit_of_state(std::size_t /*state*/) const override { return unit_of_output(); }
+  std::vector<Shown> shown() const override {
+    return reference_ ? std::vector<Shown>{{"error", "signal"}} : std::vector<Shown>{};
+  }
+  void show(double t, std::span<const double> w, std::span<const double> /*z*/,
+            std::span<double> values) const noexcept override {
+    if (reference_) values[0] = input(t, w, 0);
+  }
+  void begin(double t, std::span<const double> w, std::span<double> z) const noexcept override;
   void rates(double t, std::span<const double> w, std::span<const double> z,
              std::span<double> rates) const noexcept override;
   bool feeds_through(std::size_t input) const override;
@@ -45,6 +59,7 @@ class LinearBlock final : public ControlBlock {
 
   StateSpace system_;
   std::optional<Trajectory> reference_;
+  Eigen::MatrixXd settled_;            ///< z by w at the start; empty: zero
   Eigen::MatrixXd transition_, held_;  ///< over a sample, of the states and of the inputs
 };
 

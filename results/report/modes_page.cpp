@@ -95,7 +95,7 @@ Json remarks_json(const std::vector<study::ModesOf>& runs) {
       if (!at.problem.empty()) say(fmt::format("{}: {}", run.formulation, at.problem));
     }
     const auto frozen = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return at.frozen(); });
-    if (frozen != run.points.end()) say(study::turn_text(frozen->turn->check));
+    if (frozen != run.points.end()) say(study::turn_text(*frozen->turn));
   }
   return remarks;
 }

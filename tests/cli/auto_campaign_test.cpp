@@ -1,17 +1,20 @@
 // The promise of `formulation: auto`: outputs within twice the accuracy asked or a status that says otherwise, and
 // nothing among the fixed formulations that holds it is much cheaper. Truth is the highest formulation at a finer
-// tolerance; costs are counted evaluations times what one costs in its formulation.
+// tolerance; costs are counted evaluations times what one costs in its formulation and integrator. Scenes 1 to 13 were
+// there when the choice was tuned; 14 to 20 were not, and what follows are random machines.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
 
 #include "withy/study/accuracy.hpp"
 #include "withy/study/run.hpp"
 #include "withy/study/walk.hpp"
 #include "withy/tests/cli/campaign.hpp"
+#include "withy/tests/cli/random_machine.hpp"
 #include "withy/tests/study/plugins.hpp"
 
 namespace withy::test {
@@ -36,7 +39,9 @@ struct Fixed {
   Walk walk;
 };
 
-Fixed walked(const Prepared& prepared, const Integrator& integrator, const Outputs& outputs) {
+/// \param most evaluations: a model that needs more is no cheap one
+Fixed walked(const Prepared& prepared, const Integrator& integrator, const Outputs& outputs,
+             std::size_t most = std::numeric_limits<std::size_t>::max()) {
   OutputReader reader(outputs, prepared.model(), *prepared.equations);
   Fixed fixed;
   fixed.walk = walk(prepared, integrator,
@@ -45,7 +50,7 @@ Fixed walked(const Prepared& prepared, const Integrator& integrator, const Outpu
                        fixed.readings.values.push_back(reader.read(s));
                        return true;
                      },
-                     {},
+                     [&](const Walk& w) { return w.evaluations < most; },
                      {}});
   return fixed;
 }
@@ -70,6 +75,13 @@ Distances limits_of(const Outputs& outputs, const Prepared& prepared, const Read
                           {},
                           {}}));
   return Accuracy{accuracy, {}, {}}.limits(outputs, scales(outputs, ranges, energy));
+}
+
+/// What an evaluation of an integrator costs with its share of the step, over one of an explicit method: as measured
+/// for docs/integrators.md (stiff-cost).
+double weight(const std::string& integrator) {
+  if (integrator == "imex") return 1.3;
+  return integrator == "radau" ? 2.2 : 1;
 }
 
 double use_of(const Distances& errors, const Distances& limits) {
@@ -97,7 +109,7 @@ AutoVerdict judge_auto(const std::string& file, double accuracy) {
     Point point;
     point.formulation = rung.name;
     unit.push_back(model_at(prepared, plugins(), point).seconds);
-    const Fixed fixed = walked(prepared, *prepared.scene.integrator, outputs);
+    const Fixed fixed = walked(prepared, *prepared.scene.integrator, outputs, 10000 + 20 * truth.walk.evaluations);
     if (fixed.walk.end != Walk::End::reached) continue;
     const auto [errors, until] = distances(outputs, fixed.readings, truth.readings);
     const double cost = unit.back() * static_cast<double>(fixed.walk.evaluations);
@@ -130,6 +142,7 @@ AutoVerdict judge_auto(const std::string& file, double accuracy) {
     coarse += unit[i] * static_cast<double>(plan.evaluations[i]);
     fine += unit[i] * static_cast<double>(plan.run_evaluations[i]);
   }
+  coarse *= weight(plan.integrator) / weight(automatic.scene.integrator_name);
   v.cost_ratio = (coarse + fine) / least;
   v.run_ratio = fine / least;
   return v;
@@ -161,27 +174,32 @@ std::vector<std::string> shipped() {
 
 TEST(AutoCampaign, outputs_keep_within_twice_the_accuracy_asked_or_the_status_says_not) {
   const std::vector<std::string> scenes = shipped();
-  const Campaign campaign("auto", static_cast<unsigned>(scenes.size()), static_cast<unsigned>(scenes.size()));
-  const auto verdicts = campaign.run<AutoVerdict>([&](unsigned number, const std::string&) {
-    const AutoVerdict v = judge_auto(std::string(WITHY_SOURCES) + "/scenes/" + scenes[number - 1] + ".yaml", 0.01);
-    std::printf("%-26s %-8s true %6.2f estimated %6.2f cost %5.2f (run alone %5.2f) cheapest %-10s ran %s %s\n",
-                scenes[number - 1].c_str(), v.held ? "held" : "not held", v.use, v.estimated, v.cost_ratio, v.run_ratio,
-                v.cheapest.c_str(), v.rungs.c_str(), v.message.c_str());
+  const Campaign campaign("auto", static_cast<unsigned>(scenes.size()));
+  const auto verdicts = campaign.run<AutoVerdict>([&](unsigned number, const std::string& scene) {
+    const bool random = number > scenes.size();
+    if (random) std::ofstream(scene) << RandomMachine(number).text();
+    const AutoVerdict v =
+        judge_auto(random ? scene : std::string(WITHY_SOURCES) + "/scenes/" + scenes[number - 1] + ".yaml", 0.01);
+    const std::string name = random ? "random machine " + std::to_string(number) : scenes[number - 1];
+    std::printf("row\t`%s`\t%s\t%.2f\t%.2f\t%.2f\t%s\t%s\n", name.c_str(), v.held ? "held" : "not held", v.use,
+                v.estimated, v.cost_ratio, v.cheapest.c_str(), v.rungs.c_str());
     std::fflush(stdout);
     return v;
   });
   unsigned cheap = 0, judged = 0;
+  double worst = 0;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     const AutoVerdict& v = verdicts[i];
     if (!v.judged || !std::isfinite(v.cost_ratio)) continue;
     ++judged;
     cheap += v.cost_ratio <= 1.5 ? 1 : 0;
+    worst = std::max(worst, v.cost_ratio);
     if (v.held) {
-      EXPECT_LE(v.use, 2) << scenes[i];
+      EXPECT_LE(v.use, 2) << i << ": " << v.rungs;
     }
   }
   ASSERT_GT(judged, 0U);
-  std::printf("cost at most 1.5 of the cheapest in %u of %u\n", cheap, judged);
+  std::printf("cost at most 1.5 of the cheapest in %u of %u, worst %.2f\n", cheap, judged, worst);
 }
 
 }  // namespace

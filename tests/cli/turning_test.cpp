@@ -60,6 +60,27 @@ TEST(Turning, EqualBladesAreSeenFromTheTower) {
   EXPECT_THAT(named.err, HasSubstr("not like"));
 }
 
+/// The reference of a servo moves at the start, and the hinge with it: nothing turns, and nothing stays.
+TEST(Turning, AStateThatAFreeHingePassesThroughIsNamed) {
+  const Folder folder;
+  folder.write("servo.yaml", R"(format: withy/1
+gravity: [0, -9.81, 0]
+time: {end: 1}
+bodies: {arm: {type: rigid, mass: 1, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}}
+hinges: {pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}}
+loads: {servo: {type: pd-controller, law: sine, period: 4 s, hinges: {pivot: {amplitude: 20 deg, stiffness: 40, damping: 4}}}}
+)");
+  for (const char* command : {"modes", "equilibrium"}) {
+    const Finished f = withy(folder, {command, "servo.yaml"});
+    EXPECT_EQ(f.status, 0) << f.err;
+    EXPECT_THAT(f.out, HasSubstr("The hinge 'pivot' moves and nothing holds it at its rate"));
+    EXPECT_THAT(f.out, Not(HasSubstr("turn")));
+    EXPECT_THAT(f.out, Not(HasSubstr("steady after")));
+  }
+  const Finished locked = withy(folder, {"equilibrium", "servo.yaml", "--spin", "pivot=0"});
+  EXPECT_THAT(locked.out, HasSubstr("steady after"));
+}
+
 TEST(Modes, LockOfADrivenHingeIsRefused) {
   const Folder folder;
   const Finished f = withy(folder, {"modes", "scenes/spin-up.yaml", "--lock", "axle"});

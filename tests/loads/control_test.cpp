@@ -157,6 +157,17 @@ TEST(Control, JacobiansAreThoseOfTheWholeLoop) {
   expect_jacobian(
       arm + "loads: {servo: {type: pid, hinge: axle, proportional: 50, integral: 30, derivative: 5, limit: 3}}\n",
       1e-7);
+  expect_jacobian(arm +
+                      "loads: {servo: {type: pid, hinge: axle, proportional: [[-1, 30], [1, 50]], integral: "
+                      "[[-1, 10], [1, 40]], derivative: [[-1, 2], [1, 7]], filter: 0.1, schedule: axle.rate}}\n",
+                  1e-7);
+  for (const char* lag : {"0", "0.1"})
+    expect_jacobian(arm +
+                        "loads:\n  law: {type: expression, value: 20 - axle, to: nothing}\n  wheel: {type: "
+                        "reaction-wheel, of: law, hinge: axle, viscous: 0.2, coulomb: 0.5, coulomb_speed: 0.3, "
+                        "speed_limit: 300, time_constant: " +
+                        std::string(lag) + "}\n",
+                    1e-7);
   // What is measured at a frame of a flexible body, and acts at one, is differentiated numerically.
   expect_jacobian(arm + R"(outputs: {end: {type: frame, of: boom.tip, show: velocity}, turn: {type: gyro, of: boom.tip}}
 loads:
@@ -374,6 +385,82 @@ TEST(Control, SampledPidIsItsRecursionWithTheDelay) {
   EXPECT_EQ(k, 41U);
 }
 
+/// m a = −k x + p, p = −g a of the sample before: with p held, x is a cosine about p/k.
+TEST(Control, ASampledControllerMeasuresAccelerationsWithTheEffortHeldBefore) {
+  const double T = 0.01, w = std::sqrt(k_felt / m_felt);
+  LoadedScene s(felt + "  servo: {type: pid, of: imu.x, to: command, proportional: 1.5, sample: 0.01}\n",
+                {"integrator=dopri5", "integrator.rtol=1e-10", "integrator.atol=1e-12"});
+  double x = 0.3, u = 0, p = 0;
+  std::size_t k = 0;
+  for (const State& state : s.run()) {
+    ASSERT_NEAR(state.y[0], x, 1e-10) << k;
+    ASSERT_NEAR(state.y[1], u, 1e-9) << k;
+    p = -g_felt * (p - k_felt * x) / m_felt;
+    const double about = p / k_felt, d = x - about;
+    x = about + d * std::cos(w * T) + u / w * std::sin(w * T);
+    u = -d * w * std::sin(w * T) + u * std::cos(w * T);
+    ++k;
+  }
+  EXPECT_EQ(k, 201U);
+}
+
+// What each holds is what the tables show at the sample, of flexible bodies, inner forces and efforts of others too.
+// The last stands first in the file, and measures what the one before it gives at the same instant.
+TEST(Control, SampledControllersMeasureWhatOutputsShow) {
+  LoadedScene s(R"(format: withy/1
+time: {end: 0.39, output: 0.02}
+gravity: [0, -9.81, 0]
+integrator: {name: dopri5, rtol: 1e-8, atol: 1e-10}
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0], frames: {out: {position: [0.1, 0, 0]}}}
+  boom: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 40, modes: 2, family: clamped-free}}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub.out, child: boom}
+outputs:
+  imu: {type: accelerometer, of: boom.tip}
+  strain: {type: section, of: boom, at: 0.3}
+  held: {type: reaction, hinge: root}
+  pulled: {type: effort, hinge: axle, of: by_imu}
+  all: {type: energy}
+loads:
+  last: {type: expression, value: 3 * by_imu - axle, to: nothing, sample: 0.02}
+  command: {type: input, hinge: axle}
+  by_imu: {type: expression, value: 0.02 * imu.y, to: command, sample: 0.02}
+  by_strain: {type: expression, value: 2 * strain.mz - held.fy, to: nothing, sample: 0.02}
+  by_effort: {type: expression, value: pulled + all.kinetic, to: nothing, sample: 0.02}
+)");
+  SensorReader reader(s.scene.outputs, *s.equations);
+  const auto column = [&](const std::vector<double>& row, const std::string& name) {
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (reader.columns()[i].name == name) return row[i];
+    ADD_FAILURE() << name;
+    return 0.0;
+  };
+  const auto given = [&](const State& state, const std::string& load) {
+    for (const LoadNode& node : s.scene.model->loads())
+      if (node.name == load) return state.y[node.slot.first + 1];
+    ADD_FAILURE() << load;
+    return 0.0;
+  };
+  std::vector<double> before(reader.columns().size());
+  double turn_before = 0;
+  std::size_t k = 0;
+  for (const State& state : s.run()) {
+    if (k++ > 0) {
+      ASSERT_DOUBLE_EQ(given(state, "by_imu"), 0.02 * column(before, "imu.y"));
+      ASSERT_DOUBLE_EQ(given(state, "by_strain"), 2 * column(before, "strain.mz") - column(before, "held.fy"));
+      ASSERT_DOUBLE_EQ(given(state, "by_effort"), column(before, "pulled") + column(before, "all.kinetic"));
+      ASSERT_DOUBLE_EQ(given(state, "last"), 3 * given(state, "by_imu") - turn_before);
+    }
+    State seen = state;
+    if (k == 1) std::fill(seen.y.begin() + 6, seen.y.end(), 0.0);  // begun already: efforts were zero before
+    ASSERT_TRUE(reader.read(seen, before));
+    turn_before = state.y[0];
+  }
+  EXPECT_EQ(k, 21U);
+}
+
 TEST(Control, AnExpressionIsTheControllerThatItSpells) {
   const std::string pd =
       "loads: {servo: {type: pd-controller, law: constant, hinges: {axle: {to: 0.5, stiffness: 5, damping: 1}}}}\n";
@@ -423,11 +510,14 @@ TEST(Control, MistakesAreLocatedAndNamed) {
       "outputs: {imu: {type: accelerometer, of: table}, drive: {type: effort, hinge: axle}, of_servo: {type: effort, "
       "load: servo}}\n";
   EXPECT_THAT(problem("type: pid, of: imu.y, to: command, proportional: 1", imu),
-              testing::AllOf(HasSubstr("imu.y -> this load -> accelerations -> imu.y"), HasSubstr("algebraic")));
+              testing::AllOf(HasSubstr("imu.y -> this load -> accelerations -> imu.y"), HasSubstr("algebraic"),
+                             HasSubstr("give this load a 'sample'"), HasSubstr("put a filter between")));
   const std::string felt_outputs = "outputs: {imu: {type: accelerometer, of: table}}\n";
   EXPECT_EQ(problem("type: pid, of: imu.y, to: command, integral: 1", felt_outputs), "");
-  EXPECT_THAT(problem("type: pid, of: imu.y, to: command, integral: 1, sample: 0.01", felt_outputs),
-              HasSubstr("a sampled controller measures positions and rates"));
+  EXPECT_EQ(problem("type: pid, of: imu.y, to: command, proportional: 1, sample: 0.01", felt_outputs), "");
+  EXPECT_THAT(problem("type: pid, of: felt.y, to: command, proportional: 1, sample: 0.01",
+                      "outputs: {felt: {type: effort, hinge: axle, of: command}}\n"),
+              HasSubstr("/loads/servo: no signal 'felt.y'; known: axle, axle.rate, felt, servo"));
   EXPECT_THAT(problem("type: pid, of: imu.y, to: nothing, proportional: 1}\n  second: {type: expression, to: command, "
                       "value: 2 * servo",
                       felt_outputs),

@@ -65,7 +65,10 @@ def test_scenes_are_values(slew):
 
 
 def test_errors_have_their_places(slew, tmp_path):
-    broken = withy.loads("format: withy/1\nbodies: {b: {type: rigd}}\nhinges: {}\n", "mine.yaml").set("time.end", "soon")
+    text = "format: withy/1\nbodies: {b: {type: rigd}}\nhinges: {}\n"
+    with pytest.raises(withy.SceneError, match=r"(?s)(?=.*mine.yaml:2:)(?=.*did you mean 'rigid')"):
+        withy.loads(text, "mine.yaml")
+    broken = withy.loads(text, "mine.yaml", check=False).set("time.end", "soon")
     with pytest.raises(withy.SceneError, match=r"(?s)(?=.*mine.yaml:2:)(?=.*did you mean 'rigid')(?=.*set\(time.end=soon\))"):
         broken.run()
     with pytest.raises(withy.SceneError):

@@ -216,7 +216,7 @@ TEST(Validity, indicators_of_one_state_are_its_closed_forms) {
   const auto beyond = m.in("quadratic");
   Validity validity;
   ValidityWatch watch(*m.scene.model, *m.equations, beyond.get(), validity);
-  watch.finish(m.scene.initial, m.scene.initial.time, true);
+  watch.finish(m.scene.initial, true);
   ASSERT_EQ(validity.bodies.size(), 1U);
   const BodyValidity& b = validity.bodies[0];
   EXPECT_NEAR(b.rate_ratio, 1.5 / held_frequency(m), 1e-5);

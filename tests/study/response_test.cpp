@@ -228,6 +228,34 @@ initial: {hinges: {base: {position: [0.1], rate: [0.5]}, joint: {position: [-0.3
       << "the slowest alone can be opened";
 }
 
+/// The second measures an acceleration which the efforts of both move, and what the first gives at the same instant.
+TEST(LinearModel, OfLoadsThatSampleAccelerationsIsTheMapOfARun) {
+  const std::string text = R"(
+time: {end: 0.6}
+integrator: {name: dopri5, rtol: 1e-12, atol: 1e-14}
+bodies: {cart: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}}
+outputs: {imu: {type: accelerometer, of: cart}}
+loads:
+  spring: {type: hinge-spring, hinge: slide, stiffness: 30}
+  slow: {type: expression, hinge: slide, value: -5 * slide.rate - 0.3 * imu.x, sample: 0.03}
+  fast: {type: transfer-function, hinge: slide, of: both, numerator: [0.02, 0.8], denominator: [0.05, 1], sample: 0.02}
+  both: {type: expression, value: imu.x + 0.1 * slow, to: nothing, sample: 0.02}
+initial: {hinges: {slide: {position: [0.1], rate: [0.5]}}}
+)";
+  const Prepared prepared = prepare(SceneValues::parse("format: withy/1\n" + text, "text"), plugins());
+  State rest = prepared.scene.initial;
+  std::fill(rest.y.begin(), rest.y.end(), 0.0);
+  const LinearModel m = linear_model({prepared, rest, {}, Sampling::kept}, {{"slide"}, {"slide"}});
+  EXPECT_DOUBLE_EQ(m.system.period, 0.06);
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(m.system.A.rows());
+  z.head(2) << 0.1, 0.5;
+  for (int k = 0; k < 10; ++k) z = m.system.A * z;
+  const RunSummary run = simulate(prepared, plugins(), {});
+  ASSERT_EQ(run.status, RunStatus::completed);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(run.final.y[i], z[static_cast<Eigen::Index>(i)], 1e-9) << i;
+}
+
 using Gains = std::vector<std::pair<std::string, double>>;
 
 /// Greatest |coordinate| in the last over that in the first fifth of a run with the controller's gains times `factor`.
@@ -273,6 +301,22 @@ loads: {control: {type: pd-controller, law: constant, sample: 0.02, hinges: {axl
 initial: {hinges: {axle: {position: [0.001]}}}
 )",
           false, {{"hinges.axle.stiffness", 10}, {"hinges.axle.damping", 2}});
+}
+
+// p⁺ = −g a with a from the p before: alone that converges for g below the mass felt, whatever the sample.
+TEST(Loop, OfASampledAccelerationGoesUnstableInSimulationWhereItsMarginSays) {
+  confirm(R"(
+time: {end: 6, output: 0.002}
+integrator: {name: dopri5, rtol: 1e-8, atol: 1e-10}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+outputs: {imu: {type: accelerometer, of: block}}
+loads:
+  spring: {type: hinge-spring, hinge: slide, stiffness: 30, damping: 0.5}
+  control: {type: pid, of: imu.x, hinge: slide, proportional: 1, sample: 0.01}
+initial: {hinges: {slide: {position: [0.01]}}}
+)",
+          false, {{"proportional", 1}});
 }
 
 TEST(Loop, ThatHoldsAPendulumUprightFallsInSimulationWhereItsMarginSays) {

@@ -23,23 +23,31 @@ Progress = Callable[[float, float], Any]
 Path = Union[str, "os.PathLike[str]"]
 
 
-def load(path: Path, plugins: Sequence[Path] = ()) -> Scene:
+def load(path: Path, plugins: Sequence[Path] = (), *, check: bool = True) -> Scene:
     """Reads a scene from a file, YAML or JSON.
 
     Args:
         path: of the file.
         plugins: folders with plugins of your own.
+        check: at once, as ``withy check`` does; False: when the scene is needed, for a text that set() is to complete.
 
     Raises:
-        SceneError: where the text cannot be read.
+        SceneError: where the text cannot be read or, checked, has any problem: all of them, each with its place.
         OSError: where the file cannot.
     """
-    return Scene._of(_withy.Scene.read(library(plugins), os.fspath(path)), [os.fspath(p) for p in plugins])
+    return _checked(_withy.Scene.read(library(plugins), os.fspath(path)), plugins, check)
 
 
-def loads(text: str, name: str = "scene", plugins: Sequence[Path] = ()) -> Scene:
-    """Reads a scene from its text. ``name`` stands for the file in messages; names of other files begin at its folder."""
-    return Scene._of(_withy.Scene.parse(library(plugins), text, name), [os.fspath(p) for p in plugins])
+def loads(text: str, name: str = "scene", plugins: Sequence[Path] = (), *, check: bool = True) -> Scene:
+    """Reads a scene from its text, as load() does. ``name`` stands for the file in messages; names of other files begin
+    at its folder."""
+    return _checked(_withy.Scene.parse(library(plugins), text, name), plugins, check)
+
+
+def _checked(made: _withy.Scene, plugins: Sequence[Path], check: bool) -> Scene:
+    if check:
+        made.check()
+    return Scene._of(made, [os.fspath(p) for p in plugins])
 
 
 def _as_text(value: Any) -> str:

@@ -1,0 +1,31 @@
+/// \file
+/// Where the numbers come from that loads measure by their names.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+/// A number of a state.
+struct SignalSource {
+  enum class Kind {
+    position,  ///< an element of State::y
+    rate,      ///< likewise
+    load,      ///< what a load gives to others
+    output,    ///< of a sensor of Model::measured()
+    unbound    ///< of one that has no sensor yet: it depends on loads that are bound later
+  };
+  Kind kind = Kind::position;
+  std::size_t index = 0;   ///< of the position, the speed or the load; of an output among the numbers of all
+  std::size_t number = 0;  ///< among what a load gives
+};
+
+/// The source of a column of a hinge (`shoulder`, `shoulder.rate`), of what a load gives (`servo`, of several numbers
+/// `servo.0`) or of a number of an output (`imu.z`).
+/// \throws std::invalid_argument where there is no such number; the text has those that there are.
+SignalSource find_signal(const Model& model, const std::string& name);
+
+}  // namespace withy

@@ -1,0 +1,48 @@
+/// \file
+/// Renews discrete states of loads, with what they measure.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+#include "withy/core/model/signal_source.hpp"
+#include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/sampled_part.hpp"
+#include "withy/core/simulation/sensor_reader.hpp"
+
+namespace withy {
+
+/// Renews the discrete states of one model in one formulation. What a SampledPart measures of outputs is that of the
+/// state before the instant, whatever the order of the loads; what other loads give is what they give when its turn
+/// comes. Where that state has no finite accelerations, a load that needs outputs keeps what it has. Of one thread.
+class Renewal {
+ public:
+  /// The model and its equations must outlive it.
+  /// \throws std::invalid_argument where a load measures what there is not.
+  Renewal(const Model& model, const EquationsOfMotion& equations);
+  /// Goes to an instant, before any load is renewed there.
+  void at(const State& before);
+  /// Renews the states of one load at the state's time: that of the last call of `at`.
+  void operator()(State& state, const LoadSlot& slot, const Crossing& crossing);
+
+ private:
+  /// What a load measures.
+  struct Measured {
+    const SampledPart* part = nullptr;  ///< null: positions and speeds alone
+    std::vector<SignalSource> sources;
+    bool outputs = false;  ///< numbers of outputs among them
+  };
+  void measure(const Measured& measured, const State& state);
+
+  const Model& model_;
+  std::vector<Measured> measured_;        ///< one a slot of discrete states
+  std::unique_ptr<SensorReader> reader_;  ///< null: no load measures outputs
+  std::unique_ptr<SensedState> sensed_;   ///< for what loads give; null: none measures it
+  State before_;
+  bool looked_ = false, readable_ = false;  ///< at `before_`
+  std::vector<double> readings_, values_, scratch_;
+};
+
+}  // namespace withy

@@ -1,0 +1,79 @@
+#include <algorithm>
+
+#include "withy/core/model/signal_source.hpp"
+#include "withy/core/plugin/sampled_part.hpp"
+#include "withy/loads/control/bound_control.hpp"
+
+namespace withy {
+namespace {
+
+/// By the clock. Discrete states: whether it has begun, the block's states, and commands from the one that acts to the
+/// one just made, later by the delay.
+class SampledControl final : public BoundControl, public DiscretePart, public SampledPart {
+ public:
+  SampledControl(const Model& model, ControlEnds ends, std::shared_ptr<const ControlBlock> block)
+      : BoundControl(model, std::move(ends), std::move(block)), count_(this->block().states().size()) {
+    for (const std::string& name : names()) sources_.push_back(find_signal(model, name));  // throws where there is none
+    sees_inputs_ = std::all_of(sources_.begin(), sources_.end(), [](const SignalSource& s) {
+      return s.kind == SignalSource::Kind::position || s.kind == SignalSource::Kind::rate;
+    });
+    if (!sees_inputs_) show_states_alone();
+  }
+
+  std::size_t scratch() const override { return names().size(); }
+  const DiscretePart* discrete() const override { return this; }
+  std::vector<double> discontinuities() const override { return {}; }  // seen at the samples alone
+  std::size_t states() const override { return 1 + count_ + (ends().delay + 1) * outputs(); }
+  double period() const override { return ends().sample; }
+  void renew(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+             const Crossing& /*crossing*/, std::span<double> /*discrete*/,
+             std::span<double> /*scratch*/) const noexcept override {}
+  std::vector<std::string> measures() const override { return names(); }
+  void renew_measured(double t, const Crossing& /*crossing*/, std::span<const double> w,
+                      std::span<double> discrete) const noexcept override {
+    const std::span<double> z = discrete.subspan(1, count_), queue = discrete.subspan(1 + count_);
+    if (discrete[0] == 0) block().begin(t, w, z);
+    discrete[0] = 1;
+    const std::size_t p = outputs();
+    std::copy(queue.begin() + static_cast<std::ptrdiff_t>(p), queue.end(), queue.begin());
+    block().output(t, w, z, queue.last(p));
+    block().advance(t, w, z);
+  }
+  void add(double /*t*/, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
+    act(discrete.subspan(1 + count_, outputs()), efforts);
+  }
+  void add_wrenches(double /*t*/, std::span<const double> discrete, std::span<const FrameMotion> motions,
+                    std::span<Wrench> wrenches) const noexcept override {
+    act_at_frames(discrete.subspan(1 + count_, outputs()), motions, wrenches);
+  }
+  void read(const LoadView& view, std::span<double> values) const noexcept override {
+    const std::span<const double> v = view.discrete.subspan(1 + count_, outputs());
+    std::copy(v.begin(), v.end(), values.begin());
+  }
+  /// The command that acts, what the block shows of the state as it is, its states since the last sample.
+  void show(const LoadView& view, std::span<double> values) const noexcept override {
+    const std::span<const double> z = view.discrete.subspan(1, count_);
+    read(view, values.first(outputs()));
+    std::copy(z.begin(), z.end(), values.end() - static_cast<std::ptrdiff_t>(count_));
+    if (!sees_inputs_) return;
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+      view.scratch[i] = sources_[i].kind == SignalSource::Kind::rate ? view.speeds()[sources_[i].index]
+                                                                     : view.positions()[sources_[i].index];
+    block().show(view.t, view.scratch.first(sources_.size()), z, values.subspan(outputs()));
+  }
+  using BoundControl::add;
+
+ private:
+  std::size_t count_;  ///< states of the block
+  std::vector<SignalSource> sources_;
+  bool sees_inputs_ = false;  ///< all are coordinates and rates
+};
+
+}  // namespace
+
+std::unique_ptr<BoundLoad> make_sampled_control(const Model& model, const ControlEnds& ends,
+                                                const std::shared_ptr<const ControlBlock>& block) {
+  return std::make_unique<SampledControl>(model, ends, block);
+}
+
+}  // namespace withy

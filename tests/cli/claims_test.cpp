@@ -1,0 +1,307 @@
+/// \file
+/// What a certificate says, statement by statement, against what results.csv, runs at other tolerances and other
+/// commands give: scenes × formulations, and a mix.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using nlohmann::json;
+using Column = std::vector<double>;
+
+struct ClaimedCase {
+  std::string scene, formulation;
+  std::vector<std::string> sets = {};
+};
+void PrintTo(const ClaimedCase& c, std::ostream* out) {
+  *out << c.scene << ' ' << c.formulation;
+  for (const std::string& set : c.sets) *out << ' ' << set;
+}
+
+/// A run as a user has it: run.json and the columns of results.csv by their heads.
+struct KeptRun {
+  json summary;
+  std::map<std::string, Column> columns;
+
+  KeptRun(const ClaimedCase& c, const std::vector<std::string>& more) {
+    const Folder folder;
+    std::vector<std::string> arguments = {"run", c.scene, "--formulation", c.formulation, "--out", "out"};
+    for (const std::string& set : c.sets) arguments.insert(arguments.end(), {"--set", set});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished f = withy(folder, arguments);
+    EXPECT_EQ(f.status, 0) << f.err;
+    summary = json::parse(folder.read("out/run.json"));
+    const auto rows = lines(folder.read("out/results.csv"));
+    const std::vector<std::string> heads = split(rows.at(0));
+    for (std::size_t r = 1; r < rows.size(); ++r) {
+      const auto cells = split(rows[r]);
+      for (std::size_t i = 0; i < cells.size(); ++i) columns[heads[i]].push_back(std::stod(cells[i]));
+    }
+  }
+  [[nodiscard]] const Column& of(const std::string& head) const { return columns.at(head); }
+  [[nodiscard]] const json& certificate() const { return summary.at("certificate"); }
+
+ private:
+  static std::vector<std::string> split(const std::string& line) {
+    std::vector<std::string> cells;
+    std::stringstream text(line);
+    for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+    return cells;
+  }
+};
+
+double greatest(const Column& values) {
+  double most = 0;
+  for (const double v : values) most = std::max(most, std::abs(v));
+  return most;
+}
+
+/// Energy gained beyond the work done, over the greatest of energy, work and kinetic energy.
+Column imbalance(const KeptRun& run) {
+  const Column &kinetic = run.of("kinetic_energy[J]"), &potential = run.of("potential_energy[J]"),
+               &work = run.of("work[J]");
+  double scale = 0;
+  Column left;
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    const double energy = kinetic[i] + potential[i];
+    scale = std::max({scale, std::abs(energy), std::abs(work[i]), kinetic[i]});
+    left.push_back(energy - kinetic[0] - potential[0] - (work[i] - work[0]));
+  }
+  for (double& x : left) x /= scale;
+  return left;
+}
+
+/// Distance of a vector from its first value, over the size of that.
+Column change(const KeptRun& run, const std::string& name, const std::string& unit) {
+  std::array<const Column*, 3> parts{};
+  double first = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    parts.at(k) = &run.of(name + '.' + "xyz"[k] + '[' + unit + ']');
+    first = std::hypot(first, parts.at(k)->front());
+  }
+  Column all;
+  for (std::size_t i = 0; i < parts[0]->size(); ++i) {
+    double d = 0;
+    for (const Column* part : parts) d = std::hypot(d, (*part)[i] - part->front());
+    all.push_back(d / first);
+  }
+  return all;
+}
+
+double apart(const Column& a, const Column& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double most = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+const std::vector<std::string> exactly = {
+    "--integrator",          "dop853",     "--set", "integrator.rtol=1e-11", "--set",
+    "integrator.atol=1e-13", "--estimate", "never"};
+
+/// A case with its run as it comes, and at a tolerance of 1e-11.
+struct Claimed {
+  explicit Claimed(const ClaimedCase& claimed) : c(claimed), run(claimed, {}), truth(claimed, exactly) {}
+  [[nodiscard]] bool conserves() const {
+    return c.sets.empty() && (c.formulation == "linear" || c.formulation == "quadratic" || c.formulation == "exact");
+  }
+  const ClaimedCase& c;
+  KeptRun run, truth;
+};
+
+/// The drift, and whose it is: what it is at a tolerance of 1e-11 is the formulation's, the rest the integration's.
+void expect_drift_and_its_shares(const Claimed& claimed) {
+  const KeptRun &run = claimed.run, &truth = claimed.truth;
+  const json& c = run.certificate();
+  const Column drift = imbalance(run), model = imbalance(truth);
+  const bool own = claimed.c.formulation.starts_with("symmetric");
+  const double said = c.at(own ? "energy_drift_without_truncation" : "energy_drift");
+  EXPECT_LE(greatest(drift), 1.01 * said + 1e-14) << "over the steps it is no less than over the outputs";
+  EXPECT_LE(said, 1.2 * greatest(drift) + 1e-9);
+  const double by_model = c.at("drift_by").at("model").at("energy"),
+               by_integration = c.at("drift_by").at("integration").at("energy");
+  if (claimed.conserves()) {
+    EXPECT_EQ(by_model, 0);
+    EXPECT_EQ(by_integration, said);
+    EXPECT_LT(greatest(model), 1e-9) << "the formulation conserves energy, as it says";
+  } else {
+    EXPECT_NEAR(by_model, greatest(model), 0.05 * greatest(model));
+    if (!own) {
+      EXPECT_LE(apart(drift, model), by_integration + 1e-9);
+    }
+    EXPECT_LT(by_integration, 0.1 * by_model) << "of a run with usual tolerances";
+  }
+}
+
+void expect_momenta_of_free_trees_alone(const Claimed& claimed) {
+  const KeptRun& run = claimed.run;
+  const json& c = run.certificate();
+  const bool free = claimed.c.scene.find("beam-on-base") != std::string::npos;
+  ASSERT_EQ(c.at("momentum_drift").is_null(), !free);
+  if (!free) return;
+  for (const auto& [kind, name, unit] : std::vector<std::array<std::string, 3>>{
+           {"linear", "linear_momentum", "kg m/s"}, {"angular", "angular_momentum", "kg m^2/s"}}) {
+    const double said = c.at("momentum_drift").at(kind), seen = greatest(change(run, name, unit));
+    EXPECT_NEAR(said, seen, 0.05 * seen + 1e-9) << kind;
+    const double by_model = c.at("drift_by").at("model").at(kind);
+    EXPECT_NEAR(by_model, claimed.conserves() ? 0 : said, 0.1 * said + 1e-9) << kind;
+  }
+}
+
+/// Against the same scene in the model up, both at 1e-11.
+void expect_error_against_the_model_up(const Claimed& claimed) {
+  // Of `quadratic` it is made on demand.
+  const KeptRun asked(claimed.c, {"--estimate", "always"});
+  const json& estimate = asked.certificate().at("estimated_error");
+  if (claimed.c.formulation == "exact") {
+    EXPECT_TRUE(estimate.is_null());
+    EXPECT_EQ(asked.certificate().at("without_estimate"),
+              "nothing is left out: kinematics is exact and nothing is truncated");
+    return;
+  }
+  ClaimedCase up = claimed.c;
+  up.formulation = estimate.at("against");
+  up.sets.clear();
+  EXPECT_EQ(up.formulation, claimed.c.formulation == "quadratic" && claimed.c.sets.empty() ? "exact" : "quadratic");
+  const KeptRun &ours = claimed.truth, theirs(up, exactly);
+  for (const auto& [tip, said] : estimate.at("tips").items()) {
+    double real = 0;
+    for (std::size_t i = 0; i < ours.of("t[s]").size(); ++i) {
+      double d = 0;
+      for (const char* axis : {".x[m]", ".y[m]", ".z[m]"})
+        d = std::hypot(d, ours.of(tip + axis).at(i) - theirs.of(tip + axis).at(i));
+      real = std::max(real, d);
+    }
+    EXPECT_NEAR(said.get<double>(), real, 0.1 * real + 1e-6) << tip;
+  }
+  for (const auto& [hinge, said] : estimate.at("hinges").items()) {
+    const std::string head = hinge + "[rad]";
+    if (ours.columns.count(head) == 0) continue;  // orientations are in the test of measures
+    const double real = apart(ours.of(head), theirs.of(head));
+    EXPECT_NEAR(said.get<double>(), real, 0.1 * real + 1e-6) << hinge;
+  }
+}
+
+/// One column for each mode that is listed; bodies whose formulation is another, and no others.
+void expect_modes_and_formulations_of_the_scene(const Claimed& claimed) {
+  const KeptRun& run = claimed.run;
+  const json& c = run.certificate();
+  std::size_t listed = 0, kept = 0;
+  for (const json& f : c.at("families")) {
+    const std::string stem = f.at("body").get<std::string>() + '.' + f.at("strain").get<std::string>() + '.';
+    const auto modes = f.at("modes").get<std::size_t>();
+    listed += modes;
+    EXPECT_EQ(run.columns.count(stem + std::to_string(modes) + "[1]"), 1U) << stem;
+    EXPECT_EQ(run.columns.count(stem + std::to_string(modes + 1) + "[1]"), 0U) << stem;
+    EXPECT_FALSE(f.at("family").get<std::string>().empty());
+  }
+  for (const auto& [head, values] : run.columns)
+    if (head.find("bending") != std::string::npos && head.find(".rate") == std::string::npos) ++kept;
+  EXPECT_EQ(listed, kept);
+  EXPECT_EQ(c.at("formulation").at("name"), claimed.c.formulation);
+  EXPECT_EQ(c.at("formulation").contains("bodies"), !claimed.c.sets.empty());
+}
+
+/// Deflections of tips from their columns, over the lengths in the scene.
+void expect_deflections_of_the_tips(const Claimed& claimed) {
+  const std::map<std::string, double> lengths = {{"link1", 0.9144}, {"link2", 0.9144}, {"boom", 2.0}};
+  const KeptRun& run = claimed.run;
+  for (const json& body : run.certificate().at("bodies")) {
+    const std::string name = body.at("name");
+    const std::string stem = name + ".tip.deflection_";
+    double most = 0;
+    for (std::size_t i = 0; i < run.of("t[s]").size(); ++i)
+      most = std::max(most, std::hypot(run.of(stem + "x[m]")[i], run.of(stem + "y[m]")[i], run.of(stem + "z[m]")[i]));
+    ASSERT_EQ(lengths.count(name), 1U) << name;
+    const double said = body.at("deflection_over_length");
+    EXPECT_NEAR(said, most / lengths.at(name), 0.02 * said) << name;
+  }
+}
+
+/// The mean step, and the fastest pole as `withy modes --poles` lists it of the last state.
+void expect_steps_and_pole(const Claimed& claimed) {
+  const KeptRun& run = claimed.run;
+  const json& steps = run.certificate().at("steps");
+  const double mean = run.summary.at("t_end").get<double>() / run.summary.at("steps").get<double>();
+  EXPECT_NEAR(steps.at("mean"), mean, 1e-9 * mean);
+  EXPECT_NEAR(steps.at("step_times_fastest_mode"), mean * steps.at("fastest_mode").get<double>(), 1e-9);
+  const Folder folder;
+  folder.write("end.json", run.summary.at("final").dump());
+  std::vector<std::string> arguments = {"modes", claimed.c.scene, "--formulations", claimed.c.formulation,
+                                        "--at",  "end.json",      "--as-is",        "--json"};
+  for (const std::string& set : claimed.c.sets) arguments.insert(arguments.end(), {"--set", set});
+  const Finished f = withy(folder, arguments);
+  ASSERT_EQ(f.status, 0) << f.err;
+  double fastest = 0;
+  const json answer = json::parse(f.out);
+  for (const json& mode : answer.at("runs").at(0).at("points").at(0).at("modes"))
+    fastest = std::max(fastest, mode.at("frequency").get<double>());
+  EXPECT_NEAR(steps.at("fastest_mode"), fastest, 0.02 * fastest);
+}
+
+/// What is dropped, against `withy terms` over many outputs.
+void expect_dropped_terms_of_the_ledger(const Claimed& claimed) {
+  const KeptRun& run = claimed.run;
+  const json& dropped = run.certificate().at("dropped");
+  if (claimed.conserves() && claimed.c.formulation != "linear") {
+    EXPECT_TRUE(dropped.empty());
+    return;
+  }
+  const Folder folder;
+  std::vector<std::string> arguments = {"terms",         claimed.c.scene,       "--set", "time.output=0.025",
+                                        "--formulation", claimed.c.formulation, "--json"};
+  for (const std::string& set : claimed.c.sets) arguments.insert(arguments.end(), {"--set", set});
+  const json ledger = json::parse(withy(folder, arguments).out);
+  for (const auto& [group, terms] : ledger.at("groups").items()) {
+    double most = 0;
+    for (const auto& [name, size] : terms.items()) most = std::max(most, size.at("rms").get<double>());
+    double sum = 0;
+    for (const auto& [name, share] : dropped.at(group).at("terms").items()) {
+      const double real = terms.at(name).at("rms").get<double>() / most;
+      EXPECT_NEAR(share.get<double>(), real, 0.5 * real + 1e-4) << group << ' ' << name << ", of a dozen states";
+      sum += share.get<double>();
+    }
+    if (!dropped.at(group).at("terms").empty()) {
+      EXPECT_LE(dropped.at(group).at("share").get<double>(), 1.001 * sum + 1e-6) << "no more than its parts together";
+    }
+    EXPECT_GT(dropped.at(group).at("share").get<double>(), 0) << group;
+  }
+}
+
+class Claims : public testing::TestWithParam<ClaimedCase> {};
+
+TEST_P(Claims, OfACertificateHold) {
+  const Claimed claimed(GetParam());
+  if (HasFailure()) return;
+  expect_modes_and_formulations_of_the_scene(claimed);
+  expect_drift_and_its_shares(claimed);
+  expect_momenta_of_free_trees_alone(claimed);
+  expect_error_against_the_model_up(claimed);
+  expect_deflections_of_the_tips(claimed);
+  expect_steps_and_pole(claimed);
+  expect_dropped_terms_of_the_ledger(claimed);
+}
+
+std::vector<ClaimedCase> claimed_cases() {
+  std::vector<ClaimedCase> all;
+  for (const char* scene : {"scenes/two-link-slew.yaml", "scenes/beam-on-base.yaml"})
+    for (const char* formulation : {"ruthless", "consistent", "linear", "quadratic", "exact"})
+      all.push_back({scene, formulation});
+  all.push_back({"scenes/two-link-slew.yaml", "symmetric"});
+  all.push_back({"scenes/two-link-slew.yaml", "quadratic", {"bodies.link1.formulation=ruthless"}});
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Certificates, Claims, testing::ValuesIn(claimed_cases()));
+
+}  // namespace
+}  // namespace withy::test

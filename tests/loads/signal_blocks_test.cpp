@@ -1,0 +1,274 @@
+// Filters, parts of digital measurements, sums over time, reaction wheels and scheduled gains, by what outputs show.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "withy/core/simulation/sensor_reader.hpp"
+#include "withy/tests/loads/scene_run.hpp"
+
+namespace withy {
+namespace {
+
+using std::numbers::pi;
+using test::LoadedScene;
+using testing::HasSubstr;
+
+/// A run's table of outputs.
+struct Shown {
+  explicit Shown(const std::string& text, const std::vector<std::string>& overrides = {}) : scene(text, overrides) {
+    SensorReader reader(scene.scene.outputs, *scene.equations);
+    columns = reader.columns();
+    for (const State& state : scene.run()) {
+      times.push_back(state.time);
+      rows.emplace_back(columns.size());
+      EXPECT_TRUE(reader.read(state, rows.back()));
+    }
+  }
+  [[nodiscard]] std::vector<double> operator[](const std::string& name) const {
+    std::vector<double> all;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (columns[c].name != name) continue;
+      for (const std::vector<double>& row : rows) all.push_back(row[c]);
+    }
+    EXPECT_FALSE(all.empty()) << name;
+    return all;
+  }
+  LoadedScene scene;
+  std::vector<Column> columns;
+  std::vector<double> times;
+  std::vector<std::vector<double>> rows;
+};
+
+/// Of a wave, from its last two values, a quarter of a period apart.
+double amplitude_at_end(const std::vector<double>& x) { return std::hypot(x.back(), x[x.size() - 2]); }
+
+TEST(Filter, HasButterworthsGainOfItsOrder) {
+  for (const int order : {1, 2, 3, 5, 8}) {
+    for (const double times : {0.5, 1.0, 2.0}) {
+      const Shown s(test::turntable + "outputs: {f: {type: control, of: low, show: command}}\nloads:\n" +
+                        "  wave: {type: expression, value: sin(2 * pi * 4 * t), to: nothing}\n"
+                        "  low: {type: filter, of: wave, cutoff: " +
+                        std::to_string(4 / times) + " Hz, order: " + std::to_string(order) + "}\n",
+                    {"time.output=0.0625", "time.end=6", "integrator.rtol=1e-9"});
+      EXPECT_NEAR(amplitude_at_end(s["f.command"]), 1 / std::sqrt(1 + std::pow(times, 2 * order)), 1e-6)
+          << order << " at " << times;
+    }
+  }
+}
+
+TEST(Filter, BeginsSettledAndIsTheSameByTheClockForAHeldSignal) {
+  const std::string text = R"(format: withy/1
+gravity: [0, 0, -9.81]
+time: {end: 0.5, output: 0.01}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {held: {type: revolute, axis: [0, 0, 1], parent: world, child: block}}
+outputs:
+  imu: {type: accelerometer, of: block}
+  a: {type: control, of: continuous, show: command}
+  b: {type: control, of: sampled, show: command}
+loads:
+  continuous: {type: filter, of: imu.z, cutoff: 3 Hz, order: 3}
+  sampled: {type: filter, of: imu.z, cutoff: 3 Hz, order: 3, sample: 0.01}
+)";
+  const Shown s(text);
+  EXPECT_EQ(s.columns[3].unit, "m/s^2");
+  for (const char* name : {"a.command", "b.command"})
+    for (const double x : s[name]) ASSERT_NEAR(x, 9.81, 1e-9) << name;
+}
+
+TEST(Digital, AveragesAndQuantizersAreTheirClosedForms) {
+  const Shown s(test::turntable + R"(outputs:
+  mean: {type: control, of: average, show: command}
+  steps: {type: control, of: converter, show: command}
+  top: {type: control, of: most, show: command}
+loads:
+  ramp: {type: expression, value: t * (2 - t), to: nothing}
+  line: {type: expression, value: t, to: nothing}
+  average: {type: moving-average, of: line, window: 0.1, sample: 0.02}
+  converter: {type: quantizer, of: line, step: 0.25, range: 1, sample: 0.02}
+  most: {type: over-time, of: ramp, what: max, sample: 0.02}
+)",
+                {"time.output=0.02", "time.end=1.99"});
+  const std::vector<double> mean = s["mean.command"], steps = s["steps.command"], top = s["top.command"];
+  for (std::size_t k = 1; k + 1 < s.times.size(); ++k) {
+    const double sampled = 0.02 * (static_cast<double>(k) - 1);  // a row shows what is held before its own sample
+    double of_five = 0;
+    for (int i = 0; i < 5; ++i) of_five += std::max(0.0, sampled - 0.02 * i) / 5;
+    ASSERT_NEAR(mean[k], of_five, 1e-12) << k;
+    ASSERT_NEAR(steps[k], std::min(1.0, 0.25 * std::round(sampled / 0.25)), 1e-12) << k;
+    ASSERT_NEAR(top[k], sampled < 1 ? sampled * (2 - sampled) : 1, 1e-12) << k;
+  }
+}
+
+TEST(Digital, NoiseIsNormalAndDependsOnSeedAndSampleAlone) {
+  const std::string text = test::turntable + R"(outputs: {n: {type: control, of: noise, show: command}}
+loads: {noise: {type: noise, deviation: 0.3, seed: 11, sample: 0.001}}
+)";
+  const std::vector<double> x = Shown(text, {"time.output=0.001", "time.end=3.9995"})["n.command"];
+  const std::vector<double> other = Shown(text, {"time.output=0.001", "time.end=3.9995", "integrator=rk4",
+                                                 "integrator.step=0.0003", "loads.noise.seed=11"})["n.command"];
+  EXPECT_EQ(x, other) << "steps change nothing";
+  EXPECT_NE(x, Shown(text, {"time.output=0.001", "time.end=3.9995", "loads.noise.seed=12"})["n.command"]);
+  double mean = 0, square = 0, beside = 0;
+  for (std::size_t k = 1; k < x.size(); ++k) mean += x[k], square += x[k] * x[k], beside += x[k] * x[k - 1];
+  const auto n = static_cast<double>(x.size() - 1);
+  EXPECT_NEAR(mean / n, 0, 4 * 0.3 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(square / n), 0.3, 0.3 * 4 / std::sqrt(2 * n));
+  EXPECT_NEAR(beside / n, 0, 4 * 0.09 / std::sqrt(n)) << "one sample says nothing of the next";
+}
+
+TEST(OverTime, SumsAreThoseOfAWave) {
+  const Shown s(test::turntable + R"(outputs:
+  area: {type: control, of: area, show: command}
+  mean: {type: control, of: mean, show: command}
+  rms: {type: control, of: rms, show: command}
+loads:
+  wave: {type: expression, value: 1 + 3 * sin(t), to: nothing}
+  area: {type: over-time, of: wave, what: integral}
+  mean: {type: over-time, of: wave, what: mean}
+  rms: {type: over-time, of: wave, what: rms}
+)",
+                {"time.output=0.5", "time.end=7"});
+  for (std::size_t k = 1; k < s.times.size(); ++k) {
+    const double t = s.times[k], area = t + 3 * (1 - std::cos(t));
+    const double square = t + 6 * (1 - std::cos(t)) + 9 * (t / 2 - std::sin(2 * t) / 4);
+    ASSERT_NEAR(s["area.command"][k], area, 1e-8);
+    ASSERT_NEAR(s["mean.command"][k], area / t, 1e-8);
+    ASSERT_NEAR(s["rms.command"][k], std::sqrt(square / t), 1e-8);
+  }
+}
+
+TEST(ControlOutput, ShowsCommandErrorAndStates) {
+  const Shown s(test::turntable + R"(outputs:
+  c: {type: control, of: servo}
+  d: {type: control, of: digital}
+  axle_seen: {type: hinge, hinge: axle}
+loads:
+  servo: {type: pid, hinge: axle, proportional: 5, integral: 4, derivative: 1, filter: 0.05, reference: 0.5}
+  digital: {type: pid, of: axle, to: nothing, proportional: 2, integral: 1, reference: 0.2, sample: 0.01}
+)");
+  std::vector<std::string> names;
+  for (const Column& c : s.columns) names.push_back(c.name + "[" + c.unit + "]");
+  EXPECT_THAT(names, testing::ElementsAre("c.command[N m]", "c.error[rad]", "c.integral[N m]", "c.filter[rad]",
+                                          "d.command[1]", "d.error[rad]", "d.integral[1]", "axle_seen.position[rad]",
+                                          "axle_seen.rate[rad/s]", "axle_seen.acceleration[rad/s^2]"));
+  for (std::size_t k = 0; k < s.times.size(); ++k) {
+    const double e = 0.5 - s["axle_seen.position"][k];
+    ASSERT_DOUBLE_EQ(s["c.error"][k], e);
+    ASSERT_DOUBLE_EQ(s["d.error"][k], 0.2 - s["axle_seen.position"][k]);
+    ASSERT_NEAR(s["c.command"][k], 5 * e + s["c.integral"][k] + (e - s["c.filter"][k]) / 0.05, 1e-9);
+    ASSERT_NEAR(s["c.command"][k], 0.2 * s["axle_seen.acceleration"][k], 1e-9);
+  }
+  EXPECT_THAT(test::problem_of(test::turntable + "outputs: {c: {type: control, of: servo, show: eror}}\nloads: {servo: "
+                                                 "{type: pid, hinge: axle, proportional: 5}}\n"),
+              HasSubstr("load 'servo' has no 'eror' to show; known: command, error"));
+  EXPECT_THAT(test::problem_of(test::turntable + "outputs: {c: {type: control, of: spring}}\nloads: {spring: {type: "
+                                                 "hinge-spring, hinge: axle, stiffness: 5}}\n"),
+              HasSubstr("is no controller"));
+}
+
+/// A bus about its axis with a wheel on it: J_b = 4, J_w = 0.1.
+const std::string wheel_on_bus = R"(format: withy/1
+time: {end: 10, output: 0.1}
+integrator: {name: dopri5, rtol: 1e-9, atol: 1e-11}
+bodies:
+  bus: {type: rigid, mass: 10, inertia: [4, 4, 4, 0, 0, 0]}
+  wheel: {type: rigid, mass: 1, inertia: [0.05, 0.05, 0.1, 0, 0, 0]}
+hinges:
+  turn: {type: revolute, axis: [0, 0, 1], parent: world, child: bus}
+  axle: {type: revolute, axis: [0, 0, 1], parent: bus, child: wheel}
+outputs:
+  drive: {type: control, of: wheel}
+  turn_seen: {type: hinge, hinge: turn}
+  axle_seen: {type: hinge, hinge: axle}
+)";
+
+TEST(ReactionWheel, GivesItsTorqueToTheBusUntilItsSpeedLimit) {
+  const Shown s(wheel_on_bus + R"(loads:
+  law: {type: expression, value: "0.5", to: nothing}
+  wheel: {type: reaction-wheel, of: law, hinge: axle, torque_limit: 0.2, speed_limit: 8, inertia: 0.1}
+)");
+  const std::vector<double> bus = s["turn_seen.rate"], rate = s["axle_seen.rate"], momentum = s["drive.momentum"];
+  const double reduced = 1 / (1 / 0.1 + 1 / 4.0);  // of the rate between the two
+  for (std::size_t k = 0; k < s.times.size(); ++k) {
+    ASSERT_NEAR(4 * bus[k] + 0.1 * (bus[k] + rate[k]), 0, 1e-9) << "momentum is kept";
+    ASSERT_DOUBLE_EQ(momentum[k], 0.1 * rate[k]);
+    ASSERT_LE(rate[k], 8 + 1e-9);
+    if (s.times[k] < 0.99 * 8 * reduced / 0.2) {
+      ASSERT_NEAR(rate[k], 0.2 * s.times[k] / reduced, 1e-7);
+    }
+  }
+  EXPECT_NEAR(rate.back(), 8, 1e-3);
+  EXPECT_LT(s["drive.motor"].back(), 1e-3);
+}
+
+/// Far above its speed Coulomb's friction is constant: J Ω̇ = −b Ω − τ_c.
+TEST(ReactionWheel, SlowsDownByFrictionAndStops) {
+  const Shown s(wheel_on_bus + R"(initial: {hinges: {axle: {rate: [20]}}}
+loads:
+  law: {type: expression, value: "0", to: nothing}
+  wheel: {type: reaction-wheel, of: law, hinge: axle, viscous: 0.01, coulomb: 0.1, coulomb_speed: 0.02}
+)",
+                {"time.end=40"});
+  const double J = 1 / (1 / 0.1 + 1 / 4.0), b = 0.01, c = 0.1;
+  const double stop = J / b * std::log(1 + 20 * b / c);
+  ASSERT_LT(stop, 30);
+  for (std::size_t k = 0; k < s.times.size(); ++k) {
+    const double rate = (20 + c / b) * std::exp(-b * s.times[k] / J) - c / b;
+    if (rate > 1) {
+      ASSERT_NEAR(s["axle_seen.rate"][k], rate, 1e-6) << s.times[k];
+    }
+    if (s.times[k] > stop + 1) {
+      ASSERT_NEAR(s["axle_seen.rate"][k], 0, 1e-3) << s.times[k];
+    }
+  }
+}
+
+TEST(ReactionWheel, WithALagTakesAccelerationsAndNamesWhatItLacks) {
+  const auto problem = [](const std::string& options) {
+    return test::problem_of(wheel_on_bus +
+                            "  imu: {type: accelerometer, of: wheel}\nloads: {wheel: {type: reaction-wheel, " +
+                            options + "}}\n");
+  };
+  EXPECT_EQ(problem("of: imu.x, hinge: axle, time_constant: 0.1"), "");
+  EXPECT_THAT(problem("of: imu.x, hinge: axle"), HasSubstr("is algebraic"));
+  EXPECT_THAT(problem("hinge: axle"), HasSubstr("needs 'of' with one signal, the torque that is commanded"));
+  EXPECT_THAT(problem("of: turn, hinge: axle, sample: 0.1"), HasSubstr("its controller may be sampled"));
+}
+
+TEST(Schedule, GainsFollowTheirTablesOverASignal) {
+  const Shown s(test::turntable + R"(outputs: {c: {type: control, of: servo}, axle_seen: {type: hinge, hinge: axle}}
+loads:
+  speed: {type: expression, value: 3 * t, to: nothing}
+  servo: {type: pid, hinge: axle, reference: 0.5, schedule: speed, proportional: [[1, 4], [3, 10], [4, 2]], derivative: 0.5}
+)");
+  for (std::size_t k = 0; k < s.times.size(); ++k) {
+    const double v = 3 * s.times[k];
+    const double kp = v <= 1 ? 4 : v <= 3 ? 4 + 3 * (v - 1) : v <= 4 ? 10 - 8 * (v - 3) : 2;
+    ASSERT_NEAR(s["c.command"][k], kp * s["c.error"][k] - 0.5 * s["axle_seen.rate"][k], 1e-12) << v;
+  }
+  const auto problem = [](const std::string& options) {
+    return test::problem_of(test::turntable + "loads: {servo: {type: pid, hinge: axle, " + options + "}}\n");
+  };
+  EXPECT_THAT(problem("proportional: [[0, 1], [1, 2]]"),
+              testing::AllOf(HasSubstr("/loads/servo/proportional"), HasSubstr("needs a 'schedule'")));
+  EXPECT_THAT(problem("proportional: 3, schedule: axle"), HasSubstr("no gain is a table over it"));
+  EXPECT_THAT(problem("proportional: [[0, 1], [1, 2]], schedule: axel"), HasSubstr("did you mean 'axle'"));
+}
+
+TEST(Digital, WhatBlocksLackIsSaid) {
+  const auto problem = [](const std::string& options) {
+    return test::problem_of(test::turntable + "loads: {block: {" + options + "}}\n");
+  };
+  EXPECT_THAT(problem("type: noise, deviation: 1"),
+              HasSubstr("noise is of a digital measurement: it needs a 'sample'"));
+  EXPECT_THAT(problem("type: filter, cutoff: 3"), HasSubstr("needs 'of' with one signal"));
+  EXPECT_THAT(problem("type: filter, of: axle, cutoff: 3, order: 0"), HasSubstr("/loads/block/order"));
+  EXPECT_THAT(problem("type: moving-average, of: axle, window: 0.015, sample: 0.01"),
+              HasSubstr("needs 1 to 1000 times the 'sample'"));
+  EXPECT_THAT(problem("type: over-time, of: axle, what: max"), HasSubstr("it needs a 'sample'"));
+}
+
+}  // namespace
+}  // namespace withy
