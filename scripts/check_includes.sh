@@ -45,7 +45,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["apps"] = ".*"
     may["tests"] = ".*"
 
-    # Libraries that stay in one room, tests included.
+    # Libraries that stay in one room, tests included; but a test of FMUs has CVODE as a host of its own.
     only["yaml-cpp/"] = "scene"
     only["CLI/"] = "apps"
     only["hdf5.h"] = "results"
@@ -89,7 +89,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     if (target !~ ("^(" may[room] ")$")) complain(room " may not include " target)
     if (quoted && target !~ /^withy\// && room != "tests") complain("\"" target "\" is neither a neighbour nor written \"withy/...\"")
     for (prefix in only)
-      if (index(target, prefix) == 1 && room != only[prefix]) complain(target " stays in " only[prefix])
+      if (index(target, prefix) == 1 && room != only[prefix] && FILENAME != "tests/fmi/cvode_test.cpp") complain(target " stays in " only[prefix])
   }
   END { exit bad }
 ' || exit 1

@@ -10,6 +10,10 @@
 namespace withy::fmi {
 namespace {
 
+/// How far [rad, m, …] beyond its zero a switching function is where the indicator of it is zero: hosts halt at zeros
+/// to rounding, on either side, and the functions have to have changed their signs there.
+constexpr double beyond_zero = 1e-11;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The scene's initial state at another time: what motions prescribe is where it then is.
@@ -219,6 +223,12 @@ void Dynamics::sensitivity(std::span<const double> along_states, std::span<const
 }
 
 std::span<const double> Dynamics::event_indicators() {
+  read_switches();
+  for (std::size_t f = 0; f < signs_.size(); ++f) values_[f] += beyond_zero * signs_[f];
+  return values_;
+}
+
+void Dynamics::read_switches() {
   const State& state = seen();
   const Layout& layout = model().layout();
   const std::span<const double> y(state.y);
@@ -231,7 +241,6 @@ std::span<const double> Dynamics::event_indicators() {
     at += part.switches();
   }
   for (const RunEvent& event : prepared_->scene.events) values_[at++] = event.function(state.time, y);
-  return values_;
 }
 
 /// What is due at the state's time has been dealt with: the next instant. A host lands up to rounding of its own.
@@ -257,7 +266,7 @@ EventUpdate Dynamics::begin() {
   clocks_.begin(state_);
   const double next = next_instant();
   changed();
-  static_cast<void>(event_indicators());
+  read_switches();
   std::transform(values_.begin(), values_.end(), signs_.begin(), sign);
   return {false, false, next};
 }
@@ -265,7 +274,7 @@ EventUpdate Dynamics::begin() {
 /// Acts on the indicators that have changed their signs. \returns whether a load has switched
 bool Dynamics::switch_where_passed(EventUpdate& update) {
   bool switched = false;
-  static_cast<void>(event_indicators());
+  read_switches();
   for (std::size_t f = 0; f < signs_.size(); ++f) {
     const int now = sign(values_[f]);
     if (now == 0 || now == signs_[f]) continue;

@@ -68,7 +68,8 @@ class Dynamics {
                    std::span<const std::size_t> columns, std::span<double> values);
 
   [[nodiscard]] std::size_t indicators() const { return signs_.size(); }
-  /// Switching functions of the loads, then the scene's events; until the next call.
+  /// Switching functions of the loads, then the scene's events, each shifted such that its zero lies a rounding beyond
+  /// the function's own; until the next call.
   std::span<const double> event_indicators();
   double indicator(std::size_t index) { return event_indicators()[index]; }
   /// Renews the discrete states that are due at this time or whose switching functions have changed their signs.
@@ -91,6 +92,7 @@ class Dynamics {
   State moved(double h, std::span<const double> along_states, std::span<const std::size_t> inputs,
               std::span<const double> along_inputs);
   bool switch_where_passed(EventUpdate& update);
+  void read_switches();
 
   std::shared_ptr<const study::Prepared> prepared_;
   const EquationsOfMotion& equations_;
