@@ -1,5 +1,7 @@
 #include "withy/core/tree/placed_mass.hpp"
 
+#include <cstdint>
+
 #include "withy/core/tree/tree.hpp"
 
 namespace withy {
@@ -47,7 +49,7 @@ std::string PlacedMass::identity() const {
   std::string bytes;
   if (shape_ == nullptr) return bytes;
   const auto append = [&](const void* from, std::size_t size) { bytes.append(static_cast<const char*>(from), size); };
-  const ModalShape* shape = shape_.get();
+  const auto shape = reinterpret_cast<std::uintptr_t>(shape_.get());
   append(&shape, sizeof shape);
   append(&linear_, sizeof linear_);
   for (const Pose& AB : moves_) {
