@@ -7,13 +7,6 @@ import { Figure, draw, legend, number, table_of } from './figure.js';
 const hertz = m => m.hertz;
 const radians = m => 2 * Math.PI * m.hertz;
 
-// The head of a row; a long name may go on below after a dot.
-function named(name) {
-  const head = element('th');
-  name.split('.').forEach((part, i) => head.append(...(i > 0 ? ['.', element('wbr')] : []), part));
-  return head;
-}
-
 export class Modes {
   constructor(holder, data) {
     Object.assign(this, { data, unit: 'Hz', chosen: null, harmonics: data.rate ? 4 : 0 });
@@ -149,7 +142,7 @@ export class Modes {
       bar.style.width = `${Math.max(1, 100 * share)}%`;
       bar.style.background = b.color ?? 'currentColor';
       cell.append(bar);
-      row.append(named(name), cell, element('td', `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`, { class: 'number' }), element('td', `${Math.round(phase)}°`, { class: 'number' }));
+      row.append(element('th', name), cell, element('td', `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`, { class: 'number' }), element('td', `${Math.round(phase)}°`, { class: 'number' }));
       bars.append(row);
     }
     this.card.append(bars);
