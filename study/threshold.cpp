@@ -42,6 +42,33 @@ Thresholds of_runs(TradeStudy& study, const std::vector<Point>& points, const Sw
   return found;
 }
 
+Thresholds of_frequencies(const Prepared& base, Registry& registry, const FrequencyQuestion& question, double limit,
+                          const Control& control) {
+  FrequencyStudy study(base, registry, question);
+  const Sweep& range = question.sweep;
+  const bool from_rest = !range.spun().empty() && range.values.front() == 0;
+  const auto all = static_cast<double>(question.points.size() * study.names().size());
+  Thresholds found;
+  for (const Point& p : question.points) {
+    for (const std::string& mode : study.names()) {
+      Threshold row{p, mode, {}, from_rest ? study.reference_frequency(mode, 0) : 0, {}};
+      // Each takes a second where bodies have many modes: who waits is told, and may stop it, between any two.
+      const auto error = [&](double v) {
+        if (control.stop()) throw Interrupted();
+        control.tell(static_cast<double>(found.rows.size()), all);
+        return study.error(p, mode, v);
+      };
+      for (const double v : range.values) row.errors.push_back(error(v));
+      row.crossing = find_crossing(error, range.values, limit, accuracy_of_frequencies);
+      found.rows.push_back(std::move(row));
+    }
+  }
+  found.reference = study.reference().formulation;
+  found.reference_modes = study.reference().modes;
+  found.reference_error = study.reference_error();
+  return found;
+}
+
 }  // namespace
 
 Point at_value(Point point, const std::string& path, double value) {
@@ -65,25 +92,11 @@ std::optional<Thresholds> thresholds_of_runs(const Prepared& base, Registry& reg
 std::optional<Thresholds> thresholds_of_frequencies(const Prepared& base, Registry& registry,
                                                     const FrequencyQuestion& question, double limit,
                                                     const Control& control) {
-  FrequencyStudy study(base, registry, question);
-  const Sweep& range = question.sweep;
-  const bool from_rest = !range.spun().empty() && range.values.front() == 0;
-  Thresholds found;
-  for (const Point& p : question.points) {
-    for (const std::string& mode : study.names()) {
-      if (control.stop()) return {};
-      Threshold row{p, mode, {}, from_rest ? study.reference_frequency(mode, 0) : 0, {}};
-      const auto error = [&](double v) { return study.error(p, mode, v); };
-      for (const double v : range.values) row.errors.push_back(error(v));
-      row.crossing = find_crossing(error, range.values, limit, accuracy_of_frequencies);
-      found.rows.push_back(std::move(row));
-    }
-    control.tell(static_cast<double>(&p - question.points.data() + 1), static_cast<double>(question.points.size()));
+  try {
+    return of_frequencies(base, registry, question, limit, control);
+  } catch (const Interrupted&) {
+    return {};
   }
-  found.reference = study.reference().formulation;
-  found.reference_modes = study.reference().modes;
-  found.reference_error = study.reference_error();
-  return found;
 }
 
 }  // namespace withy::study

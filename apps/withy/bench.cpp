@@ -75,7 +75,10 @@ ExitStatus bench(const BenchArguments& arguments) {
   }
   std::vector<Json> results;
   SceneArguments one = arguments;
+  const study::Control control = study_control("bench");
   for (const std::string& formulation : formulations) {
+    if (control.stop()) return ExitStatus::interrupted;
+    control.tell(static_cast<double>(results.size()), static_cast<double>(formulations.size()));
     one.options.formulation = formulation;
     const Engine engine(one);
     Json result{{"scene", engine.scene().file}};

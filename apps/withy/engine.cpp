@@ -87,6 +87,7 @@ study::Control run_control(const std::string& label) {
 study::Control study_control(const std::string& label) {
   watch_for_interrupt();
   const auto progress = std::make_shared<Progress>(label);
+  progress->begin();
   return {interrupted, [progress](double done, double all) { progress->of_points(done, all); }};
 }
 

@@ -43,6 +43,10 @@ void Progress::show(const std::string& text) {
   static_cast<void>(std::fputs(fmt::format("\r\033[K{}: {}", label_, text).c_str(), stderr));
 }
 
+void Progress::begin() {
+  if (due()) show("begins");
+}
+
 void Progress::at(double t, double end) {
   if (!std::exchange(told_, true)) first_ = t;
   if (!due()) return;
@@ -56,7 +60,9 @@ void Progress::at(double t, double end) {
 void Progress::of_points(double done, double all) {
   if (!due()) return;
   const double passed = std::chrono::duration<double>(Clock::now() - began_).count();
-  show(fmt::format("{:g} of {:g}, about {:.0f} s left", done, all, done > 0 ? passed / done * (all - done) : 0.0));
+  std::string text = fmt::format("{:g} of {:g}", done, all);
+  if (done > 0) text += fmt::format(", about {:.0f} s left", passed / done * (all - done));
+  show(text);
 }
 
 }  // namespace withy::app

@@ -20,6 +20,8 @@ class Progress {
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
+  /// Says that there is something to wait for, before anything is done.
+  void begin();
   /// Simulated time reached [s], of a run to `end`; with its rate [s/s] and the time that is left at it.
   void at(double t, double end);
   /// Points that are done, of all; with the time that is left at this rate.

@@ -9,6 +9,7 @@
 
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy::app {
@@ -56,17 +57,20 @@ std::string run_table(const study::Prepared& prepared, const RunSummary& summary
   for (const auto& [body, d] : summary.peak_deflection) {
     line("peak deflection " + body, fmt::format("y {:.5g} m, z {:.5g} m", d[1], d[2]));
   }
+  const auto effort_text = [&](const std::vector<double>& efforts, const Slot& slot, std::size_t i) {
+    const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(&slot - model.layout().hinges.data())];
+    return fmt::format("{:.5g} {}", efforts.at(slot.speed + i), hinge_rates(*hinge.hinge)[i].angular ? "N m" : "N");
+  };
   for (const Slot& slot : model.layout().hinges) {
-    for (std::size_t i = 0; i < slot.speeds; ++i) {
-      const double effort = summary.peak_effort.at(slot.speed + i);
-      if (effort > 0) line("peak effort " + model.layout().speed_names[slot.speed + i], fmt::format("{:.5g}", effort));
-    }
+    for (std::size_t i = 0; i < slot.speeds; ++i)
+      if (summary.peak_effort.at(slot.speed + i) > 0)
+        line("peak effort " + model.layout().speed_names[slot.speed + i], effort_text(summary.peak_effort, slot, i));
   }
   for (const MotionNode& motion : model.motions()) {
     const Slot& slot = model.layout().hinges[static_cast<std::size_t>(motion.hinge)];
     for (std::size_t i = 0; i < slot.speeds; ++i)
       line("effort of motion " + motion.name,
-           fmt::format("peak {:.5g} on {}", summary.peak_motion_effort.at(slot.speed + i),
+           fmt::format("peak {} on {}", effort_text(summary.peak_motion_effort, slot, i),
                        model.layout().speed_names[slot.speed + i]));
   }
   for (const EventTime& e : summary.events)

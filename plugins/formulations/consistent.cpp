@@ -7,7 +7,8 @@ namespace withy {
 
 void enroll_consistent(Enrollment& enrollment) {
   enroll_terms<StrainOrder::quadratic, Truncation::strict>(
-      enrollment, "consistent", "First order in the elastic coordinates, from nonlinear strain-displacement relations");
+      enrollment, "consistent",
+      "All terms of first order in the elastic coordinates, and no others: its mass matrix may turn singular");
 }
 
 }  // namespace withy

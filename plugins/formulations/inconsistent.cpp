@@ -7,7 +7,8 @@ namespace withy {
 
 void enroll_inconsistent(Enrollment& enrollment) {
   enroll_terms<StrainOrder::linear, Truncation::strict, InStudies::aside>(
-      enrollment, "inconsistent", "First order in the elastic coordinates, from linear strain-displacement relations");
+      enrollment, "inconsistent",
+      "First order from linear strains, which lacks stiffening of that same order: shows what goes wrong");
 }
 
 }  // namespace withy

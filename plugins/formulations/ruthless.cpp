@@ -7,7 +7,8 @@ namespace withy {
 
 void enroll_ruthless(Enrollment& enrollment) {
   enroll_terms<StrainOrder::linear, Truncation::ruthless, InStudies::rung>(
-      enrollment, "ruthless", "Elastic terms dropped but for q̈, -Kq and -Dq̇ (order zero)");
+      enrollment, "ruthless",
+      "Elasticity enters by its own inertia, stiffness and damping alone (order zero): cheapest, for slow motion");
 }
 
 }  // namespace withy
