@@ -89,7 +89,8 @@ void add_case(CLI::App& part, SweepArguments& a) {
 
 void add_run_part(CLI::App& part, SweepArguments& a) {
   add_plan(part, a);
-  part.add_option("--out,--store", a.store, "Folder that keeps the results; the same command goes on with what is there")
+  part.add_option("--out,--store", a.store,
+                  "Folder that keeps the results; the same command goes on with what is there")
       ->type_name("STORE")
       ->required();
   part.add_option("--jobs", a.jobs, "Cases run at once; default: one a core")->type_name("N");

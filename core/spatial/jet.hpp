@@ -39,7 +39,8 @@ class DualNumber {
   DualNumber& operator/=(const DualNumber& b) { return *this = *this / b; }
 
   friend DualNumber operator-(const DualNumber& a) { return a.chained(-a.value_, T(-1.0)); }
-  // Into a result of its own: a copy that is added to is written number by number and read again by pairs, which stalls.
+  // Into a result of its own: a copy that is added to is written number by number and read again by pairs, which
+  // stalls.
   friend DualNumber operator+(const DualNumber& a, const DualNumber& b) {
     DualNumber c;
     c.value_ = a.value_ + b.value_;
