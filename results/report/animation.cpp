@@ -13,7 +13,7 @@
 namespace withy {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 /// Of tubes and beads; the rings of a deep tree are many.
 constexpr std::size_t sides = 8;
