@@ -55,7 +55,7 @@ std::vector<std::size_t> joined(const std::string& kind, const std::vector<Vecto
 
 }  // namespace
 
-Animation::Body Animation::body_of(const nlohmann::json& part) {
+Animation::Body Animation::body_of(const nlohmann::ordered_json& part) {
   Body body;
   body.name = part.at("name");
   body.kind = part.at("kind");

@@ -57,7 +57,7 @@ class Animation {
     std::vector<std::size_t> line;  ///< points that a tube goes along
     std::size_t at = 0;             ///< of its numbers in those of a moment
   };
-  static Body body_of(const nlohmann::json& part);
+  static Body body_of(const nlohmann::ordered_json& part);
   [[nodiscard]] std::vector<Vector3> points(const Body& body, std::size_t moment) const;
   [[nodiscard]] Surface drawn(const Body& body, const std::vector<Vector3>& points) const;
   [[nodiscard]] double extent() const;
