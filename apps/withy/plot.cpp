@@ -117,6 +117,7 @@ const Command plot_command = {"plot", "Draw columns of finished runs",
                               "  withy plot results/pendulum-quadratic\n"
                               "  withy plot results/pendulum-quadratic pivot kinetic_energy --terminal\n"
                               "  withy plot results/pendulum-quadratic rod.tip --out tip.svg\n"
+                              "  withy run scenes/loads-of-the-slew.yaml\n"
                               "  withy plot results/loads-of-the-slew-quadratic root.mz middle.mz end.mz --over "
                               "0,0.4572,0.9144",
                               &add_plot};
