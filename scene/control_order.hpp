@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "withy/core/plugin/load.hpp"
+#include "withy/core/plugin/sensor.hpp"
 #include "withy/scene/check.hpp"
 
 namespace withy {
