@@ -43,13 +43,11 @@ class Hdf5Writer final : public Hdf5Recorder {
   void describe_frames(const std::vector<std::string>& frames) override {
     for (std::size_t c = 0; c < frames.size(); ++c)
       if (!frames[c].empty()) write_text(columns_[c], "frame", frames[c]);
+    share();  // before the run, not with its first row: it writes all there is
   }
 
   void row(std::span<const double> numbers) override {
-    if (!shared_) {  // from here on datasets grow and nothing else changes
-      need(H5Fstart_swmr_write(file_));
-      shared_ = true;
-    }
+    share();
     for (std::size_t c = 0; c < waiting_.size(); ++c) waiting_[c].push_back(numbers[c]);
     // A part that is written before it is full is written again later: the longer a run, the more seldom.
     const auto now = Clock::now();
@@ -145,6 +143,13 @@ class Hdf5Writer final : public Hdf5Recorder {
       waiting_[c].clear();
     }
     rows_ = size;
+  }
+
+  /// From here on datasets grow and nothing else changes: others may read.
+  void share() {
+    if (shared_) return;
+    need(H5Fstart_swmr_write(file_));
+    shared_ = true;
   }
 
   void flush() {
