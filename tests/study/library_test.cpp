@@ -205,7 +205,7 @@ TEST(StudyRun, OfWhichTheOutcomeAloneIsLookedAtEndsTheSameWay) {
     EXPECT_EQ(outcome.peak_effort, whole.peak_effort) << name;
     EXPECT_EQ(outcome.energy_drift, whole.energy_drift) << name;
     EXPECT_TRUE(outcome.validity.bodies.empty()) << name;
-    EXPECT_GT(whole.fastest_mode, 0) << name;
+    EXPECT_EQ(whole.fastest_mode > 0, name != std::string("pendulum")) << "rigid, which has none";
     EXPECT_EQ(outcome.fastest_mode, whole.status == RunStatus::completed ? 0 : whole.fastest_mode) << name;
   }
 }
