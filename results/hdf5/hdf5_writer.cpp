@@ -12,6 +12,9 @@ namespace withy {
 namespace {
 
 constexpr hsize_t chunk = 512;  ///< rows that are compressed together
+/// Up to so many columns others may read a file while it is written: the library goes over all of them again and again
+/// for that. 2,000 took six times as long as they take without, and the time grows with the square.
+constexpr std::size_t most_shared = 256;
 using Clock = std::chrono::steady_clock;
 
 class Hdf5Writer final : public Hdf5Recorder {
@@ -26,18 +29,18 @@ class Hdf5Writer final : public Hdf5Recorder {
 
   void begin(const std::vector<Column>& columns) override {
     if (!columns_.empty()) return;  // the table goes on
-    const Hdf5Handle how = part_by_part();
+    const Hdf5Handle how = part_by_part(), cache = one_part();
     const hsize_t none = 0, most = H5S_UNLIMITED;
     const Hdf5Handle space(need(H5Screate_simple(1, &none, &most)), &H5Sclose);
     for (const Column& column : columns) {
-      columns_.emplace_back(need(H5Dcreate2(file_, column_name(column.name).c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT,
-                                            how, H5P_DEFAULT)),
-                            &H5Dclose);
+      columns_.emplace_back(
+          need(H5Dcreate2(file_, column_name(column.name).c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, how, cache)),
+          &H5Dclose);
       write_text(columns_.back(), "unit", column.unit.empty() ? "1" : column.unit);
     }
     write_order(columns);
     waiting_.assign(columns.size(), {});
-    need(H5Fflush(file_, H5F_SCOPE_LOCAL));
+    if (columns.size() <= most_shared) need(H5Fflush(file_, H5F_SCOPE_LOCAL));
   }
 
   void describe_frames(const std::vector<std::string>& frames) override {
@@ -52,7 +55,7 @@ class Hdf5Writer final : public Hdf5Recorder {
     // A part that is written before it is full is written again later: the longer a run, the more seldom.
     const auto now = Clock::now();
     if ((rows_ + waiting_.front().size()) % chunk == 0) write_waiting();
-    if (now - flushed_ > std::chrono::seconds(1) + (now - began_) / 20) flush();
+    if (shared_ && now - flushed_ > std::chrono::seconds(1) + (now - began_) / 20) flush();
   }
 
   RecordMark mark() override {
@@ -113,6 +116,13 @@ class Hdf5Writer final : public Hdf5Recorder {
     return how;
   }
 
+  /// Columns are written from end to end: room for the part that is not full.
+  [[nodiscard]] Hdf5Handle one_part() const {
+    Hdf5Handle access(need(H5Pcreate(H5P_DATASET_ACCESS)), &H5Pclose);
+    need(H5Pset_chunk_cache(access, 1, chunk * sizeof(double), 1));
+    return access;
+  }
+
   /// The names of the datasets in the order of the table, since a file lists them by the alphabet.
   void write_order(const std::vector<Column>& columns) const {
     std::string names;
@@ -147,7 +157,7 @@ class Hdf5Writer final : public Hdf5Recorder {
 
   /// From here on datasets grow and nothing else changes: others may read.
   void share() {
-    if (shared_) return;
+    if (shared_ || columns_.size() > most_shared) return;
     need(H5Fstart_swmr_write(file_));
     shared_ = true;
   }
