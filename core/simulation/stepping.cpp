@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace withy {
 
@@ -26,6 +27,7 @@ Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::
 SteppingEnd Stepping::run(SteppingObserver& observer) {
   observer_ = &observer;
   ended_ = {};
+  if (!sound(state())) return ended_;
   if (actions_ != nullptr && actions_->next(state()) == state().time && !act({})) return ended_;
   while (state().time < end_) {
     const auto jump = std::upper_bound(jumps_.begin(), jumps_.end(), state().time);
@@ -33,7 +35,7 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
     const double landing = jumps ? *jump : end_;
     while (state().time < landing) {
       if (!to(std::min(landing, next_instant()), true)) return ended_;
-      if (state().time >= clocks_.next()) renew_clocks();
+      if (state().time >= clocks_.next() && !renew_clocks()) return ended_;
       if (actions_ != nullptr && actions_->next(state()) == state().time && !act({})) return ended_;
     }
     if (!jumps) continue;
@@ -112,13 +114,21 @@ bool Stepping::changes_the_run(const Zero& zero) const {
   return actions_ != nullptr && !zeros_.switching(zero.function) && actions_->acts(zeros_.index(zero));
 }
 
-void Stepping::renew_clocks() {
+/// Whether no load has failed; the stepping has ended else.
+bool Stepping::sound(const State& state) {
+  ended_.reason = observer_->failure(clocks_, state);
+  return ended_.reason.empty() || end(Cause::failed);
+}
+
+bool Stepping::renew_clocks() {
   sample_ = state();
   observer_->renew(clocks_, sample_);
+  if (!sound(sample_)) return false;
   clocks_.go_on_after(sample_.time);
   stepper_->jump(sample_);
   zeros_.begin_at(sample_);
   observer_->jumped();
+  return true;
 }
 
 /// Steps to a time; false where stepping ends before. Not watching: a step taken back is made again to end at a zero,
@@ -224,6 +234,7 @@ bool Stepping::cut_at(double time, std::size_t noted) {
 }
 
 void Stepping::resume(const State& state, std::span<const double> memory) {
+  if (const std::string why = clocks_.refusal(state); !why.empty()) throw std::invalid_argument(why);
   stepper_->resume(state, memory);
   clocks_.go_on_after(state.time);
 }
