@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
+
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 
@@ -25,6 +28,8 @@ Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::
 }
 
 SteppingEnd Stepping::run(SteppingObserver& observer) {
+  FloatingPointGuard arithmetic;
+  arithmetic_ = &arithmetic;
   observer_ = &observer;
   ended_ = {};
   if (!sound(state())) return ended_;
@@ -142,6 +147,7 @@ bool Stepping::to(double limit, bool watching) {
     const std::size_t made = stepper_->statistics().evaluations;
     ended_.step = stepper_->step(limit);
     step_evaluations_ += stepper_->statistics().evaluations - made;
+    check_arithmetic();
     if (ended_.step.outcome != StepResult::Outcome::ok) return end(Cause::failed);
     if (watching && !zeros_.empty()) {
       handled_ = zeros_.find(*stepper_, before_.time);
@@ -153,6 +159,15 @@ bool Stepping::to(double limit, bool watching) {
     if (!after_step()) return false;
   }
   return true;
+}
+
+/// A load, motion, formulation or integrator may round otherwise from its first call on: what it and all others have
+/// computed since is not what the same input gives elsewhere.
+void Stepping::check_arithmetic() {
+  const std::string changed = take_changed_arithmetic();
+  if (changed.empty()) return arithmetic_->check("a plugin of this scene");
+  arithmetic_->restore();
+  throw PluginError("a plugin of this scene changes " + changed + " for the whole program: no result can be trusted");
 }
 
 bool Stepping::after_step() {
