@@ -33,7 +33,10 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
     const double landing = jumps ? *jump : end_;
     while (state().time < landing) {
       if (!to(std::min(landing, next_instant()), true)) return ended_;
-      if (state().time >= clocks_.next()) renew_clocks();
+      if (state().time >= clocks_.next()) {
+        renew_clocks();
+        if (!happened_.empty() && !act(std::vector<std::size_t>(happened_))) return ended_;
+      }
       if (actions_ != nullptr && actions_->next(state()) == state().time && !act({})) return ended_;
     }
     if (!jumps) continue;
@@ -71,6 +74,8 @@ bool Stepping::act(std::span<const std::size_t> happened) {
     observer_->acted(acted_on_, state());
     observer_->jumped();
     if (done.stops) return end(Cause::event);
+    // What is only looked for has passed, whatever side of its value rounding leaves it on.
+    if (!done.changes) return true;
     const std::vector<std::size_t> acted = done.acted;
     if (!leap(acted)) return false;
     if (happened_.empty()) return true;
@@ -112,13 +117,19 @@ bool Stepping::changes_the_run(const Zero& zero) const {
   return actions_ != nullptr && !zeros_.switching(zero.function) && actions_->acts(zeros_.index(zero));
 }
 
+/// Renews discrete states by the clock. An event happens where a number that it watches jumps past its value with them.
 void Stepping::renew_clocks() {
   sample_ = state();
   observer_->renew(clocks_, sample_);
   clocks_.go_on_after(sample_.time);
   stepper_->jump(sample_);
-  zeros_.begin_at(sample_);
+  handled_ = zeros_.leap(sample_);
   observer_->jumped();
+  happened_.clear();
+  for (const Zero& zero : handled_) {
+    if (actions_ == nullptr || zeros_.switching(zero.function) || !actions_->acts(zeros_.index(zero))) continue;
+    if (!actions_->over(zeros_.index(zero), sample_)) happened_.push_back(zeros_.index(zero));
+  }
 }
 
 /// Steps to a time; false where stepping ends before. Not watching: a step taken back is made again to end at a zero,
