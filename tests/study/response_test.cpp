@@ -405,7 +405,9 @@ loads:
   servo: {type: pid, of: read, hinge: axle, proportional: 3, sample: 0.01}
 )");
   try {
-    response(at_start(p), {.input = "servo"});
+    ResponseQuestion question;
+    question.input = "servo";
+    static_cast<void>(response(at_start(p), question));
     FAIL() << "a quantizer has no linear form";
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("load 'read' gives what it measures in steps"), std::string::npos) << e.what();
