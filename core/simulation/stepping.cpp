@@ -40,7 +40,10 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
     const double landing = jumps ? *jump : end_;
     while (state().time < landing) {
       if (!to(std::min(landing, next_instant()), true)) return ended_;
-      if (state().time >= clocks_.next() && !renew_clocks()) return ended_;
+      if (state().time >= clocks_.next()) {
+        if (!renew_clocks()) return ended_;
+        if (!happened_.empty() && !act(std::vector<std::size_t>(happened_))) return ended_;
+      }
       if (actions_ != nullptr && actions_->next(state()) == state().time && !act({})) return ended_;
     }
     if (!jumps) continue;
@@ -78,6 +81,8 @@ bool Stepping::act(std::span<const std::size_t> happened) {
     observer_->acted(acted_on_, state());
     observer_->jumped();
     if (done.stops) return end(Cause::event);
+    // What is only looked for has passed, whatever side of its value rounding leaves it on.
+    if (!done.changes) return true;
     const std::vector<std::size_t> acted = done.acted;
     if (!leap(acted)) return false;
     if (happened_.empty()) return true;
@@ -125,14 +130,20 @@ bool Stepping::sound(const State& state) {
   return ended_.reason.empty() || end(Cause::failed);
 }
 
+/// Renews discrete states by the clock. An event happens where a number that it watches jumps past its value with them.
 bool Stepping::renew_clocks() {
   sample_ = state();
   observer_->renew(clocks_, sample_);
   if (!sound(sample_)) return false;
   clocks_.go_on_after(sample_.time);
   stepper_->jump(sample_);
-  zeros_.begin_at(sample_);
+  handled_ = zeros_.leap(sample_);
   observer_->jumped();
+  happened_.clear();
+  for (const Zero& zero : handled_) {
+    if (actions_ == nullptr || zeros_.switching(zero.function) || !actions_->acts(zeros_.index(zero))) continue;
+    if (!actions_->over(zeros_.index(zero), sample_)) happened_.push_back(zeros_.index(zero));
+  }
   return true;
 }
 
