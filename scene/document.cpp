@@ -6,6 +6,7 @@
 #include <yaml-cpp/parser.h>
 
 #include <cerrno>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -285,6 +286,24 @@ bool read_document(std::string_view text, const Origin& origin, Document& docume
   return builder.whole();
 }
 
+namespace {
+
+/// What a file that cannot be read may have been; empty where nothing beside it has a name like it.
+std::string meant_file(const std::string& file) {
+  const std::filesystem::path path = file;
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) return " (it is a folder; name a file in it)";
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::vector<std::string> there;
+  for (std::filesystem::directory_iterator entry(folder, none), end; !none && entry != end; entry.increment(none))
+    if (there.push_back(entry->path().filename().string()); there.size() > 1000) break;
+  const std::string guess = nearest(path.filename().string(), there);
+  if (guess.empty() || guess == path.filename()) return {};
+  return " (did you mean " + (path.has_parent_path() ? (folder / guess).string() : guess) + "?)";
+}
+
+}  // namespace
+
 std::string read_bytes(const std::string& file) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
@@ -295,7 +314,8 @@ std::string read_bytes(const std::string& file) {
     text.append(block, 0, static_cast<std::size_t>(stream.gcount()));
   }
   if (!stream.is_open() || stream.bad()) {
-    throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(), "cannot read " + file);
+    const int why = errno != 0 ? errno : EIO;
+    throw std::system_error(why, std::generic_category(), "cannot read " + file + meant_file(file));
   }
   return text;
 }
