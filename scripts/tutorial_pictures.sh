@@ -34,4 +34,4 @@ shot() {
 shot results/satellite/report.html tutorial-satellite.png 760
 shot results/modes/report.html tutorial-modes.png 620
 shot results/tolerances/report.html tutorial-tolerances.png 760
-shot results/imager-advice/report.html tutorial-imager-advice.png 900
+shot results/imager-advice/report.html tutorial-imager-advice.png 1120

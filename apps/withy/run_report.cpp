@@ -110,13 +110,15 @@ std::string extremes_text(const nlohmann::ordered_json& outputs) {
   std::map<std::string, double> greatest;  // of an output, in one unit
   for (const auto& [name, o] : outputs.items())
     greatest[kin_of(name, o)] = std::max(greatest[kin_of(name, o)], reach(o));
+  std::size_t width = 23;
+  for (const auto& [name, o] : outputs.items()) width = std::max(width, name.size() + 9);
   std::string out;
   for (const auto& [name, o] : outputs.items()) {
     if (reach(o) < small * greatest[kin_of(name, o)]) continue;
     const std::string unit = o["unit"];
-    out +=
-        fmt::format("{:<23} {} at {:.4g} s to {} at {:.4g} s\n", "range of " + name, readable(o["min"]["value"], unit),
-                    o["min"]["t"].get<double>(), readable(o["max"]["value"], unit), o["max"]["t"].get<double>());
+    out += fmt::format("{:<{}} {} at {:.4g} s to {} at {:.4g} s\n", "range of " + name, width,
+                       readable(o["min"]["value"], unit), o["min"]["t"].get<double>(),
+                       readable(o["max"]["value"], unit), o["max"]["t"].get<double>());
   }
   return out.empty() ? out : '\n' + out;
 }

@@ -1,7 +1,7 @@
 // What a command says in words, and its curves: names switch them off, the pointer is told the nearest point.
 import { dashes } from '../data.js';
 import { element } from '../words.js';
-import { Figure, draw, legend, number, tell } from './figure.js';
+import { Figure, draw, legend, number, shapes, tell } from './figure.js';
 
 export class Figures {
   constructor(holder, data) {
@@ -21,7 +21,7 @@ export class Figures {
       const points = pen => part.picture.panels.every(p => p.curves.every(c => c.pen !== pen || c.points));
       for (const e of part.entries) {
         e.color = colours[e.pen % colours.length];
-        if (points(e.pen)) e.shape = e.pen; else e.dash = dashes[e.pen % dashes.length].join(' ');
+        if (points(e.pen)) e.shape = e.pen % shapes.length; else e.dash = dashes[e.pen % dashes.length].join(' ');
       }
       part.names.replaceChildren(part.entries.length > 1 ? legend(part.entries, () => this.paint(colours)) : '');
       const hidden = new Set(part.entries.filter(e => e.hidden).map(e => e.pen));
