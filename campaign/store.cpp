@@ -17,6 +17,7 @@
 #include "withy/campaign/kept.hpp"
 #include "withy/campaign/plan_reader.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/make_folder.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/results/results_folder.hpp"
 #include "withy/scene/sha256.hpp"
@@ -166,7 +167,7 @@ Store::Store(std::filesystem::path path, const Plan& plan, bool anew)
   for (const char* name :
        {name_of_description, name_of_segments, "table.csv", "statistics.csv", "indices.csv", "failed.csv"})
     std::filesystem::remove_all(path_ / name);
-  std::filesystem::create_directories(path_ / name_of_segments);
+  make_folder(path_ / name_of_segments);
   write_description(path_, about_);
 }
 

@@ -9,6 +9,7 @@
 #include <yaml-cpp/parser.h>
 
 #include <cerrno>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -301,9 +302,27 @@ bool read_document(std::string_view text, const Origin& origin, Document& docume
   return builder.whole();
 }
 
+namespace {
+
+/// What a file that cannot be read may have been; empty where nothing beside it has a name like it.
+std::string meant_file(const std::string& file) {
+  const std::filesystem::path path = file;
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) return " (it is a folder; name a file in it)";
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::vector<std::string> there;
+  for (std::filesystem::directory_iterator entry(folder, none), end; !none && entry != end; entry.increment(none))
+    if (there.push_back(entry->path().filename().string()); there.size() > 1000) break;
+  const std::string guess = nearest(path.filename().string(), there);
+  if (guess.empty() || guess == path.filename()) return {};
+  return " (did you mean " + (path.has_parent_path() ? (folder / guess).string() : guess) + "?)";
+}
+
+}  // namespace
+
 std::string read_bytes(const std::string& file) {
   const auto fail = [&](int error) -> void {
-    throw std::system_error(error, std::generic_category(), "cannot read " + file);
+    throw std::system_error(error, std::generic_category(), "cannot read " + file + meant_file(file));
   };
   // A pipe is opened at once, whether or not somebody writes.
   const int opened = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);

@@ -29,6 +29,7 @@ struct SteppingEnd {
   };
   Cause cause = Cause::reached;
   StepResult step;
+  std::string reason = {};  ///< of a failure that is no step's: the words of a load
 };
 
 /// What watches stepping, and may end it.
@@ -58,6 +59,8 @@ class SteppingObserver {
   virtual void restarted() {}
   /// Renews the discrete states that are due at the state's time; for states that are not laid out as the model's.
   virtual void renew(Clocks& clocks, State& state) { clocks.renew(state); }
+  /// Why a load has failed at a state, as Renewal::failure.
+  virtual std::string failure(const Clocks& clocks, const State& state) { return clocks.failure(state); }
 };
 
 struct SteppingOptions {
@@ -106,7 +109,8 @@ class Stepping {
   bool act_on_zeros();
   bool cut_at(double time, std::size_t noted);
   void note(const Zero& zero);
-  void renew_clocks();
+  bool renew_clocks();
+  bool sound(const State& state);
   bool end(SteppingEnd::Cause cause);
   [[nodiscard]] double coincidence(const Zero& zero) const;
 
