@@ -14,8 +14,15 @@ class Hdf5Reader {
     begin_hdf5();
     // A file whose writer still goes on, or was killed, opens as one that is shared alone.
     hid_t file = H5Fopen(name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (file < 0) file = H5Fopen(name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT);
-    file_ = {need(file), &H5Fclose};
+    if (file < 0) {
+      // A sum that does not fit is read again, in case the writer is at it, after a pause that doubles: of a damaged
+      // file the 100 times that are the library's own take for ever, so many some hundredths of a second.
+      constexpr unsigned attempts = 24;
+      const Hdf5Handle access(need(H5Pcreate(H5P_FILE_ACCESS)), &H5Pclose);
+      need(H5Pset_metadata_read_attempts(access, attempts));
+      file = need(H5Fopen(name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access));
+    }
+    file_ = {file, &H5Fclose};
     if (text(file_, "format") != "withy-results/1") throw ResultsError(name_ + " is no table of withy");
     std::istringstream names(text(file_, "columns"));
     for (std::string column; std::getline(names, column);) add(column);

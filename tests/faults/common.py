@@ -75,16 +75,21 @@ class Bench:
 
     @staticmethod
     def end(process, seconds=600):
-        """Waits; what hangs is killed, and its status is None."""
+        """Waits; what takes long is asked to end (SIGTERM), and killed where it does not: its status is then None."""
         began = time.monotonic()
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
         try:
             out, err = process.communicate(timeout=seconds)
             status = process.returncode
         except subprocess.TimeoutExpired:
-            process.kill()
-            out, err = process.communicate()
-            status = None
+            process.terminate()
+            try:
+                out, err = process.communicate(timeout=30)
+                status = process.returncode
+            except subprocess.TimeoutExpired:
+                process.kill()
+                out, err = process.communicate()
+                status = None
         peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
         text = [(b or b'').decode(errors='replace') for b in (out, err)]
         # The greatest of all children: greater than before only where this one was.

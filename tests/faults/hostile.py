@@ -45,8 +45,8 @@ def hostile(bench, share):
     for call, deed in deeds if share > 0.1 else always + bench.random.sample(deeds, 6):
         what = f'{call}-{deed}'
         ended = run(what)
-        # What is never asked for is never done; exceptions of C++ may be faults of the scene.
-        why = ended.fault({0, 2, 3} if deed in ('throws', 'memory') else {0, 3}, most_lines=3)
+        # What is never asked for is never done; what is thrown while a scene is read is reported at its place.
+        why = ended.fault({0, 2, 3} if deed in ('throws', 'number', 'memory') else {0, 3}, most_lines=3)
         if not why and ended.status == 0 and bench.read('out/results.csv') != good:
             why = 'other results, and not a word'
         rows[0].note(what, why)
