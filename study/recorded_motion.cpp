@@ -5,11 +5,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <sstream>
+#include <system_error>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/scene/document.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
@@ -151,12 +152,19 @@ Value table_of(const std::string& hinge, const std::vector<double>& t, const std
                      {"table", Value::list(std::move(rows))}});
 }
 
+std::string text_of(const std::string& file) {
+  try {
+    return read_bytes(file);
+  } catch (const std::system_error& e) {
+    throw InputError(fmt::format("{}: cannot be read: {}", file, e.code().message()));
+  }
+}
+
 }  // namespace
 
 RecordedMotion read_recorded_motion(const std::filesystem::path& path, const Model& model) {
   const std::string file = path.string();
-  std::ifstream in(path);
-  if (!in) throw InputError(file + ": cannot be read");
+  std::istringstream in(text_of(file));
   std::string line;
   if (!std::getline(in, line)) throw InputError(file + ": empty; need a head as t[s],shoulder[rad],elbow[rad]");
   RecordedMotion motion;

@@ -167,7 +167,9 @@ ExitStatus trade(const TradeArguments& arguments) {
                           has_report_page() ? ", to look at in its report.html" : "");
   }
   print(text);
-  return whole ? ExitStatus::done : ExitStatus::interrupted;
+  if (whole) return ExitStatus::done;
+  if (store) complain("interrupted; the same command goes on from there");
+  return ExitStatus::interrupted;
 }
 
 std::function<ExitStatus()> add_trade(CLI::App& c) {
