@@ -10,19 +10,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t curve_stretches = 700;
+constexpr std::size_t most_of_curve = 700;
 
 /// Indices of the points that are drawn, in their order.
-std::vector<std::size_t> indices_drawn(const Curve& curve) {
+std::vector<std::size_t> drawn(const Curve& curve) {
   const std::size_t n = std::min(curve.x.size(), curve.y.size());
   std::vector<std::size_t> kept;
-  if (curve.points || n <= 2 * curve_stretches) {
+  if (curve.points || n <= 2 * most_of_curve) {
     for (std::size_t i = 0; i < n; ++i) kept.push_back(i);
     return kept;
   }
-  for (std::size_t s = 0; s < curve_stretches; ++s) {
-    const auto first = static_cast<std::ptrdiff_t>(s * n / curve_stretches);
-    const auto last = static_cast<std::ptrdiff_t>((s + 1) * n / curve_stretches);
+  for (std::size_t s = 0; s < most_of_curve; ++s) {
+    const auto first = static_cast<std::ptrdiff_t>(s * n / most_of_curve);
+    const auto last = static_cast<std::ptrdiff_t>((s + 1) * n / most_of_curve);
     const auto [low, high] = std::minmax_element(curve.y.begin() + first, curve.y.begin() + last);
     const auto a = static_cast<std::size_t>(low - curve.y.begin());
     const auto b = static_cast<std::size_t>(high - curve.y.begin());
@@ -42,7 +42,7 @@ Json curve_json(const Curve& curve, std::size_t place, const std::vector<std::st
   }
   if (curve.points) j["points"] = true;
   if (curve.ends_early) j["ends_early"] = true;
-  for (const std::size_t i : indices_drawn(curve)) {
+  for (const std::size_t i : drawn(curve)) {
     j["x"].push_back(curve.x[i]);
     j["y"].push_back(curve.y[i]);
     if (i < curve.notes.size()) j["notes"].push_back(curve.notes[i]);
