@@ -97,7 +97,7 @@ std::string families_text(const study::Certificate& certificate) {
   for (const study::BodyFamilies& f : certificate.families) {
     text += f.body == body ? ", " : fmt::format("{}{}: ", text.empty() ? "" : "; ", f.body);
     text += fmt::format("{}{}{}{}{}", f.modes, f.strain.empty() ? "" : " ", f.strain, f.family.empty() ? "" : " ",
-                        f.family);
+                        f.strain.empty() && f.family.empty() ? " of its own" : f.family);
     body = f.body;
   }
   return text;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -24,6 +25,22 @@ std::vector<OwnFormulation> own_formulations(const Scene& scene, Registry& regis
     const Value* own = scene.source.at("bodies").at(name).find("formulation");
     if (own == nullptr || own->kind() != Value::Kind::text || own->text() == scene.formulation_name) continue;
     all.push_back({name, own->text(), meaning_of(own->text(), registry)});
+  }
+  return all;
+}
+
+/// As the scene chooses them, then those that bodies bring with them.
+std::vector<BodyFamilies> families_of(const Scene& scene) {
+  std::vector<BodyFamilies> all;
+  std::set<std::string> chosen;
+  for (const BodyModes& body : scene.modes) {
+    chosen.insert(body.body);
+    for (const ModeCount& count : body.counts)
+      if (count.modes > 0) all.push_back({body.body, count.strain, count.family_id(), count.modes});
+  }
+  for (const BodyNode& body : scene.model->bodies()) {
+    const auto modes = static_cast<std::size_t>(body.body->shape().modes());
+    if (modes > 0 && !body.segment && chosen.count(body.name) == 0) all.push_back({body.name, "", "", modes});
   }
   return all;
 }
@@ -100,9 +117,7 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.momentum = summary.momentum;
   c.shares = shares_of(prepared, evidence);
   c.dropped = std::move(evidence.dropped);
-  for (const BodyModes& body : scene.modes)
-    for (const ModeCount& count : body.counts)
-      if (count.modes > 0) c.families.push_back({body.body, count.strain, count.family_id(), count.modes});
+  c.families = families_of(scene);
   const EquationsOfMotion& equations = last != nullptr ? *last->equations : *prepared.equations;
   const double rounding = rounding_error(prepared.model(), equations, summary.final).relative;
   if (std::isfinite(rounding)) c.rounding = rounding;

@@ -126,11 +126,11 @@ std::string growth_text(const Prepared& prepared, const RunSummary& summary) {
     const FastestPole pole = growing_pole(dynamics, summary.final, driven_speeds(model, summary.final));
     const double lasted = summary.reached - prepared.scene.initial.time;
     if (!(pole.value.real() * lasted > 1)) return physical_cause(prepared, summary);
-    return fmt::format(" About the state at t = {:.4g} s small motions grow by {:.3g}/s{}, most by {} on {}.{}",
-                       summary.final.time, pole.value.real(),
-                       pole.value.imag() > 0 ? fmt::format(", vibrating at {:.3g} rad/s", pole.value.imag()) : "",
-                       pole.cause.empty() ? "forces" : pole.cause, model.layout().speed_names[pole.speed],
-                       physical_cause(prepared, summary));
+    return fmt::format(
+        " About the state at t = {:.4g} s small motions grow by {:.3g}/s{}, most by {}{}.{}", summary.final.time,
+        pole.value.real(), pole.value.imag() > 0 ? fmt::format(", vibrating at {:.3g} rad/s", pole.value.imag()) : "",
+        pole.cause.empty() ? "forces" : pole.cause,
+        pole.of_load_state() ? "" : " on " + model.layout().speed_names[pole.speed], physical_cause(prepared, summary));
   } catch (const std::domain_error&) {
     return physical_cause(prepared, summary);  // there are no derivatives at that state
   }

@@ -17,6 +17,9 @@ using Complex = std::complex<double>;
 /// An inertia that is a smaller share than this of what the coordinate has alone is called little.
 constexpr double little = 0.2;
 
+/// How the cause of a pole begins that is one of a load's own states.
+const std::string state_of_load = "the state of load '";
+
 /// A part of the derivatives that can be named.
 struct Part {
   std::string name;
@@ -115,9 +118,35 @@ Held driven_speeds(const Model& model, const State& state) {
 
 namespace {
 
+/// The eigenvalue that is greatest by a measure of it, of a matrix and its units.
+template <class Measure>
+Complex greatest_eigenvalue(const Eigen::MatrixXd& A, const Eigen::VectorXd& units, Measure&& measure) {
+  const Eigen::MatrixXd balanced = units.asDiagonal() * A * units.cwiseInverse().asDiagonal();
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(balanced, false);
+  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+  Complex value = 0;
+  bool any = false;
+  for (const Complex& pole : solver.eigenvalues()) {
+    if (pole.imag() >= 0 && (!any || measure(pole) > measure(value))) value = pole;
+    any = true;
+  }
+  return value;
+}
+
+/// The continuous state of a load that has the greatest part in an eigenvector of the whole system.
+const std::string& state_of(const Layout& layout, const Eigen::MatrixXd& A, Complex pole) {
+  const Eigen::Index n = A.rows(), k = static_cast<Eigen::Index>(layout.continuous);
+  const Eigen::MatrixXcd shifted = A.cast<Complex>() - pole * (1 + 1e-10) * Eigen::MatrixXcd::Identity(n, n);
+  Eigen::Index most = 0;
+  null_vector(shifted).tail(k).cwiseAbs().maxCoeff(&most);
+  return layout.continuous_names[static_cast<std::size_t>(most)];
+}
+
 /// The eigenvalue that is greatest by a measure of it.
 template <class Measure>
 FastestPole pole_by(const TangentDynamics& dynamics, const State& state, const Held& held, Measure&& measure) {
+  // A state of a load is the cause where it adds more than this to what moves without it.
+  constexpr double more = 0.02;
   FastestPole result;
   const std::vector<Eigen::Index> free = free_speeds(held);
   if (free.empty()) return result;
@@ -126,13 +155,18 @@ FastestPole pole_by(const TangentDynamics& dynamics, const State& state, const H
   const auto m = static_cast<Eigen::Index>(free.size());
   const Eigen::VectorXd masses = t.mass.diagonal()(free).cwiseAbs();
   const Eigen::VectorXd units = balancing_units(A, masses);
-  const Eigen::MatrixXd balanced = units.asDiagonal() * A * units.cwiseInverse().asDiagonal();
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(balanced, false);
-  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
-  bool any = false;
-  for (const Complex& pole : solver.eigenvalues()) {
-    if (pole.imag() >= 0 && (!any || measure(pole) > measure(result.value))) result.value = pole;
-    any = true;
+  result.value = greatest_eigenvalue(A, units, measure);
+  if (t.by_state.cols() > 0) {
+    const Eigen::MatrixXd whole = whole_first_order_form(t, held).A;
+    Eigen::VectorXd all_units = Eigen::VectorXd::Ones(whole.rows());
+    all_units.head(2 * m) = units;
+    const Complex value = greatest_eigenvalue(whole, all_units, measure);
+    const bool of_state = std::abs(value - result.value) > more * std::abs(value);
+    result.value = value;
+    if (of_state && value != 0.0) {
+      result.cause = state_of_load + state_of(dynamics.model().layout(), whole, value) + "'";
+      return result;
+    }
   }
   if (result.value == 0.0) return result;
 
@@ -166,11 +200,14 @@ FastestPole growing_pole(const TangentDynamics& dynamics, const State& state, co
   return pole_by(dynamics, state, held, [](Complex pole) { return pole.real(); });
 }
 
+bool FastestPole::of_load_state() const { return cause.starts_with(state_of_load); }
+
 std::string describe(const FastestPole& pole, const Layout& layout) {
   if (pole.value == 0.0) return {};
   std::string text = brief(pole.value.real());
   if (pole.value.imag() != 0) text += " ± " + brief(pole.value.imag()) + "i";
   text += "/s: ";
+  if (pole.of_load_state()) return text + pole.cause;
   if (!pole.cause.empty()) text += pole.cause + " on ";
   text += layout.speed_names[pole.speed];
   if (pole.inertia < little * pole.alone)

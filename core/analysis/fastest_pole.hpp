@@ -18,8 +18,10 @@ struct FastestPole {
   /// [kg m², kg], and M_ii, which the coordinate has where all others stay.
   double inertia = 0, alone = 0;
   /// What gives the greatest part of λ² wᴴ M v = −(λ wᴴ D v + wᴴ K v): "damping of load 'servo'", "stiffness of
-  /// 'link1'".
+  /// 'link1'". Of a pole that a continuous state of a load makes it is "the state of load 'servo.integral'", and
+  /// nothing else but the value is set.
   std::string cause;
+  [[nodiscard]] bool of_load_state() const;
 };
 
 /// Which speeds the model's motions prescribe, or belong to hinges that events have locked at a state.

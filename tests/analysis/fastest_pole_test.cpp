@@ -85,6 +85,30 @@ TEST(FastestPole, of_a_disk_is_in_closed_form) {
   EXPECT_EQ(fastest_pole(*damped.dynamics, damped.state, Held(1, true)).value, 0.0) << "nothing is free";
 }
 
+/// States of loads have poles too: that of a filter is its cutoff, where that is above what moves.
+TEST(FastestPole, of_a_filter_is_its_cutoff) {
+  const auto filtered = [](const std::string& cutoff) {
+    return AnalysedScene(
+        "format: withy/1\ntime: {end: 1}\n"
+        "bodies: {disk: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}\n"
+        "hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: disk}}\n"
+        "loads: {spring: {type: hinge-spring, hinge: axle, stiffness: 800, damping: 0},\n"
+        "  seen: {type: filter, of: axle, order: 1, cutoff: " +
+            cutoff + "}}\n",
+        "quadratic");
+  };
+  AnalysedScene fast = filtered("100 Hz");
+  const FastestPole a = fastest_pole(*fast.dynamics, fast.state, Held(1, false));
+  EXPECT_NEAR(a.value.real(), -200 * M_PI, 1e-9 * 200 * M_PI);
+  EXPECT_TRUE(a.of_load_state()) << a.cause;
+  EXPECT_EQ(a.cause.find("the state of load 'seen."), 0U) << a.cause;
+  EXPECT_EQ(describe(a, fast.layout()), "-628.3/s: " + a.cause);
+  AnalysedScene slow = filtered("1 Hz");
+  const FastestPole b = fastest_pole(*slow.dynamics, slow.state, Held(1, false));
+  EXPECT_NEAR(b.value.imag(), 20, 1e-9);
+  EXPECT_EQ(b.cause, "stiffness of load 'spring'");
+}
+
 /// Without loads it is the fastest vibration that the modes have.
 TEST(FastestPole, of_a_free_structure_is_its_highest_mode) {
   AnalysedScene c(blade(2, 3), "quadratic");

@@ -184,7 +184,10 @@ TEST_P(Paper, outcome_of_the_slew) {
     EXPECT_TRUE(run.summary.status == RunStatus::singular || run.summary.status == RunStatus::diverged)
         << name(run.summary.status);
     EXPECT_NEAR(run.summary.reached, expected.shoulder, 0.005);  // times are given to two decimals
-    EXPECT_NE(run.summary.message.find("det M"), std::string::npos) << run.summary.message;
+    // The cause: det M comes to zero, along a direction in which the outer link's modes and the hinges move.
+    for (const char* part : {"The mass matrix of this formulation became singular", "det M", "mass is ",
+                             "modes of 'link2' (most of all link2.bending_y[1])", "hinge 'elbow'"})
+      EXPECT_NE(run.summary.message.find(part), std::string::npos) << part << "\n" << run.summary.message;
     for (const double y : run.summary.final.y) EXPECT_TRUE(std::isfinite(y));
   }
 }

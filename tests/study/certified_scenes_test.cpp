@@ -1,0 +1,294 @@
+// What certificates say of every scene in every formulation and in a mix, over a short time, against the dense
+// reference along the outputs, runs at a tolerance of 1e-10 and eigenvalues of differences: algorithms that
+// certificates do not use.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <span>
+
+#include "withy/core/analysis/fastest_pole.hpp"
+#include "withy/core/model/closing.hpp"
+#include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/simulation/tips.hpp"
+#include "withy/scene/scene_error.hpp"
+#include "withy/study/input_error.hpp"
+#include "withy/study/run.hpp"
+#include "withy/tests/study/plugins.hpp"
+
+namespace withy::study {
+namespace {
+
+using test::plugins;
+
+constexpr int outputs = 25;
+
+/// A scene in a formulation; with `mixed` that body in `ruthless`.
+struct Certified {
+  std::string formulation, mixed;
+  Prepared prepared;
+  CertifiedRun run;
+  std::vector<State> seen;  ///< outputs up to the last state that can be trusted
+
+  [[nodiscard]] const Model& model() const { return prepared.model(); }
+  [[nodiscard]] const Certificate& certificate() const { return run.certificate; }
+  [[nodiscard]] const EquationsOfMotion& equations() const { return *prepared.equations; }
+};
+
+SceneValues shortened(const std::string& file) {
+  const auto is = [&](const char* name) { return file.find(name) != std::string::npos; };
+  const double longest = is("orbiting-boom") ? 0.002 : is("long-chain") || is("spacecraft") ? 0.03 : 0.1;  // [s]
+  SceneValues values = SceneValues::read(file);
+  const Value* given = values.root().at("time").find("end");  // else the scene ends with its motions
+  const double end =
+      given != nullptr && given->kind() == Value::Kind::number ? std::min(given->number(), longest) : longest;
+  values.set("time.end", Value(end), "the test").set("time.output", Value(end / outputs), "the test");
+  return values;
+}
+
+/// Nothing where the formulation cannot treat the scene.
+std::optional<Certified> certified(const std::string& file, const std::string& formulation, const std::string& mixed,
+                                   bool tight) {
+  SceneValues values = shortened(file);
+  values.choose_formulation(formulation, "the test");
+  if (!mixed.empty()) values.body_formulation(mixed, "ruthless", "the test");
+  if (tight) {
+    const Value dop853 =
+        Value::map({{"name", Value(std::string("dop853"))}, {"rtol", Value(1e-10)}, {"atol", Value(1e-12)}});
+    values.choose_integrator(dop853, "the test");
+  }
+  try {
+    Certified c{formulation, mixed, prepare(values, plugins()), {}, {}};
+    RunSettings settings;
+    if (tight) settings.estimate = Estimate::never;
+    settings.look_beyond = !tight;
+    settings.output = [&](const State& state, std::size_t) { c.seen.push_back(state); };
+    c.run = run(c.prepared, plugins(), settings);
+    std::erase_if(c.seen, [&](const State& s) { return s.time > c.run.summary.final.time; });
+    return c;
+  } catch (const SceneError&) {
+    return {};
+  } catch (const InputError&) {
+    return {};
+  } catch (const std::invalid_argument&) {  // an integrator that the formulation has no way to
+    return {};
+  }
+}
+
+bool truncates(const Certified& c) {
+  const auto whole = [](const Terms& t) { return t.truncation == Truncation::none && t.products_of_speeds; };
+  bool all = whole(c.prepared.scene.formulation->terms());
+  for (const BodyNode& body : c.model().bodies()) all = all && (!body.terms || whole(*body.terms));
+  return !all && flexible(c.model());
+}
+
+/// Greatest drifts over some outputs, by the dense reference, over the scales of the run.
+Drifts drifts_over(const Certified& c, std::span<const State> seen) {
+  const RunSummary& s = c.run.summary;
+  Drifts most;
+  std::optional<Energies> first;
+  for (const State& state : seen) {
+    const Energies e = c.equations().energies(state.y);
+    if (!first) first = e;
+    const double gained = e.kinetic + e.potential - first->kinetic - first->potential;
+    EXPECT_LE(e.kinetic, s.energy_scale * 1.01) << "the scale is no less than the energies";
+    const auto apart = [](const auto& a, const auto& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); };
+    const auto raise = [](double& drift, double error, double scale) {
+      if (scale > 0) drift = std::max(drift, error / scale);
+    };
+    raise(most.energy, std::abs(gained - state.y.back() + c.seen.front().y.back()), s.energy_scale);
+    raise(most.linear, apart(e.linear_momentum, first->linear_momentum), s.momentum.linear_scale);
+    raise(most.angular, apart(e.angular_momentum, first->angular_momentum), s.momentum.angular_scale);
+  }
+  return most;
+}
+
+Drifts drifts_seen(const Certified& c) { return drifts_over(c, c.seen); }
+
+void expect_formulations_and_modes(const Certified& c) {
+  EXPECT_EQ(c.certificate().formulation, c.formulation);
+  EXPECT_FALSE(c.certificate().meaning.empty());
+  ASSERT_EQ(c.certificate().own.size(), c.mixed.empty() ? 0U : 1U);
+  if (!c.mixed.empty()) {
+    EXPECT_EQ(c.certificate().own[0].body, c.mixed);
+    EXPECT_EQ(c.certificate().own[0].formulation, "ruthless");
+  }
+  std::size_t modes = 0, listed = 0;
+  for (const Slot& slot : c.model().layout().bodies) modes += slot.positions;
+  for (const BodyFamilies& f : c.certificate().families) listed += f.modes;
+  // A body in segments lists the modes of one.
+  if (std::none_of(c.model().bodies().begin(), c.model().bodies().end(), [](const BodyNode& b) { return b.segment; })) {
+    EXPECT_EQ(listed, modes);
+  }
+}
+
+/// No drift at an output is greater than the one that is said; whose it is, a tight run in the same equations shows.
+void expect_drifts(const Certified& c, const Certified& tight) {
+  const Certificate& said = c.certificate();
+  const Drifts seen = drifts_seen(c), model = drifts_seen(tight);
+  // Outputs are interpolated between steps, which the energy feels; the last is the end of a step.
+  const double most = std::max(said.untruncated_drift, said.energy_drift);
+  EXPECT_LE(seen.energy, 1.01 * most + 3e-5);
+  if (!c.seen.empty() && c.seen.back().time == c.run.summary.final.time) {
+    EXPECT_LE(drifts_over(c, std::vector<State>{c.seen.front(), c.seen.back()}).energy, 1.01 * most + 1e-12);
+  }
+  EXPECT_EQ(said.momentum.conserved, tight.certificate().momentum.conserved);
+  if (said.momentum.conserved) {
+    EXPECT_LE(seen.linear, 1.01 * said.momentum.linear + 1e-6);
+    EXPECT_LE(seen.angular, 1.01 * said.momentum.angular + 1e-6);
+  }
+  if (!truncates(c)) {
+    if (tight.run.summary.status == RunStatus::completed) {
+      EXPECT_LE(model.energy, 1e-6) << "what is not truncated conserves energy";
+      if (said.momentum.conserved) {
+        EXPECT_LE(std::max(model.linear, model.angular), 1e-6);
+      }
+    }
+    if (!said.shares) return;
+    EXPECT_EQ(said.shares->model.energy, 0);
+    EXPECT_EQ(said.shares->integration.energy, said.energy_drift);
+  } else if (said.shares && tight.run.summary.status == RunStatus::completed) {
+    const auto expect = [](double share, double real, double whole, const char* what) {
+      EXPECT_NEAR(share, std::min(real, whole), 0.25 * real + 2e-6) << what;
+    };
+    expect(said.shares->model.energy, model.energy, said.untruncated_drift, "energy");
+    if (!said.momentum.conserved) return;
+    expect(said.shares->model.linear, model.linear, said.momentum.linear, "linear momentum");
+    expect(said.shares->model.angular, model.angular, said.momentum.angular, "angular momentum");
+  }
+}
+
+void expect_deflections(const Certified& c) {
+  for (const Tip& tip : tips(c.model())) {
+    const auto said = c.run.summary.peak_deflection_ratio.find(tip.body);
+    if (!tip.flexible || tip.in_segments() || said == c.run.summary.peak_deflection_ratio.end()) continue;
+    double most = 0;
+    for (const State& s : c.seen) {
+      const auto d = c.equations().deflection(s.y, tip.tip.body, tip.tip.frame);
+      most = std::max(most, std::hypot(d[0], d[1], d[2]) / tip.length);
+    }
+    EXPECT_LE(most, 1.001 * said->second + 1e-9) << tip.body;
+    if (c.run.summary.status != RunStatus::completed) continue;
+    EXPECT_LE(said->second, 2 * most + 1e-6) << tip.body << ": peaks between outputs are no twice as high";
+  }
+}
+
+/// The mean step, and the modulus of the fastest pole: the greatest eigenvalue of differences of the equations.
+void expect_steps(const Certified& c) {
+  const StepLimit& said = c.certificate().steps;
+  const RunSummary& s = c.run.summary;
+  if (s.steps.accepted == 0) return;
+  EXPECT_NEAR(said.mean, (s.reached - c.prepared.scene.initial.time) / static_cast<double>(s.steps.accepted),
+              1e-9 * said.mean);
+  const auto n = static_cast<Eigen::Index>(c.model().layout().moving());
+  if (s.status != RunStatus::completed || said.product == 0 || n == 0 || n > 40 || !loops_of(c.model()).empty()) return;
+  // Next to a zero of det M the accelerations have a pole, and differences tell nothing.
+  if (s.conditioning.condition > 1e6) return;
+  Work work = c.equations().make_work();
+  Eigen::MatrixXd J(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    J.col(j) = central_difference(
+        [&](double h) {
+          std::vector<double> y = s.final.y, f(y.size());
+          y[static_cast<std::size_t>(j)] += h;
+          EXPECT_TRUE(c.equations().derivatives(s.final.time, y, f, work).ok());
+          return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(f.data(), n));
+        },
+        1e-6);
+  }
+  const double fastest = J.eigenvalues().cwiseAbs().maxCoeff();
+  EXPECT_NEAR(said.fastest, fastest, 0.02 * fastest);
+}
+
+/// Places of tips against those in the model up, both at a tolerance of 1e-10.
+void expect_error(const Certified& c, const Certified& tight, const Certified& up) {
+  const ErrorEstimate& said = *c.certificate().estimate;
+  if (tight.seen.size() != up.seen.size() || said.distances.until < said.end) return;
+  for (const Tip& tip : tips(c.model())) {
+    const auto found = said.distances.tips.find(tip.body + ".tip");
+    if (found == said.distances.tips.end() || tip.in_segments()) continue;
+    double real = 0;
+    for (std::size_t i = 0; i < up.seen.size(); ++i) {
+      const auto a = tight.equations().frame_pose(tight.seen[i].y, tip.tip.body, tip.tip.frame).position,
+                 b = up.equations().frame_pose(up.seen[i].y, tip.tip.body, tip.tip.frame).position;
+      real = std::max(real, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+    }
+    EXPECT_LE(real, 1.15 * found->second + 1e-5 * tip.length) << tip.body;
+    EXPECT_LE(found->second, 1.5 * real + 1e-5 * tip.length) << tip.body;
+  }
+}
+
+/// Sizes of what is dropped wherever there is an estimate, and none where nothing is.
+void expect_dropped(const Certified& c) {
+  for (const DroppedForces& d : c.certificate().dropped) {
+    EXPECT_TRUE(std::isfinite(d.share) && d.share >= 0) << d.group;
+    for (const DroppedTerm& t : d.terms) EXPECT_TRUE(std::isfinite(t.share) && t.share >= 0) << t.term;
+  }
+  if (!c.certificate().estimate) {
+    EXPECT_TRUE(c.certificate().dropped.empty());
+    EXPECT_FALSE(c.certificate().without_estimate.empty()) << "why there is no estimate";
+  }
+}
+
+std::string first_flexible(const Model& model) {
+  for (std::size_t b = 0; b < model.bodies().size(); ++b)
+    if (model.layout().modes(b) != nullptr && !model.bodies()[b].segment) return model.bodies()[b].name;
+  return {};
+}
+
+class CertifiedScenes : public testing::TestWithParam<std::string> {};
+
+TEST_P(CertifiedScenes, AreAsTheirCertificatesSay) {
+  std::map<std::string, std::optional<Certified>> tight;  // of every body in one formulation
+  const auto in = [&](const std::string& formulation) -> const std::optional<Certified>& {
+    const auto known = tight.find(formulation);
+    if (known != tight.end()) return known->second;
+    return tight[formulation] = certified(GetParam(), formulation, "", true);
+  };
+  std::vector<std::pair<std::string, std::string>> cases;
+  for (const char* f : {"quadratic", "ruthless", "inconsistent", "consistent", "linear", "symmetric", "exact"})
+    cases.emplace_back(f, "");
+  std::size_t looked_at = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const auto& [formulation, mixed] = cases[i];
+    SCOPED_TRACE(formulation + (mixed.empty() ? "" : ", " + mixed + " ruthless"));
+    const std::optional<Certified> c = certified(GetParam(), formulation, mixed, false);
+    if (!c) continue;
+    ++looked_at;
+    if (i == 0 && !flexible(c->model())) cases.resize(1);  // all formulations are the same
+    if (i == 0 && !first_flexible(c->model()).empty()) cases.emplace_back("quadratic", first_flexible(c->model()));
+    const std::optional<Certified> own = mixed.empty() ? std::nullopt : certified(GetParam(), formulation, mixed, true);
+    const std::optional<Certified>& exact_run = mixed.empty() ? in(formulation) : own;
+    ASSERT_TRUE(exact_run);
+    expect_formulations_and_modes(*c);
+    expect_drifts(*c, *exact_run);
+    expect_deflections(*c);
+    expect_steps(*c);
+    expect_dropped(*c);
+    if (!c->certificate().estimate) continue;
+    if (const std::optional<Certified>& up = in(c->certificate().estimate->against); up)
+      expect_error(*c, *exact_run, *up);
+  }
+  EXPECT_GE(looked_at, 1U);
+}
+
+std::vector<std::string> all_scenes() {
+  std::vector<std::string> all;
+  for (const char* folder : {"/scenes", "/scenes/gallery"})
+    for (const auto& entry : std::filesystem::directory_iterator(std::string(WITHY_SOURCES) + folder))
+      if (entry.path().extension() == ".yaml") all.push_back(entry.path().string());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CertifiedScenes, testing::ValuesIn(all_scenes()), [](const auto& parameter) {
+  std::string name = std::filesystem::path(parameter.param).stem();
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace withy::study
