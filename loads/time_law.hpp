@@ -204,10 +204,17 @@ class TimeLawReader {
     for (const std::string_view key : {"value", "amplitude", "period", "frequency", "phase", "table"}) {
       const Value* v = p_.find(key);
       if (v == nullptr || std::find(taken.begin(), taken.end(), key) != taken.end()) continue;
-      context_.diagnostics.error(v->place(), "the law '" + law_ + "' takes no '" + std::string(key) + "'");
+      context_.diagnostics.error(v->place(),
+                                 "the law '" + law_ + "' takes no '" + std::string(key) + "'" + another(key));
       ok = false;
     }
     return ok;
+  }
+
+  /// The law that an option belongs to.
+  static std::string another(std::string_view key) {
+    if (key == "value") return "; law: constant does";
+    return key == "table" ? "; law: table and law: steps do" : "; law: sine does";
   }
 
   std::optional<TimeLaw<T>> lacking(const std::string& what) {

@@ -30,12 +30,6 @@ constexpr bool has_modal_solver = requires(const Sweep& s, double* a, std::byte*
   s.solve(a, 0.0, a, work);
 };
 
-/// Whether derivatives of a sweep's equations are had better than by differences of the sweep.
-template <class Sweep>
-constexpr bool has_tangents = !requires {
-  typename Sweep::WithoutTangents;
-};
-
 /// What the compilation of a tree made of it, a line each.
 std::vector<std::string> savings_of(const NodeTree& tree, const std::vector<std::string>& of_sweep);
 
@@ -198,7 +192,6 @@ class SweepEquations final : public EquationsOfMotion,
   }
 
   const Linearization* linearization() const override {
-    if constexpr (!has_tangents<Sweep>) return nullptr;
     return &linearization_([this] { return std::make_shared<const StateJacobian>(model_, terms_); });
   }
   Evaluation position_rates(double, std::span<const double> y, std::span<double> y_dot, Work&) const noexcept override {

@@ -5,6 +5,7 @@
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/digital_part.hpp"
+#include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/plugin/load_numbers.hpp"
 #include "withy/core/plugin/sampled_part.hpp"
 
@@ -287,6 +288,8 @@ std::unique_ptr<BoundLoad> SwitchedLoad::bind(const Model& model) const {
     if (!alike(*forms.front(), *forms.back()))
       throw std::invalid_argument(
           "an event changes where the load acts, its sample or its states; need a change of its numbers alone");
+    if (dynamic_cast<const ForeignLaw*>(forms.back().get()) != nullptr)
+      throw std::invalid_argument("an event cannot switch or change a load whose law is not withy's own");
     for (const FrameIndex& at : forms.back()->frames())
       if (at.frame < 0) throw std::invalid_argument("an event cannot change a load on distributed mass");
   }
