@@ -74,10 +74,6 @@ struct SectionMotion {
   Vector3 r_bias, w_bias;  ///< r̈ and ẇ where the rates do not change; of untruncated paths, in numbers
 };
 
-inline Vector3 component(const std::array<Eigen::MatrixXd, 3>& m, Eigen::Index i, Eigen::Index j) {
-  return {m[0](i, j), m[1](i, j), m[2](i, j)};
-}
-
 inline Vector3 vector(const Triple& t) { return {t[0], t[1], t[2]}; }
 
 constexpr int any_count = -1;  ///< of modes: not known when compiled
@@ -275,25 +271,28 @@ class FramePaths::Pass {
     out.r_bias.setZero();
     out.w_bias.setZero();
     if (!section.moves) return;
+    const auto row = [&](const std::vector<Vector3>& pairs, Eigen::Index i) -> const Vector3* {
+      if (pairs.empty() || link.order == StrainOrder::linear) return nullptr;
+      return pairs.data() + i * link.modes;
+    };
     V3 theta = V3::Zero();
     Vector3 theta_rate = Vector3::Zero(), theta_bias = Vector3::Zero();
     for (Eigen::Index i = 0; i < link.modes; ++i) {
       V3 P = section.at.phi.col(i).template cast<S>(), T = section.at.psi.col(i).template cast<S>();
       const V3 P_0 = P, T_0 = T;
-      if (link.order != StrainOrder::linear) {
-        for (Eigen::Index j = 0; j < link.modes; ++j) {
-          P += frame_pass::component(section.at.gamma, i, j).template cast<S>() * q[j];
-          T += frame_pass::component(section.at.theta, i, j).template cast<S>() * q[j];
-        }
-      }
+      const Vector3 *gamma = row(section.gamma, i), *turn = row(section.theta, i);
+      for (Eigen::Index j = 0; gamma != nullptr && j < link.modes; ++j) P += gamma[j].template cast<S>() * q[j];
+      for (Eigen::Index j = 0; turn != nullptr && j < link.modes; ++j) T += turn[j].template cast<S>() * q[j];
       out.r += (P_0 + P) * S(S(0.5) * q[i]);
       theta += (T_0 + T) * S(S(0.5) * q[i]);
       if constexpr (std::is_same_v<S, double>) {
+        partials_[section.partials + static_cast<std::size_t>(i)] = {Triple(T[0], T[1], T[2]),
+                                                                     Triple(P[0], P[1], P[2])};
         out.r_rate += P * q_dot[i];
         theta_rate += T * q_dot[i];
-        for (Eigen::Index j = 0; paths_.untruncated_ && link.order != StrainOrder::linear && j < link.modes; ++j) {
-          out.r_bias += frame_pass::component(section.at.gamma, i, j) * (q_dot[i] * q_dot[j]);
-          theta_bias += frame_pass::component(section.at.theta, i, j) * (q_dot[i] * q_dot[j]);
+        for (Eigen::Index j = 0; paths_.untruncated_ && j < link.modes; ++j) {
+          if (gamma != nullptr) out.r_bias += gamma[j] * (q_dot[i] * q_dot[j]);
+          if (turn != nullptr) theta_bias += turn[j] * (q_dot[i] * q_dot[j]);
         }
       }
     }
@@ -369,18 +368,25 @@ class FramePaths::Pass {
       }
     }
     const V3 turning = motion.left.transpose() * moment;
+    if constexpr (std::is_same_v<S, double>) {
+      const Spatial::Twist* J = partials_ + section.partials;  // as expand has found them
+      for (Eigen::Index i = 0; i < link.modes; ++i)
+        e[i] += sign * (frame_pass::vector(J[i].v).dot(force) + frame_pass::vector(J[i].w).dot(turning));
+      return;
+    }
     const S* q = q_ + link.mode;
-    const auto along = [&](const Vector3& P, const Vector3& T) {
-      return S(P.template cast<S>().dot(force) + T.template cast<S>().dot(turning));
+    const auto row = [&](const std::vector<Vector3>& pairs, Eigen::Index i) -> const Vector3* {
+      if (pairs.empty() || link.order == StrainOrder::linear) return nullptr;
+      return pairs.data() + i * link.modes;
     };
     for (Eigen::Index i = 0; i < link.modes; ++i) {
-      S effort = along(section.at.phi.col(i), section.at.psi.col(i));
-      if (link.order != StrainOrder::linear) {
-        for (Eigen::Index j = 0; j < link.modes; ++j)
-          effort +=
-              along(frame_pass::component(section.at.gamma, i, j), frame_pass::component(section.at.theta, i, j)) *
-              q[j];
-      }
+      S effort = S(section.at.phi.col(i).template cast<S>().dot(force) +
+                   section.at.psi.col(i).template cast<S>().dot(turning));
+      const Vector3 *gamma = row(section.gamma, i), *turn = row(section.theta, i);
+      for (Eigen::Index j = 0; gamma != nullptr && j < link.modes; ++j)
+        effort += S(gamma[j].template cast<S>().dot(force)) * q[j];
+      for (Eigen::Index j = 0; turn != nullptr && j < link.modes; ++j)
+        effort += S(turn[j].template cast<S>().dot(turning)) * q[j];
       e[i] += sign * frame_pass::on_mode(effort);
     }
   }

@@ -15,7 +15,13 @@ FramePaths::FramePaths(const Model& model, Terms terms, const std::vector<FrameI
   for (Link& link : links_) {
     strict_ = strict_ || (link.modes > 0 && link.truncation == Truncation::strict);
     symmetric_ = symmetric_ || (link.modes > 0 && link.truncation == Truncation::symmetric);
-    if (link.order != StrainOrder::exact || link.truncation != Truncation::none || link.modes == 0) continue;
+    if (link.order != StrainOrder::exact || link.truncation != Truncation::none || link.modes == 0) {
+      for (const std::size_t s : link.sections) {
+        sections_[s].partials = partials_;
+        partials_ += static_cast<std::size_t>(link.modes);
+      }
+      continue;
+    }
     // The rod wants its sections as stations of a node.
     NodeSpec node;
     node.modes = static_cast<std::size_t>(link.modes);
@@ -117,7 +123,14 @@ FramePaths::Place FramePaths::place(const Model& model, Terms terms, FrameIndex 
   bool moves = !f.section.phi.isZero(0) || !f.section.psi.isZero(0);
   for (std::size_t c = 0; c < 3; ++c) moves = moves || !f.section.gamma[c].isZero(0) || !f.section.theta[c].isZero(0);
   links_[l].sections.push_back(sections_.size());
-  sections_.push_back({f.section, moves, 0, 0});
+  const auto by_pairs = [](const std::array<Eigen::MatrixXd, 3>& m) {
+    std::vector<Vector3> all;
+    const bool zero = m[0].isZero(0) && m[1].isZero(0) && m[2].isZero(0);
+    for (Eigen::Index i = 0; !zero && i < m[0].rows(); ++i)
+      for (Eigen::Index j = 0; j < m[0].cols(); ++j) all.emplace_back(m[0](i, j), m[1](i, j), m[2](i, j));
+    return all;
+  };
+  sections_.push_back({f.section, moves, 0, 0, by_pairs(f.section.gamma), by_pairs(f.section.theta)});
   return {l, sections_.size() - 1, pose};
 }
 

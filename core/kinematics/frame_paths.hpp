@@ -42,8 +42,10 @@ class FramePaths {
   struct Section {
     PointExpansion at;
     bool moves;            ///< false: the modes leave it where it is
-    std::size_t partials;  ///< of a rod: its first place among them
+    std::size_t partials;  ///< its first place among them, where it moves
     std::size_t station;   ///< of a rod
+    /// Γ and Θ by pairs of modes, one row of the matrices after the other; empty where zero.
+    std::vector<Vector3> gamma, theta;
   };
   /// A frame at `pose` in a section of a link.
   struct Place {

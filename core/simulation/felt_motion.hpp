@@ -10,8 +10,10 @@
 
 namespace withy {
 
-/// The motions without what fields give: a satellite in free fall carries no load from its orbit. A field counts as
-/// uniform over each body. Allocates.
+/// The motions without what fields give: a satellite in free fall carries no load from its orbit. Forces are those on
+/// all mass points, where the bodies' first order has them; over a body a field counts as linear, by its value and its
+/// gradient at the body's frame, which is exact but for point-gravity: there the rest is of the order (l/d)² of the
+/// gradient's part, with l the length of the body and d the distance. Allocates.
 std::vector<BodyMotion> felt_motions(const Model& model, const EquationsOfMotion& equations, const State& state,
                                      const std::vector<BodyMotion>& motions);
 

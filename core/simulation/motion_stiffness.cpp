@@ -33,10 +33,27 @@ Vector3 unit_force(std::size_t term, double m, const Vector3& s) {
   }
 }
 
+/// The gradient of a field acts as products of rates do, which make any symmetric matrix, and as ω̇, which makes the
+/// antisymmetric ones.
 std::array<double, 12> term_values(const BodyMotion& B) {
-  const Vector3 w = B.R.transpose() * B.rate, e = B.R.transpose() * B.spin_up, a = B.R.transpose() * B.acceleration;
-  return {w.x() * w.x(), w.y() * w.y(), w.z() * w.z(), w.x() * w.y(), w.y() * w.z(), w.z() * w.x(),
-          e.x(),         e.y(),         e.z(),         a.x(),         a.y(),         a.z()};
+  const Vector3 w = B.R.transpose() * B.rate, a = B.R.transpose() * B.acceleration;
+  const Matrix3 G = B.R.transpose() * B.gradient * B.R;
+  const Vector3 turn(G(2, 1) - G(1, 2), G(0, 2) - G(2, 0), G(1, 0) - G(0, 1));
+  const Vector3 e = B.R.transpose() * B.spin_up - 0.5 * turn, d = 0.5 * G.diagonal();
+  const Vector3 squares(d.y() + d.z() - d.x(), d.z() + d.x() - d.y(), d.x() + d.y() - d.z());
+  const auto mixed = [&G](Eigen::Index i, Eigen::Index j) { return 0.5 * (G(i, j) + G(j, i)); };
+  return {w.x() * w.x() + squares.x(),
+          w.y() * w.y() + squares.y(),
+          w.z() * w.z() + squares.z(),
+          w.x() * w.y() - mixed(0, 1),
+          w.y() * w.z() - mixed(1, 2),
+          w.z() * w.x() - mixed(2, 0),
+          e.x(),
+          e.y(),
+          e.z(),
+          a.x(),
+          a.y(),
+          a.z()};
 }
 
 Eigen::MatrixXd along(const std::array<Eigen::MatrixXd, 3>& gamma, const Vector3& force) {

@@ -259,6 +259,18 @@ std::string note_on_missed_events(const Model& model, const State& end) {
   return (count > 1 ? "The events " : "The event ") + names + " did not happen.";
 }
 
+/// The event whose impulses have taken most energy, in a sentence: of a latch at high speed. Empty where none has.
+std::string note_on_impulses(const Model& model, const State& end) {
+  const EventBook book(model);
+  std::size_t most = 0;
+  for (std::size_t i = 0; book.any() && i < book.plan().events.size(); ++i)
+    if (book.numbers(end.y, i).loss > book.numbers(end.y, most).loss) most = i;
+  if (!book.any() || !(book.numbers(end.y, most).loss > 0)) return {};
+  const EventNumbers n = book.numbers(end.y, most);
+  return " Before that, at t = " + brief(n.last) + " s, event '" + book.plan().events[most].name +
+         "' locked hinges that moved: its impulses took " + brief(n.loss) + " J and set the bodies' modes in motion.";
+}
+
 std::string message_of_completed(const Run& run, const RunSummary& summary, const std::string& missed) {
   std::string text;
   const auto add = [&text](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
@@ -333,7 +345,8 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
     summary.suspected_jumps.clear();  // the rejections before a bad end are that end
     summary.message = explain(stop, summary.final.time, examined ? &history : nullptr, model.layout());
     if (stop.status == RunStatus::diverged)
-      summary.message = steps_too_long(summary, integrator, mean_step) + summary.message;
+      summary.message = steps_too_long(summary, integrator, mean_step) + summary.message +
+                        note_on_impulses(model, run.stepper().state());
   }
   if (stop.status != RunStatus::completed && stop.status != RunStatus::interrupted) go_back(run.monitor(), summary);
   summary.status = stop.status;

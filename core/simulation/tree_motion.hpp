@@ -20,6 +20,9 @@ struct BodyMotion {
   double mass = 0;                         ///< of the body and all that hangs on it [kg]
   Vector3 mass_moment = Vector3::Zero();   ///< Σ m p of the same [kg m]
   Vector3 force = Vector3::Zero();         ///< Σ m (p̈ − g) of the same [N]: what the inboard hinge carries
+  /// Of what fields give mass that moves with the body frame, by place [1/s²]: at r from its origin the body feels less
+  /// gradient · r beside what its frame's motion says.
+  Matrix3 gradient = Matrix3::Zero();
 };
 
 /// A pass outward for the motions and one inward for the forces. Sections and particles move by r = X + Φq,

@@ -5,6 +5,8 @@
 
 #include "scene_run.hpp"
 #include "withy/core/analysis/modes.hpp"
+#include "withy/core/simulation/felt_motion.hpp"
+#include "withy/core/simulation/motion_stiffness.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/core/tangents/tangent_dynamics.hpp"
 
@@ -174,6 +176,80 @@ outputs: {here: {type: accelerometer, of: bus}, up: {type: accelerometer, of: bu
 }
 
 /// What is wrong is said with its place, and is no exception from deeper down.
+/// What the motion of a scene's start does to the stiffness of its beam, and what its bodies feel.
+struct Felt {
+  explicit Felt(const std::string& text) : c(text), motion(*c.scene.model) {
+    std::vector<double> rates(c.equations->size());
+    Work work = c.equations->make_work();
+    EXPECT_TRUE(c.equations->derivatives(c.scene.initial.time, c.scene.initial.y, rates, work).ok());
+    const Layout& layout = c.scene.model->layout();
+    motion.update(c.scene.initial.y, std::span<const double>(rates).subspan(layout.positions, layout.speeds));
+    bodies = felt_motions(*c.scene.model, *c.equations, c.scene.initial, motion.bodies());
+    boom = static_cast<std::size_t>(c.scene.model->body("boom"));
+    load = MotionStiffness(*c.scene.model, boom).evaluate(bodies);
+  }
+  LoadedScene c;
+  TreeMotion motion;
+  std::vector<BodyMotion> bodies;
+  std::size_t boom = 0;
+  LoadRatio load;
+};
+
+void expect_alike(const Felt& a, const Felt& b) {
+  EXPECT_GT(a.load.size(), 0.01) << "nothing is felt";
+  EXPECT_NEAR(a.load.least, b.load.least, 1e-9);
+  EXPECT_NEAR(a.load.greatest, b.load.greatest, 1e-9 * (1 + std::abs(b.load.greatest)));
+  for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+    const Vector3 difference =
+        a.bodies[i].R.transpose() * a.bodies[i].force - b.bodies[i].R.transpose() * b.bodies[i].force;
+    EXPECT_LT(difference.norm(), 1e-9 * (1 + b.bodies[i].force.norm())) << i;
+  }
+}
+
+/// A boom with a tip mass on a hub; hinge, loads and motion follow.
+std::string hub_with_boom(const std::string& rest) {
+  return R"(format: withy/1
+time: {end: 1}
+bodies:
+  hub: {type: rigid, mass: 3, center_of_mass: [0.1, 0.2, 0], inertia: [2, 5, 6, 0, 0, 0], frames: {out: {position: [0.5, 0.1, 0]}}}
+  boom: {type: beam, length: 4, mass_per_length: 0.3, bending_y: {stiffness: 12, modes: 2}, bending_z: {stiffness: 9, modes: 1}}
+  tip: {type: rigid, mass: 0.7, center_of_mass: [0.2, 0, 0.1], inertia: [0.02, 0.02, 0.02, 0, 0, 0]}
+)" + rest;
+}
+
+// Weight, as a base that is shaken the other way; a driven shaft, at rest in axes that turn with it.
+TEST(Fields, load_bodies_as_the_motions_that_they_stand_for) {
+  const std::string falling = R"(hinges:
+  float: {type: free, parent: world, child: hub}
+  root: {type: weld, parent: hub.out, child: boom}
+  end: {type: revolute, axis: [0, 0, 1], parent: boom.tip, child: tip}
+initial: {hinges: {float: {rate: [0.3, -0.2, 0.4, 1, 2, 3]}, end: {position: [0.3], rate: [1]}}, bodies: {boom: {modes: [0.05, 0.01, -0.02], rates: [0.3, 0.1, 0.2]}}}
+loads: {push: {type: force, frame: hub, value: [40, -30, 25]}
+)";
+  expect_alike(Felt(hub_with_boom(falling + "  , shaker: {type: base-excitation, value: [1, 9.81, -2]}}\n")),
+               Felt(hub_with_boom(falling + "  }\ngravity: [-1, -9.81, 2]\n")));
+  const std::string on_shaft = R"(hinges:
+  shaft: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub.out, child: boom}
+  end: {type: weld, parent: boom.tip, child: tip}
+)";
+  expect_alike(Felt(hub_with_boom(on_shaft + "motions: {hold: {type: locked, hinge: shaft}}\nloads: {axes: {type: "
+                                             "rotating-frame, axis: [0, 0, 1], rate: 0.8}}\n")),
+               Felt(hub_with_boom(on_shaft + "motions: {spin: {type: constant-rate, hinge: shaft, rate: 0.8}}\n")));
+}
+
+// Along the vertical of an orbit mass feels 3 n² x, all of it: a uniform field would miss the boom's own.
+TEST(Fields, pull_at_a_boom_over_all_of_its_length) {
+  const Felt f(R"(format: withy/1
+time: {end: 1}
+bodies: {boom: {type: beam, length: 4, mass_per_length: 0.3, bending_y: {stiffness: 12, modes: 2}}}
+hinges: {root: {type: weld, parent: world, child: boom, offset: {position: [1, 0, 0]}}}
+loads: {earth: {type: gravity-gradient, rate: 0.3, axes: orbit}}
+)");
+  EXPECT_NEAR(f.bodies[f.boom].force.x(), -3 * 0.09 * 0.3 * (25 - 1) / 2, 1e-12);
+  EXPECT_NEAR(f.bodies[f.boom].gradient(0, 0), 3 * 0.09, 1e-15);
+}
+
 TEST(Fields, refuse_what_has_no_meaning) {
   const std::string head =
       "format: withy/1\ntime: {end: 1}\nbodies: {a: {type: rigid, mass: 1}}\n"

@@ -336,6 +336,22 @@ events:
     EXPECT_THAT(text, HasSubstr(part));
 }
 
+TEST(ActingEvents, a_latch_at_high_speed_is_named_where_it_ends_the_run) {
+  const ActedRun run(R"(format: withy/1
+time: {end: 1, output: 0.5}
+bodies:
+  bus: {type: rigid, mass: 10, inertia: [4, 4, 4, 0, 0, 0]}
+  boom: {type: beam, length: 2, mass_per_length: 1, bending_y: {stiffness: 5, modes: 2}}
+hinges:
+  float: {type: free, parent: world, child: bus}
+  turn: {type: revolute, axis: [0, 0, 1], parent: bus, child: boom}
+initial: {hinges: {turn: {rate: [3000]}}}
+events: {latch: {hinge: turn, value: 1, direction: up, do: {lock: turn}}}
+)");
+  EXPECT_EQ(run.summary.status, RunStatus::diverged);
+  EXPECT_THAT(run.summary.message, HasSubstr("event 'latch' locked hinges that moved: its impulses took 5.339e+04 J"));
+}
+
 TEST(ActingEvents, a_final_state_goes_on_as_the_run_would_have) {
   const std::string events = R"(events:
   grip: {hinge: clutch, value: 2, direction: up, do: {lock: clutch, switch_off: motor}}
