@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "withy/core/plugin/floating_point.hpp"
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/event_actions.hpp"
@@ -79,6 +80,7 @@ class Stepping {
            const SteppingOptions& options);
   /// Steps to the end. Steps land on discontinuities of loads and motions, on the instants of discrete states and on
   /// the end bit by bit. The states at the start and at the end are no outputs.
+  /// \throws PluginError after the step in which a plugin has changed the processor's arithmetic.
   SteppingEnd run(SteppingObserver& observer);
   /// Moves the end, for `run` to go on. Where nothing jumps at the present end the stepper goes on as it was.
   void move_end(double end) { end_ = end; }
@@ -98,6 +100,7 @@ class Stepping {
   using Zero = ZeroWatch::Zero;
   bool to(double limit, bool watching);
   bool after_step();
+  void check_arithmetic();
   bool act(std::span<const std::size_t> happened);
   bool leap(const std::vector<std::size_t>& acted);
   [[nodiscard]] int direction_of(std::size_t event) const;
@@ -130,6 +133,7 @@ class Stepping {
   double last_zero_ = -std::numeric_limits<double>::infinity();  ///< time of the last one that changed the run
   int zeros_at_once_ = 0;
   std::size_t step_evaluations_ = 0;
+  FloatingPointGuard* arithmetic_ = nullptr;  ///< of the run under way
 };
 
 }  // namespace withy

@@ -46,6 +46,8 @@ class ControlBlock {
   [[nodiscard]] virtual std::string unit_of_state(std::size_t /*state*/) const { return "1"; }
   /// Whether v depends on an input at once, not through z alone.
   [[nodiscard]] virtual bool feeds_through(std::size_t /*input*/) const { return true; }
+  /// Whether v moves in steps, so that it has no derivative by w.
+  [[nodiscard]] virtual bool gives_steps() const { return false; }
   /// Takes z from t [s] to a sample later, w held at what it is at t.
   virtual void advance(double /*t*/, std::span<const double> /*w*/, std::span<double> /*z*/) const noexcept {}
   /// A sample at t [s]: `output`, then `advance`.

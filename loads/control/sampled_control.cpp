@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cmath>
 
 #include "withy/core/model/signal_source.hpp"
+#include "withy/core/plugin/digital_part.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/plugin/sampled_part.hpp"
 #include "withy/loads/control/bound_control.hpp"
@@ -10,7 +12,7 @@ namespace {
 
 /// By the clock. Discrete states: whether it has begun, the block's states and memory, and commands from the one that
 /// acts to the one just made, later by the delay.
-class SampledControl : public BoundControl, public DiscretePart, public SampledPart {
+class SampledControl : public BoundControl, public DiscretePart, public SampledPart, public DigitalPart {
  public:
   SampledControl(const Model& model, ControlEnds ends, std::shared_ptr<const ControlBlock> block)
       : BoundControl(model, std::move(ends), std::move(block)),
@@ -35,11 +37,20 @@ class SampledControl : public BoundControl, public DiscretePart, public SampledP
   void renew_measured(double t, const Crossing& /*crossing*/, std::span<const double> w,
                       std::span<double> discrete) const noexcept override {
     const std::span<double> z = discrete.subspan(1, count_), queue = discrete.subspan(1 + count_);
+    // What begins between two samples waits for the next: nothing is on its way for less than the delay.
+    if (discrete[0] == 0 && ends().delay > 0 && !at_sample(t)) return;
     if (discrete[0] == 0) block().begin(t, w, z);
     discrete[0] = 1;
     const std::size_t p = outputs();
     std::copy(queue.begin() + static_cast<std::ptrdiff_t>(p), queue.end(), queue.begin());
     block().sample(t, w, z, queue.last(p));
+  }
+  bool gives_steps() const override { return block().gives_steps(); }
+  void pass_idle(std::span<double> discrete) const noexcept override {
+    const std::span<double> queue = discrete.subspan(1 + count_);
+    std::copy(queue.begin() + static_cast<std::ptrdiff_t>(outputs()), queue.end(), queue.begin());
+    for (double& command : queue.last(outputs())) command = 0;
+    discrete[0] = 0;  // what it knew is of before
   }
   void add(double /*t*/, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
     act(discrete.subspan(1 + count_, outputs()), efforts);
@@ -72,6 +83,10 @@ class SampledControl : public BoundControl, public DiscretePart, public SampledP
   }
 
  private:
+  [[nodiscard]] bool at_sample(double t) const noexcept {
+    const double samples = t / ends().sample;
+    return std::abs(samples - std::round(samples)) <= 1e-9 * std::max(1.0, std::abs(samples));
+  }
   std::size_t shown_;  ///< states of the block
   std::size_t count_;  ///< with its memory
   std::vector<SignalSource> sources_;

@@ -2,8 +2,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "withy/scene/one_line.hpp"
 
 namespace withy {
 namespace {
@@ -29,6 +35,31 @@ TEST(Documents, GiveScalarsTheKindTheyAreWrittenAs) {
   for (const char* key : {"null_", "nothing", "tilde"}) EXPECT_EQ(r[key].kind(), Value::Kind::null) << key;
   EXPECT_TRUE(std::isnan(r["nan"].number()));
   EXPECT_EQ(r["infinity"].number(), -INFINITY);
+}
+
+TEST(Documents, GiveBackWhatIsWrittenInOneLine) {
+  const std::vector<std::string> texts = {
+      "arm",   "two words", "25 mm",       "-1 rpm", "a, b", "key: x", "{x}",  "[1]",   "#c",
+      "a #b",  "true",      "null",        "~",      "1e3",  "-2.5",   "",     " lead", "trail ",
+      "it's",  "q\"uote",   "back\\slash", "- item", "--",   "-",      "*x",   "&x",    "!x",
+      "%x",    "@x",        "`x",          "? x",    "a:",   "=",      ".nan", "é 1",   "two\nlines",
+      "C:\\x", "a|b",       ">",           "yes",    "1:30", "0x10"};
+  std::vector<Value> items;
+  for (const std::string& text : texts) items.emplace_back(text);
+  const Value value = Value::map({{"texts", Value::list(items)},
+                                  {"number", Value(0.1)},
+                                  {"inner", Value::map({{"on", Value(true)}, {"nothing", Value()}})}});
+  const Read r(in_one_line(value));
+  ASSERT_TRUE(r.good && r.diagnostics.ok()) << in_one_line(value);
+  ASSERT_EQ(r["texts"].items().size(), texts.size());
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    ASSERT_EQ(r["texts"].items()[i].kind(), Value::Kind::text) << texts[i];
+    EXPECT_EQ(r["texts"].items()[i].text(), texts[i]);
+  }
+  EXPECT_EQ(r["number"].number(), 0.1);
+  EXPECT_TRUE(r["inner"].at("on").boolean());
+  EXPECT_EQ(r["inner"].at("nothing").kind(), Value::Kind::null);
+  EXPECT_EQ(in_one_line(Value(std::string("25 mm"))), "25 mm") << "no quotes without need";
 }
 
 TEST(Documents, GiveEveryValueItsPlace) {
@@ -104,6 +135,25 @@ TEST(Documents, RefuseAliasesBeforeTheyMultiply) {
   const Read r(bomb);
   EXPECT_FALSE(r.good);
   EXPECT_THAT(r.diagnostics.errors()[1].message, testing::HasSubstr("not allowed"));
+}
+
+TEST(Documents, RefuseTheCharacterNul) {
+  const Read r("file: \"a.SID_FEM\\0.txt\"\n");
+  EXPECT_FALSE(r.good);
+  ASSERT_EQ(r.diagnostics.errors().size(), 1U);
+  EXPECT_EQ(r.diagnostics.errors()[0].message, "the text holds the character NUL");
+  EXPECT_EQ(r.diagnostics.errors()[0].place.path, "/file");
+}
+
+TEST(Bytes, AreReadFromFilesAndPipesUpToTheLimit) {
+  EXPECT_THROW(read_bytes("/dev/zero"), std::system_error);
+  EXPECT_THROW(read_bytes("/nowhere"), std::system_error);
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], "name: x", 7), 7);
+  ::close(ends[1]);
+  EXPECT_EQ(read_bytes("/proc/self/fd/" + std::to_string(ends[0])), "name: x");
+  ::close(ends[0]);
 }
 
 }  // namespace

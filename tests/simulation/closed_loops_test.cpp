@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "made_scene.hpp"
+#include "withy/core/simulation/changing_equations.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/tests/conformance/allocations.hpp"
@@ -541,6 +542,15 @@ TEST(ClosedLoops, WhatKnowsTreesAloneIsRefused) {
                 testing::ThrowsMessage<std::invalid_argument>(
                     testing::HasSubstr("integrator '" + std::string(id) + "' cannot run closed loops")));
   }
+  // What stands between equations and integrator would hide the loops.
+  const std::vector<Rung> rungs = {{"quadratic", {}, made.equations.get()}};
+  EXPECT_THAT(
+      [&] {
+        ChangingEquations(rungs, {{0, 0, 1}});
+      },
+      testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("loops are closed")));
+  EXPECT_THAT(message(good + "events:\n  hold: {at: 0.2, do: {lock: motor}}\n"),
+              testing::HasSubstr("events lock or unlock hinges knows nothing of closed loops"));
 }
 
 }  // namespace
