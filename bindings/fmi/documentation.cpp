@@ -7,9 +7,9 @@
 namespace withy::fmi {
 namespace {
 
-const char* kind_text(Variable::Kind kind) {
+const char* kind_text(const Variable& v) {
   using enum Variable::Kind;
-  switch (kind) {
+  switch (v.kind) {
     case time:
       return "time";
     case state:
@@ -21,7 +21,7 @@ const char* kind_text(Variable::Kind kind) {
     case output:
       return "output";
     case parameter:
-      return "parameter";
+      return v.tunable ? "tunable parameter" : "parameter";
     case indicator:
       return "event indicator";
   }
@@ -62,7 +62,7 @@ std::string documentation_page(const Description& d, const study::Prepared& prep
         v.kind == Variable::Kind::state || v.kind == Variable::Kind::input || v.kind == Variable::Kind::parameter;
     page +=
         fmt::format("<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", escaped(v.name),
-                    escaped(v.unit), kind_text(v.kind), starts ? number_text(v.start) : "", escaped(v.description));
+                    escaped(v.unit), kind_text(v), starts ? number_text(v.start) : "", escaped(v.description));
   }
   return page + "</table>\n<h2>Scene</h2>\n<pre>" + preformatted(prepared.values.text()) + "</pre>\n</body>\n</html>\n";
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "withy/bindings/fmi/resources.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
@@ -98,8 +99,8 @@ void Instance::set_experiment(std::optional<double> tolerance, double start) {
   tolerance_ = tolerance;
 }
 
-/// Makes the scene anew with the parameters, tolerance and start values that were set.
-void Instance::remake() {
+/// The scene with the parameters and the tolerance that were set.
+std::shared_ptr<const study::Prepared> Instance::with_parameters() const {
   SceneValues values = values_;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const Variable& v = variables_.all[variables_.parameter(i)];
@@ -117,7 +118,12 @@ void Instance::remake() {
     throw std::runtime_error("with these parameters the model has " +
                              std::to_string(prepared->model().layout().moving()) + " states; the FMU has " +
                              std::to_string(variables_.states));
-  auto made = std::make_unique<Dynamics>(std::move(prepared), start_);
+  return prepared;
+}
+
+/// Makes the scene anew with the parameters, tolerance and start values that were set.
+void Instance::remake() {
+  auto made = std::make_unique<Dynamics>(with_parameters(), start_);
   for (std::size_t i = 0; i < starts_.size(); ++i)
     if (is_started_[i] != 0) made->set_state(i, starts_[i]);
   for (std::size_t i = 0; i < inputs_.size(); ++i)
@@ -125,6 +131,36 @@ void Instance::remake() {
   made->begin();
   dynamics_ = std::move(made);
   stale_ = false;
+}
+
+/// Goes on from where it stands with other parameters. \param before those up to now, which stay where it throws
+void Instance::retune(const std::vector<double>& before) {
+  std::unique_ptr<Session> old_session;
+  std::unique_ptr<Dynamics> old_dynamics;
+  try {
+    Memory memory;
+    dynamics_->remember(memory);
+    auto made = std::make_unique<Dynamics>(with_parameters(), start_);
+    if (made->state().y.size() != dynamics_->state().y.size())
+      throw std::invalid_argument("these parameters change how many states the loads have; they are for a new start");
+    Memory kept(memory.numbers());
+    made->remember(kept);
+    const std::optional<Checkpoint> checkpoint =
+        session_ == nullptr ? std::nullopt : std::optional(session_->snapshot());
+    old_session = std::move(session_);
+    old_dynamics = std::exchange(dynamics_, std::move(made));
+    if (!checkpoint) return;
+    make_session();
+    session_->restore(*checkpoint);
+    session_->begin_step_anew();
+  } catch (...) {
+    if (old_dynamics != nullptr) {
+      session_ = std::move(old_session);
+      dynamics_ = std::move(old_dynamics);
+    }
+    parameters_ = before;
+    throw;
+  }
 }
 
 Dynamics& Instance::dynamics() {
@@ -206,7 +242,10 @@ void Instance::check_set(const Variable& v, double value) {
   const auto refuse = [&](const std::string& why) { throw std::invalid_argument(quoted(v) + ": " + why); };
   const bool starting = is_in(Mode::instantiated | Mode::initialization);
   if (!std::isfinite(value)) refuse("got " + brief(value) + "; need a finite number");
-  if (v.kind == Variable::Kind::parameter && !starting)
+  if (v.kind == Variable::Kind::parameter && v.tunable && !starting && !is_in(Mode::event | Mode::step))
+    refuse("is a tunable parameter, set before initialization ends, between steps and at events; the mode is " +
+           std::string(mode_name()));
+  if (v.kind == Variable::Kind::parameter && !v.tunable && !starting)
     refuse("is a fixed parameter, set before initialization ends; the mode is " + std::string(mode_name()));
   if (v.kind == Variable::Kind::state && !starting)
     refuse("is a state, which is set by its start value; the mode is " + std::string(mode_name()));
@@ -220,7 +259,7 @@ void Instance::check_set(const Variable& v, double value) {
 
 void Instance::set_one(const Variable& v, double value) {
   if (v.kind == Variable::Kind::parameter) {
-    stale_ = stale_ || parameters_[v.index] != value;
+    if (is_in(Mode::instantiated | Mode::initialization)) stale_ = stale_ || parameters_[v.index] != value;
     parameters_[v.index] = value;
   } else if (v.kind == Variable::Kind::state) {
     starts_[v.index] = value;
@@ -239,7 +278,15 @@ void Instance::set_one(const Variable& v, double value) {
 
 void Instance::set(std::span<const std::uint32_t> references, const double* values) {
   for (std::size_t i = 0; i < references.size(); ++i) check_set(variable(references[i]), values[i]);
-  for (std::size_t i = 0; i < references.size(); ++i) set_one(variable(references[i]), values[i]);
+  const std::vector<double> before = parameters_;
+  const auto set_those = [&](bool parameters) {
+    for (std::size_t i = 0; i < references.size(); ++i)
+      if (const Variable& v = variable(references[i]); (v.kind == Variable::Kind::parameter) == parameters)
+        set_one(v, values[i]);
+  };
+  set_those(true);
+  if (parameters_ != before && is_in(Mode::event | Mode::step)) retune(before);
+  set_those(false);
 }
 
 std::vector<double> Instance::jacobian_along(std::span<const std::uint32_t> unknowns,

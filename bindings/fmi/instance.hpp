@@ -93,7 +93,8 @@ class Instance {
 
   /// \throws std::out_of_range where there is no such variable.
   void get(std::span<const std::uint32_t> references, double* values);
-  /// All or none. \throws std::invalid_argument where one cannot be set now, or to this value.
+  /// All or none. Tunable parameters set between steps act from now on: the scene is made anew, and goes on from where
+  /// it stands. \throws std::invalid_argument where one cannot be set now, or to this value.
   void set(std::span<const std::uint32_t> references, const double* values);
   [[nodiscard]] const Variable& variable(std::uint32_t reference) const;
 
@@ -125,7 +126,9 @@ class Instance {
   SavedState* deserialize(std::span<const unsigned char> bytes);
 
  private:
+  [[nodiscard]] std::shared_ptr<const study::Prepared> with_parameters() const;
   void remake();
+  void retune(const std::vector<double>& before);
   void make_session();
   void remember(Memory& memory);
   void set_one(const Variable& v, double value);

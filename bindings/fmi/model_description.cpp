@@ -102,7 +102,7 @@ class Writer {
         is("output", "continuous", "calculated");
         break;
       case Kind::parameter:
-        is("parameter", "fixed", "exact");
+        is("parameter", v.tunable ? "tunable" : "fixed", "exact");
         break;
     }
     if (!v.unit.empty()) type.emplace_back("unit", v.unit);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "withy/bindings/fmi/scene_numbers.hpp"
@@ -78,6 +79,17 @@ void add_outputs(Variables& v, const study::Prepared& prepared) {
   }
 }
 
+/// Numbers of loads change nothing but efforts, and may be changed at any time: but not where a function of them
+/// switches the load, which would jump, nor what its clock is made of.
+bool is_tunable(const Model& model, const std::string& path) {
+  if (!path.starts_with("loads.") || path.ends_with(".sample") || path.ends_with(".delay")) return false;
+  const auto named = [&](const LoadNode& load) { return path.starts_with("loads." + load.name + '.'); };
+  const auto load = std::find_if(model.loads().begin(), model.loads().end(), named);
+  if (load == model.loads().end()) return false;
+  const DiscretePart* part = load->load->discrete();
+  return part == nullptr || part->switches() == 0;
+}
+
 }  // namespace
 
 std::size_t indicator_count(const Scene& scene) {
@@ -104,6 +116,7 @@ Variables variables_of(const study::Prepared& prepared, Registry& registry) {
   for (const SceneNumber& n : scene_numbers(prepared.scene, registry)) {
     v.all.push_back(
         {Kind::parameter, v.parameters++, n.path, n.unit == "1" ? "" : n.unit, n.meaning, n.value, n.least, n.most});
+    v.all.back().tunable = is_tunable(prepared.model(), n.path);
   }
   v.indicators = indicator_count(prepared.scene);
   for (std::size_t i = 0; i < v.indicators; ++i)

@@ -21,7 +21,7 @@ struct Variable {
     derivative,  ///< of the state of the same index
     input,       ///< a load of type `input`
     output,      ///< another column of the tables
-    parameter,   ///< a number of the scene, fixed
+    parameter,   ///< a number of the scene
     indicator    ///< whose zeros are events
   };
   Kind kind = Kind::output;
@@ -33,6 +33,8 @@ struct Variable {
   std::optional<double> minimum = {}, maximum = {};
   /// Of outputs: the state alone decides them; else the inputs may as well.
   bool of_state_alone = false;
+  /// Of parameters: may be set between the steps of a simulation; else they are fixed.
+  bool tunable = false;
 };
 
 struct Variables {

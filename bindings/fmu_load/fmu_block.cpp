@@ -30,6 +30,13 @@ double next_ticket(double before, double t, std::span<const double> w) {
   return static_cast<double>(mixed(h) >> 12U) + 1;
 }
 
+/// From an instant of the clock the period; from a start between two of them the time to the next.
+double length_of_step(double t, double period) {
+  const double periods = t / period;
+  if (std::abs(periods - std::round(periods)) < 1e-9 * std::max(1.0, std::abs(periods))) return period;
+  return (std::floor(periods) + 1) * period - t;
+}
+
 void pack(std::span<const unsigned char> bytes, std::span<double> numbers) {
   for (std::size_t i = 0; i * bytes_a_number < bytes.size(); ++i) {
     std::uint64_t sum = 0;
@@ -133,7 +140,7 @@ void FmuBlock::sample(double t, std::span<const double> w, std::span<double> z, 
       instance->restore(unpacked(z.subspan(2), static_cast<std::size_t>(z[1])));
     }
     std::vector<double> commands(v.size());
-    instance->step(t, period_, {wiring_.inputs, w}, wiring_.outputs, commands);
+    instance->step(t, length_of_step(t, period_), {wiring_.inputs, w}, wiring_.outputs, commands);
     for (const double command : commands)
       if (!std::isfinite(command)) throw FmuError("gives " + brief(command) + " as a command");
     std::copy(commands.begin(), commands.end(), v.begin());

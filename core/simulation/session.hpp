@@ -51,6 +51,9 @@ class Session final : private SteppingObserver {
   /// The events of the last `advance`, in their order.
   [[nodiscard]] const std::vector<EventTime>& events() const { return events_; }
 
+  /// The next step begins with derivatives computed anew: what it was restored from was of other equations.
+  void begin_step_anew() { loop_.replace(state()); }
+
   /// Everything that the steps to come depend on. Another session of the same scene may restore it.
   [[nodiscard]] Checkpoint snapshot();
   /// Goes on from a snapshot, bit by bit as the simulation did from there with the same inputs.
