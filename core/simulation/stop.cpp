@@ -13,6 +13,7 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
   if (end.cause == SteppingEnd::Cause::crowded)
     return {RunStatus::step_underflow, "switches or events follow each other without time between them"};
   if (end.cause != SteppingEnd::Cause::failed) return {};
+  if (!end.reason.empty()) return {RunStatus::diverged, end.reason, false};
   const StepResult& result = end.step;
   const std::string body =
       result.body >= 0 ? " at body '" + model.bodies()[static_cast<std::size_t>(result.body)].name + "'" : "";
