@@ -280,10 +280,6 @@ class CaseLanes final : public Asked {
 
 }  // namespace
 
-std::unique_ptr<SensedState> AskingEquations::make_sensed_state(std::span<const SectionPlace> sections) const {
-  return own_.make_sensed_state(sections);
-}
-
 void run_cases(const Plan& plan, const Cases& cases, Registry& registry, const study::Control& control,
                const CaseFlow& flow) {
   CaseLanes(plan, cases, registry, control, flow).run();

@@ -8,35 +8,6 @@
 
 namespace withy::exchange {
 
-std::string in_one_line(const Value& value) {
-  switch (value.kind()) {
-    case Value::Kind::null:
-      return "null";
-    case Value::Kind::boolean:
-      return value.boolean() ? "true" : "false";
-    case Value::Kind::number:
-      return fmt::format("{}", value.number());
-    case Value::Kind::text: {
-      std::string quoted = "\"";
-      for (const char c : value.text()) {
-        if (c == '"' || c == '\\') quoted += '\\';
-        quoted += c;
-      }
-      return quoted + '"';
-    }
-    case Value::Kind::list: {
-      std::string all;
-      for (const Value& v : value.items()) all += (all.empty() ? "" : ", ") + in_one_line(v);
-      return '[' + all + ']';
-    }
-    case Value::Kind::map:
-      break;
-  }
-  std::string all;
-  for (const auto& [key, v] : value.members()) all += (all.empty() ? "" : ", ") + key + ": " + in_one_line(v);
-  return '{' + all + '}';
-}
-
 std::string in_one_line(const Vector3& v) { return fmt::format("[{}, {}, {}]", v[0] + 0.0, v[1] + 0.0, v[2] + 0.0); }
 
 std::string quaternion_text(const Matrix3& R) {

@@ -6,14 +6,13 @@
 
 #include "flexible.hpp"
 #include "tree.hpp"
+#include "withy/scene/one_line.hpp"
 
 namespace withy::exchange {
 
 /// \param source the file that the tree was read from, for the comments
 std::string scene_text(const Tree& tree, const FlexibleLinks& flexible, const std::string& source);
 
-/// A value in one line of YAML.
-std::string in_one_line(const Value& value);
 /// "[1, 2.5, 0]", each number with the digits that give it back.
 std::string in_one_line(const Vector3& v);
 /// The unit quaternion of a rotation matrix, [w, x, y, z], w not negative.

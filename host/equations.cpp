@@ -178,7 +178,7 @@ EvaluatedRows Equations::derivatives_many(double t, std::span<const double> y, s
   Parts::expect(y.size(), count * n, "y");
   Parts::expect(y_dot.size(), y.size(), "y_dot");
   if (!p.in_lanes) p.in_lanes.emplace(p.equations);
-  const std::span<InLanes::One> lanes = p.in_lanes->lanes;
+  const std::span<Parts::InLanes::One> lanes = p.in_lanes->lanes;
   if (lanes.empty()) {
     for (std::size_t row = 0; row < count; ++row)
       if (const Evaluation e = derivatives(t, y.subspan(row * n, n), y_dot.subspan(row * n, n)); !e.ok())
@@ -189,7 +189,7 @@ EvaluatedRows Equations::derivatives_many(double t, std::span<const double> y, s
     const std::size_t some = std::min(lanes.size(), count - first);
     std::array<LaneCall*, LaneEquations::count> calls{};
     for (std::size_t k = 0; k < some; ++k) {
-      InLanes::One& lane = lanes[k];
+      Parts::InLanes::One& lane = lanes[k];
       std::copy(p.full.begin(), p.full.end(), lane.y.begin());  // with the inputs
       std::copy_n(y.begin() + static_cast<std::ptrdiff_t>((first + k) * n), n, lane.y.begin());
       lane.call = {t, lane.y, lane.y_dot, &lane.work, {}};

@@ -248,6 +248,55 @@ std::string integrator_text(const Json& integrator) {
   return out;
 }
 
+/// What each constraint closes, and what remains.
+std::string loops_text(const Json& loops) {
+  std::string out;
+  for (const Json& loop : loops["list"])
+    out += fmt::format("\nconstraint {}: {} of {} and {}; the loop closes {} equations, {} independent\n",
+                       loop["name"].get<std::string>(), loop["hinge"].get<std::string>(), loop["a"].get<std::string>(),
+                       loop["b"].get<std::string>(), loop["equations"].get<std::size_t>(),
+                       loop["independent"].get<std::size_t>());
+  out += fmt::format("  {} degrees of freedom remain\n", loops["degrees_of_freedom"].get<std::size_t>());
+  if (!loops["remark"].is_null()) out += "  " + loops["remark"].get<std::string>() + '\n';
+  return out;
+}
+
+/// Each output with its components.
+std::string outputs_text(const Json& outputs) {
+  std::string out;
+  for (const Json& output : outputs) {
+    out += fmt::format("\noutput {}: {}", output["name"].get<std::string>(), output["type"].get<std::string>());
+    const char* join = "\n  ";
+    for (const Json& c : output["components"]) {
+      out += fmt::format("{}{}[{}]", join, c["component"].get<std::string>(), c["unit"].get<std::string>());
+      join = " ";
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+/// Condition, sign and weak directions of the mass matrix.
+std::string matrix_text(const Json& m) {
+  std::string out;
+  const int sign = m["determinant_sign"].get<int>();
+  out += fmt::format(
+      "\nmass matrix M at this state\n  condition {:.4g}, with each coordinate in the unit of its own inertia "
+      "{:.4g}; digits "
+      "lost: accelerations are good to {:.1g}\n  det M is {}; smallest eigenvalue of its symmetric part {:.4g}\n",
+      m["condition"].get<double>(), m["scaled_condition"].get<double>(), m["attainable_accuracy"].get<double>(),
+      sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"), m["smallest_eigenvalue"].get<double>());
+  for (const Json& d : m["nearly_massless"])
+    out +=
+        fmt::format("  nearly massless: {}; {:.2g} of their inertia is left, {:.4g} rad/s\n",
+                    d["made_up_of"].get<std::string>(), d["inertia_left"].get<double>(), d["frequency"].get<double>());
+  if (!m["without_mode"].is_null())
+    out +=
+        fmt::format("  without {} the condition is {:.2g}; modes that know the load: docs/ill-conditioning.md\n",
+                    m["without_mode"]["mode"].get<std::string>(), m["without_mode"]["scaled_condition"].get<double>());
+  return out;
+}
+
 }  // namespace
 
 std::string inspection_text(const Scene& scene, const Json& j) {
@@ -269,43 +318,9 @@ std::string inspection_text(const Scene& scene, const Json& j) {
   }
   for (const Json& load : j["loads"])
     out += fmt::format("\nload {}: {}\n", load["name"].get<std::string>(), load["type"].get<std::string>());
-  if (j.contains("constraints")) {
-    const Json& loops = j["constraints"];
-    for (const Json& loop : loops["list"])
-      out += fmt::format("\nconstraint {}: {} of {} and {}; the loop closes {} equations, {} independent\n",
-                         loop["name"].get<std::string>(), loop["hinge"].get<std::string>(),
-                         loop["a"].get<std::string>(), loop["b"].get<std::string>(),
-                         loop["equations"].get<std::size_t>(), loop["independent"].get<std::size_t>());
-    out += fmt::format("  {} degrees of freedom remain\n", loops["degrees_of_freedom"].get<std::size_t>());
-    if (!loops["remark"].is_null()) out += "  " + loops["remark"].get<std::string>() + '\n';
-  }
-  for (const Json& output : j["outputs"]) {
-    out += fmt::format("\noutput {}: {}", output["name"].get<std::string>(), output["type"].get<std::string>());
-    const char* join = "\n  ";
-    for (const Json& c : output["components"]) {
-      out += fmt::format("{}{}[{}]", join, c["component"].get<std::string>(), c["unit"].get<std::string>());
-      join = " ";
-    }
-    out += '\n';
-  }
-  const Json& m = j["mass_matrix"];
-  if (!m.is_null()) {
-    const int sign = m["determinant_sign"].get<int>();
-    out += fmt::format(
-        "\nmass matrix M at this state\n  condition {:.4g}, with each coordinate in the unit of its own inertia "
-        "{:.4g}; digits "
-        "lost: accelerations are good to {:.1g}\n  det M is {}; smallest eigenvalue of its symmetric part {:.4g}\n",
-        m["condition"].get<double>(), m["scaled_condition"].get<double>(), m["attainable_accuracy"].get<double>(),
-        sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"), m["smallest_eigenvalue"].get<double>());
-    for (const Json& d : m["nearly_massless"])
-      out += fmt::format("  nearly massless: {}; {:.2g} of their inertia is left, {:.4g} rad/s\n",
-                         d["made_up_of"].get<std::string>(), d["inertia_left"].get<double>(),
-                         d["frequency"].get<double>());
-    if (!m["without_mode"].is_null())
-      out += fmt::format("  without {} the condition is {:.2g}; modes that know the load: docs/ill-conditioning.md\n",
-                         m["without_mode"]["mode"].get<std::string>(),
-                         m["without_mode"]["scaled_condition"].get<double>());
-  }
+  if (j.contains("constraints")) out += loops_text(j["constraints"]);
+  out += outputs_text(j["outputs"]);
+  if (!j["mass_matrix"].is_null()) out += matrix_text(j["mass_matrix"]);
   out += "\nplugins loaded\n";
   for (const Json& p : j["plugins"])
     out += fmt::format("  {}  {}\n", p["name"].get<std::string>(), p["file"].get<std::string>());

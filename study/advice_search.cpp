@@ -18,6 +18,8 @@ namespace policy {
 constexpr double good_reference_use = 0.1;
 /// The same where the search for a better one has taken this share of the time allowed.
 constexpr double most_reference_use = 0.25, reference_patience = 0.1;
+/// And where it has taken this share: what is left is better spent on models.
+constexpr double late_reference_use = 0.5, last_patience = 0.35;
 /// The same of a reference that has fewer modes than the richest candidate: what its next mode changes is then known.
 constexpr double most_poor_reference_use = 0.25 * most_reference_use;
 /// The same of the finest one there is where none of the levels is as good: less is left to what is chosen.
@@ -36,6 +38,9 @@ constexpr double model_allowance = 4;
 constexpr double candidate_allowance = 1.25;
 /// The same for what is timed again before one is chosen.
 constexpr double nearly_as_cheap = 1.3;
+/// Evaluations of `dop853` at its stability limit beyond which a model is looked at with implicit steps, and the
+/// tolerance of these over the accuracy: they are a tenth as many there.
+constexpr double many_evaluations = 5000, implicit_enough = 0.1;
 /// Runs that last longer [s] are timed once, shorter ones twice.
 constexpr double long_run = 0.2;
 /// Levels of a reference, the tolerance of each over that of the one before, and the tightest.
@@ -43,6 +48,9 @@ constexpr int reference_levels = 9;
 constexpr double finer_level = 0.3;
 constexpr double tightest = 1e-9;
 }  // namespace policy
+
+/// Linearly implicit: a step costs little more than an explicit one.
+constexpr const char* implicit_steps = "imex";
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -78,8 +86,11 @@ void Search::find_yardstick() {
     const double use = own_use(r);
     // Candidates are not to have more modes than the truth.
     const bool rich = !modal || r.point.modes >= candidates_.modes.back() || use < policy::most_poor_reference_use;
-    const bool late = evaluator_.spent() > policy::reference_patience * evaluator_.limit();
-    return use <= (late ? policy::most_reference_use : policy::good_reference_use) && rich;
+    const double gone = evaluator_.spent() / evaluator_.limit();
+    return use <= (gone > policy::last_patience        ? policy::late_reference_use
+                   : gone > policy::reference_patience ? policy::most_reference_use
+                                                       : policy::good_reference_use) &&
+           rich;
   };
   goal.steady = [&](const Reference& r) { return own_use(r) <= policy::most_reference_use; };
   goal.afford = [&](const Walk& so_far) { return affordable(so_far); };
@@ -151,31 +162,56 @@ const Probe& Search::run(const Point& point, const Allowance& allowance) {
   return advice_.probes.back();
 }
 
-/// A hundredth of the accuracy asked for, or the next candidate below it.
-double Search::exact_enough_tolerance() const {
+/// That part of the accuracy asked for, or the next candidate below it.
+double Search::exact_enough_tolerance(double part) const {
   double share = policy::exact_enough;
   const Reference& r = yardstick().reference;
   for (std::size_t i = 0; i < r.scales.size(); ++i)
     if (r.scales[i] > 0) share = std::min(share, yardstick().limits[i] / r.scales[i]);
-  const double wanted = policy::exact_enough * share * (1 + 1e-9);
+  const double wanted = part * share * (1 + 1e-9);
   for (const double t : candidates_.tolerances)
     if (t <= wanted) return t;
   return std::max(wanted, 1e-8);
 }
 
+/// Whether explicit steps would be many for stability alone.
+bool Search::limited_by_stability(const Point& model) const {
+  if (!contains<std::string>(candidates_.integrators, implicit_steps)) return false;
+  constexpr double stages = 12, stable = 5.96;  // of dop853
+  const Scene& scene = evaluator_.base().scene;
+  const double duration = end_of_run(scene) - scene.initial.time;
+  return stages / stable * evaluator_.model(model).fastest * duration > policy::many_evaluations;
+}
+
 /// Whether the model itself may be good enough: an integration that adds next to nothing tells, cut when it is clear.
 bool Search::model_holds(const Point& model) {
-  Point point = model;
-  point.integrator = "dop853";
-  point.tolerance = exact_enough_tolerance();
-  const bool candidate =
-      contains(candidates_.integrators, point.integrator) && contains(candidates_.tolerances, point.tolerance);
-  run(point, {policy::clearly_inaccurate, policy::model_allowance * best_cost()});
-  Probe& p = advice_.probes.back();
-  if (!candidate && p.passed()) p.outcome = Probe::Outcome::no_candidate;
-  const double left =
-      p.walk.end == Walk::End::reached ? policy::hardly_inaccurate - yardstick().own_use() : policy::clearly_inaccurate;
-  return !(p.outcome == Probe::Outcome::inaccurate && p.use > left);
+  const auto look = [&](const char* integrator, double part) -> Probe& {
+    Point point = model;
+    point.integrator = integrator;
+    point.tolerance = exact_enough_tolerance(part);
+    run(point, {policy::clearly_inaccurate, policy::model_allowance * best_cost()});
+    Probe& p = advice_.probes.back();
+    const bool candidate =
+        contains(candidates_.integrators, point.integrator) && contains(candidates_.tolerances, point.tolerance);
+    if (!candidate && p.passed()) p.outcome = Probe::Outcome::no_candidate;
+    return p;
+  };
+  const auto wrong = [&](const Probe& p, double left) {
+    return p.outcome == Probe::Outcome::inaccurate && p.use > left;
+  };
+  if (limited_by_stability(model)) {
+    const Probe& p = look(implicit_steps, policy::implicit_enough);
+    if (p.outcome != Probe::Outcome::refused && p.walk.end != Walk::End::reached)
+      return !wrong(p, policy::clearly_inaccurate);
+    // Not as exact as the other: what a digit less of tolerance changes is what integration may have added.
+    const double use = p.use, hardly = policy::hardly_inaccurate - yardstick().own_use();
+    if (p.outcome == Probe::Outcome::inaccurate && use > hardly)
+      return std::abs(look(implicit_steps, 10 * policy::implicit_enough).use - use) > use - hardly;
+    if (p.outcome != Probe::Outcome::refused) return true;
+  }
+  const Probe& p = look("dop853", policy::exact_enough);
+  return !wrong(p, p.walk.end == Walk::End::reached ? policy::hardly_inaccurate - yardstick().own_use()
+                                                    : policy::clearly_inaccurate);
 }
 
 void Search::try_model(const Point& model) {
@@ -195,7 +231,7 @@ void Search::try_model(const Point& model) {
 bool Search::worth_trying(const std::string& integrator, const Point& model) const {
   const auto limit =
       make_integrator(evaluator_.registry(), integrator, candidates_.tolerances.front())->stability_limit();
-  if (integrator == "imex" || (limit && std::isfinite(*limit))) return true;
+  if (integrator == implicit_steps || (limit && std::isfinite(*limit))) return true;
   bool tried = false;
   for (const Probe& p : advice_.probes) {
     if (!p.point.same_model(model) || p.point.tolerance != candidates_.tolerances.front()) continue;
@@ -207,7 +243,7 @@ bool Search::worth_trying(const std::string& integrator, const Point& model) con
 
 /// From the loosest tolerance on, until one passes or costs more than the best so far.
 void Search::try_integrations(const Point& model, const std::string& integrator) {
-  const double known = exact_enough_tolerance();
+  const double known = exact_enough_tolerance(policy::exact_enough);
   for (const double tolerance : candidates_.tolerances) {
     if (over()) return;
     if (integrator == "dop853" && tolerance <= known && contains(candidates_.tolerances, known)) return;

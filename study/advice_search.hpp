@@ -33,7 +33,8 @@ class Search {
   void try_models(const std::vector<int>& modes);
   void try_model(const Point& model);
   bool model_holds(const Point& model);
-  [[nodiscard]] double exact_enough_tolerance() const;
+  [[nodiscard]] double exact_enough_tolerance(double part) const;
+  [[nodiscard]] bool limited_by_stability(const Point& model) const;
   [[nodiscard]] double best_cost() const;
   const Probe& run(const Point& point, const Allowance& allowance);
   void time_again(const Probe& probe);

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/forwarding_equations.hpp"
 #include "withy/core/simulation/rungs.hpp"
 
 namespace withy::study {
@@ -13,7 +13,7 @@ namespace withy::study {
 /// beyond the last of them as it went between the last two, for as long as that took. A step so costs an evaluation of
 /// each more than one in `low`, where a step in `high` may be ten times as dear. What the extrapolation is off by is
 /// small against d where steps resolve what moves; so the run is a good reference where d does little. Of one thread.
-class CorrectedEquations final : public EquationsOfMotion, private LinearlyImplicit {
+class CorrectedEquations final : public ForwardingEquations, private LinearlyImplicit {
  public:
   /// \param rungs of one model, a tree; they must outlive it. With low = high they are the equations of that rung.
   CorrectedEquations(const std::vector<Rung>& rungs, std::size_t low, std::size_t high);
@@ -32,42 +32,26 @@ class CorrectedEquations final : public EquationsOfMotion, private LinearlyImpli
   /// Evaluations made by samples, of each of the two.
   [[nodiscard]] std::size_t samples() const { return samples_; }
 
-  [[nodiscard]] const Layout& layout() const override { return cheap_.layout(); }
-  [[nodiscard]] Work make_work() const override { return cheap_.make_work(); }
   Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
                          Work& work) const noexcept override;
-  void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
-                    Work& work) const noexcept override {
-    cheap_.load_efforts(t, y, load, efforts, work);
-  }
-  Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
-                            Work& work) const noexcept override {
-    return cheap_.motion_efforts(t, y, efforts, work);
-  }
-  void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
-                        Work& work) const override {
-    cheap_.inverse_dynamics(y, u_dot, efforts, work);
-  }
-  void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> product,
-                  Work& work) const override {
-    cheap_.mass_times(y, a, product, work);
+  /// None: those on the way are of the lower formulation alone.
+  bool found_efforts(Work& /*work*/, std::span<double> /*loads*/,
+                     std::span<double> /*motions*/) const noexcept override {
+    return false;
   }
   [[nodiscard]] const LinearlyImplicit* linearly_implicit() const override {
     return implicit_ != nullptr ? this : nullptr;
   }
-  void normalize(std::span<double> y) const noexcept override { cheap_.normalize(y); }
-  [[nodiscard]] std::unique_ptr<Observation> make_observation() const override { return dear_.make_observation(); }
-  [[nodiscard]] DenseSystem system(double t, std::span<const double> y) const override { return cheap_.system(t, y); }
-  [[nodiscard]] Energies energies(std::span<const double> y) const override { return dear_.energies(y); }
-  [[nodiscard]] WorldPose frame_pose(std::span<const double> y, int body, int frame) const override {
-    return dear_.frame_pose(y, body, frame);
+  /// None: d is not known between samples.
+  [[nodiscard]] const Linearization* linearization() const override { return nullptr; }
+  Evaluation position_rates(double t, std::span<const double> y, std::span<double> y_dot,
+                            Work& work) const noexcept override {
+    return derivatives(t, y, y_dot, work);
   }
-  [[nodiscard]] std::array<double, 3> deflection(std::span<const double> y, int body, int frame) const override {
-    return dear_.deflection(y, body, frame);
-  }
-  [[nodiscard]] std::vector<std::string> savings() const override { return cheap_.savings(); }
 
  private:
+  [[nodiscard]] const EquationsOfMotion& own() const noexcept override { return cheap_; }
+  [[nodiscard]] const EquationsOfMotion& seen() const noexcept override { return dear_; }
   [[nodiscard]] Work make_factors() const override { return implicit_->make_factors(); }
   Evaluation factorize(std::span<const double> y, double delta, Work& factors) const noexcept override {
     return implicit_->factorize(y, delta, factors);

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <string_view>
 
+#include "withy/scene/one_line.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -57,29 +58,6 @@ void change_start(std::vector<Change>& changes, const Scene& scene, const std::s
   if (start->has("rates"))
     changes.push_back(
         {path + ".rates", resized(y.subspan(scene.model->layout().positions + slot.speed, slot.speeds), had, modes)});
-}
-
-/// As in a file, on one line.
-std::string flow_text(const Value& value) {
-  std::string out;
-  switch (value.kind()) {
-    case Value::Kind::null:
-      return "null";
-    case Value::Kind::boolean:
-      return value.boolean() ? "true" : "false";
-    case Value::Kind::number:
-      return fmt::format("{}", value.number());
-    case Value::Kind::text:
-      return value.text();
-    case Value::Kind::list:
-      for (const Value& item : value.items()) out += (out.empty() ? "" : ", ") + flow_text(item);
-      return '[' + out + ']';
-    case Value::Kind::map:
-      for (const auto& [key, member] : value.members())
-        out += (out.empty() ? "" : ", ") + key + ": " + flow_text(member);
-      return '{' + out + '}';
-  }
-  return out;
 }
 
 }  // namespace
@@ -156,7 +134,7 @@ std::vector<Point> points_of(const Axes& axes) {
   return points;
 }
 
-std::string Change::text() const { return path + '=' + flow_text(value); }
+std::string Change::text() const { return path + '=' + in_one_line(value); }
 
 std::vector<Change> changes_at(const Scene& scene, const Point& point) {
   std::vector<Change> changes;

@@ -185,8 +185,10 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
     std::optional<Reference> fine = search.at(search.finer(coarse->point));
     if (!fine) break;
     fine->own = distances(outputs, fine->readings, coarse->readings).first;
-    if (search.enough(*fine)) found.reference = std::move(fine);
-    if (found.reference) return std::move(found);
+    if (search.enough(*fine)) {
+      found.reference = std::move(fine);
+      return std::move(found);
+    }
     search.keep_nearest(*fine);
     before = std::move(coarse), coarse = std::move(fine);
     tried = search.much_cheaper_below(coarse->point);

@@ -10,6 +10,7 @@
 #include "withy/core/kinematics/loop_paths.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/forward_dynamics.hpp"
+#include "withy/core/plugin/forwarding_equations.hpp"
 
 namespace withy::equations {
 
@@ -18,20 +19,15 @@ namespace withy::equations {
 ///   u̇ = u̇_tree + Z λ,   J Z λ = −(J u̇_tree + J̇ u),
 /// solved in as many rows as are independent. Speeds that motions prescribe keep their accelerations; what that asks of
 /// the motions is in their efforts and in the work.
-class ClosedEquations final : public EquationsOfMotion, public ClosedLoops {
+class ClosedEquations final : public ForwardingEquations, public ClosedLoops {
  public:
   /// \param tree equations of the model's tree in these terms
   /// \throws std::invalid_argument where the formulation's mass matrix is not symmetric.
   ClosedEquations(std::shared_ptr<const Model> model, Terms terms, std::unique_ptr<EquationsOfMotion> tree);
 
-  const Layout& layout() const override { return tree_->layout(); }
   Work make_work() const override { return Work(work_size_); }
   Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
                          Work& work) const noexcept override;
-  void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
-                    Work& work) const noexcept override {
-    tree_->load_efforts(t, y, load, efforts, work);
-  }
   Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
                             Work& work) const noexcept override;
   std::size_t closing_equations() const override { return rows_; }
@@ -50,34 +46,15 @@ class ClosedEquations final : public EquationsOfMotion, public ClosedLoops {
   }
   Wrench reaction(std::size_t index, std::span<const double> multipliers, Work& work) const noexcept override;
   bool found_efforts(Work& work, std::span<double> loads, std::span<double> motions) const noexcept override;
-  /// Of the tree: what multipliers bear is among the efforts.
-  void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
-                        Work& work) const override {
-    tree_->inverse_dynamics(y, u_dot, efforts, work);
-  }
-  void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> product,
-                  Work& work) const override {
-    tree_->mass_times(y, a, product, work);
-  }
-  Evaluation position_rates(double t, std::span<const double> y, std::span<double> y_dot,
-                            Work& work) const noexcept override {
-    return tree_->position_rates(t, y, y_dot, work);
-  }
-  void normalize(std::span<double> y) const noexcept override { tree_->normalize(y); }
-  std::unique_ptr<Observation> make_observation() const override { return tree_->make_observation(); }
+  // Inverse dynamics, M a and the dense system are those of the tree: what multipliers bear is among the efforts.
+  /// None: the tree's know nothing of multipliers.
+  const LinearlyImplicit* linearly_implicit() const override { return nullptr; }
+  const Linearization* linearization() const override { return nullptr; }
   std::unique_ptr<SensedState> make_sensed_state(std::span<const SectionPlace> sections) const override;
-  /// Of the tree.
-  DenseSystem system(double t, std::span<const double> y) const override { return tree_->system(t, y); }
-  Energies energies(std::span<const double> y) const override { return tree_->energies(y); }
-  WorldPose frame_pose(std::span<const double> y, int body, int frame) const override {
-    return tree_->frame_pose(y, body, frame);
-  }
-  std::array<double, 3> deflection(std::span<const double> y, int body, int frame) const override {
-    return tree_->deflection(y, body, frame);
-  }
   std::vector<std::string> savings() const override;
 
  private:
+  const EquationsOfMotion& own() const noexcept override { return *tree_; }
   void lay_out();
   /// Those that the last call of `factorize` has left.
   [[nodiscard]] PivotedFactors factors(Work& work) const noexcept;

@@ -7,6 +7,7 @@
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/chosen_sensing.hpp"
 #include "withy/core/plugin/forward_dynamics.hpp"
+#include "withy/core/plugin/forwarding_equations.hpp"
 
 namespace withy::equations {
 namespace {
@@ -31,7 +32,7 @@ struct ConfigurationPlace {
 
 using AllEquations = std::vector<std::unique_ptr<EquationsOfMotion>>;
 
-class ConfiguredEquations final : public EquationsOfMotion,
+class ConfiguredEquations final : public ForwardingEquations,
                                   public ForwardDynamics,
                                   private LinearlyImplicit,
                                   private Linearization {
@@ -45,16 +46,11 @@ class ConfiguredEquations final : public EquationsOfMotion,
     }
   }
 
-  const Layout& layout() const override { return first().layout(); }
   // Behind the work of the equations stands the configuration that it was last used in.
   Work make_work() const override { return Work(work_size_ + sizeof(std::size_t)); }
   Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
                          Work& work) const noexcept override {
     return note(y, work, work_size_).derivatives(t, y, y_dot, work);
-  }
-  void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
-                    Work& work) const noexcept override {
-    at(y).load_efforts(t, y, load, efforts, work);
   }
   Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
                             Work& work) const noexcept override {
@@ -63,51 +59,29 @@ class ConfiguredEquations final : public EquationsOfMotion,
   bool found_efforts(Work& work, std::span<double> loads, std::span<double> motions) const noexcept override {
     return noted(work, work_size_).found_efforts(work, loads, motions);
   }
-  void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
-                        Work& work) const override {
-    at(y).inverse_dynamics(y, u_dot, efforts, work);
-  }
-  void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> product,
-                  Work& work) const override {
-    at(y).mass_times(y, a, product, work);
-  }
   Evaluation forward_dynamics(std::span<const double> y, std::span<const double> efforts, std::span<double> u_dot,
                               Work& work) const noexcept override {
     return forward_[place_(y)]->forward_dynamics(y, efforts, u_dot, work);
   }
   const LinearlyImplicit* linearly_implicit() const override {
-    return first().linearly_implicit() == nullptr ? nullptr : this;
+    return own().linearly_implicit() == nullptr ? nullptr : this;
   }
-  const Linearization* linearization() const override { return first().linearization() == nullptr ? nullptr : this; }
-  Evaluation position_rates(double t, std::span<const double> y, std::span<double> y_dot,
-                            Work& work) const noexcept override {
-    return first().position_rates(t, y, y_dot, work);
-  }
-  void normalize(std::span<double> y) const noexcept override { first().normalize(y); }
-  // What is seen of a state does not depend on what is locked.
-  std::unique_ptr<Observation> make_observation() const override { return first().make_observation(); }
+  const Linearization* linearization() const override { return own().linearization() == nullptr ? nullptr : this; }
   std::unique_ptr<SensedState> make_sensed_state(std::span<const SectionPlace> sections) const override {
     std::vector<std::unique_ptr<SensedState>> all;
     for (const auto& equations : all_) all.push_back(equations->make_sensed_state(sections));
     return std::make_unique<ChosenSensing>(std::move(all), [place = place_](const State& s) { return place(s.y); });
   }
-  DenseSystem system(double t, std::span<const double> y) const override { return at(y).system(t, y); }
-  Energies energies(std::span<const double> y) const override { return first().energies(y); }
-  WorldPose frame_pose(std::span<const double> y, int body, int frame) const override {
-    return first().frame_pose(y, body, frame);
-  }
-  std::array<double, 3> deflection(std::span<const double> y, int body, int frame) const override {
-    return first().deflection(y, body, frame);
-  }
   std::vector<std::string> savings() const override {
-    std::vector<std::string> lines = first().savings();
+    std::vector<std::string> lines = own().savings();
     lines.push_back("events lock hinges in " + std::to_string(all_.size()) + " combinations, compiled each");
     return lines;
   }
 
  private:
-  [[nodiscard]] const EquationsOfMotion& first() const { return *all_.front(); }
-  [[nodiscard]] const EquationsOfMotion& at(std::span<const double> y) const noexcept { return *all_[place_(y)]; }
+  // What is seen of a state does not depend on what is locked.
+  const EquationsOfMotion& own() const noexcept override { return *all_.front(); }
+  const EquationsOfMotion& at(std::span<const double> y) const noexcept override { return *all_[place_(y)]; }
   /// The equations of a state, noted behind the memory that they are about to use.
   const EquationsOfMotion& note(std::span<const double> y, Work& work, std::size_t offset) const noexcept {
     const std::size_t index = place_(y);

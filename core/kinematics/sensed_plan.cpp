@@ -8,6 +8,7 @@
 #include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/sweep/mass_table.hpp"
 #include "withy/core/tree/invariants.hpp"
+#include "withy/core/tree/rigid_inertia.hpp"
 
 namespace withy::sensed {
 namespace {
@@ -53,17 +54,6 @@ std::vector<PointFields> points_of(const ModalShape& shape, StrainOrder order) {
   return points;
 }
 
-RigidInertia inertia_of_rigid(const ModalShape& shape) {
-  RigidInertia I;
-  for (const Particle& p : shape.particles) {
-    I.mass += p.mass;
-    I.moment += p.mass * p.at.X;
-    I.inertia += p.mass * (p.at.X.squaredNorm() * Matrix3::Identity() - p.at.X * p.at.X.transpose());
-  }
-  for (const Section& s : shape.sections) I.inertia += s.inertia;
-  return I;
-}
-
 }  // namespace
 
 Plan::Plan(const Model& m, Terms terms, std::span<const SectionPlace> places)
@@ -99,7 +89,7 @@ void Plan::add_cut(const SectionPlace& place) {
     cut.points = points_of(beyond, body.order);
     for (const Section& s : beyond.sections) cut.rotary.push_back({s.inertia, {s.at, true}});
   } else {
-    cut.rigid = inertia_of_rigid(beyond);
+    cut.rigid = rigid_inertia(beyond);
   }
   // What is at the section is beyond it, but for the body's own hinge.
   const double close = 1e-9 * node.body->shape().length;
@@ -177,7 +167,7 @@ void Plan::add_body(std::size_t index, Terms terms) {
       for (const Section& s : shape.sections) body.rotary.push_back({s.inertia, {s.at, true}});
     }
   } else {
-    body.rigid = inertia_of_rigid(shape);
+    body.rigid = rigid_inertia(shape);
   }
   bodies.push_back(std::move(body));
 }

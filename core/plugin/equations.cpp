@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "withy/core/plugin/forwarding_equations.hpp"
 #include "withy/core/plugin/sensor.hpp"
 
 namespace withy {
@@ -42,6 +43,10 @@ Work::Work(std::size_t bytes) : storage_(bytes + 64), size_(bytes) {
 
 std::unique_ptr<SensedState> EquationsOfMotion::make_sensed_state(std::span<const SectionPlace>) const {
   return nullptr;
+}
+
+std::unique_ptr<SensedState> ForwardingEquations::make_sensed_state(std::span<const SectionPlace> sections) const {
+  return seen().make_sensed_state(sections);
 }
 
 void Work::poison() { std::memset(data_, 0xff, size_); }

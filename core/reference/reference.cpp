@@ -25,6 +25,83 @@ bool is_exact(const Model& model, std::size_t body, Terms terms) {
   return node.body->shape().modes() > 0 && own.strain == StrainOrder::exact && own.truncation == Truncation::none;
 }
 
+/// M u̇ = f + applied, before stiffness and damping of bodies.
+struct Assembled {
+  Eigen::MatrixXd M;
+  Eigen::VectorXd f, applied;
+};
+
+/// Theory (3): the directional derivative along the elastic coordinates is the dual part.
+/// \param all one a body
+Assembled strict_system(const Model& model, const std::vector<Terms>& all, std::span<const double> y,
+                        const std::vector<PlacedWrench>& wrenches) {
+  Dual epsilon(0.0);
+  epsilon.derivatives()[0] = 1.0;
+  MX<Dual> dual_mass;
+  VX<Dual> dual_force;
+  std::vector<BodyTerms<Dual>> terms;
+  for (const Terms& own : all)
+    terms.push_back({own.strain, own.truncation == Truncation::ruthless ? Dual(0.0) : epsilon});
+  const reference::ReferenceTree<Dual> tree(model, std::move(terms), y);
+  tree.assemble(dual_mass, dual_force);
+  VX<Dual> dual_applied = VX<Dual>::Zero(static_cast<Eigen::Index>(model.layout().speeds));
+  for (const auto& [at, wrench] : wrenches) tree.add_efforts(at, wrench, dual_applied);
+  const auto value = [](const Dual& d) { return d.value(); };
+  const auto first = [](const Dual& d) { return d.derivatives()[0]; };
+  Assembled s;
+  s.applied = dual_applied.unaryExpr(value) + dual_applied.unaryExpr(first);
+  s.M = dual_mass.unaryExpr(value);
+  const Eigen::MatrixXd M1 = dual_mass.unaryExpr(first);
+  s.f = dual_force.unaryExpr(value) + dual_force.unaryExpr(first);
+  for (const Slot& hinge : model.layout().hinges) {
+    const auto at = static_cast<Eigen::Index>(hinge.speed);
+    const auto count = static_cast<Eigen::Index>(hinge.speeds);
+    s.M.middleCols(at, count) += M1.middleCols(at, count);
+  }
+  return s;
+}
+
+/// Without truncation, or with deformations left out of M and f.
+/// \param all one a body \param rods one a body, null where it is no rod of exact kinematics
+Assembled whole_system(const Model& model, const std::vector<Terms>& all,
+                       const std::vector<std::shared_ptr<const RodTable>>& rods, std::span<const double> y,
+                       const std::vector<PlacedWrench>& wrenches) {
+  std::vector<BodyTerms<double>> terms;
+  for (std::size_t b = 0; b < all.size(); ++b)
+    terms.push_back({all[b].strain, all[b].truncation == Truncation::ruthless ? 0.0 : 1.0, rods[b].get()});
+  const reference::ReferenceTree<double> tree(model, std::move(terms), y);
+  Assembled s;
+  tree.assemble(s.M, s.f);
+  s.applied = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.layout().speeds));
+  for (const auto& [at, wrench] : wrenches) tree.add_efforts(at, wrench, s.applied);
+  return s;
+}
+
+/// f −= K q + D q̇ of every body.
+void add_elastic_forces(const Model& model, std::span<const double> y, Eigen::VectorXd& f) {
+  const Layout& layout = model.layout();
+  std::size_t flexible = 0;
+  for (const BodyNode& node : model.bodies()) {
+    const ModalShape& shape = node.body->shape();
+    if (shape.modes() == 0) continue;
+    const Slot& slot = layout.bodies[flexible++];
+    const Eigen::Map<const Eigen::VectorXd> q(y.data() + slot.position, shape.modes());
+    const Eigen::Map<const Eigen::VectorXd> q_dot(y.data() + layout.positions + slot.speed, shape.modes());
+    f.segment(static_cast<Eigen::Index>(slot.speed), shape.modes()) -= shape.stiffness * q + shape.damping * q_dot;
+  }
+}
+
+std::vector<PrescribedRate> prescribed_at(const Model& model, double t) {
+  std::vector<PrescribedRate> prescribed;
+  std::vector<double> u_dot(model.layout().speeds);
+  model.prescribe_accelerations(t, u_dot);
+  for (const MotionNode& node : model.motions()) {
+    const Slot& slot = model.layout().hinges[static_cast<std::size_t>(node.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) prescribed.push_back({slot.speed + i, u_dot[slot.speed + i]});
+  }
+  return prescribed;
+}
+
 }  // namespace
 
 ReferenceDynamics::ReferenceDynamics(std::shared_ptr<const Model> model, Terms terms)
@@ -52,84 +129,39 @@ Terms ReferenceDynamics::terms_of(std::size_t body) const { return model_->bodie
 
 DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const {
   const Layout& layout = model_->layout();
-  const auto n = static_cast<Eigen::Index>(layout.speeds);
-  Eigen::MatrixXd M;
-  Eigen::VectorXd f;
-  Eigen::VectorXd applied = Eigen::VectorXd::Zero(n);
   const std::vector<PlacedWrench> wrenches = wrenches_at(t, y);
-  const auto any = [this](Truncation truncation) {
+  std::vector<Terms> terms;
+  for (std::size_t b = 0; b < model_->bodies().size(); ++b) terms.push_back(terms_of(b));
+  const auto any = [&](Truncation truncation) {
     bool found = false;
-    for (std::size_t b = 0; b < model_->bodies().size(); ++b)
-      found = found || (slots_[b] != nullptr && terms_of(b).truncation == truncation);
+    for (std::size_t b = 0; b < terms.size(); ++b)
+      found = found || (slots_[b] != nullptr && terms[b].truncation == truncation);
     return found;
   };
+  Assembled all;
   if (any(Truncation::symmetric)) {
-    std::vector<Terms> terms;
-    for (std::size_t b = 0; b < model_->bodies().size(); ++b) terms.push_back(terms_of(b));
     reference::FirstOrderSystem first_order = reference::first_order_system(*model_, terms, y, wrenches);
-    M = std::move(first_order.M);
-    f = std::move(first_order.f);
-    applied = std::move(first_order.applied);
+    all = {std::move(first_order.M), std::move(first_order.f), std::move(first_order.applied)};
   } else if (any(Truncation::strict)) {
-    // Theory (3): the directional derivative along the elastic coordinates is the dual part.
-    Dual epsilon(0.0);
-    epsilon.derivatives()[0] = 1.0;
-    MX<Dual> dual_mass;
-    VX<Dual> dual_force;
-    std::vector<BodyTerms<Dual>> terms;
-    for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
-      terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? Dual(0.0) : epsilon});
-    }
-    const reference::ReferenceTree<Dual> tree(*model_, std::move(terms), y);
-    tree.assemble(dual_mass, dual_force);
-    VX<Dual> dual_applied = VX<Dual>::Zero(n);
-    for (const auto& [at, wrench] : wrenches) tree.add_efforts(at, wrench, dual_applied);
-    const auto first = [](const Dual& d) { return d.derivatives()[0]; };
-    applied = dual_applied.unaryExpr([](const Dual& d) { return d.value(); }) + dual_applied.unaryExpr(first);
-    M = dual_mass.unaryExpr([](const Dual& d) { return d.value(); });
-    const Eigen::MatrixXd M1 = dual_mass.unaryExpr(first);
-    f = dual_force.unaryExpr([](const Dual& d) { return d.value(); }) + dual_force.unaryExpr(first);
-    for (const Slot& hinge : layout.hinges) {
-      const auto at = static_cast<Eigen::Index>(hinge.speed);
-      const auto count = static_cast<Eigen::Index>(hinge.speeds);
-      M.middleCols(at, count) += M1.middleCols(at, count);
-    }
+    all = strict_system(*model_, terms, y, wrenches);
   } else {
-    std::vector<BodyTerms<double>> terms;
-    for (std::size_t b = 0; b < model_->bodies().size(); ++b) {
-      terms.push_back({terms_of(b).strain, terms_of(b).truncation == Truncation::ruthless ? 0.0 : 1.0, rods_[b].get()});
-    }
     std::vector<double> seen(y.begin(), y.end());
     if (!terms_.products_of_speeds) {
       const auto first = seen.begin() + static_cast<std::ptrdiff_t>(layout.positions);
       std::fill(first, first + static_cast<std::ptrdiff_t>(layout.speeds), 0.0);
     }
-    const reference::ReferenceTree<double> tree(*model_, std::move(terms), seen);
-    tree.assemble(M, f);
-    for (const auto& [at, wrench] : wrenches) tree.add_efforts(at, wrench, applied);
+    all = whole_system(*model_, terms, rods_, seen, wrenches);
   }
-  std::size_t flexible = 0;
-  for (const BodyNode& node : model_->bodies()) {
-    const ModalShape& shape = node.body->shape();
-    if (shape.modes() == 0) continue;
-    const Slot& slot = layout.bodies[flexible++];
-    const Eigen::Map<const Eigen::VectorXd> q(y.data() + slot.position, shape.modes());
-    const Eigen::Map<const Eigen::VectorXd> q_dot(y.data() + layout.positions + slot.speed, shape.modes());
-    f.segment(static_cast<Eigen::Index>(slot.speed), shape.modes()) -= shape.stiffness * q + shape.damping * q_dot;
-  }
+  add_elastic_forces(*model_, y, all.f);
 
+  const auto n = static_cast<Eigen::Index>(layout.speeds);
   DenseSystem s;
   s.size = layout.speeds;
   s.mass.resize(s.size * s.size);
-  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(s.mass.data(), n, n) = M;
-  s.force.assign(f.data(), f.data() + n);
-  s.applied.assign(applied.data(), applied.data() + n);
-  std::vector<double> u_dot(s.size);
-  model_->prescribe_accelerations(t, u_dot);
-  for (const MotionNode& node : model_->motions()) {
-    const Slot& slot = layout.hinges[static_cast<std::size_t>(node.hinge)];
-    for (std::size_t i = 0; i < slot.speeds; ++i) s.prescribed.push_back({slot.speed + i, u_dot[slot.speed + i]});
-  }
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(s.mass.data(), n, n) = all.M;
+  s.force.assign(all.f.data(), all.f.data() + n);
+  s.applied.assign(all.applied.data(), all.applied.data() + n);
+  s.prescribed = prescribed_at(*model_, t);
   std::vector<double> scratch(model_->load_scratch());
   for (const LoadNode& node : model_->loads())
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), s.applied, scratch);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/forwarding_equations.hpp"
 #include "withy/core/simulation/rungs.hpp"
 
 namespace withy {
@@ -18,7 +18,7 @@ void require_trees(const std::vector<Rung>& rungs);
 
 /// The equations of the rung that is in force, under one face: a run goes on over a change with its integrator, its
 /// watches and its checkpoints. `go_over` chooses the rung: of one thread, but for what a Work is of.
-class ChangingEquations final : public EquationsOfMotion, private LinearlyImplicit, private Linearization {
+class ChangingEquations final : public ForwardingEquations, private LinearlyImplicit, private Linearization {
  public:
   /// \param rungs of one model, a tree; they must outlive it. \param stretches adjoin each other; at least one
   ChangingEquations(const std::vector<Rung>& rungs, std::vector<Stretch> stretches);
@@ -32,70 +32,44 @@ class ChangingEquations final : public EquationsOfMotion, private LinearlyImplic
   /// Times [s] at which the rung changes, increasing.
   [[nodiscard]] std::vector<double> hand_overs() const;
 
-  [[nodiscard]] const Layout& layout() const override { return now().layout(); }
   [[nodiscard]] Work make_work() const override;
   Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
                          Work& work) const noexcept override {
     ++evaluations_[rung_];
-    return now().derivatives(t, y, y_dot, work);
+    return own().derivatives(t, y, y_dot, work);
   }
-  void load_efforts(double t, std::span<const double> y, int load, std::span<double> efforts,
-                    Work& work) const noexcept override {
-    now().load_efforts(t, y, load, efforts, work);
-  }
-  Evaluation motion_efforts(double t, std::span<const double> y, std::span<double> efforts,
-                            Work& work) const noexcept override {
-    return now().motion_efforts(t, y, efforts, work);
-  }
-  void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
-                        Work& work) const override {
-    now().inverse_dynamics(y, u_dot, efforts, work);
-  }
-  void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> product,
-                  Work& work) const override {
-    now().mass_times(y, a, product, work);
+  /// None: what the last call has left may be of another rung.
+  bool found_efforts(Work& /*work*/, std::span<double> /*loads*/,
+                     std::span<double> /*motions*/) const noexcept override {
+    return false;
   }
   /// Null where a rung that takes part has no way to.
   [[nodiscard]] const LinearlyImplicit* linearly_implicit() const override;
   [[nodiscard]] const Linearization* linearization() const override;
-  Evaluation position_rates(double t, std::span<const double> y, std::span<double> y_dot,
-                            Work& work) const noexcept override {
-    return now().position_rates(t, y, y_dot, work);
-  }
-  void normalize(std::span<double> y) const noexcept override { now().normalize(y); }
   [[nodiscard]] std::unique_ptr<Observation> make_observation() const override;
   [[nodiscard]] std::unique_ptr<SensedState> make_sensed_state(std::span<const SectionPlace> sections) const override;
-  [[nodiscard]] DenseSystem system(double t, std::span<const double> y) const override { return now().system(t, y); }
-  [[nodiscard]] Energies energies(std::span<const double> y) const override { return now().energies(y); }
-  [[nodiscard]] WorldPose frame_pose(std::span<const double> y, int body, int frame) const override {
-    return now().frame_pose(y, body, frame);
-  }
-  [[nodiscard]] std::array<double, 3> deflection(std::span<const double> y, int body, int frame) const override {
-    return now().deflection(y, body, frame);
-  }
-  [[nodiscard]] std::vector<std::string> savings() const override { return now().savings(); }
 
  private:
   class Seen;
-  [[nodiscard]] const EquationsOfMotion& now() const { return *rungs_[rung_].equations; }
+  [[nodiscard]] const EquationsOfMotion& own() const noexcept override { return *rungs_[rung_].equations; }
   [[nodiscard]] Work make_factors() const override;
   Evaluation factorize(std::span<const double> y, double delta, Work& factors) const noexcept override {
-    return now().linearly_implicit()->factorize(y, delta, factors);
+    return own().linearly_implicit()->factorize(y, delta, factors);
   }
   void solve(std::span<double> r, Work& factors) const noexcept override {
-    now().linearly_implicit()->solve(r, factors);
+    own().linearly_implicit()->solve(r, factors);
   }
   Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base, double delta,
                                   std::span<double> y_dot, Work& work) const noexcept override {
     ++evaluations_[rung_];
-    return now().linearly_implicit()->implicit_derivatives(t, y, base, delta, y_dot, work);
+    return own().linearly_implicit()->implicit_derivatives(t, y, base, delta, y_dot, work);
   }
   Evaluation jacobian(double t, std::span<const double> y, std::span<const double> y_dot,
                       std::span<double> jacobian) const override {
-    return now().linearization()->jacobian(t, y, y_dot, jacobian);
+    return own().linearization()->jacobian(t, y, y_dot, jacobian);
   }
   [[nodiscard]] std::vector<std::string> differenced(double t, std::span<const double> y) const override {
-    return now().linearization()->differenced(t, y);
+    return own().linearization()->differenced(t, y);
   }
 
   const std::vector<Rung>& rungs_;

@@ -11,6 +11,46 @@ Matrix3 exponential(const Vector3& theta) {
   return Eigen::AngleAxisd(angle, theta / angle).toRotationMatrix();
 }
 
+/// Motion of a frame on a body that moves, m relative to it.
+template <class Relative>
+BodyMotion outward(const BodyMotion& B, const Relative& m) {
+  BodyMotion F;
+  const Vector3 arm = B.R * m.r, rate = B.R * m.r_rate, spin = B.R * m.w;
+  F.R = B.R * m.R;
+  F.p = B.p + arm;
+  F.rate = B.rate + spin;
+  F.spin_up = B.spin_up + B.rate.cross(spin) + B.R * m.w_dot;
+  F.acceleration = B.acceleration + B.spin_up.cross(arm) + B.rate.cross(B.rate.cross(arm)) + 2 * B.rate.cross(rate) +
+                   B.R * m.r_second;
+  return F;
+}
+
+/// Of the hinge's other frame. \param local, second its velocities and accelerations relative to F, in its own axes
+BodyMotion across(const BodyMotion& F, const HingeMotion& h, const Vector6& local, const Vector6& second) {
+  BodyMotion M;
+  M.R = F.R * h.pose.R;
+  const Vector3 arm = F.R * h.pose.p;
+  const Vector3 w = M.R * local.head<3>(), v = M.R * local.tail<3>();
+  M.p = F.p + arm;
+  M.rate = F.rate + w;
+  M.spin_up = F.spin_up + F.rate.cross(w) + M.R * second.head<3>();
+  M.acceleration = F.acceleration + F.spin_up.cross(arm) + F.rate.cross(F.rate.cross(arm)) + 2 * F.rate.cross(v) +
+                   M.R * second.tail<3>() + w.cross(v);
+  return M;
+}
+
+/// Of the body that frame M is on, m relative to it: the inverse of `outward`.
+template <class Relative>
+void inward(const BodyMotion& M, const Relative& m, BodyMotion& B) {
+  B.R = M.R * m.R.transpose();
+  const Vector3 arm = B.R * m.r, rate = B.R * m.r_rate, spin = B.R * m.w;
+  B.p = M.p - arm;
+  B.rate = M.rate - spin;
+  B.spin_up = M.spin_up - B.rate.cross(spin) - B.R * m.w_dot;
+  B.acceleration = M.acceleration - B.spin_up.cross(arm) - B.rate.cross(B.rate.cross(arm)) - 2 * B.rate.cross(rate) -
+                   B.R * m.r_second;
+}
+
 }  // namespace
 
 TreeMotion::TreeMotion(const Model& model) : model_(model), bodies_(model.bodies().size()) {
@@ -69,13 +109,7 @@ void TreeMotion::update(std::span<const double> y, std::span<const double> u_dot
     } else {
       const BodyMotion& B = bodies_[static_cast<std::size_t>(hinge.parent)];
       const Relative m = frame(static_cast<std::size_t>(hinge.parent), hinge.parent_frame, hinge.offset);
-      const Vector3 arm = B.R * m.r, rate = B.R * m.r_rate, spin = B.R * m.w;
-      F.R = B.R * m.R;
-      F.p = B.p + arm;
-      F.rate = B.rate + spin;
-      F.spin_up = B.spin_up + B.rate.cross(spin) + B.R * m.w_dot;
-      F.acceleration = B.acceleration + B.spin_up.cross(arm) + B.rate.cross(B.rate.cross(arm)) +
-                       2 * B.rate.cross(rate) + B.R * m.r_second;
+      F = outward(B, m);
     }
     const Slot& slot = layout.hinges[b];
     const auto rates = y.subspan(layout.positions + slot.speed, slot.speeds);
@@ -88,24 +122,10 @@ void TreeMotion::update(std::span<const double> y, std::span<const double> u_dot
       local += h.H.col(i) * rates[k];
       second += h.H.col(i) * u_dot[slot.speed + k];
     }
-    BodyMotion M;
-    M.R = F.R * h.pose.R;
-    const Vector3 across = F.R * h.pose.p;
-    const Vector3 w = M.R * local.head<3>(), v = M.R * local.tail<3>();
-    M.p = F.p + across;
-    M.rate = F.rate + w;
-    M.spin_up = F.spin_up + F.rate.cross(w) + M.R * second.head<3>();
-    M.acceleration = F.acceleration + F.spin_up.cross(across) + F.rate.cross(F.rate.cross(across)) +
-                     2 * F.rate.cross(v) + M.R * second.tail<3>() + w.cross(v);
+    const BodyMotion M = across(F, h, local, second);
     const Relative m = frame(b, hinge.child_frame, Pose{});
     BodyMotion& B = bodies_[b];
-    B.R = M.R * m.R.transpose();
-    const Vector3 arm = B.R * m.r, rate = B.R * m.r_rate, spin = B.R * m.w;
-    B.p = M.p - arm;
-    B.rate = M.rate - spin;
-    B.spin_up = M.spin_up - B.rate.cross(spin) - B.R * m.w_dot;
-    B.acceleration = M.acceleration - B.spin_up.cross(arm) - B.rate.cross(B.rate.cross(arm)) - 2 * B.rate.cross(rate) -
-                     B.R * m.r_second;
+    inward(M, m, B);
     const Mass& mass = masses_[b];
     const Vector3 moment = B.R * mass.moment;
     B.mass = mass.mass;

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "withy/core/tree/rigid_inertia.hpp"
 #include "withy/core/tree/steps.hpp"
 
 namespace withy::compilation {
@@ -27,17 +28,6 @@ bool same(const PointExpansion& a, const PointExpansion& b) {
   bool equal = a.X == b.X && a.phi == b.phi && a.psi == b.psi;
   for (std::size_t c = 0; c < 3; ++c) equal = equal && a.gamma[c] == b.gamma[c] && a.theta[c] == b.theta[c];
   return equal;
-}
-
-RigidInertia rigid_inertia(const ModalShape& shape) {
-  RigidInertia I;
-  for (const Particle& p : shape.particles) {
-    I.mass += p.mass;
-    I.moment += p.mass * p.at.X;
-    I.inertia += p.mass * (p.at.X.squaredNorm() * Matrix3::Identity() - p.at.X * p.at.X.transpose());
-  }
-  for (const Section& s : shape.sections) I.inertia += s.inertia;
-  return I;
 }
 
 /// Turns the model's bodies into nodes.

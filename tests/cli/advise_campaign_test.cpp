@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "withy/study/advice.hpp"
+#include "withy/study/input_error.hpp"
 #include "withy/tests/cli/campaign.hpp"
 #include "withy/tests/cli/random_machine.hpp"
 #include "withy/tests/study/plugins.hpp"

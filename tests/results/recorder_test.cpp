@@ -95,7 +95,7 @@ TEST(Recorder, AChangedTableIsNoticedBeforeItIsTouched) {
 }
 
 TEST(Recorder, WhatCannotBeWrittenIsAnError) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full, a file that is always full";
   CsvRecorder csv("/dev/full");
   csv.begin(columns);
   EXPECT_THROW(csv.mark(), std::system_error);

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <string>
 #include <system_error>
+#include <vector>
+
+#include "withy/scene/one_line.hpp"
 
 namespace withy {
 namespace {
@@ -32,6 +35,31 @@ TEST(Documents, GiveScalarsTheKindTheyAreWrittenAs) {
   for (const char* key : {"null_", "nothing", "tilde"}) EXPECT_EQ(r[key].kind(), Value::Kind::null) << key;
   EXPECT_TRUE(std::isnan(r["nan"].number()));
   EXPECT_EQ(r["infinity"].number(), -INFINITY);
+}
+
+TEST(Documents, GiveBackWhatIsWrittenInOneLine) {
+  const std::vector<std::string> texts = {
+      "arm",   "two words", "25 mm",       "-1 rpm", "a, b", "key: x", "{x}",  "[1]",   "#c",
+      "a #b",  "true",      "null",        "~",      "1e3",  "-2.5",   "",     " lead", "trail ",
+      "it's",  "q\"uote",   "back\\slash", "- item", "--",   "-",      "*x",   "&x",    "!x",
+      "%x",    "@x",        "`x",          "? x",    "a:",   "=",      ".nan", "é 1",   "two\nlines",
+      "C:\\x", "a|b",       ">",           "yes",    "1:30", "0x10"};
+  std::vector<Value> items;
+  for (const std::string& text : texts) items.emplace_back(text);
+  const Value value = Value::map({{"texts", Value::list(items)},
+                                  {"number", Value(0.1)},
+                                  {"inner", Value::map({{"on", Value(true)}, {"nothing", Value()}})}});
+  const Read r(in_one_line(value));
+  ASSERT_TRUE(r.good && r.diagnostics.ok()) << in_one_line(value);
+  ASSERT_EQ(r["texts"].items().size(), texts.size());
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    ASSERT_EQ(r["texts"].items()[i].kind(), Value::Kind::text) << texts[i];
+    EXPECT_EQ(r["texts"].items()[i].text(), texts[i]);
+  }
+  EXPECT_EQ(r["number"].number(), 0.1);
+  EXPECT_TRUE(r["inner"].at("on").boolean());
+  EXPECT_EQ(r["inner"].at("nothing").kind(), Value::Kind::null);
+  EXPECT_EQ(in_one_line(Value(std::string("25 mm"))), "25 mm") << "no quotes without need";
 }
 
 TEST(Documents, GiveEveryValueItsPlace) {

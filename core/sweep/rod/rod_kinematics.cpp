@@ -87,6 +87,65 @@ RodKinematics<Planar>::RodKinematics(const NodeSpec& spec) {
   for (const double at : x) stations.push_back(rod_station<Planar>(frame, at, spec.rod->section(at)));
 }
 
+namespace {
+
+/// The turns of a rod from node to node, then from the node before each station to it.
+struct Turns {
+  std::vector<std::pair<double, double>> intervals;  ///< coordinates along the rod
+  std::vector<int> after;                            ///< as RodKinematics has it, whole packs
+};
+
+Turns turns_between(const std::vector<double>& nodes, const std::vector<double>& stations) {
+  Turns turns;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    turns.intervals.emplace_back(k > 0 ? nodes[k - 1] : 0.0, nodes[k]);
+    turns.after.push_back(static_cast<int>(k) - 1);
+  }
+  for (const double at : stations) {
+    const auto before = std::lower_bound(nodes.begin(), nodes.end(), at) - nodes.begin();
+    turns.after.push_back(static_cast<int>(before) - 1);
+    turns.intervals.emplace_back(before > 0 ? nodes[static_cast<std::size_t>(before - 1)] : 0.0, at);
+  }
+  while (turns.after.size() % lanes != 0) turns.after.push_back(-1);
+  return turns;
+}
+
+/// Of each turn and mode ∫κ ds, a₁, a₂ (see magnus), as RodKinematics::step has them.
+std::vector<Pack> turn_moments(const NodeSpec& spec, const RodTable& table, const Turns& turns) {
+  const std::size_t n = spec.modes;
+  const Matrix3& R = spec.rod_frame.R;
+  std::vector<Pack> moments(turns.after.size() / lanes * n * 9, spread(0.0));
+  for (std::size_t s = 0; s < turns.intervals.size(); ++s) {
+    const auto [from, to] = turns.intervals[s];
+    const double h = to - from;
+    if (!(h > 0)) continue;
+    // Moments B_m = ∫ ((s − s_m)/h)ᵐ κ ds: a₁ = 12 B₁, a₂ = −15 B₀ + 180 B₂; ∫κ itself from the rotations.
+    Matrix3X B0 = Matrix3X::Zero(3, static_cast<Eigen::Index>(n)), B1 = B0, B2 = B0;
+    const Eigen::MatrixXd strains = table.strains_between(from, to);
+    for (std::size_t j = 0; j < table.turn.nodes().size(); ++j) {
+      const Matrix3X kappa = h * table.turn.weights()[j] * R * strains.middleRows<3>(3 * static_cast<Eigen::Index>(j));
+      const double u = table.turn.nodes()[j] - 0.5;
+      B0 += kappa;
+      B1 += u * kappa;
+      B2 += u * u * kappa;
+    }
+    const Matrix3X turn = R * (spec.rod->section(to).rotation - spec.rod->section(from).rotation);
+    const Matrix3X a1 = 12 * B1, a2 = 180 * B2 - 15 * B0;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        Pack* moment = moments.data() + ((s / lanes) * n + i) * 9 + c;
+        const auto row = static_cast<Eigen::Index>(c), column = static_cast<Eigen::Index>(i);
+        set_lane(moment[0], s % lanes, turn(row, column));
+        set_lane(moment[3], s % lanes, a1(row, column));
+        set_lane(moment[6], s % lanes, a2(row, column));
+      }
+    }
+  }
+  return moments;
+}
+
+}  // namespace
+
 RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
   const RodTable table(*spec.rod);
   const std::vector<double> x = station_coordinates(spec);
@@ -122,49 +181,10 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
   if (rotary) inertia = packed(section_inertia.data(), nodes.size());
   for (const double at : x) stations.push_back(rod_station<Spatial>(frame, at, spec.rod->section(at)));
 
-  // Turns: from node to node, then from the node before each station to it.
   first_station = nodes.size();
-  std::vector<int> order;
-  std::vector<std::pair<double, double>> intervals;
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    intervals.emplace_back(k > 0 ? nodes[k - 1] : 0.0, nodes[k]);
-    order.push_back(static_cast<int>(k) - 1);
-  }
-  for (const double at : x) {
-    const auto before = std::lower_bound(nodes.begin(), nodes.end(), at) - nodes.begin();
-    order.push_back(static_cast<int>(before) - 1);
-    intervals.emplace_back(before > 0 ? nodes[static_cast<std::size_t>(before - 1)] : 0.0, at);
-  }
-  while (order.size() % lanes != 0) order.push_back(-1);
-  std::vector<Pack> moments(order.size() / lanes * n * 9, spread(0.0));
-  for (std::size_t s = 0; s < intervals.size(); ++s) {
-    const auto [from, to] = intervals[s];
-    const double h = to - from;
-    if (!(h > 0)) continue;
-    // Moments B_m = ∫ ((s − s_m)/h)ᵐ κ ds: a₁ = 12 B₁, a₂ = −15 B₀ + 180 B₂; ∫κ itself from the rotations.
-    Matrix3X B0 = Matrix3X::Zero(3, static_cast<Eigen::Index>(n)), B1 = B0, B2 = B0;
-    const Eigen::MatrixXd strains = table.strains_between(from, to);
-    for (std::size_t j = 0; j < table.turn.nodes().size(); ++j) {
-      const Matrix3X kappa = h * table.turn.weights()[j] * R * strains.middleRows<3>(3 * static_cast<Eigen::Index>(j));
-      const double u = table.turn.nodes()[j] - 0.5;
-      B0 += kappa;
-      B1 += u * kappa;
-      B2 += u * u * kappa;
-    }
-    const Matrix3X turn = R * (spec.rod->section(to).rotation - spec.rod->section(from).rotation);
-    const Matrix3X a1 = 12 * B1, a2 = 180 * B2 - 15 * B0;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        Pack* moment = moments.data() + ((s / lanes) * n + i) * 9 + c;
-        const auto row = static_cast<Eigen::Index>(c), column = static_cast<Eigen::Index>(i);
-        set_lane(moment[0], s % lanes, turn(row, column));
-        set_lane(moment[3], s % lanes, a1(row, column));
-        set_lane(moment[6], s % lanes, a2(row, column));
-      }
-    }
-  }
-  after = std::move(order);
-  step = std::move(moments);
+  Turns turns = turns_between(nodes, x);
+  step = turn_moments(spec, table, turns);
+  after = std::move(turns.after);
 }
 
 }  // namespace withy::sweep
