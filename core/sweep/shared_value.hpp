@@ -26,11 +26,6 @@ class SharedValue {
       own_ = own_ == nullptr ? std::make_shared<T>() : std::make_shared<T>(*own_);
     change(*own_);
   }
-  /// Becomes a copy of `other` where same(value, value of other) says that they are equal to the last bit.
-  template <class Same>
-  void share(const SharedValue& other, Same&& same) {
-    if (own_ != nullptr && other.own_ != nullptr && same(*own_, *other.own_)) own_ = other.own_;
-  }
 
  private:
   std::shared_ptr<T> own_;

@@ -1,8 +1,10 @@
 #include "withy/core/sweep/symmetric/symmetric_sweep.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
 
 #include "withy/core/sweep/symmetric/symmetric_inverse.hpp"
 #include "withy/core/sweep/symmetric/symmetric_kernel.hpp"
@@ -20,15 +22,26 @@ std::vector<double> row_major(const Eigen::MatrixXd& m) {
   return a;
 }
 
-template <class T>
-bool same_bits(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof(T)) == 0;
-}
-/// Member by member: between them there may be bytes of no meaning.
+/// Rigid parts of the nodes, equal ones once.
 template <class Space>
-bool same_part(const RigidPart<Space>& a, const RigidPart<Space>& b) {
-  return same_bits(a.inertia, b.inertia) && same_bits(a.mass, b.mass) && same_bits(a.moment, b.moment);
-}
+class RigidParts {
+ public:
+  void share(SharedValue<RigidPart<Space>>& part) {
+    if (part.empty()) return;
+    std::string key;  // member by member: between them there may be bytes of no meaning
+    append(key, part->inertia);
+    append(key, part->mass);
+    append(key, part->moment);
+    part = parts_.try_emplace(std::move(key), part).first->second;
+  }
+
+ private:
+  template <class T>
+  static void append(std::string& key, const T& value) {
+    key.append(reinterpret_cast<const char*>(&value), sizeof(T));
+  }
+  std::unordered_map<std::string, SharedValue<RigidPart<Space>>> parts_;
+};
 
 }  // namespace
 
@@ -97,11 +110,9 @@ void SymmetricNode<Space>::share(const SymmetricNode& twin) {
   C0.share(twin.C0);
   G0.share(twin.G0);
   I1.share(twin.I1);
-  base.share(twin.base, same_part<Space>);
   for (std::size_t k = 0; k < std::min(stations.size(), twin.stations.size()); ++k) {
     stations[k].fields.share(twin.stations[k].fields);
     stations[k].J.share(twin.stations[k].J);
-    stations[k].carried.share(twin.stations[k].carried, same_part<Space>);
   }
 }
 
@@ -109,9 +120,12 @@ template <class Space>
 SymmetricSweep<Space>::SymmetricSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity) {
   nodes_.reserve(tree.nodes.size());
   Twins twins;
+  RigidParts<Space> parts;
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const std::optional<std::size_t> twin = twins.of(tree.nodes[i], terms[i].strain, terms[i].truncation);
-    nodes_.emplace_back(tree.nodes[i], terms[i], twin ? &nodes_[*twin] : nullptr);
+    SymmetricNode<Space>& node = nodes_.emplace_back(tree.nodes[i], terms[i], twin ? &nodes_[*twin] : nullptr);
+    parts.share(node.base);
+    for (SymmetricStation<Space>& station : node.stations) parts.share(station.carried);
   }
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     SymmetricNode<Space>& node = nodes_[i];
