@@ -25,12 +25,18 @@ std::vector<double> edges(double length, double wave_number, std::vector<double>
 constexpr Eigen::Index most_nodes = 24;
 constexpr double longest_section_panel = 8;  ///< of 1/wave_number, where most_nodes leave 1e-17
 
+/// ln Γ(x): std::lgamma leaves the sign in a global variable, and beams are made on several threads.
+double log_gamma(double x) {
+  int sign = 0;
+  return lgamma_r(x, &sign);
+}
+
 Eigen::Index section_nodes(const std::vector<double>& edges, double wave_number) {
   double h = 0;
   for (std::size_t i = 1; i < edges.size(); ++i) h = std::max(h, edges[i] - edges[i - 1]);
   const auto logarithm = [&](double n) {  // of the error
-    return 2 * n * std::log(4 * wave_number * h) + 4 * std::lgamma(n + 1) - std::log(2 * n + 1) -
-           3 * std::lgamma(2 * n + 1);
+    return 2 * n * std::log(4 * wave_number * h) + 4 * log_gamma(n + 1) - std::log(2 * n + 1) -
+           3 * log_gamma(2 * n + 1);
   };
   Eigen::Index n = 4;
   while (n < most_nodes && !(logarithm(static_cast<double>(n)) < std::log(1e-15))) n += 4;

@@ -88,9 +88,9 @@ void enroll_control_sensor(Enrollment& enrollment) {
   enrollment.add<Sensor>(
       {.id = "control",
        .summary = "What a controller commands, its tracking error, its margins to limits, and its states",
-       .parameters =
-           {text("of", "the controller").naming(ParameterSpec::Refers::load),
-            texts("show", "which of its numbers: command, error, margin, names of states; all where left out").optional()},
+       .parameters = {text("of", "the controller").naming(ParameterSpec::Refers::load),
+                      texts("show", "which of its numbers: command, error, margin, names of states; all where left out")
+                          .optional()},
        .make = &make_control_sensor});
 }
 
