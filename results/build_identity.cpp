@@ -67,7 +67,8 @@ std::string hash_of(const std::string& file) {
   return sha256(std::string((std::istreambuf_iterator<char>(stream)), {}));
 }
 
-/// The libraries named libwithy-…, and what this function is in: all code of the project but plugins.
+/// The libraries named libwithy-…, and what this function is in: all code of the project but plugins, and but the
+/// writer of HDF5, which is loaded where it is asked for and where there is memory for it.
 BuildIdentity identify() {
   std::string self;
   Dl_info here = {};
@@ -78,7 +79,8 @@ BuildIdentity identify() {
     // The program itself has no name there.
     const std::string file = object.file.empty() ? "/proc/self/exe" : object.file;
     const std::string name = std::filesystem::path(file).filename().string();
-    const bool ours = name.starts_with("libwithy-") || object.file == self || object.file.empty();
+    const bool computes = name.starts_with("libwithy-") && !name.starts_with("libwithy-hdf5");
+    const bool ours = computes || object.file == self || object.file.empty();
     if (ours) ids.push_back(object.id.empty() ? hash_of(file) : object.id);
   }
   std::sort(ids.begin(), ids.end());
