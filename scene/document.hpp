@@ -43,7 +43,8 @@ struct Origin {
 /// \returns false where what was read is not to be relied on; lesser problems are reported and read over.
 bool read_document(std::string_view text, const Origin& origin, Document& document, Diagnostics& diagnostics);
 
-/// The bytes of a file, up to the limit and one more. \throws std::system_error where it cannot be read.
+/// The bytes of a file. \throws std::system_error where it cannot be read, is larger than DocumentLimits::bytes
+/// (EFBIG), or is a pipe into which nobody writes (ETIMEDOUT).
 std::string read_bytes(const std::string& file);
 
 }  // namespace withy
