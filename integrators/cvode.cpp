@@ -11,6 +11,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cvode_history.hpp"
+#include "cvode_tolerance.hpp"
 #include "jacobian.hpp"
 #include "step_control.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
@@ -23,32 +25,6 @@ struct CvodeOptions {
   StepControl control;
   bool stiff = true;
   StepJacobian::Source jacobian = StepJacobian::Source::differences;
-};
-
-/// What CVODE is asked for. It controls the mean error of a step where a tolerance is of the greatest, and errors of
-/// steps, whose number rises as the tolerance falls, add up: the error of a run is in proportion to tolerance^a. So the
-/// tolerance is calibrated after Söderlind & Wang (J. Comput. Appl. Math. 185, 2006, 244–260), both parts alike:
-///   rtol′ = κ rtol^(1/a) / √n
-/// with n elements of y; a and κ are measured such that a run of some vibrations ends within ten times the tolerance.
-class CalibratedTolerance {
- public:
-  CalibratedTolerance(const StepControl& control, bool stiff, std::size_t n) {
-    const double power = stiff ? 1 / 0.8 : 1 / 0.885, kappa = stiff ? 0.22 : 0.1;
-    const double asked = kappa * std::pow(control.rtol, power) / std::sqrt(static_cast<double>(n));
-    rtol = std::max(asked, least);
-    atol = control.atol * (rtol / control.rtol);
-    if (asked < least)
-      remark = fmt::format(
-          "rtol {:.3g} asks for errors of {:.2g} a step, less than rounding leaves: {:.2g} is held, and the run's "
-          "error may be more than ten times its tolerance",
-          control.rtol, asked, least);
-  }
-
-  double rtol, atol;
-  std::string remark;  ///< what could not be had; empty where nothing is missing
-
- private:
-  static constexpr double least = 0x1p-51;  ///< CVODE refuses less than half of it
 };
 
 template <auto Free>
@@ -71,55 +47,6 @@ Context new_context() {
   if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
   return Context(context);
 }
-
-/// CVODE begins anew after so many steps: few enough to be made again in a moment, so many that it costs less than 1 %.
-constexpr std::size_t most_steps_of_history = 5000;
-
-/// What made CVODE's history: the state it began at and the limit of each step since.
-class History {
- public:
-  /// Steps one after another with the same limit [s].
-  struct Stretch {
-    double limit = 0;
-    std::size_t steps = 0;
-  };
-
-  History() { stretches_.reserve(most_steps_of_history); }  // steps do not allocate
-  void begin(const State& state) {
-    start_.time = state.time;
-    start_.y.assign(state.y.begin(), state.y.end());
-    stretches_.clear();
-    steps_ = 0;
-  }
-  void add(double limit) {
-    if (stretches_.empty() || stretches_.back().limit != limit) stretches_.push_back({limit, 0});
-    ++stretches_.back().steps;
-    ++steps_;
-  }
-  [[nodiscard]] const State& start() const { return start_; }
-  [[nodiscard]] const std::vector<Stretch>& stretches() const { return stretches_; }
-  [[nodiscard]] std::size_t steps() const { return steps_; }
-  void remember(Memory& memory) {
-    memory(start_.time);
-    memory(start_.y);
-    std::size_t count = stretches_.size();
-    memory(count);
-    if (memory.reading()) {
-      if (count > most_steps_of_history) throw std::invalid_argument("more steps than CVODE makes without a new start");
-      stretches_.resize(count);
-    }
-    for (Stretch& s : stretches_) {
-      memory(s.limit);
-      memory(s.steps);
-    }
-    memory(steps_);
-  }
-
- private:
-  State start_;
-  std::vector<Stretch> stretches_;
-  std::size_t steps_ = 0;
-};
 
 class CvodeStepper final : public Stepper {
  public:
@@ -220,10 +147,10 @@ class CvodeStepper final : public Stepper {
     if (begin_) {
       place(state);
     } else {
-      const History made = history_;
+      const CvodeHistory made = history_;
       place(made.start());
       begin_ = true;
-      for (const History::Stretch& stretch : made.stretches())
+      for (const CvodeHistory::Stretch& stretch : made.stretches())
         for (std::size_t i = 0; i < stretch.steps; ++i)
           if (step(stretch.limit).outcome != StepResult::Outcome::ok)
             throw std::invalid_argument("a step of the checkpoint cannot be made again");
@@ -346,10 +273,10 @@ class CvodeStepper final : public Stepper {
   StepStatistics statistics_;
   double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which the step may evaluate
   int sign_ = 1;
-  Evaluation failed_;  ///< the last evaluation that failed in this step
-  long failures_ = 0;  ///< of CVODE's, those counted
-  bool begin_ = true;  ///< CVODE begins anew at state_
-  History history_;    ///< since CVODE last began
+  Evaluation failed_;     ///< the last evaluation that failed in this step
+  long failures_ = 0;     ///< of CVODE's, those counted
+  bool begin_ = true;     ///< CVODE begins anew at state_
+  CvodeHistory history_;  ///< since CVODE last began
   Context context_;
   Vector y_, inside_;
   Matrix matrix_;
