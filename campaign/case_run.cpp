@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "withy/core/equations/lane_equations.hpp"
+#include "withy/core/simulation/step_watch.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/run.hpp"
 
@@ -81,8 +82,9 @@ RunSummary CaseRun::simulate(const EquationsOfMotion& equations, const study::Co
     options.checkpoint_due = [] { return true; };
     options.checkpoint = [this](const Checkpoint& checkpoint) { kept_->see(checkpoint.state, 0); };
   }
-  return withy::simulate(*scene.model, equations, *scene.integrator, scene.initial, options,
-                         [this](const State& state) { kept_->see(state, 0); });
+  return withy::simulate(
+      *scene.model, equations, *scene.integrator, scene.initial, options,
+      [this](const State& state) { kept_->see(state, 0); }, nullptr, Attention::outcome);
 }
 
 void CaseRun::run(const EquationsOfMotion& equations, const study::Control& control) {

@@ -179,7 +179,8 @@ void SegmentWriter::close() {
 SegmentReader::SegmentReader(const std::filesystem::path& path, const std::string& fingerprint)
     : path_(path), file_(path, std::ios::binary), tag_(tag_of(fingerprint)), head_(head_of(fingerprint)) {
   if (!file_) throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(), path.string());
-  if (has(head_.size()) && buffer_.starts_with(head_)) from_ = head_.size();
+  begins_well_ = has(head_.size()) && buffer_.starts_with(head_);
+  if (begins_well_) from_ = head_.size();
 }
 
 /// Whether there are so many bytes from the present one on.

@@ -50,6 +50,8 @@ class SegmentReader {
  public:
   /// \throws std::system_error where it cannot be read.
   SegmentReader(const std::filesystem::path& path, const std::string& fingerprint);
+  /// Whether the head of the file is whole, and of the fingerprint.
+  [[nodiscard]] bool begins_well() const { return begins_well_; }
   /// The record of the next frame that is whole, until the next call; nothing at the end.
   std::optional<std::string_view> next();
   /// Where in the file the last frame begins.
@@ -71,6 +73,7 @@ class SegmentReader {
   std::size_t from_ = 0;     ///< in the buffer
   std::uint64_t begin_ = 0;  ///< of the buffer in the file
   std::uint64_t place_ = 0, lost_ = 0;
+  bool begins_well_ = false;
 };
 
 }  // namespace withy::campaign

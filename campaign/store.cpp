@@ -17,15 +17,17 @@
 #include "withy/campaign/kept.hpp"
 #include "withy/campaign/plan_reader.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/make_folder.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/results/results_folder.hpp"
+#include "withy/scene/sha256.hpp"
 
 namespace withy::campaign {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* format_of_store = "withy-store/1";
+constexpr const char* format_of_store = "withy-store/2";
 constexpr const char* name_of_description = "store.json";
 constexpr const char* name_of_segments = "segments";
 constexpr int place_bits = 44;  // of a place in a segment: 16 TiB; the rest counts segments, to a million
@@ -46,18 +48,28 @@ Json json_of(const StoreDescription& d) {
           {"drawn", d.drawn}};
 }
 
+/// The description with its checksum.
+std::string text_of(const StoreDescription& about) {
+  Json j = json_of(about);
+  j["sha256"] = sha256(j.dump());
+  return json_text(j);
+}
+
 Design design_of(const std::string& name) {
   const auto at = std::find(keys::designs.begin(), keys::designs.end(), name);
   return static_cast<Design>(at - keys::designs.begin());
 }
 
-/// The same, to be given back where a folder is none.
+/// The same, to be given back where a folder is none, or its description is damaged.
 std::optional<StoreDescription> described(const std::filesystem::path& store) {
   std::ifstream in(store / name_of_description, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  const Json j = Json::parse(text, nullptr, false);
+  Json j = Json::parse(text, nullptr, false);
   try {
     if (!j.is_object() || j.at("format") != format_of_store) return {};
+    const Json sum = j.at("sha256");
+    j.erase("sha256");
+    if (sum != sha256(j.dump())) return {};
     return StoreDescription{
         j.at("plan"),   j.at("name"), j.at("fingerprint"), j.at("cases"),   j.at("draws"),   design_of(j.at("design")),
         j.at("levels"), j.at("seed"), j.at("paths"),       j.at("derived"), j.at("columns"), j.at("drawn")};
@@ -82,11 +94,17 @@ bool is_locked(const std::filesystem::path& segment) {
   return locked;
 }
 
+/// Whether a segment is of this plan, by its head; an empty one is of any.
+bool is_of(const std::filesystem::path& segment, const std::string& fingerprint) {
+  SegmentReader reader(segment, fingerprint);
+  return std::filesystem::file_size(segment) == 0 || reader.begins_well() || reader.next();
+}
+
 /// Several processes may begin a store at once: each writes the same, whole.
 void write_description(const std::filesystem::path& store, const StoreDescription& about) {
   const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
   const std::filesystem::path own = store / fmt::format("store.{}-{}", ::getpid(), now);
-  write_lasting_file(own, json_text(json_of(about)));
+  write_lasting_file(own, text_of(about));
   std::filesystem::rename(own, store / name_of_description);
 }
 
@@ -127,6 +145,15 @@ Store::Store(std::filesystem::path path, const Plan& plan, bool anew)
   const auto kept = described(path_);
   if (kept && kept->fingerprint == about_.fingerprint && !anew) return;
   const char* advice = "give another folder, or --force to begin anew";
+  if (const auto segments = segments_of(path_); !anew && !kept && !segments.empty()) {
+    // Whose the cases are stands in the segments too, and the plan says the rest.
+    for (const std::filesystem::path& segment : segments)
+      if (!is_of(segment, about_.fingerprint))
+        throw ResultsError(fmt::format("{} is damaged, or not there, and {} holds cases of another plan: {}",
+                                       (path_ / name_of_description).string(), segment.string(), advice));
+    write_description(path_, about_);
+    return;
+  }
   if (!anew && kept)
     throw ResultsError(
         fmt::format("{} holds the cases of another plan, or the plan, its scene, a plugin or the program has "
@@ -140,7 +167,7 @@ Store::Store(std::filesystem::path path, const Plan& plan, bool anew)
   for (const char* name :
        {name_of_description, name_of_segments, "table.csv", "statistics.csv", "indices.csv", "failed.csv"})
     std::filesystem::remove_all(path_ / name);
-  std::filesystem::create_directories(path_ / name_of_segments);
+  make_folder(path_ / name_of_segments);
   write_description(path_, about_);
 }
 

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "withy/results/csv.hpp"
-#include "withy/results/svg_plot.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -120,7 +119,7 @@ std::string tune_csv(const TuneResult& result) {
   return text;
 }
 
-std::string tune_picture(const TuneResult& result, const std::string& title) {
+Picture tune_picture(const TuneResult& result, const std::string& title) {
   constexpr std::size_t before_pen = 7, fitted_pen = 6, measured_pen = 1;
   std::vector<Panel> panels;
   for (std::size_t c = 0; c < result.columns.size(); ++c) {
@@ -132,12 +131,13 @@ std::string tune_picture(const TuneResult& result, const std::string& title) {
                     curve_of(result.data.times, fit.at_end, shown.factor, fitted_pen),
                     curve_of(result.data.times, column.values, shown.factor, measured_pen)};
     panel.curves.back().points = true;
+    panel.curves[0].name = "before", panel.curves[1].name = "fitted", panel.curves[2].name = "measured";
     for (const Curve& curve : panel.curves)
       for (const double y : curve.y)
         panel.y_range = {std::min(panel.y_range.first, y), std::max(panel.y_range.second, y)};
     panels.push_back(std::move(panel));
   }
-  return svg_plot(title, {}, panels);
+  return {title, {}, panels};
 }
 
 }  // namespace withy::campaign

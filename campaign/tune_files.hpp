@@ -6,6 +6,7 @@
 #include <string>
 
 #include "withy/campaign/tune.hpp"
+#include "withy/results/svg_plot.hpp"
 
 namespace withy::campaign {
 
@@ -16,6 +17,6 @@ std::string tune_text(const TuneResult& result, const std::string& title);
 /// A line a time: of each column what was measured, the scene's own run and the fitted one.
 std::string tune_csv(const TuneResult& result);
 /// A panel a column over time: dots are measured, lines the scene's own run and the fitted one.
-std::string tune_picture(const TuneResult& result, const std::string& title);
+Picture tune_picture(const TuneResult& result, const std::string& title);
 
 }  // namespace withy::campaign

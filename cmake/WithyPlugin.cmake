@@ -1,10 +1,11 @@
-# withy_plugin(NAME SOURCE... PROVIDES kind/id... [LIBRARIES lib...] [DIRECTORY dir])
+# withy_plugin(NAME SOURCE... PROVIDES kind/id... [LIBRARIES lib...] [DIRECTORY dir] [NOT_STATIC])
 #
 # Builds one plugin library, `withy-plugin-NAME`, and its manifest into lib/withy/plugins of the build tree, and installs
 # both there. The same in this project and in one that found the package. One of the sources has
 # WITHY_PLUGIN(NAME, ...), with '_' for '-' in NAME. With DIRECTORY they are built into that directory and not installed.
+# With NOT_STATIC it is no part of a static build.
 function(withy_plugin name)
-  cmake_parse_arguments(ARG "" "DIRECTORY" "PROVIDES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_STATIC" "DIRECTORY" "PROVIDES;LIBRARIES" ${ARGN})
   if(NOT name MATCHES "^[a-z0-9-]+$" OR NOT ARG_UNPARSED_ARGUMENTS OR NOT ARG_PROVIDES)
     message(FATAL_ERROR "withy_plugin(${name}): needs a name of a-z, 0-9 and '-', sources, and PROVIDES kind/id...")
   endif()
@@ -54,7 +55,11 @@ version = ${version}
   if(NOT ARG_DIRECTORY)
     install(TARGETS withy-plugin-${name} LIBRARY DESTINATION lib/withy/plugins)
     install(FILES ${directory}/${name}.plugin DESTINATION lib/withy/plugins)
-    set_property(GLOBAL APPEND PROPERTY WITHY_PLUGINS ${name})
-    set_property(GLOBAL APPEND PROPERTY WITHY_PLUGIN_LIBRARIES ${ARG_LIBRARIES})
+    if(ARG_NOT_STATIC)
+      set_property(GLOBAL APPEND PROPERTY WITHY_PLUGINS_NOT_STATIC ${name})
+    else()
+      set_property(GLOBAL APPEND PROPERTY WITHY_PLUGINS ${name})
+      set_property(GLOBAL APPEND PROPERTY WITHY_PLUGIN_LIBRARIES ${ARG_LIBRARIES})
+    endif()
   endif()
 endfunction()

@@ -92,8 +92,6 @@ bool is_model_file(const std::string& file) {
 
 ImportedScene import_model(const ModelImport& what, Registry& registry) {
   const std::string text = read_bytes(what.file);
-  if (text.size() > DocumentLimits::bytes)
-    throw SceneError(what.file, {{{}, fmt::format("more than {} MiB", DocumentLimits::bytes >> 20U)}});
   if (extension_of(what.file) != ".dat") return import_tree(what, text, registry);
   if (!what.flexible.empty() || what.free_base || what.mend_inertias)
     throw std::invalid_argument("--flexible, --free-base and --mend-inertias are for URDF and MJCF");

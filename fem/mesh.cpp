@@ -104,7 +104,7 @@ class DeckReader {
     const auto [it, fresh] = mesh_.nodes.emplace(*number, X);
     if (!fresh && it->second != X) fault(fmt::format("node {} is at two places; need one part only", *number));
     if (const auto set = keyword.parameters.find("NSET"); set != keyword.parameters.end())
-      mesh_.sets[capitals(set->second)].push_back(*number);
+      add(*number, mesh_.sets[capitals(set->second)]);
   }
 
   /// A parameter's value in capitals; empty where there is none.
@@ -130,7 +130,7 @@ class DeckReader {
       const auto [it, fresh] = mesh_.elements.emplace(*number, Element{type, {}});
       if (!fresh) fault(fmt::format("element {} is there twice", *number));
       open_ = &it->second;
-      if (const std::string set = name_in(keyword, "ELSET"); !set.empty()) mesh_.element_sets[set].push_back(*number);
+      if (const std::string set = name_in(keyword, "ELSET"); !set.empty()) add(*number, mesh_.element_sets[set]);
       first = 1;
     }
     for (std::size_t i = first; i < fields.size(); ++i) {
@@ -162,30 +162,39 @@ class DeckReader {
   void members(const Keyword& keyword, std::string_view line, const char* parameter, Sets& sets) {
     const std::string name = name_in(keyword, parameter);
     if (name.empty()) fault(fmt::format("need *{0}, {0}=name", parameter));
-    std::vector<long>& set = sets[name];
     const auto fields = split(line, ",");
-    if (keyword.parameters.contains("GENERATE")) {
-      const auto from = number_of<long>(fields[0]);
-      const auto to = fields.size() > 1 ? number_of<long>(fields[1]) : from;
-      const auto by = fields.size() > 2 && !fields[2].empty() ? number_of<long>(fields[2]) : std::optional<long>(1);
-      if (!from || !to || !by || *by <= 0 || (*to - *from) / *by > 100'000'000) fault("need from, to, step");
-      for (long n = *from; n <= *to; n += *by) set.push_back(n);
-      return;
-    }
+    if (keyword.parameters.contains("GENERATE")) return generate(fields, sets[name]);
     for (const std::string_view field : fields) {
       if (field.empty()) continue;
       if (const auto number = number_of<long>(field)) {
-        set.push_back(*number);
-      } else if (const auto other = sets.find(capitals(field)); other != sets.end()) {
-        const std::vector<long> copy = other->second;
-        set.insert(set.end(), copy.begin(), copy.end());
-      } else {
+        add(*number, sets[name]);
+      } else if (const auto other = sets.find(capitals(field)); other == sets.end()) {
         fault(fmt::format("got '{}'; need a number or a set defined before", field));
+      } else if (std::vector<long>& set = sets[name]; &other->second != &set) {  // it holds itself already
+        for (const long member : other->second) add(member, set);
       }
     }
   }
 
+  void generate(const std::vector<std::string_view>& fields, std::vector<long>& set) {
+    const auto from = number_of<long>(fields[0]);
+    const auto to = fields.size() > 1 ? number_of<long>(fields[1]) : from;
+    const auto by = fields.size() > 2 && !fields[2].empty() ? number_of<long>(fields[2]) : std::optional<long>(1);
+    if (!from || !to || !by || *from <= 0 || *to < *from || *to > greatest_number || *by <= 0 || *by > greatest_number)
+      fault(fmt::format("need from, to, step: numbers from 1 to {}, the second not below the first", greatest_number));
+    for (long n = *from; n <= *to; n += *by) add(n, set);
+  }
+
+  void add(long member, std::vector<long>& set) {
+    if (++members_ > most_members) fault(fmt::format("all sets have more than {} members", most_members));
+    set.push_back(member);
+  }
+
+  static constexpr long greatest_number = 1'000'000'000'000;
+  static constexpr std::size_t most_members = 32'000'000;  // 256 MB
+
   Mesh& mesh_;
+  std::size_t members_ = 0;  ///< of all sets
   std::string where_;
   Element* open_ = nullptr;        ///< lacks nodes yet
   std::string material_;           ///< the one that properties are of

@@ -17,8 +17,10 @@ namespace withy::fem {
 
 /// The bytes of a file. \throws InputError
 inline std::string text_of(const std::filesystem::path& file) {
+  constexpr std::uintmax_t most_bytes = std::uintmax_t{4} << 30;
   std::error_code none;
   if (!std::filesystem::is_regular_file(file, none)) throw InputError(file.string() + ": there is no such file");
+  if (std::filesystem::file_size(file, none) > most_bytes) throw InputError(file.string() + ": more than 4 GiB");
   std::ifstream stream(file, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), {});
   if (!stream) throw InputError(file.string() + ": cannot be read");

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
+#include "withy/core/equations/lane_equations.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
@@ -59,6 +62,23 @@ std::shared_ptr<const study::Prepared> continuous(const Scene& scene, const std:
   return prepared;
 }
 
+/// Equations with lanes, and what each lane works in.
+struct InLanes {
+  explicit InLanes(const EquationsOfMotion& equations) : together(lane_equations(equations)) {
+    for (std::size_t k = 0; together != nullptr && k < LaneEquations::count; ++k)
+      lanes.push_back(
+          {std::vector<double>(equations.size()), std::vector<double>(equations.size()), equations.make_work(), {}});
+  }
+
+  struct One {
+    std::vector<double> y, y_dot;
+    Work work;
+    LaneCall call;
+  };
+  std::unique_ptr<LaneEquations> together;  ///< null: there are none
+  std::vector<One> lanes;
+};
+
 }  // namespace
 
 struct Equations::Parts {
@@ -98,6 +118,7 @@ struct Equations::Parts {
   std::vector<Port> states, inputs;
   std::vector<double> y0;
   std::vector<std::size_t> input_loads;
+  std::optional<InLanes> in_lanes;  ///< once many states have been asked for
 };
 
 Equations::Equations(const Scene& scene, const std::string& formulation)
@@ -149,6 +170,38 @@ Evaluation Equations::derivatives(double t, std::span<const double> y, std::span
   const Evaluation evaluation = p.evaluate(t, y);
   std::copy_n(p.full_dot.begin(), p.size, y_dot.begin());
   return evaluation;
+}
+
+EvaluatedRows Equations::derivatives_many(double t, std::span<const double> y, std::span<double> y_dot) {
+  Parts& p = *parts_;
+  const std::size_t n = p.size, count = n == 0 ? 0 : y.size() / n;
+  Parts::expect(y.size(), count * n, "y");
+  Parts::expect(y_dot.size(), y.size(), "y_dot");
+  if (!p.in_lanes) p.in_lanes.emplace(p.equations);
+  const std::span<InLanes::One> lanes = p.in_lanes->lanes;
+  if (lanes.empty()) {
+    for (std::size_t row = 0; row < count; ++row)
+      if (const Evaluation e = derivatives(t, y.subspan(row * n, n), y_dot.subspan(row * n, n)); !e.ok())
+        return {row, e};
+    return {count, {}};
+  }
+  for (std::size_t first = 0; first < count; first += lanes.size()) {
+    const std::size_t some = std::min(lanes.size(), count - first);
+    std::array<LaneCall*, LaneEquations::count> calls{};
+    for (std::size_t k = 0; k < some; ++k) {
+      InLanes::One& lane = lanes[k];
+      std::copy(p.full.begin(), p.full.end(), lane.y.begin());  // with the inputs
+      std::copy_n(y.begin() + static_cast<std::ptrdiff_t>((first + k) * n), n, lane.y.begin());
+      lane.call = {t, lane.y, lane.y_dot, &lane.work, {}};
+      calls.at(k) = &lane.call;
+    }
+    p.in_lanes->together->derivatives(calls);
+    for (std::size_t k = 0; k < some; ++k) {
+      if (!lanes[k].call.evaluation.ok()) return {first + k, lanes[k].call.evaluation};
+      std::copy_n(lanes[k].y_dot.begin(), n, y_dot.begin() + static_cast<std::ptrdiff_t>((first + k) * n));
+    }
+  }
+  return {count, {}};
 }
 
 void Equations::jacobian(double t, std::span<const double> y, std::span<double> jacobian) {

@@ -13,6 +13,12 @@
 
 namespace withy::host {
 
+/// What came of many states.
+struct EvaluatedRows {
+  std::size_t rows = 0;   ///< those from the first on whose derivatives are there
+  Evaluation evaluation;  ///< of the row after them; ok where all are there
+};
+
 /// y holds positions (hinge and modal coordinates [rad, m]), then speeds, then continuous states of loads. An object is
 /// of one thread at a time, since it owns the memory of an evaluation; copies share the compiled equations and are of
 /// threads of their own.
@@ -44,6 +50,11 @@ class Equations {
 
   /// y' at (t, y). Allocates nothing. Spans of another size than size() are std::invalid_argument.
   Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot);
+  /// y' of many states at one time, row after row of size() numbers each. Where the equations have lanes (symmetric
+  /// formulations, hinges of one rate; LaneEquations) four rows are evaluated at once, and a row agrees with
+  /// `derivatives` to rounding; elsewhere in every bit. What a row gets depends on that row alone, to the last bit.
+  /// Allocates at the first call. Spans that are not rows of size(), or not as many, are std::invalid_argument.
+  EvaluatedRows derivatives_many(double t, std::span<const double> y, std::span<double> y_dot);
   /// ∂f/∂y, row after row. Exact, but for parts that loads leave to differences; with respect to a quaternion along its
   /// unit sphere. \throws SimulationStopped where f is not to be had there; study::InputError where the formulation has
   /// no derivatives.

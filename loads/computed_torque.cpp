@@ -7,7 +7,6 @@
 
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/sweep/rigid_inverse_dynamics.hpp"
-#include "withy/loads/followed_hinges.hpp"
 #include "withy/loads/sampled.hpp"
 
 namespace withy {
@@ -19,41 +18,52 @@ struct Feedback {
   bool begins_on = true;     ///< the motion begins on the trajectories
 };
 
-class BoundComputedTorque final : public BoundLoad {
+class BoundComputedTorque final : public TrackingLoad {
  public:
   BoundComputedTorque(const Model& model, const std::vector<FollowedHinge>& hinges, const Feedback& feedback)
-      : dynamics_(model), positions_(model.layout().positions), speeds_(model.layout().speeds), feedback_(feedback) {
-    for (const FollowedHinge& h : hinges) axes_.push_back(single_axis(model, h.hinge, h.trajectory));
-  }
+      : TrackingLoad(model, rates_of(hinges), axes_of(model, hinges)),
+        dynamics_(model),
+        positions_(model.layout().positions),
+        speeds_(model.layout().speeds),
+        feedback_(feedback) {}
 
   std::size_t scratch() const override { return 2 * speeds_ + dynamics_.scratch(); }
   void add(double t, std::span<const double> positions, std::span<const double> speeds, std::span<double> efforts,
            std::span<double> scratch) const noexcept override {
+    const std::span<const double> tau = torques(t, positions, speeds, scratch);
+    for (const FollowedAxis& axis : axes()) efforts[axis.speed] += tau[axis.speed];
+  }
+  void commands(double t, std::span<const double> positions, std::span<const double> speeds, std::span<double> values,
+                std::span<double> scratch) const noexcept override {
+    const std::span<const double> tau = torques(t, positions, speeds, scratch);
+    for (std::size_t i = 0; i < axes().size(); ++i) values[i] = tau[axes()[i].speed];
+  }
+  void begin(State& state) const override {
+    if (feedback_.begins_on) begin_on(axes(), positions_, state);
+  }
+
+ private:
+  /// Of the whole inverse dynamics, in the scratch space.
+  [[nodiscard]] std::span<const double> torques(double t, std::span<const double> positions,
+                                                std::span<const double> speeds,
+                                                std::span<double> scratch) const noexcept {
     const auto u_dot = scratch.first(speeds_);
     const auto tau = scratch.subspan(speeds_, speeds_);
     std::fill(u_dot.begin(), u_dot.end(), 0.0);
-    for (const FollowedAxis& axis : axes_) {
+    for (const FollowedAxis& axis : axes()) {
       const MotionPoint r = at(axis.trajectory, t);
       const double w = feedback_.bandwidth;
       u_dot[axis.speed] = r.acceleration + 2 * feedback_.damping_ratio * w * (r.rate - speeds[axis.speed]) +
                           w * w * (r.position - positions[axis.position]);
     }
     dynamics_.efforts(positions, speeds, u_dot, tau, scratch.subspan(2 * speeds_));
-    for (const FollowedAxis& axis : axes_) efforts[axis.speed] += tau[axis.speed];
+    return tau;
   }
 
-  std::vector<double> discontinuities() const override { return jumps_of(axes_); }
-  double end() const override { return end_of(axes_); }
-  void begin(State& state) const override {
-    if (feedback_.begins_on) begin_on(axes_, positions_, state);
-  }
-
- private:
   RigidInverseDynamics dynamics_;
   std::size_t positions_;
   std::size_t speeds_;
   Feedback feedback_;
-  std::vector<FollowedAxis> axes_;
 };
 
 class ComputedTorque final : public Load {
@@ -62,10 +72,7 @@ class ComputedTorque final : public Load {
   ComputedTorque(std::vector<FollowedHinge> hinges, const Feedback& feedback, double period)
       : hinges_(std::move(hinges)), feedback_(feedback), period_(period) {}
   std::unique_ptr<BoundLoad> bind(const Model& model) const override {
-    std::vector<std::size_t> speeds;
-    for (const FollowedHinge& h : hinges_) speeds.push_back(single_coordinate(model, h.hinge).speed);
-    return sampled(std::make_unique<BoundComputedTorque>(model, hinges_, feedback_), period_, std::move(speeds),
-                   model.layout().speeds);
+    return sampled(std::make_unique<BoundComputedTorque>(model, hinges_, feedback_), period_);
   }
 
  private:

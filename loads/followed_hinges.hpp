@@ -141,6 +141,19 @@ inline FollowedAxis single_axis(const Model& model, const std::string& hinge, co
   return {slot.position, slot.speed, trajectory};
 }
 
+/// The axes of hinges with one coordinate each, and the names of their rates.
+/// \throws std::invalid_argument where the model has no such hinges.
+inline std::vector<FollowedAxis> axes_of(const Model& model, const std::vector<FollowedHinge>& hinges) {
+  std::vector<FollowedAxis> axes;
+  for (const FollowedHinge& h : hinges) axes.push_back(single_axis(model, h.hinge, h.trajectory));
+  return axes;
+}
+inline std::vector<RateName> rates_of(const std::vector<FollowedHinge>& hinges) {
+  std::vector<RateName> names;
+  for (const FollowedHinge& h : hinges) names.push_back({h.hinge, 0});
+  return names;
+}
+
 /// Times [s], increasing, where the second or third derivative of any trajectory jumps.
 inline std::vector<double> jumps_of(const std::vector<FollowedAxis>& axes) {
   std::vector<double> all;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "withy/core/plugin/load_numbers.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/loads/hinge_rate.hpp"
 
@@ -39,10 +40,17 @@ struct Limits {
   double operator()(double x, double rate) const noexcept { return push(lower - x, -rate) - push(x - upper, rate); }
 };
 
-class BoundLimit final : public BoundLoad {
+class BoundLimit final : public BoundLoad, public LoadNumbers {
  public:
-  BoundLimit(const Limits& limits, std::size_t position, std::size_t speed)
-      : limits_(limits), position_(position), speed_(speed) {}
+  /// \param unit of the coordinate
+  BoundLimit(const Limits& limits, std::size_t position, std::size_t speed, std::string unit)
+      : limits_(limits), position_(position), speed_(speed), unit_(std::move(unit)) {}
+  /// How far the nearest stop is.
+  std::vector<SensorColumn> numbers() const override { return {{"margin", unit_}}; }
+  void show(const LoadView& view, std::span<double> values) const noexcept override {
+    const double x = view.positions()[position_];
+    values[0] = std::min(x - limits_.lower, limits_.upper - x);
+  }
   std::size_t scratch() const override { return 0; }
   void add(double /*t*/, std::span<const double> positions, std::span<const double> speeds, std::span<double> efforts,
            std::span<double> /*scratch*/) const noexcept override {
@@ -64,13 +72,17 @@ class BoundLimit final : public BoundLoad {
   Limits limits_;
   std::size_t position_;
   std::size_t speed_;
+  std::string unit_;
 };
 
 class HingeLimit final : public Load {
  public:
   HingeLimit(RateName rate, const Limits& limits) : rate_(std::move(rate)), limits_(limits) {}
   std::unique_ptr<BoundLoad> bind(const Model& model) const override {
-    return std::make_unique<BoundLimit>(limits_, position_index(model, rate_), speed_index(model, rate_));
+    const std::size_t speed = speed_index(model, rate_), position = position_index(model, rate_);
+    const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(model.hinge(rate_.hinge))];
+    const bool angular = hinge_rates(*hinge.hinge)[rate_.component].angular;
+    return std::make_unique<BoundLimit>(limits_, position, speed, angular ? "rad" : "m");
   }
 
  private:

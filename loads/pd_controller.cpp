@@ -21,8 +21,10 @@ struct Gains {
     const double share = std::tanh((stiffness * error + damping * error_rate) / limit);
     return 1 - share * share;
   }
+  /// The effort without limit.
+  double asked(double error, double error_rate) const noexcept { return stiffness * error + damping * error_rate; }
   double operator()(double error, double error_rate) const noexcept {
-    const double effort = stiffness * error + damping * error_rate;
+    const double effort = asked(error, error_rate);
     return limit < std::numeric_limits<double>::infinity() ? limit * std::tanh(effort / limit) : effort;
   }
 };
@@ -34,28 +36,45 @@ struct Loop {
   Gains gains;
 };
 
-class BoundPdController final : public BoundLoad {
+std::vector<RateName> rates_of(const std::vector<Loop>& loops) {
+  std::vector<RateName> names;
+  for (const Loop& loop : loops) names.push_back(loop.rate);
+  return names;
+}
+
+std::vector<FollowedAxis> axes_of(const Model& model, const std::vector<Loop>& loops) {
+  std::vector<FollowedAxis> axes;
+  for (const Loop& loop : loops)
+    axes.push_back({position_index(model, loop.rate), speed_index(model, loop.rate), loop.trajectory});
+  return axes;
+}
+
+class BoundPdController final : public TrackingLoad {
  public:
   BoundPdController(const Model& model, const std::vector<Loop>& loops, bool begins_on)
-      : positions_(model.layout().positions), begins_on_(begins_on) {
+      : TrackingLoad(model, rates_of(loops), axes_of(model, loops)),
+        positions_(model.layout().positions),
+        begins_on_(begins_on) {
+    std::vector<double> limits;
     for (const Loop& loop : loops) {
-      axes_.push_back({position_index(model, loop.rate), speed_index(model, loop.rate), loop.trajectory});
       gains_.push_back(loop.gains);
+      limits.push_back(loop.gains.limit);
     }
+    add_limits(std::move(limits));
   }
   std::size_t scratch() const override { return 0; }
   void add(double t, std::span<const double> positions, std::span<const double> speeds, std::span<double> efforts,
            std::span<double> /*scratch*/) const noexcept override {
-    for (std::size_t i = 0; i < axes_.size(); ++i) {
-      const FollowedAxis& axis = axes_[i];
-      const MotionPoint r = at(axis.trajectory, t);
-      efforts[axis.speed] += gains_[i](r.position - positions[axis.position], r.rate - speeds[axis.speed]);
-    }
+    for (std::size_t i = 0; i < axes().size(); ++i) efforts[axes()[i].speed] += effort(i, t, positions, speeds);
+  }
+  void commands(double t, std::span<const double> positions, std::span<const double> speeds, std::span<double> values,
+                std::span<double> /*scratch*/) const noexcept override {
+    for (std::size_t i = 0; i < axes().size(); ++i) values[i] = effort(i, t, positions, speeds);
   }
   bool add_derivatives(double t, std::span<const double> positions, std::span<const double> speeds,
                        Eigen::Ref<Eigen::MatrixXd> by_position, Eigen::Ref<Eigen::MatrixXd> by_speed) const override {
-    for (std::size_t k = 0; k < axes_.size(); ++k) {
-      const FollowedAxis& axis = axes_[k];
+    for (std::size_t k = 0; k < axes().size(); ++k) {
+      const FollowedAxis& axis = axes()[k];
       const MotionPoint r = at(axis.trajectory, t);
       const double share = gains_[k].slope(r.position - positions[axis.position], r.rate - speeds[axis.speed]);
       const auto i = static_cast<Eigen::Index>(axis.speed);
@@ -64,16 +83,28 @@ class BoundPdController final : public BoundLoad {
     }
     return true;
   }
-  std::vector<double> discontinuities() const override { return jumps_of(axes_); }
-  double end() const override { return end_of(axes_); }
   void begin(State& state) const override {
-    if (begins_on_) begin_on(axes_, positions_, state);
+    if (begins_on_) begin_on(axes(), positions_, state);
+  }
+
+ protected:
+  double demand(std::size_t axis, double t, std::span<const double> positions,
+                std::span<const double> speeds) const noexcept override {
+    const FollowedAxis& a = axes()[axis];
+    const MotionPoint r = at(a.trajectory, t);
+    return gains_[axis].asked(r.position - positions[a.position], r.rate - speeds[a.speed]);
   }
 
  private:
+  [[nodiscard]] double effort(std::size_t axis, double t, std::span<const double> positions,
+                              std::span<const double> speeds) const noexcept {
+    const FollowedAxis& a = axes()[axis];
+    const MotionPoint r = at(a.trajectory, t);
+    return gains_[axis](r.position - positions[a.position], r.rate - speeds[a.speed]);
+  }
+
   std::size_t positions_;
   bool begins_on_;
-  std::vector<FollowedAxis> axes_;
   std::vector<Gains> gains_;  ///< one for each axis
 };
 
@@ -83,10 +114,7 @@ class PdController final : public Load {
   PdController(std::vector<Loop> loops, bool begins_on, double period)
       : loops_(std::move(loops)), begins_on_(begins_on), period_(period) {}
   std::unique_ptr<BoundLoad> bind(const Model& model) const override {
-    std::vector<std::size_t> speeds;
-    for (const Loop& loop : loops_) speeds.push_back(speed_index(model, loop.rate));
-    return sampled(std::make_unique<BoundPdController>(model, loops_, begins_on_), period_, std::move(speeds),
-                   model.layout().speeds);
+    return sampled(std::make_unique<BoundPdController>(model, loops_, begins_on_), period_);
   }
 
  private:

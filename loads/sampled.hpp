@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "withy/core/plugin/load.hpp"
 #include "withy/core/plugin/parameters.hpp"
+#include "withy/loads/tracking.hpp"
 
 namespace withy {
 
@@ -25,14 +25,13 @@ inline double sample_period(const Value& p) {
   return period == nullptr ? 0.0 : period->number();
 }
 
-/// A controller of hinges with a sample-and-hold. Its discrete states are the efforts on the speeds it acts on.
-class Sampled final : public BoundLoad, public DiscretePart {
+/// A controller of hinges with a sample-and-hold. Its discrete states are the efforts on the coordinates it follows.
+class Sampled final : public BoundLoad, public DiscretePart, public LoadNumbers {
  public:
-  /// \param speeds indices of the speeds that `controller` acts on, of `all_speeds`
-  Sampled(std::unique_ptr<BoundLoad> controller, double period, std::vector<std::size_t> speeds, std::size_t all_speeds)
-      : controller_(std::move(controller)), period_(period), speeds_(std::move(speeds)), all_speeds_(all_speeds) {}
+  Sampled(std::unique_ptr<TrackingLoad> controller, double period)
+      : controller_(std::move(controller)), period_(period) {}
 
-  std::size_t scratch() const override { return all_speeds_ + controller_->scratch(); }
+  std::size_t scratch() const override { return controller_->scratch(); }
   void add(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
            std::span<double> /*efforts*/, std::span<double> /*scratch*/) const noexcept override {}
   bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
@@ -45,31 +44,32 @@ class Sampled final : public BoundLoad, public DiscretePart {
   double end() const override { return controller_->end(); }
   void begin(State& state) const override { controller_->begin(state); }
 
-  std::size_t states() const override { return speeds_.size(); }
+  std::vector<SensorColumn> numbers() const override { return controller_->numbers(); }
+  /// The efforts that are held, the rest of the state as it is.
+  void show(const LoadView& view, std::span<double> values) const noexcept override {
+    controller_->show(view, values);
+    std::copy(view.discrete.begin(), view.discrete.end(), values.begin());
+  }
+
+  std::size_t states() const override { return controller_->axes().size(); }
   double period() const override { return period_; }
   void renew(double t, std::span<const double> positions, std::span<const double> speeds, const Crossing& /*crossing*/,
              std::span<double> discrete, std::span<double> scratch) const noexcept override {
-    const auto efforts = scratch.first(all_speeds_);
-    std::fill(efforts.begin(), efforts.end(), 0.0);
-    controller_->add(t, positions, speeds, efforts, scratch.subspan(all_speeds_));
-    for (std::size_t i = 0; i < speeds_.size(); ++i) discrete[i] = efforts[speeds_[i]];
+    controller_->commands(t, positions, speeds, discrete, scratch);
   }
   void add(double /*t*/, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
-    for (std::size_t i = 0; i < speeds_.size(); ++i) efforts[speeds_[i]] += discrete[i];
+    for (std::size_t i = 0; i < controller_->axes().size(); ++i) efforts[controller_->axes()[i].speed] += discrete[i];
   }
 
  private:
-  std::unique_ptr<BoundLoad> controller_;
+  std::unique_ptr<TrackingLoad> controller_;
   double period_;  ///< [s]
-  std::vector<std::size_t> speeds_;
-  std::size_t all_speeds_;
 };
 
 /// The controller itself where `period` is 0.
-inline std::unique_ptr<BoundLoad> sampled(std::unique_ptr<BoundLoad> controller, double period,
-                                          std::vector<std::size_t> speeds, std::size_t all_speeds) {
+inline std::unique_ptr<BoundLoad> sampled(std::unique_ptr<TrackingLoad> controller, double period) {
   if (!(period > 0)) return controller;
-  return std::make_unique<Sampled>(std::move(controller), period, std::move(speeds), all_speeds);
+  return std::make_unique<Sampled>(std::move(controller), period);
 }
 
 }  // namespace withy

@@ -112,7 +112,10 @@ std::vector<ParameterSpec> time_law_parameters(const std::string& what, const st
   };
   std::vector<std::string> columns{"s"};
   columns.insert(columns.end(), scalar ? 1 : 3, unit);
-  return {text("law", what + " as a function of time").one_of({"constant", "sine", "table", "steps"}),
+  return {text("law", what + " as a function of time; where left out what is given says it: a value is constant, an "
+                             "amplitude that of a sine")
+              .one_of({"constant", "sine", "table", "steps"})
+              .optional(),
           value("value", what + " (constant)"),
           value("amplitude", "greatest " + what + " (sine)"),
           number("period", "s", "period (sine)").above(0).optional(),
@@ -129,10 +132,16 @@ std::vector<ParameterSpec> time_law_parameters(const std::string& what, const st
 template <class T>
 class TimeLawReader {
  public:
-  TimeLawReader(const Value& p, const MakeContext& context) : p_(p), context_(context), law_(p.text_at("law")) {}
+  TimeLawReader(const Value& p, const MakeContext& context) : p_(p), context_(context), law_(law_of(p)) {}
 
   /// Nothing after a reported error.
   std::optional<TimeLaw<T>> read() {
+    if (law_.empty()) {
+      context_.diagnostics.error(p_.place(), p_.has("table")
+                                                 ? "a 'table' needs a 'law': table, linear between its rows, or steps"
+                                                 : "needs a 'law', or a 'value', which is constant");
+      return {};
+    }
     std::optional<TimeLaw<T>> law = read_law();
     if (!law) return {};
     if (const Value* v = p_.find("start")) law->start = v->number();
@@ -143,6 +152,12 @@ class TimeLawReader {
   }
 
  private:
+  /// Empty where nothing says it.
+  static std::string law_of(const Value& p) {
+    if (p.has("law")) return p.text_at("law");
+    if (p.has("value")) return "constant";
+    return p.has("amplitude") ? "sine" : "";
+  }
   std::optional<TimeLaw<T>> read_law() {
     if (law_ == "constant") {
       if (!only({"value"})) return {};
@@ -189,10 +204,17 @@ class TimeLawReader {
     for (const std::string_view key : {"value", "amplitude", "period", "frequency", "phase", "table"}) {
       const Value* v = p_.find(key);
       if (v == nullptr || std::find(taken.begin(), taken.end(), key) != taken.end()) continue;
-      context_.diagnostics.error(v->place(), "the law '" + law_ + "' takes no '" + std::string(key) + "'");
+      context_.diagnostics.error(v->place(),
+                                 "the law '" + law_ + "' takes no '" + std::string(key) + "'" + another(key));
       ok = false;
     }
     return ok;
+  }
+
+  /// The law that an option belongs to.
+  static std::string another(std::string_view key) {
+    if (key == "value") return "; law: constant does";
+    return key == "table" ? "; law: table and law: steps do" : "; law: sine does";
   }
 
   std::optional<TimeLaw<T>> lacking(const std::string& what) {
@@ -202,7 +224,7 @@ class TimeLawReader {
 
   const Value& p_;
   const MakeContext& context_;
-  const std::string& law_;
+  std::string law_;
 };
 
 }  // namespace withy

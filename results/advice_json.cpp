@@ -53,6 +53,7 @@ Json probe_json(const study::Outputs& outputs, const study::Probe& p) {
 Json reference_json(const study::Outputs& outputs, const study::Yardstick& yardstick) {
   const study::Reference& r = yardstick.reference;
   Json j = point_json(r.point);
+  if (r.added_by) j["added_by"] = point_json(*r.added_by);
   j["ranges"] = distances_json(outputs, r.ranges);
   j["counted_ranges"] = distances_json(outputs, r.scales);
   j["allowed"] = distances_json(outputs, yardstick.limits);

@@ -162,9 +162,15 @@ std::string no_advice_text(const study::Advice& a, const AdviceQuestion& questio
                                                : "none of the candidates holds ";
   text += accuracy.text();
   if (!a.yardstick) return text + '.' + measured;
-  text += fmt::format("; the reference ({}) is known to {}.", a.yardstick->reference.point.text(),
+  text += fmt::format("; the reference ({}) is known to {}.", a.yardstick->reference.text(),
                       use_text(accuracy, a.yardstick->own_use()));
-  const study::Probe* nearest = nullptr;
+  const study::Probe *nearest = nullptr, *ended_early = nullptr;
+  for (const study::Probe& p : a.probes)
+    if (p.outcome == study::Probe::Outcome::stopped && p.use <= 1 && p.walk.end == study::Walk::End::reached)
+      ended_early = &p;
+  if (ended_early != nullptr)
+    text += fmt::format(" {} holds it, but a run of the scene does not come to its end: {}", ended_early->point.text(),
+                        ended(ended_early->reason));
   for (const study::Probe& p : a.probes)
     if (p.outcome == study::Probe::Outcome::inaccurate && p.walk.end == study::Walk::End::reached &&
         (nearest == nullptr || p.use < nearest->use))
@@ -201,9 +207,8 @@ std::string advice_text(const AdviceReport& report) {
   for (const study::Probe& p : a.above)
     lines.add("next up",
               fmt::format("{}: {} off, {}", p.point.text(), use_text(accuracy, p.use), milliseconds(p.cost)));
-  lines.add("measured",
-            fmt::format("{} probes, {:.2g} s of CPU time of the {:.2g} allowed, against {}", a.probes.size(),
-                        a.cpu_seconds, a.limit_seconds, a.yardstick->reference.point.text()));
+  lines.add("measured", fmt::format("{} probes, {:.2g} s of CPU time of the {:.2g} allowed, against {}",
+                                    a.probes.size(), a.cpu_seconds, a.limit_seconds, a.yardstick->reference.text()));
   if (a.models_tried < a.models)
     lines.add("measured",
               fmt::format("{} of {} models: the time was over, there may be a cheaper one", a.models_tried, a.models));

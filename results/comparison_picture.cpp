@@ -93,7 +93,7 @@ Panel error_panel(const study::Comparison& comparison, const std::vector<const s
     const WorldPose pose = seen.frame_pose(tip.tip.body, tip.tip.frame);
     return Vector3(Eigen::Map<const Vector3>(pose.position.data()));
   };
-  Panel panel{"time [s]", tip.body + ".tip off " + reference.formulation() + " [m]", {1, 1}, {}, 260};
+  Panel panel{"time [s]", "error of " + tip.body + ".tip against " + reference.formulation() + " [m]", {1, 1}, {}, 260};
   panel.log_y = true;
   double least = std::numeric_limits<double>::infinity(), greatest = 0;
   const auto of_reference = reference.prepared.equations->make_observation();

@@ -8,6 +8,7 @@
 #include "withy/results/csv_recorder.hpp"
 #include "withy/results/hdf5_recorder.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/make_folder.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/report/run_report.hpp"
@@ -102,7 +103,7 @@ std::vector<std::string> run_content() {
 
 RecordedRun record_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
                        const Provenance& provenance, study::RunSettings settings, RunFiles files) {
-  std::filesystem::create_directories(folder);
+  make_folder(folder);
   CsvRecorder csv(folder / table_name);
   return simulate_into(csv, folder, prepared, registry, provenance, std::move(settings), files);
 }

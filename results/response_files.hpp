@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "withy/results/svg_plot.hpp"
 #include "withy/study/response.hpp"
 
 namespace withy {
@@ -14,9 +15,9 @@ nlohmann::ordered_json response_json(const study::Configuration& configuration, 
 /// A line a frequency: Hz, gain, phase without jumps [deg], real and imaginary part.
 std::string response_csv(const study::Response& response);
 /// Gain and phase over frequency; of a reduced system as well.
-std::string bode_picture(const study::Response& response, const std::string& title);
+Picture bode_picture(const study::Response& response, const std::string& title);
 /// Gain over phase of the loop v = −k y, with the point that it must not pass, and the curves of equal closed loop.
-std::string nichols_picture(const study::Response& response, const std::string& title);
+Picture nichols_picture(const study::Response& response, const std::string& title);
 /// The point on the first line, then what it rests on.
 std::string response_text(const study::Configuration& configuration, const study::Response& response);
 

@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "withy/results/response_files.hpp"
-#include "withy/results/svg_plot.hpp"
 
 namespace withy {
 namespace {
@@ -57,7 +56,7 @@ constexpr std::size_t curve_pen = 6, reduced_pen = 1, closed_pen = 7, point_pen 
 
 }  // namespace
 
-std::string bode_picture(const study::Response& r, const std::string& title) {
+Picture bode_picture(const study::Response& r, const std::string& title) {
   Panel gain{"frequency [Hz]", "gain [dB]", {1e300, -1e300}, {}, 260};
   Panel phase{"frequency [Hz]", "phase [deg]", {1e300, -1e300}, {}, 200};
   gain.log_x = phase.log_x = true;
@@ -79,14 +78,15 @@ std::string bode_picture(const study::Response& r, const std::string& title) {
   }
   // What is far below the greatest gain is rounding, and hides the rest.
   gain.y_range.first = std::max(gain.y_range.first, gain.y_range.second - 200);
-  return svg_plot(title, legend, {gain, phase});
+  return {title, legend, {gain, phase}};
 }
 
-std::string nichols_picture(const study::Response& r, const std::string& title) {
+Picture nichols_picture(const study::Response& r, const std::string& title) {
   Panel panel{"phase [deg]", "gain [dB]", {-40, 40}, {}, 480};
   panel.free_x = true;
   for (const double closed : {-12.0, -6.0, -3.0, 3.0, 6.0})
     panel.curves.push_back(equal_closed_loop(closed, closed_pen));
+  for (Curve& curve : panel.curves) curve.name = "closed loops of equal gain: -12, -6, -3, 3, 6 dB";
   GainAndPhase curves = curves_of(r.values, curve_pen);
   // The turn of the phase that lies nearest to the critical point.
   std::size_t nearest = 0;
@@ -95,6 +95,7 @@ std::string nichols_picture(const study::Response& r, const std::string& title) 
   const double turn = curves.phase.y.empty() ? 0 : 360 * std::round((-180 - curves.phase.y[nearest]) / 360);
   Curve loop;
   loop.pen = curve_pen;
+  loop.name = "the loop";
   for (std::size_t i = 0; i < curves.gain.y.size(); ++i) {
     loop.x.push_back(curves.phase.y[i] + turn);
     loop.y.push_back(curves.gain.y[i]);
@@ -103,9 +104,10 @@ std::string nichols_picture(const study::Response& r, const std::string& title) 
   Curve critical;
   critical.x = {-180}, critical.y = {0};
   critical.points = true;
+  critical.name = "the point it must not pass";
   critical.pen = point_pen;
   panel.curves.push_back(std::move(critical));
-  return svg_plot(title, {}, {panel});
+  return {title, {}, {panel}};
 }
 
 }  // namespace withy

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "withy/results/json_text.hpp"
+#include "withy/results/make_folder.hpp"
 #include "withy/results/results_error.hpp"
 #include "withy/scene/sha256.hpp"
 
@@ -98,7 +99,7 @@ std::string change(const Json& kept, const Provenance& now) {
 ResultsFolder::ResultsFolder(std::filesystem::path path, const std::string& command, const Provenance& provenance,
                              const std::vector<std::string>& content, FolderUse use)
     : path_(std::move(path)) {
-  std::filesystem::create_directories(path_);
+  make_folder(path_);
   lock();
   try {
     const Json kept = read_record(path_);

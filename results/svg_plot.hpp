@@ -17,7 +17,9 @@ struct Curve {
   std::vector<double> y;
   bool ends_early = false;  ///< its last point is marked with a cross
   bool points = false;      ///< dots in place of a line
-  std::optional<std::size_t> pen;
+  std::optional<std::size_t> pen = {};
+  std::string name = {};                ///< on pages, where the legend has none for its pen
+  std::vector<std::string> notes = {};  ///< what pages say of each point
 };
 
 /// One pair of axes.
@@ -35,6 +37,14 @@ struct Panel {
 /// A title, a legend with one entry a curve, and the panels below each other.
 std::string svg_plot(const std::string& title, const std::vector<std::string>& legend,
                      const std::vector<Panel>& panels);
+
+/// Panels under one title.
+struct Picture {
+  std::string title;
+  std::vector<std::string> legend;  ///< names of pens, from the first
+  std::vector<Panel> panels;
+};
+inline std::string svg_plot(const Picture& p) { return svg_plot(p.title, p.legend, p.panels); }
 
 /// Round numbers inside [low, high], five or so, for the marks of an axis.
 std::vector<double> axis_marks(double low, double high);

@@ -120,7 +120,10 @@ Panel envelope_panel(const std::vector<NamedTable>& runs, const std::vector<std:
     of_columns.push_back(panel_of_column(runs, found.front()));
     const std::string& label = of_columns.back().y_label;
     const std::string unit = label.substr(label.rfind(" ["));
-    if (envelope.y_label.empty()) envelope.y_label = "least and greatest" + unit;
+    // "mz" of root.mz, middle.mz, tip.mz.
+    const std::string kind =
+        label.substr(0, label.rfind(" [")).substr(label.substr(0, label.rfind(" [")).rfind('.') + 1);
+    if (envelope.y_label.empty()) envelope.y_label = kind + ", least and greatest" + unit;
     if (!envelope.y_label.ends_with(unit))
       throw ResultsError(in_quotes(name) + " has another unit than the columns before");
     envelope.y_range.first = std::min(envelope.y_range.first, of_columns.back().y_range.first);

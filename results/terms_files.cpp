@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "withy/results/csv.hpp"
-#include "withy/results/svg_plot.hpp"
 
 namespace withy {
 
@@ -45,7 +44,7 @@ std::string terms_csv(const study::TermSizes& ledger) {
   return text;
 }
 
-std::string terms_picture(const std::string& title, const study::TermSizes& ledger) {
+Picture terms_picture(const std::string& title, const study::TermSizes& ledger) {
   std::vector<std::string> legend;
   std::vector<std::size_t> shown;
   for (std::size_t k = 0; k < terms_of_motion; ++k) {
@@ -68,7 +67,7 @@ std::string terms_picture(const std::string& title, const study::TermSizes& ledg
     }
     panels.push_back(std::move(panel));
   }
-  return svg_plot(title, legend, panels);
+  return {title, legend, panels};
 }
 
 }  // namespace withy

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "withy/results/svg_plot.hpp"
 #include "withy/study/term_study.hpp"
 
 namespace withy {
@@ -14,6 +15,6 @@ nlohmann::ordered_json terms_json(const Scene& scene, const RunSummary& summary,
 /// A line an output, a column a group and term.
 std::string terms_csv(const study::TermSizes& sizes);
 /// Sizes over time in decades, six a panel.
-std::string terms_picture(const std::string& title, const study::TermSizes& sizes);
+Picture terms_picture(const std::string& title, const study::TermSizes& sizes);
 
 }  // namespace withy

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/mode_family.hpp"
@@ -24,6 +25,18 @@ bool in_range(double x, const ParameterSpec& spec) {
   if (!std::isfinite(x)) return false;
   if (spec.minimum && (spec.exclusive_minimum ? x <= *spec.minimum : x < *spec.minimum)) return false;
   return !spec.maximum || x <= *spec.maximum;
+}
+
+/// Which law of a load its other options belong to, where it says none.
+std::string law_meant(const Value& load, const ParameterSpec& missing) {
+  constexpr std::pair<const char*, const char*> laws[] = {
+      {"value", "constant"}, {"amplitude", "sine"}, {"table", "table"}, {"duration", "quintic"}};
+  if (missing.key != "law") return {};
+  for (const auto& [option, law] : laws) {
+    const bool offered = std::find(missing.choices.begin(), missing.choices.end(), law) != missing.choices.end();
+    if (offered && load.has(option)) return fmt::format("; with '{}' add 'law: {}'", option, law);
+  }
+  return {};
 }
 
 }  // namespace
@@ -306,7 +319,7 @@ std::optional<Value> Checker::check_members(const Value& value, const std::vecto
     }
     if (member == nullptr) {
       if (!spec.required) continue;
-      key_error(path, fmt::format("missing: {}; need {}", spec.meaning, expectation(spec)));
+      key_error(path, fmt::format("missing: {}; need {}{}", spec.meaning, expectation(spec), law_meant(value, spec)));
       good = false;
       continue;
     }

@@ -1,12 +1,15 @@
 #include "withy/scene/document.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
 #include <cerrno>
-#include <fstream>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -77,6 +80,8 @@ class Builder final : public YAML::EventHandler {
     if (wants_key()) return key(mark, value);
     // The mark of a scalar with a tag or anchor is that of the tag: refused already.
     if (is_left_open(mark)) stop(place(mark, path()), "the quote that begins here is never closed");
+    // The system ends names of files there: another file than the text says would be read.
+    if (value.find('\0') != std::string::npos) stop(place(mark, path()), "the text holds the character NUL");
     add(mark, tag == "!" ? Value(value) : plain_scalar(value));
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -246,6 +251,18 @@ std::string syntax_problem(const YAML::Exception& e, std::string_view text) {
   return e.msg;
 }
 
+struct Descriptor {
+  int number;
+  ~Descriptor() { ::close(number); }
+};
+
+/// Waits until there is something to be read, or the end: of files never. Nobody may ever write into a pipe.
+bool has_input(int file) {
+  constexpr int patience = 10'000;  // ms
+  pollfd waiting{file, POLLIN, 0};
+  return ::poll(&waiting, 1, patience) != 0;
+}
+
 }  // namespace
 
 Place Document::key_place(const std::string& path) const {
@@ -285,17 +302,40 @@ bool read_document(std::string_view text, const Origin& origin, Document& docume
   return builder.whole();
 }
 
+namespace {
+
+/// What a file that cannot be read may have been; empty where nothing beside it has a name like it.
+std::string meant_file(const std::string& file) {
+  const std::filesystem::path path = file;
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) return " (it is a folder; name a file in it)";
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::vector<std::string> there;
+  for (std::filesystem::directory_iterator entry(folder, none), end; !none && entry != end; entry.increment(none))
+    if (there.push_back(entry->path().filename().string()); there.size() > 1000) break;
+  const std::string guess = nearest(path.filename().string(), there);
+  if (guess.empty() || guess == path.filename()) return {};
+  return " (did you mean " + (path.has_parent_path() ? (folder / guess).string() : guess) + "?)";
+}
+
+}  // namespace
+
 std::string read_bytes(const std::string& file) {
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::string text;
-  std::string block(std::size_t{1} << 16, '\0');
-  while (stream && text.size() <= DocumentLimits::bytes) {
-    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-    text.append(block, 0, static_cast<std::size_t>(stream.gcount()));
-  }
-  if (!stream.is_open() || stream.bad()) {
-    throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(), "cannot read " + file);
+  const auto fail = [&](int error) -> void {
+    throw std::system_error(error, std::generic_category(), "cannot read " + file + meant_file(file));
+  };
+  // A pipe is opened at once, whether or not somebody writes.
+  const int opened = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (opened < 0) fail(errno);
+  const Descriptor input{opened};
+  std::string text, block(std::size_t{1} << 16, '\0');
+  while (true) {
+    if (text.size() > DocumentLimits::bytes) fail(EFBIG);
+    if (!has_input(opened)) fail(ETIMEDOUT);
+    const ssize_t count = ::read(opened, block.data(), block.size());
+    if (count < 0 && errno != EINTR && errno != EAGAIN) fail(errno);
+    if (count == 0) break;
+    if (count > 0) text.append(block, 0, static_cast<std::size_t>(count));
   }
   return text;
 }

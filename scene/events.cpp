@@ -6,6 +6,7 @@
 
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/limit_sensor.hpp"
 #include "withy/core/model/switched_load.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
@@ -28,6 +29,12 @@ int direction_of(const Value& event) {
   return direction == "up" ? 1 : (direction == "down" ? -1 : 0);
 }
 
+std::size_t column_count(const std::vector<SensorNode>& sensors) {
+  std::size_t count = 0;
+  for (const SensorNode& node : sensors) count += node.sensor->columns().size();
+  return count;
+}
+
 std::string where(const std::string& event) { return "/events/" + event; }
 
 /// "loads.motor.amplitude=5" in its parts; nothing where it is not of that form.
@@ -43,6 +50,26 @@ std::optional<Setting> setting_of(const std::string& text) {
   if (dot == 0 || dot == std::string::npos || dot + 1 == path.size()) return {};
   const std::string key = path.substr(dot + 1);
   return Setting{path.substr(0, dot), key.substr(0, key.find_last_not_of(' ') + 1), text.substr(equals + 1)};
+}
+
+/// What the event watches; null after a reported error.
+std::shared_ptr<const BoundSensor> limit_of(const Model& model, const Value& event, const Checker& checker) {
+  const std::string& name = event.text_at("limit");
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model.loads().size(); ++i) {
+    names.push_back(model.loads()[i].name);
+    if (names.back() != name) continue;
+    std::shared_ptr<const BoundSensor> sensor = limit_sensor(model, i);
+    if (sensor == nullptr)
+      checker.key_error(event.place().path + "/limit",
+                        fmt::format("load '{}' tells of no limit; need a controller, an actuator or a wheel with one "
+                                    "that measures coordinates of hinges, or a hinge-limit",
+                                    name));
+    return sensor;
+  }
+  checker.key_error(event.place().path + "/limit",
+                    fmt::format("no load {}{}", in_quotes(name), checker.suggest(name, names)));
+  return nullptr;
 }
 
 }  // namespace
@@ -188,10 +215,11 @@ std::optional<SceneEvents::Watched> SceneEvents::signal(const Model& model, cons
 std::optional<SceneEvents::Watched> SceneEvents::watched(const Model& model, const std::vector<SensorNode>& outputs,
                                                          const Value& event) const {
   int triggers = 0;
-  for (const char* key : {"hinge", "signal", "at", "after"}) triggers += event.has(key) ? 1 : 0;
+  for (const char* key : {"hinge", "signal", "limit", "at", "after"}) triggers += event.has(key) ? 1 : 0;
   if (triggers != 1) {
-    checker_.key_error(event.place().path, fmt::format("says {} when it happens; need one of: hinge, signal, at, after",
-                                                       triggers == 0 ? "nothing of" : "more than one thing of"));
+    checker_.key_error(event.place().path,
+                       fmt::format("says {} when it happens; need one of: hinge, signal, limit, at, after",
+                                   triggers == 0 ? "nothing of" : "more than one thing of"));
     return {};
   }
   if (event.has("hinge")) return hinge_number(model, event);
@@ -316,6 +344,8 @@ void SceneEvents::resolve_after(EventPlan& plan) const {
 void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, std::vector<RunEvent>& plain) {
   EventPlan plan;
   bool senses = false;
+  std::vector<SensorNode> limits;
+  std::vector<std::size_t> at_limits;  // events that watch them, one each
   for (const auto& [name, given] : events_.members()) {
     const std::optional<Watched> number = watched(model, outputs, given);
     if (!number) continue;
@@ -330,7 +360,14 @@ void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, s
     event.when = given.has("at") ? When::at : given.has("after") ? When::after : When::passes;
     event.element = number->element;
     event.column = number->column;
-    senses = senses || (event.when == When::passes && event.element < 0);
+    if (given.has("limit")) {
+      std::shared_ptr<const BoundSensor> sensor = limit_of(model, given, checker_);
+      if (sensor == nullptr) continue;
+      event.column = limits.size();
+      at_limits.push_back(plan.events.size());
+      limits.push_back({name, std::move(sensor)});
+    }
+    senses = senses || (event.when == When::passes && event.element < 0 && !given.has("limit"));
     event.value = given.number_at("value");
     event.direction = direction_of(given);
     if (event.when == When::at) event.time = given.number_at("at");
@@ -344,6 +381,9 @@ void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, s
   if (plan.events.empty()) return;
   resolve_after(plan);
   if (senses) plan.sensors = outputs;
+  const std::size_t before = column_count(plan.sensors);
+  for (const std::size_t event : at_limits) plan.events[event].column += before;
+  plan.sensors.insert(plan.sensors.end(), limits.begin(), limits.end());
   try {
     const std::vector<std::size_t> locked = locked_at_start(model);
     plan.find_configurations({locked});

@@ -17,6 +17,8 @@ std::vector<ParameterSpec> event_members() {
           .one_of({"position", "rate"})
           .otherwise("position"),
       text("signal", "number of an output, as imu.x, or column of a hinge that passes a value").optional(),
+      text("limit", "load whose limit is reached (up) or left (down): a saturated actuator, a hinge at its stop")
+          .optional(),
       number("value", "rad", "value that it passes; of a rate in rad/s, of a signal in its own unit").otherwise(0.0),
       text("direction", "from below, from above, or both").one_of({"up", "down", "both"}).otherwise("both"),
       number("at", "s", "time at which it happens").optional(),

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <new>
 
+#include "withy/core/plugin/floating_point.hpp"
 #include "withy/scene/check.hpp"
 #include "withy/scene/names.hpp"
 
@@ -20,7 +22,8 @@ struct Made {
 };
 
 /// Makes the object; every problem is reported at the value's key.
-/// \throws PluginError where a library the plugin asks for is refused.
+/// \throws PluginError where a library the plugin asks for is refused, or the plugin changes the processor's
+/// arithmetic.
 template <class Interface>
 std::unique_ptr<Interface> make_object(const Plugin<Interface>& plugin, const Value& value, const Checker& checker) {
   const std::size_t before = checker.diagnostics().errors().size();
@@ -29,14 +32,21 @@ std::unique_ptr<Interface> make_object(const Plugin<Interface>& plugin, const Va
     checker.key_error(path, fmt::format("{} '{}' {}", kind_name<Interface>(), plugin.id, why));
   };
   std::unique_ptr<Interface> object;
+  FloatingPointGuard arithmetic;
   try {
     object = plugin.make(value, checker.make_context());
   } catch (const PluginError&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& e) {
     blame(std::string("cannot be made: ") + e.what());
     return nullptr;
+  } catch (...) {
+    blame("cannot be made: it throws what is no exception of C++");
+    return nullptr;
   }
+  arithmetic.check(fmt::format("{} '{}' of {}", kind_name<Interface>(), plugin.id, plugin.origin));
   if (checker.diagnostics().errors().size() != before) return nullptr;
   if (object == nullptr) blame("cannot be made and does not say why");
   return object;

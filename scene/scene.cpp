@@ -12,6 +12,7 @@
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/plugin/file_notes.hpp"
+#include "withy/core/plugin/floating_point.hpp"
 #include "withy/scene/constraints.hpp"
 #include "withy/scene/control_order.hpp"
 #include "withy/scene/document.hpp"
@@ -214,7 +215,10 @@ class SceneBuilder {
     }
     add_parts<Sensor>("outputs", grammar::sensor_members(), tree.model != nullptr,
                       [&](const std::string& name, const Value&, const std::unique_ptr<Sensor>& sensor) {
-                        scene_.outputs.push_back({name, sensor->bind(*tree.model, scene_.outputs)});
+                        auto bound = sensor->bind(*tree.model, scene_.outputs);
+                        if (bound == nullptr)
+                          throw std::invalid_argument("the sensor cannot be bound and does not say why");
+                        scene_.outputs.push_back({name, std::move(bound)});
                       });
   }
   static bool is_default_column(std::string_view name) {
@@ -305,7 +309,9 @@ Scene make_scene(const SceneValues& values, Registry& registry) {
   const FileNotes notes([&](const std::string& file, std::string_view bytes) {
     sources.add(FileUsed{file, withy::sha256(bytes)});
   });
+  FloatingPointGuard arithmetic;  // of everything that a plugin is asked: shapes, stations, what binds loads
   Scene scene = SceneBuilder(values.document(), registry, sources, diagnostics).build();
+  arithmetic.check("a plugin of this scene");
   if (!diagnostics.ok()) throw SceneError(values.file(), diagnostics.errors(), values.origins());
   scene.file = values.file();
   scene.sha256 = values.sha256();

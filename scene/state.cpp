@@ -88,8 +88,10 @@ class StateReader {
   const Value* numbers(const Value* given, std::size_t first, const std::vector<std::string>& units) {
     if (given == nullptr) return nullptr;
     if (given->kind() != Value::Kind::list || given->items().size() != units.size()) {
-      checker_.diagnostics().error(
-          given->place(), fmt::format("got {}; need a list of {} finite numbers", shown(*given), units.size()));
+      checker_.diagnostics().error(given->place(),
+                                   fmt::format("got {}; need a list of {}", shown(*given),
+                                               units.size() == 1 ? "one finite number, in brackets"
+                                                                 : fmt::format("{} finite numbers", units.size())));
       good_ = false;
       return nullptr;
     }

@@ -28,7 +28,12 @@ bool report_cycles(const Inboard& inboard, const Checker& checker) {
       at = static_cast<std::size_t>(inboard[at]->parent);
     } while (at != b);
     checker.key_error("/hinges/" + inboard[b]->name,
-                      fmt::format("the hinges {} make a cycle that does not hang on the world", listed(names)));
+                      names.size() == 1
+                          ? fmt::format("the hinge {} hangs a body on itself; its parent is another body, or the world",
+                                        names.front())
+                          : fmt::format("the hinges {} make a ring that does not hang on the world; let one of their "
+                                        "parents be world, and close the ring with constraints",
+                                        listed(names)));
     good = false;
   }
   return good;

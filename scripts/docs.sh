@@ -4,8 +4,8 @@
 # something else than its measurements, a mark without a file and a file that no page shows are errors.
 #
 # A file of measurements: lines `command: …`, `commit: …`, `date: …`; an empty line; rows with tabs between their cells,
-# the heads first; an empty line; sentences about them. scripts/gallery.sh writes those of the gallery; by hand:
-#   record_table NAME COMMAND <rows      # of scripts/measured.sh
+# the heads first; an empty line; sentences about them. scripts/gallery.sh writes those of the gallery, benchmarks.sh
+# times, tolerances.sh and auto.sh what their names say; each with record_table of scripts/measured.sh.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

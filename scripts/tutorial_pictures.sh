@@ -24,6 +24,7 @@ PY
 (cd "$work" && "$root/build/release/bin/withy" plot results/pendulum-quadratic pivot --out pendulum.svg)
 cp "$work/pendulum.svg" docs/pictures/tutorial-pendulum.svg
 cp "$work/booms.svg" docs/pictures/tutorial-booms.svg
+cp "$work/imager.svg" docs/pictures/tutorial-imager-loads.svg
 
 # shot PAGE PICTURE HEIGHT: a page as it stands a second after it is opened.
 shot() {
@@ -33,3 +34,4 @@ shot() {
 shot results/satellite/report.html tutorial-satellite.png 760
 shot results/modes/report.html tutorial-modes.png 620
 shot results/tolerances/report.html tutorial-tolerances.png 760
+shot results/imager-advice/report.html tutorial-imager-advice.png 1120

@@ -43,11 +43,12 @@ class ControlSensor final : public Sensor {
     const auto* told = dynamic_cast<const LoadNumbers*>(node->load.get());
     const std::vector<SensorColumn> all = told == nullptr ? std::vector<SensorColumn>{} : told->numbers();
     if (all.empty())
-      throw std::invalid_argument("load '" + load_ + "' is no controller, of which there is more to show");
+      throw std::invalid_argument("load '" + load_ + "' is no controller and has no limit: there is nothing to show");
     std::vector<SensorColumn> columns;
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const bool asked = show_.empty() || std::find(show_.begin(), show_.end(), all[i].component) != show_.end();
+      const auto names = [&](const std::string& name) { return is_named(all[i].component, name); };
+      const bool asked = show_.empty() || std::any_of(show_.begin(), show_.end(), names);
       if (!asked) continue;
       columns.push_back(all[i]);
       places.push_back(i);
@@ -58,10 +59,15 @@ class ControlSensor final : public Sensor {
   }
 
  private:
+  /// "error" names "error.elbow", too.
+  static bool is_named(const std::string& component, const std::string& name) {
+    return component == name || component.starts_with(name + '.');
+  }
   void check(const std::string& name, const std::vector<SensorColumn>& all) const {
     std::vector<std::string> known;
     for (const SensorColumn& c : all) known.push_back(c.component);
-    if (std::find(known.begin(), known.end(), name) == known.end())
+    const auto is = [&](const std::string& component) { return is_named(component, name); };
+    if (std::none_of(known.begin(), known.end(), is))
       throw std::invalid_argument(fmt::format("load '{}' has no '{}' to show; known: {}", load_, name,
                                               fmt::join(known.begin(), known.end(), ", ")));
   }
@@ -81,10 +87,10 @@ std::unique_ptr<Sensor> make_control_sensor(const Value& p, const MakeContext& /
 void enroll_control_sensor(Enrollment& enrollment) {
   enrollment.add<Sensor>(
       {.id = "control",
-       .summary = "What a controller commands, its tracking error, and its states",
+       .summary = "What a controller commands, its tracking error, its margins to limits, and its states",
        .parameters =
            {text("of", "the controller").naming(ParameterSpec::Refers::load),
-            texts("show", "which of its numbers: command, error, names of states; all where left out").optional()},
+            texts("show", "which of its numbers: command, error, margin, names of states; all where left out").optional()},
        .make = &make_control_sensor});
 }
 

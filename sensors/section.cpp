@@ -56,7 +56,9 @@ class SectionSensor final : public Sensor {
     double x = at_, length = 0;
     for (const int piece : pieces) {
       const Body& body = *model.bodies()[static_cast<std::size_t>(piece)].body;
-      if (!body.cut(0)) throw std::invalid_argument("body '" + of_ + "' is not slender; it has no section");
+      if (!body.cut(0))
+        throw std::invalid_argument("body '" + of_ +
+                                    "' is no beam, and has no sections; `type: reaction` gives what a hinge carries");
       const double own = body.shape().length;
       length += own;
       const bool last = piece == pieces.back();

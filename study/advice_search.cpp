@@ -24,8 +24,6 @@ constexpr double most_poor_reference_use = 0.25 * most_reference_use;
 constexpr double last_reference_use = 0.7;
 /// Of the time allowed: what the search for a reference may take.
 constexpr double reference_time = 0.6;
-/// Of the time allowed: how much of a reference's run is looked at before its whole cost is judged by it.
-constexpr double first_look = 0.02;
 /// Of the accuracy: an error beyond this in an integration that is much more exact is the model's.
 constexpr double clearly_inaccurate = 1.5;
 /// The same of one that came to the end, the reference's own error on top: no other integration makes up for that.
@@ -83,6 +81,7 @@ void Search::find_yardstick() {
     const bool late = evaluator_.spent() > policy::reference_patience * evaluator_.limit();
     return use <= (late ? policy::most_reference_use : policy::good_reference_use) && rich;
   };
+  goal.steady = [&](const Reference& r) { return own_use(r) <= policy::most_reference_use; };
   goal.afford = [&](const Walk& so_far) { return affordable(so_far); };
   ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); },
                                         evaluator_.registry(), evaluator_.outputs(), goal, evaluator_.control());
@@ -96,14 +95,12 @@ void Search::find_yardstick() {
 }
 
 /// Whether the reference's runs, this one gone on with at its pace, keep within their share of the time.
-bool Search::affordable(const Walk& so_far) const {
+bool Search::affordable(const Walk& so_far) {
   const Scene& scene = evaluator_.base().scene;
   const double spent = evaluator_.spent(), all = policy::reference_time * evaluator_.limit();
   evaluator_.control().tell(spent, evaluator_.limit());
-  if (spent > all) return false;
-  const double gone = so_far.time - scene.initial.time, whole = end_of_run(scene) - scene.initial.time;
-  if (so_far.seconds < policy::first_look * all || !(gone > 0)) return true;
-  return spent + so_far.seconds * (whole / gone - 1) <= all;
+  pace_.note(so_far.time - scene.initial.time, so_far.seconds);
+  return may_go_on(so_far.seconds, pace_.rest(end_of_run(scene) - scene.initial.time), all - spent + so_far.seconds);
 }
 
 double Search::own_use(const Reference& r) const {
@@ -123,7 +120,7 @@ void Search::explain(const ReferenceFound& found) {
       "no reference is exact enough: two runs that differ by a mode and a digit, the finer {}, are {:.2g} of the "
       "accuracy apart, most in {}. Ask for {:.2g} times that accuracy, a shorter time (--set time.end=…) or other "
       "outputs (--output)",
-      r.point.text(), yardstick.own_use(), evaluator_.outputs().list()[yardstick.worst(r.own)].label,
+      r.text(), yardstick.own_use(), evaluator_.outputs().list()[yardstick.worst(r.own)].label,
       std::ceil(10 * yardstick.own_use() / policy::last_reference_use) / 10);
   if (found.unaffordable) advice_.trouble += ". A finer one costs too much: " + found.trouble;
 }
@@ -226,12 +223,13 @@ void Search::try_integrations(const Point& model, const std::string& integrator)
 void Search::try_models() {
   try_models(candidates_.modes);
   const auto passed = [](const Probe& p) { return p.passed(); };
-  for (const int modes : candidates_.more_modes) {
-    // More than the reference has would be measured against less.
-    if (over() || modes > yardstick().reference.point.modes) return;
-    if (std::any_of(advice_.probes.begin(), advice_.probes.end(), passed)) return;
-    try_models({modes});
-  }
+  if (over() || std::any_of(advice_.probes.begin(), advice_.probes.end(), passed)) return;
+  // More than the reference has would be measured against less. All at once: many modes of a formulation that costs
+  // little come before few of one that costs much.
+  std::vector<int> more;
+  for (const int modes : candidates_.more_modes)
+    if (modes <= yardstick().reference.point.modes) more.push_back(modes);
+  if (!more.empty()) try_models(more);
 }
 
 void Search::try_models(const std::vector<int>& modes) {

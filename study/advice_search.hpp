@@ -3,6 +3,7 @@
 #pragma once
 
 #include "withy/study/advice.hpp"
+#include "withy/study/pace.hpp"
 
 namespace withy::study {
 
@@ -23,7 +24,7 @@ class Search {
 
  private:
   void explain(const ReferenceFound& found);
-  [[nodiscard]] bool affordable(const Walk& so_far) const;
+  [[nodiscard]] bool affordable(const Walk& so_far);
   [[nodiscard]] double own_use(const Reference& r) const;
   [[nodiscard]] bool worth_trying(const std::string& integrator, const Point& model) const;
   void try_integrations(const Point& model, const std::string& integrator);
@@ -42,6 +43,7 @@ class Search {
   const Candidates& candidates_;
   const Accuracy& accuracy_;
   Advice& advice_;
+  Pace pace_;  ///< of the reference's run under way
 };
 
 }  // namespace withy::study

@@ -4,10 +4,11 @@
 #include <functional>
 #include <unordered_set>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/trees_alone.hpp"
+#include "withy/study/unfit.hpp"
 
 namespace withy::study {
 namespace {
@@ -32,12 +33,12 @@ void for_each_bending(const Scene& scene, Function&& function) {
       if (count.modes > 0 && !count.family_path.empty()) function(count);
 }
 
-/// Whether another basis of clamped beams means the same beams: all are clamped at the root and free at the tip, no
-/// damping is that of single modes, and no modal coordinate has a value at the start.
+/// Whether another basis of clamped beams means the same beams: all are clamped at the root and free at the tip, and
+/// no modal coordinate has a value at the start. Damping is no matter: a ratio is that of the modes which the body has
+/// by itself, whatever functions they are found in.
 bool families_are_exchangeable(const Scene& scene, Registry& registry) {
   bool fit = true;
   for_each_bending(scene, [&](const ModeCount& count) { fit = fit && spans_cantilevers(count.family, registry); });
-  for (const BodyNode& body : scene.model->bodies()) fit = fit && body.body->shape().damping.isZero(0);
   const Layout& layout = scene.model->layout();
   for (const Slot& body : layout.bodies) {
     for (std::size_t i = 0; i < body.positions; ++i) fit = fit && scene.initial.y[body.position + i] == 0;
@@ -75,13 +76,16 @@ void check(const Axes& axes, Registry& registry) {
 Axes usual_axes() { return {{}, {}, {}, {}, {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, {}}; }
 
 Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes asked) {
-  refuse_loops(prepared, "'withy advise'");
   Candidates c{std::move(asked), {}};
   if (c.modes.empty()) {
     c.modes = {1, 2, 3, 4};
     c.more_modes = {5, 6, 7, 8};
   }
-  if (c.formulations.empty()) c.formulations = studied_formulations(registry);
+  if (c.formulations.empty()) {
+    c.formulations = studied_formulations(registry);
+    // Strict forms cannot close loops.
+    if (!loops_of(prepared.model()).empty()) take_out_unfit(prepared.scene.model, registry, c.formulations);
+  }
   if (c.integrators.empty()) c.integrators = usual_integrators(registry);
   check(c, registry);
   const Scene& scene = prepared.scene;

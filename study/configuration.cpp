@@ -7,6 +7,7 @@
 
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
@@ -36,6 +37,9 @@ void require_continuous(const std::string& file, const Model& model, const LoadS
   const DiscretePart& part = *node.load->discrete();
   // What events alone change is constant here.
   if (part.switches() == 0 && !(part.period() > 0)) return;
+  if (dynamic_cast<const ForeignLaw*>(node.load.get()) != nullptr)
+    throw InputError(file + ": load '" + node.name +
+                     "' has a law that is not withy's own, of which there is no linear model: leave it out");
   const bool switches = part.switches() > 0;
   if (sampling == Sampling::kept && !switches) return;
   throw InputError(file + ": load '" + node.name + "' changes at instants (" + (switches ? "a relay" : "sampled") +

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/simulation/changing_equations.hpp"
+
 namespace withy::study {
 
 CorrectedEquations::CorrectedEquations(const std::vector<Rung>& rungs, std::size_t low, std::size_t high)
@@ -17,7 +19,9 @@ CorrectedEquations::CorrectedEquations(const std::vector<Rung>& rungs, std::size
       change_(last_),
       f_(cheap_.size()),
       g_(f_),
-      base_(f_) {}
+      base_(f_) {
+  require_trees(rungs);
+}
 
 void CorrectedEquations::begin(const State& state) {
   std::fill(last_.begin(), last_.end(), 0.0);

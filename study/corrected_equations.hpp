@@ -15,7 +15,7 @@ namespace withy::study {
 /// small against d where steps resolve what moves; so the run is a good reference where d does little. Of one thread.
 class CorrectedEquations final : public ForwardingEquations, private LinearlyImplicit {
  public:
-  /// \param rungs of one model; they must outlive it. With low = high they are the equations of that rung.
+  /// \param rungs of one model, a tree; they must outlive it. With low = high they are the equations of that rung.
   CorrectedEquations(const std::vector<Rung>& rungs, std::size_t low, std::size_t high);
 
   /// Forgets what was sampled, and samples.

@@ -11,8 +11,8 @@
 namespace withy::study {
 namespace {
 
-/// The strict forms assemble M.
-constexpr std::size_t most_speeds = 100;
+/// The inertias that forces are weighed by are taken from an assembled M.
+constexpr std::size_t most_speeds = 300;
 
 /// Those of the ledger that a formulation of the whole tree drops; none where it keeps parts of groups.
 std::vector<Term> dropped_groups(const Prepared& prepared) {

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 
+#include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/tips.hpp"
 
@@ -167,6 +169,56 @@ void look_at_frames(const Prepared& prepared, std::vector<Remark>& all) {
   }
 }
 
+/// An angle as it was written without a unit: radians beyond a turn. Whoever means them mostly writes a multiple of pi,
+/// so `whole` asks for a whole multiple of five as well.
+void look_at_angle(const Value& angle, bool whole, std::vector<Remark>& all) {
+  if (angle.kind() != Value::Kind::number) return;
+  const double x = angle.number();
+  if (!(std::abs(x) > 2 * std::numbers::pi) || (whole && std::remainder(x, 5) != 0)) return;
+  all.push_back({angle.place(), fmt::format("an angle of {0} rad is {1} turns: a number without a unit is in radians; "
+                                            "are degrees meant? Then write \"{0} deg\"",
+                                            brief(x), brief(x / (2 * std::numbers::pi)))});
+}
+
+/// Angles of orientations, wherever they stand.
+void look_at_orientations(const Value& value, std::vector<Remark>& all) {
+  if (const Value* angle = value.find("angle"); angle != nullptr && value.has("axis"))
+    look_at_angle(*angle, false, all);
+  if (const Value* angles = value.find("xyz"))
+    for (const Value& angle : angles->items()) look_at_angle(angle, false, all);
+  for (const Value& item : value.items()) look_at_orientations(item, all);
+  for (const auto& [name, member] : value.members()) look_at_orientations(member, all);
+}
+
+/// Angles that a hinge is to take: `options` are those of a load, a motion or a state for this hinge.
+void look_at_hinge_angles(const Prepared& prepared, const std::string& hinge, const Value& options,
+                          std::vector<Remark>& all) {
+  for (const HingeNode& node : prepared.model().hinges()) {
+    const std::vector<HingeRate> rates = hinge_rates(*node.hinge);
+    if (node.name != hinge || rates.size() != 1 || !rates.front().angular) continue;
+    for (const char* key : {"from", "to", "target", "lower", "upper", "free_position"})
+      if (const Value* angle = options.find(key)) look_at_angle(*angle, true, all);
+    if (const Value* position = options.find("position"))
+      for (const Value& angle : position->items()) look_at_angle(angle, true, all);
+  }
+}
+
+/// Degrees that were written as if a scene counted in them.
+void look_at_angles(const Prepared& prepared, std::vector<Remark>& all) {
+  const Value& root = prepared.values.root();
+  look_at_orientations(root, all);
+  const auto of_hinges = [&](const Value& owner) {
+    const Value *one = owner.find("hinge"), *several = owner.find("hinges");
+    if (one != nullptr && one->kind() == Value::Kind::text) look_at_hinge_angles(prepared, one->text(), owner, all);
+    if (several == nullptr) return;
+    for (const auto& [hinge, options] : several->members()) look_at_hinge_angles(prepared, hinge, options, all);
+  };
+  for (const char* group : {"loads", "motions"})
+    if (const Value* owners = root.find(group))
+      for (const auto& [name, owner] : owners->members()) of_hinges(owner);
+  if (const Value* initial = root.find("initial")) of_hinges(*initial);
+}
+
 }  // namespace
 
 std::vector<Remark> implausible(const Prepared& prepared) {
@@ -174,6 +226,7 @@ std::vector<Remark> implausible(const Prepared& prepared) {
   look_at_bodies(prepared, all);
   look_at_servos(prepared, all);
   look_at_frames(prepared, all);
+  look_at_angles(prepared, all);
   std::stable_sort(all.begin(), all.end(),
                    [](const Remark& a, const Remark& b) { return a.place.line < b.place.line; });
   return all;

@@ -17,7 +17,7 @@ struct Remark {
 
 /// In the order of the file: what bodies remark on (damping ratios above 1, strains without modes, what data lack);
 /// flexible bodies far shorter than the rest, or that carry far more than their own mass; servos that drive next to no
-/// inertia; frames and bodies without a use.
+/// inertia; frames and bodies without a use; angles in radians that look like degrees.
 std::vector<Remark> implausible(const Prepared& prepared);
 
 }  // namespace withy::study

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/plugin/floating_point.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/input_error.hpp"
@@ -25,7 +26,9 @@ std::shared_ptr<const Interface> make_with_defaults(Registry& registry, const st
     if (spec.required && !spec.fallback && !options.has(spec.key)) throw InputError(name + " needs '" + spec.key + "'");
   }
   Diagnostics diagnostics;
+  FloatingPointGuard arithmetic;
   std::shared_ptr<const Interface> made = plugin->make(options, {registry, diagnostics});
+  arithmetic.check(name);
   if (made != nullptr) return made;
   throw InputError(name + ": " + (diagnostics.ok() ? "cannot be made" : diagnostics.errors().front().message));
 }

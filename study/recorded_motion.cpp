@@ -5,11 +5,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <sstream>
+#include <system_error>
 
 #include "withy/core/model/columns.hpp"
+#include "withy/scene/document.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
@@ -105,10 +106,8 @@ std::vector<Source> sources_of(const std::vector<std::string>& head, const Model
     }
   }
   const bool timed = !sources.empty() && sources.front().values == &motion.times;
-  if (timed && !motion.coordinates.empty()) {
-    refuse_misspelt(head, model, file, motion);
-    return sources;
-  }
+  if (timed) refuse_misspelt(head, model, file, motion);
+  if (timed && !motion.coordinates.empty()) return sources;
   std::string known;
   for (const HingeNode& hinge : model.hinges())
     if (coordinate_columns(hinge).size() == 1) known += (known.empty() ? "" : ", ") + hinge.name;
@@ -119,15 +118,21 @@ std::vector<Source> sources_of(const std::vector<std::string>& head, const Model
 void read_row(const std::vector<std::string>& cells, const std::vector<Source>& sources, const std::string& file,
               std::size_t number, const std::vector<double>& times) {
   for (const Source& s : sources) {
-    const auto value = s.column < cells.size() ? plain_number(cells[s.column]) : std::nullopt;
-    if (!value) throw InputError(fmt::format("{}:{}: column {} is no number", file, number, s.column + 1));
+    if (s.column >= cells.size())
+      throw InputError(fmt::format("{}:{}: {} cells, where the head asks for one in column {}; need a number there",
+                                   file, number, cells.size(), s.column + 1));
+    const auto value = plain_number(cells[s.column]);
+    if (!value)
+      throw InputError(fmt::format("{}:{}: got {} in column {}; need a number", file, number,
+                                   in_quotes(cells[s.column]), s.column + 1));
     s.values->push_back(s.factor * *value);
   }
   const std::size_t rows = times.size();
   if (rows == 1 && times[0] != 0)
     throw InputError(fmt::format("{}:{}: begins at {:g} s; need 0", file, number, times[0]));
   if (rows > 1 && !(times[rows - 1] > times[rows - 2]))
-    throw InputError(fmt::format("{}:{}: time does not increase", file, number));
+    throw InputError(fmt::format("{}:{}: got the time {:g} s after {:g} s; need times that increase", file, number,
+                                 times[rows - 1], times[rows - 2]));
 }
 
 Value pair(double a, double b) { return Value::list({Value(a), Value(b)}); }
@@ -147,12 +152,19 @@ Value table_of(const std::string& hinge, const std::vector<double>& t, const std
                      {"table", Value::list(std::move(rows))}});
 }
 
+std::string text_of(const std::string& file) {
+  try {
+    return read_bytes(file);
+  } catch (const std::system_error& e) {
+    throw InputError(fmt::format("{}: cannot be read: {}", file, e.code().message()));
+  }
+}
+
 }  // namespace
 
 RecordedMotion read_recorded_motion(const std::filesystem::path& path, const Model& model) {
   const std::string file = path.string();
-  std::ifstream in(path);
-  if (!in) throw InputError(file + ": cannot be read");
+  std::istringstream in(text_of(file));
   std::string line;
   if (!std::getline(in, line)) throw InputError(file + ": empty; need a head as t[s],shoulder[rad],elbow[rad]");
   RecordedMotion motion;

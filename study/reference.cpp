@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
@@ -10,11 +11,30 @@
 namespace withy::study {
 namespace {
 
+/// Share of an evaluation's cost below which more modes are looked at in a lower rung at once.
+constexpr double much_cheaper = 0.25;
+/// Modes beyond the last level of the higher rung that are looked at in the lower one.
+constexpr int most_modes_beyond = 8;
+
+void correct(const Output& output, const std::vector<double>& b, const std::vector<double>& c, std::vector<double>& a) {
+  const std::size_t at = output.at;
+  if (output.shape == Output::Shape::orientation) {
+    const auto quaternion = [&](const std::vector<double>& v) {
+      return Eigen::Quaterniond(v[at], v[at + 1], v[at + 2], v[at + 3]).normalized();
+    };
+    const Eigen::Quaterniond q = quaternion(b) * quaternion(c).conjugate() * quaternion(a);
+    a[at] = q.w(), a[at + 1] = q.x(), a[at + 2] = q.y(), a[at + 3] = q.z();
+    return;
+  }
+  const std::size_t numbers = output.shape == Output::Shape::vector ? 3 : 1;
+  for (std::size_t i = at; i < at + numbers; ++i) a[i] += b[i] - c[i];
+}
+
 class ReferenceSearch {
  public:
   ReferenceSearch(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
-                  const Outputs& outputs, const std::function<bool(const Walk&)>& afford, const Control& control)
-      : model_at_(model_at), registry_(registry), outputs_(outputs), afford_(afford), control_(control) {}
+                  const Outputs& outputs, const ReferenceGoal& goal, const Control& control)
+      : model_at_(model_at), registry_(registry), outputs_(outputs), goal_(goal), control_(control) {}
 
   /// The coarsest level, in the richest formulation that comes to the end.
   std::optional<Reference> begin(Point point) {
@@ -42,7 +62,7 @@ class ReferenceSearch {
       return true;
     };
     r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
-                  {keep, afford_, control_.interrupted});
+                  {keep, goal_.afford, control_.interrupted});
     r.scales = scales(outputs_, r.ranges, r.energy);
     found.cpu_seconds += r.walk.seconds;
     found.interrupted = r.walk.end == Walk::End::interrupted;
@@ -57,13 +77,73 @@ class ReferenceSearch {
     return {};
   }
 
+  [[nodiscard]] bool enough(const Reference& r) const { return !goal_.enough || goal_.enough(r); }
+  [[nodiscard]] Point finer(Point point) const {
+    if (point.modes > 0) ++point.modes;
+    point.tolerance = std::max(goal_.finer * point.tolerance, goal_.tightest);
+    return point;
+  }
+
+  /// Whether an evaluation costs a fraction in the rung below.
+  [[nodiscard]] bool much_cheaper_below(const Point& point) {
+    const std::optional<Point> low = below(point);
+    return low && model_at_(*low).seconds < much_cheaper * model_at_(point).seconds;
+  }
+
+  /// More modes in the rung below, with what the higher one adds at the finer of two levels. Nothing where there is no
+  /// rung below, a run does not end or what is added changes too much; the richest is then kept as nearest.
+  std::optional<Reference> add_to_lower(const Reference& fine, const Reference& coarse) {
+    const std::optional<Point> low = below(fine.point);
+    if (!low || fine.point.modes == 0 || !goal_.steady) return {};
+    const auto before = at(*below(coarse.point));
+    if (!before) return {};
+    const auto base = at(*low);
+    if (!base) return {};
+    // What the coarser level would have added.
+    const Distances changed =
+        distances(outputs_, corrected(outputs_, base->readings, coarse.readings, before->readings), fine.readings)
+            .first;
+    Reference added = fine;
+    added.own = changed;
+    if (!goal_.steady(added)) return {};
+    Point point = *low;
+    Readings last = fine.readings;
+    for (int i = 0; i < most_modes_beyond; ++i) {
+      ++point.modes;  // integration added little to the finer level, which has this tolerance
+      std::optional<Reference> rich = at(point);
+      if (!rich) return {};
+      rich->added_by = fine.point;
+      rich->readings = corrected(outputs_, rich->readings, fine.readings, base->readings);
+      rich->own = distances(outputs_, rich->readings, last).first;
+      for (std::size_t k = 0; k < changed.size(); ++k) rich->own[k] += changed[k];
+      last = rich->readings;
+      if (enough(*rich)) return rich;
+      keep_nearest(*rich);
+    }
+    return {};
+  }
+
+  void keep_nearest(const Reference& r) {
+    if (!found.nearest || relative_error(r.own, r.scales) < relative_error(found.nearest->own, found.nearest->scales))
+      found.nearest = r;
+  }
+
   ReferenceFound found;
 
  private:
+  /// The same in the next rung that truncates nothing.
+  [[nodiscard]] std::optional<Point> below(Point point) const {
+    const std::vector<std::string> all = reference_formulations(registry_);
+    const auto own = std::find(all.begin(), all.end(), point.formulation);
+    if (own == all.end() || own + 1 == all.end()) return {};
+    point.formulation = *(own + 1);
+    return point;
+  }
+
   const std::function<const ModelAt&(const Point&)>& model_at_;
   Registry& registry_;
   const Outputs& outputs_;
-  const std::function<bool(const Walk&)>& afford_;
+  const ReferenceGoal& goal_;
   const Control& control_;
 };
 
@@ -76,29 +156,49 @@ std::vector<std::string> reference_formulations(Registry& registry) {
   return ids;
 }
 
+std::string Reference::text() const {
+  return added_by ? point.text() + ", with what " + added_by->formulation + " adds at " +
+                        std::to_string(added_by->modes) + " modes"
+                  : point.text();
+}
+
+Readings corrected(const Outputs& outputs, const Readings& a, const Readings& b, const Readings& c) {
+  Readings sum = a;
+  const std::size_t common = std::min({a.values.size(), b.values.size(), c.values.size()});
+  sum.times.resize(common), sum.values.resize(common);
+  for (std::size_t i = 0; i < common; ++i)
+    for (const Output& output : outputs.list()) correct(output, b.values[i], c.values[i], sum.values[i]);
+  return sum;
+}
+
 ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
                               const Outputs& outputs, const ReferenceGoal& goal, const Control& control) {
-  ReferenceSearch search(model_at, registry, outputs, goal.afford, control);
-  std::optional<Reference> coarse = search.begin(goal.first);
+  ReferenceSearch search(model_at, registry, outputs, goal, control);
+  ReferenceFound& found = search.found;
+  std::optional<Reference> before, coarse = search.begin(goal.first);
   if (coarse) {
-    search.found.trouble.clear();
-    search.found.unaffordable = false;
+    found.trouble.clear();
+    found.unaffordable = false;
   }
+  bool tried = false;  // this pair of levels with a lower rung
   for (int level = 0; coarse && level < goal.levels; ++level) {
-    Point point = coarse->point;
-    if (point.modes > 0) ++point.modes;
-    point.tolerance = std::max(goal.finer * point.tolerance, goal.tightest);
-    std::optional<Reference> fine = search.at(point);
+    std::optional<Reference> fine = search.at(search.finer(coarse->point));
     if (!fine) break;
     fine->own = distances(outputs, fine->readings, coarse->readings).first;
-    if (!goal.enough || goal.enough(*fine)) {
-      search.found.reference = std::move(fine);
-      return std::move(search.found);
-    }
-    coarse = std::move(fine);
+    if (search.enough(*fine)) found.reference = std::move(fine);
+    if (found.reference) return std::move(found);
+    search.keep_nearest(*fine);
+    before = std::move(coarse), coarse = std::move(fine);
+    tried = search.much_cheaper_below(coarse->point);
+    if (tried) found.reference = search.add_to_lower(*coarse, *before);
+    if (found.reference || found.interrupted) return std::move(found);
   }
-  if (coarse && !coarse->own.empty()) search.found.nearest = std::move(coarse);
-  return std::move(search.found);
+  if (before && !tried && !found.interrupted) {
+    const std::string trouble = found.trouble;
+    found.reference = search.add_to_lower(*coarse, *before);
+    if (!found.reference && found.trouble.empty()) found.trouble = trouble;
+  }
+  return std::move(found);
 }
 
 }  // namespace withy::study

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/plugin/digital_part.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -28,6 +29,12 @@ SampledLoads::SampledLoads(const SmallMotions& motions)
   for (const LoadSlot& slot : model.layout().discrete_slots) {
     const double period = part_of(model, slot).period();
     if (!(period > 0)) continue;
+    const auto* digital = dynamic_cast<const DigitalPart*>(&part_of(model, slot));
+    if (digital != nullptr && digital->gives_steps())
+      throw InputError(fmt::format(
+          "load '{}' gives what it measures in steps: it is not linear, and small motions do not show in it; leave it "
+          "out for motions of many steps, and let what measures it measure its own 'of'",
+          model.loads()[slot.load].name));
     loads_.push_back({slot, period, size()});
     for (std::size_t i = 0; i < slot.count; ++i)
       names_.push_back(fmt::format("{}.held[{}]", model.loads()[slot.load].name, i));

@@ -9,7 +9,6 @@
 
 #include "withy/study/accuracy.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/trees_alone.hpp"
 
 namespace withy::study {
 namespace {
@@ -76,7 +75,6 @@ TradeStudy::TradeStudy(const Prepared& base, Registry& registry, std::vector<Poi
       options_(std::move(options)),
       outputs_(base.model(), options_.outputs, base.scene.outputs),
       finished_(points_.size()) {
-  refuse_loops(base, "'withy trade'");
   for (std::size_t i = 0; i < points_.size(); ++i) look_up(i);
 }
 

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/stepping.hpp"
 #include "withy/study/input_error.hpp"
 
@@ -46,7 +48,8 @@ std::string reason_of(const StepResult& result, const Prepared& model) {
 class Watch final : public SteppingObserver {
  public:
   /// \param sign of the mass matrix's determinant at the start
-  Watch(const WalkObserver& observer, int sign) : observer_(observer), sign_(sign), began_(thread_cpu_seconds()) {}
+  Watch(const WalkObserver& observer, LoopWatch loops, int sign)
+      : observer_(observer), loops_(std::move(loops)), sign_(sign), began_(thread_cpu_seconds()) {}
 
   bool output(const State& state) override {
     pause();
@@ -61,6 +64,10 @@ class Watch final : public SteppingObserver {
     if (stepper.statistics().determinant_sign != sign_) {
       walk.end = Walk::End::stopped;
       walk.reason = "the determinant of the mass matrix changed its sign";
+      return false;
+    }
+    if (const std::string fault = loops_.fault(stepper.state()); !fault.empty()) {
+      stop(fault);
       return false;
     }
     if (stepper.statistics().accepted % steps_between_looks != 0) return true;
@@ -108,6 +115,7 @@ class Watch final : public SteppingObserver {
   }
 
   const WalkObserver& observer_;
+  LoopWatch loops_;
   int sign_;
   double began_;
 };
@@ -144,7 +152,8 @@ Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserve
       {.end = end_of_run(model.scene), .output = model.scene.output, .events = actions.watched(), .actions = &actions});
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();
-  Watch watch(observer, equations.derivatives(start.time, start.y, rates, work).determinant_sign);
+  Watch watch(observer, LoopWatch(equations, start),
+              equations.derivatives(start.time, start.y, rates, work).determinant_sign);
   if (watch.output(start)) {
     SteppingEnd ended = loop.run(watch);
     while (ended.cause == SteppingEnd::Cause::event) ended = loop.run(watch);  // what stops a run stops no walk

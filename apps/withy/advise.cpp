@@ -3,8 +3,13 @@
 
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/apps/withy/results.hpp"
+#include "withy/results/advice_picture.hpp"
 #include "withy/results/advice_text.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/report/figures_page.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/scene_edit.hpp"
 #include "withy/study/left_out.hpp"
 
@@ -12,7 +17,7 @@ namespace withy::app {
 namespace {
 
 /// What is advised is the cheapest of these that holds the accuracy.
-struct AdviseArguments : SceneArguments {
+struct AdviseArguments : SceneArguments, OutputArguments {
   std::string accuracy = "1%";
   std::vector<std::string> outputs;        ///< that errors are measured on; empty: all of the usual ones
   study::Axes axes = study::usual_axes();  ///< families empty: the scene's, and another where it means the same beams
@@ -29,6 +34,8 @@ ExitStatus advise(const AdviseArguments& arguments) {
   if (!arguments.write.empty() && !arguments.options.overrides.empty())
     throw InputError("--write takes the scene as its file has it: put what --set changes into the file first");
   const Engine engine(arguments);
+  const auto folder =
+      take_folder(arguments, "advise", provenance_of(engine.scene(), engine.plugins()), {"advice.json", report_name});
   const study::Accuracy accuracy = study::Accuracy::parse(arguments.accuracy);
   const study::Outputs outputs(engine.model(), arguments.outputs, engine.scene().outputs);
   const study::Candidates candidates = study::candidates_for(engine.prepared(), engine.registry(), arguments.axes);
@@ -47,8 +54,14 @@ ExitStatus advise(const AdviseArguments& arguments) {
   const std::vector<std::string> changes = texts_of(new_changes);
   if (!arguments.write.empty())
     write_changed(engine.prepared().values, new_changes, arguments.write, engine.registry());
-  std::string text = arguments.json ? json_text(advice_json(question, advice, left_out, changes, scene_lines(changes)))
-                                    : advice_text({question, candidates, advice, left_out, changes});
+  const std::string json = json_text(advice_json(question, advice, left_out, changes, scene_lines(changes)));
+  const std::string words = advice_text({question, candidates, advice, left_out, changes});
+  std::string text = arguments.json ? json : words;
+  if (folder != nullptr) {
+    write_file(*folder / "advice.json", json);
+    write_figures_page(*folder / report_name, engine.prepared().title() + ": advice", words, {advice_picture(advice)});
+    if (!arguments.json) text += "\nResults: " + arguments.out + '\n';
+  }
   if (!arguments.json && !arguments.write.empty()) text += "\nwritten to " + arguments.write + '\n';
   print(text);
   return ExitStatus::done;
@@ -82,6 +95,7 @@ std::function<ExitStatus()> add_advise(CLI::App& c) {
   axis("--tolerances", a.axes.tolerances, "R,...",
        "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
   c.add_option("--write", a.write, "File for the scene with what is advised; comments are kept")->type_name("FILE");
+  add_output(c, a, "Folder for report.html and advice.json; default: none is kept");
   return [arguments] { return advise(*arguments); };
 }
 

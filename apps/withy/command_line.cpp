@@ -27,11 +27,31 @@ const std::array commands = {&new_command,        &check_command,   &run_command
                              &export_command,     &fmu_command,     &plugins_command,     &schema_command,
                              &completion_command, &manual_command};
 
+/// Which option a word that the parser does not know may have been.
+std::string meant_option(const CLI::App& parser, const CLI::ExtrasError& e, int argc, const char* const* argv) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : parser.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    if (!word.starts_with("--") || std::string(e.what()).find(word) == std::string::npos) continue;
+    const std::string guess = nearest(word, known);
+    if (!guess.empty() && guess != word) return in_quotes(word) + " is no option; did you mean " + guess + "?";
+  }
+  return {};
+}
+
 /// Parses with this parser; what is not the command's to answer is printed, and its status returned.
 std::optional<ExitStatus> parse(CLI::App& program, int argc, const char* const* argv) {
   try {
     program.parse(argc, argv);
     return {};
+  } catch (const CLI::ExtrasError& e) {
+    const std::vector<CLI::App*> chosen = program.get_subcommands();
+    const std::string meant = meant_option(chosen.empty() ? program : *chosen.back(), e, argc, argv);
+    complain(meant.empty() ? e.what() : meant);
+    complain("withy " + (chosen.empty() ? "" : chosen.back()->get_name() + " ") + "--help names what there is");
+    return ExitStatus::bad_input;
   } catch (const CLI::ParseError& e) {
     std::ostringstream out;
     std::ostringstream err;

@@ -18,19 +18,22 @@
 #include "withy/results/recorded_run.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/study/comparison.hpp"
+#include "withy/study/unfit.hpp"
 
 namespace withy::app {
 namespace {
 
 struct CompareArguments : SceneArguments, OutputArguments {
-  std::vector<std::string> formulations = {"ruthless", "inconsistent", "consistent", "quadratic"};
-  std::vector<std::string> outputs;     ///< that errors are measured on; empty: all of the usual ones
-  std::string reference = "quadratic";  ///< formulation that the others' errors are measured against
-  std::string over;                     ///< `path=value,value,…`: the comparison is made at each value; may be empty
+  std::vector<std::string> formulations;  ///< empty: the usual ones that can treat the scene
+  std::vector<std::string> outputs;       ///< that errors are measured on; empty: all of the usual ones
+  std::string reference = "quadratic";    ///< formulation that the others' errors are measured against
+  std::string over;  ///< `path=value,value,…`: the comparison is made at each value; may be empty
 };
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
+
+const std::vector<std::string> usual_formulations = {"ruthless", "inconsistent", "consistent", "quadratic"};
 
 /// The runs at one value, and where they are kept.
 struct Group : ComparisonAt {
@@ -95,11 +98,29 @@ void write_picture(const Group& group, const std::string& label) {
                {title, group.reports, c.has_reference() ? static_cast<int>(c.reference) : -1});
 }
 
-ExitStatus compare(const CompareArguments& arguments) {
+std::string left_out_text(const std::vector<study::Unfit>& left_out) {
+  std::string text;
+  for (const study::Unfit& l : left_out) text += "\nleft out " + l.formulation + ": " + l.reason + '\n';
+  return text;
+}
+
+Json left_out_json(const std::vector<study::Unfit>& left_out) {
+  Json list = Json::array();
+  for (const study::Unfit& l : left_out) list.push_back({{"formulation", l.formulation}, {"reason", l.reason}});
+  return list;
+}
+
+ExitStatus compare(CompareArguments arguments) {
   const study::Variation variation =
       arguments.over.empty() ? study::Variation{"", {""}} : parse_variation(arguments.over);
   const std::string label = label_of(variation.path);
   const Plugins plugins(arguments);
+  std::vector<study::Unfit> left_out;
+  if (arguments.formulations.empty()) {
+    arguments.formulations = usual_formulations;
+    left_out = study::take_out_unfit(make_scene(read_values(arguments), plugins.registry()).model, plugins.registry(),
+                                     arguments.formulations);
+  }
   const auto folder =
       take_folder(arguments, "compare", provenance_of(make_scene(read_values(arguments), plugins.registry()), plugins),
                   content_of(arguments, variation));
@@ -115,13 +136,15 @@ ExitStatus compare(const CompareArguments& arguments) {
   const Scene& scene = groups.front().comparison.runs.front().prepared.scene;
   Json j{{"scene", scene.file}, {"name", scene.name}, {"reference", arguments.reference}};
   if (!label.empty()) j["over"] = variation.path;
+  if (!left_out.empty()) j["left_out"] = left_out_json(left_out);
   j["runs"] = Json::array();
   for (const ComparisonAt& group : groups)
     for (Json& run : comparison_json(group, plugins.registry(), !label.empty())) j["runs"].push_back(std::move(run));
 
-  std::string text = arguments.json ? json_text(j)
-                                    : comparison_text(groups, arguments.reference, label) +
-                                          formulation_words(arguments.formulations, plugins.registry());
+  std::string text = arguments.json
+                         ? json_text(j)
+                         : comparison_text(groups, arguments.reference, label) +
+                               formulation_words(arguments.formulations, plugins.registry()) + left_out_text(left_out);
   if (!arguments.out.empty()) {
     write_file(fs::path(arguments.out) / "compare.json", json_text(j));
     if (!arguments.json)
@@ -137,7 +160,8 @@ std::function<ExitStatus()> add_compare(CLI::App& c) {
   CompareArguments& a = *arguments;
   add_scene(c, a);
   add_formulations(c, a.formulations, "--formulations,--formulation",
-                   "Formulations; default: ruthless,inconsistent,consistent,quadratic");
+                   "Formulations; default: those of ruthless,inconsistent,consistent,quadratic that can treat the "
+                   "scene");
   c.add_option("--reference", a.reference, "Formulation the errors are measured against")
       ->type_name("ID")
       ->capture_default_str();

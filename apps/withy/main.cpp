@@ -1,3 +1,5 @@
+#include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <new>
@@ -7,6 +9,7 @@
 #include "withy/apps/withy/command_line.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/output.hpp"
+#include "withy/core/plugin/floating_point.hpp"
 #include "withy/results/results_error.hpp"
 
 namespace {
@@ -18,6 +21,7 @@ ExitStatus run_program(int argc, const char* const* argv) {
   const auto* command = std::get_if<std::function<ExitStatus()>>(&asked);
   const ExitStatus status = command != nullptr ? (*command)() : std::get<ExitStatus>(asked);
   withy::app::finish_printing();
+  if (status == ExitStatus::interrupted && !withy::app::has_complained()) withy::app::complain("interrupted");
   return status;
 }
 
@@ -26,12 +30,37 @@ ExitStatus fail(ExitStatus status, const std::string& why) {
   return status;
 }
 
+bool returned = false;  ///< main has come to its end: whatever runs after it is no part of a command
+
+/// Nothing but a plugin ends the program before its end, and what it was at is then not done.
+void refuse_early_end() {
+  if (returned) return;
+  withy::app::complain("a plugin has ended the program by a call of exit(): what was asked for is not done");
+  std::_Exit(static_cast<int>(ExitStatus::environment));
+}
+
+[[noreturn]] void explain_termination() {
+  withy::app::complain("an exception has left code that must not let one out, as a plugin's evaluation: cannot go on");
+  std::_Exit(static_cast<int>(ExitStatus::environment));
+}
+
+/// What would end the program without a word or a status of its own.
+void watch_for_ends() {
+  std::atexit(refuse_early_end);
+  std::at_quick_exit(refuse_early_end);
+  std::set_terminate(explain_termination);
+  std::signal(SIGXFSZ, SIG_IGN);  // a write past a limit of the file's size then fails, and is reported as any other
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  watch_for_ends();
   ExitStatus status = ExitStatus::environment;
   try {
+    withy::FloatingPointGuard arithmetic;
     status = run_program(argc, argv);
+    arithmetic.check("a plugin");
   } catch (const withy::SceneError& e) {
     status = fail(ExitStatus::bad_input, e.what());
   } catch (const withy::study::OptionError& e) {
@@ -45,6 +74,9 @@ int main(int argc, char** argv) {
   } catch (const std::exception& e) {
     // A plugin that was refused, a file that cannot be written, a disk that is full.
     status = fail(ExitStatus::environment, e.what());
+  } catch (...) {
+    status = fail(ExitStatus::environment, "a plugin throws what is no exception of C++");
   }
+  returned = true;
   return static_cast<int>(status);
 }

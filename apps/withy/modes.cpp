@@ -105,7 +105,8 @@ void write_files(const std::vector<study::ModesOf>& runs, const Json& j, const M
   write_file(folder / "modes.json", json_text(j));
   write_file(folder / "modes.csv", modes_csv(runs, sweep.none() ? "value" : sweep.path));
   if (!sweep.none())
-    write_file(folder / "modes.svg", modes_picture(runs, "Modes of " + arguments.scene, sweep.path, arguments.count));
+    write_file(folder / "modes.svg",
+               modes_picture(runs, "Modes of " + arguments.scene, swept_label(sweep), arguments.count));
   if (has_report_page())
     write_study_page(folder / report_name, "modes", "Modes of " + arguments.scene,
                      modes_page(runs, sweep, arguments.count));

@@ -14,6 +14,8 @@ namespace withy::app {
 
 namespace {
 
+bool complained = false;
+
 void write_out(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
     throw std::system_error(errno, std::generic_category(), "standard output");
@@ -34,6 +36,7 @@ void finish_printing() {
 }
 
 void complain(std::string_view text) noexcept {
+  complained = true;
   // Where standard error cannot be written there is nobody left to tell: the exit status says it.
   std::string bold;
   try {
@@ -45,5 +48,7 @@ void complain(std::string_view text) noexcept {
   static_cast<void>(std::fwrite(shown.data(), 1, shown.size(), stderr));
   if (!text.empty() && text.back() != '\n') static_cast<void>(std::fputc('\n', stderr));
 }
+
+bool has_complained() noexcept { return complained; }
 
 }  // namespace withy::app

@@ -12,5 +12,7 @@ void print(std::string_view text);
 void finish_printing();
 /// Writes to standard error, ending the text's last line if it does not end itself.
 void complain(std::string_view text) noexcept;
+/// Whether anything was complained of.
+bool has_complained() noexcept;
 
 }  // namespace withy::app

@@ -7,6 +7,8 @@
 #include "withy/apps/withy/results.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/report/figures_page.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/response_files.hpp"
 
 namespace withy::app {
@@ -22,15 +24,19 @@ void write_files(const ResultsFolder& folder, const study::Configuration& c, con
       r.opened ? r.model.inputs[0].name + " opened" : r.model.inputs[0].name + " to " + r.model.outputs[0].name;
   write_file(folder / "response.json", json_text(response_json(c, r)));
   write_file(folder / "response.csv", response_csv(r));
-  write_file(folder / "bode.svg", bode_picture(r, c.prepared().title() + ": " + title));
-  write_file(folder / "nichols.svg", nichols_picture(r, c.prepared().title() + ": " + title));
+  const std::string whole = c.prepared().title() + ": " + title;
+  const Picture bode = bode_picture(r, whole), nichols = nichols_picture(r, whole);
+  write_file(folder / "bode.svg", svg_plot(bode));
+  write_file(folder / "nichols.svg", svg_plot(nichols));
+  write_figures_page(folder / report_name, whole, response_text(c, r),
+                     {{"Bode", bode.legend, bode.panels}, {"Nichols", nichols.legend, nichols.panels}});
 }
 
 ExitStatus respond(const ResponseArguments& arguments) {
   const Engine engine(arguments);
   const study::Configuration c = configuration_of(engine, arguments, study::Sampling::kept);
   const auto folder = take_folder(arguments, "response", provenance_of(engine.scene(), engine.plugins()),
-                                  {"response.json", "response.csv", "bode.svg", "nichols.svg"});
+                                  {"response.json", "response.csv", "bode.svg", "nichols.svg", report_name});
   try {
     const study::Response r = study::response(c, arguments.question);
     if (folder != nullptr) write_files(*folder, c, r);
@@ -74,7 +80,8 @@ std::function<ExitStatus()> add_response(CLI::App& c) {
       ->type_name("N")
       ->check(CLI::Range(0, 100000));
   c.add_flag("--csv", a.csv, "Print the values as a table");
-  add_output(c, a, "Folder for response.json, response.csv, bode.svg and nichols.svg; default: none is kept");
+  add_output(c, a,
+             "Folder for report.html, response.json, response.csv, bode.svg and nichols.svg; default: none is kept");
   return [arguments] { return respond(*arguments); };
 }
 

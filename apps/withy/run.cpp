@@ -21,6 +21,8 @@
 namespace withy::app {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct RunArguments : SceneArguments, OutputArguments {
   /// When the error against the next model up is estimated: auto (against `quadratic`), always, never.
   std::string estimate = "auto";
@@ -91,8 +93,8 @@ ExitStatus run(const RunArguments& given) {
   const RunSummary& summary = ended.run.summary;
   print(arguments.json
             ? json_text(ended.json)
-            : run_table(engine.prepared(), summary) + certificate_text(engine.model(), summary, ended.run.certificate) +
-                  "\nresults in " + arguments.out +
+            : run_table(engine.prepared(), summary) + extremes_text(ended.json.value("outputs", Json::object())) +
+                  certificate_text(engine.model(), summary, ended.run.certificate) + "\nresults in " + arguments.out +
                   (has_report_page() ? ", to look at in its report.html\n" : ", drawn in its results.svg\n"));
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
   if (summary.status == RunStatus::interrupted) complain("the same command with --resume goes on from there");

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
 
@@ -30,7 +32,11 @@ std::string attitude(std::span<const double> q) {
 }  // namespace
 
 std::string readable(double value, const std::string& unit) {
-  if (unit == "rad") return fmt::format("{:.4f} deg", value * 180 / std::numbers::pi);
+  constexpr double many = 20 * std::numbers::pi;  // a wheel: its turns tell more than its degrees
+  const std::string turns = std::abs(value) > many ? fmt::format(", {:.5g} turns", value / (2 * std::numbers::pi)) : "";
+  if (unit == "rad") return fmt::format("{:.4f} deg{}", value * 180 / std::numbers::pi, turns);
+  if (unit == "rad/s" && std::abs(value) > many)
+    return fmt::format("{:.6g} rad/s, {:.5g} rpm", value, value * 30 / std::numbers::pi);
   return fmt::format("{:.6g}{}{}", value, unit.empty() || unit == "1" ? "" : " ", unit == "1" ? "" : unit);
 }
 
@@ -91,6 +97,30 @@ std::string run_table(const study::Prepared& prepared, const RunSummary& summary
   }
   if (summary.status == RunStatus::completed && !summary.message.empty()) out += "\nnote: " + summary.message + '\n';
   return out;
+}
+
+std::string extremes_text(const nlohmann::ordered_json& outputs) {
+  constexpr double small = 0.01;
+  const auto reach = [](const nlohmann::ordered_json& o) {
+    return std::max(std::abs(o["min"]["value"].get<double>()), std::abs(o["max"]["value"].get<double>()));
+  };
+  const auto kin_of = [](const std::string& name, const nlohmann::ordered_json& o) {
+    return name.substr(0, name.find('.')) + '[' + o["unit"].get<std::string>();
+  };
+  std::map<std::string, double> greatest;  // of an output, in one unit
+  for (const auto& [name, o] : outputs.items())
+    greatest[kin_of(name, o)] = std::max(greatest[kin_of(name, o)], reach(o));
+  std::size_t width = 23;
+  for (const auto& [name, o] : outputs.items()) width = std::max(width, name.size() + 9);
+  std::string out;
+  for (const auto& [name, o] : outputs.items()) {
+    if (reach(o) < small * greatest[kin_of(name, o)]) continue;
+    const std::string unit = o["unit"];
+    out += fmt::format("{:<{}} {} at {:.4g} s to {} at {:.4g} s\n", "range of " + name, width,
+                       readable(o["min"]["value"], unit), o["min"]["t"].get<double>(),
+                       readable(o["max"]["value"], unit), o["max"]["t"].get<double>());
+  }
+  return out.empty() ? out : '\n' + out;
 }
 
 }  // namespace withy::app

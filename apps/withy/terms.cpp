@@ -9,6 +9,8 @@
 #include "withy/apps/withy/results.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/report/figures_page.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/terms_files.hpp"
 #include "withy/results/text_table.hpp"
 #include "withy/study/run.hpp"
@@ -68,8 +70,8 @@ std::string left_out_text(const study::TermSizes& ledger) {
 ExitStatus terms(const TermsArguments& arguments) {
   const Engine engine(arguments);
   const Scene& scene = engine.scene();
-  const auto taken =
-      take_folder(arguments, "terms", provenance_of(scene, engine.plugins()), {"terms.csv", "terms.svg", "terms.json"});
+  const auto taken = take_folder(arguments, "terms", provenance_of(scene, engine.plugins()),
+                                 {"terms.csv", "terms.svg", "terms.json", report_name});
   study::TermStudy study(engine.prepared(), engine.registry());
   const RunSummary summary = study::simulate(
       engine.prepared(), engine.registry(), [&](const State& state) { study.enter(state); },
@@ -84,9 +86,12 @@ ExitStatus terms(const TermsArguments& arguments) {
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
     write_file(folder / "terms.csv", terms_csv(sizes));
-    write_file(folder / "terms.svg", terms_picture(title + ": terms along a run of " + scene.formulation_name, sizes));
+    const Picture picture = terms_picture(title + ": terms along a run of " + scene.formulation_name, sizes);
+    write_file(folder / "terms.svg", svg_plot(picture));
+    write_figures_page(folder / report_name, picture.title, table_text(sizes) + left_out_text(sizes),
+                       {{"", picture.legend, picture.panels}});
     write_file(folder / "terms.json", json_text(j));
-    if (!arguments.json) text += "\nterms.csv, terms.svg and terms.json in " + folder.string() + '\n';
+    if (!arguments.json) text += "\nreport.html, terms.csv, terms.svg and terms.json in " + folder.string() + '\n';
   }
   print(text);
   if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);

@@ -59,6 +59,26 @@ std::string table_text(const std::vector<study::TradeResult>& results, const std
   return table.str();
 }
 
+/// The answer: of each set of values gone over the cheapest models within some errors.
+std::string cheapest_text(const std::vector<study::TradeResult>& results) {
+  std::map<std::string, std::vector<const study::TradeResult*>> by_over;
+  for (const study::TradeResult& r : results)
+    if (r.completed()) by_over[trade_over_text(r.point)].push_back(&r);
+  std::string out;
+  for (const auto& [over, done] : by_over) {
+    for (const double limit : {0.1, 0.01, 0.001}) {
+      const study::TradeResult* best = nullptr;
+      for (const study::TradeResult* r : done)
+        if (r->relative_error <= limit && (best == nullptr || r->cpu_seconds < best->cpu_seconds)) best = r;
+      const std::string within = fmt::format("within {:g} %{}", 100 * limit, over.empty() ? "" : " at " + over);
+      out += best == nullptr ? fmt::format("{:<12} none of these models\n", within)
+                             : fmt::format("{:<12} {}: {:.2g} % off, {:.3g} ms\n", within, best->point.text(),
+                                           100 * best->relative_error, 1e3 * best->cpu_seconds);
+    }
+  }
+  return out.empty() ? out : "Cheapest:\n" + out + '\n';
+}
+
 /// Reasons of the points that failed, each said once.
 std::string reasons_text(const std::vector<study::TradeResult>& results) {
   std::map<std::string, std::pair<std::string, std::size_t>> reasons;  // by formulation, integrator and status
@@ -130,7 +150,7 @@ ExitStatus trade(const TradeArguments& arguments) {
   std::string text =
       arguments.json
           ? json_text(j)
-          : title + "\n\n" + table_text(results, front, study.outputs()) +
+          : title + "\n\n" + cheapest_text(results) + table_text(results, front, study.outputs()) +
                 "\n*: no other point is both more accurate, as far as the reference can tell, and cheaper. Error "
                 "in % of each output's own range, the greatest of all.\n" +
                 references_text(study) + formulation_words(formulations_of(results), engine.registry()) +
@@ -147,7 +167,9 @@ ExitStatus trade(const TradeArguments& arguments) {
                           has_report_page() ? ", to look at in its report.html" : "");
   }
   print(text);
-  return whole ? ExitStatus::done : ExitStatus::interrupted;
+  if (whole) return ExitStatus::done;
+  if (store) complain("interrupted; the same command goes on from there");
+  return ExitStatus::interrupted;
 }
 
 std::function<ExitStatus()> add_trade(CLI::App& c) {

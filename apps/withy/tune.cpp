@@ -9,6 +9,8 @@
 #include "withy/campaign/tune_files.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
+#include "withy/results/report/figures_page.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/scene_edit.hpp"
 
 namespace withy::app {
@@ -37,7 +39,7 @@ ExitStatus tune(const TuneArguments& arguments) {
   const Engine engine(arguments);
   const std::string title = engine.prepared().title();
   const auto folder = take_folder(arguments, "tune", provenance_of(engine.scene(), engine.plugins()),
-                                  {"tune.json", "fit.csv", "fit.svg"});
+                                  {"tune.json", "fit.csv", "fit.svg", report_name});
   campaign::TuneQuestion question = arguments.question;
   question.control = study_control("tune, starts");
   const campaign::TuneResult result = campaign::tune(engine.prepared(), engine.registry(), question);
@@ -51,7 +53,10 @@ ExitStatus tune(const TuneArguments& arguments) {
   }
   if (folder != nullptr) {
     write_file(*folder / "fit.csv", tune_csv(result));
-    write_file(*folder / "fit.svg", tune_picture(result, title + ": dots measured, grey before, line fitted"));
+    const Picture picture = tune_picture(result, title + ": dots measured, grey before, line fitted");
+    write_file(*folder / "fit.svg", svg_plot(picture));
+    write_figures_page(*folder / report_name, title + ": fit to " + arguments.question.data, tune_text(result, title),
+                       {{"", {}, picture.panels}});
   }
   if (!arguments.write.empty()) write_fitted(arguments, engine, result);
   std::string text = tune_text(result, title);
@@ -89,7 +94,7 @@ std::function<ExitStatus()> add_tune(CLI::App& c) {
   c.add_option("--seed", q.seed, "Of the starts")->type_name("N")->capture_default_str();
   c.add_option("--jobs", q.jobs, "Runs at once; default: one a core")->type_name("N");
   c.add_option("--write", a.write, "File for the scene with the fitted values; comments are kept")->type_name("FILE");
-  add_output(c, a, "Folder for tune.json, fit.csv and fit.svg; default: none is kept");
+  add_output(c, a, "Folder for report.html, tune.json, fit.csv and fit.svg; default: none is kept");
   return [arguments] { return tune(*arguments); };
 }
 

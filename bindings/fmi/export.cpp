@@ -38,6 +38,10 @@ std::string identifier_of(const fs::path& out) {
 void check_plugins(const study::Prepared& prepared) {
   const fs::path own = PluginHost::default_directory();
   for (const PluginUsed& plugin : prepared.scene.sources.plugins) {
+    if (plugin.kind == "load" && plugin.id == "fmu")
+      throw study::InputError(prepared.scene.file +
+                              ": a load of type 'fmu': an FMU does not carry another one; connect the two in the "
+                              "program that imports them");
     std::error_code ignored;
     if (plugin.file == "built in" || fs::equivalent(fs::path(plugin.file).parent_path(), own, ignored)) continue;
     throw study::InputError(prepared.scene.file + ": " + plugin.kind + " '" + plugin.id + "' is of " + plugin.file +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/chosen_sensing.hpp"
 #include "withy/core/plugin/forward_dynamics.hpp"
@@ -128,6 +129,8 @@ bool has_configurations(const Model& model) {
 std::unique_ptr<EquationsOfMotion> make_configured(
     const Model& model,
     const std::function<std::unique_ptr<EquationsOfMotion>(std::shared_ptr<const Model>)>& compile) {
+  // Integrators would not see the loops behind this face, and let them open.
+  require_tree(model, "a model whose events lock or unlock hinges");
   const EventBook events(model);
   AllEquations all;
   for (const std::vector<std::size_t>& locked : events.plan().configurations) {

@@ -16,6 +16,7 @@ bool has_configurations(const Model& model);
 
 /// The equations of a model with configurations, each made by `compile` from the model with its hinges locked. They
 /// share one layout; the configuration is a discrete state, so that threads, checkpoints and studies need not know.
+/// \throws std::invalid_argument where constraints close loops of the model.
 std::unique_ptr<EquationsOfMotion> make_configured(
     const Model& model, const std::function<std::unique_ptr<EquationsOfMotion>(std::shared_ptr<const Model>)>& compile);
 

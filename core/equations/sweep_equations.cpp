@@ -36,11 +36,4 @@ int first_nonfinite(const Model& model, const double* accelerations) {
   return -1;
 }
 
-void product(const DenseSystem& system, std::span<const double> a, std::span<double> result) {
-  for (std::size_t i = 0; i < system.size; ++i) {
-    result[i] = 0;
-    for (std::size_t j = 0; j < system.size; ++j) result[i] += system.mass[i * system.size + j] * a[j];
-  }
-}
-
 }  // namespace withy::equations

@@ -30,20 +30,11 @@ constexpr bool has_modal_solver = requires(const Sweep& s, double* a, std::byte*
   s.solve(a, 0.0, a, work);
 };
 
-/// Whether derivatives of a sweep's equations are had better than by differences of the sweep.
-template <class Sweep>
-constexpr bool has_tangents = !requires {
-  typename Sweep::WithoutTangents;
-};
-
 /// What the compilation of a tree made of it, a line each.
 std::vector<std::string> savings_of(const NodeTree& tree, const std::vector<std::string>& of_sweep);
 
 /// The body whose hinge or modes have the first acceleration that is not finite; −1 where there is none.
 int first_nonfinite(const Model& model, const double* accelerations);
-
-/// M a for the dense system.
-void product(const DenseSystem& system, std::span<const double> a, std::span<double> result);
 
 /// Something made when it is first asked for, by whichever thread.
 template <class T>
@@ -153,25 +144,15 @@ class SweepEquations final : public EquationsOfMotion,
   }
   void inverse_dynamics(std::span<const double> y, std::span<const double> u_dot, std::span<double> efforts,
                         Work& work) const override {
-    if constexpr (has_modal_solver<Sweep>) {
-      const auto speeds = speeds_of(y);
-      sweep_.inverse(y.data(), inertial(speeds, work), u_dot.data(), false, efforts.data(), of_sweep_.in(work));
-      if (!terms_.products_of_speeds) elastic_.add_damping(speeds, efforts, -1);
-    } else {
-      const DenseSystem s = reference().system(0, y);
-      product(s, u_dot, efforts);
-      for (std::size_t i = 0; i < s.size; ++i) efforts[i] -= s.force[i];
-    }
+    const auto speeds = speeds_of(y);
+    sweep_.inverse(y.data(), inertial(speeds, work), u_dot.data(), false, efforts.data(), of_sweep_.in(work));
+    if (!terms_.products_of_speeds) elastic_.add_damping(speeds, efforts, -1);
   }
   void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> result,
                   Work& work) const override {
-    if constexpr (has_modal_solver<Sweep>) {
-      const std::span<double> at_rest = efforts_.in(work);
-      std::fill(at_rest.begin(), at_rest.end(), 0.0);
-      sweep_.inverse(y.data(), at_rest.data(), a.data(), true, result.data(), of_sweep_.in(work));
-    } else {
-      product(reference().system(0, y), a, result);
-    }
+    const std::span<double> at_rest = efforts_.in(work);
+    std::fill(at_rest.begin(), at_rest.end(), 0.0);
+    sweep_.inverse(y.data(), at_rest.data(), a.data(), true, result.data(), of_sweep_.in(work));
   }
 
   const LinearlyImplicit* linearly_implicit() const override { return has_modal_solver<Sweep> ? this : nullptr; }
@@ -211,7 +192,6 @@ class SweepEquations final : public EquationsOfMotion,
   }
 
   const Linearization* linearization() const override {
-    if constexpr (!has_tangents<Sweep>) return nullptr;
     return &linearization_([this] { return std::make_shared<const StateJacobian>(model_, terms_); });
   }
   Evaluation position_rates(double, std::span<const double> y, std::span<double> y_dot, Work&) const noexcept override {

@@ -1,6 +1,7 @@
 #include "withy/core/model/model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -363,6 +364,10 @@ void Model::begin_continuous(State& state) const {
 
 void Model::add_load(std::string name, const Load& load) {
   std::shared_ptr<const BoundLoad> bound = load.bind(*this);
+  if (bound == nullptr) throw std::invalid_argument("load '" + name + "' cannot be bound and does not say why");
+  const std::vector<double> jumps = bound->discontinuities();
+  if (std::isnan(bound->end()) || std::any_of(jumps.begin(), jumps.end(), [](double t) { return std::isnan(t); }))
+    throw std::invalid_argument("load '" + name + "' jumps or ends at a time that is no number");
   load_scratch_ = std::max(load_scratch_, bound->scratch());
   const std::size_t index = loads_.size();
   LoadNode node{std::move(name), bound};

@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/digital_part.hpp"
+#include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/plugin/load_numbers.hpp"
 #include "withy/core/plugin/sampled_part.hpp"
 
@@ -21,8 +23,10 @@ std::size_t continuous_states(const BoundLoad& load) {
 
 const SampledPart* sampled_part(const BoundLoad& load) { return dynamic_cast<const SampledPart*>(load.discrete()); }
 
+const DigitalPart* digital_part(const BoundLoad& load) { return dynamic_cast<const DigitalPart*>(load.discrete()); }
+
 /// What of the forms changes at instants, and which of them acts.
-class SwitchedDiscrete final : public DiscretePart, public SampledPart {
+class SwitchedDiscrete final : public DiscretePart, public SampledPart, public DigitalPart {
  public:
   explicit SwitchedDiscrete(const Forms& forms) : forms_(forms), own_(discrete_states(*forms.front())) {
     for (const auto& form : forms)
@@ -70,9 +74,17 @@ class SwitchedDiscrete final : public DiscretePart, public SampledPart {
         for (const std::string& name : part->measures()) all.push_back(name);
     return all;
   }
+  void pass_idle(std::span<double> discrete) const noexcept override {
+    if (const DigitalPart* part = digital_part(*forms_.front())) part->pass_idle(own(discrete));
+  }
+  bool gives_steps() const override {
+    const DigitalPart* part = digital_part(*forms_.front());
+    return part != nullptr && part->gives_steps();
+  }
   void renew_measured(double t, const Crossing& crossing, std::span<const double> measured,
                       std::span<double> discrete) const noexcept override {
     const BoundLoad* load = acting(discrete);
+    if (load == nullptr) pass_idle(discrete);
     std::size_t first = 0;
     for (std::size_t f = 0; f < measured_.size(); ++f) {
       if (forms_[f].get() == load)
@@ -276,6 +288,8 @@ std::unique_ptr<BoundLoad> SwitchedLoad::bind(const Model& model) const {
     if (!alike(*forms.front(), *forms.back()))
       throw std::invalid_argument(
           "an event changes where the load acts, its sample or its states; need a change of its numbers alone");
+    if (dynamic_cast<const ForeignLaw*>(forms.back().get()) != nullptr)
+      throw std::invalid_argument("an event cannot switch or change a load whose law is not withy's own");
     for (const FrameIndex& at : forms.back()->frames())
       if (at.frame < 0) throw std::invalid_argument("an event cannot change a load on distributed mass");
   }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "withy/core/plugin/chosen_sensing.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
 
 namespace withy {
 
@@ -32,9 +33,16 @@ class ChangingEquations::Seen final : public Observation {
   std::vector<std::unique_ptr<Observation>> seen_;
 };
 
+void require_trees(const std::vector<Rung>& rungs) {
+  for (const Rung& rung : rungs)
+    if (dynamic_cast<const ClosedLoops*>(rung.equations) != nullptr)
+      throw std::invalid_argument("formulations cannot change along a run whose loops are closed (constraints)");
+}
+
 ChangingEquations::ChangingEquations(const std::vector<Rung>& rungs, std::vector<Stretch> stretches)
     : rungs_(rungs), stretches_(std::move(stretches)), evaluations_(rungs.size()) {
   if (rungs_.empty() || stretches_.empty()) throw std::invalid_argument("no formulation to run in");
+  require_trees(rungs_);
   go_over(stretches_.front().start);
 }
 

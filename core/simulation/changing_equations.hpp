@@ -12,11 +12,15 @@
 
 namespace withy {
 
+/// For faces over the equations of rungs: \throws std::invalid_argument where those are of closed loops, which an
+/// integrator would not see behind the face (ClosedLoops) and let open.
+void require_trees(const std::vector<Rung>& rungs);
+
 /// The equations of the rung that is in force, under one face: a run goes on over a change with its integrator, its
 /// watches and its checkpoints. `go_over` chooses the rung: of one thread, but for what a Work is of.
 class ChangingEquations final : public ForwardingEquations, private LinearlyImplicit, private Linearization {
  public:
-  /// \param rungs of one model; they must outlive it. \param stretches adjoin each other; at least one
+  /// \param rungs of one model, a tree; they must outlive it. \param stretches adjoin each other; at least one
   ChangingEquations(const std::vector<Rung>& rungs, std::vector<Stretch> stretches);
 
   /// Goes to the stretch that begins at the time [s] or has it inside.

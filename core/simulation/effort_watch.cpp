@@ -35,8 +35,13 @@ void EffortWatch::evaluate(Sample& sample) {
 }
 
 void EffortWatch::raise(const Sample& sample) {
-  for (std::size_t i = 0; i < loads_.size(); ++i) loads_[i] = std::max(loads_[i], std::abs(sample.loads[i]));
-  for (std::size_t i = 0; i < motions_.size(); ++i) motions_[i] = std::max(motions_[i], std::abs(sample.motions[i]));
+  const auto raise_by = [](std::span<double> peaks, const std::vector<double>& efforts) {
+    // What is not finite, of a formula that divides by zero, is no effort and no peak: the run ends there.
+    for (std::size_t i = 0; i < peaks.size(); ++i)
+      if (const double size = std::abs(efforts[i]); std::isfinite(size)) peaks[i] = std::max(peaks[i], size);
+  };
+  raise_by(loads_, sample.loads);
+  raise_by(motions_, sample.motions);
 }
 
 void EffortWatch::begin_at(const State& state) {

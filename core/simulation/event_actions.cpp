@@ -95,6 +95,7 @@ const EventActions::Done& EventActions::act(State& state, std::span<const std::s
       if (!perform(i, state)) return done_;
       done_.acted.push_back(plain_ + i);
       done_.stops = done_.stops || events[i].stops;
+      done_.changes = done_.changes || !events[i].actions.empty();
       for (std::size_t k = 0; k < events.size(); ++k)
         if (events[k].when == ActingEvent::When::after && events[k].after == i && !over_at(k, state.y)) wait(k);
     }

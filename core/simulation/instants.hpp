@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,9 @@ class Clocks {
   void renew(State& state, Renewal& renewal);
   /// Renews the states of one load at the zero of a switching function of its own.
   void renew(State& state, const LoadSlot& slot, const Crossing& crossing);
+  /// As those of Renewal.
+  [[nodiscard]] std::string failure(const State& state) const { return renewal_.failure(state); }
+  [[nodiscard]] std::string refusal(const State& state) const { return renewal_.refusal(state); }
 
  private:
   struct Clock {

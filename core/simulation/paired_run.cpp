@@ -127,6 +127,10 @@ class PairObserver final : public SteppingObserver {
     pair_.put(first_.y, 0, both.y);
     pair_.put(second_.y, 1, both.y);
   }
+  std::string failure(const Clocks& clocks, const State& /*both*/) override {
+    const std::string first = clocks.failure(first_);
+    return first.empty() ? clocks.failure(second_) : first;
+  }
   [[nodiscard]] double emitted() const { return emitted_; }
 
  private:

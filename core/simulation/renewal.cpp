@@ -30,6 +30,7 @@ Renewal::Renewal(const Model& model, const EquationsOfMotion& equations) : model
   for (const LoadSlot& slot : model.layout().discrete_slots) {
     const BoundLoad& load = *model.loads()[slot.load].load;
     scratch = std::max(scratch, load.scratch());
+    if (const auto* law = dynamic_cast<const ForeignLaw*>(&load)) foreign_.push_back({slot, law});
     Measured m{.part = dynamic_cast<const SampledPart*>(load.discrete()), .sources = {}};
     for (const std::string& name : m.part == nullptr ? std::vector<std::string>{} : m.part->measures()) {
       const SignalSource source = find_signal(model, name);
@@ -87,6 +88,19 @@ void Renewal::measure(const Measured& measured, const State& state) {
     }
   }
 }
+
+std::string Renewal::said(const State& state, std::string (ForeignLaw::*what)(std::span<const double>) const) const {
+  for (const Foreign& f : foreign_) {
+    if (f.slot.first + f.slot.count > state.y.size()) continue;
+    const std::string words = (f.law->*what)(std::span(state.y).subspan(f.slot.first, f.slot.count));
+    if (!words.empty()) return "load '" + model_.loads()[f.slot.load].name + "': " + words;
+  }
+  return {};
+}
+
+std::string Renewal::failure(const State& state) const { return said(state, &ForeignLaw::failure); }
+
+std::string Renewal::refusal(const State& state) const { return said(state, &ForeignLaw::refusal); }
 
 void Renewal::operator()(State& state, const LoadSlot& slot, const Crossing& crossing) {
   const Layout& layout = model_.layout();

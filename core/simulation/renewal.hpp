@@ -4,11 +4,13 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/model/signal_source.hpp"
 #include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/plugin/sampled_part.hpp"
 #include "withy/core/simulation/sensor_reader.hpp"
 
@@ -26,6 +28,10 @@ class Renewal {
   void at(const State& before);
   /// Renews the states of one load at the state's time: that of the last call of `at`.
   void operator()(State& state, const LoadSlot& slot, const Crossing& crossing);
+  /// Why a load whose law is not the engine's own has failed at this state, "load 'name': …"; empty: none has.
+  [[nodiscard]] std::string failure(const State& state) const;
+  /// Why no simulation can go on from this state, which was saved; empty: it can.
+  [[nodiscard]] std::string refusal(const State& state) const;
 
  private:
   /// What a load measures.
@@ -34,10 +40,17 @@ class Renewal {
     std::vector<SignalSource> sources;
     bool outputs = false;  ///< numbers of outputs among them
   };
+  /// A load whose law is not the engine's own.
+  struct Foreign {
+    LoadSlot slot;
+    const ForeignLaw* law;
+  };
   void measure(const Measured& measured, const State& state);
+  std::string said(const State& state, std::string (ForeignLaw::*what)(std::span<const double>) const) const;
 
   const Model& model_;
-  std::vector<Measured> measured_;        ///< one a slot of discrete states
+  std::vector<Measured> measured_;  ///< one a slot of discrete states
+  std::vector<Foreign> foreign_;
   std::unique_ptr<SensorReader> reader_;  ///< null: no load measures outputs
   std::unique_ptr<SensedState> sensed_;   ///< for what loads give; null: none measures it
   State before_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "withy/core/simulation/changing_equations.hpp"
@@ -22,7 +23,8 @@ namespace {
 class Run final : public SteppingObserver {
  public:
   Run(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator, const State& initial,
-      const RunOptions& options, const std::function<void(const State&)>& output, StepWatch* watch, RunSummary& summary)
+      const RunOptions& options, const std::function<void(const State&)>& output, StepWatch* watch, Attention attention,
+      RunSummary& summary)
       : model_(model),
         equations_(equations),
         options_(options),
@@ -35,8 +37,8 @@ class Run final : public SteppingObserver {
               {options.end, options.output, actions_.watched(), hand_overs_, &actions_}),
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
                  summary),
-        validity_(model, equations, options.beyond, summary.validity),
         loops_(equations, loop_.state()) {
+    if (attention == Attention::whole) validity_.emplace(model, equations, options.beyond, summary.validity);
     if (options.own_energy) monitor_.use_own_energy(loop_.state());
     if (std::isfinite(options.drift_limit)) monitor_.trust(options.drift_limit);
     if (options.resume != nullptr) {
@@ -45,7 +47,7 @@ class Run final : public SteppingObserver {
     }
     begin_watches();
     output_at(loop_.state());
-    validity_.observe(loop_.state(), 0, loop_.state().time);
+    if (validity_) validity_->observe(loop_.state(), 0, loop_.state().time);
   }
 
   Stop to_end() {
@@ -65,7 +67,7 @@ class Run final : public SteppingObserver {
     monitor_.audit_energy(state);
     monitor_.finish_momenta();
     const bool completed = status == RunStatus::completed;
-    validity_.finish(completed ? state : monitor_.trusted(), status != RunStatus::singular);
+    if (validity_) validity_->finish(completed ? state : monitor_.trusted(), status != RunStatus::singular);
   }
 
   [[nodiscard]] const Stepper& stepper() const { return loop_.stepper(); }
@@ -94,7 +96,7 @@ class Run final : public SteppingObserver {
   }
   void landed(const State& state) override {
     if (!std::binary_search(hand_overs_.begin(), hand_overs_.end(), state.time)) return;
-    validity_.settle();
+    if (validity_) validity_->settle();
     monitor_.rebase_energy(state, [&] { options_.changing->go_over(state.time); });
   }
   bool after_step(const Stepper& stepper, bool /*outputs*/) override {
@@ -104,7 +106,7 @@ class Run final : public SteppingObserver {
     if (watch_ != nullptr) watch_->observe(stepper);
     monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
     if (audited(stepper.statistics().accepted)) monitor_.audit_energy(state);
-    validity_.observe(state, loop_.step_evaluations(), monitor_.trusted().time);
+    if (validity_) validity_->observe(state, loop_.step_evaluations(), monitor_.trusted().time);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
     if (const std::string fault = loops_.fault(state); !fault.empty()) {
       stop_ = {RunStatus::singular, fault, false};
@@ -164,7 +166,7 @@ class Run final : public SteppingObserver {
   }
   void remember(Memory& memory) {
     monitor_.remember(memory);
-    validity_.remember(memory);
+    if (validity_) validity_->remember(memory);
     loop_.remember(memory);
     loops_.remember(memory);
     if (watch_ != nullptr) watch_->remember(memory);
@@ -198,7 +200,7 @@ class Run final : public SteppingObserver {
   EventActions actions_;
   Stepping loop_;
   Monitor monitor_;
-  ValidityWatch validity_;
+  std::optional<ValidityWatch> validity_;  ///< nothing where nobody asks
   LoopWatch loops_;
   double emitted_ = 0;  ///< time of the last output
   Stop stop_;           ///< why this observer has ended the stepping
@@ -300,19 +302,21 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
 
 RunSummary simulate(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator,
                     const State& initial, const RunOptions& options, const std::function<void(const State&)>& output,
-                    StepWatch* watch) {
+                    StepWatch* watch, Attention attention) {
   if (!(options.end >= initial.time)) throw std::invalid_argument("the end lies before the initial time");
   if (!(options.output > 0)) throw std::invalid_argument("the output interval is not positive");
   const double began = thread_cpu_seconds();
   RunSummary summary;
   if (options.changing != nullptr) options.changing->go_over(initial.time);
-  Run run(model, equations, integrator, initial, options, output, watch, summary);
+  Run run(model, equations, integrator, initial, options, output, watch, attention, summary);
   Stop stop = run.to_end();
   run.finish(stop.status);
   summary.final = run.stepper().state();
   summary.reached = summary.final.time;
   summary.steps = run.stepper().statistics();
-  const MassMatrixHistory history = look_at_mass_matrix(run, model, equations, initial, stop, summary);
+  MassMatrixHistory history;
+  if (attention == Attention::whole || stop.status != RunStatus::completed || !surely_balanced(summary, options))
+    history = look_at_mass_matrix(run, model, equations, initial, stop, summary);
   const bool examined = equations.layout().speeds <= largest_examined;
   const double mean_step =
       (summary.reached - initial.time) / static_cast<double>(std::max<std::size_t>(summary.steps.accepted, 1));

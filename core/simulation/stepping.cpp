@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 
@@ -24,8 +28,11 @@ Stepping::Stepping(const Model& model, const EquationsOfMotion& equations, std::
 }
 
 SteppingEnd Stepping::run(SteppingObserver& observer) {
+  FloatingPointGuard arithmetic;
+  arithmetic_ = &arithmetic;
   observer_ = &observer;
   ended_ = {};
+  if (!sound(state())) return ended_;
   if (actions_ != nullptr && actions_->next(state()) == state().time && !act({})) return ended_;
   while (state().time < end_) {
     const auto jump = std::upper_bound(jumps_.begin(), jumps_.end(), state().time);
@@ -33,7 +40,10 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
     const double landing = jumps ? *jump : end_;
     while (state().time < landing) {
       if (!to(std::min(landing, next_instant()), true)) return ended_;
-      if (state().time >= clocks_.next()) renew_clocks();
+      if (state().time >= clocks_.next()) {
+        if (!renew_clocks()) return ended_;
+        if (!happened_.empty() && !act(std::vector<std::size_t>(happened_))) return ended_;
+      }
       if (actions_ != nullptr && actions_->next(state()) == state().time && !act({})) return ended_;
     }
     if (!jumps) continue;
@@ -71,6 +81,8 @@ bool Stepping::act(std::span<const std::size_t> happened) {
     observer_->acted(acted_on_, state());
     observer_->jumped();
     if (done.stops) return end(Cause::event);
+    // What is only looked for has passed, whatever side of its value rounding leaves it on.
+    if (!done.changes) return true;
     const std::vector<std::size_t> acted = done.acted;
     if (!leap(acted)) return false;
     if (happened_.empty()) return true;
@@ -112,13 +124,27 @@ bool Stepping::changes_the_run(const Zero& zero) const {
   return actions_ != nullptr && !zeros_.switching(zero.function) && actions_->acts(zeros_.index(zero));
 }
 
-void Stepping::renew_clocks() {
+/// Whether no load has failed; the stepping has ended else.
+bool Stepping::sound(const State& state) {
+  ended_.reason = observer_->failure(clocks_, state);
+  return ended_.reason.empty() || end(Cause::failed);
+}
+
+/// Renews discrete states by the clock. An event happens where a number that it watches jumps past its value with them.
+bool Stepping::renew_clocks() {
   sample_ = state();
   observer_->renew(clocks_, sample_);
+  if (!sound(sample_)) return false;
   clocks_.go_on_after(sample_.time);
   stepper_->jump(sample_);
-  zeros_.begin_at(sample_);
+  handled_ = zeros_.leap(sample_);
   observer_->jumped();
+  happened_.clear();
+  for (const Zero& zero : handled_) {
+    if (actions_ == nullptr || zeros_.switching(zero.function) || !actions_->acts(zeros_.index(zero))) continue;
+    if (!actions_->over(zeros_.index(zero), sample_)) happened_.push_back(zeros_.index(zero));
+  }
+  return true;
 }
 
 /// Steps to a time; false where stepping ends before. Not watching: a step taken back is made again to end at a zero,
@@ -132,6 +158,7 @@ bool Stepping::to(double limit, bool watching) {
     const std::size_t made = stepper_->statistics().evaluations;
     ended_.step = stepper_->step(limit);
     step_evaluations_ += stepper_->statistics().evaluations - made;
+    check_arithmetic();
     if (ended_.step.outcome != StepResult::Outcome::ok) return end(Cause::failed);
     if (watching && !zeros_.empty()) {
       handled_ = zeros_.find(*stepper_, before_.time);
@@ -143,6 +170,15 @@ bool Stepping::to(double limit, bool watching) {
     if (!after_step()) return false;
   }
   return true;
+}
+
+/// A load, motion, formulation or integrator may round otherwise from its first call on: what it and all others have
+/// computed since is not what the same input gives elsewhere.
+void Stepping::check_arithmetic() {
+  const std::string changed = take_changed_arithmetic();
+  if (changed.empty()) return arithmetic_->check("a plugin of this scene");
+  arithmetic_->restore();
+  throw PluginError("a plugin of this scene changes " + changed + " for the whole program: no result can be trusted");
 }
 
 bool Stepping::after_step() {
@@ -224,6 +260,7 @@ bool Stepping::cut_at(double time, std::size_t noted) {
 }
 
 void Stepping::resume(const State& state, std::span<const double> memory) {
+  if (const std::string why = clocks_.refusal(state); !why.empty()) throw std::invalid_argument(why);
   stepper_->resume(state, memory);
   clocks_.go_on_after(state.time);
 }

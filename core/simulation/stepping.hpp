@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "withy/core/plugin/floating_point.hpp"
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/event_actions.hpp"
@@ -28,6 +29,7 @@ struct SteppingEnd {
   };
   Cause cause = Cause::reached;
   StepResult step;
+  std::string reason = {};  ///< of a failure that is no step's: the words of a load
 };
 
 /// What watches stepping, and may end it.
@@ -57,6 +59,8 @@ class SteppingObserver {
   virtual void restarted() {}
   /// Renews the discrete states that are due at the state's time; for states that are not laid out as the model's.
   virtual void renew(Clocks& clocks, State& state) { clocks.renew(state); }
+  /// Why a load has failed at a state, as Renewal::failure.
+  virtual std::string failure(const Clocks& clocks, const State& state) { return clocks.failure(state); }
 };
 
 struct SteppingOptions {
@@ -76,6 +80,7 @@ class Stepping {
            const SteppingOptions& options);
   /// Steps to the end. Steps land on discontinuities of loads and motions, on the instants of discrete states and on
   /// the end bit by bit. The states at the start and at the end are no outputs.
+  /// \throws PluginError after the step in which a plugin has changed the processor's arithmetic.
   SteppingEnd run(SteppingObserver& observer);
   /// Moves the end, for `run` to go on. Where nothing jumps at the present end the stepper goes on as it was.
   void move_end(double end) { end_ = end; }
@@ -95,6 +100,7 @@ class Stepping {
   using Zero = ZeroWatch::Zero;
   bool to(double limit, bool watching);
   bool after_step();
+  void check_arithmetic();
   bool act(std::span<const std::size_t> happened);
   bool leap(const std::vector<std::size_t>& acted);
   [[nodiscard]] int direction_of(std::size_t event) const;
@@ -103,7 +109,8 @@ class Stepping {
   bool act_on_zeros();
   bool cut_at(double time, std::size_t noted);
   void note(const Zero& zero);
-  void renew_clocks();
+  bool renew_clocks();
+  bool sound(const State& state);
   bool end(SteppingEnd::Cause cause);
   [[nodiscard]] double coincidence(const Zero& zero) const;
 
@@ -126,6 +133,7 @@ class Stepping {
   double last_zero_ = -std::numeric_limits<double>::infinity();  ///< time of the last one that changed the run
   int zeros_at_once_ = 0;
   std::size_t step_evaluations_ = 0;
+  FloatingPointGuard* arithmetic_ = nullptr;  ///< of the run under way
 };
 
 }  // namespace withy

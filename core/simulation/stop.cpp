@@ -13,6 +13,7 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
   if (end.cause == SteppingEnd::Cause::crowded)
     return {RunStatus::step_underflow, "switches or events follow each other without time between them"};
   if (end.cause != SteppingEnd::Cause::failed) return {};
+  if (!end.reason.empty()) return {RunStatus::diverged, end.reason, false};
   const StepResult& result = end.step;
   const std::string body =
       result.body >= 0 ? " at body '" + model.bodies()[static_cast<std::size_t>(result.body)].name + "'" : "";
@@ -48,10 +49,19 @@ std::string steps_too_long(const RunSummary& summary, const Integrator& integrat
          ". ";
 }
 
+namespace {
+
+/// Drift of energy that no stable integration leaves, of a formulation that need not conserve it.
+constexpr double unstable_drift = 0.05;
+
+}  // namespace
+
+bool surely_balanced(const RunSummary& summary, const RunOptions& options) {
+  return summary.energy_drift <= std::min(unstable_drift, options.drift_limit);
+}
+
 std::string imbalance(const RunSummary& summary, const RunOptions& options, const Integrator& integrator,
                       double mean_step) {
-  // What no stable integration leaves, of a formulation that need not conserve energy.
-  constexpr double unstable_drift = 0.05;
   std::string text = steps_too_long(summary, integrator, mean_step);
   const double allowed = !text.empty() ? std::min(unstable_drift, options.drift_limit) : options.drift_limit;
   if (!(summary.energy_drift > allowed)) return {};

@@ -26,6 +26,9 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
 /// \param mean_step [s] of the accepted steps
 std::string steps_too_long(const RunSummary& summary, const Integrator& integrator, double mean_step);
 
+/// Whether a run that came to its end is to be believed whatever its fastest mode: `imbalance` has nothing to say.
+bool surely_balanced(const RunSummary& summary, const RunOptions& options);
+
 /// Why a run that came to its end is not to be believed, with the steps first where they are beyond what the integrator
 /// is stable to; empty where it is.
 /// \param mean_step [s] of the accepted steps

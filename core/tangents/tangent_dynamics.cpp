@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "withy/core/plugin/central_difference.hpp"
-#include "withy/core/reference/first_order_energy.hpp"
 #include "withy/core/tangents/continuous_tangents.hpp"
+#include "withy/core/tangents/first_order_recursion.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
 #include "withy/core/tangents/recursion.hpp"
 
@@ -23,9 +23,6 @@ namespace {
 
 template <class S>
 using VX = Eigen::Matrix<S, Eigen::Dynamic, 1>;
-
-/// [rad, m, and s⁻¹ of these]: with eighth order 1e-19 of truncation, where rounding leaves some 1e-13 over the step.
-constexpr double first_order_step = 1e-2;
 
 }  // namespace
 
@@ -202,6 +199,8 @@ VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen:
     const Builder<T> still{*this, y, a, seeds, true};
     return Recursion<T>(*model_, still.hinges(), still.bodies(ruthless)).efforts(wrenches);
   }
+  if (symmetric_)
+    return analysis::FirstOrderRecursion<T>(*model_, build.hinges(), build.bodies(ruthless)).efforts(wrenches);
   if (!strict_) return shown.efforts(wrenches);
 
   // Theory (3): the undeformed tree with q̈, and the part of first order in ε of the tree with εq, εq̇ and without q̈.
@@ -236,50 +235,6 @@ VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen:
   return r;
 }
 
-Eigen::VectorXd TangentDynamics::first_order_efforts(double t, std::span<const double> y, const Eigen::VectorXd& a,
-                                                     std::span<const double> seen) const {
-  const Builder<double> build{*this, y, a, {}};
-  const auto ruthless = [&](std::size_t b) { return terms_[b].truncation == Truncation::ruthless; };
-  const Recursion<double> shown(*model_, build.hinges(), build.bodies(ruthless));
-  std::vector<reference::PlacedWrench> placed;
-  for (const AppliedWrench<double>& w : wrenches(t, seen.empty() ? y : seen, shown, nullptr))
-    placed.push_back({w.at, {w.moment, w.force}});
-  const reference::FirstOrderSystem s = reference::first_order_system(*model_, terms_, y, placed);
-  return s.M * a - s.f - s.applied;
-}
-
-void TangentDynamics::differentiate_first_order(double t, std::span<const double> y, const Eigen::VectorXd& a,
-                                                std::size_t from, Eigen::Ref<Eigen::MatrixXd> columns,
-                                                std::vector<bool>* differenced) const {
-  const Eigen::Index n = a.size();
-  const std::size_t speeds = model_->layout().speeds;
-  for (Eigen::Index column = 0; column < columns.cols(); ++column) {
-    const std::size_t direction = from + static_cast<std::size_t>(column);
-    if (direction >= 2 * speeds) {  // linear
-      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, static_cast<Eigen::Index>(direction - 2 * speeds));
-      columns.col(column) = first_order_efforts(t, y, a + unit) - first_order_efforts(t, y, a);
-      continue;
-    }
-    columns.col(column) = central_difference(
-        [&](double h) -> Eigen::VectorXd {
-          std::vector<double> moved(y.begin(), y.end());
-          if (direction < speeds) {
-            displace(moved, h * Eigen::VectorXd::Unit(n, static_cast<Eigen::Index>(direction)));
-          } else {
-            moved[model_->layout().positions + direction - speeds] += h;
-          }
-          return first_order_efforts(t, moved, a);
-        },
-        first_order_step);
-  }
-  if (differenced == nullptr) return;
-  const auto ruthless = [&](std::size_t b) { return terms_[b].truncation == Truncation::ruthless; };
-  for (std::size_t first = 0; first < 3 * speeds; first += jet_directions) {
-    const Builder<Jet> build{*this, y, a, {first}};
-    wrenches(t, y, Recursion<Jet>(*model_, build.hinges(), build.bodies(ruthless)), differenced);
-  }
-}
-
 Eigen::VectorXd TangentDynamics::elastic(std::span<const double> y) const {
   const Layout& layout = model_->layout();
   Eigen::VectorXd r = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.speeds));
@@ -310,17 +265,13 @@ Eigen::VectorXd TangentDynamics::steady_accelerations(double t) const {
 }
 
 Eigen::VectorXd TangentDynamics::residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
-  return (symmetric_ ? first_order_efforts(t, y, a) : efforts<double>(t, y, a, {})) + elastic(y) - load_efforts(t, y);
+  return efforts<double>(t, y, a, {}) + elastic(y) - load_efforts(t, y);
 }
 
 Eigen::VectorXd TangentDynamics::differentiate(double t, std::span<const double> y, const Eigen::VectorXd& a,
                                                std::size_t from, Eigen::Ref<Eigen::MatrixXd> columns,
                                                std::vector<bool>* differenced) const {
   const Eigen::Index n = columns.rows();
-  if (symmetric_) {
-    differentiate_first_order(t, y, a, from, columns, differenced);
-    return residual(t, y, a);
-  }
   Eigen::VectorXd values = Eigen::VectorXd::Zero(n);
   for (Eigen::Index first = 0; first < columns.cols(); first += 8) {
     const VX<Jet> r = efforts<Jet>(t, y, a, {from + static_cast<std::size_t>(first)}, differenced);
@@ -428,8 +379,7 @@ void TangentDynamics::add_continuous(double t, std::span<const double> y, const 
   };
   // The residual has efforts on its other side.
   const auto of_wrenches = [&, none = Eigen::VectorXd(Eigen::VectorXd::Zero(n))](std::span<const double> seen) {
-    return Eigen::VectorXd(
-        -(symmetric_ ? first_order_efforts(t, y, none, seen) : efforts<double>(t, y, none, {}, nullptr, seen)));
+    return Eigen::VectorXd(-efforts<double>(t, y, none, {}, nullptr, seen));
   };
   std::function<Eigen::VectorXd(std::span<const double>)> at_frames;
   if (controlled_frames_) at_frames = of_wrenches;

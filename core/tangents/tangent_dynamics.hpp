@@ -55,9 +55,8 @@ struct FrameTangent {
 
 /// A model in one formulation. Derivatives are exact to rounding: the recursive Newton–Euler algorithm in numbers that
 /// carry derivatives, an algorithm independent of sweeps and of ReferenceDynamics; the strict truncation, itself a
-/// derivative (theory (3)), takes them nested. Exceptions: loads and hinges of others that do not differentiate
-/// themselves; and the symmetric truncation, whose residual is that of the dense reference and whose derivatives are
-/// differences of eighth order, to some 1e-11 of what is differentiated. Const functions allocate.
+/// derivative (theory (3)), takes them nested, and the symmetric one in series. Exception: loads and hinges of others
+/// that do not differentiate themselves. Const functions allocate.
 class TangentDynamics {
  public:
   /// `terms` are the formulation's.
@@ -97,11 +96,6 @@ class TangentDynamics {
   /// The residual; its derivatives along directions from `from` on, one a column.
   Eigen::VectorXd differentiate(double t, std::span<const double> y, const Eigen::VectorXd& a, std::size_t from,
                                 Eigen::Ref<Eigen::MatrixXd> columns, std::vector<bool>* differenced) const;
-  /// Of the symmetric truncation.
-  [[nodiscard]] Eigen::VectorXd first_order_efforts(double t, std::span<const double> y, const Eigen::VectorXd& a,
-                                                    std::span<const double> seen = {}) const;
-  void differentiate_first_order(double t, std::span<const double> y, const Eigen::VectorXd& a, std::size_t from,
-                                 Eigen::Ref<Eigen::MatrixXd> columns, std::vector<bool>* differenced) const;
   void add_elastic(Tangents& tangents) const;
   void add_loads(double t, std::span<const double> y, const Eigen::VectorXd& a, Tangents& tangents) const;
   void add_continuous(double t, std::span<const double> y, const Eigen::VectorXd& a, Tangents& tangents) const;

@@ -10,6 +10,8 @@
 namespace withy {
 namespace {
 
+bool is_limit(double limit) { return limit < std::numeric_limits<double>::infinity(); }
+
 struct Lag {
   double frequency = 0;                                         ///< ω [rad/s]
   double damping = 0;                                           ///< ζ
@@ -24,6 +26,18 @@ class Actuator final : public ControlBlock {
   std::size_t inputs() const override { return 1; }
   std::vector<std::string> states() const override { return {"effort", "rate"}; }
   std::string unit_of_state(std::size_t state) const override { return state == 0 ? "command" : "command/s"; }
+  std::vector<Shown> shown() const override {
+    std::vector<Shown> all;
+    if (is_limit(lag_.limit)) all.push_back({"margin", "command"});
+    if (is_limit(lag_.rate_limit)) all.push_back({"rate_margin", "command/s"});
+    return all;
+  }
+  void show(double /*t*/, std::span<const double> w, std::span<const double> z,
+            std::span<double> values) const noexcept override {
+    std::size_t next = 0;
+    if (is_limit(lag_.limit)) values[next++] = lag_.limit - std::abs(w[0]);
+    if (is_limit(lag_.rate_limit)) values[next] = lag_.rate_limit - std::abs(z[1]);
+  }
   void begin(double /*t*/, std::span<const double> w, std::span<double> z) const noexcept override {
     z[0] = limited(w[0], lag_.limit);
     z[1] = 0;
@@ -66,10 +80,16 @@ class DcMotor final : public ControlBlock {
   std::vector<std::string> states() const override {
     return motor_.inductance > 0 ? std::vector<std::string>{"current"} : std::vector<std::string>{};
   }
-  std::vector<Shown> shown() const override { return {{"voltage", "V"}}; }
+  std::vector<Shown> shown() const override {
+    std::vector<Shown> all{{"voltage", "V"}};
+    if (is_limit(motor_.limit)) all.push_back({"margin", "V"});
+    return all;
+  }
   void show(double t, std::span<const double> w, std::span<const double> /*z*/,
             std::span<double> values) const noexcept override {
-    values[0] = std::clamp(asked(t, w), -motor_.limit, motor_.limit);
+    const double voltage = asked(t, w);
+    values[0] = std::clamp(voltage, -motor_.limit, motor_.limit);
+    if (is_limit(motor_.limit)) values[1] = motor_.limit - std::abs(voltage);
   }
   std::string unit_of_state(std::size_t /*state*/) const override { return "A"; }
   void begin(double t, std::span<const double> w, std::span<double> z) const noexcept override {

@@ -9,6 +9,8 @@
 
 namespace withy {
 
+class ForeignLaw;
+
 /// ż = g(t, w, z), v = h(t, w, z): w what is measured, v what is commanded. Immutable.
 class ControlBlock {
  public:
@@ -44,8 +46,19 @@ class ControlBlock {
   [[nodiscard]] virtual std::string unit_of_state(std::size_t /*state*/) const { return "1"; }
   /// Whether v depends on an input at once, not through z alone.
   [[nodiscard]] virtual bool feeds_through(std::size_t /*input*/) const { return true; }
+  /// Whether v moves in steps, so that it has no derivative by w.
+  [[nodiscard]] virtual bool gives_steps() const { return false; }
   /// Takes z from t [s] to a sample later, w held at what it is at t.
   virtual void advance(double /*t*/, std::span<const double> /*w*/, std::span<double> /*z*/) const noexcept {}
+  /// A sample at t [s]: `output`, then `advance`.
+  virtual void sample(double t, std::span<const double> w, std::span<double> z, std::span<double> v) const noexcept {
+    output(t, w, z, v);
+    advance(t, w, z);
+  }
+  /// Count of numbers behind the states that a sampled one remembers and nobody looks at.
+  [[nodiscard]] virtual std::size_t memory() const { return 0; }
+  /// What it is where its law is not the engine's own, of the block's numbers; null: it is.
+  [[nodiscard]] virtual const ForeignLaw* foreign() const { return nullptr; }
   /// Tells it of the period [s] of `advance`, before it is shared.
   virtual void set_sample(double /*period*/) {}
   /// Sets the derivatives, of the right shapes and zero before. False where it leaves them to differences.

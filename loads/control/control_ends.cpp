@@ -70,7 +70,9 @@ std::optional<ControlEnds> read_ends(const Value& p, const MakeContext& context)
   ends.sample = sample_period(p);
   const Value* delay = p.find("delay");
   if (delay != nullptr && delay->number() > 0 && !(ends.sample > 0)) {
-    error(*delay, "a continuous controller has no delay: give a 'sample', of which the delay is a multiple");
+    error(*delay,
+          "a continuous controller has no delay of its own: give a 'sample', of which the delay is a multiple, or put "
+          "a load of type 'delay' between, which a controller or an actuator measures");
   } else if (delay != nullptr && delay->number() > 0) {
     const double samples = delay->number() / ends.sample;
     ends.delay = static_cast<std::size_t>(std::llround(std::min(samples, 1e6)));

@@ -39,6 +39,35 @@ std::unique_ptr<Load> make_filter(const Value& p, const MakeContext& context) {
   return make_control(std::move(*ends), std::move(block));
 }
 
+/// A signal as it was a time before, by Padé's approximation of e^(−sT) with one zero fewer than poles: it begins at
+/// zero error, feeds nothing through, and is exact to (ωT)^(2 order).
+StateSpace pade_delay(double time, std::size_t order) {
+  const auto m = static_cast<double>(order - 1), n = static_cast<double>(order);
+  // Coefficients of (∓x)^k: (m + n − k)! m! / ((m + n)! k! (m − k)!), and with n for m.
+  const auto coefficients = [&](double own, double sign) {
+    std::vector<double> c{1};
+    for (double k = 1; k <= own; ++k) c.insert(c.begin(), sign * c.front() * (own - k + 1) / (k * (m + n - k + 1)));
+    return c;
+  };
+  StateSpace delay = canonical_form(coefficients(m, -1), coefficients(n, 1));
+  delay.A /= time;
+  delay.B /= time;
+  return delay;
+}
+
+std::unique_ptr<Load> make_delay(const Value& p, const MakeContext& context) {
+  std::optional<ControlEnds> ends = read_signal_ends(p, context, 1);
+  if (p.has("sample")) {
+    context.diagnostics.error(p.at("sample").place(),
+                              "this delay is continuous; a sampled controller has an exact 'delay' of its own");
+    return nullptr;
+  }
+  if (!ends) return nullptr;
+  return make_control(std::move(*ends),
+                      std::make_shared<LinearBlock>(pade_delay(p.number_at("time"), p.count_at("order")), std::nullopt,
+                                                    LinearBlock::Start::settled));
+}
+
 /// The mean of what was measured at the last samples. States: those before the present one, the latest first.
 class MovingAverage final : public ControlBlock {
  public:
@@ -80,6 +109,7 @@ class Quantizer final : public ControlBlock {
               std::span<double> v) const noexcept override {
     v[0] = std::clamp(step_ * std::round(w[0] / step_), -range_, range_);
   }
+  bool gives_steps() const override { return true; }
 
  private:
   double step_, range_;
@@ -240,6 +270,13 @@ void enroll_filter(Enrollment& enrollment) {
       {number("cutoff", "Hz", "where the gain is 1/√2").above(0),
        integer("order", "count of poles").least(1).most(12).otherwise(1.0)},
       &make_filter);
+  add("delay", "A continuous signal as it was a time before, approximately",
+      {number("time", "s", "of the delay").above(0),
+       integer("order", "count of poles; the error is of the order (frequency times time) to twice that")
+           .least(1)
+           .most(10)
+           .otherwise(4.0)},
+      &make_delay);
   add("moving-average", "Mean of a signal over its last samples",
       {number("window", "s", "a multiple of the sample").above(0)}, &make_moving_average);
   add("quantizer", "A signal in steps, as a converter gives it",

@@ -64,10 +64,16 @@ class Pid final : public ControlBlock {
     if (integrates()) z[0] = 0;
     if (filters()) z[filter_place()] = at(reference_, t).position - w[0];
   }
-  std::vector<Shown> shown() const override { return {{"error", "signal"}}; }
+  std::vector<Shown> shown() const override {
+    std::vector<Shown> all{{"error", "signal"}};
+    if (limited()) all.push_back({"margin", "command"});
+    return all;
+  }
   void show(double t, std::span<const double> w, std::span<const double> z,
             std::span<double> values) const noexcept override {
-    values[0] = demand(t, w, z).error;
+    const Demand a = demand(t, w, z);
+    values[0] = a.error;
+    if (limited()) values[1] = k_.limit - std::abs(a.wanted);
   }
   std::string unit_of_state(std::size_t state) const override {
     return filters() && state == filter_place() ? "signal" : "command";
@@ -133,6 +139,7 @@ class Pid final : public ControlBlock {
   struct Demand {
     double error, change, wanted, effort;  ///< e, d, u, τ
   };
+  [[nodiscard]] bool limited() const { return k_.limit < std::numeric_limits<double>::infinity(); }
   [[nodiscard]] bool integrates() const { return k_.integral.greatest() > 0; }
   [[nodiscard]] bool filters() const { return k_.derivative.greatest() > 0 && k_.filter > 0; }
   [[nodiscard]] std::size_t filter_place() const { return integrates() ? 1 : 0; }

@@ -32,13 +32,18 @@ class ReactionWheel final : public ControlBlock {
   std::vector<Shown> shown() const override {
     std::vector<Shown> all{{"motor", "command"}, {"friction", "command"}};
     if (drive_.inertia > 0) all.push_back({"momentum", "kg m^2/s"});
+    if (std::isfinite(drive_.torque_limit)) all.push_back({"margin", "command"});
+    if (std::isfinite(drive_.speed_limit)) all.push_back({"speed_margin", "rad/s"});
     return all;
   }
   void show(double /*t*/, std::span<const double> w, std::span<const double> z,
             std::span<double> values) const noexcept override {
     values[0] = z.empty() ? motor(w) : z[0];
     values[1] = friction(w[1]);
-    if (drive_.inertia > 0) values[2] = drive_.inertia * w[1];
+    std::size_t next = 2;
+    if (drive_.inertia > 0) values[next++] = drive_.inertia * w[1];
+    if (std::isfinite(drive_.torque_limit)) values[next++] = drive_.torque_limit - std::abs(w[0]);
+    if (std::isfinite(drive_.speed_limit)) values[next] = drive_.speed_limit - std::abs(w[1]);
   }
   void begin(double /*t*/, std::span<const double> w, std::span<double> z) const noexcept override {
     if (!z.empty()) z[0] = motor(w);

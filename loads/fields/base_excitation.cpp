@@ -1,5 +1,6 @@
 /// \file
 /// A shaken base: motion is relative to it, and all mass feels its acceleration the other way.
+#include <algorithm>
 #include <array>
 #include <variant>
 
@@ -65,7 +66,9 @@ std::optional<FormulaLaw> read_formulas(const Value& p, const MakeContext& conte
 
 std::unique_ptr<Load> make_base_excitation(const Value& p, const MakeContext& context) {
   BaseExcitation excitation;
-  if (p.has("formula") == p.has("law")) {
+  const auto has = [&](const char* key) { return p.has(key); };
+  const std::array of_law{"law", "value", "amplitude", "table"};
+  if (p.has("formula") == std::any_of(of_law.begin(), of_law.end(), has)) {
     context.diagnostics.error(p.place(), "need one of 'law' and 'formula'");
     return nullptr;
   }
@@ -83,7 +86,6 @@ std::unique_ptr<Load> make_base_excitation(const Value& p, const MakeContext& co
 
 std::vector<ParameterSpec> base_parameters() {
   std::vector<ParameterSpec> all = time_law_parameters<Vector3>("acceleration of the base, world axes", "m/s^2");
-  all[0].required = false;
   all.push_back(texts("formula", "acceleration of the base [m/s^2] as three formulas of the time t, in place of a law")
                     .optional());
   return all;

@@ -1,14 +1,18 @@
 #include "withy/plugins/host/library.hpp"
 
+#include <link.h>
+
 #include <algorithm>
 #include <boost/dll/shared_library.hpp>
+#include <cstring>
 #include <deque>
+#include <fstream>
 #include <map>
 #include <mutex>
 #include <vector>
 
 #include "withy/core/plugin/entry.hpp"
-#include "withy/plugins/host/floating_point.hpp"
+#include "withy/core/plugin/floating_point.hpp"
 #include "withy/plugins/host/trust.hpp"
 
 namespace withy {
@@ -36,6 +40,23 @@ struct Loaded {
 Loaded& loaded() {
   static auto& all = *new Loaded;
   return all;
+}
+
+/// The dynamic linker maps what the program headers say, and the first access beyond the file's end is a SIGBUS: a file
+/// that was cut short, as by a copy that failed, is found before. What is no ELF file of this machine is left to it.
+bool is_cut_short(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  ElfW(Ehdr) head = {};
+  if (!in.read(reinterpret_cast<char*>(&head), sizeof head)) return false;
+  if (std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 || head.e_phentsize != sizeof(ElfW(Phdr))) return false;
+  const std::uintmax_t size = std::filesystem::file_size(file);
+  in.seekg(static_cast<std::streamoff>(head.e_phoff));
+  for (int i = 0; i < head.e_phnum; ++i) {
+    ElfW(Phdr) part = {};
+    if (!in.read(reinterpret_cast<char*>(&part), sizeof part)) return true;
+    if (part.p_type == PT_LOAD && (part.p_offset > size || part.p_filesz > size - part.p_offset)) return true;
+  }
+  return false;
 }
 
 const boost::dll::shared_library& open(const std::filesystem::path& file) {
@@ -78,6 +99,9 @@ Enrollment load_library(const std::filesystem::path& directory, const Manifest& 
   try {
     file = std::filesystem::canonical(named);
     exposed = exposure(file);
+    if (!std::filesystem::is_regular_file(file))
+      throw PluginError("the plugin library " + named + " cannot be loaded: it is no file");
+    if (is_cut_short(file)) throw PluginError("the plugin library " + named + " cannot be loaded: it is cut short");
   } catch (const std::filesystem::filesystem_error& e) {
     throw PluginError("the plugin library " + named + " cannot be read: " + e.code().message());
   }

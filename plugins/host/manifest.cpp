@@ -49,6 +49,7 @@ std::vector<std::string> read_provides(const std::string& text) {
 
 /// The manifest's text. \throws std::filesystem::filesystem_error; PluginError where it is too long.
 std::string text_of(const std::filesystem::path& file) {
+  if (std::filesystem::is_other(file)) throw PluginError("it is no file");
   if (std::filesystem::file_size(file) > most_bytes) throw PluginError("it is too long");
   std::ifstream stream(file, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), {});

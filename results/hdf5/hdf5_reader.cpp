@@ -11,7 +11,7 @@ namespace {
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(const std::filesystem::path& path) : name_(path.string()) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    begin_hdf5();
     // A file whose writer still goes on, or was killed, opens as one that is shared alone.
     hid_t file = H5Fopen(name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     if (file < 0) file = H5Fopen(name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT);
@@ -49,6 +49,8 @@ class Hdf5Reader {
     const Hdf5Handle attribute(need(H5Aopen(object, name, H5P_DEFAULT)), &H5Aclose);
     const Hdf5Handle type(need(H5Aget_type(attribute)), &H5Tclose);
     if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0) return {};
+    constexpr std::size_t most_bytes = std::size_t{256} << 20;
+    if (H5Tget_size(type) > most_bytes) throw ResultsError(name_ + ": a text of more than 256 MiB");
     std::string out(H5Tget_size(type), '\0');
     need(H5Aread(attribute, type, out.data()));
     out.resize(out.find('\0') == std::string::npos ? out.size() : out.find('\0'));

@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 class Hdf5Writer final : public Hdf5Recorder {
  public:
   explicit Hdf5Writer(const std::filesystem::path& path) : name_(path.string()) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    begin_hdf5();
     const Hdf5Handle access = latest();
     file_ = {need(H5Fcreate(name_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)), &H5Fclose};
     write_text(file_, "format", "withy-results/1");

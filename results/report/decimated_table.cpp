@@ -20,10 +20,15 @@ void DecimatedTable::widen(Range& range, const Range& next) {
   }
 }
 
-DecimatedTable::DecimatedTable(std::size_t stretches, std::size_t samples)
-    : most_stretches_(stretches / 2 * 2), most_samples_(samples) {}
+DecimatedTable::DecimatedTable(std::size_t stretches, std::size_t samples, std::size_t numbers)
+    : most_stretches_(stretches / 2 * 2), most_samples_(samples), most_numbers_(numbers) {}
 
-void DecimatedTable::begin(const std::vector<Column>& columns) { columns_ = columns; }
+void DecimatedTable::begin(const std::vector<Column>& columns) {
+  constexpr std::size_t least = 200;
+  columns_ = columns;
+  if (most_numbers_ == 0 || columns.empty() || most_stretches_ <= least) return;
+  most_stretches_ = std::clamp(most_numbers_ / columns.size() / 2 * 2, least, most_stretches_);
+}
 
 void DecimatedTable::row(std::span<const double> numbers) {
   const std::size_t n = columns_.size();

@@ -15,7 +15,9 @@ class DecimatedTable final : public Recorder {
  public:
   /// \param stretches kept at most; half as many at least where there are more rows
   /// \param samples the same of whole rows
-  DecimatedTable(std::size_t stretches, std::size_t samples);
+  /// \param numbers where given, as many stretches as have so many numbers in all columns together, within 200 and
+  ///   `stretches`: a picture of many columns stays small
+  DecimatedTable(std::size_t stretches, std::size_t samples, std::size_t numbers = 0);
 
   void begin(const std::vector<Column>& columns) override;
   void row(std::span<const double> numbers) override;
@@ -42,7 +44,7 @@ class DecimatedTable final : public Recorder {
   static void widen(Range& range, const Range& next);
   void halve();
 
-  std::size_t most_stretches_, most_samples_;
+  std::size_t most_stretches_, most_samples_, most_numbers_;
   std::vector<Column> columns_;
   std::size_t rows_ = 0, stride_ = 1, sample_stride_ = 1;
   std::vector<Range> ranges_;  ///< of every column, stretch by stretch

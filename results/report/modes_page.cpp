@@ -102,22 +102,22 @@ Json remarks_json(const std::vector<study::ModesOf>& runs) {
 
 }  // namespace
 
+std::string swept_label(const study::Sweep& sweep) {
+  const std::string unit = sweep.unit.empty() && !sweep.spun().empty() ? "rad/s" : sweep.unit;
+  return sweep.path + (unit.empty() ? "" : " [" + unit + "]");
+}
+
 Json modes_page(const std::vector<study::ModesOf>& runs, const study::Sweep& sweep, std::size_t count) {
   Json values = Json::array(), all = Json::array();
   for (const study::ModesAt& at : runs.front().points) values.push_back(at.value);
   for (const study::ModesOf& run : runs) all.push_back(run_json(run, count));
-  const std::string unit = sweep.unit.empty() && !sweep.spun().empty() ? "rad/s" : sweep.unit;
   Json rate;  // of a rotor: rad/s in one unit of what is swept
   if (!sweep.spun().empty()) {
     rate = 1.0;
     if (!sweep.unit.empty()) rate = read_any_quantity("1 " + sweep.unit).value.value_or(0);
   }
-  return {{"points", runs.front().points.size()},
-          {"label", sweep.path + (unit.empty() ? "" : " [" + unit + "]")},
-          {"rate", std::move(rate)},
-          {"values", std::move(values)},
-          {"remarks", remarks_json(runs)},
-          {"runs", std::move(all)}};
+  return {{"points", runs.front().points.size()}, {"label", swept_label(sweep)},   {"rate", std::move(rate)},
+          {"values", std::move(values)},          {"remarks", remarks_json(runs)}, {"runs", std::move(all)}};
 }
 
 }  // namespace withy

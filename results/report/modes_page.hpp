@@ -4,12 +4,15 @@
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <vector>
 
 #include "withy/study/modes.hpp"
 
 namespace withy {
 
+/// What is swept, with its unit: "spin.axle [rpm]".
+std::string swept_label(const study::Sweep& sweep);
 /// Of each formulation its lowest branches over what is swept: frequencies, damping, the kinetic energy's shares in
 /// each shape, and how like each shape is to the branch's first: MAC = |φ₀ᴴφ|² / (φ₀ᴴφ₀ φᴴφ), each speed weighted by
 /// √M_ii. \param count branches a formulation, at least 10 where there are as many

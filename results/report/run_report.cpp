@@ -18,9 +18,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Numbers of a report's table, about, and moments of its animation: 1 MB of data is soon opened.
-constexpr std::size_t most_numbers = 60'000;
-constexpr std::size_t most_moments = 400;
+/// Stretches of a report's table, about as many as a plot is wide, their numbers in all columns together, and moments
+/// of its animation: 2 MB of data are soon opened.
+constexpr std::size_t most_stretches = 2000, most_numbers = 80'000, most_moments = 400;
 
 /// Arrays of numbers, which stand as text at the end of what refers to them by their index.
 class Arrays {
@@ -45,10 +45,6 @@ class Arrays {
   std::size_t count_ = 0;
   std::string text_;
 };
-
-std::size_t stretches(std::size_t columns) {
-  return std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(columns, 1), 200, 2000);
-}
 
 /// Where rows are drawn together each column also has its numbers at the moments of the animation: what is computed of
 /// several columns needs numbers of one time.
@@ -101,7 +97,7 @@ Json arrows_json(const Arrows& arrows, Arrays& data) {
 }  // namespace
 
 RunReport::RunReport(const study::Prepared& prepared)
-    : prepared_(prepared), table_(stretches(prepared.model().layout().size()), most_moments) {}
+    : prepared_(prepared), table_(most_stretches, most_moments, most_numbers) {}
 
 std::string RunReport::picture() const {
   const std::string& formulation = prepared_.scene.formulation_name;

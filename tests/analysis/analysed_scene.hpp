@@ -17,13 +17,6 @@ inline const std::vector<std::string> all_formulations = {"ruthless",    "incons
                                                           "quadratic",   "linear",       "exact",
                                                           "rate-linear", "symmetric",    "symmetric-linear"};
 
-/// Those whose equations have exact derivatives of first order.
-inline std::vector<std::string> differentiated_formulations() {
-  std::vector<std::string> all = all_formulations;
-  std::erase_if(all, [](const std::string& id) { return id.starts_with("symmetric"); });
-  return all;
-}
-
 struct AnalysedScene {
   Registry registry;
   Scene scene;

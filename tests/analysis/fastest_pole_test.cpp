@@ -41,7 +41,7 @@ double greatest_of_jacobian(const AnalysedScene& c) {
 }
 
 TEST(FastestPole, is_the_greatest_eigenvalue_of_the_jacobian) {
-  for (const std::string& formulation : differentiated_formulations()) {
+  for (const std::string& formulation : all_formulations) {
     AnalysedScene c(servo_arm, formulation);
     const FastestPole pole = fastest_pole(*c.dynamics, c.state, driven_speeds(*c.scene.model, c.state));
     EXPECT_NEAR(std::abs(pole.value) / greatest_of_jacobian(c), 1, 1e-6) << formulation;

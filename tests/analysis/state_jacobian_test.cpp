@@ -100,12 +100,11 @@ loads:
   EXPECT_EQ(c.equations->linearization()->differenced(0.3, c.state.y), (std::vector<std::string>{"push", "stay"}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Formulations, JacobianOf, testing::ValuesIn(differentiated_formulations()),
-                         [](const auto& parameter) {
-                           std::string name = parameter.param;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Formulations, JacobianOf, testing::ValuesIn(all_formulations), [](const auto& parameter) {
+  std::string name = parameter.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 }  // namespace
 }  // namespace withy::test

@@ -87,7 +87,8 @@ void expect_derivatives(const AnalysedScene& c, unsigned seed) {
   }
 }
 
-/// The dense equations of the kinetic energy's first order differentiate it twice, a hundred times the work: two trees.
+/// The dense equations of the kinetic energy's first order differentiate it twice, a hundred times the work: two trees
+/// (the Jacobian is compared with the sweeps on more).
 unsigned trees(const std::string& formulation, unsigned all) { return formulation.starts_with("symmetric") ? 2 : all; }
 
 class TangentsOf : public testing::TestWithParam<std::string> {};

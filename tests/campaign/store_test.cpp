@@ -238,6 +238,27 @@ TEST(Sweeps, RepeatWhatIsDamagedAndNothingElse) {
   EXPECT_EQ(table_of(folder, "store"), table);
 }
 
+TEST(Sweeps, ADamagedDescriptionIsNoticedAndCostsNoCase) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(twelve);
+  run(folder, plan, "store", {1, 1, 1, {}});
+  const std::string table = table_of(folder, "store"), about = folder.read("store/store.json");
+  std::string other = about;
+  other.replace(other.find("pivot.rate"), 5, "pivto");
+  for (const std::string& damaged : {other, about.substr(0, about.size() / 2), std::string()}) {
+    folder.write("store/store.json", damaged);
+    EXPECT_THROW(read_description(folder / "store"), ResultsError);
+    EXPECT_EQ(run(folder, plan, "store", {1, 1, 1, {}}).ran, 0U);
+    EXPECT_EQ(folder.read("store/store.json"), about);
+    EXPECT_EQ(table_of(folder, "store"), table);
+  }
+  std::string with_seed_4 = twelve;
+  with_seed_4.replace(with_seed_4.find("seed: 3"), 7, "seed: 4");
+  folder.write("store/store.json", other);
+  EXPECT_THROW(Store(folder / "store", folder.plan(with_seed_4), false), ResultsError)
+      << "its cases are another plan's";
+}
+
 TEST(Sweeps, AStoreOfAnotherPlanIsNotMixedWith) {
   const PlanFolder folder;
   const Plan plan = folder.plan(twelve);

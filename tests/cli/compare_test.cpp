@@ -37,6 +37,28 @@ TEST(Compare, GivesEveryFormulationAtEveryValue) {
   EXPECT_LT(runs[4].at("distance").at("until"), 0.2);
 }
 
+/// Strict forms cannot close loops: a comparison of what nobody asked for by name does without them, and says so.
+TEST(Compare, LeavesOutOfItsDefaultsWhatCannotTreatTheScene) {
+  const Folder folder;
+  const std::vector<std::string> loop = {"compare", "scenes/gallery/four-bar.yaml", "--set", "time.end=0.05"};
+  std::vector<std::string> machine = loop, asked = loop;
+  machine.emplace_back("--json");
+  const Finished f = withy(folder, machine);
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json j = json::parse(f.out);
+  ASSERT_EQ(j.at("runs").size(), 2U);
+  EXPECT_EQ(j.at("runs").at(0).at("formulation"), "ruthless");
+  EXPECT_EQ(j.at("runs").at(1).at("formulation"), "quadratic");
+  ASSERT_EQ(j.at("left_out").size(), 2U);
+  EXPECT_EQ(j.at("left_out").at(0).at("formulation"), "inconsistent");
+  EXPECT_EQ(j.at("left_out").at(1).at("formulation"), "consistent");
+  const std::string why = j.at("left_out").at(1).at("reason");
+  EXPECT_THAT(why, HasSubstr("loop"));
+  EXPECT_THAT(withy(folder, loop).out, HasSubstr("left out consistent: " + why));
+  asked.insert(asked.end(), {"--formulations", "consistent,quadratic"});
+  EXPECT_EQ(withy(folder, asked).status, 2) << "what is asked for by name is no default";
+}
+
 TEST(Compare, TableSaysWhyARunStopped) {
   const Folder folder;
   const Finished f = compare(folder, {"--formulations", "inconsistent,quadratic", "--json"});

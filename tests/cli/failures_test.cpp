@@ -82,7 +82,10 @@ TEST(Failures, AFolderThatCannotBeMadeIsTheEnvironments) {
   folder.write("file", "");
   const Finished f = withy(folder, {"run", "scenes/pendulum.yaml", "--out", "file/out"});
   EXPECT_EQ(f.status, 3);
-  EXPECT_THAT(f.err, HasSubstr("file/out"));
+  EXPECT_THAT(f.err, HasSubstr("the folder file/out for results cannot be made: file is a file; give one"));
+  const Finished nowhere = withy(folder, {"run", "scenes/pendulum.yaml", "--out", "/proc/x"});
+  EXPECT_EQ(nowhere.status, 3);
+  EXPECT_THAT(nowhere.err, HasSubstr("the folder /proc/x for results cannot be made: No such file or directory; give"));
 }
 
 TEST(Failures, APluginThatIsRefusedIsTheEnvironmentsAndIsListed) {

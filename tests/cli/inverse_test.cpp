@@ -146,13 +146,14 @@ TEST(Inverse, WhatIsNoMotionIsBadInput) {
   };
   refused("", "need a head");
   refused("shoulder[rad]\n0\n1\n", "need a column t[s]");
-  refused("t[s],sholder[rad]\n0,0\n1,1\n", "there are shoulder, elbow");
+  refused("t[s],sholder[rad]\n0,0\n1,1\n", "path.csv:1: no hinge is named 'sholder'; did you mean 'shoulder'?");
+  refused("t[s],waist[rad]\n0,0\n1,1\n", "there are shoulder, elbow");
   refused("t[s],shoulder[m]\n0,0\n1,1\n", "path.csv:1: column 'shoulder'");
   refused("t[s],shoulder[rad],elbw[rad]\n0,0,0\n1,1,1\n", "no hinge is named 'elbw'; did you mean 'elbow'?");
   refused("t[s],shoulder,shoulder\n0,0,0\n1,1,1\n", "there twice");
-  refused("t[s],shoulder[rad]\n0,0\n1,one\n", "path.csv:3: column 2");
-  refused("t[s],shoulder[rad]\n0,0\n1\n", "path.csv:3: column 2");
-  refused("t[s],shoulder[rad]\n0,0\n1,1\n1,2\n", "path.csv:4: time does not increase");
+  refused("t[s],shoulder[rad]\n0,0\n1,one\n", "path.csv:3: got \"one\" in column 2; need a number");
+  refused("t[s],shoulder[rad]\n0,0\n1\n", "path.csv:3: 1 cells, where the head asks for one in column 2");
+  refused("t[s],shoulder[rad]\n0,0\n1,1\n1,2\n", "path.csv:4: got the time 1 s after 1 s; need times that increase");
   refused("t[s],shoulder[rad]\n1,0\n2,1\n", "begins at 1 s");
   refused("t[s],shoulder[rad]\n0,0\n", "two rows");
   const Finished f = withy(folder, {"inverse", "scenes/two-link-slew.yaml"});

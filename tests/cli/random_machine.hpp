@@ -68,10 +68,6 @@ class RandomMachine {
     if (!motions.str().empty()) out_ << "motions:\n" << motions.str();
     return out_.str();
   }
-  std::string accuracy() {
-    const char* const all[] = {"5%", "1%", "1%", "0.3%"};
-    return all[whole(0, 3)];
-  }
 
  private:
   double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }

@@ -151,11 +151,12 @@ void expect_rates(const Case& c, double step, const std::string& what) {
   }
 }
 
-/// `step` [s] of the differences, of eighth order, along the motion.
-void expect_closed(const Case& c, double tolerance, double step, const std::string& what) {
+/// What is left of Newton's and Euler's laws of each body, over the greatest that is exerted.
+/// \param step [s] of the differences, of eighth order, along the motion
+Eigen::VectorXd left_open(const Case& c, double step, const std::string& what) {
   const Model& model = *c.scene.model;
   const auto sensed = c.equations->make_sensed_state({});
-  ASSERT_TRUE(sensed->observe(c.state)) << what;
+  EXPECT_TRUE(sensed->observe(c.state)) << what;
   const WholeTree tree(c);
   const auto bodies = static_cast<Eigen::Index>(model.bodies().size());
   Matrix3X places(3, bodies), flying(3, bodies);
@@ -176,6 +177,7 @@ void expect_closed(const Case& c, double tolerance, double step, const std::stri
     exerted.col(child) += w;
     if (parent >= 0) exerted.col(parent) -= in_world(*sensed, model, h, places.col(parent));
   }
+  Eigen::VectorXd open(bodies);
   for (Eigen::Index b = 0; b < bodies; ++b) {
     double mass = 0;
     for (const Particle& p : model.bodies()[static_cast<std::size_t>(b)].body->shape().particles) mass += p.mass;
@@ -183,9 +185,40 @@ void expect_closed(const Case& c, double tolerance, double step, const std::stri
     exerted.col(b).tail<3>() += now.col(b).tail<3>().cross(model.gravity());
     // d/dt Σ m (p − p₀) × (v − w) = moment − (Σ m v) × w.
     exerted.col(b).tail<3>() -= now.col(b).head<3>().cross(flying.col(b));
-    EXPECT_LT((rates.col(b) - exerted.col(b)).norm(), tolerance * size)
-        << what << ", body '" << model.bodies()[static_cast<std::size_t>(b)].name << "'";
+    open[b] = (rates.col(b) - exerted.col(b)).norm() / size;
   }
+  return open;
+}
+
+void expect_closed(const Case& c, double tolerance, double step, const std::string& what) {
+  const Eigen::VectorXd open = left_open(c, step, what);
+  for (Eigen::Index b = 0; b < open.size(); ++b)
+    EXPECT_LT(open[b], tolerance) << what << ", body '" << c.scene.model->bodies()[static_cast<std::size_t>(b)].name
+                                  << "'";
+}
+
+/// left_open with all bodies bent by this share of what they are.
+double left_open_bent(Case& c, double share, const std::string& what) {
+  const State whole = c.state;
+  for (const Slot& b : c.scene.model->layout().bodies)
+    for (std::size_t i = 0; i < b.positions; ++i) c.state.y[b.position + i] *= share;
+  const double open = left_open(c, 3e-4, what).maxCoeff();
+  c.state = whole;
+  return open;
+}
+
+/// The sweeps turn the sections of a rod by Magnus' expansion of order 6, the reference by collocation of order 16.
+/// What lies between them is no fault of the balance but the rest of the expansion: it falls with the second or a
+/// higher power of the bending, and nothing in the plane and in straight rods. Elsewhere the balance closes as in other
+/// kinematics.
+void expect_closed_but_for_turns(Case& c, bool planar, const std::string& what) {
+  const double open = left_open_bent(c, 1, what);
+  EXPECT_LT(left_open_bent(c, 0, what), 1e-9) << what;
+  if (open < 1e-9) return;
+  EXPECT_FALSE(planar) << what;
+  EXPECT_LT(open, 1e-6) << what;
+  EXPECT_LT(left_open_bent(c, 0.5, what), open / 3) << what << ": it is left over by something else";
+  EXPECT_LT(left_open_bent(c, 0.125, what), std::max(1e-9, open / 100)) << what;
 }
 
 TEST(Closure, holds_for_every_body_of_random_trees) {
@@ -200,9 +233,12 @@ TEST(Closure, holds_for_every_body_of_random_trees) {
     RandomScene random(seed, {.bodies = bodies, .planar = planar, .any_root = seed % 2 == 0 && formulation != "exact"});
     Case c(random.text() + (planar ? "" : frame_loads(seed, bodies) + (seed % 5 < 2 ? fields : "")), formulation);
     c.state = random.state(*c.scene.model, c.scene.initial);
-    // Sections of a rod are turned by another method than the reference's, to 1e-8; stiffness magnifies it.
     const std::string what = formulation + ", seed " + std::to_string(seed);
-    expect_closed(c, formulation == "exact" ? 1e-6 : 1e-9, 3e-4, what);
+    if (formulation == "exact") {
+      expect_closed_but_for_turns(c, planar, what);
+    } else {
+      expect_closed(c, 1e-9, 3e-4, what);
+    }
     expect_roots_carried(c, what);
     expect_rates(c, 3e-4, what);
   }

@@ -93,6 +93,58 @@ TEST(HostedEquations, are_copied_for_other_threads) {
   for (const std::vector<double>& y : got) EXPECT_EQ(y, expected);
 }
 
+/// Eleven states about the initial one, row after row.
+std::vector<double> many_states(const Equations& equations) {
+  std::vector<double> rows;
+  for (int k = 0; k < 11; ++k) {
+    std::vector<double> y = equations.y0();
+    for (std::size_t i = y.size() - 6; i < y.size(); ++i)
+      y[i] += 0.02 * std::sin(1.0 + k + 2.0 * static_cast<double>(i));
+    rows.insert(rows.end(), y.begin(), y.end());
+  }
+  return rows;
+}
+
+// A row gets the bits that it gets alone, whatever stands in the others; a formulation without lanes gives those of
+// `derivatives`, one with lanes the same to rounding.
+TEST(HostedEquations, of_many_states_give_each_row_what_it_gets_alone) {
+  std::string text = test::busy_arm;
+  text.erase(text.find("  ramp:"), text.find("  jet:") - text.find("  ramp:"));
+  text.erase(text.find("  hold:"), text.find("  kick:") - text.find("  hold:"));
+  text.replace(text.find("type: free"), 10, "type: revolute, axis: [0, 0, 1]");
+  for (const char* formulation : {"quadratic", "ruthless", "consistent"}) {
+    const bool in_lanes = formulation != std::string("consistent");
+    Equations equations(Scene::parse(test::library(), text), formulation);
+    equations.set_input("torque", 0.4);
+    const std::size_t n = equations.size();
+    const std::vector<double> y = many_states(equations);
+    std::vector<double> all(y.size()), alone(n), one(n);
+    const host::EvaluatedRows done = equations.derivatives_many(0.1, y, all);
+    ASSERT_TRUE(done.evaluation.ok());
+    ASSERT_EQ(done.rows, 11U);
+    for (std::size_t row = 0; row < done.rows; ++row) {
+      const std::span<const double> of_row = std::span<const double>(y).subspan(row * n, n);
+      ASSERT_TRUE(equations.derivatives_many(0.1, of_row, alone).evaluation.ok());
+      ASSERT_TRUE(equations.derivatives(0.1, of_row, one).ok());
+      for (std::size_t i = 0; i < n; ++i) {
+        EXPECT_EQ(all[row * n + i], alone[i]) << formulation;
+        EXPECT_NEAR(all[row * n + i], one[i], in_lanes ? 1e-11 * (1 + std::abs(one[i])) : 0) << formulation;
+      }
+    }
+  }
+}
+
+TEST(HostedEquations, of_many_states_name_the_row_that_has_none) {
+  Equations equations(smooth_arm());
+  std::vector<double> y = many_states(equations), y_dot(y.size());
+  y[6 * equations.size() + 7] = std::nan("");
+  const host::EvaluatedRows done = equations.derivatives_many(0, y, y_dot);
+  EXPECT_EQ(done.rows, 6U);
+  EXPECT_FALSE(done.evaluation.ok());
+  y.pop_back();
+  EXPECT_THROW(static_cast<void>(equations.derivatives_many(0, y, y_dot)), std::invalid_argument);
+}
+
 TEST(HostedEquations, refuse_what_they_do_not_know) {
   try {
     const Equations sampled(Scene::parse(test::library(), test::busy_arm));

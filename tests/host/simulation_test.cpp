@@ -3,7 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdlib>
+#include <optional>
 #include <thread>
 
 #include "withy/tests/host/arm.hpp"
@@ -127,6 +131,36 @@ TEST(HostedSimulation, gives_the_same_bits_on_many_threads) {
   }
   for (std::thread& thread : threads) thread.join();
   for (const std::vector<double>& rows : got) EXPECT_EQ(rows, expected);
+}
+
+/// WITHY_MODELS sets their number: 1,000 under sanitizers (docs/faults.md).
+TEST(HostedSimulation, made_stepped_and_destroyed_on_four_threads_are_what_they_are_on_one) {
+  const char* asked = std::getenv("WITHY_MODELS");
+  const int models = asked != nullptr ? std::atoi(asked) : 24;
+  // Formulations and integrators of every kind, each in a scene of its own, by a library of its own now and then.
+  const auto model = [](int k) {
+    constexpr const char* formulations[] = {"quadratic", "ruthless", "linear", "exact", "consistent"};
+    constexpr const char* integrators[] = {"dopri5", "rk4", "imex", "radau"};
+    const std::optional<host::Library> own = k % 16 == 0 ? std::optional<host::Library>(std::in_place) : std::nullopt;
+    Scene scene = Scene::parse(own ? *own : library(), test::busy_arm);
+    scene.set("formulation", formulations[k % 5]);
+    scene.set("integrator", k % 4 == 1 ? "{name: rk4, step: 0.01}" : integrators[k % 4]);
+    scene.set("bodies.boom.mass_per_length", 0.4 + 0.001 * (k % 7));
+    Simulation simulation(scene);
+    return drive(simulation, 0, 3);
+  };
+  std::vector<std::vector<double>> one(140);
+  for (int k = 0; k < std::min(models, 140); ++k) one[static_cast<std::size_t>(k)] = model(k);
+  std::atomic<int> next{0}, wrong{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 4; ++t)
+      threads.emplace_back([&] {
+        for (int k = next++; k < models; k = next++)
+          if (model(k) != one[static_cast<std::size_t>(k % 140)]) ++wrong;
+      });
+  }
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST(HostedSimulation, passes_events_or_halts_at_them) {

@@ -159,7 +159,7 @@ TEST(HingeEffort, keys_that_a_law_lacks_or_does_not_take_are_errors) {
   };
   EXPECT_EQ(problems({{"law", law("constant")}}), "the law 'constant' needs 'value'");
   EXPECT_EQ(problems({{"law", law("constant")}, {"value", Value(1.0)}, {"period", Value(1.0)}}),
-            "the law 'constant' takes no 'period'");
+            "the law 'constant' takes no 'period'; law: sine does");
   EXPECT_EQ(problems({{"law", law("sine")}, {"period", Value(1.0)}}), "the law 'sine' needs 'amplitude'");
   EXPECT_EQ(problems({{"law", law("sine")}, {"amplitude", Value(1.0)}}),
             "the law 'sine' needs one of 'period' and 'frequency'");

@@ -4,41 +4,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "withy/core/simulation/sensor_reader.hpp"
-#include "withy/tests/loads/scene_run.hpp"
+#include "withy/tests/loads/shown_outputs.hpp"
 
 namespace withy {
 namespace {
 
 using std::numbers::pi;
 using test::LoadedScene;
+using test::Shown;
 using testing::HasSubstr;
-
-/// A run's table of outputs.
-struct Shown {
-  explicit Shown(const std::string& text, const std::vector<std::string>& overrides = {}) : scene(text, overrides) {
-    SensorReader reader(scene.scene.outputs, *scene.equations);
-    columns = reader.columns();
-    for (const State& state : scene.run()) {
-      times.push_back(state.time);
-      rows.emplace_back(columns.size());
-      EXPECT_TRUE(reader.read(state, rows.back()));
-    }
-  }
-  [[nodiscard]] std::vector<double> operator[](const std::string& name) const {
-    std::vector<double> all;
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      if (columns[c].name != name) continue;
-      for (const std::vector<double>& row : rows) all.push_back(row[c]);
-    }
-    EXPECT_FALSE(all.empty()) << name;
-    return all;
-  }
-  LoadedScene scene;
-  std::vector<Column> columns;
-  std::vector<double> times;
-  std::vector<std::vector<double>> rows;
-};
 
 /// Of a wave, from its last two values, a quarter of a period apart.
 double amplitude_at_end(const std::vector<double>& x) { return std::hypot(x.back(), x[x.size() - 2]); }
@@ -165,7 +139,7 @@ loads:
               HasSubstr("load 'servo' has no 'eror' to show; known: command, error"));
   EXPECT_THAT(test::problem_of(test::turntable + "outputs: {c: {type: control, of: spring}}\nloads: {spring: {type: "
                                                  "hinge-spring, hinge: axle, stiffness: 5}}\n"),
-              HasSubstr("is no controller"));
+              HasSubstr("is no controller and has no limit"));
 }
 
 /// A bus about its axis with a wheel on it: J_b = 4, J_w = 0.1.

@@ -1,5 +1,7 @@
 // Finding and loading: only what is named, from where it is safe, each plugin from one place.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <thread>
 
@@ -127,6 +129,37 @@ TEST(PluginHost, a_directory_below_one_anybody_can_rename_in_is_refused) {
   EXPECT_THAT(ask({house}, "zoo-good"), HasSubstr((scratch.path() / "outer").string() + " is writable by everybody"));
   fs::permissions(scratch.path() / "outer", fs::perms::sticky_bit, fs::perm_options::add);
   EXPECT_EQ(ask({house}, "zoo-good"), "loaded") << "a sticky directory, as the temporary one, protects its entries";
+}
+
+TEST(PluginHost, what_another_user_owns_or_a_group_can_write_to_is_refused) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root gives files away";
+  constexpr uid_t other = 4711;
+  const Scratch scratch;
+  const fs::path house = scratch.house("good", "house");
+  for (const fs::path& file : {house, house / "zoo-good.plugin", house / "zoo-good.so"}) {
+    ASSERT_EQ(::chown(file.c_str(), other, other), 0);
+    EXPECT_THAT(ask({house}, "zoo-good"), HasSubstr(file.string() + " belongs to another user (4711)"));
+    ASSERT_EQ(::chown(file.c_str(), 0, other), 0);
+    fs::permissions(file, fs::perms::group_write, fs::perm_options::add);
+    EXPECT_THAT(ask({house}, "zoo-good"), HasSubstr(file.string() + " is writable by a group (4711)"));
+    ASSERT_EQ(::chown(file.c_str(), 0, 0), 0);
+  }
+  EXPECT_FALSE(zoo_keeper::is_mapped(house / "zoo-good.so"));
+  EXPECT_EQ(ask({house}, "zoo-good"), "loaded") << "the group of root is root's own";
+}
+
+TEST(PluginHost, a_library_that_is_cut_short_or_no_file_is_not_mapped) {
+  const Scratch scratch;
+  const fs::path house = scratch.house("good", "house");
+  const fs::path library = house / "zoo-good.so";
+  const std::uintmax_t whole = fs::file_size(library);
+  for (const std::uintmax_t size : {whole / 2, whole / 4, std::uintmax_t{4096}, std::uintmax_t{100}}) {
+    fs::resize_file(library, size);
+    EXPECT_THAT(ask({house}, "zoo-good"), HasSubstr(library.string() + " cannot be loaded: it is cut short")) << size;
+  }
+  fs::remove(library);
+  ASSERT_EQ(::mkfifo(library.c_str(), 0600), 0);
+  EXPECT_THAT(ask({house}, "zoo-good"), HasSubstr("cannot be loaded: it is no file"));
 }
 
 TEST(PluginHost, a_manifest_or_library_anybody_can_write_to_is_refused_also_behind_a_link) {

@@ -1,4 +1,5 @@
 // The same plugins, linked in and loaded.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "withy/core/plugin/entry.hpp"
@@ -36,8 +37,9 @@ TEST(StaticPlugins, are_the_plugins_of_the_libraries) {
   Registry loaded;
   const PluginHost host({PluginHost::default_directory()});
   host.attach(loaded);
-  const auto names = everything(linked);
-  EXPECT_EQ(names, everything(loaded));
+  auto names = everything(linked);
+  names.emplace_back("load/fmu");  // what needs a library to be loaded is not linked in
+  EXPECT_THAT(everything(loaded), testing::UnorderedElementsAreArray(names));
   EXPECT_GE(names.size(), withy::static_plugins().size()) << "each library brings at least one";
   EXPECT_GT(names.size(), 0U);
   for (const PluginRecord& record : host.plugins()) {

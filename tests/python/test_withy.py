@@ -167,6 +167,23 @@ def test_equations_are_for_any_integrator(slew):
         equations.derivatives(0.0, numpy.full(len(y), numpy.nan))
 
 
+@pytest.mark.parametrize("formulation", ["quadratic", "consistent"])
+def test_many_states_are_evaluated_as_each_alone(slew, formulation):
+    equations = slew.compile(formulation)
+    noise = numpy.random.default_rng(3).normal(size=(1003, len(equations.y0)))
+    states = equations.y0 + 0.01 * noise
+    many = equations.derivatives_many(0.1, states)
+    for k in range(0, len(states), 7):
+        assert numpy.array_equal(many[k], equations.derivatives_many(0.1, states[k : k + 1])[0])
+        assert many[k] == pytest.approx(equations.derivatives(0.1, states[k]), rel=1e-9, abs=1e-9)
+    assert equations.derivatives_many(0.1, states[:0]).shape == (0, len(equations.y0))
+    with pytest.raises(ValueError, match="need an array of rows of"):
+        equations.derivatives_many(0.1, states[0])
+    states[17] = numpy.nan
+    with pytest.raises(withy.SimulationStopped, match="row 17: "):
+        equations.derivatives_many(0.1, states)
+
+
 def test_scipy_integrates_the_equations():
     integrate = pytest.importorskip("scipy.integrate")
     equations = withy.loads(TURNTABLE).compile()

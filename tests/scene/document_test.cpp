@@ -2,9 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "withy/scene/one_line.hpp"
@@ -133,6 +135,25 @@ TEST(Documents, RefuseAliasesBeforeTheyMultiply) {
   const Read r(bomb);
   EXPECT_FALSE(r.good);
   EXPECT_THAT(r.diagnostics.errors()[1].message, testing::HasSubstr("not allowed"));
+}
+
+TEST(Documents, RefuseTheCharacterNul) {
+  const Read r("file: \"a.SID_FEM\\0.txt\"\n");
+  EXPECT_FALSE(r.good);
+  ASSERT_EQ(r.diagnostics.errors().size(), 1U);
+  EXPECT_EQ(r.diagnostics.errors()[0].message, "the text holds the character NUL");
+  EXPECT_EQ(r.diagnostics.errors()[0].place.path, "/file");
+}
+
+TEST(Bytes, AreReadFromFilesAndPipesUpToTheLimit) {
+  EXPECT_THROW(read_bytes("/dev/zero"), std::system_error);
+  EXPECT_THROW(read_bytes("/nowhere"), std::system_error);
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], "name: x", 7), 7);
+  ::close(ends[1]);
+  EXPECT_EQ(read_bytes("/proc/self/fd/" + std::to_string(ends[0])), "name: x");
+  ::close(ends[0]);
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 // Plugins that fail while a scene is built are reported at the place that names them.
 #include <gmock/gmock.h>
 
+#include <cfenv>
 #include <limits>
 
 #include "scene_fixture.hpp"
+#include "withy/core/model/model.hpp"
 #include "withy/core/plugin/body.hpp"
+#include "withy/core/plugin/load.hpp"
 
 namespace withy::test {
 namespace {
@@ -28,6 +31,12 @@ class Lump final : public Body {
   bool has_root_;
 };
 
+/// A load that is bound to nothing.
+class Unbound final : public Load {
+ public:
+  std::unique_ptr<BoundLoad> bind(const Model&) const override { return nullptr; }
+};
+
 class HostilePlugins : public SceneTest {
  protected:
   HostilePlugins() {
@@ -42,6 +51,18 @@ class HostilePlugins : public SceneTest {
     };
     add("throws", [](const Value&, const MakeContext&) -> Made { throw std::runtime_error("no luck"); });
     add("null", [](const Value&, const MakeContext&) -> Made { return nullptr; });
+    add("number", [](const Value&, const MakeContext&) -> Made { throw 5; });
+    add("greedy", [](const Value&, const MakeContext&) -> Made { throw std::bad_alloc(); });
+    add("rounds", [](const Value&, const MakeContext&) -> Made {
+      std::fesetround(FE_UPWARD);
+      return std::make_unique<Lump>(1, true);
+    });
+    Plugin<Load> unbound;
+    unbound.id = "unbound";
+    unbound.make = [](const Value&, const MakeContext&) -> std::unique_ptr<Load> {
+      return std::make_unique<Unbound>();
+    };
+    e.add(std::move(unbound));
     add("refused", [](const Value&, const MakeContext&) -> Made { throw PluginError("a refused library"); });
     add("nan", [](const Value&, const MakeContext&) -> Made {
       return std::make_unique<Lump>(std::numeric_limits<double>::quiet_NaN(), true);
@@ -65,9 +86,33 @@ TEST_F(HostilePlugins, ThatThrowAreReported) {
 
 TEST_F(HostilePlugins, ThatMakeNothingAreReported) {
   EXPECT_EQ(problem("type: null"),
-            "s.yaml:4:7: /bodies/b/type: missing; need one of: beam, lump, modal, nan, null, plate, refused, "
-            "rigid, rootless, throws");
+            "s.yaml:4:7: /bodies/b/type: missing; need one of: beam, greedy, lump, modal, nan, null, number, "
+            "plate, refused, rigid, rootless, rounds, throws");
   EXPECT_EQ(problem("type: 'null'"), "s.yaml:4:3: /bodies/b: body 'null' cannot be made and does not say why");
+}
+
+TEST_F(HostilePlugins, ThatThrowWhatIsNoExceptionAreReported) {
+  EXPECT_EQ(problem("type: number"),
+            "s.yaml:4:3: /bodies/b: body 'number' cannot be made: it throws what is no exception of C++");
+}
+
+TEST_F(HostilePlugins, WithoutMemoryAreNoFaultOfTheScene) {
+  EXPECT_THROW(parse_scene(with("type: greedy"), "s.yaml", registry), std::bad_alloc);
+}
+
+TEST_F(HostilePlugins, ThatChangeTheArithmeticAreRefusedAndItIsRestored) {
+  try {
+    parse_scene(with("type: rounds"), "s.yaml", registry);
+    FAIL() << "the scene was read";
+  } catch (const PluginError& e) {
+    EXPECT_THAT(e.what(), testing::StartsWith("body 'rounds' of test changes the rounding mode"));
+  }
+  EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+}
+
+TEST_F(HostilePlugins, ThatBindNothingAreReported) {
+  EXPECT_EQ(problems(with("type: lump") + "loads:\n  l: {type: unbound}\n", registry),
+            "s.yaml:8:3: /loads/l: load 'l' cannot be bound and does not say why");
 }
 
 TEST_F(HostilePlugins, ThatMakeImpossibleBodiesAreReported) {

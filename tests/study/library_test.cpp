@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "withy/core/simulation/step_watch.hpp"
 #include "withy/study/advice.hpp"
 #include "withy/study/against_next.hpp"
 #include "withy/study/comparison.hpp"
@@ -182,6 +183,31 @@ TEST(StudyRun, ARunWhoseEnergyDoesNotBalanceIsInaccurate) {
   const CertifiedRun r = run_of("pendulum", {{"integrator", rk4}}, "quadratic");
   EXPECT_EQ(r.summary.status, RunStatus::inaccurate) << r.summary.message;
   EXPECT_NE(r.summary.message.find("Energy and work do not balance"), std::string::npos) << r.summary.message;
+}
+
+// Sound, out of balance, and past all measure: what is left out of a summary changes no motion, no status, no message.
+TEST(StudyRun, OfWhichTheOutcomeAloneIsLookedAtEndsTheSameWay) {
+  const Value one_step = Value::map({{"name", Value(std::string("rk4"))}, {"step", Value(1e300)}});
+  for (const auto& [name, integrator] :
+       {std::pair("spin-up", Value()), std::pair("pendulum", one_step), std::pair("two-link-slew", one_step)}) {
+    SceneValues values = scene(name);
+    if (integrator.kind() != Value::Kind::null) values.set("integrator", integrator, "the test");
+    const Prepared p = prepare(values.choose_formulation("quadratic", "the test"), plugins());
+    const auto run_with = [&](Attention attention) {
+      return withy::simulate(p.model(), *p.equations, *p.scene.integrator, p.scene.initial, run_options(p.scene), {},
+                             nullptr, attention);
+    };
+    const RunSummary whole = run_with(Attention::whole), outcome = run_with(Attention::outcome);
+    EXPECT_EQ(outcome.status, whole.status) << name;
+    EXPECT_EQ(outcome.message, whole.message) << name;
+    EXPECT_EQ(outcome.final.y, whole.final.y) << name;
+    EXPECT_EQ(outcome.peak_deflection, whole.peak_deflection) << name;
+    EXPECT_EQ(outcome.peak_effort, whole.peak_effort) << name;
+    EXPECT_EQ(outcome.energy_drift, whole.energy_drift) << name;
+    EXPECT_TRUE(outcome.validity.bodies.empty()) << name;
+    EXPECT_EQ(whole.fastest_mode > 0, name != std::string("pendulum")) << "rigid, which has none";
+    EXPECT_EQ(outcome.fastest_mode, whole.status == RunStatus::completed ? 0 : whole.fastest_mode) << name;
+  }
 }
 
 TEST(StudyRun, SoundRunsOfEveryFormulationAreNotInaccurate) {

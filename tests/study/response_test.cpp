@@ -396,5 +396,23 @@ TEST(EffectiveMass, OfABeamIsTheTextbooksAndInAllTheMassThatIsFree) {
   EXPECT_GT(sliding.frequencies[0], 0);
 }
 
+TEST(Response, OfALoopThatMovesInStepsIsRefusedByTheNameOfWhatDoes) {
+  const Prepared p = scene_of(R"(
+bodies: {table: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+loads:
+  read: {type: quantizer, of: axle, step: 0.005, sample: 0.01}
+  servo: {type: pid, of: read, hinge: axle, proportional: 3, sample: 0.01}
+)");
+  try {
+    ResponseQuestion question;
+    question.input = "servo";
+    static_cast<void>(response(at_start(p), question));
+    FAIL() << "a quantizer has no linear form";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("load 'read' gives what it measures in steps"), std::string::npos) << e.what();
+  }
+}
+
 }  // namespace
 }  // namespace withy::study

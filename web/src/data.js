@@ -1,6 +1,11 @@
 // What the program wrote into the page, as arrays, and what is computed of it.
 
-const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
+// What base64 stands for. The loop takes a tenth of the time of Uint8Array.from with a function.
+function bytes(text) {
+  const characters = atob(text), out = new Uint8Array(characters.length);
+  for (let i = 0; i < out.length; ++i) out[i] = characters.charCodeAt(i);
+  return out.buffer;
+}
 
 // Puts arrays of numbers in the place of their indices.
 export function unpack(run) {
@@ -79,7 +84,8 @@ function together(run, names) {
 export function quantities(run) {
   const out = [];
   const add = (group, name, unit, t, y, more = {}) => out.push({ group, name, unit, t, y, ...more });
-  const bodies = new Map();
+  // Angles that say again what a quaternion beside them says.
+  const told = new Set(run.table.columns.filter(c => c.name.endsWith('.qw')).flatMap(c => ['rx', 'ry', 'rz'].map(r => c.name.replace(/qw$/, r))));
   for (const column of run.table.columns.slice(1)) {
     const { name, unit, data } = column;
     const last = name.slice(name.lastIndexOf('.') + 1);
@@ -96,7 +102,9 @@ export function quantities(run) {
     else if (/\.tip\.[xyz]$/.test(name)) add('Position of tips', name, unit, run.time, data);
     else if (/\.motion_effort(\.\d+)?$/.test(name)) add(`Effort of motions, ${unit}`, name, unit, run.time, data);
     else if (/\.rate(\.\d+)?$/.test(name)) add(unit === 'rad/s' ? 'Rates of hinges' : unit === 'm/s' ? 'Speeds of hinges' : 'Rates of modal coordinates', name, unit && unit !== '1' ? unit : '1/s', run.time, data);
-    else if (unit === 'rad') add('Angles of hinges', name, 'deg', run.time, data.map(v => v * degrees));
+    else if (unit === 'rad' && told.has(name)) continue;
+    else if (unit === 'rad' && data.some(v => Math.abs(v) > 20 * Math.PI)) add('Turns', name, 'turns', run.time, data.map(v => v / 2 / Math.PI));
+    else if (unit === 'rad') add('Angles', name, 'deg', run.time, data.map(v => v * degrees));
     else if (unit === '' || unit === '1') add('Modal coordinates', name, '1', run.time, data);
     else if (name.includes('.')) add(`${name.slice(0, -last.length - 1)}, ${unit}`, name, unit, run.time, data);
     else add(unit === 'm' ? 'Travel of hinges' : `${name}, ${unit}`, name, unit, run.time, data);
@@ -113,7 +121,7 @@ export function quantities(run) {
 }
 
 // Groups over all runs: [{title, unit, series: [{name, of: [{run, t, y}]}]}].
-const first = ['Angles of hinges', 'Travel of hinges', 'Attitude', 'Deflection of tips', 'Validity', 'Energies', 'Drift'];
+const first = ['Angles', 'Turns', 'Travel of hinges', 'Attitude', 'Deflection of tips', 'Validity', 'Energies', 'Drift'];
 const last = ['Position of tips', 'Modal coordinates', 'Rates of modal', 'Rates of hinges', 'Speeds of hinges', 'Linear momentum', 'Angular momentum'];
 const rank = title => {
   const a = first.findIndex(f => title.startsWith(f));

@@ -166,6 +166,7 @@ export function show_runs(page) {
   write_sources($('sources'), runs);
   paint();
   seek(wish.has('t') ? Number(wish.get('t')) : start);
+  view?.resize();
   if (wish.get('play') !== '0' && !wish.has('t') && !matchMedia('(prefers-reduced-motion: reduce)').matches) play();
   document.body.dataset.ready = 'true';
 }

@@ -206,7 +206,8 @@ export class View {
 
   resize() {
     const { clientWidth: w, clientHeight: h } = this.element;
-    if (!w || !h) return;
+    if (!w || !h || (w === this.width && h === this.height)) return;
+    [this.width, this.height] = [w, h];
     this.renderer.setSize(w, h);
     this.camera.aspect = w / h;
     this.camera.updateProjectionMatrix();
@@ -214,7 +215,7 @@ export class View {
   }
 
   draw() {
-    if (!this.scene) return;
+    if (!this.scene || !this.width) return; // a frame of the wrong size would be drawn twice
     this.key.position.copy(this.camera.position).addScaledVector(this.up, this.size);
     this.renderer.render(this.scene, this.camera);
   }

@@ -43,6 +43,8 @@ export function write_words(holder, runs) {
       ['steps', `${r.steps} (${r.rejected_steps} rejected), ${r.evaluations} evaluations`], ['CPU time', `${plain(r.cpu_seconds)} s`]];
     for (const [body, d] of Object.entries(r.peaks?.tip_deflection ?? {}))
       rows.push([`peak deflection ${body}`, `y ${plain(d.y)} m, z ${plain(d.z)} m`]);
+    for (const [name, o] of Object.entries(r.outputs ?? {}))
+      rows.push([`range of ${name}`, `${plain(o.min.value)} at ${plain(o.min.t)} s to ${plain(o.max.value)} at ${plain(o.max.t)} s ${o.unit === '1' ? '' : o.unit}`]);
     for (const e of r.events ?? []) rows.push([`event ${e.name}`, `${plain(e.time)} s${e.direction ? `, ${e.direction}wards` : ''}`]);
     for (const [name, e] of Object.entries(r.acted ?? {})) if (e.energy_lost) rows.push([`energy lost in ${name}`, `${plain(e.energy_lost)} J`]);
     const more = element('details');

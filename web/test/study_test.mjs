@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { execSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { in_browser, opened, text } from './browser.mjs';
+import { in_browser, opened, says, text } from './browser.mjs';
 
 const [withy, scenes, chromium, pictures] = process.argv.slice(2).map(path => resolve(path));
 const page_data = file => JSON.parse(/<script type="application\/json" id="withy-data">([^]*?)<\/script>/.exec(readFileSync(file, 'utf8'))[1]).data;
@@ -25,7 +25,7 @@ async function check_trade(browser, folder, run, troubles) {
     if (q.relative_error > 1.05 * p.relative_error && p.relative_error > 1e-13) assert.ok(at[j][1] < at[i][1], 'worse is higher');
   }));
   await marks.nth(0).hover({ force: true });
-  assert.match(await text(page, '#note'), /error .* %, CPU time .* ms/);
+  await says(page, '#note', /error .* %, CPU time .* ms/);
   await page.click('table.rows tbody tr:nth-child(2)');
   assert.match(await text(page, '#model'), new RegExp(`${points[1].formulation}[^]*withy run .*driven-arm.yaml`));
   await page.click('table.rows th:nth-child(2) button');
@@ -65,7 +65,7 @@ async function check_modes(browser, folder, run, troubles) {
   assert.match(await text(page, '#campbell'), /1 per turn[^]*2 per turn/);
   assert.match(await text(page, '#campbell'), /spin.axle \[rpm\]/);
   await page.locator('#campbell .mark').nth(12).click({ force: true });
-  assert.match(await text(page, '#mode'), /kinetic energy[^]*blade\./);
+  await says(page, '#mode', /kinetic energy[^]*blade\./);
   await page.selectOption('select[aria-label="Frequencies in"]', 'rad/s');
   assert.match(await text(page, '#campbell'), /frequency \[rad\/s\]/);
   await page.selectOption('select[aria-label="Lines of the rate up to"]', '0');
@@ -111,14 +111,18 @@ async function check_sweep(browser, folder, run, troubles) {
   close(slow.greatest, Math.max(...rows.filter(r => +r[head.indexOf('loads.slew.time_scale')] === 0.5).map(r => +r[head.indexOf(peak)])));
   const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
   assert.match(await text(page, '.answer'), /180 cases: 180 done, 0 of them failed/);
-  const cell = page.locator('.pairs svg g:has(circle)').first();
-  const point = await cell.evaluate(g => { const d = /^M([\d.]+) ([\d.]+)/.exec(g.querySelector('path').getAttribute('d')), p = new DOMPoint(+d[1], +d[2]).matrixTransform(g.getScreenCTM()); return { x: p.x, y: p.y }; });
-  await page.evaluate(y => scrollTo(0, y - 300), point.y);
-  const moved = await cell.evaluate(g => { const d = /^M([\d.]+) ([\d.]+)/.exec(g.querySelector('path').getAttribute('d')), p = new DOMPoint(+d[1], +d[2]).matrixTransform(g.getScreenCTM()); return { x: p.x, y: p.y }; });
-  await page.mouse.move(moved.x, moved.y);
-  assert.match(await text(page, '#note'), /case \d+/);
-  await page.mouse.click(moved.x, moved.y);
-  assert.match(await text(page, '#case'), /withy sweep case .*plan.yaml \d+/);
+  // The first point of the first pair, brought to where the pointer can reach it.
+  const place = await page.locator('.pairs svg g:has(circle)').first().evaluate(g => {
+    const d = /^M([\d.]+) ([\d.]+)/.exec(g.querySelector('path').getAttribute('d'));
+    const here = () => new DOMPoint(+d[1], +d[2]).matrixTransform(g.getScreenCTM());
+    scrollBy(0, here().y - 300);
+    const { x, y } = here();
+    return { x, y };
+  });
+  await page.mouse.move(place.x, place.y);
+  await says(page, '#note', /case \d+/);
+  await page.mouse.click(place.x, place.y);
+  await says(page, '#case', /withy sweep case .*plan.yaml \d+/);
   await shot(page, 'sweep-light');
   await page.click('#theme');
   await shot(page, 'sweep-dark');
@@ -138,9 +142,47 @@ async function check_indices(browser, folder, run, troubles) {
   await page.close();
 }
 
+// Words and curves of the files: each point told by the pointer, curves taken away by their names.
+async function check_figures(browser, folder, run, troubles) {
+  const measured = join(scenes, 'measured/pendulum.csv');
+  run('terms', join(scenes, 'two-link-slew.yaml'), '--set', 'time.end=1', '--out', join(folder, 'terms'));
+  run('tune', join(scenes, 'pendulum.yaml'), '--match', measured, '--parameters', 'bodies.rod.center_of_mass.1', '--out', join(folder, 'tune'));
+  run('response', join(scenes, 'pd-arm.yaml'), '--input', 'control.elbow', '--out', join(folder, 'response'));
+  run('advise', join(scenes, 'pendulum.yaml'), '--accuracy', '1%', '--out', join(folder, 'advise'));
+  const expected = {
+    terms: [/rms %/, 2], tune: [/center_of_mass/, 1], response: [/margin/, 3], advise: [/advice/, 1],
+  };
+  for (const [name, [words, figures]] of Object.entries(expected)) {
+    const page = await opened(browser, join(folder, name, 'report.html'), 'theme=light', troubles);
+    assert.match(await text(page, '.said'), words, name);
+    const panels = page_data(join(folder, name, 'report.html')).pictures.flatMap(p => p.panels);
+    assert.ok(panels.length >= figures, `${panels.length} figures of ${name}`);
+    assert.equal(await page.locator('.study-figure').count(), panels.length);
+    const drawn = await page.$$eval('.study-figure path', all => all.filter(p => p.getAttribute('d').length > 3).length);
+    assert.ok(drawn >= panels.reduce((sum, p) => sum + p.curves.length, 0), `${drawn} curves of ${name}`);
+    await shot(page, `${name}-light`);
+    await page.close();
+  }
+  // The dots of a fit are the measurement, in degrees where it is in radians.
+  const rows = readFileSync(join(folder, 'tune/fit.csv'), 'utf8').trim().split('\n').map(l => l.split(','));
+  const [panel] = page_data(join(folder, 'tune/report.html')).pictures[0].panels, dots = panel.curves.find(c => c.points);
+  assert.equal(dots.name, 'measured');
+  const factor = panel.y.endsWith('[deg]') ? 180 / Math.PI : 1;
+  dots.x.forEach((t, i) => { close(t, +rows[i + 1][0]); assert.ok(Math.abs(dots.y[i] - factor * rows[i + 1][1]) < 1e-9 * (1 + Math.abs(dots.y[i]))); });
+  const page = await opened(browser, join(folder, 'tune/report.html'), 'theme=dark', troubles);
+  const frame = await page.locator('.study-figure svg').first().boundingBox();
+  await page.mouse.move(frame.x + frame.width / 2, frame.y + frame.height / 2);
+  for (let k = 0; k < 40; ++k) await page.mouse.move(frame.x + frame.width / 2, frame.y + frame.height * (0.1 + 0.02 * k));
+  await says(page, '#note', /t \[s\]: /);
+  const paths = await page.locator('.study-figure path').count();
+  await page.locator('.legend .chip', { hasText: 'measured' }).click();
+  await page.waitForFunction(before => document.querySelectorAll('.study-figure path').length < before, paths);
+  await page.close();
+}
+
 await in_browser(withy, chromium, async (browser, folder, run) => {
   const troubles = [];
-  for (const check of [check_trade, check_modes, check_sweep, check_indices]) await check(browser, folder, run, troubles);
+  for (const check of [check_trade, check_modes, check_sweep, check_indices, check_figures]) await check(browser, folder, run, troubles);
   assert.deepEqual(troubles, []);
   console.log('the pages of studies show what their files say');
 });

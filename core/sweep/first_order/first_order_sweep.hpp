@@ -65,8 +65,6 @@ struct FirstOrderState;
 template <class Space>
 class FirstOrderSweep {
  public:
-  /// Says that nothing differentiates it but differences.
-  struct WithoutTangents {};
   FirstOrderSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity);
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
   /// What was computed once for all evaluations, a line each.

@@ -69,6 +69,11 @@ void put(std::size_t lane, const SharedNumbers<From>& from, SharedNumbers<To>& t
   });
 }
 
+template <class From, class To>
+void put(std::size_t lane, const SharedValue<From>& from, SharedValue<To>& to) {
+  if (!from.empty()) to.edit([&](To& value) { put(lane, *from, value); });
+}
+
 template <class Space, class Many>
 void put(std::size_t lane, const RigidPart<Space>& from, RigidPart<Many>& to) {
   put(lane, from.inertia, to.inertia);

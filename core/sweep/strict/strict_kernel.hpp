@@ -98,6 +98,15 @@ inline void eliminate_rate(Response<Space>& r, const typename Space::Twist& colu
   return sign;
 }
 
+/// The response that a node's goes into: its parent's, or that of the parent's station.
+template <class Space>
+inline Response<Space>& outer_response(const StrictNode<Space>& node, const StrictState<Space>& s) {
+  const StrictNode<Space>& parent = s.nodes[node.parent];
+  return node.parent_station < 0
+             ? at<StrictNodeWork<Space>>(s.work, parent.work)->response
+             : at<StrictStationWork<Space>>(s.work, parent.work_stations)[node.parent_station].response;
+}
+
 /// Elimination of ẍ, and what the hinge passes to the parent: the sign of the node's block so far, `sign`, times that
 /// of the hinge; 0 where the hinge's is singular.
 template <class Space>
@@ -129,11 +138,7 @@ inline int strict_pass_inward(const StrictNode<Space>& node, const StrictState<S
   if (node.parent < 0) return sign;
   r.p += r.P * w.sigma + r.Q * w.sigma0;
   r.p0 += r.R * w.sigma + r.T * w.sigma0;
-  const StrictNode<Space>& parent = s.nodes[node.parent];
-  Response<Space>& outer =
-      node.parent_station < 0
-          ? at<StrictNodeWork<Space>>(s.work, parent.work)->response
-          : at<StrictStationWork<Space>>(s.work, parent.work_stations)[node.parent_station].response;
+  Response<Space>& outer = outer_response(node, s);
   const typename Space::Frame& X = w.SM;
   outer.P += Space::to_parent(X, r.P);
   outer.Q += Space::to_parent(X, r.Q);
@@ -192,13 +197,12 @@ template <class Space, int N>
   }
 }
 
-template <class Space, int N>
-[[gnu::flatten]] inline void strict_acceleration(const StrictNode<Space>& node, const StrictState<Space>& s) {
-  using Twist = typename Space::Twist;
-  const int n = count<N>(node.modes);
-  auto& w = *at<StrictNodeWork<Space>>(s.work, node.work);
-  const Twist* A = s.world;
-  const Twist* A0 = s.world;
+/// Ā and A0 of a node but for H ẍ: the parent's, and the hinge's σ̄ and σ0.
+template <class Space>
+inline void take_outer_acceleration(const StrictNode<Space>& node, const StrictState<Space>& s,
+                                    StrictNodeWork<Space>& w) {
+  const typename Space::Twist* A = s.world;
+  const typename Space::Twist* A0 = s.world;
   if (node.parent >= 0) {
     const StrictNode<Space>& parent = s.nodes[node.parent];
     const auto& pw = *at<StrictNodeWork<Space>>(s.work, parent.work);
@@ -208,6 +212,31 @@ template <class Space, int N>
   }
   w.A = Space::to_child(w.SM, *A) + w.sigma;
   w.A0 = Space::to_child(w.SM, *A0) + w.sigma0;
+}
+
+/// Ā and A0 of a node's stations from the node's and q̈ (`result` of the state).
+template <class Space, int N>
+inline void station_accelerations(const StrictNode<Space>& node, const StrictState<Space>& s,
+                                  const StrictNodeWork<Space>& w) {
+  const int n = count<N>(node.modes);
+  const double* a = s.result + node.mode_speed;
+  auto* stations = at<StrictStationWork<Space>>(s.work, node.work_stations);
+  for (std::size_t k = 0; k < node.stations.size(); ++k) {
+    const StrictStation<Space>& station = node.stations[k];
+    if (!station.has_children) continue;
+    StrictStationWork<Space>& sw = stations[k];
+    sw.A0 = Space::shift_to_child(station.X, w.A0);
+    sw.A = Space::shift_to_child(station.X, w.A) - Space::cross(sw.xi, sw.A0) + sw.sigma;
+    for (int i = 0; i < n; ++i) sw.A += station.J[static_cast<std::size_t>(i)] * a[i];
+  }
+}
+
+template <class Space, int N>
+[[gnu::flatten]] inline void strict_acceleration(const StrictNode<Space>& node, const StrictState<Space>& s) {
+  using Twist = typename Space::Twist;
+  const int n = count<N>(node.modes);
+  auto& w = *at<StrictNodeWork<Space>>(s.work, node.work);
+  take_outer_acceleration(node, s, w);
   const JointData<Space>& joint = node.joint;
   if (joint.driven) [[unlikely]] {
     driven_efforts<Space>(joint, s.positions + joint.position, s.speeds + joint.speed,
@@ -234,15 +263,7 @@ template <class Space, int N>
     const ModalBlock<Space> m(node, s.work, n);
     double* a = s.result + node.mode_speed;
     for (int i = 0; i < n; ++i) a[i] = m.rhs[i] - Space::dot(m.row[i], w.A) - Space::dot(m.row0[i], w.A0);
-    auto* stations = at<StrictStationWork<Space>>(s.work, node.work_stations);
-    for (std::size_t k = 0; k < node.stations.size(); ++k) {
-      const StrictStation<Space>& station = node.stations[k];
-      if (!station.has_children) continue;
-      StrictStationWork<Space>& sw = stations[k];
-      sw.A0 = Space::shift_to_child(station.X, w.A0);
-      sw.A = Space::shift_to_child(station.X, w.A) - Space::cross(sw.xi, sw.A0) + sw.sigma;
-      for (int i = 0; i < n; ++i) sw.A += station.J[static_cast<std::size_t>(i)] * a[i];
-    }
+    station_accelerations<Space, N>(node, s, w);
   }
 }
 

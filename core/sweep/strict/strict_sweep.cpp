@@ -1,6 +1,7 @@
 #include "withy/core/sweep/strict/strict_sweep.hpp"
 
 #include "withy/core/sweep/first_slopes.hpp"
+#include "withy/core/sweep/strict/strict_inverse.hpp"
 #include "withy/core/sweep/strict/strict_kernel.hpp"
 #include "withy/core/sweep/with_modes.hpp"
 
@@ -72,6 +73,7 @@ StrictSweep<Space>::StrictSweep(const NodeTree& tree, const std::vector<Terms>& 
   }
   for (StrictNode<Space>& node : nodes_) {
     const auto n = static_cast<std::size_t>(node.modes);
+    speeds_ += node.joint.speeds + n;
     node.work = memory.template take<StrictNodeWork<Space>>(1);
     node.work_stations = memory.template take<StrictStationWork<Space>>(node.stations.size());
     node.work_vectors = memory.template take<typename Space::Twist>(5 * n);
@@ -111,6 +113,21 @@ Evaluation StrictSweep<Space>::accelerations(const double* positions, const doub
     with_modes(node.modes, [&](auto n) { strict_acceleration<Space, decltype(n)::value>(node, state); });
   }
   return {Evaluation::Outcome::ok, -1, sign};
+}
+
+template <class Space>
+void StrictSweep<Space>::inverse(const double* positions, const double* speeds, const double* accelerations,
+                                 bool inertial, double* efforts, std::byte* work) const noexcept {
+  const typename Space::Twist still = Space::Twist::zero();
+  // Accelerations go out and efforts come in through one array: a node's own are all that it needs of it.
+  std::copy_n(accelerations, speeds_, efforts);
+  const StrictState<Space> state{
+      positions, speeds, nullptr, efforts, work, nodes_.data(), inertial ? &still : &world_acceleration_};
+  for (const StrictNode<Space>& node : nodes_) {
+    with_modes(node.modes, [&](auto n) { strict_outward<Space, decltype(n)::value>(node, state); });
+    given_acceleration<Space>(node, state);
+  }
+  for (std::size_t i = nodes_.size(); i-- > 0;) strict_effort<Space>(nodes_[i], state, inertial ? 0.0 : 1.0);
 }
 
 template class StrictSweep<Spatial>;

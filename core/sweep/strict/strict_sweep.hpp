@@ -66,11 +66,15 @@ class StrictSweep {
   /// `result`; all efforts on them, the applied ones among them, are left in `efforts`.
   Evaluation accelerations(const double* positions, const double* speeds, double* efforts, double* result,
                            std::byte* work) const noexcept;
+  /// Inverse dynamics: the applied efforts under which `accelerations` are those of the speeds, or, `inertial`, M times
+  /// `accelerations` (the speeds then all zero).
+  void inverse(const double* positions, const double* speeds, const double* accelerations, bool inertial,
+               double* efforts, std::byte* work) const noexcept;
 
  private:
   std::vector<StrictNode<Space>> nodes_;
   typename Space::Twist world_acceleration_;
-  std::size_t work_size_ = 0;
+  std::size_t work_size_ = 0, speeds_ = 0;
 };
 
 extern template class StrictSweep<Spatial>;

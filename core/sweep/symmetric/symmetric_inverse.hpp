@@ -51,10 +51,10 @@ inline void given_acceleration(const SymmetricNode<Space>& node, const Symmetric
                                       : Space::to_child(sw.frame, A) + sw.sigma;
       for (int i = 0; i < n; ++i) sw.A += partial[i] * a[i];
       // From here on p is the wrench that holds what the station carries.
-      sw.p = flavor == Flavor::frozen ? Twist::zero() : sw.p + station.carried.inertia * sw.A;
+      sw.p = flavor == Flavor::frozen ? Twist::zero() : sw.p + station.carried->inertia * sw.A;
     }
   }
-  w.p = node.base.inertia * A + node.base.velocity_wrench(w.V);
+  w.p = node.base->inertia * A + node.base->velocity_wrench(w.V);
 }
 
 /// Efforts of a node's rates, and the wrench of its hinge on the parent. `elastic`: factor of K q + D q̇.

@@ -18,14 +18,14 @@ template <class Space>
 void precompute(SymmetricNode<Space>& node) {
   node.factor.assign(node.G0.begin(), node.G0.end());
   node.Y0.assign(node.C0.begin(), node.C0.end());
-  node.reduced = node.base.inertia;
   if (!factorize<-1>(node.factor.data(), node.modes)) {
     node.factor.clear();  // the sweep meets the same pivot and reports it
     return;
   }
   solve_lower<-1>(node.factor.data(), node.modes, node.Y0.data());
-  for (std::size_t i = 0, n = node.Y0.size(); i < n; ++i)
-    node.reduced.subtract_square(node.Y0[i], node.factor[i * n + i]);
+  typename Space::Inertia reduced = node.base->inertia;
+  for (std::size_t i = 0, n = node.Y0.size(); i < n; ++i) reduced.subtract_square(node.Y0[i], node.factor[i * n + i]);
+  node.reduced = reduced;
 }
 
 /// Motion of a station's section in a node that is not truncated; see station_motion.
@@ -35,8 +35,8 @@ inline void section_motion(const SymmetricNode<Space>& node, std::size_t station
   const auto* q = s.positions + node.mode_position;
   const auto* q_dot = s.speeds + node.mode_speed;
   if constexpr (flavor == Flavor::exact) {
-    const RodWork work = rod_work_at(node.rod, node.modes, at<Pack>(s.work, node.work_rod));
-    rod_station_motion<N>(node.rod, station, work, node.modes, q, q_dot, out, J);
+    const RodWork work = rod_work_at(*node.rod, node.modes, at<Pack>(s.work, node.work_rod));
+    rod_station_motion<N>(*node.rod, station, work, node.modes, q, q_dot, out, J);
   } else {
     station_motion<Space, N>(node.stations[station].fields, node.modes, q, q_dot, out, J);
   }
@@ -51,11 +51,11 @@ template <class Space, Flavor flavor>
   StationMotion<Space> m;
   Twist* JM = at<Twist>(s.work, node.work_J) + n * static_cast<int>(node.stations.size());
   section_motion<Space, -1, flavor>(node, static_cast<std::size_t>(node.root_station), s, m, JM);
-  const Twist rate = Space::to_child(node.M, m.rate);
+  const Twist rate = Space::to_child(*node.M, m.rate);
   auto& root = *at<RootWork<Space>>(s.work, node.work_root);
-  root.frame = Space::compose(m.frame, node.M);
-  root.sigma = Space::cross(V, rate) + Space::to_child(node.M, m.bias);
-  for (int i = 0; i < n; ++i) JM[i] = Space::to_child(node.M, JM[i]);
+  root.frame = Space::compose(m.frame, *node.M);
+  root.sigma = Space::cross(V, rate) + Space::to_child(*node.M, m.bias);
+  for (int i = 0; i < n; ++i) JM[i] = Space::to_child(*node.M, JM[i]);
   V = Space::from_child(root.frame, V - rate);
 }
 
@@ -84,8 +84,8 @@ template <class Space, int N, Flavor flavor>
     }
   }
   if constexpr (flavor == Flavor::exact) {
-    rod_motion<N>(node.rod, n, s.positions + node.mode_position, s.speeds + node.mode_speed,
-                  rod_work_at(node.rod, n, at<Pack>(s.work, node.work_rod)));
+    rod_motion<N>(*node.rod, n, s.positions + node.mode_position, s.speeds + node.mode_speed,
+                  rod_work_at(*node.rod, n, at<Pack>(s.work, node.work_rod)));
   }
   if constexpr (flavor == Flavor::full || flavor == Flavor::exact) {
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
@@ -101,12 +101,12 @@ template <class Space, int N, Flavor flavor>
       sw.frame = m.frame;
       sw.V = VS;
       sw.sigma = Space::cross(VS, m.rate) + m.bias;
-      sw.p = station.carried.velocity_wrench(VS);
+      sw.p = station.carried->velocity_wrench(VS);
     }
   }
   w.V = V;
   if (flavor == Flavor::frozen && is_constant(node, s)) return;  // nothing is added to what it has precomputed
-  w.p = node.base.velocity_wrench(V);
+  w.p = node.base->velocity_wrench(V);
 }
 
 /// Adds the integrals over a body's own mass to (3) where it is not frozen.
@@ -121,8 +121,8 @@ inline void integrate_mass(const SymmetricNode<Space>& node, const SymmetricStat
   Group P_here[N > 0 ? N * Space::linear : 1];
   Group* P = N > 0 ? P_here : at<Group>(s.work, node.work_P);
   if constexpr (flavor == Flavor::exact) {
-    const RodWork rod = rod_work_at(node.rod, n, at<Pack>(s.work, node.work_rod));
-    integrate<N>(node.rod, rod, n, q_dot, V, P, I, C, G, p, h);
+    const RodWork rod = rod_work_at(*node.rod, n, at<Pack>(s.work, node.work_rod));
+    integrate<N>(*node.rod, rod, n, q_dot, V, P, I, C, G, p, h);
   } else {
     integrate<Space, N>(node.mass, n, q, q_dot, V, P, I, C, G, p, h);
     if constexpr (has_sections<Space>) collect_sections<Space, N>(node.rotary, n, q, q_dot, V, P, I, C, G, p, h);
@@ -172,7 +172,7 @@ inline auto eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
     for (std::size_t k = 0; k < node.stations.size(); ++k) {
       const auto& station = node.stations[k];
       if (!station.loaded) continue;
-      typename Space::Inertia IS = station.carried.inertia;
+      typename Space::Inertia IS = station.carried->inertia;
       if (station.has_children) IS += *at<typename Space::Inertia>(s.work, station.work_I);
       collect_station<Space, N>(stations[k], IS, J + static_cast<int>(k) * n, n, I, p, C, G, y);
     }
@@ -311,9 +311,9 @@ template <class Space, int N, Flavor flavor>
   using Twist = typename Space::Twist;
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
   const bool constant = flavor == Flavor::frozen && is_constant(node, s);
-  typename Space::Inertia I = constant ? node.reduced : node.base.inertia;
+  typename Space::Inertia I = constant ? *node.reduced : node.base->inertia;
   if (node.has_children) I += *at<typename Space::Inertia>(s.work, node.work_I);
-  Twist p = constant ? node.base.velocity_wrench(w.V) : w.p;
+  Twist p = constant ? node.base->velocity_wrench(w.V) : w.p;
   auto good = everywhere<typename Space::Scalar>();
   if constexpr (flavor != Flavor::rigid) {
     good = eliminate_modes<Space, N, flavor>(node, s, w.V, I, p);

@@ -2,6 +2,7 @@
 /// Nodes of a symmetric sweep in the work memory, and the kernels that belong to each.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <type_traits>
 #include <utility>
@@ -83,18 +84,25 @@ std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes) {
   using Scalar = typename Space::Scalar;
   WorkLayout memory;
   place_sums(nodes, memory);
+  // What no pass leaves for another is shared by all nodes.
+  std::size_t most = 0;
+  for (const SymmetricNode<Space>& node : nodes) most = std::max(most, static_cast<std::size_t>(node.modes));
+  const std::size_t shared_h = memory.template take<Scalar>(most);
+  const std::size_t shared_P = memory.template take<typename Space::Group>(most * Space::linear);
   for (SymmetricNode<Space>& node : nodes) {
     using Twist = typename Space::Twist;
     const auto n = static_cast<std::size_t>(node.modes);
     node.work = memory.template take<NodeWork<Space>>(1);
     node.work_stations = memory.template take<StationWork<Space>>(node.stations.size());
-    node.work_J = memory.template take<Twist>(n * (node.stations.size() + 1));
+    if (node.flavor != Flavor::frozen) node.work_J = memory.template take<Twist>(n * (node.stations.size() + 1));
     node.work_C = memory.template take<Twist>(n);
     node.work_G = memory.template take<Scalar>(n * n);
     node.work_y = memory.template take<Scalar>(n);
-    node.work_h = memory.template take<Scalar>(n);
-    if constexpr (has_rods<Space>) node.work_rod = memory.template take<Pack>(rod_work(node.rod, node.modes));
-    node.work_P = memory.template take<typename Space::Group>(n * Space::linear);
+    if constexpr (has_rods<Space>) {
+      if (!node.rod.empty()) node.work_rod = memory.template take<Pack>(rod_work(*node.rod, node.modes));
+    }
+    node.work_h = shared_h;
+    node.work_P = shared_P;
     if (node.joint.driven) node.work_driven = memory.template take<DrivenWork<Space>>(1);
     if (node.root_station >= 0) node.work_root = memory.template take<RootWork<Space>>(1);
     if (!single(node.joint.kind) && node.joint.kind != Joint::fixed)

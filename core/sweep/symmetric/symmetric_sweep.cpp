@@ -1,6 +1,7 @@
 #include "withy/core/sweep/symmetric/symmetric_sweep.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 
 #include "withy/core/sweep/symmetric/symmetric_inverse.hpp"
@@ -17,6 +18,16 @@ std::vector<double> row_major(const Eigen::MatrixXd& m) {
     for (Eigen::Index j = 0; j < m.cols(); ++j) a.push_back(m(i, j));
   }
   return a;
+}
+
+template <class T>
+bool same_bits(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+/// Member by member: between them there may be bytes of no meaning.
+template <class Space>
+bool same_part(const RigidPart<Space>& a, const RigidPart<Space>& b) {
+  return same_bits(a.inertia, b.inertia) && same_bits(a.mass, b.mass) && same_bits(a.moment, b.moment);
 }
 
 }  // namespace
@@ -36,7 +47,7 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms, const Sy
   NodeSpec spec = in_strain_order(given, terms.strain);
   if (frozen) spec = rooted(std::move(spec));
   root_station = spec.root_station;
-  M = Space::make(spec.M);
+  if (root_station >= 0) M = Space::make(spec.M);
   base = RigidPart<Space>(spec.base);
   for (const StationSpec& s : spec.stations) {
     SymmetricStation<Space> station;
@@ -70,8 +81,8 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms, const Sy
 template <class Space>
 void SymmetricNode<Space>::take_mass(const NodeSpec& spec, Terms terms, const SymmetricNode* twin) {
   if (terms.strain == StrainOrder::exact && modes > 0) {
-    rod = twin != nullptr && twin->rod.fits(spec) ? twin->rod : RodKinematics<Space>(spec);
-    flavor = rod.integrals.packs > 0 ? Flavor::exact : Flavor::full;
+    rod = twin != nullptr && !twin->rod.empty() && twin->rod->fits(spec) ? twin->rod : RodKinematics<Space>(spec);
+    flavor = rod->integrals.packs > 0 ? Flavor::exact : Flavor::full;
     return;
   }
   flavor = modes > 0 ? Flavor::full : Flavor::rigid;
@@ -86,9 +97,11 @@ void SymmetricNode<Space>::share(const SymmetricNode& twin) {
   C0.share(twin.C0);
   G0.share(twin.G0);
   I1.share(twin.I1);
+  base.share(twin.base, same_part<Space>);
   for (std::size_t k = 0; k < std::min(stations.size(), twin.stations.size()); ++k) {
     stations[k].fields.share(twin.stations[k].fields);
     stations[k].J.share(twin.stations[k].J);
+    stations[k].carried.share(twin.stations[k].carried, same_part<Space>);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "withy/core/sweep/mass_table.hpp"
 #include "withy/core/sweep/rod/rod_kinematics.hpp"
 #include "withy/core/sweep/rod/rotary_table.hpp"
+#include "withy/core/sweep/shared_value.hpp"
 #include "withy/core/sweep/station_motion.hpp"
 
 namespace withy::sweep {
@@ -24,14 +25,15 @@ enum class Flavor { rigid, frozen, full, exact };
 template <class Space>
 struct SymmetricStation {
   Fields<Space> fields;
-  RigidPart<Space> carried;  ///< rigid bodies it carries; nothing in a frozen node
-  bool loaded = false;       ///< it carries mass or children
+  bool loaded = false;  ///< it carries mass or children
   bool has_children = false;
   std::size_t work_I = 0;                  ///< where its children sum their articulated inertia
   SharedNumbers<typename Space::Twist> J;  ///< at q = 0
+  SharedValue<RigidPart<Space>> carried;   ///< rigid bodies it carries; nothing in a frozen node
 };
 
-/// Constants of a node.
+/// Constants of a node. What all passes read stands first and together: long chains are limited by the memory that goes
+/// through the caches, and large values are shared with equal nodes.
 template <class Space>
 struct SymmetricNode {
   using Twist = typename Space::Twist;
@@ -39,32 +41,32 @@ struct SymmetricNode {
   int body = 0, parent = -1, parent_station = -1, root_station = -1, modes = 0;
   /// Frozen is ruthless: integrals at q = 0, velocity terms at q̇ = 0; sections parallel to the node's frame.
   Flavor flavor = Flavor::rigid;
-  bool leaf = true;              ///< nothing hangs on it
-  bool has_children = false;     ///< on its frame, not on a station
-  bool begins = false;           ///< it is the first to write the sum of inertias of what it hangs on
-  bool begins_frozen = false;    ///< and of the velocity wrench, of a station that carries nothing else
-  std::size_t work_I = 0;        ///< where its children sum their articulated inertia
-  std::size_t work_outer_I = 0;  ///< the same of what it hangs on
+  bool leaf = true;            ///< nothing hangs on it
+  bool has_children = false;   ///< on its frame, not on a station
+  bool begins = false;         ///< it is the first to write the sum of inertias of what it hangs on
+  bool begins_frozen = false;  ///< and of the velocity wrench, of a station that carries nothing else
   std::size_t mode_position = 0, mode_speed = 0;
+  // Work memory.
+  std::size_t work = 0, work_stations = 0, work_C = 0, work_G = 0, work_y = 0, work_J = 0;
+  std::size_t work_I = 0;              ///< where its children sum their articulated inertia
+  std::size_t work_outer_I = 0;        ///< the same of what it hangs on
+  SharedValue<RigidPart<Space>> base;  ///< the rigid part; everything in a frozen node
   JointData<Space> joint;
-  typename Space::Frame M;                                   ///< hinge frame in the root station's section
-  SharedNumbers<typename Space::Scalar> stiffness, damping;  ///< n×n
-  RigidPart<Space> base;                                     ///< the rigid part; everything in a frozen node
-  MassTable<Space> mass;
-  RodKinematics<Space> rod;  ///< in place of mass and rotary inertia where the kinematics is exact
-  RotaryTable<Space> rotary;
   std::vector<SymmetricStation<Space>> stations;
+  SharedNumbers<typename Space::Scalar> stiffness, damping;  ///< n×n
+  MassTable<Space> mass;
+  RotaryTable<Space> rotary;
   // Frozen nodes: theory (3) at order zero.
   SharedNumbers<Twist> C0;
   SharedNumbers<typename Space::Scalar> G0;
   SharedNumbers<Variation<Space>> I1;  ///< h_k = −½ Vᵀ I1_k V
   // Frozen leaves: the eliminated modal block, once for ever.
-  std::vector<typename Space::Scalar> factor;  ///< of G0, see factorize
-  std::vector<Twist> Y0;                       ///< L⁻¹ C0ᵀ, n twists
-  typename Space::Inertia reduced;             ///< base − Y0ᵀ Δ⁻¹ Y0
-  // Work memory.
-  std::size_t work = 0, work_J = 0, work_h = 0, work_C = 0, work_G = 0, work_y = 0, work_P = 0, work_stations = 0;
-  std::size_t work_rod = 0, work_root = 0, work_elimination = 0, work_driven = 0;
+  std::vector<typename Space::Scalar> factor;    ///< of G0, see factorize
+  std::vector<Twist> Y0;                         ///< L⁻¹ C0ᵀ, n twists
+  SharedValue<typename Space::Inertia> reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
+  SharedValue<typename Space::Frame> M;          ///< hinge frame in the root station's section, where there is one
+  SharedValue<RodKinematics<Space>> rod;         ///< in place of mass and rotary inertia where kinematics is exact
+  std::size_t work_h = 0, work_P = 0, work_rod = 0, work_root = 0, work_elimination = 0, work_driven = 0;
 
   SymmetricNode() = default;
   /// \param twin a node whose body's mass is the same, in the same place and terms; null: there is none

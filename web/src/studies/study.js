@@ -1,10 +1,11 @@
 // The page of a study: its title, light or dark, print; what it shows is in the file of its kind.
 import { palette } from '../data.js';
+import { Figures } from './figures.js';
 import { Modes } from './modes.js';
 import { Sweep } from './sweep.js';
 import { Trade } from './trade.js';
 
-const kinds = { trade: Trade, modes: Modes, sweep: Sweep };
+const kinds = { figures: Figures, trade: Trade, modes: Modes, sweep: Sweep };
 
 export function show_study(page) {
   const $ = id => document.getElementById(id), wish = new URLSearchParams(location.hash.slice(1));

@@ -1,8 +1,10 @@
-#include "withy/plugins/host/floating_point.hpp"
+#include "withy/core/plugin/floating_point.hpp"
 
-#if defined(__SSE2__)
-#include <xmmintrin.h>
-#else
+#include <utility>
+
+#include "withy/core/plugin/registry.hpp"
+
+#if !defined(__SSE2__) && !defined(__aarch64__)
 #include <cfenv>
 #endif
 
@@ -28,12 +30,18 @@ constexpr Field fields[] = {{0x1000000, "flush-to-zero"},
 constexpr Field fields[] = {{~std::uint64_t{0}, "the rounding mode"}};
 #endif
 
-}  // namespace
+/// Names of the fields that hold any of these bits.
+std::string meaning_of(std::uint64_t bits) {
+  std::string text;
+  for (const Field& field : fields)
+    if ((bits & field.bits) != 0) text += (text.empty() ? "" : ", ") + std::string(field.meaning);
+  return text;
+}
 
-FloatingPointGuard::Control FloatingPointGuard::read() {
-  Control c;
+FloatingPointControl read() {
+  FloatingPointControl c;
 #if defined(__SSE2__)
-  c.main = _mm_getcsr() & ~sse_flags;
+  c.main = __builtin_ia32_stmxcsr() & ~sse_flags;
   std::uint16_t word = 0;
   asm volatile("fnstcw %0" : "=m"(word));
   c.x87 = word;
@@ -45,9 +53,9 @@ FloatingPointGuard::Control FloatingPointGuard::read() {
   return c;
 }
 
-void FloatingPointGuard::write(const Control& control) {
+void write(const FloatingPointControl& control) {
 #if defined(__SSE2__)
-  _mm_setcsr(static_cast<unsigned>(control.main | (_mm_getcsr() & sse_flags)));
+  __builtin_ia32_ldmxcsr(static_cast<unsigned>(control.main | (__builtin_ia32_stmxcsr() & sse_flags)));
   const auto word = static_cast<std::uint16_t>(control.x87);
   asm volatile("fldcw %0" : : "m"(word));
 #elif defined(__aarch64__)
@@ -57,19 +65,30 @@ void FloatingPointGuard::write(const Control& control) {
 #endif
 }
 
+thread_local unsigned changed_arithmetic = 0;
+
+}  // namespace
+
 FloatingPointGuard::FloatingPointGuard() : saved_(read()) {}
 
 std::string FloatingPointGuard::restore() {
-  const Control now = read();
+  const FloatingPointControl now = read();
   if (now.main == saved_.main && now.x87 == saved_.x87) return {};
   write(saved_);
-  std::string text;
-  const auto add = [&](const char* what) { text += (text.empty() ? "" : ", ") + std::string(what); };
-  for (const Field& field : fields) {
-    if (((now.main ^ saved_.main) & field.bits) != 0) add(field.meaning);
-  }
-  if (now.x87 != saved_.x87) add("the x87 control word");
+  std::string text = meaning_of(now.main ^ saved_.main);
+  if (now.x87 != saved_.x87) text += (text.empty() ? "" : ", ") + std::string("the x87 control word");
   return text;
+}
+
+void FloatingPointGuard::check(std::string_view who) {
+  if (const std::string changed = restore(); !changed.empty())
+    throw PluginError(std::string(who) + " changes " + changed + " for the whole program: no result can be trusted");
+}
+
+void note_changed_arithmetic(unsigned changed) noexcept { changed_arithmetic |= changed; }
+
+std::string take_changed_arithmetic() {
+  return changed_arithmetic == 0 ? std::string() : meaning_of(std::exchange(changed_arithmetic, 0));
 }
 
 }  // namespace withy

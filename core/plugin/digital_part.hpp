@@ -1,0 +1,19 @@
+/// \file
+/// What else is known of discrete parts that work like a digital controller.
+#pragma once
+
+#include <span>
+
+namespace withy {
+
+/// A SampledPart may be this too.
+class DigitalPart {
+ public:
+  virtual ~DigitalPart() = default;
+  /// An instant of its clock at which the load is switched off: what is on its way, as in a delay, goes on without it.
+  virtual void pass_idle(std::span<double> discrete) const noexcept = 0;
+  /// Whether what it gives moves in steps: it has no derivatives by what it measures.
+  [[nodiscard]] virtual bool gives_steps() const = 0;
+};
+
+}  // namespace withy

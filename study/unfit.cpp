@@ -1,0 +1,24 @@
+#include "withy/study/unfit.hpp"
+
+#include <stdexcept>
+
+namespace withy::study {
+
+std::vector<Unfit> take_out_unfit(const std::shared_ptr<const Model>& model, Registry& registry,
+                                  std::vector<std::string>& formulations) {
+  std::vector<std::string> fit;
+  std::vector<Unfit> unfit;
+  for (const std::string& formulation : formulations) {
+    try {
+      static_cast<void>(make_formulation(registry, formulation)->compile(model));
+      fit.push_back(formulation);
+    } catch (const std::invalid_argument& e) {
+      unfit.push_back({formulation, e.what()});
+    }
+  }
+  if (fit.empty()) return {};
+  formulations = std::move(fit);
+  return unfit;
+}
+
+}  // namespace withy::study

@@ -1,0 +1,216 @@
+/// \file
+/// Faults that people make at a keyboard: each is told with its place, its cause, and what to do.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <stdexcept>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+/// A scene of a hub and a boom; faults change one thing in it.
+constexpr const char* sound_scene = R"(format: withy/1
+time: {end: 1, output: 0.1}
+bodies:
+  hub: {type: rigid, mass: 20, inertia: [1, 1, 1, 0, 0, 0], frames: {out: {position: [0.1, 0, 0]}}}
+  boom:
+    type: beam
+    length: 8
+    mass_per_length: 1.3
+    bending_y: {stiffness: 112, modes: 2}
+hinges:
+  shoulder: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub.out, child: boom}
+loads:
+  motor: {type: hinge-effort, hinge: shoulder, law: constant, value: 2}
+)";
+
+struct Fault {
+  const char* kind;
+  const char *from, *to;               ///< in the scene, s.yaml; empty: it is sound
+  std::vector<std::string> arguments;  ///< of withy
+  int status;
+  std::vector<std::string> said;  ///< on standard error or, where the status is 0, on standard output
+};
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.kind; }
+
+const std::vector<std::string> check = {"check", "s.yaml"};
+
+const Fault faults[] = {
+    // What is written.
+    {"comma_missing", "[0, 0, 1], parent", "[0, 0, 1] parent", check, 2, {"s.yaml:11:46", "is a ',' missing"}},
+    {"colon_missing", "    length: 8", "    length 8", check, 2, {"s.yaml:8:20", "does the line before lack its own"}},
+    {"tab", "    length: 8", "\tlength: 8", check, 2, {"s.yaml:7:1", "indent with spaces, not tabs"}},
+    {"body_twice", "  boom:\n", "  hub:\n", check, 2, {"s.yaml:5:3", "duplicate key 'hub'", "4:3 already"}},
+    {"key_misspelt", "    length: 8", "    lenght: 8", check, 2, {"s.yaml:7:5", "did you mean 'length'?"}},
+    {"decimal_comma", ": 1.3", ": 1,3", check, 2, {"s.yaml:8:22", "behind a point, not a comma"}},
+    {"quoted_number", "mass: 20", "mass: \"20\"", check, 2, {"s.yaml:4:28", "write it without quotes"}},
+    {"format_missing", "format: withy/1\n", "", check, 2, {"s.yaml:1:1: /format", "withy/1"}},
+    // Numbers and units.
+    {"mass_negative", "mass: 20", "mass: -20", check, 2, {"s.yaml:4:28", "got -20; need finite >= 0 [kg]"}},
+    {"unit_wrong", "length: 8", "length: 8 kg", check, 2, {"s.yaml:7:13", "'kg' is a wrong unit here", "[m]"}},
+    {"unit_unknown", "length: 8", "length: 8 mmm", check, 2, {"s.yaml:7:13", "did you mean 'mm'?"}},
+    {"inertia_impossible",
+     "[1, 1, 1, 0, 0, 0]",
+     "[1, 1, 5, 0, 0, 0]",
+     check,
+     2,
+     {"s.yaml:4:41", "above the sum of the"}},
+    {"inertia_of_three", "[1, 1, 1, 0, 0, 0]", "[1, 1, 1]", check, 2, {"s.yaml:4:41", "need a list of 6"}},
+    {"rate_without_brackets",
+     "loads:",
+     "initial: {hinges: {shoulder: {rate: 10 rpm}}}\nloads:",
+     check,
+     2,
+     {"s.yaml:13:37", "a list of one finite number", "in brackets"}},
+    {"table_backwards",
+     "law: constant, value: 2",
+     "law: table, table: [[0, 1], [2, 0], [1, 3]]",
+     check,
+     2,
+     {"s.yaml:14:85", "got 1 after 2; the first column must increase"}},
+    // What hangs where.
+    {"parent_missing", "parent: hub.out, ", "", check, 2, {"s.yaml:12:3", "world, a body, or body.frame"}},
+    {"parent_misspelt", "hub.out", "hubb.out", check, 2, {"s.yaml:12:30", "did you mean 'hub'?"}},
+    {"ring_of_hinges",
+     "parent: world",
+     "parent: boom.tip",
+     check,
+     2,
+     {"s.yaml:11:3", "shoulder, root make a ring", "let one of their parents be world"}},
+    {"hung_on_itself",
+     "parent: hub.out",
+     "parent: boom.tip",
+     check,
+     2,
+     {"s.yaml:12:3", "root hangs a body on itself", "another body, or the world"}},
+    {"body_loose",
+     "  root: {type: weld, parent: hub.out, child: boom}\n",
+     "",
+     check,
+     2,
+     {"s.yaml:5:3", "no hinge has this body as its child", "type free for one that floats"}},
+    // Names of what there is.
+    {"family_unknown",
+     "modes: 2",
+     "modes: 2, family: clamped-fre",
+     check,
+     2,
+     {"s.yaml:9:51", "did you mean 'clamped-free'?"}},
+    {"law_missing",
+     "law: constant, value: 2",
+     "value: 2",
+     check,
+     2,
+     {"s.yaml:14:3: /loads/motor/law", "missing", "with 'value' add 'law: constant'"}},
+    {"law_of_another_option",
+     "law: constant, value",
+     "law: sine, value",
+     check,
+     2,
+     {"s.yaml:14:66", "the law 'sine' takes no 'value'; law: constant does"}},
+    {"section_of_a_rigid_body",
+     "loads:",
+     "outputs: {m: {type: section, of: hub, at: 0}}\nloads:",
+     check,
+     2,
+     {"s.yaml:13:11", "'hub' is no beam", "type: reaction"}},
+    // Allowed, and hardly meant.
+    {"degrees_as_radians",
+     "child: hub}",
+     "child: hub, offset: {orientation: {axis: [0, 0, 1], angle: 90}}}",
+     check,
+     0,
+     {"s.yaml:11:121", "90 rad is 14.32 turns", R"(write "90 deg")"}},
+    {"start_in_degrees",
+     "loads:",
+     "initial: {hinges: {shoulder: {position: [60]}}}\nloads:",
+     check,
+     0,
+     {"s.yaml:13:42", R"(write "60 deg")"}},
+    {"damping_in_percent",
+     "    length: 8",
+     "    damping_ratio: 5\n    length: 8",
+     check,
+     0,
+     {"s.yaml:6:5", "5 % is 0.05"}},
+    {"no_modes", "modes: 2", "modes: 0", check, 0, {"s.yaml:6:5", "bending_y has no modes"}},
+    {"frame_unused", "[0.1, 0, 0]}", "[0.1, 0, 0]}, spare: {}", check, 0, {"s.yaml:4:107", "nothing uses the frame"}},
+    // The command line, and files.
+    {"command_misspelt", "", "", {"chekc", "s.yaml"}, 2, {"\"chekc\" is no command; did you mean 'check'?"}},
+    {"option_misspelt",
+     "",
+     "",
+     {"run", "s.yaml", "--formulatoin", "exact"},
+     2,
+     {"\"--formulatoin\" is no option; did you mean --formulation?", "withy run --help"}},
+    {"value_without_a_path", "", "", {"run", "s.yaml", "--set", "time.end"}, 2, {"need path=value, as time.end=2"}},
+    {"value_of_nobody", "", "", {"run", "s.yaml", "--set", "bodies.bom.length=3"}, 2, {"did you mean 'boom'?"}},
+    {"formulation_misspelt", "", "", {"run", "s.yaml", "--formulation", "exat"}, 2, {"did you mean 'exact'?"}},
+    {"accuracy_in_kilograms", "", "", {"advise", "s.yaml", "--accuracy", "1 kg"}, 2, {"need a share as 1%"}},
+    {"file_missing", "", "", {"run", "t.yaml"}, 2, {"cannot read t.yaml (did you mean s.yaml?): No such file"}},
+    {"folder_as_a_scene", "", "", {"run", "scenes"}, 2, {"cannot read scenes (it is a folder; name a file in it)"}},
+    {"column_misspelt",
+     "",
+     "",
+     {"inverse", "s.yaml", "--motion", "misspelt.csv"},
+     2,
+     {"misspelt.csv:1: no hinge is named 'sholder'; did you mean 'shoulder'?"}},
+    {"text_in_a_column",
+     "",
+     "",
+     {"inverse", "s.yaml", "--motion", "text.csv"},
+     2,
+     {"text.csv:3: got \"ten\" in column 2; need a number"}},
+    {"time_backwards",
+     "",
+     "",
+     {"inverse", "s.yaml", "--motion", "back.csv"},
+     2,
+     {"back.csv:4: got the time 0.5 s after 1 s; need times that increase"}},
+    {"text_in_a_measurement",
+     "",
+     "",
+     {"tune", "s.yaml", "--match", "text.csv", "--parameters", "bodies.hub.mass"},
+     2,
+     {"text.csv:3:5: got \"ten\"; need a number, or nothing"}},
+};
+
+class Faults : public testing::TestWithParam<Fault> {};
+
+TEST_P(Faults, AreToldWithPlaceCauseAndRemedy) {
+  const Fault& fault = GetParam();
+  const Folder folder;
+  std::string scene = sound_scene;
+  if (const std::string from = fault.from; !from.empty()) {
+    const std::size_t at = scene.find(from);
+    if (at == std::string::npos) throw std::logic_error("the sound scene has no '" + from + "'");
+    scene.replace(at, from.size(), fault.to);
+  }
+  folder.write("s.yaml", scene);
+  folder.write("misspelt.csv", "t[s],sholder[deg]\n0,0\n1,10\n");
+  folder.write("text.csv", "t[s],shoulder[deg]\n0,0\n0.5,ten\n1,20\n");
+  folder.write("back.csv", "t[s],shoulder[deg]\n0,0\n1,10\n0.5,20\n");
+  const Finished f = withy(folder, fault.arguments);
+  EXPECT_EQ(f.status, fault.status) << f.out << f.err;
+  const std::string& told = fault.status == 0 ? f.out : f.err;
+  if (fault.status != 0) {
+    EXPECT_EQ(f.out, "") << "what is wrong is told on standard error alone";
+  }
+  for (const std::string& words : fault.said) EXPECT_THAT(told, testing::HasSubstr(words));
+}
+
+INSTANTIATE_TEST_SUITE_P(OfPeople, Faults, testing::ValuesIn(faults),
+                         [](const auto& fault) { return std::string(fault.param.kind); });
+
+TEST(FaultsOfPeople, TheSoundSceneIsSound) {
+  const Folder folder;
+  folder.write("s.yaml", sound_scene);
+  EXPECT_THAT(withy(folder, {"check", "s.yaml", "--strict"}).out, testing::HasSubstr("nothing is implausible"));
+}
+
+}  // namespace
+}  // namespace withy::test

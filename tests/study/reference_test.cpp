@@ -1,0 +1,127 @@
+// How a reference is found within a time: what the rest of a run will cost, and what a higher formulation adds.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "withy/study/advice.hpp"
+#include "withy/study/pace.hpp"
+#include "withy/tests/study/plugins.hpp"
+
+namespace withy::study {
+namespace {
+
+using test::plugins;
+
+/// A run of 10 s whose first tenth costs ten times as much a second as the rest: 1 s of CPU time for that, 0.9 for all
+/// else.
+double cost_of_slow_start(double gone) { return gone < 1 ? gone : 1 + 0.1 * (gone - 1); }
+
+TEST(Pace, ASlowStartIsNotTakenForTheWholeRun) {
+  Pace pace;
+  for (double gone = 0; gone <= 1; gone += 0.01) pace.note(gone, cost_of_slow_start(gone));
+  EXPECT_NEAR(pace.rest(10), 9, 0.2) << "nothing else was seen";
+  double gone = 1;
+  for (; cost_of_slow_start(gone) < 1.5; gone += 0.01) pace.note(gone, cost_of_slow_start(gone));
+  EXPECT_NEAR(pace.rest(10), cost_of_slow_start(10) - cost_of_slow_start(gone), 0.3);
+  for (; gone <= 10; gone += 0.01) pace.note(gone, cost_of_slow_start(gone));
+  EXPECT_NEAR(pace.rest(10), 0, 0.01);
+}
+
+TEST(Pace, ARunThatGetsSlowerIsSeenToBeTooCostlyLater) {
+  Pace pace;
+  const auto cost = [](double gone) { return gone < 5 ? 0.01 * gone : 0.05 + 2 * (gone - 5); };
+  double cut = 0;
+  for (double gone = 0; gone <= 10 && cut == 0; gone += 0.01) {
+    pace.note(gone, cost(gone));
+    if (!may_go_on(cost(gone), pace.rest(10), 1)) cut = gone;
+  }
+  EXPECT_GT(cut, 5);
+  EXPECT_LT(cost(cut), 0.2) << "not the whole second is spent on it";
+}
+
+TEST(Pace, NothingIsJudgedBeforeItHasShownItsPaceAndNothingGoesBeyondWhatIsLeft) {
+  EXPECT_TRUE(may_go_on(0.09, std::numeric_limits<double>::infinity(), 1));
+  EXPECT_FALSE(may_go_on(0.11, 0.9, 1));
+  EXPECT_TRUE(may_go_on(0.11, 0.88, 1));
+  EXPECT_FALSE(may_go_on(0.01, 0, 0.005));
+}
+
+TEST(Pace, ANewRunBeginsAnew) {
+  Pace pace;
+  EXPECT_EQ(pace.rest(1), 0) << "nothing is known";
+  pace.note(1, 5);
+  pace.note(0.5, 0.05);
+  EXPECT_NEAR(pace.rest(1), 0.05, 1e-15);
+  pace.note(0.5, 0.06);
+  EXPECT_NEAR(pace.rest(1), 0.06, 1e-15);
+}
+
+Prepared soft_pendulum() {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/flexible-pendulum.yaml");
+  return prepare(values.set("time.end", Value(0.4), "the test"), plugins());
+}
+
+TEST(CorrectedReadings, PutADifferenceOnTopOfNumbersVectorsAndOrientations) {
+  const Prepared scene = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spacecraft.yaml"), plugins());
+  const Outputs outputs = Outputs::all(scene.model());
+  const auto reading = [&](double angle, double x) {
+    std::vector<double> r(outputs.size(), x);
+    for (const Output& o : outputs.list()) {
+      if (o.shape != Output::Shape::orientation) continue;
+      r[o.at] = std::cos(0.5 * angle), r[o.at + 1] = r[o.at + 2] = 0, r[o.at + 3] = std::sin(0.5 * angle);
+    }
+    return r;
+  };
+  const Readings a{{0}, {reading(0.7, 3)}}, b{{0}, {reading(0.25, 1.5)}}, c{{0}, {reading(0.2, 1)}},
+      sum{{0}, {reading(0.75, 3.5)}};
+  const Distances off = distances(outputs, corrected(outputs, a, b, c), sum).first;
+  for (std::size_t i = 0; i < off.size(); ++i) EXPECT_LT(off[i], 1e-7) << outputs.list()[i].label;
+}
+
+/// Were the highest formulation free, it would be run with as many modes as the other: what is put together is as far
+/// from that as it says.
+TEST(FindReference, WhatAHigherRungAddsAtFewModesStandsForWhatItAddsAtMany) {
+  const Prepared scene = soft_pendulum();
+  const Outputs outputs(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+  ReferenceGoal goal;
+  goal.first = {"", "orthogonal-polynomials", 2, "dop853", 1e-8, {}, {}};
+  goal.levels = 1;  // of the highest rung: no more is looked at there
+  goal.enough = [](const Reference& r) { return r.added_by && r.point.modes >= 5; };
+  goal.steady = [](const Reference&) { return true; };
+  const ReferenceFound found = find_reference(at, plugins(), outputs, goal, {});
+  ASSERT_TRUE(found.reference);
+  const Reference& r = *found.reference;
+  EXPECT_EQ(r.point.formulation, "quadratic");
+  EXPECT_EQ(r.added_by->formulation, "exact");
+  EXPECT_EQ(r.added_by->modes, 3);
+  EXPECT_EQ(r.text(), r.point.text() + ", with what exact adds at 3 modes");
+
+  const auto run = [&](const char* formulation, int modes) {
+    Readings readings;
+    const ModelAt& model = evaluator.model({formulation, "orthogonal-polynomials", modes, "", 0, {}, {}});
+    OutputReader reader(outputs, model.prepared->model(), *model.prepared->equations);
+    const Walk w = walk(*model.prepared, *make_integrator(plugins(), "dop853", 1e-10),
+                        {[&](const State& s) {
+                           readings.times.push_back(s.time);
+                           readings.values.push_back(reader.read(s));
+                           return true;
+                         },
+                         {},
+                         {}});
+    EXPECT_EQ(w.end, Walk::End::reached);
+    return readings;
+  };
+  const Readings exact = run("exact", r.point.modes), quadratic = run("quadratic", r.point.modes);
+  const Distances off = distances(outputs, r.readings, exact).first,
+                  uncorrected = distances(outputs, quadratic, exact).first;
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    EXPECT_LE(off[i], r.own[i] + 1e-9) << outputs.list()[i].label << ": it is known to what it says";
+    EXPECT_LT(off[i], 0.2 * uncorrected[i] + 1e-9) << outputs.list()[i].label << ": the lower rung alone is not";
+  }
+}
+
+}  // namespace
+}  // namespace withy::study
