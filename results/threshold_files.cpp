@@ -124,4 +124,19 @@ std::string threshold_picture(const std::string& title, const std::vector<study:
   return svg_plot(title, legend, panels);
 }
 
+nlohmann::ordered_json thresholds_json(const std::string& scene, const std::string& measure, double limit,
+                                       const study::Sweep& range, const study::Thresholds& thresholds) {
+  nlohmann::ordered_json j{{"scene", scene},
+                           {"limit", limit},
+                           {"measure", measure},
+                           {"path", range.path},
+                           {"reference",
+                            {{"formulation", thresholds.reference},
+                             {"modes", thresholds.reference_modes},
+                             {"relative_error", thresholds.reference_error}}},
+                           {"thresholds", nlohmann::ordered_json::array()}};
+  for (const study::Threshold& row : thresholds.rows) j["thresholds"].push_back(threshold_json(row, range));
+  return j;
+}
+
 }  // namespace withy

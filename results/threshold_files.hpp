@@ -14,12 +14,20 @@ namespace withy {
 std::string threshold_outcome(const study::Threshold& row, const study::Sweep& range);
 /// An element of "thresholds" in limit.json.
 nlohmann::ordered_json threshold_json(const study::Threshold& row, const study::Sweep& range);
+/// The content of limit.json. \param measure whose error it is, as "frequencies"
+nlohmann::ordered_json thresholds_json(const std::string& scene, const std::string& measure, double limit,
+                                       const study::Sweep& range, const study::Thresholds& thresholds);
 /// What tells the rows of a study apart, a column each.
 struct ThresholdLabels {
   bool families = false, overs = false, frequencies = false;
   [[nodiscard]] std::vector<std::string> heads() const;
   [[nodiscard]] std::vector<std::string> of(const study::Threshold& row) const;
 };
+/// "arm.yaml: where the error of frequencies passes 1 %".
+std::string threshold_title(const std::string& scene, bool frequencies, double limit);
+/// A row a model with the value at which it passes the limit; below, the reference and its own error.
+std::string threshold_text(const std::string& title, const study::Thresholds& thresholds, const study::Sweep& range,
+                           const ThresholdLabels& labels);
 /// A line a row.
 std::string threshold_csv(const std::vector<study::Threshold>& rows, const study::Sweep& range,
                           const ThresholdLabels& labels);

@@ -1,32 +1,31 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
-#include <functional>
 #include <new>
 #include <string>
 #include <variant>
 
-#include "withy/apps/withy/command_line.hpp"
+#include "withy/apps/withy/commands.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/core/plugin/floating_point.hpp"
+#include "withy/program/output.hpp"
 #include "withy/results/results_error.hpp"
 
 namespace {
 
-using withy::app::ExitStatus;
+using withy::program::ExitStatus;
 
 ExitStatus run_program(int argc, const char* const* argv) {
-  const auto asked = withy::app::read_command_line(argc, argv);
-  const auto* command = std::get_if<std::function<ExitStatus()>>(&asked);
+  const auto asked = read_command_line(withy::app::withy_program(), argc, argv);
+  const auto* command = std::get_if<withy::program::Call>(&asked);
   const ExitStatus status = command != nullptr ? (*command)() : std::get<ExitStatus>(asked);
-  withy::app::finish_printing();
-  if (status == ExitStatus::interrupted && !withy::app::has_complained()) withy::app::complain("interrupted");
+  withy::program::finish_printing();
+  if (status == ExitStatus::interrupted && !withy::program::has_complained()) withy::program::complain("interrupted");
   return status;
 }
 
 ExitStatus fail(ExitStatus status, const std::string& why) {
-  withy::app::complain(why);
+  withy::program::complain(why);
   return status;
 }
 
@@ -35,12 +34,13 @@ bool returned = false;  ///< main has come to its end: whatever runs after it is
 /// Nothing but a plugin ends the program before its end, and what it was at is then not done.
 void refuse_early_end() {
   if (returned) return;
-  withy::app::complain("a plugin has ended the program by a call of exit(): what was asked for is not done");
+  withy::program::complain("a plugin has ended the program by a call of exit(): what was asked for is not done");
   std::_Exit(static_cast<int>(ExitStatus::environment));
 }
 
 [[noreturn]] void explain_termination() {
-  withy::app::complain("an exception has left code that must not let one out, as a plugin's evaluation: cannot go on");
+  withy::program::complain(
+      "an exception has left code that must not let one out, as a plugin's evaluation: cannot go on");
   std::_Exit(static_cast<int>(ExitStatus::environment));
 }
 

@@ -1,10 +1,8 @@
 #include "withy/campaign/tune.hpp"
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/campaign/tune_files.hpp"
 #include "withy/results/json_text.hpp"
@@ -34,8 +32,7 @@ void write_fitted(const TuneArguments& arguments, const Engine& engine, const ca
 }
 
 ExitStatus tune(const TuneArguments& arguments) {
-  if (!arguments.write.empty() && !arguments.options.overrides.empty())
-    throw InputError("--write takes the scene as its file has it: put what --set changes into the file first");
+  check_write(arguments.write, arguments);
   const Engine engine(arguments);
   const std::string title = engine.prepared().title();
   const auto folder = take_folder(arguments, "tune", provenance_of(engine.scene(), engine.plugins()),
@@ -66,36 +63,26 @@ ExitStatus tune(const TuneArguments& arguments) {
   return result.converged() ? ExitStatus::done : ExitStatus::stopped;
 }
 
-std::function<ExitStatus()> add_tune(CLI::App& c) {
-  const auto arguments = std::make_shared<TuneArguments>();
-  TuneArguments& a = *arguments;
+void add_tune(Options& o, TuneArguments& a) {
   campaign::TuneQuestion& q = a.question;
-  add_scene(c, a);
-  add_formulation(c, a);
-  c.add_option("--parameters,--parameter", q.parameters,
-               "Numbers of the scene that are fitted, beginning at its values; bounds as PATH=2..3, \"PATH=2 mm..\"")
-      ->type_name("PATH,...")
-      ->delimiter(',')
-      ->required();
-  c.add_option("--match", q.data, "Measured data: CSV with a head as t[s],tip.x[mm], its names those of results.csv")
-      ->type_name("FILE")
-      ->required();
-  c.add_option("--outputs,--output", q.outputs, "Columns of the data that are compared; default: all that results have")
-      ->type_name("NAME,...")
-      ->delimiter(',');
-  c.add_option("--deviations,--deviation", q.deviations,
-               "Standard deviations of the measurement, as tip.x=0.1 mm; default: columns weigh by their ranges")
-      ->type_name("NAME=D,...")
-      ->delimiter(',');
-  c.add_option("--starts", q.starts, "Searches: from the scene's values, others from within the bounds")
-      ->type_name("N")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{10000}))
-      ->capture_default_str();
-  c.add_option("--seed", q.seed, "Of the starts")->type_name("N")->capture_default_str();
-  c.add_option("--jobs", q.jobs, "Runs at once; default: one a core")->type_name("N");
-  c.add_option("--write", a.write, "File for the scene with the fitted values; comments are kept")->type_name("FILE");
-  add_output(c, a, "Folder for report.html, tune.json, fit.csv and fit.svg; default: none is kept");
-  return [arguments] { return tune(*arguments); };
+  add_scene(o, a);
+  add_formulation(o, a);
+  o.list("--parameters,--parameter", q.parameters, "PATH,...",
+         "Numbers of the scene that are fitted, beginning at its values; bounds as PATH=2..3, \"PATH=2 mm..\"")
+      .required();
+  o.value("--match", q.data, "FILE", "Measured data: CSV with a head as t[s],tip.x[mm], its names those of results.csv")
+      .required();
+  o.list("--outputs,--output", q.outputs, "NAME,...",
+         "Columns of the data that are compared; default: all that results have");
+  o.list("--deviations,--deviation", q.deviations, "NAME=D,...",
+         "Standard deviations of the measurement, as tip.x=0.1 mm; default: columns weigh by their ranges");
+  o.value("--starts", q.starts, "N", "Searches: from the scene's values, others from within the bounds")
+      .between(std::size_t{1}, std::size_t{10000})
+      .with_default();
+  o.value("--seed", q.seed, "N", "Of the starts").with_default();
+  o.value("--jobs", q.jobs, "N", "Runs at once; default: one a core");
+  o.value("--write", a.write, "FILE", "File for the scene with the fitted values; comments are kept");
+  add_output(o, a, "Folder for report.html, tune.json, fit.csv and fit.svg; default: none is kept");
 }
 
 }  // namespace
@@ -106,6 +93,6 @@ const Command tune_command = {
     "  withy tune scenes/pendulum.yaml --match scenes/measured/pendulum.csv --parameters "
     "bodies.rod.center_of_mass.1=-0.8..-0.2,initial.hinges.pivot.position.0 --deviations pivot=0.2deg,rod.tip.x=2mm "
     "--starts 5 --out results/tune --write tuned.yaml",
-    &add_tune};
+    &taking<TuneArguments, add_tune, tune>};
 
 }  // namespace withy::app
