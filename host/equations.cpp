@@ -62,26 +62,26 @@ std::shared_ptr<const study::Prepared> continuous(const Scene& scene, const std:
   return prepared;
 }
 
-/// Equations with lanes, and what each lane works in.
-struct InLanes {
-  explicit InLanes(const EquationsOfMotion& equations) : together(lane_equations(equations)) {
-    for (std::size_t k = 0; together != nullptr && k < LaneEquations::count; ++k)
-      lanes.push_back(
-          {std::vector<double>(equations.size()), std::vector<double>(equations.size()), equations.make_work(), {}});
-  }
-
-  struct One {
-    std::vector<double> y, y_dot;
-    Work work;
-    LaneCall call;
-  };
-  std::unique_ptr<LaneEquations> together;  ///< null: there are none
-  std::vector<One> lanes;
-};
-
 }  // namespace
 
 struct Equations::Parts {
+  /// Equations with lanes, and what each lane works in.
+  struct InLanes {
+    explicit InLanes(const EquationsOfMotion& equations) : together(lane_equations(equations)) {
+      for (std::size_t k = 0; together != nullptr && k < LaneEquations::count; ++k)
+        lanes.push_back(
+            {std::vector<double>(equations.size()), std::vector<double>(equations.size()), equations.make_work(), {}});
+    }
+
+    struct One {
+      std::vector<double> y, y_dot;
+      Work work;
+      LaneCall call;
+    };
+    std::unique_ptr<LaneEquations> together;  ///< null: there are none
+    std::vector<One> lanes;
+  };
+
   explicit Parts(std::shared_ptr<const study::Prepared> from)
       : prepared(std::move(from)),
         equations(*prepared->equations),

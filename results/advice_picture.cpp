@@ -14,14 +14,15 @@ constexpr double least_use = 1e-4;
 std::string note_of(const study::Probe& p) {
   const study::Point& at = p.point;
   const std::string modes = at.modes == 0 ? "modes as they are" : fmt::format("{} modes {}", at.modes, at.family);
-  return fmt::format("{}, {}, {} at {:g}: {}", at.formulation, modes, at.integrator, at.tolerance,
-                     study::outcome_name(p.outcome));
+  const std::string cut = p.walk.end == study::Walk::End::cut ? fmt::format(", cut at {:.3g} s", p.walk.time) : "";
+  return fmt::format("{}, {}, {} at {:g}: {}{}", at.formulation, modes, at.integrator, at.tolerance,
+                     study::outcome_name(p.outcome), cut);
 }
 
 bool is_shown(const study::Probe& p) {
   using Outcome = study::Probe::Outcome;
-  return p.cost > 0 &&
-         (p.passed() || p.outcome == Outcome::no_candidate || (p.outcome == Outcome::inaccurate && p.use > 1));
+  return p.cost > 0 && p.use > 0 &&
+         (p.passed() || p.outcome == Outcome::no_candidate || p.outcome == Outcome::inaccurate);
 }
 
 void enter(const study::Probe& p, Curve& curve) {
@@ -33,7 +34,7 @@ void enter(const study::Probe& p, Curve& curve) {
 }  // namespace
 
 Picture advice_picture(const study::Advice& advice) {
-  Panel panel{"CPU time of a run [ms]", "error, of the accuracy asked [1]", {0.1, 1}, {}, 300};
+  Panel panel{"CPU time of the run, or until it was cut [ms]", "error, of the accuracy asked [1]", {0.1, 1}, {}, 300};
   panel.log_x = panel.log_y = panel.free_x = true;
   std::map<std::string, Curve> curves;
   double first = 1e300, last = 0;
@@ -45,7 +46,10 @@ Picture advice_picture(const study::Advice& advice) {
     first = std::min(first, 1e3 * p.cost), last = std::max(last, 1e3 * p.cost);
   }
   Picture picture{
-      "What was tried: below the line a model holds the accuracy, and the cheapest of these is advised", {}, {}};
+      "What was tried: below the line a model holds the accuracy to the end; above it, it was cut where it no longer "
+      "did",
+      {},
+      {}};
   for (auto& [formulation, curve] : curves) {
     curve.points = true;
     picture.legend.push_back(formulation);

@@ -1,5 +1,7 @@
 #include "withy/results/comparison_picture.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -121,20 +123,35 @@ Panel error_panel(const study::Comparison& comparison, const std::vector<const s
   return panel;
 }
 
+/// Names of the runs, each with how it ended or, where it came to its end, how far off its tip was at most.
+std::vector<std::string> legend_of(const std::vector<const study::ComparedRun*>& runs,
+                                   const std::vector<Curve>& errors) {
+  std::vector<std::string> legend;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    std::string name = runs[k]->formulation();
+    if (runs[k]->summary.status != RunStatus::completed) name += " (" + study::outcome_text(runs[k]->summary) + ")";
+    for (const Curve& curve : errors) {
+      if (curve.pen != k || curve.ends_early || curve.y.empty()) continue;
+      const double greatest = *std::max_element(curve.y.begin(), curve.y.end());
+      name += greatest < 1e-4 ? fmt::format(": {:.2g} µm off", 1e6 * greatest)
+                              : fmt::format(": {:.2g} mm off", 1e3 * greatest);
+    }
+    legend.push_back(std::move(name));
+  }
+  return legend;
+}
+
 }  // namespace
 
 std::string comparison_picture(const std::string& title, const study::Comparison& comparison) {
   std::vector<const study::ComparedRun*> runs;
   for (std::size_t i = 0; i < comparison.listed; ++i) runs.push_back(&comparison.runs[i]);
-  std::vector<std::string> legend;
-  for (const study::ComparedRun* run : runs) {
-    const bool completed = run->summary.status == RunStatus::completed;
-    legend.push_back(run->formulation() + (completed ? "" : " (" + study::outcome_text(run->summary) + ")"));
-  }
   const Model& model = runs.front()->prepared.model();
   std::vector<Panel> panels = {tree_panel(runs)};
   const std::vector<Tip> ends = tips(model);
-  if (comparison.has_reference() && !ends.empty()) panels.push_back(error_panel(comparison, runs, ends.back()));
+  const bool measured = comparison.has_reference() && !ends.empty();
+  if (measured) panels.push_back(error_panel(comparison, runs, ends.back()));
+  const std::vector<std::string> legend = legend_of(runs, measured ? panels.back().curves : std::vector<Curve>());
   for (const Tip& tip : ends) {
     if (!tip.flexible) continue;
     for (const std::size_t axis : {std::size_t{1}, std::size_t{2}}) {

@@ -7,7 +7,8 @@ need_packages "${build_packages[@]}"
 build release withy
 
 build/release/bin/withy compare scenes/two-link-slew.yaml --formulations ruthless,inconsistent,consistent,quadratic \
-  --reference exact --over loads.slew.time_scale=1.2 --set time.output=0.01 --out results/picture --force
+  --reference exact --over loads.slew.time_scale=1.2 --set time.output=0.01 \
+  --set "name=one slew of a flexible arm, four linearizations against exact" --out results/picture --force
 # The first two panels.
 sed -E '1s/height="[0-9.]+" viewBox="0 0 ([0-9.]+) [0-9.]+"/height="835" viewBox="0 0 \1 835"/' \
   results/picture/time_scale=1.2/compare.svg >docs/pictures/two-link-slew.svg

@@ -10,19 +10,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_stretches = 700;
+constexpr std::size_t most_of_curve = 700;
 
 /// Indices of the points that are drawn, in their order.
 std::vector<std::size_t> drawn(const Curve& curve) {
   const std::size_t n = std::min(curve.x.size(), curve.y.size());
   std::vector<std::size_t> kept;
-  if (curve.points || n <= 2 * most_stretches) {
+  if (curve.points || n <= 2 * most_of_curve) {
     for (std::size_t i = 0; i < n; ++i) kept.push_back(i);
     return kept;
   }
-  for (std::size_t s = 0; s < most_stretches; ++s) {
-    const auto first = static_cast<std::ptrdiff_t>(s * n / most_stretches);
-    const auto last = static_cast<std::ptrdiff_t>((s + 1) * n / most_stretches);
+  for (std::size_t s = 0; s < most_of_curve; ++s) {
+    const auto first = static_cast<std::ptrdiff_t>(s * n / most_of_curve);
+    const auto last = static_cast<std::ptrdiff_t>((s + 1) * n / most_of_curve);
     const auto [low, high] = std::minmax_element(curve.y.begin() + first, curve.y.begin() + last);
     const auto a = static_cast<std::size_t>(low - curve.y.begin());
     const auto b = static_cast<std::size_t>(high - curve.y.begin());

@@ -77,6 +77,21 @@ TEST(Compare, ReferenceIsRunWhereItIsNotListed) {
   EXPECT_EQ(j.at("runs").at(1).at("formulation"), "consistent");
 }
 
+TEST(Compare, LegendOfThePictureSaysHowFarOffEachTipWas) {
+  const Folder folder;
+  ASSERT_EQ(compare(folder, {"--formulations", "ruthless,quadratic", "--out", "out"}).status, 0);
+  const std::string svg = folder.read("out/compare.svg"), before = ">ruthless: ";
+  const double off =
+      json::parse(folder.read("out/compare.json")).at("runs").at(0).at("distance").at("tips").at("payload.tip");
+  const std::size_t at = svg.find(before);
+  ASSERT_NE(at, std::string::npos);
+  std::size_t digits = 0;
+  const double told = std::stod(svg.substr(at + before.size(), 20), &digits);
+  const bool thousandths = svg.substr(at + before.size() + digits).starts_with(" mm off<");
+  EXPECT_NEAR(told * (thousandths ? 1e-3 : 1e-6), off, 0.06 * off);
+  EXPECT_NE(svg.find(">quadratic<"), std::string::npos) << "the reference is off by nothing";
+}
+
 TEST(Compare, KeepsResultsAndAWellFormedPicture) {
   const Folder folder;
   const Finished f =
