@@ -34,7 +34,11 @@ Options& Options::repeated(const std::string& names, std::vector<std::string>& v
 
 template <class T>
 Options& Options::flag(const std::string& names, T& value, const std::string& meaning) {
-  last_ = parser_.add_flag(names, value, meaning);
+  // A value that may be left out would be set to false where it is: the parser takes it for a count.
+  last_ = parser_
+              .add_flag_function(
+                  names, [&value](std::int64_t count) { value = count > 0; }, meaning)
+              ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   return *this;
 }
 
