@@ -12,6 +12,7 @@
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/host/names.hpp"
 #include "withy/host/stopped.hpp"
@@ -232,6 +233,12 @@ void Equations::normalize(std::span<double> y) {
 std::string Equations::reason(double t, const Evaluation& evaluation) const {
   if (evaluation.ok()) return {};
   std::string text = "t = " + brief(t) + " s: ";
+  for (const LoadNode& node : parts_->prepared->model().loads())
+    if (const auto* law = dynamic_cast<const ForeignLaw*>(node.load.get()))
+      if (const std::string words = law->failure({}); !words.empty()) {
+        law->forget();
+        return text + "load '" + node.name + "': " + words + ".";
+      }
   if (evaluation.outcome == Evaluation::Outcome::nonfinite) {
     text += "the derivatives are not finite";
   } else {
