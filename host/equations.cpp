@@ -11,6 +11,7 @@
 #include "withy/core/equations/lane_equations.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
@@ -130,7 +131,8 @@ Equations::Equations(const Scene& scene, const std::string& formulation)
   p.y0.assign(p.full.begin(), p.full.begin() + static_cast<std::ptrdiff_t>(p.size));
   for (std::size_t l = 0; l < model.loads().size(); ++l) {
     const InputPort* input = model.loads()[l].load->input();
-    if (input == nullptr) continue;
+    const HostedMotion* motion = hosted_motion(*model.loads()[l].load);
+    if (input == nullptr || (motion != nullptr && !motion->jumps())) continue;  // what cannot be set at once
     p.inputs.push_back({model.loads()[l].name, input->unit()});
     p.input_loads.push_back(l);
   }
