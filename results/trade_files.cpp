@@ -123,10 +123,11 @@ std::string trade_picture(const std::string& title, const std::vector<study::Tra
   return svg_plot(title, legend, panels);
 }
 
-Json trade_page(const study::Prepared& prepared, Json trade, const std::vector<study::TradeResult>& results) {
+Json trade_page(const study::Prepared& prepared, Json trade, const std::vector<study::TradeResult>& results,
+                Registry& registry) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     std::string command = "withy run " + prepared.scene.file + " --formulation " + results[i].point.formulation;
-    for (const study::Change& change : study::changes_at(prepared.scene, results[i].point))
+    for (const study::Change& change : study::changes_at(prepared.scene, results[i].point, registry))
       command += " --set '" + change.text() + '\'';
     trade["points"].at(i)["command"] = command;
   }

@@ -29,7 +29,7 @@ std::string trade_picture(const std::string& title, const std::vector<study::Tra
 
 /// What the page of a trade shows: the same with the command that runs each model.
 nlohmann::ordered_json trade_page(const study::Prepared& prepared, nlohmann::ordered_json trade,
-                                  const std::vector<study::TradeResult>& results);
+                                  const std::vector<study::TradeResult>& results, Registry& registry);
 
 /// Finished points in a folder, a file each.
 class TradeFolder : public study::PointStore {

@@ -161,7 +161,8 @@ ExitStatus trade(const TradeArguments& arguments) {
     write_file(folder / "trade.csv", trade_csv(results, front));
     write_file(folder / "trade.svg", trade_picture(title, results, front));
     if (has_report_page())
-      write_study_page(folder / report_name, "trade", title, trade_page(engine.prepared(), j, results));
+      write_study_page(folder / report_name, "trade", title,
+                       trade_page(engine.prepared(), j, results, engine.registry()));
     if (!arguments.json)
       text += fmt::format("\ntrade.csv, trade.svg and trade.json in {}{}\n", arguments.out,
                           has_report_page() ? ", to look at in its report.html" : "");
