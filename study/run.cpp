@@ -72,9 +72,9 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
   options.seen = settings.seen;
   if (settings.checkpoint_seconds > 0) options.checkpoint_due = [&] { return timer.due(); };
   std::optional<StatisticsWatch> watch;
-  if (const std::vector<std::string> watched = watched_outputs(scene);
-      !watched.empty() && settings.statistics != nullptr)
-    watch.emplace(scene.outputs, watched, equations);
+  std::vector<std::string> watched = watched_outputs(scene);
+  watched.insert(watched.end(), settings.watched.begin(), settings.watched.end());
+  if (!watched.empty() && settings.statistics != nullptr) watch.emplace(scene.outputs, watched, equations);
   RunSummary summary = withy::simulate(
       *scene.model, equations, *scene.integrator, scene.initial, options,
       [&](const State& state) {

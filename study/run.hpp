@@ -31,6 +31,7 @@ struct RunSettings {
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: at the scene's initial state
   /// Set at the end of a run: of the outputs for which the scene asks for them. Null: they are not wanted.
   std::vector<OutputStatistics>* statistics = nullptr;
+  std::vector<std::string> watched;  ///< names of outputs besides those whose statistics are wanted
   Control control;
 };
 

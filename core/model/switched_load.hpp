@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "withy/core/plugin/load.hpp"
@@ -26,6 +27,15 @@ class SwitchedLoad final : public Load {
 
  private:
   std::vector<std::unique_ptr<Load>> forms_;
+};
+
+/// What a bound SwitchedLoad is too (dynamic_cast).
+class LoadOfForms {
+ public:
+  virtual ~LoadOfForms() = default;
+  [[nodiscard]] virtual const BoundLoad& first() const noexcept = 0;
+  /// The form that acts where the load's discrete states are these; null where it is off.
+  [[nodiscard]] virtual const BoundLoad* acting(std::span<const double> discrete) const noexcept = 0;
 };
 
 }  // namespace withy
