@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/bindings/fmi/export.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/study/input_error.hpp"
@@ -59,21 +56,14 @@ ExitStatus make_fmu(const FmuArguments& a) {
   return ExitStatus::done;
 }
 
-std::function<ExitStatus()> add_fmu(CLI::App& c) {
-  const auto arguments = std::make_shared<FmuArguments>();
-  FmuArguments& a = *arguments;
-  add_scene(c, a);
-  add_formulation(c, a);
-  c.add_option("--fmi", a.version, "Version of the standard: 2 or 3")
-      ->check(CLI::IsMember({2, 3}))
-      ->capture_default_str();
-  c.add_option("--kind", a.kinds, "Model exchange (me), co-simulation (cs), or both; default: both")
-      ->type_name("KIND,...")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"me", "cs"}));
-  c.add_option("--out", a.out, "File; default: the scene's name with .fmu, in the working folder")->type_name("FILE");
-  c.add_flag("--sources", a.sources, "Refused: an FMU has no sources in it (docs/fmi.md)");
-  return [arguments] { return make_fmu(*arguments); };
+void add_fmu(Options& o, FmuArguments& a) {
+  add_scene(o, a);
+  add_formulation(o, a);
+  o.argument("--fmi", a.version, "Version of the standard: 2 or 3").among({2, 3}).with_default();
+  o.list("--kind", a.kinds, "KIND,...", "Model exchange (me), co-simulation (cs), or both; default: both")
+      .among({"me", "cs"});
+  o.value("--out", a.out, "FILE", "File; default: the scene's name with .fmu, in the working folder");
+  o.flag("--sources", a.sources, "Refused: an FMU has no sources in it (docs/fmi.md)");
 }
 
 }  // namespace
@@ -81,6 +71,6 @@ std::function<ExitStatus()> add_fmu(CLI::App& c) {
 const Command fmu_command = {"fmu", "Export a scene as an FMU, for other programs to simulate",
                              "  withy fmu scenes/commanded-arm.yaml --out arm.fmu\n"
                              "  withy fmu scenes/commanded-arm.yaml --fmi 2 --kind cs --out arm.fmu",
-                             &add_fmu};
+                             &taking<FmuArguments, add_fmu, make_fmu>};
 
 }  // namespace withy::app
