@@ -42,7 +42,7 @@ std::string advice_of(const study::Prepared& prepared, const study::Outputs& out
     return search_json(question, advice, why).dump();
   }
   std::vector<std::string> changes;
-  for (const study::Change& change : study::new_changes(prepared.scene, advice.choice->point))
+  for (const study::Change& change : study::new_changes(prepared.scene, advice.choice->point, evaluator.registry()))
     changes.push_back(change.text());
   return advice_json(question, advice, study::left_out(evaluator.model(advice.choice->point)), changes,
                      scene_lines(changes))

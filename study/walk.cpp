@@ -129,7 +129,7 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
     Point any = point;  // a scene has an integrator, whatever is walked with
     any.integrator = "dop853";
     any.tolerance = 1e-6;
-    m.prepared = prepare(values_at(base.values, base.scene, any), registry);
+    m.prepared = prepare(values_at(base.values, base.scene, any, registry), registry);
   } catch (const SceneError& e) {
     m.refusal = e.what();
   } catch (const InputError& e) {

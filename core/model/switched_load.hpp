@@ -22,7 +22,7 @@ class SwitchedLoad final : public Load {
 
   /// Numbers of forms as they stand in the discrete states: the first form is the one of a state of zeros.
   static constexpr double as_stated = 0, off = -1;
-  /// Index in State::y of a load's form. \param node of a SwitchedLoad
+  /// Index in State::y of a load's form. \param slot of a SwitchedLoad
   [[nodiscard]] static std::size_t place_of_form(const LoadSlot& slot) { return slot.first + slot.count - 1; }
 
  private:

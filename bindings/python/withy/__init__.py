@@ -1,4 +1,4 @@
-"""Dynamics of trees of rigid and flexible bodies.
+"""Dynamics of trees of rigid and flexible bodies::
 
     import withy
     scene = withy.load("arm.yaml")
