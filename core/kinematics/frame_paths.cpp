@@ -4,6 +4,7 @@
 
 #include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/kinematics/frame_pass.hpp"
+#include "withy/core/shape/section_fields.hpp"
 
 namespace withy {
 
@@ -111,17 +112,9 @@ FramePaths::Place FramePaths::place(const Model& model, Terms terms, FrameIndex 
   const std::size_t l = link(model, terms, frame.body);
   const FramePlace f = place_of(model, frame);
   const Pose pose = f.pose * offset;
-  const auto same = [&](const PointExpansion& e) {
-    bool equal = e.X == f.section.X && e.phi == f.section.phi && e.psi == f.section.psi;
-    for (std::size_t c = 0; c < 3; ++c)
-      equal = equal && e.gamma[c] == f.section.gamma[c] && e.theta[c] == f.section.theta[c];
-    return equal;
-  };
   for (const std::size_t s : links_[l].sections) {
-    if (same(sections_[s].at)) return {l, s, pose};
+    if (same_section(sections_[s].at, f.section)) return {l, s, pose};
   }
-  bool moves = !f.section.phi.isZero(0) || !f.section.psi.isZero(0);
-  for (std::size_t c = 0; c < 3; ++c) moves = moves || !f.section.gamma[c].isZero(0) || !f.section.theta[c].isZero(0);
   links_[l].sections.push_back(sections_.size());
   const auto by_pairs = [](const std::array<Eigen::MatrixXd, 3>& m) {
     std::vector<Vector3> all;
@@ -130,7 +123,8 @@ FramePaths::Place FramePaths::place(const Model& model, Terms terms, FrameIndex 
       for (Eigen::Index j = 0; j < m[0].cols(); ++j) all.emplace_back(m[0](i, j), m[1](i, j), m[2](i, j));
     return all;
   };
-  sections_.push_back({f.section, moves, 0, 0, by_pairs(f.section.gamma), by_pairs(f.section.theta)});
+  sections_.push_back(
+      {f.section, moved_by_modes(f.section), 0, 0, by_pairs(f.section.gamma), by_pairs(f.section.theta)});
   return {l, sections_.size() - 1, pose};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "withy/core/kinematics/tree_observation.hpp"
+#include "withy/core/shape/section_fields.hpp"
 #include "withy/core/tree/invariants.hpp"
 #include "withy/core/tree/steps.hpp"
 
@@ -10,22 +11,10 @@ namespace withy {
 namespace observed {
 namespace {
 
-bool is_rigid(const PointExpansion& e) {
-  bool rigid = e.phi.isZero(0) && e.psi.isZero(0);
-  for (std::size_t c = 0; c < 3; ++c) rigid = rigid && e.gamma[c].isZero(0) && e.theta[c].isZero(0);
-  return rigid;
-}
-
-bool same(const PointExpansion& a, const PointExpansion& b) {
-  bool equal = a.X == b.X && a.phi == b.phi && a.psi == b.psi;
-  for (std::size_t c = 0; c < 3; ++c) equal = equal && a.gamma[c] == b.gamma[c] && a.theta[c] == b.theta[c];
-  return equal;
-}
-
 /// The station of a section; it is added where no other has it.
 int station_of(NodeSpec& node, PointExpansion section) {
   const auto found = std::find_if(node.stations.begin(), node.stations.end(),
-                                  [&](const StationSpec& s) { return same(s.at, section); });
+                                  [&](const StationSpec& s) { return same_section(s.at, section); });
   const auto index = static_cast<int>(found - node.stations.begin());
   if (found == node.stations.end()) node.stations.push_back({std::move(section), {}});
   return index;
@@ -34,7 +23,7 @@ int station_of(NodeSpec& node, PointExpansion section) {
 /// Where a frame is; a section that moves becomes a station of its node.
 FramePlace place_frame(PlacedTree& tree, const BodyPlace& body, const Frame& frame) {
   const Pose at_section{Matrix3::Identity(), frame.section.X};
-  if (body.node < 0 || is_rigid(frame.section))
+  if (body.node < 0 || !moved_by_modes(frame.section))
     return {body.node, body.station, body.pose * at_section * frame.pose, 0};
   const int station = station_of(tree.nodes[static_cast<std::size_t>(body.node)], moved(frame.section, body.pose));
   return {body.node, station, Pose{body.pose.R, Vector3::Zero()} * frame.pose, 0};

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "withy/core/shape/section_fields.hpp"
 #include "withy/core/sweep/mass_table.hpp"
 #include "withy/core/tree/invariants.hpp"
 #include "withy/core/tree/rigid_inertia.hpp"
@@ -12,23 +13,11 @@
 namespace withy::sensed {
 namespace {
 
-bool same_section(const PointExpansion& a, const PointExpansion& b) {
-  bool equal = a.X == b.X && a.phi == b.phi && a.psi == b.psi;
-  for (std::size_t c = 0; c < 3; ++c) equal = equal && a.gamma[c] == b.gamma[c] && a.theta[c] == b.theta[c];
-  return equal;
-}
-
-bool is_moved(const PointExpansion& e) {
-  bool still = e.phi.isZero(0) && e.psi.isZero(0);
-  for (std::size_t c = 0; c < 3; ++c) still = still && e.gamma[c].isZero(0) && e.theta[c].isZero(0);
-  return !still;
-}
-
 SectionFrame placed_at(BodyPlan& body, const PointExpansion& section, const Pose& pose) {
   const auto found = std::find_if(body.sections.begin(), body.sections.end(),
                                   [&](const SectionFields& s) { return same_section(s.at, section); });
   const auto index = static_cast<std::size_t>(found - body.sections.begin());
-  if (found == body.sections.end()) body.sections.push_back({section, is_moved(section)});
+  if (found == body.sections.end()) body.sections.push_back({section, moved_by_modes(section)});
   return {index, pose};
 }
 

@@ -41,6 +41,29 @@ Coordinates coordinates_of(const Hinge& hinge, std::span<const double> x, std::s
   return c;
 }
 
+/// What u̇ follows from, of the speeds that are not prescribed.
+struct FreeRows {
+  Eigen::MatrixXd mass, by_position, by_speed, by_state;
+};
+
+/// Rows and columns of the prescribed speeds become those of the identity, so that their u̇ has no derivatives.
+FreeRows free_rows(const Model& model, const Tangents& tangents) {
+  FreeRows rows{tangents.mass, tangents.by_position, tangents.by_speed, tangents.by_state};
+  const Layout& layout = model.layout();
+  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
+    if (!model.driven(h)) continue;
+    const auto first = static_cast<Eigen::Index>(layout.hinges[h].speed),
+               count = static_cast<Eigen::Index>(layout.hinges[h].speeds);
+    rows.mass.middleRows(first, count).setZero();
+    rows.mass.middleCols(first, count).setZero();
+    rows.mass.block(first, first, count, count).setIdentity();
+    rows.by_position.middleRows(first, count).setZero();
+    rows.by_speed.middleRows(first, count).setZero();
+    if (layout.continuous > 0) rows.by_state.middleRows(first, count).setZero();
+  }
+  return rows;
+}
+
 }  // namespace
 
 Evaluation StateJacobian::jacobian(double t, std::span<const double> y, std::span<const double> y_dot,
@@ -51,31 +74,18 @@ Evaluation StateJacobian::jacobian(double t, std::span<const double> y, std::spa
              z = static_cast<Eigen::Index>(layout.continuous);
   const Tangents tangents = dynamics_.tangents(t, y, Eigen::Map<const Eigen::VectorXd>(y_dot.data() + positions, n));
 
-  // Rows and columns of the prescribed speeds become those of the identity, so that their u̇ has no derivatives.
-  Eigen::MatrixXd M = tangents.mass, by_position = tangents.by_position, by_speed = tangents.by_speed,
-                  by_state = tangents.by_state;
-  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
-    if (!model.driven(h)) continue;
-    const auto first = static_cast<Eigen::Index>(layout.hinges[h].speed),
-               count = static_cast<Eigen::Index>(layout.hinges[h].speeds);
-    M.middleRows(first, count).setZero();
-    M.middleCols(first, count).setZero();
-    M.block(first, first, count, count).setIdentity();
-    by_position.middleRows(first, count).setZero();
-    by_speed.middleRows(first, count).setZero();
-    if (z > 0) by_state.middleRows(first, count).setZero();
-  }
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(M);
+  const FreeRows free = free_rows(model, tangents);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(free.mass);
   // Of u̇, then of ż.
   Eigen::MatrixXd by_displacement(n + z, n);
-  by_displacement.topRows(n) = -lu.solve(by_position);
+  by_displacement.topRows(n) = -lu.solve(free.by_position);
 
   Eigen::Map<Eigen::MatrixXd> J(jacobian.data(), positions + n + z, positions + n + z);
   J.setZero();
-  J.block(positions, positions, n, n) = -lu.solve(by_speed);
+  J.block(positions, positions, n, n) = -lu.solve(free.by_speed);
   if (z > 0) {
     by_displacement.bottomRows(z) = tangents.rate_by_position;
-    J.block(positions, positions + n, n, z) = -lu.solve(by_state);
+    J.block(positions, positions + n, n, z) = -lu.solve(free.by_state);
     J.block(positions + n, positions, z, n) = tangents.rate_by_speed;
     J.bottomRightCorner(z, z) = tangents.rate_by_state;
     // What ż sees of u̇, which depends on all else.

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "withy/core/shape/section_fields.hpp"
 #include "withy/core/tree/rigid_inertia.hpp"
 #include "withy/core/tree/steps.hpp"
 
@@ -22,12 +23,6 @@ bool moves(const PointExpansion& e, const ModalShape& shape) {
   bool any = beyond(e.phi, first) || beyond(extent * e.psi, first);
   for (std::size_t c = 0; c < 3; ++c) any = any || beyond(e.gamma[c], second) || beyond(extent * e.theta[c], second);
   return any;
-}
-
-bool same(const PointExpansion& a, const PointExpansion& b) {
-  bool equal = a.X == b.X && a.phi == b.phi && a.psi == b.psi;
-  for (std::size_t c = 0; c < 3; ++c) equal = equal && a.gamma[c] == b.gamma[c] && a.theta[c] == b.theta[c];
-  return equal;
 }
 
 /// Turns the model's bodies into nodes.
@@ -107,7 +102,7 @@ class Merger {
   int station(int node_index, PointExpansion e) {
     std::vector<StationSpec>& stations = node(node_index).stations;
     for (std::size_t i = 0; i < stations.size(); ++i) {
-      if (same(stations[i].at, e)) return static_cast<int>(i);
+      if (same_section(stations[i].at, e)) return static_cast<int>(i);
     }
     stations.push_back({std::move(e), {}});
     return static_cast<int>(stations.size()) - 1;

@@ -15,6 +15,16 @@ class LinearlyImplicitTrees : public testing::TestWithParam<std::string> {
   static double tolerance() { return GetParam() == "exact" ? 1e-7 : 1e-11; }
 };
 
+/// Rows of an equation: what is left of each, and the size of its terms.
+struct Rows {
+  std::vector<double> residual, scale;
+  explicit Rows(std::size_t n) : residual(n), scale(n, 1e-12) {}
+  void add(std::size_t i, double term) {
+    residual[i] += term;
+    scale[i] += std::abs(term);
+  }
+};
+
 /// W z = r with W = 1 − δ A: (M + δD + δ²K) z_u = M r_u − δ K r_q on the modes, z_q = r_q + δ z_u.
 TEST_P(LinearlyImplicitTrees, solutions_satisfy_their_equations) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -37,14 +47,10 @@ TEST_P(LinearlyImplicitTrees, solutions_satisfy_their_equations) {
     const std::size_t before = allocations();
     linear->solve(z, factors);
     EXPECT_EQ(allocations() - before, 0U);
-    std::vector<double> residual(s.size), scale(s.size, 1e-12);
-    const auto add = [&](std::size_t i, double term) {
-      residual[i] += term;
-      scale[i] += std::abs(term);
-    };
+    Rows rows(s.size);
     for (std::size_t i = 0; i < s.size; ++i) {
       for (std::size_t j = 0; j < s.size; ++j)
-        add(i, s.mass[i * s.size + j] * (z[layout.positions + j] - r[layout.positions + j]));
+        rows.add(i, s.mass[i * s.size + j] * (z[layout.positions + j] - r[layout.positions + j]));
     }
     std::size_t flexible = 0;
     for (const BodyNode& body : c.scene.model->bodies()) {
@@ -57,13 +63,14 @@ TEST_P(LinearlyImplicitTrees, solutions_satisfy_their_equations) {
                     1e-12);
         for (Eigen::Index j = 0; j < shape.modes(); ++j) {
           const auto column = static_cast<std::size_t>(j);
-          add(slot.speed + row, delta * shape.damping(i, j) * z[layout.positions + slot.speed + column]);
-          add(slot.speed + row, delta * shape.stiffness(i, j) * z[slot.position + column]);
+          rows.add(slot.speed + row, delta * shape.damping(i, j) * z[layout.positions + slot.speed + column]);
+          rows.add(slot.speed + row, delta * shape.stiffness(i, j) * z[slot.position + column]);
         }
       }
     }
     for (std::size_t i = 0; i < s.size; ++i)
-      EXPECT_LT(std::abs(residual[i]), tolerance() * scale[i]) << "seed " << seed << ", row " << layout.speed_names[i];
+      EXPECT_LT(std::abs(rows.residual[i]), tolerance() * rows.scale[i])
+          << "seed " << seed << ", row " << layout.speed_names[i];
   }
 }
 
@@ -111,6 +118,36 @@ motions:
   }
 };
 
+/// M u̇ − f − τ + K (q_z − q) + D (u_z − u), and the power of damping at z.
+std::pair<Rows, double> rows_of(const Pushed& c, const std::vector<double>& z, const std::vector<double>& y_dot) {
+  const Layout& layout = c.equations->layout();
+  const std::size_t n = layout.speeds, first = layout.positions;
+  const DenseSystem s = c.equations->system(c.state.time, c.state.y);
+  Rows rows(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) rows.add(i, s.mass[i * n + j] * y_dot[first + j]);
+    rows.add(i, -s.force[i]);
+    rows.add(i, -s.applied[i]);
+  }
+  double power = 0;
+  for (const BodyNode& body : c.scene.model->bodies()) {
+    const Slot* slot = layout.body(body.name);
+    if (slot == nullptr) continue;
+    const ModalShape& shape = body.body->shape();
+    for (Eigen::Index i = 0; i < shape.modes(); ++i) {
+      const std::size_t row = slot->speed + static_cast<std::size_t>(i);
+      for (Eigen::Index j = 0; j < shape.modes(); ++j) {
+        const std::size_t q = slot->position + static_cast<std::size_t>(j);
+        const std::size_t u = first + slot->speed + static_cast<std::size_t>(j);
+        rows.add(row, shape.stiffness(i, j) * (z[q] - c.state.y[q]));
+        rows.add(row, shape.damping(i, j) * (z[u] - c.state.y[u]));
+        power -= z[first + row] * shape.damping(i, j) * z[u];
+      }
+    }
+  }
+  return {rows, power};
+}
+
 /// M u̇ = f + τ − K (q_z − q) − D (u_z − u) in the rows that are not driven, ẋ = N(x) u_z, and the power of loads,
 /// motions and damping, with z = base + δ ẏ.
 TEST_P(LinearlyImplicitTrees, implicit_derivatives_satisfy_their_equations) {
@@ -139,38 +176,14 @@ TEST_P(LinearlyImplicitTrees, implicit_derivatives_satisfy_their_equations) {
     ASSERT_TRUE(c.equations->position_rates(c.state.time, moved, rates, work).ok());
     for (std::size_t i = 0; i < first; ++i) EXPECT_NEAR(y_dot[i], rates[i], 1e-13 * (1 + std::abs(rates[i])));
 
-    const DenseSystem s = c.equations->system(c.state.time, c.state.y);
-    std::vector<double> efforts(n), residual(n), scale(n, 1e-12);
+    const auto [rows, damping] = rows_of(c, z, y_dot);
+    std::vector<double> efforts(n);
     c.equations->load_efforts(c.state.time, c.state.y, EquationsOfMotion::all_loads, efforts, work);
-    const auto add = [&](std::size_t i, double term) {
-      residual[i] += term;
-      scale[i] += std::abs(term);
-    };
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j < n; ++j) add(i, s.mass[i * n + j] * y_dot[first + j]);
-      add(i, -s.force[i]);
-      add(i, -s.applied[i]);
-    }
-    double power = 0, size = 1e-12;
-    for (const BodyNode& body : c.scene.model->bodies()) {
-      const Slot* slot = layout.body(body.name);
-      if (slot == nullptr) continue;
-      const ModalShape& shape = body.body->shape();
-      for (Eigen::Index i = 0; i < shape.modes(); ++i) {
-        const auto row = static_cast<std::size_t>(i);
-        for (Eigen::Index j = 0; j < shape.modes(); ++j) {
-          const std::size_t q = slot->position + static_cast<std::size_t>(j);
-          const std::size_t u = first + slot->speed + static_cast<std::size_t>(j);
-          add(slot->speed + row, shape.stiffness(i, j) * (z[q] - c.state.y[q]));
-          add(slot->speed + row, shape.damping(i, j) * (z[u] - c.state.y[u]));
-          power -= z[first + slot->speed + row] * shape.damping(i, j) * z[u];
-        }
-      }
-    }
+    double power = damping, size = 1e-12;
     for (std::size_t i = 0; i < n; ++i) {
       const bool driven = layout.speed_names[i] == "elbow.0";
       // What is left in a driven row is the effort of its motion.
-      const double effort = efforts[i] + (driven ? residual[i] : 0);
+      const double effort = efforts[i] + (driven ? rows.residual[i] : 0);
       power += effort * z[first + i];
       size += std::abs(effort * z[first + i]);
       if (driven) {
@@ -178,7 +191,7 @@ TEST_P(LinearlyImplicitTrees, implicit_derivatives_satisfy_their_equations) {
         c.scene.model->prescribe_accelerations(c.state.time, asked);
         EXPECT_EQ(y_dot[first + i], asked[i]);
       } else {
-        EXPECT_LT(std::abs(residual[i]), tolerance() * scale[i])
+        EXPECT_LT(std::abs(rows.residual[i]), tolerance() * rows.scale[i])
             << "seed " << seed << ", row " << layout.speed_names[i];
       }
     }

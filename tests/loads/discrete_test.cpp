@@ -205,9 +205,8 @@ TEST(Events, of_hinges_that_are_not_there_are_bad_input) {
   EXPECT_THAT(test::problem_of(turntable + "events: {e: {hinge: axle, component: 1}}\n"), HasSubstr("no component 1"));
 }
 
-// Saved and resumed again and again, a run with samples, a relay, events and a beam gives the same bits.
-TEST(Checkpoints, let_a_run_go_on_bit_by_bit) {
-  const std::string text = R"(format: withy/1
+/// What a run remembers: samples, a relay, inputs, events, a beam.
+const std::string busy_boom = R"(format: withy/1
 time: {end: 2, output: 0.05}
 bodies:
   hub: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}
@@ -227,52 +226,68 @@ events:
   half: {hinge: axle, value: 0.5}
   back: {hinge: axle, of: rate, direction: down}
 )";
+
+struct InPieces {
+  std::vector<State> outputs;
+  RunSummary summary;
+  std::size_t pieces = 0;
+};
+
+/// Runs the scene, saved and resumed after every seventh step.
+InPieces run_in_pieces(const test::LoadedScene& s) {
+  InPieces run;
+  std::size_t saved_at = 0;
+  std::optional<Checkpoint> stored;
+  do {
+    const std::optional<Checkpoint> resumed = stored;
+    run.outputs.resize(saved_at);  // without the last state of the interrupted piece, which is no output of the whole
+    RunOptions options;
+    options.end = end_of_run(s.scene);
+    options.output = s.scene.output;
+    options.events = s.scene.events;
+    options.resume = resumed ? &*resumed : nullptr;
+    int steps = 0;
+    options.interrupted = [&] { return steps++ == 7; };
+    options.checkpoint = [&](const Checkpoint& c) {
+      stored = c;
+      saved_at = run.outputs.size();
+    };
+    run.summary = simulate(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options,
+                           [&](const State& state) { run.outputs.push_back(state); });
+    ++run.pieces;
+  } while (run.summary.status == RunStatus::interrupted && run.pieces < 10'000);
+  return run;
+}
+
+void expect_same(const RunSummary& a, const RunSummary& b) {
+  EXPECT_EQ(a.steps.evaluations, b.steps.evaluations);
+  EXPECT_EQ(a.steps.rejected, b.steps.rejected);
+  EXPECT_EQ(a.peak_effort, b.peak_effort);
+  EXPECT_EQ(a.peak_deflection, b.peak_deflection);
+  EXPECT_EQ(a.energy_drift, b.energy_drift);
+  EXPECT_EQ(a.validity.samples, b.validity.samples);
+  EXPECT_EQ(a.suspected_jumps, b.suspected_jumps);
+  ASSERT_EQ(a.events.size(), b.events.size());
+  for (std::size_t i = 0; i < a.events.size(); ++i) {
+    EXPECT_EQ(a.events[i].name, b.events[i].name);
+    EXPECT_EQ(a.events[i].time, b.events[i].time);
+  }
+}
+
+TEST(Checkpoints, let_a_run_go_on_bit_by_bit) {
   for (const char* integrator : {"{name: dopri5, rtol: 1e-6, atol: 1e-8}", "{name: rk4, step: 0.01}", "dop853",
                                  "rosenbrock-w", "imex", "rk4-adaptive"}) {
-    test::LoadedScene s(text, {std::string("integrator=") + integrator});
+    test::LoadedScene s(busy_boom, {std::string("integrator=") + integrator});
     const std::vector<State> whole = s.run();
-    const RunSummary uninterrupted = s.summary;
-    EXPECT_FALSE(uninterrupted.events.empty());
-    std::vector<State> outputs;
-    std::size_t saved_at = 0, pieces = 0;
-    std::optional<Checkpoint> stored;
-    RunSummary summary;
-    do {
-      const std::optional<Checkpoint> resumed = stored;
-      outputs.resize(saved_at);  // without the last state of the interrupted piece, which is no output of the whole
-      RunOptions options;
-      options.end = end_of_run(s.scene);
-      options.output = s.scene.output;
-      options.events = s.scene.events;
-      options.resume = resumed ? &*resumed : nullptr;
-      int steps = 0;
-      options.interrupted = [&] { return steps++ == 7; };
-      options.checkpoint = [&](const Checkpoint& c) {
-        stored = c;
-        saved_at = outputs.size();
-      };
-      summary = simulate(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options,
-                         [&](const State& state) { outputs.push_back(state); });
-      ++pieces;
-    } while (summary.status == RunStatus::interrupted && pieces < 10'000);
-    EXPECT_GT(pieces, 4U) << integrator;
-    ASSERT_EQ(outputs.size(), whole.size()) << integrator;
+    EXPECT_FALSE(s.summary.events.empty());
+    const InPieces run = run_in_pieces(s);
+    EXPECT_GT(run.pieces, 4U) << integrator;
+    ASSERT_EQ(run.outputs.size(), whole.size()) << integrator;
     for (std::size_t i = 0; i < whole.size(); ++i) {
-      EXPECT_EQ(outputs[i].time, whole[i].time);
-      EXPECT_EQ(outputs[i].y, whole[i].y) << integrator << " at " << whole[i].time;
+      EXPECT_EQ(run.outputs[i].time, whole[i].time);
+      EXPECT_EQ(run.outputs[i].y, whole[i].y) << integrator << " at " << whole[i].time;
     }
-    EXPECT_EQ(summary.steps.evaluations, uninterrupted.steps.evaluations);
-    EXPECT_EQ(summary.steps.rejected, uninterrupted.steps.rejected);
-    EXPECT_EQ(summary.peak_effort, uninterrupted.peak_effort);
-    EXPECT_EQ(summary.peak_deflection, uninterrupted.peak_deflection);
-    EXPECT_EQ(summary.energy_drift, uninterrupted.energy_drift);
-    EXPECT_EQ(summary.validity.samples, uninterrupted.validity.samples);
-    EXPECT_EQ(summary.suspected_jumps, uninterrupted.suspected_jumps);
-    ASSERT_EQ(summary.events.size(), uninterrupted.events.size());
-    for (std::size_t i = 0; i < summary.events.size(); ++i) {
-      EXPECT_EQ(summary.events[i].name, uninterrupted.events[i].name);
-      EXPECT_EQ(summary.events[i].time, uninterrupted.events[i].time);
-    }
+    expect_same(run.summary, s.summary);
   }
 }
 
