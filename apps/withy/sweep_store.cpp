@@ -39,6 +39,7 @@ Json json_of(const campaign::Collected& c) {
   j["files"] = {"table.csv", "failed.csv"};
   if (c.statistics) j["files"].push_back("statistics.csv");
   if (c.indices) j["files"].push_back("indices.csv");
+  if (c.histories) j["files"].insert(j["files"].end(), {"histories.csv", "histories.svg"});
   if (has_report_page()) j["files"].push_back(report_name);
   return j;
 }
@@ -54,6 +55,7 @@ std::string collected_text(const campaign::Collected& c, const std::string& stor
   text += "\ntable.csv";
   if (c.statistics) text += ", statistics.csv";
   if (c.indices) text += ", indices.csv";
+  if (c.histories) text += ", histories.csv, histories.svg";
   return text + " in " + store + (has_report_page() ? ", to look at in its report.html\n" : "\n");
 }
 
