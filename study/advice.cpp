@@ -92,7 +92,7 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   return advice;
 }
 
-std::vector<Change> new_changes(const Scene& scene, const Point& choice) {
+std::vector<Change> new_changes(const Scene& scene, const Point& choice, Registry& registry) {
   const auto says = [&](const Change& change) {
     const Value* at = &scene.source;
     for (std::size_t begin = 0; at != nullptr && begin <= change.path.size();) {
@@ -105,7 +105,7 @@ std::vector<Change> new_changes(const Scene& scene, const Point& choice) {
            (at->kind() == Value::Kind::text && at->text() == change.value.text());
   };
   std::vector<Change> all{{"formulation", Value(choice.formulation)}};
-  for (Change& change : changes_at(scene, choice))
+  for (Change& change : changes_at(scene, choice, registry))
     if (!says(change)) all.push_back(std::move(change));
   // The integrator beside the formulation.
   std::stable_partition(all.begin(), all.end(),

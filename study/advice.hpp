@@ -36,6 +36,6 @@ struct Advice {
 Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy);
 
 /// What the choice changes in the scene that it does not say already, formulation and integrator first.
-std::vector<Change> new_changes(const Scene& scene, const Point& choice);
+std::vector<Change> new_changes(const Scene& scene, const Point& choice, Registry& registry);
 
 }  // namespace withy::study

@@ -6,8 +6,8 @@
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
-#include "withy/core/plugin/mode_family.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/mode_basis.hpp"
 #include "withy/study/unfit.hpp"
 
 namespace withy::study {
@@ -18,31 +18,34 @@ constexpr const char* polynomials = "orthogonal-polynomials";
 /// What stands for all formulations where no body is flexible: the one of scenes that name none.
 constexpr const char* plain_formulation = "quadratic";
 
-/// Whether a family describes any bending of a beam that is clamped at the root and free at the tip.
-bool spans_cantilevers(const Value& family, Registry& registry) {
-  Diagnostics diagnostics;
-  const auto made = make_mode_family(family, {registry, diagnostics});
-  return made != nullptr && made->spans_cantilevers();
-}
-
-/// Calls with every number of modes in bending that is not zero.
+/// Calls with every number of modes that is not zero, and where the family beside it stands.
 template <class Function>
-void for_each_bending(const Scene& scene, Function&& function) {
+void for_each_family(const Scene& scene, Registry& registry, Function&& function) {
   for (const BodyModes& body : scene.modes)
-    for (const ModeCount& count : body.counts)
-      if (count.modes > 0 && !count.family_path.empty()) function(count);
+    for (const ModeCount& count : body.counts) {
+      const std::string path = count.modes > 0 ? family_path(scene, body.body, count, registry) : "";
+      if (const Value* family = family_at(scene, body.body, path)) function(count, *family);
+    }
 }
 
-/// Whether another basis of clamped beams means the same beams: all are clamped at the root and free at the tip, and
-/// no modal coordinate has a value at the start. Damping is no matter: a ratio is that of the modes which the body has
-/// by itself, whatever functions they are found in.
+/// Whether another basis of clamped beams means the same beams: all that bend are clamped at the root and free at the
+/// tip, and those that are bent at the start have a shape along themselves. Damping is no matter: a ratio is that of
+/// the modes which the body has by itself, whatever functions they are found in.
 bool families_are_exchangeable(const Scene& scene, Registry& registry) {
   bool fit = true;
-  for_each_bending(scene, [&](const ModeCount& count) { fit = fit && spans_cantilevers(count.family, registry); });
+  for_each_family(scene, registry, [&](const ModeCount& count, const Value& family) {
+    fit = fit && (count.family_path.empty() || spans_cantilevers(family, registry));
+  });
   const Layout& layout = scene.model->layout();
-  for (const Slot& body : layout.bodies) {
-    for (std::size_t i = 0; i < body.positions; ++i) fit = fit && scene.initial.y[body.position + i] == 0;
-    for (std::size_t i = 0; i < body.speeds; ++i) fit = fit && scene.initial.y[layout.positions + body.speed + i] == 0;
+  for (const BodyNode& node : scene.model->bodies()) {
+    const Slot* const slot = layout.body(node.name);
+    if (slot == nullptr) continue;
+    bool rests = true;
+    for (std::size_t i = 0; i < slot->positions; ++i) rests = rests && scene.initial.y[slot->position + i] == 0;
+    for (std::size_t i = 0; i < slot->speeds; ++i)
+      rests = rests && scene.initial.y[layout.positions + slot->speed + i] == 0;
+    const std::vector<double> none(slot->speeds);
+    fit = fit && (rests || (!node.segment && same_shape(*node.body, none, *node.body)));
   }
   return fit;
 }
@@ -90,16 +93,17 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes ask
   check(c, registry);
   const Scene& scene = prepared.scene;
   if (!flexible(prepared.model())) c.formulations = {plain_formulation};  // without modes all are the same
-  bool bending = false, polynomial_already = true;
-  for_each_bending(scene, [&](const ModeCount& count) {
-    bending = true;
-    polynomial_already = polynomial_already && count.family_id() == polynomials;
+  bool any = false, polynomial_already = true;
+  for_each_family(scene, registry, [&](const ModeCount& count, const Value& family) {
+    if (count.family_path.empty() && !spans_cantilevers(family, registry)) return;
+    any = true;
+    polynomial_already = polynomial_already && family.kind() == Value::Kind::text && family.text() == polynomials;
   });
   if (scene.modes.empty()) {
     c.modes = {0};
     c.more_modes.clear();
   }
-  if (!bending) c.families = {""};
+  if (!any) c.families = {""};
   if (c.families.empty()) {
     c.families = {""};
     if (!polynomial_already && families_are_exchangeable(scene, registry)) c.families.emplace_back(polynomials);

@@ -59,7 +59,7 @@ FrequencyStudy::FrequencyStudy(const Prepared& base, Registry& registry, Frequen
 
 ModesAt FrequencyStudy::find(const Point& point, double value) const {
   const Sweep& sweep = question_.sweep;
-  SceneValues values = values_at(base_.values, base_.scene, point);
+  SceneValues values = values_at(base_.values, base_.scene, point, registry_);
   if (sweep.spun().empty()) values.set_text(fmt::format("{}={}", sweep.path, value));
   const Prepared prepared = prepare(std::move(values), registry_);
   Configuration c(prepared, prepared.scene.initial, question_.holding);

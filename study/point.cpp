@@ -10,6 +10,7 @@
 
 #include "withy/scene/one_line.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/mode_basis.hpp"
 
 namespace withy::study {
 namespace {
@@ -27,37 +28,67 @@ Value resized(std::span<const double> values, const std::vector<int>& had, int m
   return Value::list(std::move(items));
 }
 
-/// Gives a body the point's modes and family. \returns the modes that it had, in the order of its coordinates
-std::vector<int> change_modes(std::vector<Change>& changes, const BodyModes& body, const Point& point) {
-  std::vector<int> had;
+/// What another number of modes and another family change in a body.
+struct ModesChanged {
+  std::vector<int> had;  ///< modes of each strain up to now, in the order of the coordinates
+  bool families = false;
+  std::vector<std::pair<std::string, Value>> values;  ///< by paths below the body
+};
+
+/// Gives a body the point's modes and family. The family is of bending; other strains take it where both it and their
+/// own can be any strain of a clamped beam, so that no strain converges more slowly than the rest.
+ModesChanged change_modes(const Scene& scene, const BodyModes& body, const Point& point, Registry& registry) {
+  ModesChanged changed;
   for (const ModeCount& count : body.counts) {
-    had.push_back(static_cast<int>(count.modes));
+    changed.had.push_back(static_cast<int>(count.modes));
     if (count.modes == 0) continue;
-    const std::string path = "bodies." + body.body + '.';
-    changes.push_back({path + count.path, Value(static_cast<double>(point.modes))});
-    if (!point.family.empty() && !count.family_path.empty())
-      changes.push_back({path + count.family_path, Value(point.family)});
+    changed.values.emplace_back(count.path, Value(static_cast<double>(point.modes)));
+    const std::string path = point.family.empty() ? "" : family_path(scene, body.body, count, registry);
+    const Value* own = family_at(scene, body.body, path);
+    if (path.empty() || (own != nullptr && own->kind() == Value::Kind::text && own->text() == point.family)) continue;
+    const Value family(point.family);
+    const bool bending = !count.family_path.empty();
+    if (!bending && !(own != nullptr && spans_cantilevers(*own, registry) && spans_cantilevers(family, registry)))
+      continue;
+    changed.families = true;
+    changed.values.emplace_back(path, family);
   }
-  return had;
+  return changed;
 }
 
-/// Keeps what the initial state says of a body's modes.
-void change_start(std::vector<Change>& changes, const Scene& scene, const std::string& name, const Slot& slot,
-                  const std::vector<int>& had, int modes) {
+/// Keeps what the initial state says of a body's modes: by the number of each where the family stays, else by the
+/// shape.
+void change_start(std::vector<Change>& changes, const Scene& scene, const std::string& name, const ModesChanged& modes,
+                  int number, Registry& registry) {
   const Value* initial = scene.source.find("initial");
   const Value* starts = initial != nullptr ? initial->find("bodies") : nullptr;
   const Value* start = starts != nullptr ? starts->find(name) : nullptr;
-  if (start == nullptr) return;
-  if (std::accumulate(had.begin(), had.end(), std::size_t{0}) != slot.speeds)
+  // The initial states of segments have names of their own.
+  const Slot* const slot = scene.model->layout().body(name);
+  if (start == nullptr || slot == nullptr) return;
+  if (std::accumulate(modes.had.begin(), modes.had.end(), std::size_t{0}) != slot->speeds)
     throw InputError("body '" + name +
                      "' has other modes than its plugin says: its initial state cannot be carried over");
+  const auto& bodies = scene.model->bodies();
+  const auto node = std::find_if(bodies.begin(), bodies.end(), [&](const BodyNode& b) { return b.name == name; });
+  const auto becomes = modes.families ? body_with(scene, name, modes.values, registry) : nullptr;
+  const auto carried = [&](std::span<const double> values) {
+    if (!modes.families || std::all_of(values.begin(), values.end(), [](double v) { return v == 0; }))
+      return resized(values, modes.had, number);
+    const auto shape = becomes != nullptr ? same_shape(*node->body, values, *becomes) : std::nullopt;
+    if (!shape)
+      throw InputError("body '" + name +
+                       "' has no stations along itself: its initial state cannot be carried over to other functions");
+    std::vector<Value> items;
+    for (const double v : *shape) items.emplace_back(v);
+    return Value::list(std::move(items));
+  };
   const std::string path = "initial.bodies." + name;
   const std::span<const double> y = scene.initial.y;
-  if (start->has("modes"))
-    changes.push_back({path + ".modes", resized(y.subspan(slot.position, slot.speeds), had, modes)});
+  if (start->has("modes")) changes.push_back({path + ".modes", carried(y.subspan(slot->position, slot->speeds))});
   if (start->has("rates"))
     changes.push_back(
-        {path + ".rates", resized(y.subspan(scene.model->layout().positions + slot.speed, slot.speeds), had, modes)});
+        {path + ".rates", carried(y.subspan(scene.model->layout().positions + slot->speed, slot->speeds))});
 }
 
 }  // namespace
@@ -136,7 +167,7 @@ std::vector<Point> points_of(const Axes& axes) {
 
 std::string Change::text() const { return path + '=' + in_one_line(value); }
 
-std::vector<Change> changes_at(const Scene& scene, const Point& point) {
+std::vector<Change> changes_at(const Scene& scene, const Point& point, Registry& registry) {
   std::vector<Change> changes;
   if (!point.integrator.empty())
     changes.push_back({"integrator", Value::map({{"name", Value(point.integrator)},
@@ -144,10 +175,9 @@ std::vector<Change> changes_at(const Scene& scene, const Point& point) {
                                                  {"atol", Value(absolute_tolerance(point.tolerance))}})});
   for (const BodyModes& body : scene.modes) {
     if (point.modes == 0) continue;
-    const std::vector<int> had = change_modes(changes, body, point);
-    // The initial states of segments have names of their own.
-    if (const Slot* const slot = scene.model->layout().body(body.body))
-      change_start(changes, scene, body.body, *slot, had, point.modes);
+    const ModesChanged modes = change_modes(scene, body, point, registry);
+    for (const auto& [path, value] : modes.values) changes.push_back({"bodies." + body.body + '.' + path, value});
+    change_start(changes, scene, body.body, modes, point.modes, registry);
   }
   for (const auto& [name, body] : scene.source.at("bodies").members()) {
     const std::string& of = name;
@@ -162,11 +192,11 @@ std::vector<Change> changes_at(const Scene& scene, const Point& point) {
   return changes;
 }
 
-SceneValues values_at(SceneValues values, const Scene& scene, const Point& point) {
+SceneValues values_at(SceneValues values, const Scene& scene, const Point& point, Registry& registry) {
   for (const std::string& over : point.over) values.set_text(over);
   const std::string origin = "the study's point " + point.text();
   values.choose_formulation(point.formulation, origin);
-  for (Change& change : changes_at(scene, point)) values.set(change.path, std::move(change.value), origin);
+  for (Change& change : changes_at(scene, point, registry)) values.set(change.path, std::move(change.value), origin);
   return values;
 }
 

@@ -13,7 +13,7 @@ namespace withy::study {
 /// A model of a scene and how it is integrated.
 struct Point {
   std::string formulation;
-  std::string family;  ///< of bending modes; empty: the scene's
+  std::string family;  ///< of bending modes, and of strains that it fits as well; empty: the scene's
   int modes = 0;       ///< of each family of a body that has a number of them; 0: those of the scene
   std::string integrator;
   double tolerance = 0;           ///< relative; the absolute one is absolute_tolerance()
@@ -64,10 +64,11 @@ struct Change {
 };
 
 /// What makes the scene the point's, in the order in which it is to be set. Initial modal coordinates keep their
-/// numbers; modes that are new start at rest. Formulations that single bodies have become the point's.
-std::vector<Change> changes_at(const Scene& scene, const Point& point);
+/// numbers, modes that are new start at rest; where the family is another they are those of the same shape.
+/// Formulations that single bodies have become the point's.
+std::vector<Change> changes_at(const Scene& scene, const Point& point, Registry& registry);
 /// The values of the scene at the point.
 /// \param scene made from these values
-SceneValues values_at(SceneValues values, const Scene& scene, const Point& point);
+SceneValues values_at(SceneValues values, const Scene& scene, const Point& point, Registry& registry);
 
 }  // namespace withy::study

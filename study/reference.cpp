@@ -30,6 +30,20 @@ void correct(const Output& output, const std::vector<double>& b, const std::vect
   for (std::size_t i = at; i < at + numbers; ++i) a[i] += b[i] - c[i];
 }
 
+/// What the finer of two levels may be off by: their difference, or what is left of a series of differences that shrink
+/// as the last two did. Functions that cannot be what the beam is converge like 1/n: the rest is then several times the
+/// last difference.
+Distances rest_of_series(const Distances& last, const Distances& before) {
+  constexpr double most = 4;
+  Distances rest = last;
+  for (std::size_t k = 0; k < rest.size() && k < before.size(); ++k)
+    if (before[k] > 0) {
+      const double ratio = std::min(last[k] / before[k], most / (1 + most));
+      rest[k] *= std::max(1.0, ratio / (1 - ratio));
+    }
+  return rest;
+}
+
 class ReferenceSearch {
  public:
   ReferenceSearch(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
@@ -176,6 +190,7 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
   ReferenceSearch search(model_at, registry, outputs, goal, control);
   ReferenceFound& found = search.found;
   std::optional<Reference> before, coarse = search.begin(goal.first);
+  Distances apart;  // the two levels before
   if (coarse) {
     found.trouble.clear();
     found.unaffordable = false;
@@ -184,7 +199,9 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
   for (int level = 0; coarse && level < goal.levels; ++level) {
     std::optional<Reference> fine = search.at(search.finer(coarse->point));
     if (!fine) break;
-    fine->own = distances(outputs, fine->readings, coarse->readings).first;
+    const Distances last = distances(outputs, fine->readings, coarse->readings).first;
+    fine->own = rest_of_series(last, apart);
+    apart = last;
     if (search.enough(*fine)) {
       found.reference = std::move(fine);
       return std::move(found);

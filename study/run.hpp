@@ -40,6 +40,10 @@ struct CertifiedRun {
   Certificate certificate;
 };
 
+/// Refuses a tolerance below what the mass matrix leaves to be had, and a start at which it is singular.
+/// \throws InputError
+void check_accuracy(const Prepared& prepared);
+
 /// Simulates from the scene's initial state to its end, measures what is left out on the way, and estimates its effect
 /// afterwards. Of `auto` the error is estimated and its formulations are chosen before; a run that comes to the end and
 /// does not hold the accuracy asked, or cannot know it, is inaccurate.

@@ -128,7 +128,7 @@ TradeResult TradeStudy::run_point(const Point& point) const {
     result.message = e.what();
   };
   try {
-    const Prepared model = prepare(values_at(base_.values, base_.scene, point), registry_);
+    const Prepared model = prepare(values_at(base_.values, base_.scene, point, registry_), registry_);
     const TimedRun run = timed_run(model, outputs_, options_.control);
     result.status = name(run.summary.status);
     result.message = run.summary.message;

@@ -85,7 +85,8 @@ class Watch final : public SteppingObserver {
     walk.time = loop.state().time;
     count(loop.stepper());
     if (ended.cause == SteppingEnd::Cause::reached) static_cast<void>(seen(observer_.output(loop.state())));
-    if (ended.cause == SteppingEnd::Cause::failed) stop(reason_of(ended.step, model));
+    if (ended.cause == SteppingEnd::Cause::failed)
+      stop(ended.reason.empty() ? reason_of(ended.step, model) : ended.reason);
     if (ended.cause == SteppingEnd::Cause::crowded)
       stop("loads switch or events act again and again without time between the instants");
   }
@@ -128,7 +129,7 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
     Point any = point;  // a scene has an integrator, whatever is walked with
     any.integrator = "dop853";
     any.tolerance = 1e-6;
-    m.prepared = prepare(values_at(base.values, base.scene, any), registry);
+    m.prepared = prepare(values_at(base.values, base.scene, any, registry), registry);
   } catch (const SceneError& e) {
     m.refusal = e.what();
   } catch (const InputError& e) {

@@ -1,6 +1,7 @@
 // How a reference is found within a time: what the rest of a run will cost, and what a higher formulation adds.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -60,6 +61,70 @@ TEST(Pace, ANewRunBeginsAnew) {
 Prepared soft_pendulum() {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/flexible-pendulum.yaml");
   return prepare(values.set("time.end", Value(0.4), "the test"), plugins());
+}
+
+/// The scene's own start in the functions of another family: the shape is kept, not the numbers.
+TEST(ModeBasis, ABentStartKeepsItsShapeInOtherFunctions) {
+  const Prepared scene = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spacecraft.yaml"), plugins());
+  const auto start = [&](const char* family, int modes) {
+    const Point point{"quadratic", family, modes, "", 0, {}, {}};
+    const Prepared at = prepare(values_at(scene.values, scene.scene, point, plugins()), plugins());
+    Outputs outputs(at.model());
+    OutputReader reader(outputs, at.model(), *at.equations);
+    return std::pair(outputs, reader.read(at.scene.initial));
+  };
+  const auto own = start("", 6);
+  const auto off = [&](const char* family, int modes) {
+    const auto [outputs, values] = start(family, modes);
+    Distances apart = outputs.none();
+    outputs.raise(values, own.second, apart);
+    return *std::max_element(apart.begin(), apart.end());
+  };
+  EXPECT_LT(off("orthogonal-polynomials", 8), 1e-9) << "of 81 mm";
+  EXPECT_LT(off("craig-bampton", 8), 1e-5);
+  EXPECT_GT(off("orthogonal-polynomials", 1), 1e-3) << "one function cannot have the shape of another";
+  EXPECT_LT(off("clamped-free", 4), 1e-12) << "the same functions keep their numbers";
+}
+
+/// Bending and twist go together: neither is left in functions that converge more slowly.
+TEST(ModeBasis, EveryStrainOfAClampedBeamTakesTheFamily) {
+  const Prepared scene = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spacecraft.yaml"), plugins());
+  EXPECT_EQ(reference_family(candidates_for(scene, plugins(), usual_axes())), "orthogonal-polynomials");
+  const auto paths = [&](const char* family) {
+    std::vector<std::string> named;
+    for (const Change& change : changes_at(scene.scene, {"quadratic", family, 2, "", 0, {}, {}}, plugins()))
+      if (change.path.ends_with("family")) named.push_back(change.path);
+    return named;
+  };
+  EXPECT_EQ(paths("orthogonal-polynomials").size(), 6U);
+  EXPECT_EQ(paths("clamped-pinned"),
+            (std::vector<std::string>{"bodies.left_boom.bending_y.family", "bodies.left_boom.bending_z.family",
+                                      "bodies.right_boom.bending_y.family", "bodies.right_boom.bending_z.family"}))
+      << "it has no twist";
+}
+
+/// Eigenfunctions of the bare beam carry no moment where the tip carries a body: they converge like 1/n, and what the
+/// last mode changed is a fraction of what is missing.
+TEST(FindReference, ASlowSeriesIsNotTakenForItsLastDifference) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml");
+  const Prepared scene = prepare(values.set("time.end", Value(0.5), "the test"), plugins());
+  const Outputs outputs = Outputs::all(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+  const auto to = [&](const char* family, int modes) {
+    ReferenceGoal goal;
+    goal.first = {"", family, 2, "dop853", 1e-6, {}, {}};
+    goal.levels = modes - 2;
+    goal.enough = [&](const Reference& r) { return r.point.modes >= modes; };
+    return *find_reference(at, plugins(), outputs, goal, {}).reference;
+  };
+  const Reference truth = to("orthogonal-polynomials", 6), slow = to("clamped-free", 5),
+                  coarser = to("clamped-free", 4);
+  const Distances wrong = distances(outputs, slow.readings, truth.readings).first,
+                  last = distances(outputs, slow.readings, coarser.readings).first;
+  const std::size_t worst = static_cast<std::size_t>(std::max_element(wrong.begin(), wrong.end()) - wrong.begin());
+  EXPECT_GT(wrong[worst], 1.5 * last[worst]) << outputs.list()[worst].label;
+  EXPECT_GT(slow.own[worst], 1.5 * last[worst]);
 }
 
 TEST(CorrectedReadings, PutADifferenceOnTopOfNumbersVectorsAndOrientations) {
