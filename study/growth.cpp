@@ -82,6 +82,30 @@ bool softens(const Prepared& prepared, const BodyNode& body) {
          (terms.truncation == Truncation::strict || terms.truncation == Truncation::none);
 }
 
+/// Hinges that move next to nothing where they moved something at the start: any effort on them, and the momentum that
+/// they have, turns them without limit.
+std::string emptied_hinges(const Prepared& prepared, const State& state) {
+  constexpr double next_to_nothing = 1e-6;
+  const Model& model = prepared.model();
+  const State& initial = prepared.scene.initial;
+  const DenseSystem now = prepared.equations->system(state.time, state.y),
+                    first = prepared.equations->system(initial.time, initial.y);
+  std::string text;
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      const std::size_t speed = model.layout().hinges[h].speed + i, at = speed * (now.size + 1);
+      const double left = now.mass[at], had = first.mass[at];
+      if (!(had > 0 && left < next_to_nothing * had)) continue;
+      text += fmt::format(
+          " There {} moves {:.2g} {}, {:.2g} times what it moved at the start: the mass that it carries is "
+          "on its axis, and nothing limits its rate.",
+          model.layout().speed_names[speed], left, rates[i].angular ? "kg m^2" : "kg", left / had);
+    }
+  }
+  return text;
+}
+
 /// What the motion of the bodies explains at the last trusted state: behind it a body may turn as fast as it likes.
 std::string physical_cause(const Prepared& prepared, const RunSummary& summary) {
   const Model& model = prepared.model();
@@ -95,6 +119,7 @@ std::string physical_cause(const Prepared& prepared, const RunSummary& summary) 
   // Where steps collapse the reason lies ahead.
   const double ahead = summary.status == RunStatus::step_underflow ? summary.steps.largest_step : 0;
   std::string text = wild_load(prepared, state, {state.time, summary.reached, summary.reached + ahead});
+  text += emptied_hinges(prepared, state);
   const std::vector<BodyMotion> felt = felt_motions(model, equations, state, motion.bodies());
   for (const BodyValidity& b : summary.validity.bodies) {
     const auto index = static_cast<std::size_t>(model.body(b.name));

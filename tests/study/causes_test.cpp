@@ -1,0 +1,121 @@
+// Why a run stops: each cause is planted in a scene that has no other, and is found named in the message, with the
+// number that theory gives.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <regex>
+
+#include "withy/study/run.hpp"
+#include "withy/tests/study/plugins.hpp"
+
+namespace withy::study {
+namespace {
+
+using test::plugins;
+using testing::HasSubstr;
+using testing::Not;
+
+RunSummary run_of(const SceneValues& values) {
+  RunSettings settings;
+  settings.look_beyond = false;
+  return run(prepare(values, plugins()), plugins(), settings).summary;
+}
+
+RunSummary run_of_text(const std::string& rest) {
+  return run_of(SceneValues::parse(
+      "format: withy/1\nformulation: quadratic\nintegrator: {name: dopri5, rtol: 1e-7, atol: 1e-9}\n" + rest,
+      "planted.yaml"));
+}
+
+/// The number that follows some words of a message; NaN where they are not there.
+double number_after(const std::string& message, const std::string& words) {
+  std::smatch found;
+  return std::regex_search(message, found, std::regex(words + "([0-9.e+-]+[0-9])")) ? std::stod(found[1]) : NAN;
+}
+
+const char* const buckling_words = "its buckling load";
+const char* const spinning_words = "its stiffness is negative";
+const char* const empty_words = "nothing limits its rate";
+const char* const wild_words = "by its length";
+
+TEST(Causes, AColumnUnderMoreThanItsBucklingLoad) {
+  const double mass = 4, EI = 10, length = 1, g = 9.80665;
+  const RunSummary s = run_of_text(R"(
+gravity: [-9.80665, 0, 0]
+time: {end: 20}
+bodies:
+  column: {type: beam, length: 1, mass_per_length: 0.01, bending_y: {stiffness: 10, modes: 2}}
+  load: {type: rigid, mass: 4}
+hinges:
+  foot: {type: weld, parent: world, child: column}
+  top: {type: weld, parent: column.tip, child: load}
+initial: {bodies: {column: {modes: [0.001, 0]}}}
+)");
+  EXPECT_EQ(s.status, RunStatus::diverged);
+  const double critical = std::pow(std::numbers::pi / (2 * length), 2) * EI;
+  EXPECT_NEAR(number_after(s.message, "'column' is compressed by "), mass * g / critical, 0.02) << s.message;
+  for (const char* other : {spinning_words, empty_words, wild_words}) EXPECT_THAT(s.message, Not(HasSubstr(other)));
+}
+
+TEST(Causes, ABladePastTheSpeedThatItsFormulationKnows) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spin-up.yaml");
+  const RunSummary s = run_of(values.choose_formulation("inconsistent", "the test"));
+  EXPECT_EQ(s.status, RunStatus::diverged);
+  EXPECT_THAT(s.message, HasSubstr(spinning_words));
+  // The first frequency of the clamped blade, (1.8751)^2 sqrt(EI / rho A L^4).
+  EXPECT_NEAR(number_after(s.message, "its fundamental frequency of "), 2.911, 0.002) << s.message;
+  EXPECT_GT(number_after(s.message, "'blade' turns at "), 1);
+  for (const char* other : {buckling_words, empty_words, wild_words}) EXPECT_THAT(s.message, Not(HasSubstr(other)));
+}
+
+TEST(Causes, AMassMatrixThatTurnsIndefinite) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml");
+  values.set("loads.slew.time_scale", Value(1.2), "the test");
+  const RunSummary s = run_of(values.choose_formulation("consistent", "the test"));
+  EXPECT_EQ(s.status, RunStatus::singular);
+  EXPECT_NEAR(s.reached, 0.527, 0.002);
+  EXPECT_THAT(s.message, HasSubstr("det M came to zero"));
+  EXPECT_THAT(s.message, HasSubstr("modes of 'link2'"));
+}
+
+/// A point mass is lifted onto the axis that a motor turns it about: momentum goes on to grow, inertia to zero.
+TEST(Causes, AHingeWhoseInertiaIsEmpty) {
+  const RunSummary s = run_of_text(R"(
+time: {end: 2}
+bodies:
+  post: {type: rigid, mass: 1}
+  arm: {type: rigid, mass: 1, center_of_mass: [1, 0, 0]}
+hinges:
+  turn: {type: revolute, axis: [0, 0, 1], parent: world, child: post}
+  lift: {type: revolute, axis: [0, 1, 0], parent: post, child: arm}
+motions: {raise: {type: constant-rate, hinge: lift, rate: 1}}
+loads: {motor: {type: hinge-effort, hinge: turn, law: table, table: [[0, 1], [10, 1]]}}
+)");
+  EXPECT_EQ(s.status, RunStatus::step_underflow);
+  EXPECT_NEAR(s.reached, std::numbers::pi / 2, 1e-4);
+  EXPECT_THAT(s.message, HasSubstr(empty_words));
+  EXPECT_LT(number_after(s.message, "turn.0 moves "), 1e-6) << s.message;
+  for (const char* other : {buckling_words, spinning_words}) EXPECT_THAT(s.message, Not(HasSubstr(other)));
+}
+
+TEST(Causes, ALoadThatIsWild) {
+  const RunSummary s = run_of_text(R"(
+time: {end: 2}
+bodies:
+  arm: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 10, modes: 2}}
+hinges:
+  turn: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}
+loads:
+  push: {type: force, frame: arm.tip, law: table, table: [[0, 0, 0, 0], [1, 0, 0, 0], [1.1, 0, 1e7, 0], [3, 0, 1e7, 0]]}
+)");
+  EXPECT_EQ(s.status, RunStatus::diverged);
+  EXPECT_GT(s.reached, 1);
+  EXPECT_THAT(s.message, HasSubstr("Load 'push' gives"));
+  EXPECT_THAT(s.message, HasSubstr("what bends 'arm' by its length"));
+  for (const char* other : {buckling_words, spinning_words, empty_words}) EXPECT_THAT(s.message, Not(HasSubstr(other)));
+}
+
+}  // namespace
+}  // namespace withy::study
