@@ -6,14 +6,14 @@
 namespace withy::campaign {
 namespace {
 
-/// Times that differ by rounding are one.
-constexpr double rounding = 1e-9;
+/// Times that differ by less of themselves are one.
+constexpr double one_time = 1e-9;
 
 }  // namespace
 
 std::vector<double> history_times(double end, double every) {
   std::vector<double> times;
-  const auto steps = static_cast<std::size_t>(std::ceil(end / every * (1 - rounding)));
+  const auto steps = static_cast<std::size_t>(std::ceil(end / every * (1 - one_time)));
   for (std::size_t i = 0; i < steps; ++i) times.push_back(static_cast<double>(i) * every);
   times.push_back(end);
   return times;
@@ -26,10 +26,10 @@ void Histories::enter(double t, std::span<const double> row) {
   if (last_.empty()) last_ = now;
   for (std::size_t i = kept_.size() / n; i < times_->size(); ++i) {
     const double at = (*times_)[i];
-    if (at > t + rounding * std::abs(t)) break;
+    if (at > t + one_time * std::abs(t)) break;
     const double way = t > last_t_ ? (at - last_t_) / (t - last_t_) : 1;
     // At a row it is the row's number to the last bit.
-    const bool here = std::abs(at - t) <= rounding * std::abs(t);
+    const bool here = std::abs(at - t) <= one_time * std::abs(t);
     for (std::size_t k = 0; k < n; ++k) kept_.push_back(here ? now[k] : last_[k] + way * (now[k] - last_[k]));
   }
   last_ = std::move(now);

@@ -15,7 +15,7 @@ std::size_t width_of(const std::string& text) {
 
 constexpr std::size_t most_columns = 100;    ///< characters of a line
 constexpr std::size_t least_for_words = 24;  ///< characters that words go on below each other in
-constexpr std::size_t gap = 2;
+constexpr std::size_t column_gap = 2;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ std::string TextTable::str() const {
   if (total(columns, widths) <= most_columns) return block(columns, widths);
   // Words of a last column go on below each other; else what does not fit stands below, behind what names the rows.
   std::vector<std::size_t> others(columns.begin(), columns.end() - 1);
-  if (flush_left_.back() && total(others, widths) + gap + least_for_words <= most_columns) return folded(widths);
+  if (flush_left_.back() && total(others, widths) + column_gap + least_for_words <= most_columns) return folded(widths);
   std::string out;
   columns.resize(named);
   for (std::size_t c = named; c < n; ++c) {
@@ -68,7 +68,7 @@ std::size_t TextTable::leading() const {
 
 std::size_t TextTable::total(const std::vector<std::size_t>& columns, const std::vector<std::size_t>& widths) {
   std::size_t sum = 0;
-  for (const std::size_t c : columns) sum += widths[c] + (sum > 0 ? gap : 0);
+  for (const std::size_t c : columns) sum += widths[c] + (sum > 0 ? column_gap : 0);
   return sum;
 }
 
@@ -77,7 +77,7 @@ std::string TextTable::line(const std::vector<std::string>& cells, const std::ve
   std::string line;
   for (const std::size_t c : columns) {
     const std::string space(widths[c] - width_of(cells[c]), ' ');
-    if (c != columns.front()) line += std::string(gap, ' ');
+    if (c != columns.front()) line += std::string(column_gap, ' ');
     line += flush_left_[c] ? cells[c] + space : space + cells[c];
   }
   line.erase(line.find_last_not_of(' ') + 1);
@@ -96,7 +96,7 @@ std::string TextTable::block(const std::vector<std::size_t>& columns, const std:
 std::string TextTable::folded(std::vector<std::size_t> widths) const {
   const std::size_t last = widths.size() - 1;
   std::size_t before = 0;
-  for (std::size_t c = 0; c < last; ++c) before += widths[c] + gap;
+  for (std::size_t c = 0; c < last; ++c) before += widths[c] + column_gap;
   widths[last] = most_columns - before;
   TextTable narrow = *this;
   narrow.rows_.clear();
