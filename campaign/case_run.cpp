@@ -72,7 +72,7 @@ RunSummary CaseRun::simulate(const EquationsOfMotion& equations, const study::Co
   if (prepared_->escalates()) {
     study::RunSettings settings;
     settings.look_beyond = false;
-    settings.output = [this](const State& state, std::size_t rung) { kept_->see(state, rung); };
+    settings.output = [this](const State& state, std::size_t rung) { kept_->see_output(state, rung); };
     settings.control.interrupted = control.interrupted;  // progress is that of many cases
     settings.watched = kept_->watched();
     settings.statistics = &statistics_;
@@ -89,7 +89,7 @@ RunSummary CaseRun::simulate(const EquationsOfMotion& equations, const study::Co
   if (!kept_->watched().empty()) watch.emplace(scene.outputs, kept_->watched(), equations);
   RunSummary summary = withy::simulate(
       *scene.model, equations, *scene.integrator, scene.initial, options,
-      [this](const State& state) { kept_->see(state, 0); }, watch ? &*watch : nullptr, Attention::outcome);
+      [this](const State& state) { kept_->see_output(state, 0); }, watch ? &*watch : nullptr, Attention::outcome);
   if (watch) statistics_ = watch->results();
   return summary;
 }
@@ -101,6 +101,9 @@ void CaseRun::run(const EquationsOfMotion& equations, const study::Control& cont
     if (result_.completed()) {
       result_.numbers = kept_->numbers(summary, statistics_);
       check_finite(result_);
+      // Times that an event has left out have no numbers.
+      const std::vector<double> histories = kept_->histories();
+      if (result_.completed()) result_.numbers.insert(result_.numbers.end(), histories.begin(), histories.end());
     } else {
       result_.message = summary.message;
     }

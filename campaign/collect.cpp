@@ -7,6 +7,7 @@
 #include <map>
 
 #include "withy/campaign/cases.hpp"
+#include "withy/campaign/histories_picture.hpp"
 #include "withy/results/csv.hpp"
 #include "withy/results/output_file.hpp"
 
@@ -49,12 +50,16 @@ class Collector {
       : store_(store), about_(read_description(store)), index_(store, about_) {}
 
   Collected collect() {
-    Collected all{about_.size, index_.done(), index_.failed(), index_.lost(), false, false, {}};
+    Collected all{about_.size, index_.done(), index_.failed(), index_.lost(), false, false, false, {}};
     if (all.done > 0) all.failed_share = share(all.failed, all.done);
     write_rows();
-    all.statistics = about_.design == Design::product && about_.drawn && about_.draws > 1 && !about_.columns.empty();
+    all.statistics = about_.by_draws() && !about_.columns.empty();
     remove_unless(all.statistics, "statistics.csv");
     if (all.statistics) write_statistics();
+    all.histories = !about_.histories.empty();
+    remove_unless(all.histories, "histories.csv");
+    remove_unless(all.histories, "histories.svg");
+    if (all.histories) write_histories();
     all.indices = about_.design != Design::product && !about_.columns.empty();
     remove_unless(all.indices, "indices.csv");
     if (about_.design == Design::one_at_a_time && all.indices) write_differences();
@@ -92,13 +97,15 @@ class Collector {
     failed.finish();
   }
 
-  /// The numbers of some columns of the completed cases of a point of the grids.
-  std::vector<std::vector<double>> samples(std::uint64_t point, std::size_t first, std::size_t count) {
+  /// Some of the numbers of the completed cases among these, where they have them.
+  std::vector<std::vector<double>> samples(std::uint64_t begin, std::uint64_t end, std::size_t first,
+                                           std::size_t count) {
     std::vector<std::vector<double>> all(count);
-    for (std::uint64_t i = point * about_.draws; i < (point + 1) * about_.draws; ++i) {
+    for (std::uint64_t i = begin; i < end; ++i) {
       const auto result = index_.read(i);
       if (!result || !result->completed()) continue;
-      for (std::size_t c = 0; c < count; ++c) all[c].push_back(result->numbers.at(first + c));
+      for (std::size_t c = 0; c < count; ++c)
+        if (const double x = result->numbers.at(first + c); !std::isnan(x)) all[c].push_back(x);
     }
     return all;
   }
@@ -124,7 +131,8 @@ class Collector {
     for (std::uint64_t point = 0; point < about_.size / about_.draws; ++point) {
       const std::string where = fmt::format("{}{}", point, point_cells(point));
       for (std::size_t first = 0; first < about_.columns.size(); first += at_once) {
-        auto columns = samples(point, first, std::min(at_once, about_.columns.size() - first));
+        auto columns = samples(point * about_.draws, (point + 1) * about_.draws, first,
+                               std::min(at_once, about_.columns.size() - first));
         for (std::size_t c = 0; c < columns.size(); ++c)
           table.line(where + ',' + csv_text(about_.columns[first + c]) + ',' + statistics_cells(std::move(columns[c])));
       }
@@ -140,6 +148,37 @@ class Collector {
     text += fmt::format("{},{},{}", s.deviation, s.least, s.greatest);
     for (const Estimate& q : s.quantiles) text += ',' + cells_of(q);
     return text;
+  }
+
+  /// Percentiles at each time: over the draws of each point of the grids, or over all cases where nothing is drawn.
+  void write_histories() {
+    Table table(store_ / "histories.csv");
+    table.line("point," + joined(about_.paths) + ",result,t[s],cases,least,p05,p25,median,p75,p95,greatest");
+    HistoriesPicture picture(about_.name.empty() ? about_.plan : about_.name);
+    const std::uint64_t group = about_.by_draws() ? about_.draws : about_.size;
+    const std::size_t times = about_.times.size(), count = times * about_.histories.size();
+    const std::size_t at_once = std::clamp<std::size_t>(most_numbers / group, 1, count);
+    for (std::uint64_t point = 0; point < about_.size / group; ++point) {
+      const std::string values = about_.by_draws() ? point_cells(point) : std::string(about_.paths.size(), ',');
+      for (std::size_t first = 0; first < count; first += at_once) {
+        auto all = samples(point * group, (point + 1) * group, about_.columns.size() + first,
+                           std::min(at_once, count - first));
+        for (std::size_t k = 0; k < all.size(); ++k) {
+          const std::string& name = about_.histories[(first + k) / times];
+          const double t = about_.times[(first + k) % times];
+          const std::size_t cases = all[k].size();
+          std::vector<double> shown;
+          if (cases > 0) shown = percentiles(std::move(all[k]), shares_of_histories);
+          std::string line = fmt::format("{}{},{},{},{}", point, values, csv_text(name), t, cases);
+          for (std::size_t p = 0; p < shares_of_histories.size(); ++p)
+            line += shown.empty() ? "," : fmt::format(",{}", shown[p]);
+          table.line(line);
+          if (!shown.empty()) picture.add(point, values, name, t, shown);
+        }
+      }
+    }
+    table.finish();
+    write_lasting_file(store_ / "histories.svg", picture.svg());
   }
 
   void write_differences() {

@@ -81,6 +81,13 @@ Statistics statistics(std::vector<double> sample) {
   return s;
 }
 
+std::vector<double> percentiles(std::vector<double> sample, std::span<const double> shares) {
+  std::sort(sample.begin(), sample.end());
+  std::vector<double> all;
+  for (const double p : shares) all.push_back(quantile_of(sample, p));
+  return all;
+}
+
 Estimate share(std::size_t hits, std::size_t count) {
   using Binomial = boost::math::binomial_distribution<>;
   const double k = static_cast<double>(hits), n = static_cast<double>(count);

@@ -24,6 +24,9 @@ struct Statistics {
 inline constexpr double shares_of_quantiles[] = {0.05, 0.5, 0.95};
 Statistics statistics(std::vector<double> sample);
 
+/// The numbers of a sample below which these shares of it lie, between its order statistics. \param sample not empty
+std::vector<double> percentiles(std::vector<double> sample, std::span<const double> shares);
+
 /// The share of `hits` among `count`, by Clopper and Pearson.
 Estimate share(std::size_t hits, std::size_t count);
 

@@ -117,7 +117,18 @@ std::vector<std::string> kept_columns(const Plan& plan) {
   return names;
 }
 
-KeptNumbers::KeptNumbers(const Plan& plan, const study::Prepared& prepared) {
+std::vector<std::string> history_columns(const Plan& plan) {
+  const ResultColumns columns(plan.base->model(), *plan.base->equations, plan.base->scene.outputs);
+  std::vector<std::string> names;
+  for (const std::string& name : plan.history.of)
+    for (const std::size_t i : selected(*plan.base, columns.columns(), name)) {
+      const Column& c = columns.columns()[i];
+      names.push_back(fmt::format("{}[{}]", column_name(c.name), c.unit.empty() ? "1" : c.unit));
+    }
+  return names;
+}
+
+KeptNumbers::KeptNumbers(const Plan& plan, const study::Prepared& prepared) : histories_({}, plan.history.times) {
   if (!prepared.escalates()) columns_.emplace_back(prepared.model(), *prepared.equations, prepared.scene.outputs);
   for (const Rung& rung : prepared.rungs)
     columns_.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
@@ -143,6 +154,15 @@ KeptNumbers::KeptNumbers(const Plan& plan, const study::Prepared& prepared) {
         peaks_.push_back({numbers_.size(), i});
       numbers_.push_back(0.0);
     }
+  std::vector<std::size_t> over_time;
+  for (const std::string& name : plan.history.of)
+    for (const std::size_t i : selected(prepared, columns, name)) over_time.push_back(i);
+  histories_ = Histories(std::move(over_time), plan.history.times);
+}
+
+void KeptNumbers::see_output(const State& state, std::size_t rung) {
+  see(state, rung);
+  if (histories_.any()) histories_.enter(state.time, columns_[rung].row(state));
 }
 
 void KeptNumbers::see(const State& state, std::size_t rung) {

@@ -19,6 +19,8 @@ std::string kept_problem(const study::Prepared& prepared, const std::string& nam
 
 /// Columns of the table for what a plan keeps: `final.shoulder[rad]`, `peak.link1.tip.deflection_y[m]`.
 std::vector<std::string> kept_columns(const Plan& plan);
+/// Names of what it keeps over time: `shoulder[rad]`.
+std::vector<std::string> history_columns(const Plan& plan);
 
 /// Takes the kept numbers of one run.
 class KeptNumbers {
@@ -26,14 +28,18 @@ class KeptNumbers {
   /// The plan and the model must outlive it. \throws InputError where this model lacks a column that the plan's scene
   /// has.
   KeptNumbers(const Plan& plan, const study::Prepared& prepared);
-  /// Every accepted step and every output, with the rung of `auto`, else 0.
+  /// Every accepted step, with the rung of `auto`, else 0.
   void see(const State& state, std::size_t rung);
+  /// Every output.
+  void see_output(const State& state, std::size_t rung);
   /// Whether a peak is not found by the engine's own monitor, so that steps have to be seen.
   [[nodiscard]] bool watches_steps() const { return !peaks_.empty(); }
   /// Names of the outputs of which statistics are kept: a StatisticsWatch is to find them.
   [[nodiscard]] const std::vector<std::string>& watched() const { return watched_; }
   /// Of a run that is over, in the order of kept_columns. \param statistics of `watched`
   [[nodiscard]] std::vector<double> numbers(const RunSummary& summary, const std::vector<OutputStatistics>& statistics);
+  /// Of a run that is over: what is kept over time, as Histories has it.
+  [[nodiscard]] std::vector<double> histories() const { return histories_.numbers(); }
 
  private:
   /// A peak that the run's monitor finds.
@@ -60,6 +66,7 @@ class KeptNumbers {
   };
   std::vector<Statistic> statistics_;
   std::vector<std::string> watched_;
+  Histories histories_;
   std::vector<double> numbers_;
   std::size_t rung_ = 0;  ///< of the last state that was seen
 };

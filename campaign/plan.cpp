@@ -55,6 +55,7 @@ class PlanBuilder {
     if (const Value* keep = find("keep"); keep != nullptr && reader_.is_map(*keep, keys::keep)) {
       plan_.final = reader_.texts(keep->find("final"));
       plan_.peak = reader_.texts(keep->find("peak"));
+      if (const Value* history = keep->find("history")) read_history(*history);
     }
     std::optional<SceneValues> base = read_scene();
     if (base) plan_.sources = try_values(*base, trials_, plan_.file, registry_, problems_);
@@ -94,6 +95,27 @@ class PlanBuilder {
       reader_.error(name->place(), e.what());
     }
     return {};
+  }
+
+  /// A list of names, or a map with them and an interval.
+  void read_history(const Value& given) {
+    if (given.kind() == Value::Kind::list) {
+      plan_.history.of = reader_.texts(&given);
+      return;
+    }
+    if (!reader_.is_map(given, keys::history)) return;
+    if (given.has("of")) {
+      plan_.history.of = reader_.texts(given.find("of"));
+    } else {
+      reader_.key_error(given.place().path + "/of", "missing; need a list of names, as [shoulder]");
+    }
+    if (const Value* every = given.find("every")) {
+      const auto read = reader_.number(*every);
+      const Dimension time = read_any_quantity("1 s").dimension;
+      if (read && (!(read->si > 0) || (read->dimension != Dimension{} && read->dimension != time)))
+        reader_.error(every->place(), fmt::format("got {}; need a time above 0 s", shown(*every)));
+      if (read) plan_.history.every = read->si;
+    }
   }
 
   void read_design() {
@@ -217,10 +239,37 @@ class PlanBuilder {
   }
 
   void check_kept() {
-    for (const auto& [key, names] : {std::pair("final", &plan_.final), std::pair("peak", &plan_.peak)})
+    const Value* keep = find("keep");
+    if (keep == nullptr) return;
+    const Value* history = keep->find("history");
+    if (history != nullptr && history->kind() == Value::Kind::map) history = history->find("of");
+    for (const auto& [given, names] :
+         {std::pair(keep->find("final"), &plan_.final), std::pair(keep->find("peak"), &plan_.peak),
+          std::pair(history, &plan_.history.of)})
       for (std::size_t i = 0; i < names->size(); ++i)
         if (const std::string why = kept_problem(*plan_.base, (*names)[i], names == &plan_.final); !why.empty())
-          reader_.error(find("keep")->at(key).items()[i].place(), why);
+          reader_.error(given->items()[i].place(), why);
+    if (problems_.none() && !plan_.history.of.empty()) make_times();
+  }
+
+  /// The times of histories are those of every case.
+  void make_times() {
+    HistoryPlan& history = plan_.history;
+    const auto refuse = [&](const std::string& why) { reader_.key_error("/keep/history", why); };
+    for (const Axis& axis : plan_.axes)
+      if (axis.path == "time" || axis.path == "time.end")
+        return refuse(fmt::format("needs one end of all cases, and {} varies", axis.path));
+    const Scene& scene = plan_.base->scene;
+    if (!scene.end) return refuse("needs the scene's time.end");
+    const double every = history.every > 0 ? history.every : scene.output;
+    if (*scene.end / every > static_cast<double>(most_history_times))
+      return refuse(fmt::format("{:.3g} times are too many; need an `every` that gives at most {}", *scene.end / every,
+                                most_history_times));
+    history.times = history_times(*scene.end, every);
+    const std::size_t count = history_columns(plan_).size() * history.times.size();
+    if (count > most_history_numbers)
+      refuse(fmt::format("{} numbers a case are too many; need at most {}: fewer names or times", count,
+                         most_history_numbers));
   }
 
   [[nodiscard]] std::string fingerprint() const {

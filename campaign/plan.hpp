@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "withy/campaign/distribution.hpp"
+#include "withy/campaign/histories.hpp"
 #include "withy/study/prepared.hpp"
 
 namespace withy::campaign {
@@ -66,6 +67,7 @@ struct Plan {
   std::vector<std::size_t> correlated;   ///< axes
   std::vector<double> cholesky;          ///< of their correlations: lower triangle by rows, as many columns as rows
   std::vector<std::string> final, peak;  ///< names of what is kept
+  HistoryPlan history;                   ///< of what is kept over time
   bool stop_on_failure = false;
   bool lanes = false;       ///< cases that can are evaluated several at once, see case_lanes.hpp
   std::string fingerprint;  ///< SHA-256 of all that decides on the bits of the cases: plan, scene, files, programs

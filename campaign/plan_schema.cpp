@@ -76,7 +76,11 @@ std::string plan_schema() {
   p["derived"] = {{"type", "object"},
                   {"additionalProperties", {{"type", "string"}}},
                   {"description", "values that follow from others, by their paths: formulas"}};
+  Json history = members(keys::history, names(), 1);
+  history["properties"]["every"] = described(reference_to("number"), "s; default: the scene's time.output");
   p["keep"] = described(members(keys::keep, names(), 0), "results that the table has of each case");
+  p["keep"]["properties"]["history"] =
+      described({{"anyOf", {names(), history}}}, "results over time, for percentiles over the cases");
   p["correlation"] = described(correlation, "correlations of values that are drawn");
   p["design"] = described({{"anyOf", {one_of(keys::designs), design}}}, "which cases there are");
   p["failures"] = described(one_of(keys::failures), "what a case that does not come to its end does to the others");

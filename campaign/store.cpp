@@ -45,7 +45,9 @@ Json json_of(const StoreDescription& d) {
           {"paths", d.paths},
           {"derived", d.derived},
           {"columns", d.columns},
-          {"drawn", d.drawn}};
+          {"drawn", d.drawn},
+          {"histories", d.histories},
+          {"times", d.times}};
 }
 
 /// The description with its checksum.
@@ -70,9 +72,23 @@ std::optional<StoreDescription> described(const std::filesystem::path& store) {
     const Json sum = j.at("sha256");
     j.erase("sha256");
     if (sum != sha256(j.dump())) return {};
-    return StoreDescription{
-        j.at("plan"),   j.at("name"), j.at("fingerprint"), j.at("cases"),   j.at("draws"),   design_of(j.at("design")),
-        j.at("levels"), j.at("seed"), j.at("paths"),       j.at("derived"), j.at("columns"), j.at("drawn")};
+    StoreDescription d;
+    d.plan = j.at("plan");
+    d.name = j.at("name");
+    d.fingerprint = j.at("fingerprint");
+    d.size = j.at("cases");
+    d.draws = j.at("draws");
+    d.design = design_of(j.at("design"));
+    d.levels = j.at("levels");
+    d.seed = j.at("seed");
+    d.paths = j.at("paths");
+    d.derived = j.at("derived");
+    d.columns = j.at("columns");
+    d.drawn = j.at("drawn");
+    // Stores of earlier versions keep nothing over time.
+    d.histories = j.value("histories", std::vector<std::string>());
+    d.times = j.value("times", std::vector<double>());
+    return d;
   } catch (const Json::exception&) {
     return {};
   }
@@ -132,6 +148,8 @@ StoreDescription description_of(const Plan& plan) {
   }
   for (const Derived& derived : plan.derived) d.derived.push_back(derived.path);
   d.columns = kept_columns(plan);
+  d.histories = history_columns(plan);
+  d.times = plan.history.times;
   return d;
 }
 
@@ -164,8 +182,8 @@ Store::Store(std::filesystem::path path, const Plan& plan, bool anew)
   for (const std::filesystem::path& segment : segments_of(path_))
     if (is_locked(segment))
       throw FolderBusy(segment.string() + " is being written by another process; wait for its end");
-  for (const char* name :
-       {name_of_description, name_of_segments, "table.csv", "statistics.csv", "indices.csv", "failed.csv"})
+  for (const char* name : {name_of_description, name_of_segments, "table.csv", "statistics.csv", "indices.csv",
+                           "failed.csv", "histories.csv", "histories.svg"})
     std::filesystem::remove_all(path_ / name);
   make_folder(path_ / name_of_segments);
   write_description(path_, about_);

@@ -25,10 +25,14 @@ struct StoreDescription {
   Design design = Design::product;
   std::size_t levels = 4;
   std::uint64_t seed = 0;
-  std::vector<std::string> paths;    ///< of what varies
-  std::vector<std::string> derived;  ///< of what follows from it
-  std::vector<std::string> columns;  ///< of what is kept
-  bool drawn = false;                ///< whether cases of a point of the grids differ by draws
+  std::vector<std::string> paths;      ///< of what varies
+  std::vector<std::string> derived;    ///< of what follows from it
+  std::vector<std::string> columns;    ///< of what is kept
+  std::vector<std::string> histories;  ///< of what is kept over time; a case's numbers are of them behind the columns
+  std::vector<double> times;           ///< [s] that each history has a number at
+  bool drawn = false;                  ///< whether cases of a point of the grids differ by draws
+  /// Whether the cases of each point of the grids are a sample.
+  [[nodiscard]] bool by_draws() const { return design == Design::product && drawn && draws > 1; }
 };
 StoreDescription description_of(const Plan& plan);
 

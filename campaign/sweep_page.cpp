@@ -28,6 +28,7 @@ constexpr std::size_t most_failures = 200;             ///< of them on the page
 constexpr std::size_t bins = 24;                       ///< of a histogram
 constexpr std::size_t most_levels_shown = 12;          ///< of an envelope
 constexpr std::size_t most_envelopes = 120;            ///< pairs of what varies and a result
+constexpr std::size_t most_histories = 60;             ///< pairs of a point of the grids and a result over time
 
 /// The lines of a table behind its head. Texts in quotes may hold ends of lines.
 void read_rows(const std::filesystem::path& file, const std::function<void(const Cells&)>& take) {
@@ -154,6 +155,7 @@ class Page {
     page["sample"] = {{"every", shown_every()}, {"rows", std::move(sample_)}};
     if (collected_.statistics) page["statistics"] = table_json(store_ / "statistics.csv");
     if (collected_.indices) page["indices"] = table_json(store_ / "indices.csv");
+    if (collected_.histories) page["histories"] = histories();
     page["failures"] = failures();
     return page;
   }
@@ -201,6 +203,32 @@ class Page {
         if (result.result && count++ < most_envelopes) all[axis.name][result.name] = envelope_json(axis, result);
     }
     return all;
+  }
+
+  /// For each result and point of the grids: times, and percentiles over the cases at each of them, which are null
+  /// where no case has come to it.
+  Json histories() const {
+    Json list = Json::array();
+    const std::size_t times = about_.paths.size() + 2;  // the column of the time
+    bool head = true;
+    read_rows(store_ / "histories.csv", [&](const Cells& cells) {
+      if (std::exchange(head, false)) return;
+      const std::string &name = cells.at(times - 1), &point = cells.at(0);
+      if (list.empty() || list.back()["name"] != name || list.back()["point"] != point) {
+        if (list.size() == most_histories) return;
+        Json of = Json::object();
+        for (std::size_t a = 0; a < about_.paths.size(); ++a)
+          if (!cells.at(1 + a).empty()) of[about_.paths[a]] = cells[1 + a];
+        list.push_back({{"name", name}, {"point", point}, {"of", of}, {"rows", Json::array()}});
+      }
+      Json row = Json::array();
+      for (std::size_t c = times; c < cells.size(); ++c) {
+        const std::optional<double> number = plain_number(cells[c]);
+        row.push_back(number ? Json(*number) : Json());
+      }
+      list.back()["rows"].push_back(std::move(row));
+    });
+    return list;
   }
 
   Json failures() const {

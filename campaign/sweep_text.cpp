@@ -82,6 +82,7 @@ Json collected_json(const Collected& c) {
   j["files"] = {"table.csv", "failed.csv"};
   if (c.statistics) j["files"].push_back("statistics.csv");
   if (c.indices) j["files"].push_back("indices.csv");
+  if (c.histories) j["files"].insert(j["files"].end(), {"histories.csv", "histories.svg"});
   if (has_report_page()) j["files"].push_back(report_name);
   return j;
 }
@@ -97,6 +98,7 @@ std::string collected_text(const Collected& c, const std::string& store) {
   text += "\ntable.csv";
   if (c.statistics) text += ", statistics.csv";
   if (c.indices) text += ", indices.csv";
+  if (c.histories) text += ", histories.csv, histories.svg";
   return text + " in " + store + (has_report_page() ? ", to look at in its report.html\n" : "\n");
 }
 

@@ -1,6 +1,8 @@
 #include "withy/results/text_table.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <sstream>
 
 namespace withy {
 namespace {
@@ -10,6 +12,10 @@ std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
+
+constexpr std::size_t most_columns = 100;    ///< characters of a line
+constexpr std::size_t least_for_words = 24;  ///< characters that words go on below each other in
+constexpr std::size_t column_gap = 2;
 
 }  // namespace
 
@@ -24,29 +30,96 @@ TextTable::TextTable(std::vector<std::string> head) : head_(std::move(head)) {
 }
 
 std::string TextTable::str() const {
+  const std::vector<std::size_t> widths = this->widths();
+  const std::size_t n = widths.size(), named = std::min(n, leading());
+  std::vector<std::size_t> columns(n);
+  std::iota(columns.begin(), columns.end(), std::size_t{0});
+  if (total(columns, widths) <= most_columns) return block(columns, widths);
+  // Words of a last column go on below each other; else what does not fit stands below, behind what names the rows.
+  std::vector<std::size_t> others(columns.begin(), columns.end() - 1);
+  if (flush_left_.back() && total(others, widths) + column_gap + least_for_words <= most_columns) return folded(widths);
+  std::string out;
+  columns.resize(named);
+  for (std::size_t c = named; c < n; ++c) {
+    columns.push_back(c);
+    if (columns.size() <= named + 1 || total(columns, widths) <= most_columns) continue;
+    columns.pop_back();
+    out += block(columns, widths) + '\n';
+    columns.resize(named);
+    columns.push_back(c);
+  }
+  return out + block(columns, widths);
+}
+
+std::vector<std::size_t> TextTable::widths() const {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < head_.size(); ++c) {
     widths.push_back(std::max(width_of(head_[c]), width_of(lower_[c])));
     for (const auto& row : rows_) widths[c] = std::max(widths[c], width_of(row[c]));
   }
+  return widths;
+}
+
+/// Columns that name a row: those to the left that are flush left, and the first.
+std::size_t TextTable::leading() const {
+  const auto first = std::find(flush_left_.begin(), flush_left_.end(), false);
+  return std::max<std::size_t>(1, static_cast<std::size_t>(first - flush_left_.begin()));
+}
+
+std::size_t TextTable::total(const std::vector<std::size_t>& columns, const std::vector<std::size_t>& widths) {
+  std::size_t sum = 0;
+  for (const std::size_t c : columns) sum += widths[c] + (sum > 0 ? column_gap : 0);
+  return sum;
+}
+
+std::string TextTable::line(const std::vector<std::string>& cells, const std::vector<std::size_t>& columns,
+                            const std::vector<std::size_t>& widths) const {
+  std::string line;
+  for (const std::size_t c : columns) {
+    const std::string space(widths[c] - width_of(cells[c]), ' ');
+    if (c != columns.front()) line += std::string(column_gap, ' ');
+    line += flush_left_[c] ? cells[c] + space : space + cells[c];
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + '\n';
+}
+
+std::string TextTable::block(const std::vector<std::size_t>& columns, const std::vector<std::size_t>& widths) const {
   std::string out;
-  const auto add_line = [&](const std::vector<std::string>& cells) {
-    std::string line;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      const std::string space(widths[c] - width_of(cells[c]), ' ');
-      if (c > 0) line += "  ";
-      line += flush_left_[c] ? cells[c] + space : space + cells[c];
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    out += line + '\n';
-  };
-  if (std::any_of(head_.begin(), head_.end(), [](const std::string& h) { return !h.empty(); })) add_line(head_);
-  add_line(lower_);
-  std::size_t total = 0;
-  for (const std::size_t w : widths) total += w + 2;
-  out += std::string(total - 2, '-') + '\n';
-  for (const auto& row : rows_) add_line(row);
+  if (std::any_of(columns.begin(), columns.end(), [this](std::size_t c) { return !head_[c].empty(); }))
+    out += line(head_, columns, widths);
+  out += line(lower_, columns, widths) + std::string(total(columns, widths), '-') + '\n';
+  for (const auto& row : rows_) out += line(row, columns, widths);
   return out;
+}
+
+std::string TextTable::folded(std::vector<std::size_t> widths) const {
+  const std::size_t last = widths.size() - 1;
+  std::size_t before = 0;
+  for (std::size_t c = 0; c < last; ++c) before += widths[c] + column_gap;
+  widths[last] = most_columns - before;
+  TextTable narrow = *this;
+  narrow.rows_.clear();
+  for (const auto& row : rows_) {
+    std::vector<std::string> now = row;
+    std::istringstream words(row[last]);
+    std::string text, word;
+    while (words >> word) {
+      if (!text.empty() && width_of(text) + 1 + width_of(word) > widths[last]) {
+        now[last] = text;
+        narrow.rows_.push_back(now);
+        now.assign(row.size(), "");
+        text.clear();
+      }
+      text += (text.empty() ? "" : " ") + word;
+    }
+    now[last] = text;
+    narrow.rows_.push_back(now);
+  }
+  std::vector<std::size_t> columns(widths.size());
+  std::iota(columns.begin(), columns.end(), std::size_t{0});
+  widths[last] = std::max(widths[last], narrow.widths()[last]);  // a word may be longer
+  return narrow.block(columns, widths);
 }
 
 }  // namespace withy

@@ -79,6 +79,23 @@ TEST(Plans, KeepColumnsOfHingesVectorsAndSingleResults) {
                                               "final.rod.tip.z[m]", "final.t[s]", "peak.pivot.rate[rad/s]"));
 }
 
+TEST(Plans, KeepHistoriesAtTimesThatAllCasesShare) {
+  const PlanFolder folder;
+  const std::string vary = "vary: {bodies.rod.mass: {grid: [1, 2]}}\n";
+  const Plan plan = folder.plan(vary + "keep: {history: {of: [pivot, rod.tip], every: \"200 ms\"}}\n");
+  EXPECT_THAT(plan.history.times, ElementsAre(0, 0.2, 0.4, 0.5));
+  EXPECT_THAT(history_columns(plan), ElementsAre("pivot[rad]", "rod.tip.x[m]", "rod.tip.y[m]", "rod.tip.z[m]"));
+  EXPECT_EQ(folder.plan(vary + "keep: {history: [pivot]}\n").history.times.size(), 26U) << "the scene's outputs";
+  for (const auto& [history, why] : {std::pair("[pivto]", "no result \"pivto\"; did you mean 'pivot'"),
+                                     std::pair("{every: 0.1}", "missing; need a list"),
+                                     std::pair("{of: [pivot], every: \"1 m\"}", "need a time above 0 s"),
+                                     std::pair("{of: [pivot], every: 1e-6}", "times are too many"),
+                                     std::pair("{of: [pivot], evry: 1}", "did you mean 'every'")})
+    EXPECT_THAT(folder.errors(vary + "keep: {history: " + history + "}\n"), HasSubstr(why));
+  EXPECT_THAT(folder.errors("vary: {time.end: {grid: [1, 2]}}\nkeep: {history: [pivot]}\n"),
+              HasSubstr("needs one end of all cases, and time.end varies"));
+}
+
 TEST(Plans, DeriveValuesByFormulasOfWhatVariesAndOfTheScene) {
   const PlanFolder folder;
   const std::string vary = "vary: {bodies.rod.mass: {grid: [2, 4]}}\n";

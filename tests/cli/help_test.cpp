@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "withy/tests/cli/process.hpp"
 
 namespace withy::test {
@@ -54,6 +56,22 @@ TEST(Help, AnUnknownCommandIsCalledThatWithTheNearest) {
   EXPECT_EQ(withy(folder, {"run", "scenes/pendulum.yaml", "--checkpoint", "nan"}).status, 2);
 }
 
+/// Lines of tables, around their rules, that have more characters than a terminal shows.
+std::vector<std::string> too_wide(const std::string& out) {
+  std::vector<std::string> wide;
+  const std::vector<std::string> all = lines(out);
+  bool in_table = false;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool rule = all[i].size() > 2 && all[i].find_first_not_of('-') == std::string::npos;
+    in_table = rule || (in_table && !all[i].empty());
+    const bool head =
+        i + 1 < all.size() && all[i + 1].size() > 2 && all[i + 1].find_first_not_of('-') == std::string::npos;
+    const auto characters = std::count_if(all[i].begin(), all[i].end(), [](char c) { return (c & '\xC0') != '\x80'; });
+    if ((in_table || head) && characters > 100) wide.push_back(all[i]);
+  }
+  return wide;
+}
+
 class HelpOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(HelpOf, HasExamplesThatRun) {
@@ -67,6 +85,7 @@ TEST_P(HelpOf, HasExamplesThatRun) {
     const Finished f = withy(folder, arguments);
     EXPECT_EQ(f.status, 0) << testing::PrintToString(arguments) << '\n' << f.err;
     EXPECT_NE(f.out, "");
+    EXPECT_THAT(too_wide(f.out), testing::IsEmpty()) << testing::PrintToString(arguments);
     EXPECT_EQ(f.err, "") << "standard error is for errors, and for progress on a terminal";
   }
 }

@@ -99,5 +99,50 @@ TEST(TextTable, AHeadOfTwoLinesStandsOnTwoLines) {
             "a          1\n");
 }
 
+/// Every line of a text, for the length of each.
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(TextTable, WhatDoesNotFitStandsBelowBehindWhatNamesTheRows) {
+  std::vector<std::string> head = {"<name"}, first = {"a"}, second = {"b"};
+  for (int c = 0; c < 12; ++c) {
+    head.push_back("column " + std::to_string(c));
+    first.push_back(std::to_string(c));
+    second.push_back(std::to_string(100 * c));
+  }
+  TextTable table(head);
+  table.add(first);
+  table.add(second);
+  const std::vector<std::string> lines = lines_of(table.str());
+  ASSERT_EQ(lines.size(), 9U);
+  for (const std::string& line : lines) EXPECT_LE(line.size(), 100U) << line;
+  EXPECT_EQ(lines[4], "");
+  EXPECT_TRUE(lines[5].starts_with("name  column 9") || lines[5].starts_with("name  column 8")) << lines[5];
+  for (int c = 0; c < 12; ++c)
+    EXPECT_EQ(1, std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
+                return (line + " ").find("column " + std::to_string(c) + " ") != std::string::npos;
+              }));
+  EXPECT_TRUE(lines[7].starts_with("a ")) << lines[7];
+  EXPECT_TRUE(lines[8].ends_with(" 1100")) << lines[8];
+}
+
+TEST(TextTable, WordsOfTheLastColumnGoOnBelowEachOther) {
+  TextTable table({"<kind", "<id", "<what it is"});
+  std::string words;
+  for (int i = 0; i < 40; ++i) words += (i > 0 ? " " : "") + std::string("word");
+  table.add({"body", "beam", words});
+  table.add({"body", "rigid", "short"});
+  const std::vector<std::string> lines = lines_of(table.str());
+  std::string together;
+  for (std::size_t i = 2; i + 1 < lines.size(); ++i) together += (i > 2 ? " " : "") + lines[i].substr(13);
+  EXPECT_EQ(together, words);
+  for (const std::string& line : lines) EXPECT_LE(line.size(), 100U) << line;
+  EXPECT_EQ(lines.back(), "body  rigid  short");
+}
+
 }  // namespace
 }  // namespace withy::program

@@ -85,7 +85,7 @@ async function check_modes(browser, folder, run, troubles) {
 
 function write_plan(folder, name, text) {
   const file = join(folder, name);
-  writeFileSync(file, `format: withy-sweep/1\nscene: ${join(scenes, 'two-link-slew.yaml')}\nset: {time.end: 1, integrator.rtol: 1e-5}\nseed: 7\nkeep: {final: [shoulder, elbow], peak: [link1.tip.deflection_y]}\n${text}`);
+  writeFileSync(file, `format: withy-sweep/1\nscene: ${join(scenes, 'two-link-slew.yaml')}\nset: {time.end: 1, integrator.rtol: 1e-5}\nseed: 7\nkeep: {final: [shoulder, elbow], peak: [link1.tip.deflection_y], history: {of: [elbow, link1.tip.deflection_y], every: 0.05 s}}\n${text}`);
   return file;
 }
 
@@ -109,7 +109,19 @@ async function check_sweep(browser, folder, run, troubles) {
   const peak = 'peak.link1.tip.deflection_y[m]', slow = data.envelopes['loads.slew.time_scale'][peak].find(l => l.at === 0.5);
   assert.equal(slow.count, 60);
   close(slow.greatest, Math.max(...rows.filter(r => +r[head.indexOf('loads.slew.time_scale')] === 0.5).map(r => +r[head.indexOf(peak)])));
+  // The end of each history is the final value of the same cases.
+  const last = data.histories.find(h => h.name === 'elbow[rad]' && h.of['loads.slew.time_scale'] === '0.8').rows;
+  assert.deepEqual(last.map(r => r[0]).slice(0, 3), [0, 0.05, 0.1]);
+  const ends = rows.filter(r => +r[head.indexOf('loads.slew.time_scale')] === 0.8).map(r => +r[head.indexOf('final.elbow[rad]')]).sort((a, b) => a - b);
+  assert.equal(last.at(-1)[1], 60);
+  [[2, ends[0]], [5, (ends[29] + ends[30]) / 2], [8, ends[59]]].forEach(([k, expected]) => close(last.at(-1)[k], expected));
+  const narrow = Math.max(...last.map(r => r[8] - r[2])) < 0.1 * (Math.max(...last.map(r => r[5])) - Math.min(...last.map(r => r[5])));
   const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
+  const over_time = page.locator('section', { hasText: 'Over time' });
+  assert.equal(await over_time.locator('figcaption', { hasText: 'time_scale = 0.8' }).count(), narrow ? 2 : 1, 'a figure a point of the grid, and one about the median where bands are narrow');
+  await over_time.locator('select').selectOption('link1.tip.deflection_y[m]');
+  await over_time.locator('svg').first().hover();
+  await says(page, '#note', /t = [\d.]+ s, 60 cases[^]*median/);
   assert.match(await text(page, '.answer'), /180 cases: 180 done, 0 of them failed/);
   // The first point of the first pair, brought to where the pointer can reach it.
   const place = await page.locator('.pairs svg g:has(circle)').first().evaluate(g => {
@@ -180,9 +192,19 @@ async function check_figures(browser, folder, run, troubles) {
   await page.close();
 }
 
+// What motors have to give is on the page of the run that tells it.
+async function check_inverse(browser, folder, run, troubles) {
+  const out = join(folder, 'inverse');
+  run('inverse', join(scenes, 'spin-up.yaml'), '--set', 'time.end=2', '--out', out);
+  const page = await opened(browser, join(out, 'report.html'), 't=1&theme=light', troubles);
+  assert.match(await text(page, '#charts'), /Effort of motions, N m/);
+  await shot(page, 'inverse-light');
+  await page.close();
+}
+
 await in_browser(withy, chromium, async (browser, folder, run) => {
   const troubles = [];
-  for (const check of [check_trade, check_modes, check_sweep, check_indices, check_figures]) await check(browser, folder, run, troubles);
+  for (const check of [check_inverse, check_trade, check_modes, check_sweep, check_indices, check_figures]) await check(browser, folder, run, troubles);
   assert.deepEqual(troubles, []);
   console.log('the pages of studies show what their files say');
 });

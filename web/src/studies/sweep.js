@@ -12,6 +12,7 @@ export class Sweep {
     this.write_answer();
     this.card = element('aside', null, { class: 'card', id: 'case', 'aria-live': 'polite' });
     if (data.indices) this.section('What it depends on', (colours, result) => this.indices(colours, result), true);
+    if (data.histories?.length) this.over_time();
     this.section('Envelopes over what varies', (colours, result) => this.envelopes(colours, result), true);
     this.section('Distributions', colours => this.histograms(colours));
     this.section('Scatter', colours => [this.scatter(colours)]);
@@ -29,14 +30,14 @@ export class Sweep {
   }
 
   // A part of the page; with a choice of the result where it shows one at a time.
-  section(title, make, chooses = false) {
+  section(title, make, chooses = false, choice = this.results) {
     const part = element('section'), bar = element('div', null, { class: 'bar' }), figures = element('div', null, { class: 'figures small' });
     bar.append(element('h2', title));
-    const entry = { make, figures, part, result: this.results[0] };
-    if (chooses && this.results.length > 1) {
+    const entry = { make, figures, part, result: choice[0] };
+    if (chooses && choice.length > 1) {
       const select = element('select', null, { 'aria-label': `Result, ${title}` });
-      for (const c of this.results) select.append(element('option', c.name, { value: c.name }));
-      select.onchange = () => { entry.result = this.results.find(c => c.name === select.value); this.fill(entry); };
+      for (const c of choice) select.append(element('option', c.name, { value: c.name }));
+      select.onchange = () => { entry.result = choice.find(c => c.name === select.value); this.fill(entry); };
       bar.append(select);
     }
     part.append(bar, figures);
@@ -70,6 +71,44 @@ export class Sweep {
       }
       return figure.element;
     });
+  }
+
+  // Bands over time that shares of the cases lie in, a figure a point of the grids; one result at a time.
+  over_time() {
+    const names = [...new Set(this.data.histories.map(h => h.name))];
+    this.section('Over time', (colours, chosen) => [
+      element('p', 'Line: median; bands: from 25 to 75, from 5 to 95 % of the cases, and from the least to the greatest.', { class: 'soft wide' }),
+      ...this.data.histories.filter(h => h.name === chosen.name).flatMap(h => this.of_history(h, colours)),
+    ], names.length > 1, names.map(name => ({ name })));
+  }
+  // Bands that are narrow beside the way of the median are shown about it too.
+  of_history(h, colours) {
+    const known = h.rows.filter(r => r[2] != null), medians = known.map(r => r[5]);
+    const widest = Math.max(...known.map(r => r[8] - r[2])), way = Math.max(...medians) - Math.min(...medians);
+    if (!(widest > 0 && widest < 0.1 * way)) return [this.history(h, colours)];
+    const less = { ...h, name: `${h.name} − median`, rows: known.map(r => [r[0], r[1], ...r.slice(2).map(v => v - r[5])]) };
+    return [this.history(h, colours), this.history(less, colours)];
+  }
+  history({ name, of, rows }, colours) {
+    const shown = rows.filter(r => r[2] != null);
+    const at = Object.entries(of).map(([path, value]) => `${path} = ${Number.isFinite(+value) ? number(+value) : value}`).join(', ');
+    const figure = new Figure({ title: at || null, width: 420, height: 300, x: { label: 't [s]', values: rows.map(r => r[0]), room: 0.01 }, y: { label: name, values: shown.flatMap(r => [r[2], r[8]]) } });
+    [[2, 8, 0.14], [3, 7, 0.2], [4, 6, 0.3]].forEach(([low, high, opacity]) => {
+      const there = shown.map(r => `${figure.x(r[0])} ${figure.y(r[high])}`), back = [...shown].reverse().map(r => `${figure.x(r[0])} ${figure.y(r[low])}`);
+      if (shown.length) figure.marks.append(draw('path', { d: `M${[...there, ...back].join('L')}Z`, fill: colours[0], opacity }));
+    });
+    figure.line(shown.map(r => [r[0], r[5]]), { stroke: colours[0], 'stroke-width': 2 });
+    const { svg } = figure, line = svg.appendChild(draw('line', { y1: figure.top, y2: figure.height - figure.bottom, class: 'limit', visibility: 'hidden' }));
+    svg.addEventListener('pointermove', event => {
+      const x = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse()).x;
+      const r = shown.reduce((a, b) => Math.abs(figure.x(b[0]) - x) < Math.abs(figure.x(a[0]) - x) ? b : a, shown[0]);
+      if (!r) return;
+      for (const end of ['x1', 'x2']) line.setAttribute(end, figure.x(r[0]));
+      line.setAttribute('visibility', 'visible');
+      tell([`t = ${number(r[0])} s, ${r[1]} cases`, `median ${number(r[5])}, 25 to 75 % ${number(r[4])} to ${number(r[6])}`, `5 to 95 % ${number(r[3])} to ${number(r[7])}`, `least ${number(r[2])}, greatest ${number(r[8])}`], event.clientX, event.clientY);
+    });
+    svg.addEventListener('pointerleave', () => { line.setAttribute('visibility', 'hidden'); tell(null); });
+    return figure.element;
   }
 
   // Over each number that varies: least, 5 %, median, 95 % and greatest of the cases near each of its values.

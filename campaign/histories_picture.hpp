@@ -1,0 +1,34 @@
+/// \file
+/// What a sweep keeps over time as a picture: bands that shares of the cases lie in.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "withy/results/svg_plot.hpp"
+
+namespace withy::campaign {
+
+/// Least, 5, 25, 50, 75 and 95 %, greatest.
+inline constexpr std::array<double, 7> shares_of_histories = {0, 0.05, 0.25, 0.5, 0.75, 0.95, 1};
+
+/// A panel a result and a point of the grids, of the first dozen; another about the median where the bands are narrow
+/// beside its way.
+class HistoriesPicture {
+ public:
+  explicit HistoriesPicture(std::string title);
+  /// Numbers at a time, as shares_of_histories; times of a result and a point come one after the other.
+  /// \param values cells of what varies, as the table has them
+  void add(std::uint64_t point, const std::string& values, const std::string& name, double t,
+           std::span<const double> numbers);
+  [[nodiscard]] std::string svg() const;
+
+ private:
+  Picture picture_;
+  std::string last_;  ///< result and point
+  bool full_ = false;
+};
+
+}  // namespace withy::campaign
