@@ -59,6 +59,7 @@ CaseRun::CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Regi
 std::string CaseRun::alone_because() const {
   if (!plan_.lanes) return "the plan says so";
   if (prepared_->escalates()) return "the formulation changes along a run";
+  if (!kept_->watched().empty()) return "what outputs have been over the run is kept";
   constexpr std::array<std::string_view, 3> explicit_ones = {"rk4", "dopri5", "dop853"};
   const std::string& integrator = prepared_->scene.integrator_name;
   if (std::find(explicit_ones.begin(), explicit_ones.end(), integrator) == explicit_ones.end())
@@ -73,6 +74,8 @@ RunSummary CaseRun::simulate(const EquationsOfMotion& equations, const study::Co
     settings.look_beyond = false;
     settings.output = [this](const State& state, std::size_t rung) { kept_->see(state, rung); };
     settings.control.interrupted = control.interrupted;  // progress is that of many cases
+    settings.watched = kept_->watched();
+    settings.statistics = &statistics_;
     return study::run(*prepared_, registry_, settings).summary;
   }
   RunOptions options = study::run_options(scene);
@@ -82,9 +85,13 @@ RunSummary CaseRun::simulate(const EquationsOfMotion& equations, const study::Co
     options.checkpoint_due = [] { return true; };
     options.checkpoint = [this](const Checkpoint& checkpoint) { kept_->see(checkpoint.state, 0); };
   }
-  return withy::simulate(
+  std::optional<StatisticsWatch> watch;
+  if (!kept_->watched().empty()) watch.emplace(scene.outputs, kept_->watched(), equations);
+  RunSummary summary = withy::simulate(
       *scene.model, equations, *scene.integrator, scene.initial, options,
-      [this](const State& state) { kept_->see(state, 0); }, nullptr, Attention::outcome);
+      [this](const State& state) { kept_->see(state, 0); }, watch ? &*watch : nullptr, Attention::outcome);
+  if (watch) statistics_ = watch->results();
+  return summary;
 }
 
 void CaseRun::run(const EquationsOfMotion& equations, const study::Control& control) {
@@ -92,7 +99,7 @@ void CaseRun::run(const EquationsOfMotion& equations, const study::Control& cont
     const RunSummary summary = simulate(equations, control);
     result_.status = name(summary.status);
     if (result_.completed()) {
-      result_.numbers = kept_->numbers(summary);
+      result_.numbers = kept_->numbers(summary, statistics_);
       check_finite(result_);
     } else {
       result_.message = summary.message;

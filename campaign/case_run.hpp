@@ -51,6 +51,7 @@ class CaseRun {
   Registry& registry_;
   std::optional<study::Prepared> prepared_;
   std::optional<KeptNumbers> kept_;
+  std::vector<OutputStatistics> statistics_;  ///< of what `kept_` watches
   CaseResult result_;
 };
 

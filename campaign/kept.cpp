@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "withy/scene/describe.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/measures.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -54,9 +56,39 @@ std::optional<std::pair<std::string, std::size_t>> deflection_of(const std::stri
   return std::pair(column.substr(0, at), static_cast<std::size_t>(column.back() - 'x'));
 }
 
+/// A number of an output, and what is asked of it over a run.
+struct OverRun {
+  std::string output, number, unit, what;
+};
+
+/// What "root_m.mz.max" names, and "root_m.max" of every number of the output; nothing where there is none.
+std::vector<OverRun> over_run(const study::Prepared& prepared, const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos) return {};
+  const std::string asked = name.substr(0, dot), what = name.substr(dot + 1);
+  constexpr std::array<std::string_view, 5> known = {"min", "max", "mean", "rms", "integral"};
+  if (std::find(known.begin(), known.end(), what) == known.end()) return {};
+  std::vector<OverRun> found;
+  for (const SensorNode& node : prepared.scene.outputs)
+    for (const Column& c : columns_of(node)) {
+      if (c.name == name) return {};
+      if (c.name == asked || node.name == asked)
+        found.push_back({node.name, c.name, what == "integral" ? study::unit_over_time(c.unit) : c.unit, what});
+    }
+  return found;
+}
+
+double value_of(const OutputStatistics& s, const std::string& what) {
+  if (what == "min") return s.least;
+  if (what == "max") return s.greatest;
+  if (what == "mean") return s.mean();
+  return what == "rms" ? s.rms() : s.integral;
+}
+
 }  // namespace
 
-std::string kept_problem(const study::Prepared& prepared, const std::string& name) {
+std::string kept_problem(const study::Prepared& prepared, const std::string& name, bool at_end) {
+  if (!over_run(prepared, name).empty()) return at_end ? "" : "is over the run already: need it under 'final'";
   const ResultColumns columns(prepared.model(), *prepared.equations, prepared.scene.outputs);
   if (!select(prepared.model(), columns.columns(), name).empty()) return {};
   std::vector<std::string> names;
@@ -70,11 +102,15 @@ std::vector<std::string> kept_columns(const Plan& plan) {
   const ResultColumns columns(plan.base->model(), *plan.base->equations, plan.base->scene.outputs);
   std::vector<std::string> names;
   const auto add = [&](const char* what, const std::vector<std::string>& asked) {
-    for (const std::string& name : asked)
+    for (const std::string& name : asked) {
+      const std::vector<OverRun> over = over_run(*plan.base, name);
+      for (const OverRun& o : over) names.push_back(fmt::format("{}.{}.{}[{}]", what, o.number, o.what, o.unit));
+      if (!over.empty()) continue;
       for (const std::size_t i : selected(*plan.base, columns.columns(), name)) {
         const Column& c = columns.columns()[i];
         names.push_back(fmt::format("{}.{}[{}]", what, column_name(c.name), c.unit.empty() ? "1" : c.unit));
       }
+    }
   };
   add("final", plan.final);
   add("peak", plan.peak);
@@ -86,9 +122,19 @@ KeptNumbers::KeptNumbers(const Plan& plan, const study::Prepared& prepared) {
   for (const Rung& rung : prepared.rungs)
     columns_.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
   const std::vector<Column>& columns = columns_.front().columns();
-  for (const std::string& name : plan.final)
-    for (const std::size_t i : selected(prepared, columns, name)) final_.push_back(i);
-  numbers_.assign(final_.size(), 0.0);
+  for (const std::string& name : plan.final) {
+    const std::vector<OverRun> over = over_run(prepared, name);
+    for (const OverRun& o : over) {
+      statistics_.push_back({numbers_.size(), o.number, o.what});
+      numbers_.push_back(0.0);
+      if (std::find(watched_.begin(), watched_.end(), o.output) == watched_.end()) watched_.push_back(o.output);
+    }
+    if (!over.empty()) continue;
+    for (const std::size_t i : selected(prepared, columns, name)) {
+      final_.push_back({numbers_.size(), i});
+      numbers_.push_back(0.0);
+    }
+  }
   for (const std::string& name : plan.peak)
     for (const std::size_t i : selected(prepared, columns, name)) {
       if (const auto d = deflection_of(columns[i].name))
@@ -106,9 +152,12 @@ void KeptNumbers::see(const State& state, std::size_t rung) {
   for (const Peak& peak : peaks_) numbers_[peak.at] = std::max(numbers_[peak.at], std::abs(row[peak.column]));
 }
 
-std::vector<double> KeptNumbers::numbers(const RunSummary& summary) {
+std::vector<double> KeptNumbers::numbers(const RunSummary& summary, const std::vector<OutputStatistics>& statistics) {
   const std::vector<double>& last = columns_[rung_].row(summary.final);
-  for (std::size_t i = 0; i < final_.size(); ++i) numbers_[i] = last[final_[i]];
+  for (const Final& f : final_) numbers_[f.at] = last[f.column];
+  for (const Statistic& asked : statistics_)
+    for (const OutputStatistics& s : statistics)
+      if (s.name == asked.number) numbers_[asked.at] = value_of(s, asked.what);
   for (const Deflection& d : deflections_) numbers_[d.at] = summary.peak_deflection.at(d.body).at(d.axis);
   return numbers_;
 }

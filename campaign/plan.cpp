@@ -219,7 +219,7 @@ class PlanBuilder {
   void check_kept() {
     for (const auto& [key, names] : {std::pair("final", &plan_.final), std::pair("peak", &plan_.peak)})
       for (std::size_t i = 0; i < names->size(); ++i)
-        if (const std::string why = kept_problem(*plan_.base, (*names)[i]); !why.empty())
+        if (const std::string why = kept_problem(*plan_.base, (*names)[i], names == &plan_.final); !why.empty())
           reader_.error(find("keep")->at(key).items()[i].place(), why);
   }
 

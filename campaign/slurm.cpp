@@ -2,12 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <system_error>
+
+#include "withy/results/output_file.hpp"
+
 namespace withy::campaign {
 namespace {
 
 std::string directives(const std::vector<std::string>& all) {
   std::string text = "#!/bin/bash\n";
   for (const std::string& one : all) text += "#SBATCH " + one + '\n';
+  return text;
+}
+
+/// What a command prints. \throws std::runtime_error where it fails
+std::string output_of(const std::string& command) {
+  const auto close = [](std::FILE* pipe) { return ::pclose(pipe); };
+  std::unique_ptr<std::FILE, decltype(close)> pipe(::popen(command.c_str(), "r"), close);
+  if (pipe == nullptr) throw std::system_error(errno, std::generic_category(), command);
+  std::string text;
+  std::array<char, 256> part;
+  while (std::fgets(part.data(), part.size(), pipe.get()) != nullptr) text += part.data();
+  if (::pclose(pipe.release()) != 0) throw std::runtime_error("it failed: " + command);
+  while (text.ends_with('\n')) text.pop_back();
   return text;
 }
 
@@ -60,6 +82,20 @@ std::string collect_script(const SlurmJob& job) {
   all.insert(all.end(), job.options.begin(), job.options.end());
   return directives(all) +
          fmt::format("\nexec {} sweep collect {}\n", quoted(job.program.string()), quoted(job.store.string()));
+}
+
+Submitted submit(const SlurmJob& job, bool dry) {
+  const std::filesystem::path folder = job.store / "slurm";
+  std::filesystem::create_directories(folder);
+  Submitted submitted{folder / "array.sh", folder / "collect.sh", {}, {}};
+  write_file(submitted.array, array_script(job));
+  write_file(submitted.collect, collect_script(job));
+  if (dry) return submitted;
+  submitted.array_job = output_of("sbatch --parsable " + quoted(submitted.array.string()));
+  const std::string number = submitted.array_job.substr(0, submitted.array_job.find(';'));
+  submitted.collect_job = output_of(
+      fmt::format("sbatch --parsable --dependency=afterany:{} {}", number, quoted(submitted.collect.string())));
+  return submitted;
 }
 
 }  // namespace withy::campaign

@@ -24,6 +24,15 @@ std::string array_script(const SlurmJob& job);
 /// The batch script that makes the tables when all tasks have ended.
 std::string collect_script(const SlurmJob& job);
 
+/// The scripts in the store, and the numbers of their jobs.
+struct Submitted {
+  std::filesystem::path array, collect;
+  std::string array_job, collect_job;  ///< as sbatch says them; empty where nothing was submitted
+};
+/// Writes the scripts into the store's folder `slurm` and has sbatch queue them. \param dry only writes them
+/// \throws std::runtime_error where sbatch fails; std::system_error
+Submitted submit(const SlurmJob& job, bool dry);
+
 /// In single quotes, for a shell.
 std::string quoted(const std::string& text);
 

@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "withy/campaign/case_lanes.hpp"
+#include "withy/scene/units.hpp"
+#include "withy/study/input_error.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -108,6 +110,21 @@ class Workers {
 };
 
 }  // namespace
+
+void read_shard(const std::string& text, SweepSettings& settings) {
+  if (text.empty()) return;
+  const std::size_t slash = text.find('/');
+  const auto shard = plain_number(std::string_view(text).substr(0, slash));
+  const auto shards =
+      slash == std::string::npos ? std::nullopt : plain_number(std::string_view(text).substr(slash + 1));
+  const auto whole = [](double x) {
+    return x >= 1 && x <= 1e6 && x == static_cast<double>(static_cast<std::uint64_t>(x));
+  };
+  if (!shard || !shards || !whole(*shard) || !whole(*shards) || *shard > *shards)
+    throw study::OptionError("shard", "got '" + text + "'; need I/N, the parts of N counted from 1, as 1/4 to 4/4");
+  settings.shard = static_cast<std::uint64_t>(*shard);
+  settings.shards = static_cast<std::uint64_t>(*shards);
+}
 
 SweepOutcome run_sweep(const Plan& plan, Registry& registry, const Store& store, const SweepSettings& settings) {
   return Workers(plan, registry, store, settings).run();

@@ -13,6 +13,9 @@ struct SweepSettings {
   study::Control control;
 };
 
+/// Sets the shard of a text: "2/8"; empty: all. \throws OptionError of `shard`
+void read_shard(const std::string& text, SweepSettings& settings);
+
 struct SweepOutcome {
   std::uint64_t cases = 0;    ///< of the shard
   std::uint64_t before = 0;   ///< of these, in the store already

@@ -285,4 +285,15 @@ TuneResult tune(const study::Prepared& scene, Registry& registry, const TuneQues
   return TuneSearch(mismatch, question).found();
 }
 
+std::vector<study::Change> fitted_changes(const SceneValues& scene, const TuneResult& result) {
+  std::vector<TunedValue> tuned;
+  std::vector<double> values;
+  for (const FittedValue& p : result.parameters) {
+    if (p.state == FittedValue::State::undetermined) continue;
+    tuned.push_back(p.tuned);
+    values.push_back(p.value);
+  }
+  return changes_of(scene, tuned, values);
+}
+
 }  // namespace withy::campaign

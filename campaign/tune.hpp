@@ -80,4 +80,7 @@ struct TuneResult {
 /// PluginError
 TuneResult tune(const study::Prepared& scene, Registry& registry, const TuneQuestion& question);
 
+/// The scene's values changed to the fitted ones; those that the data do not determine stay.
+std::vector<study::Change> fitted_changes(const SceneValues& scene, const TuneResult& result);
+
 }  // namespace withy::campaign

@@ -7,6 +7,10 @@
 #include <numbers>
 
 #include "withy/results/csv.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/report/figures_page.hpp"
+#include "withy/results/report/report_page.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -138,6 +142,19 @@ Picture tune_picture(const TuneResult& result, const std::string& title) {
     panels.push_back(std::move(panel));
   }
   return {title, {}, panels};
+}
+
+std::vector<std::string> tune_content() { return {"tune.json", "fit.csv", "fit.svg", report_name}; }
+
+void write_tune(const std::filesystem::path& folder, const TuneResult& result, const std::string& title,
+                const std::string& data) {
+  write_file(folder / "tune.json", json_text(tune_json(result)));
+  if (!result.trouble.empty()) return;
+  write_file(folder / "fit.csv", tune_csv(result));
+  const Picture picture = tune_picture(result, title + ": dots measured, grey before, line fitted");
+  write_file(folder / "fit.svg", svg_plot(picture));
+  write_figures_page(folder / report_name, title + ": fit to " + data, tune_text(result, title),
+                     {{"", {}, picture.panels}});
 }
 
 }  // namespace withy::campaign

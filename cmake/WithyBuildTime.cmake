@@ -5,7 +5,7 @@
 #   group      who                                                        headers
 #   core       core/ but the sweeps                                       precompiled/engine.hpp
 #   plugins    bodies, loads, integrators, modes, formulations, fem       precompiled/engine.hpp
-#   programs   scene, study, results, campaign, apps                              precompiled/programs.hpp
+#   programs   scene, study, results, campaign, program, apps                     precompiled/programs.hpp
 #   tests      tests but for benchmarks and the zoo of bad plugins        precompiled/tests.hpp
 #
 # They all also declare Eigen's decompositions and products as compiled elsewhere (eigen_instances.cpp), for a source

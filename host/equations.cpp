@@ -11,7 +11,9 @@
 #include "withy/core/equations/lane_equations.hpp"
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/host/names.hpp"
 #include "withy/host/stopped.hpp"
@@ -129,7 +131,8 @@ Equations::Equations(const Scene& scene, const std::string& formulation)
   p.y0.assign(p.full.begin(), p.full.begin() + static_cast<std::ptrdiff_t>(p.size));
   for (std::size_t l = 0; l < model.loads().size(); ++l) {
     const InputPort* input = model.loads()[l].load->input();
-    if (input == nullptr) continue;
+    const HostedMotion* motion = hosted_motion(*model.loads()[l].load);
+    if (input == nullptr || (motion != nullptr && !motion->jumps())) continue;  // what cannot be set at once
     p.inputs.push_back({model.loads()[l].name, input->unit()});
     p.input_loads.push_back(l);
   }
@@ -232,6 +235,12 @@ void Equations::normalize(std::span<double> y) {
 std::string Equations::reason(double t, const Evaluation& evaluation) const {
   if (evaluation.ok()) return {};
   std::string text = "t = " + brief(t) + " s: ";
+  for (const LoadNode& node : parts_->prepared->model().loads())
+    if (const auto* law = dynamic_cast<const ForeignLaw*>(node.load.get()))
+      if (const std::string words = law->failure({}); !words.empty()) {
+        law->forget();
+        return text + "load '" + node.name + "': " + words + ".";
+      }
   if (evaluation.outcome == Evaluation::Outcome::nonfinite) {
     text += "the derivatives are not finite";
   } else {

@@ -18,8 +18,6 @@
 namespace withy::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 study::Control control_of(const Follow& follow) { return {follow.interrupted, follow.progress}; }
 
 /// The axes asked for, those of `usual` where nothing is.
@@ -56,17 +54,14 @@ std::string advice_of(const study::Prepared& prepared, const study::Outputs& out
 std::string Scene::compare(const std::vector<std::string>& formulations, const std::string& reference,
                            const Follow& follow) const {
   const std::shared_ptr<const study::Prepared> base = prepare();
-  const ComparisonAt compared{
-      {},
-      study::compare(base->values, library().registry(), formulations, reference,
-                     [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
-                       return study::simulate(prepared, library().registry(), output, control_of(follow));
-                     })};
-  return Json{{"scene", base->scene.file},
-              {"name", base->scene.name},
-              {"reference", reference},
-              {"runs", comparison_json(compared, library().registry(), false)}}
-      .dump();
+  std::vector<ComparisonAt> compared;
+  compared.push_back(
+      {{},
+       study::compare(base->values, library().registry(), formulations, reference,
+                      [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
+                        return study::simulate(prepared, library().registry(), output, control_of(follow));
+                      })});
+  return comparison_json(compared, reference, {}, {}, library().registry()).dump();
 }
 
 std::string Scene::trade(const Axes& axes, std::size_t jobs, const Follow& follow) const {

@@ -5,6 +5,7 @@
 
 #include "withy/core/plugin/entry.hpp"
 #include "withy/core/plugin/motion.hpp"
+#include "withy/loads/motion_input.hpp"
 #include "withy/loads/trajectory.hpp"
 
 namespace withy {
@@ -97,6 +98,7 @@ std::unique_ptr<Motion> make_table(const Value& p, const MakeContext& context) {
 ParameterSpec from_parameter() { return number("from", "rad", "coordinate at time 0").otherwise(0.0); }
 
 void enroll(Enrollment& enrollment) {
+  enroll_motion_input(enrollment);
   enrollment.add<Motion>({.id = "locked",
                           .summary = "The hinge stays where the simulation begins; hinges of any kind",
                           .parameters = {},

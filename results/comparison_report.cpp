@@ -74,10 +74,8 @@ void add_row(TextTable& table, const ComparisonAt& group, const study::ComparedR
   table.add(std::move(row));
 }
 
-}  // namespace
-
-Json comparison_json(const ComparisonAt& group, Registry& registry, bool varied) {
-  Json runs = Json::array();
+/// \param varied the value is written, too
+void add_runs(Json& runs, const ComparisonAt& group, bool varied, Registry& registry) {
   for (const study::ComparedRun& run : group.comparison.runs) {
     Json j;
     if (varied) j["value"] = group.value;
@@ -93,7 +91,20 @@ Json comparison_json(const ComparisonAt& group, Registry& registry, bool varied)
     }
     runs.push_back(std::move(j));
   }
-  return runs;
+}
+
+}  // namespace
+
+Json comparison_json(const std::vector<ComparisonAt>& groups, const std::string& reference, const std::string& over,
+                     const std::vector<study::Unfit>& left_out, Registry& registry) {
+  const Scene& scene = groups.front().comparison.runs.front().prepared.scene;
+  Json j{{"scene", scene.file}, {"name", scene.name}, {"reference", reference}};
+  if (!over.empty()) j["over"] = over;
+  for (const study::Unfit& l : left_out)
+    j["left_out"].push_back({{"formulation", l.formulation}, {"reason", l.reason}});
+  j["runs"] = Json::array();
+  for (const ComparisonAt& group : groups) add_runs(j["runs"], group, !over.empty(), registry);
+  return j;
 }
 
 std::string comparison_text(const std::vector<ComparisonAt>& groups, const std::string& reference,
@@ -117,6 +128,12 @@ std::string comparison_text(const std::vector<ComparisonAt>& groups, const std::
                      comparison.outputs.empty() ? "in rad or m of hinges and mm of tips"
                                                 : "beside how far the reference goes from its start",
                      reasons);
+}
+
+std::string left_out_text(const std::vector<study::Unfit>& left_out) {
+  std::string text;
+  for (const study::Unfit& l : left_out) text += "\nleft out " + l.formulation + ": " + l.reason + '\n';
+  return text;
 }
 
 }  // namespace withy

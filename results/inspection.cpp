@@ -9,6 +9,7 @@
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
@@ -139,7 +140,8 @@ Json inspection_json(const study::Prepared& prepared, const State& state, const 
   j["bodies"] = bodies_json(scene);
   j["loads"] = Json::array();
   for (const LoadNode& load : prepared.model().loads())
-    if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr && load.name != name_of_event_states)
+    if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr && load.name != name_of_event_states &&
+        hosted_motion(*load.load) == nullptr)
       j["loads"].push_back({{"name", load.name}, {"type", type_of(scene, "loads", load.name)}});
   if (Json loops = loops_json(prepared, state); !loops.is_null()) j["constraints"] = std::move(loops);
   j["motions"] = Json::array();

@@ -1,11 +1,17 @@
 #include "withy/results/inverse_files.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "withy/results/svg_plot.hpp"
+#include "withy/results/text_table.hpp"
+#include "withy/study/run.hpp"
 
 namespace withy {
+
+namespace {
 
 using Json = nlohmann::ordered_json;
 
@@ -17,6 +23,35 @@ Json drives_json(const study::InverseStudy& study) {
                        {"rms_effort", d.rms}, {"peak_power", d.peak_power}, {"work", d.work}};
   }
   return all;
+}
+
+std::string demands_text(const study::InverseStudy& study) {
+  TextTable table(
+      {"<drive", "peak effort\n[N m, N]", "at\n[s]", "rms effort\n[N m, N]", "peak power\n[W]", "work\n[J]"});
+  for (const study::Drive& drive : study.drives()) {
+    const study::Demand d = study.demand(drive);
+    table.add({drive.name, fmt::format("{:.5g}", d.peak), fmt::format("{:.4g}", d.peak_time),
+               fmt::format("{:.5g}", d.rms), fmt::format("{:.5g}", d.peak_power), fmt::format("{:.5g}", d.work)});
+  }
+  return table.str();
+}
+
+}  // namespace
+
+Json inverse_json(const Scene& scene, const RunSummary& summary, const study::InverseStudy& study) {
+  return {{"scene", scene.file},
+          {"name", scene.name},
+          {"formulation", scene.formulation_name},
+          {"status", name(summary.status)},
+          {"message", summary.message},
+          {"t_end", summary.reached},
+          {"drives", drives_json(study)}};
+}
+
+std::string inverse_text(const std::string& title, const Scene& scene, const RunSummary& summary,
+                         const study::InverseStudy& study) {
+  return fmt::format("{} ({}, {}, {} outputs, {})\n\n{}", title, scene.formulation_name, scene.integrator_name,
+                     study.times().size(), study::outcome_text(summary), demands_text(study));
 }
 
 std::string inverse_picture(const std::string& title, const study::InverseStudy& study) {

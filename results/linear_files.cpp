@@ -2,6 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
+
 namespace withy {
 namespace {
 
@@ -71,6 +74,15 @@ std::vector<NamedArray> linear_model_arrays(const study::LinearModel& linear) {
           {"output_units", units_of(linear.outputs)},
           {"output_values", Eigen::MatrixXd(Eigen::Map<const Eigen::VectorXd>(
                                 linear.output_values.data(), static_cast<Eigen::Index>(linear.output_values.size())))}};
+}
+
+std::vector<std::string> linear_model_content() { return {"linear.json", "linear.mat", "linear.npz"}; }
+
+void write_linear_model(const std::filesystem::path& folder, const Json& content, const study::LinearModel& linear) {
+  const std::vector<NamedArray> arrays = linear_model_arrays(linear);
+  write_file(folder / "linear.json", json_text(content));
+  write_file(folder / "linear.mat", mat_file(arrays));
+  write_file(folder / "linear.npz", npz_file(arrays));
 }
 
 }  // namespace withy

@@ -7,6 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/report/modes_page.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/svg_plot.hpp"
 
 namespace withy {
@@ -176,6 +180,26 @@ std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::st
   std::vector<Panel> panels = {std::move(frequencies)};
   if (growths.y_range.second > 0) panels.push_back(std::move(growths));
   return svg_plot(title, legend, panels);
+}
+
+Json modes_study_json(const std::string& scene, const study::Sweep& sweep, const study::ModesFound& found) {
+  Json j;
+  j["scene"] = scene;
+  j["sweep"] = sweep.none() ? Json() : Json(sweep.path);
+  j["runs"] = Json::array();
+  for (std::size_t i = 0; i < found.runs.size(); ++i) {
+    j["runs"].push_back(modes_json(found.runs[i]));
+    j["runs"].back()["against_next"] = against_json(found.against[i]);
+  }
+  return j;
+}
+
+void write_modes(const std::filesystem::path& folder, const std::vector<study::ModesOf>& runs, const Json& content,
+                 const std::string& title, const study::Sweep& sweep, std::size_t count) {
+  write_file(folder / "modes.json", json_text(content));
+  write_file(folder / "modes.csv", modes_csv(runs, sweep.none() ? "value" : sweep.path));
+  if (!sweep.none()) write_file(folder / "modes.svg", modes_picture(runs, title, swept_label(sweep), count));
+  if (has_report_page()) write_study_page(folder / report_name, "modes", title, modes_page(runs, sweep, count));
 }
 
 }  // namespace withy

@@ -2,13 +2,13 @@
 /// Steady states, modes and linear models as JSON, table and picture.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "withy/study/against_next.hpp"
-#include "withy/study/modes.hpp"
+#include "withy/study/formulation_modes.hpp"
 
 namespace withy {
 
@@ -23,5 +23,13 @@ std::string modes_csv(const std::vector<study::ModesOf>& runs, const std::string
 /// Frequencies, and where something grows the rates of growth, over the value.
 std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const std::string& label,
                           std::size_t count);
+
+/// The content of modes.json.
+nlohmann::ordered_json modes_study_json(const std::string& scene, const study::Sweep& sweep,
+                                        const study::ModesFound& found);
+/// Writes modes.json with this content, modes.csv, of a sweep modes.svg, and the page.
+void write_modes(const std::filesystem::path& folder, const std::vector<study::ModesOf>& runs,
+                 const nlohmann::ordered_json& content, const std::string& title, const study::Sweep& sweep,
+                 std::size_t count);
 
 }  // namespace withy

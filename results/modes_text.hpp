@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "withy/study/modes.hpp"
+#include "withy/study/formulation_modes.hpp"
 
 namespace withy {
 
@@ -16,5 +16,10 @@ std::string poles_text(const study::ModesAt& at);
 std::string turning_text(const study::TurningModes& turn, const std::string& label);
 /// A row a value, a column a branch; unstable ones marked.
 std::string sweep_text(const study::ModesOf& run, const std::string& label, std::size_t count);
+
+/// All of it: each formulation with its distance from the next model up, and what a turn says.
+/// \param poles all eigenvalues are listed
+std::string modes_study_text(const std::string& scene, const study::Sweep& sweep, const study::ModesFound& found,
+                             std::size_t count, bool poles);
 
 }  // namespace withy

@@ -12,6 +12,7 @@
 #include "withy/results/output_file.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/report/run_report.hpp"
+#include "withy/results/results_error.hpp"
 #include "withy/results/run_json.hpp"
 
 namespace withy {
@@ -123,6 +124,26 @@ RecordedRun record_lasting_run(const std::filesystem::path& folder, const study:
   RecordedRun recorded = simulate_into(*csv, folder, prepared, registry, provenance, std::move(settings), files);
   if (recorded.run.summary.status != RunStatus::interrupted) checkpoints.remove();
   return recorded;
+}
+
+RecordedRun begin_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
+                      const Provenance& provenance, const study::RunSettings& settings, RunFiles files, FolderUse use) {
+  const ResultsFolder taken(folder, "run", provenance, run_content(), use);
+  return record_lasting_run(folder, prepared, registry, provenance, settings, nullptr, files);
+}
+
+RecordedRun resume_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
+                       const Provenance& provenance, const study::RunSettings& settings, RunFiles files,
+                       const std::function<void(std::string_view)>& remark) {
+  const CheckpointFiles checkpoints(folder, provenance.fingerprint());
+  if (!checkpoints.exist()) throw ResultsError(folder.string() + " holds no checkpoint: there is nothing to resume");
+  const ResultsFolder taken(folder, "run", provenance, run_content(), FolderUse::go_on);
+  if (!taken.changed().empty())
+    throw ResultsError(folder.string() + " belongs to another run: " + taken.changed() +
+                       " changed since; run without --resume to begin anew");
+  const StoredRun from = checkpoints.read();
+  if (!from.remark.empty()) remark(from.remark);
+  return record_lasting_run(folder, prepared, registry, provenance, settings, &from, files);
 }
 
 }  // namespace withy

@@ -4,14 +4,17 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "withy/results/checkpoint_files.hpp"
 #include "withy/results/provenance.hpp"
 #include "withy/results/recorder.hpp"
 #include "withy/results/result_columns.hpp"
+#include "withy/results/results_folder.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy {
@@ -58,5 +61,14 @@ RecordedRun record_run(const std::filesystem::path& folder, const study::Prepare
 RecordedRun record_lasting_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
                                const Provenance& provenance, study::RunSettings settings, const StoredRun* from,
                                RunFiles files = {});
+
+/// A whole run: takes the folder, and begins. \throws ResultsError, FolderBusy as ResultsFolder; std::system_error
+RecordedRun begin_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
+                      const Provenance& provenance, const study::RunSettings& settings, RunFiles files, FolderUse use);
+/// Goes on from the newest sound checkpoint in the folder. \param remark is told where that is not the newest
+/// \throws ResultsError where there is none, or the folder is another run's
+RecordedRun resume_run(const std::filesystem::path& folder, const study::Prepared& prepared, Registry& registry,
+                       const Provenance& provenance, const study::RunSettings& settings, RunFiles files,
+                       const std::function<void(std::string_view)>& remark);
 
 }  // namespace withy

@@ -7,7 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "withy/results/json_text.hpp"
 #include "withy/results/linear_files.hpp"
+#include "withy/results/output_file.hpp"
+#include "withy/results/report/figures_page.hpp"
+#include "withy/results/report/report_page.hpp"
 
 namespace withy {
 namespace {
@@ -118,6 +122,23 @@ std::string response_csv(const study::Response& r) {
                         value.imag());
   }
   return text;
+}
+
+std::vector<std::string> response_content() {
+  return {"response.json", "response.csv", "bode.svg", "nichols.svg", report_name};
+}
+
+void write_response(const std::filesystem::path& folder, const study::Configuration& c, const study::Response& r) {
+  const std::string title =
+      c.prepared().title() + ": " +
+      (r.opened ? r.model.inputs[0].name + " opened" : r.model.inputs[0].name + " to " + r.model.outputs[0].name);
+  const Picture bode = bode_picture(r, title), nichols = nichols_picture(r, title);
+  write_file(folder / "response.json", json_text(response_json(c, r)));
+  write_file(folder / "response.csv", response_csv(r));
+  write_file(folder / "bode.svg", svg_plot(bode));
+  write_file(folder / "nichols.svg", svg_plot(nichols));
+  write_figures_page(folder / report_name, title, response_text(c, r),
+                     {{"Bode", bode.legend, bode.panels}, {"Nichols", nichols.legend, nichols.panels}});
 }
 
 }  // namespace withy

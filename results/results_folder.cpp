@@ -34,7 +34,7 @@ Json read_record(const std::filesystem::path& folder) {
   return j.is_object() && j.value("format", "") == format_of_record ? j : Json();
 }
 
-std::vector<std::string> content_of(const Json& record) {
+std::vector<std::string> recorded_content(const Json& record) {
   std::vector<std::string> names;
   const auto content = record.find("content");
   if (content == record.end() || !content->is_array()) return names;
@@ -71,7 +71,7 @@ std::vector<std::string> united(std::vector<std::string> names, const std::vecto
 std::string refusal(const std::filesystem::path& folder, const Json& kept, const Json& now,
                     const std::vector<std::string>& content) {
   constexpr const char* advice = "give another folder, or --force to replace it";
-  const std::vector<std::string> there = present(folder, kept.is_null() ? content : content_of(kept));
+  const std::vector<std::string> there = present(folder, kept.is_null() ? content : recorded_content(kept));
   if (there.empty() || same_result(kept, now)) return {};
   if (kept.is_null())
     return fmt::format("{} holds {}, and nothing says of what result: {}", folder.string(), there.front(), advice);
@@ -118,10 +118,10 @@ ResultsFolder::ResultsFolder(std::filesystem::path path, const std::string& comm
     if (use == FolderUse::go_on && !changed_.empty()) return;  // the caller will not go on
     std::vector<std::string> old = content;
     if (use != FolderUse::go_on && !same_result(kept, now)) {
-      const std::vector<std::string> other = content_of(kept);
+      const std::vector<std::string> other = recorded_content(kept);
       old.insert(old.end(), other.begin(), other.end());
     } else {
-      now["content"] = united(content_of(kept), content);
+      now["content"] = united(recorded_content(kept), content);
     }
     if (use != FolderUse::go_on) {
       for (const std::string& name : old)

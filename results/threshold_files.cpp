@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
 #include "withy/results/svg_plot.hpp"
 
 namespace withy {
@@ -122,6 +124,31 @@ std::string threshold_picture(const std::string& title, const std::vector<study:
   }
   legend.emplace_back("limit");
   return svg_plot(title, legend, panels);
+}
+
+nlohmann::ordered_json thresholds_json(const std::string& scene, const std::string& measure, double limit,
+                                       const study::Sweep& range, const study::Thresholds& thresholds) {
+  nlohmann::ordered_json j{{"scene", scene},
+                           {"limit", limit},
+                           {"measure", measure},
+                           {"path", range.path},
+                           {"reference",
+                            {{"formulation", thresholds.reference},
+                             {"modes", thresholds.reference_modes},
+                             {"relative_error", thresholds.reference_error}}},
+                           {"thresholds", nlohmann::ordered_json::array()}};
+  for (const study::Threshold& row : thresholds.rows) j["thresholds"].push_back(threshold_json(row, range));
+  return j;
+}
+
+std::vector<std::string> threshold_content() { return {"limit.json", "limit.csv", "limit.svg"}; }
+
+void write_thresholds(const std::filesystem::path& folder, const Json& content, const std::string& title,
+                      const study::Thresholds& thresholds, const study::Sweep& range, double limit,
+                      const ThresholdLabels& labels) {
+  write_file(folder / "limit.json", json_text(content));
+  write_file(folder / "limit.csv", threshold_csv(thresholds.rows, range, labels));
+  write_file(folder / "limit.svg", threshold_picture(title, thresholds.rows, range, limit));
 }
 
 }  // namespace withy

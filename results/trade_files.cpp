@@ -8,7 +8,10 @@
 #include <set>
 
 #include "withy/core/plugin/mode_family.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/output_file.hpp"
 #include "withy/results/provenance.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/svg_plot.hpp"
 #include "withy/scene/scene_error.hpp"
 #include "withy/scene/sha256.hpp"
@@ -132,6 +135,18 @@ Json trade_page(const study::Prepared& prepared, Json trade, const std::vector<s
     trade["points"].at(i)["command"] = command;
   }
   return trade;
+}
+
+std::vector<std::string> trade_content() { return {"trade.json", "trade.csv", "trade.svg", report_name}; }
+
+void write_trade(const std::filesystem::path& folder, const study::Prepared& prepared, const Json& content,
+                 const std::vector<study::TradeResult>& results, const std::vector<bool>& front, Registry& registry) {
+  const std::string title = prepared.title();
+  write_file(folder / "trade.json", json_text(content));
+  write_file(folder / "trade.csv", trade_csv(results, front));
+  write_file(folder / "trade.svg", trade_picture(title, results, front));
+  if (has_report_page())
+    write_study_page(folder / report_name, "trade", title, trade_page(prepared, content, results, registry));
 }
 
 namespace {

@@ -11,6 +11,7 @@
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/file_notes.hpp"
 #include "withy/core/plugin/floating_point.hpp"
 #include "withy/scene/constraints.hpp"
@@ -80,6 +81,7 @@ class SceneBuilder {
         if (refused_.contains(name)) tree.names.loads.add(name);
     for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
       if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr) tree.names.loads.add(load.name);
+    add_motion_laws(tree.model.get());
     add_outputs(tree);
     if (tree.model != nullptr && diagnostics_.ok()) give_outputs(*tree.model, scene_.outputs, checker_);
     if (tree.model != nullptr && diagnostics_.ok()) events.add_to(*tree.model, scene_.outputs, scene_.events);
@@ -199,6 +201,25 @@ class SceneBuilder {
                       [&](const std::string& name, const Value& value, std::unique_ptr<Motion> motion) {
                         model->add_motion(name, value.text_at("hinge"), std::move(motion));
                       });
+  }
+  /// Behind the loads, which know nothing of them: what hosts set of motions.
+  void add_motion_laws(Model* model) {
+    const Value* loads = document_.root.find("loads");
+    for (const MotionNode& node : model != nullptr ? model->motions() : std::vector<MotionNode>{}) {
+      const auto* by_load = dynamic_cast<const MotionByLoad*>(node.motion.get());
+      if (by_load == nullptr) continue;
+      if (loads != nullptr && loads->kind() == Value::Kind::map && loads->has(node.name)) {
+        checker_.key_error("/motions/" + node.name,
+                           fmt::format("got name {}, which is that of a load; hosts know inputs by their names",
+                                       in_quotes(node.name)));
+        continue;
+      }
+      try {
+        model->add_load(node.name, *by_load->load(model->hinges()[static_cast<std::size_t>(node.hinge)].name));
+      } catch (const std::invalid_argument& e) {
+        checker_.key_error("/motions/" + node.name, e.what());
+      }
+    }
   }
 
   /// Sensors. Their names stand beside those of the tree in results and options.

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/scene/events_done.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
@@ -220,6 +221,10 @@ class StateReader {
         key_error(member, fmt::format("no load of type 'input' {}{}", in_quotes(name), checker_.suggest(name, names)));
         continue;
       }
+      if (const HostedMotion* motion = hosted_motion(*load->load); motion != nullptr && !motion->jumps()) {
+        key_error(member, "is of a motion, which begins where its hinge is; leave it out");
+        continue;
+      }
       double given = 0;
       scalar(value, number(name, load->load->input()->unit(), ""), given);
       load->load->input()->set(state_.time, state_.time, given, load->discrete(std::span(state_.y)));
@@ -252,6 +257,7 @@ std::vector<std::pair<std::string, double>> inputs_of(const Model& model, const 
   for (const LoadNode& load : model.loads()) {
     const InputPort* input = load.load->input();
     const auto discrete = load.discrete(std::span(state.y));
+    if (const HostedMotion* motion = hosted_motion(*load.load); motion != nullptr && !motion->jumps()) continue;
     if (input != nullptr && input->is_set(discrete)) inputs.emplace_back(load.name, input->value(state.time, discrete));
   }
   return inputs;

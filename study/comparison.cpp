@@ -32,7 +32,7 @@ std::vector<Comparison::OutputError> Comparison::output_errors(const ComparedRun
   const Distances greatest = study::distances(asked, own, truth).first;
   Distances ranges = asked.none();
   for (std::size_t i = 0; i < std::min(own.values.size(), truth.values.size()); ++i)
-    asked.raise(truth.values[i], truth.values.front(), ranges);
+    asked.raise_ranges(truth.values[i], truth.values.front(), ranges);
   std::vector<OutputError> errors;
   for (std::size_t i = 0; i < greatest.size(); ++i)
     errors.push_back({asked.list()[i].label, asked.list()[i].unit, greatest[i], ranges[i]});

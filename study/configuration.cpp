@@ -148,6 +148,17 @@ Spin read_spin(const Model& model, const std::string& hinge, const std::string& 
   return {hinge, *quantity.value};
 }
 
+Holding read_holding(const Model& model, const std::vector<std::string>& lock, const std::vector<std::string>& spin) {
+  Holding holding{lock, {}};
+  for (const std::string& text : spin) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
+      throw OptionError("spin", "got '" + text + "'; need HINGE=RATE, as axle=6 or axle='60 rev/min'");
+    holding.spun.push_back(read_spin(model, text.substr(0, equals), text.substr(equals + 1), "--spin"));
+  }
+  return holding;
+}
+
 std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
   if (steady.converged) return {};
   std::string text = fmt::format("no steady state was found: after {} steps of Newton's method ", steady.iterations);

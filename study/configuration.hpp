@@ -64,6 +64,10 @@ bool rate_is_angular(const Model& model, const std::string& name, const std::str
 /// A rate from its text, a number or "60 rev/min". \throws InputError naming `what` it was wanted for
 Spin read_spin(const Model& model, const std::string& hinge, const std::string& rate, const std::string& what);
 
+/// What is locked, and what turns or slides at rates as "axle=6.0", "axle=60 rev/min", "ball.2=1".
+/// \throws OptionError of `spin`, InputError
+Holding read_holding(const Model& model, const std::vector<std::string>& lock, const std::vector<std::string>& spin);
+
 /// Why there is no steady state, in a sentence or two; empty where there is one.
 std::string no_steady_state(const Configuration& configuration, const SteadyState& steady);
 /// How the derivatives were found: exact, or numerical for loads that are named.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -39,7 +40,8 @@ LinearInput input_of_speed(const SmallMotions& motions, std::size_t speed) {
 std::vector<std::size_t> input_loads(const Model& model) {
   std::vector<std::size_t> loads;
   for (std::size_t l = 0; l < model.loads().size(); ++l)
-    if (model.loads()[l].load->input() != nullptr) loads.push_back(l);
+    if (model.loads()[l].load->input() != nullptr && hosted_motion(*model.loads()[l].load) == nullptr)
+      loads.push_back(l);
   return loads;
 }
 

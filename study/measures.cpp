@@ -35,23 +35,31 @@ double longest_body(const Model& model) {
   return longest;
 }
 
-std::size_t numbers_of(Output::Shape shape) {
-  constexpr std::array<std::size_t, 3> numbers = {1, 3, 4};
+using Shape = Output::Shape;
+
+std::size_t numbers_of(Shape shape) {
+  constexpr std::array<std::size_t, 8> numbers = {1, 3, 4, 2, 2, 2, 2, 2};
   return numbers.at(static_cast<std::size_t>(shape));
 }
 
 /// q and −q are the same orientation.
 double distance(Output::Shape shape, std::span<const double> a, std::span<const double> b) {
   switch (shape) {
-    case Output::Shape::number:
-      return std::abs(a[0] - b[0]);
     case Output::Shape::vector:
       return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
     case Output::Shape::orientation:
       return quaternion(a).angularDistance(quaternion(b));
+    default:
+      return std::abs(a[0] - b[0]);
   }
-  return 0;
 }
+
+/// Behind the name of a number: what it has been over the run.
+constexpr std::array<std::pair<const char*, Shape>, 5> over_time = {{{".min", Shape::least},
+                                                                     {".max", Shape::greatest},
+                                                                     {".mean", Shape::mean},
+                                                                     {".rms", Shape::rms},
+                                                                     {".integral", Shape::integral}}};
 
 /// The names that outputs may be asked for by.
 std::string known_names(const Model& model, const std::vector<Tip>& tips, std::span<const SensorNode> sensors) {
@@ -67,6 +75,7 @@ std::string known_names(const Model& model, const std::vector<Tip>& tips, std::s
     if (model.driven(h)) add(effort_name(model.hinges()[h]));
   for (const SensorNode& sensor : sensors)
     for (const Column& column : columns_of(sensor)) add(column.name);
+  if (!sensors.empty()) list += "; behind the name of an output .min, .max, .mean, .rms or .integral";
   return list;
 }
 
@@ -88,6 +97,8 @@ const char* measure_unit(std::size_t measure) {
   constexpr std::array<const char*, measures> units = {"rad", "m", "m", "m", "N m", "N", ""};
   return units.at(measure);
 }
+
+std::string unit_over_time(const std::string& unit) { return unit.empty() || unit == "1" ? "s" : unit + " s"; }
 
 Outputs::Outputs(const Model& model, const std::vector<std::string>& names, std::span<const SensorNode> sensors)
     : length_(longest_body(model)) {
@@ -125,11 +136,13 @@ void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const 
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
     if (model.driven(h) && name == effort_name(model.hinges()[h])) add_effort(model, h);
   add_sensors(name, sensors);
+  for (const auto& [word, over] : over_time)
+    if (name.ends_with(word) && outputs_.size() == before) add_sensors(name.substr(0, name.rfind('.')), sensors, over);
   if (outputs_.size() == before)
     throw OptionError("outputs", "got '" + name + "'; need one of: " + known_names(model, tips, sensors));
 }
 
-void Outputs::add_sensors(const std::string& name, std::span<const SensorNode> sensors) {
+void Outputs::add_sensors(const std::string& name, std::span<const SensorNode> sensors, Output::Shape over) {
   std::size_t first = 0;
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     const std::vector<Column> columns = columns_of(sensors[s]);
@@ -139,6 +152,15 @@ void Outputs::add_sensors(const std::string& name, std::span<const SensorNode> s
       Output o{.name = sensors[s].name, .measure = Measure::sensor, .index = s, .coordinate = first + i};
       o.label = columns[i].name, o.unit = columns[i].unit, o.group = s;
       o.floor = o.unit == "rad" ? hardly : o.unit == "m" ? hardly * length_ : 0;
+      if (over != Shape::number) {
+        o.shape = over;
+        for (const auto& [word, shape] : over_time)
+          if (shape == over) o.label += word;
+        o.name = o.label;
+        if (over == Shape::integral) o.unit = unit_over_time(o.unit), o.floor = 0;
+        add(std::move(o));
+        continue;
+      }
       // Of a whole orientation the four numbers of its quaternion are one angle, and its three angles say the same.
       const std::string component = columns[i].name.substr(columns[i].name.rfind('.') + 1);
       if (whole && component == "qw") {
@@ -228,8 +250,14 @@ void Outputs::raise(std::span<const double> a, std::span<const double> b, Distan
     double d = distance(outputs_[i].shape, a.subspan(outputs_[i].at), b.subspan(outputs_[i].at));
     // A comparison with what is no number would pass.
     if (!std::isfinite(d)) d = std::numeric_limits<double>::infinity();
-    greatest[i] = std::max(greatest[i], d);
+    greatest[i] = outputs_[i].over_a_run() ? d : std::max(greatest[i], d);
   }
+}
+
+void Outputs::raise_ranges(std::span<const double> values, std::span<const double> first, Distances& ranges) const {
+  raise(values, first, ranges);
+  for (std::size_t i = 0; i < outputs_.size(); ++i)
+    if (outputs_[i].over_a_run()) ranges[i] = values[outputs_[i].at + 1];
 }
 
 PerMeasure Outputs::per_measure(const Distances& distances) const {
@@ -258,6 +286,43 @@ OutputReader::OutputReader(const Outputs& outputs, const Model& model, const Equ
   efforts_.resize(model.layout().speeds);
 }
 
+void OutputReader::Course::note(double t, double value) {
+  if (!begun) {
+    begun = true;
+    from = time = t;
+    first = last = least = greatest = value;
+    return;
+  }
+  integral += 0.5 * (t - time) * (last + value);
+  square += 0.5 * (t - time) * (last * last + value * value);
+  time = t, last = value;
+  // What is no number stays: comparisons with it would pass over it.
+  least = value < least || std::isnan(value) ? value : least;
+  greatest = value > greatest || std::isnan(value) ? value : greatest;
+}
+
+double OutputReader::Course::result(Output::Shape over) const {
+  const double span = time - from;
+  switch (over) {
+    case Shape::least:
+      return least;
+    case Shape::greatest:
+      return greatest;
+    case Shape::mean:
+      return span > 0 ? integral / span : last;
+    case Shape::rms:
+      return span > 0 ? std::sqrt(square / span) : std::abs(last);
+    case Shape::integral:
+      return integral;
+    default:
+      return last;
+  }
+}
+
+double OutputReader::Course::range(Output::Shape over) const {
+  return std::max(greatest - first, first - least) * (over == Shape::integral ? time - from : 1);
+}
+
 std::vector<double> OutputReader::read(const State& state) {
   const std::span<const double> y(state.y);
   std::vector<double> values;
@@ -267,9 +332,16 @@ std::vector<double> OutputReader::read(const State& state) {
     std::fill(efforts_.begin(), efforts_.end(), std::numeric_limits<double>::quiet_NaN());
   if (sensors_ && !sensors_->read(state, sensed_))
     std::fill(sensed_.begin(), sensed_.end(), std::numeric_limits<double>::quiet_NaN());
-  for (const Output& o : outputs_.list()) {
+  courses_.resize(outputs_.list().size());
+  for (std::size_t i = 0; i < outputs_.list().size(); ++i) {
+    const Output& o = outputs_.list()[i];
     switch (o.measure) {
       case Measure::sensor:
+        if (o.over_a_run()) {
+          courses_[i].note(state.time, sensed_[o.coordinate]);
+          values.insert(values.end(), {courses_[i].result(o.shape), courses_[i].range(o.shape)});
+          break;
+        }
         values.insert(values.end(), sensed_.begin() + static_cast<std::ptrdiff_t>(o.coordinate),
                       sensed_.begin() + static_cast<std::ptrdiff_t>(o.coordinate + numbers_of(o.shape)));
         break;

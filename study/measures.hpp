@@ -36,12 +36,17 @@ const char* measure_name(std::size_t measure);
 /// "rad", "m", "N m" or "N"; of a sensor, which has its own, empty.
 const char* measure_unit(std::size_t measure);
 
+/// Of the integral over time of what has this unit: "N m s"; "s" of a number without one.
+std::string unit_over_time(const std::string& unit);
+
 /// One number for each output, in the order of Outputs::list() [rad, m, N m, N].
 using Distances = std::vector<double>;
 
-/// Something that a run gives at each of its outputs: a number, a vector or an orientation.
+/// Something that a run gives at each of its outputs: a number, a vector or an orientation; or what a number of a
+/// sensor has been over the run so far, at the readings. That is two numbers, the second the range that it is measured
+/// by: how far the sensor's number has been from where it began, of an integral times the span.
 struct Output {
-  enum class Shape { number, vector, orientation };
+  enum class Shape { number, vector, orientation, least, greatest, mean, rms, integral };
   std::string name;  ///< of the hinge, or as "link2.tip", "link2.tip.deflection", "axle.motion_effort"
   Measure measure = Measure::angle;
   Shape shape = Shape::number;
@@ -54,6 +59,8 @@ struct Output {
   std::string label = {};  ///< the name, told apart from others of that name: "float.slide", "cross.1"
   std::size_t at = 0;      ///< first of its numbers in a reading
   std::string unit = {};   ///< SI
+  /// Whether it is a number for the whole run, known at its end.
+  [[nodiscard]] bool over_a_run() const { return shape >= Shape::least; }
   /// Of sensors: the place of the sensor in the scene. What hardly moves beside others of its sensor and unit counts as
   /// moving a thousandth as much as they do.
   std::size_t group = 0;
@@ -64,7 +71,8 @@ class Outputs {
  public:
   /// Every hinge that no motion drives, place and deflection of every tip, and the efforts that motions need; with
   /// names, what these name: hinges, `body.tip`, `body.tip.deflection`, `hinge.motion_effort`; outputs of the scene,
-  /// whole or one component as `root.mz`. An orientation among all components of one is measured as the angle of the
+  /// whole or one component as `root.mz`, and what a component has been over the run as `root.mz.max` (`min`, `max`,
+  /// `mean`, `rms`, `integral`). An orientation among all components of one is measured as the angle of the
   /// rotation between two.
   /// \param sensors of the scene, bound to the model
   /// \throws InputError where there is no such output, or nothing to measure.
@@ -80,8 +88,12 @@ class Outputs {
   /// Numbers of a reading.
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// Raises the greatest distances by those of two readings; what is no number is infinitely far.
+  /// Raises the greatest distances by those of two readings; what is no number is infinitely far. Of what numbers have
+  /// been over the run the distance is that of the last readings: two runs may come to the same extreme one after the
+  /// other.
   void raise(std::span<const double> a, std::span<const double> b, Distances& greatest) const;
+  /// Raises the ranges that errors are measured by: how far a reading is from the first.
+  void raise_ranges(std::span<const double> values, std::span<const double> first, Distances& ranges) const;
   /// Zero for each output.
   [[nodiscard]] Distances none() const { return Distances(outputs_.size(), 0.0); }
   /// The greatest of each measure.
@@ -98,7 +110,8 @@ class Outputs {
   void add_tip(const Tip& tip, std::size_t index, bool deflection);
   void add_named(const Model& model, const std::vector<Tip>& tips, const std::string& name,
                  std::span<const SensorNode> sensors);
-  void add_sensors(const std::string& name, std::span<const SensorNode> sensors);
+  void add_sensors(const std::string& name, std::span<const SensorNode> sensors,
+                   Output::Shape over = Output::Shape::number);
 
   std::vector<Output> outputs_;
   std::size_t size_ = 0;
@@ -112,6 +125,7 @@ class OutputReader {
   OutputReader(const Outputs& outputs, const Model& model, const EquationsOfMotion& equations,
                std::vector<SensorNode> sensors = {});
   /// The numbers of all outputs; an effort or a sensor that cannot be found is no number.
+  /// States are read in the order of time: what outputs have been over the run is of those read.
   [[nodiscard]] std::vector<double> read(const State& state);
   /// At the state read last [J].
   [[nodiscard]] double kinetic_energy() const { return energies().kinetic; }
@@ -127,6 +141,15 @@ class OutputReader {
   std::vector<double> efforts_;
   std::optional<SensorReader> sensors_;  ///< nothing where no output is a sensor's
   std::vector<double> sensed_;
+  /// Of an output over time: what it was last and has been, its integrals by the trapezoidal rule.
+  struct Course {
+    bool begun = false;
+    double from = 0, time = 0, first = 0, last = 0, least = 0, greatest = 0, integral = 0, square = 0;
+    void note(double t, double value);
+    [[nodiscard]] double result(Output::Shape over) const;
+    [[nodiscard]] double range(Output::Shape over) const;
+  };
+  std::vector<Course> courses_;  ///< one an output
 };
 
 /// Greatest distances between two runs, by name.

@@ -9,6 +9,7 @@
 
 #include "withy/core/analysis/modes.hpp"
 #include "withy/core/plugin/registry.hpp"
+#include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -215,6 +216,19 @@ MountedDamping mounted_damping(const Configuration& c, Registry& registry, const
   for (Index j = 0; j < asked.size(); ++j)
     result.modes.push_back({v.frequencies[j], asked[j], reached[static_cast<std::size_t>(j)]});
   return result;
+}
+
+std::vector<double> read_damping_ratios(const std::vector<std::string>& texts) {
+  std::vector<double> ratios;
+  for (const std::string& text : texts) {
+    std::optional<double> ratio = plain_number(text);
+    if (!ratio) ratio = read_quantity(text, "1").value;
+    if (!ratio || !(*ratio > 0) || !(*ratio < 1))
+      throw InputError("--damp takes ratios of critical damping between 0 and 1, as 0.01 or \"1 %\", and not '" + text +
+                       "'");
+    ratios.push_back(*ratio);
+  }
+  return ratios;
 }
 
 }  // namespace withy::study

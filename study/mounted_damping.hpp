@@ -39,4 +39,7 @@ struct MountedDamping {
 MountedDamping mounted_damping(const Configuration& configuration, Registry& registry,
                                const std::vector<double>& ratios);
 
+/// Ratios between 0 and 1 from their texts, as 0.01 or "1 %". \throws InputError
+std::vector<double> read_damping_ratios(const std::vector<std::string>& texts);
+
 }  // namespace withy::study

@@ -15,6 +15,13 @@ std::string cost_key(const Point& p) {
   return fmt::format("{} {} {} {}", p.formulation_text(), p.family, p.modes, p.integrator);
 }
 
+/// Without what outputs have been over the run, which says nothing before its end.
+Distances on_the_way(const Outputs& outputs, Distances distances) {
+  for (std::size_t i = 0; i < distances.size(); ++i)
+    if (outputs.list()[i].over_a_run()) distances[i] = 0;
+  return distances;
+}
+
 Probe::Outcome outcome_of(const Probe& p, const Yardstick& yardstick, bool afforded) {
   switch (p.walk.end) {
     case Walk::End::reached:
@@ -97,7 +104,7 @@ Probe Evaluator::run(const Point& point, const Yardstick& yardstick, const Allow
   const auto measure = [&](const State& s) {
     if (next >= truth.values.size()) return false;
     outputs_.raise(reader.read(s), truth.values[next++], p.distances);
-    p.use = yardstick.use(p.distances);
+    p.use = yardstick.use(next < truth.values.size() ? on_the_way(outputs_, p.distances) : p.distances);
     return p.use <= allowance.use;
   };
   const auto afford = [&](const Walk& so_far) {

@@ -72,7 +72,7 @@ class ReferenceSearch {
       r.readings.times.push_back(s.time);
       r.readings.values.push_back(reader.read(s));
       r.energy = std::max(r.energy, reader.kinetic_energy());
-      outputs_.raise(r.readings.values.back(), r.readings.values.front(), r.ranges);
+      outputs_.raise_ranges(r.readings.values.back(), r.readings.values.front(), r.ranges);
       return true;
     };
     r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),

@@ -7,10 +7,13 @@
 #include <optional>
 
 #include "withy/core/model/closing.hpp"
+#include "withy/core/simulation/accuracy.hpp"
 #include "withy/core/simulation/changing_equations.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/study/accuracy.hpp"
 #include "withy/study/growth.hpp"
+#include "withy/study/input_error.hpp"
 #include "withy/study/rung_plan.hpp"
 
 namespace withy::study {
@@ -72,9 +75,9 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
   options.seen = settings.seen;
   if (settings.checkpoint_seconds > 0) options.checkpoint_due = [&] { return timer.due(); };
   std::optional<StatisticsWatch> watch;
-  if (const std::vector<std::string> watched = watched_outputs(scene);
-      !watched.empty() && settings.statistics != nullptr)
-    watch.emplace(scene.outputs, watched, equations);
+  std::vector<std::string> watched = watched_outputs(scene);
+  watched.insert(watched.end(), settings.watched.begin(), settings.watched.end());
+  if (!watched.empty() && settings.statistics != nullptr) watch.emplace(scene.outputs, watched, equations);
   RunSummary summary = withy::simulate(
       *scene.model, equations, *scene.integrator, scene.initial, options,
       [&](const State& state) {
@@ -175,6 +178,17 @@ bool wanted(Estimate estimate, const Beyond& beyond) {
 }
 
 }  // namespace
+
+void check_accuracy(const Prepared& prepared) {
+  const Scene& scene = prepared.scene;
+  const Value* rtol = scene.source.at("integrator").find("rtol");
+  const double tolerance = rtol != nullptr ? rtol->number() : 1.0;
+  const std::string why = unattainable(prepared.model(), *prepared.equations, scene.initial, tolerance);
+  if (why.empty()) return;
+  throw InputError(rtol != nullptr ? scene.file + ": /integrator/rtol: got " + brief(tolerance) +
+                                         ", an accuracy that cannot be had: " + why
+                                   : scene.file + ": " + why);
+}
 
 CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings& settings) {
   CertifiedRun result;

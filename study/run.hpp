@@ -31,6 +31,7 @@ struct RunSettings {
   const Checkpoint* resume = nullptr;                 ///< where to go on; null: at the scene's initial state
   /// Set at the end of a run: of the outputs for which the scene asks for them. Null: they are not wanted.
   std::vector<OutputStatistics>* statistics = nullptr;
+  std::vector<std::string> watched;  ///< names of outputs besides those whose statistics are wanted
   Control control;
 };
 
@@ -38,6 +39,10 @@ struct CertifiedRun {
   RunSummary summary;
   Certificate certificate;
 };
+
+/// Refuses a tolerance below what the mass matrix leaves to be had, and a start at which it is singular.
+/// \throws InputError
+void check_accuracy(const Prepared& prepared);
 
 /// Simulates from the scene's initial state to its end, measures what is left out on the way, and estimates its effect
 /// afterwards. Of `auto` the error is estimated and its formulations are chosen before; a run that comes to the end and

@@ -34,7 +34,7 @@ class BoundPush final : public BoundLoad, public DiscretePart {
   void begin(State& /*state*/) const override {}
   std::size_t states() const override { return speeds_; }
   void renew(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
-             const Crossing& /*crossing*/, std::span<double> /*discrete*/,
+             const withy::Crossing& /*crossing*/, std::span<double> /*discrete*/,
              std::span<double> /*scratch*/) const noexcept override {}
   void add(double /*t*/, std::span<const double> discrete, std::span<double> efforts) const noexcept override {
     for (std::size_t s = 0; s < speeds_; ++s) efforts[s] += discrete[s];

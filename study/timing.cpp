@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "withy/core/equations/lane_equations.hpp"
+#include "withy/core/plugin/formulation.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -74,6 +75,15 @@ LaneTimes time_lanes(const EquationsOfMotion& equations, const State& state,
     return calls.front().evaluation.ok();
   };
   return {{}, time_calls(calls.size(), allocations, evaluate)};
+}
+
+std::vector<std::string> timed_formulations(Registry& registry) {
+  std::vector<std::string> ids = registry.ids<Formulation>();
+  std::erase_if(ids, [&](const std::string& id) {
+    const std::vector<ParameterSpec>& options = registry.find<Formulation>(id)->parameters;
+    return id == "auto" || std::any_of(options.begin(), options.end(), [](const auto& o) { return o.required; });
+  });
+  return ids;
 }
 
 }  // namespace withy::study

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/registry.hpp"
 #include "withy/core/plugin/state.hpp"
 
 namespace withy::study {
@@ -33,5 +35,8 @@ struct LaneTimes {
 /// \throws InputError where the equations cannot be evaluated at the state.
 LaneTimes time_lanes(const EquationsOfMotion& equations, const State& state,
                      const std::function<std::size_t()>& allocations);
+
+/// The formulations that a name is enough for, but `auto`: its equations are others', chosen along a run.
+std::vector<std::string> timed_formulations(Registry& registry);
 
 }  // namespace withy::study

@@ -85,7 +85,8 @@ class Watch final : public SteppingObserver {
     walk.time = loop.state().time;
     count(loop.stepper());
     if (ended.cause == SteppingEnd::Cause::reached) static_cast<void>(seen(observer_.output(loop.state())));
-    if (ended.cause == SteppingEnd::Cause::failed) stop(reason_of(ended.step, model));
+    if (ended.cause == SteppingEnd::Cause::failed)
+      stop(ended.reason.empty() ? reason_of(ended.step, model) : ended.reason);
     if (ended.cause == SteppingEnd::Cause::crowded)
       stop("loads switch or events act again and again without time between the instants");
   }

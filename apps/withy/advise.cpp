@@ -1,8 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/results/advice_picture.hpp"
 #include "withy/results/advice_text.hpp"
@@ -31,8 +29,7 @@ std::vector<std::string> texts_of(const std::vector<study::Change>& changes) {
 }
 
 ExitStatus advise(const AdviseArguments& arguments) {
-  if (!arguments.write.empty() && !arguments.options.overrides.empty())
-    throw InputError("--write takes the scene as its file has it: put what --set changes into the file first");
+  check_write(arguments.write, arguments);
   const Engine engine(arguments);
   const auto folder =
       take_folder(arguments, "advise", provenance_of(engine.scene(), engine.plugins()), {"advice.json", report_name});
@@ -67,17 +64,14 @@ ExitStatus advise(const AdviseArguments& arguments) {
   return ExitStatus::done;
 }
 
-std::function<ExitStatus()> add_advise(CLI::App& c) {
-  const auto arguments = std::make_shared<AdviseArguments>();
-  AdviseArguments& a = *arguments;
-  add_scene(c, a);
+void add_advise(Options& o, AdviseArguments& a) {
+  add_scene(o, a);
   const auto axis = [&](const char* name, auto& values, const char* type, const char* meaning) {
-    c.add_option(name, values, meaning)->type_name(type)->delimiter(',');
+    o.list(name, values, type, meaning);
   };
-  c.add_option("--accuracy", a.accuracy,
-               "Greatest error of the outputs: a share of each one's own range, a length, an angle, or several")
-      ->type_name("A,...")
-      ->capture_default_str();
+  o.value("--accuracy", a.accuracy, "A,...",
+          "Greatest error of the outputs: a share of each one's own range, a length, an angle, or several")
+      .with_default();
   axis(
       "--outputs,--output", a.outputs, "NAME,...",
       "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection, HINGE.motion_effort, outputs of the scene "
@@ -94,9 +88,8 @@ std::function<ExitStatus()> add_advise(CLI::App& c) {
        "imex,radau,cvode");
   axis("--tolerances", a.axes.tolerances, "R,...",
        "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
-  c.add_option("--write", a.write, "File for the scene with what is advised; comments are kept")->type_name("FILE");
-  add_output(c, a, "Folder for report.html and advice.json; default: none is kept");
-  return [arguments] { return advise(*arguments); };
+  o.value("--write", a.write, "FILE", "File for the scene with what is advised; comments are kept");
+  add_output(o, a, "Folder for report.html and advice.json; default: none is kept");
 }
 
 }  // namespace
@@ -105,6 +98,6 @@ const Command advise_command = {
     "advise", "Find the cheapest model and integration that hold an accuracy",
     "  withy advise scenes/pendulum.yaml --accuracy 1%\n"
     "  withy advise scenes/two-link-slew.yaml --set time.end=0.5 --accuracy 1mm,0.1deg --output payload.tip,elbow",
-    &add_advise};
+    &taking<AdviseArguments, add_advise, advise>};
 
 }  // namespace withy::app

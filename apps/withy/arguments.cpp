@@ -1,51 +1,41 @@
-#include <CLI/CLI.hpp>
-
 #include "withy/apps/withy/command.hpp"
 
 namespace withy::app {
 
-CLI::Option* add_json(CLI::App& command, bool& json) {
-  return command.add_flag("--json", json, "Give the result as JSON on standard output");
+Options& add_json(Options& o, bool& json) {
+  return o.flag("--json", json, "Give the result as JSON on standard output");
 }
 
-void add_common(CLI::App& command, CommonArguments& a) {
-  command.add_option("--plugins", a.plugin_directories, "Folder with plugins, searched before the program's own")
-      ->type_name("DIR")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->expected(1)
-      ->allow_extra_args(false);
-  add_json(command, a.json);
-  command.add_flag("-v,--verbose", a.verbose, "Log on standard error what is read, loaded and compiled");
+void add_common(Options& o, CommonArguments& a) {
+  o.repeated("--plugins", a.plugin_directories, "DIR", "Folder with plugins, searched before the program's own");
+  add_json(o, a.json);
+  o.flag("-v,--verbose", a.verbose, "Log on standard error what is read, loaded and compiled");
 }
 
-void add_scene(CLI::App& command, SceneArguments& a) {
-  command.add_option("SCENE", a.scene, "Scene file (YAML or JSON)")->required();
-  command.add_option("--integrator", a.options.integrator, "Integrator, in place of the scene's")->type_name("ID");
-  command.add_option("--set", a.options.overrides, "Change a value of the scene before it is checked; repeatable")
-      ->type_name("PATH=VALUE")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->expected(1)
-      ->allow_extra_args(false);
-  add_common(command, a);
+void add_scene(Options& o, SceneArguments& a) {
+  o.argument("SCENE", a.scene, "Scene file (YAML or JSON)").required();
+  o.value("--integrator", a.options.integrator, "ID", "Integrator, in place of the scene's");
+  o.repeated("--set", a.options.overrides, "PATH=VALUE",
+             "Change a value of the scene before it is checked; repeatable");
+  add_common(o, a);
 }
 
-void add_formulation(CLI::App& command, SceneArguments& a) {
-  command.add_option("--formulation", a.options.formulation, "Formulation, in place of the scene's")->type_name("ID");
+void add_formulation(Options& o, SceneArguments& a) {
+  o.value("--formulation", a.options.formulation, "ID", "Formulation, in place of the scene's");
 }
 
-void add_formulations(CLI::App& command, std::vector<std::string>& formulations, const std::string& names,
+void add_formulations(Options& o, std::vector<std::string>& formulations, const std::string& names,
                       const std::string& meaning) {
-  command.add_option(names, formulations, meaning)->type_name("ID,ID,...")->delimiter(',');
+  o.list(names, formulations, "ID,ID,...", meaning);
 }
 
-void add_state(CLI::App& command, StateArguments& a) {
-  command.add_option("--state", a.state, "State file (JSON or YAML); default: the scene's initial state")
-      ->type_name("FILE");
+void add_state(Options& o, StateArguments& a) {
+  o.value("--state", a.state, "FILE", "State file (JSON or YAML); default: the scene's initial state");
 }
 
-void add_output(CLI::App& command, OutputArguments& a, const std::string& meaning) {
-  command.add_option("--out", a.out, meaning)->type_name("DIR");
-  command.add_flag("--force", a.force, "Replace another result that the folder holds");
+void add_output(Options& o, OutputArguments& a, const std::string& meaning) {
+  o.value("--out", a.out, "DIR", meaning);
+  o.flag("--force", a.force, "Replace another result that the folder holds");
 }
 
 }  // namespace withy::app

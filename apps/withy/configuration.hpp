@@ -16,12 +16,8 @@ struct ConfigurationArguments : StateArguments {
       lock;  ///< hinges, or single speeds of them, that are held at the state's coordinates and rates
   std::vector<std::string> spin;  ///< `hinge=rate`: held at that rate
 };
-void add_configuration(CLI::App& parser, ConfigurationArguments& arguments);
+void add_configuration(Options& options, ConfigurationArguments& arguments);
 
-/// Reads `--lock` and `--spin`: rates as `axle=6.0`, `axle=60 rev/min`, or `ball.2=1` for one of several.
-/// \throws InputError
-study::Holding holding_of(const Model& model, const std::vector<std::string>& lock,
-                          const std::vector<std::string>& spin);
 /// The configuration of a command line. \throws SceneError, InputError, PluginError
 study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments,
                                       study::Sampling sampling = study::Sampling::refused);

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "withy/apps/withy/progress.hpp"
+#include "withy/program/progress.hpp"
 
 namespace withy::app {
 namespace {
@@ -48,6 +48,11 @@ Plugins::Plugins(const CommonArguments& arguments)
   host_.attach(*registry_);
 }
 
+void check_write(const std::string& file, const SceneArguments& arguments) {
+  if (!file.empty() && !arguments.options.overrides.empty())
+    throw InputError("--write takes the scene as its file has it: put what --set changes into the file first");
+}
+
 SceneValues read_values(const SceneArguments& arguments) {
   return as_input([&] {
     SceneValues values = SceneValues::read(arguments.scene);
@@ -79,16 +84,16 @@ State read_state(const study::Prepared& prepared, const std::string& file) {
 }
 
 study::Control run_control(const std::string& label) {
-  watch_for_interrupt();
-  const auto progress = std::make_shared<Progress>(label);
-  return {interrupted, [progress](double done, double all) { progress->at(done, all); }};
+  program::watch_for_interrupt();
+  const auto progress = std::make_shared<program::Progress>(label);
+  return {program::interrupted, [progress](double done, double all) { progress->at(done, all); }};
 }
 
 study::Control study_control(const std::string& label) {
-  watch_for_interrupt();
-  const auto progress = std::make_shared<Progress>(label);
+  program::watch_for_interrupt();
+  const auto progress = std::make_shared<program::Progress>(label);
   progress->begin();
-  return {interrupted, [progress](double done, double all) { progress->of_points(done, all); }};
+  return {program::interrupted, [progress](double done, double all) { progress->of_points(done, all); }};
 }
 
 }  // namespace withy::app

@@ -29,6 +29,9 @@ class Plugins {
   std::unique_ptr<Registry> registry_;
 };
 
+/// For commands that write the scene anew, as its file has it. \throws InputError where --set changes it
+void check_write(const std::string& file, const SceneArguments& arguments);
+
 /// The values of the scene file, as the command line changes them. \throws SceneError, InputError
 SceneValues read_values(const SceneArguments& arguments);
 

@@ -1,10 +1,7 @@
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/exchange/urdf.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
@@ -37,17 +34,15 @@ ExitStatus export_scene(const ExportArguments& a) {
   return ExitStatus::done;
 }
 
-std::function<ExitStatus()> add_export(CLI::App& c) {
-  const auto arguments = std::make_shared<ExportArguments>();
-  add_scene(c, *arguments);
-  c.add_option("--out", arguments->out, "File; default: the scene's name with .urdf, in the working folder")
-      ->type_name("FILE");
-  return [arguments] { return export_scene(*arguments); };
+void add_export(Options& o, ExportArguments& a) {
+  add_scene(o, a);
+  o.value("--out", a.out, "FILE", "File; default: the scene's name with .urdf, in the working folder");
 }
 
 }  // namespace
 
 const Command export_command = {"export", "Write the tree of a scene as URDF, for viewers and robots' software",
-                                "  withy export scenes/commanded-arm.yaml --out arm.urdf", &add_export};
+                                "  withy export scenes/commanded-arm.yaml --out arm.urdf",
+                                &taking<ExportArguments, add_export, export_scene>};
 
 }  // namespace withy::app

@@ -1,15 +1,13 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/bindings/fmi/export.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/study/input_error.hpp"
 
 namespace withy::app {
 namespace {
@@ -17,10 +15,17 @@ namespace {
 struct FmuArguments : SceneArguments {
   int version = 3;
   std::vector<std::string> kinds{"me", "cs"};
-  std::string out;  ///< empty: the scene's name with .fmu
+  std::string out;       ///< empty: the scene's name with .fmu
+  bool sources = false;  ///< to be refused with the reason, which an unknown option would not have
 };
 
 ExitStatus make_fmu(const FmuArguments& a) {
+  if (a.sources)
+    throw study::OptionError(
+        "sources",
+        "no FMU carries withy's sources: an importer would compile the whole engine, and needs the "
+        "libraries that it is built on; leave the option out, and build the FMU's library for "
+        "another platform with withy on that platform (docs/fmi.md)");
   const Engine engine(a);
   fmi::Export what;
   what.version = a.version;
@@ -51,20 +56,14 @@ ExitStatus make_fmu(const FmuArguments& a) {
   return ExitStatus::done;
 }
 
-std::function<ExitStatus()> add_fmu(CLI::App& c) {
-  const auto arguments = std::make_shared<FmuArguments>();
-  FmuArguments& a = *arguments;
-  add_scene(c, a);
-  add_formulation(c, a);
-  c.add_option("--fmi", a.version, "Version of the standard: 2 or 3")
-      ->check(CLI::IsMember({2, 3}))
-      ->capture_default_str();
-  c.add_option("--kind", a.kinds, "Model exchange (me), co-simulation (cs), or both; default: both")
-      ->type_name("KIND,...")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"me", "cs"}));
-  c.add_option("--out", a.out, "File; default: the scene's name with .fmu, in the working folder")->type_name("FILE");
-  return [arguments] { return make_fmu(*arguments); };
+void add_fmu(Options& o, FmuArguments& a) {
+  add_scene(o, a);
+  add_formulation(o, a);
+  o.argument("--fmi", a.version, "Version of the standard: 2 or 3").among({2, 3}).with_default();
+  o.list("--kind", a.kinds, "KIND,...", "Model exchange (me), co-simulation (cs), or both; default: both")
+      .among({"me", "cs"});
+  o.value("--out", a.out, "FILE", "File; default: the scene's name with .fmu, in the working folder");
+  o.flag("--sources", a.sources, "Refused: an FMU has no sources in it (docs/fmi.md)");
 }
 
 }  // namespace
@@ -72,6 +71,6 @@ std::function<ExitStatus()> add_fmu(CLI::App& c) {
 const Command fmu_command = {"fmu", "Export a scene as an FMU, for other programs to simulate",
                              "  withy fmu scenes/commanded-arm.yaml --out arm.fmu\n"
                              "  withy fmu scenes/commanded-arm.yaml --fmi 2 --kind cs --out arm.fmu",
-                             &add_fmu};
+                             &taking<FmuArguments, add_fmu, make_fmu>};
 
 }  // namespace withy::app

@@ -1,12 +1,9 @@
 #include "withy/exchange/import.hpp"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/fem/import_report.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
@@ -62,51 +59,34 @@ ExitStatus import_mesh(const ImportArguments& a) {
   }
 }
 
-std::function<ExitStatus()> add_import(CLI::App& c) {
-  const auto arguments = std::make_shared<ImportArguments>();
-  ImportArguments& a = *arguments;
-  c.add_option("FILE", a.job,
-               "A model, .urdf, .xml (URDF or MJCF) or .dat (ElastoDyn); or the job of a mesh: JOB.inp, and of "
-               "CalculiX JOB.sti, JOB.mas and JOB.dof")
-      ->required();
-  c.add_option("--flexible", a.model.flexible, "Of a model: file with the links that are beams")->type_name("FILE");
-  c.add_flag("--free-base", a.model.free_base, "Of a URDF: its root link floats");
-  c.add_flag("--mend-inertias", a.model.mend_inertias,
-             "Of a model: the nearest inertias in the place of those that no mass can have, each with a remark");
-  c.add_option("--length", a.model.length, "Of a blade or tower of ElastoDyn")
-      ->type_name("M")
-      ->check(CLI::PositiveNumber);
-  c.add_option("--tip-mass", a.model.tip_mass, "What its tip carries, a point")
-      ->type_name("KG")
-      ->check(CLI::PositiveNumber);
-  c.add_option("--mesh", a.mesh, "Input deck or .frd file with the nodes; default: JOB.inp")->type_name("FILE");
-  c.add_option("--stiffness", a.stiffness, "Stiffness matrix of Abaqus (*_STIF*.mtx)")->type_name("FILE");
-  c.add_option("--mass", a.mass_matrix, "Mass matrix of Abaqus (*_MASS*.mtx)")->type_name("FILE");
-  c.add_option("--root", a.root, "Of a mesh: nodes that are clamped, a node set, or numbers separated by commas")
-      ->type_name("NODES");
-  const auto several = [&](const char* name, std::vector<std::string>& value, const char* meaning) {
-    c.add_option(name, value, meaning)
-        ->type_name("NODES")
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->expected(1)
-        ->allow_extra_args(false);
-  };
-  several("--interface", a.interfaces,
-          "Nodes to attach to, a rigid section with static modes: a set, a node, or name=17,18,19; repeatable");
-  several("--station", a.stations, "A node to attach to without modes of its own; repeatable");
-  c.add_option("--modes", a.modes, "Number of normal modes with the interfaces held")
-      ->check(CLI::Range(0, 200))
-      ->capture_default_str();
-  c.add_option("--highest", a.highest, "Drop modes of the reduced body above this frequency [Hz]")
-      ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
-  c.add_option("--out", a.out, "Scene, default: FILE with .yaml; of a mesh Standard Input Data, default: JOB.SID_FEM")
-      ->type_name("FILE");
-  c.add_flag("--force", a.force, "Replace a scene that is there");
-  add_common(c, a);
-  return [arguments] {
-    return exchange::is_model_file(arguments->job) ? import_model(*arguments) : import_mesh(*arguments);
-  };
+void add_import(Options& o, ImportArguments& a) {
+  o.argument("FILE", a.job,
+             "A model, .urdf, .xml (URDF or MJCF) or .dat (ElastoDyn); or the job of a mesh: JOB.inp, and of "
+             "CalculiX JOB.sti, JOB.mas and JOB.dof")
+      .required();
+  o.value("--flexible", a.model.flexible, "FILE", "Of a model: file with the links that are beams");
+  o.flag("--free-base", a.model.free_base, "Of a URDF: its root link floats");
+  o.flag("--mend-inertias", a.model.mend_inertias,
+         "Of a model: the nearest inertias in the place of those that no mass can have, each with a remark");
+  o.value("--length", a.model.length, "M", "Of a blade or tower of ElastoDyn").positive();
+  o.value("--tip-mass", a.model.tip_mass, "KG", "What its tip carries, a point").positive();
+  o.value("--mesh", a.mesh, "FILE", "Input deck or .frd file with the nodes; default: JOB.inp");
+  o.value("--stiffness", a.stiffness, "FILE", "Stiffness matrix of Abaqus (*_STIF*.mtx)");
+  o.value("--mass", a.mass_matrix, "FILE", "Mass matrix of Abaqus (*_MASS*.mtx)");
+  o.value("--root", a.root, "NODES", "Of a mesh: nodes that are clamped, a node set, or numbers separated by commas");
+  o.repeated("--interface", a.interfaces, "NODES",
+             "Nodes to attach to, a rigid section with static modes: a set, a node, or name=17,18,19; repeatable");
+  o.repeated("--station", a.stations, "NODES", "A node to attach to without modes of its own; repeatable");
+  o.argument("--modes", a.modes, "Number of normal modes with the interfaces held").between(0, 200).with_default();
+  o.value("--highest", a.highest, "HZ", "Drop modes of the reduced body above this frequency [Hz]").positive();
+  o.value("--out", a.out, "FILE",
+          "Scene, default: FILE with .yaml; of a mesh Standard Input Data, default: JOB.SID_FEM");
+  o.flag("--force", a.force, "Replace a scene that is there");
+  add_common(o, a);
+}
+
+ExitStatus import_file(const ImportArguments& a) {
+  return exchange::is_model_file(a.job) ? import_model(a) : import_mesh(a);
 }
 
 }  // namespace
@@ -117,6 +97,6 @@ const Command import_command = {
     "  withy import scenes/models/blade.dat --length 61.5 --out blade.yaml\n"
     "  withy import scenes/meshes/cantilever --root ROOT --interface TIP --modes 6\n"
     "  withy import scenes/meshes/cantilever --root ROOT --station 85 --modes 4 --out boom.SID_FEM",
-    &add_import};
+    &taking<ImportArguments, add_import, import_file>};
 
 }  // namespace withy::app

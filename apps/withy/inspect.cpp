@@ -1,11 +1,8 @@
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/results/inspection.hpp"
 #include "withy/results/json_text.hpp"
 
@@ -23,18 +20,16 @@ ExitStatus inspect(const StateArguments& arguments) {
   return ExitStatus::done;
 }
 
-std::function<ExitStatus()> add_inspect(CLI::App& c) {
-  const auto arguments = std::make_shared<StateArguments>();
-  StateArguments& a = *arguments;
-  add_scene(c, a);
-  add_formulation(c, a);
-  add_state(c, a);
-  return [arguments] { return inspect(*arguments); };
+void add_inspect(Options& o, StateArguments& a) {
+  add_scene(o, a);
+  add_formulation(o, a);
+  add_state(o, a);
 }
 
 }  // namespace
 
 const Command inspect_command = {"inspect", "Show what a scene is made of and what its compilation saved",
-                                 "  withy inspect scenes/two-link-slew.yaml", &add_inspect};
+                                 "  withy inspect scenes/two-link-slew.yaml",
+                                 &taking<StateArguments, add_inspect, inspect>};
 
 }  // namespace withy::app

@@ -1,17 +1,12 @@
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/results/inverse_files.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/recorded_run.hpp"
-#include "withy/results/text_table.hpp"
 #include "withy/study/recorded_motion.hpp"
 
 namespace withy::app {
@@ -20,17 +15,6 @@ namespace {
 struct InverseArguments : SceneArguments, OutputArguments {
   std::string motion;  ///< file with hinge coordinates over time; empty: the scene's motions
 };
-
-std::string table_text(const study::InverseStudy& study) {
-  TextTable table(
-      {"<drive", "peak effort\n[N m, N]", "at\n[s]", "rms effort\n[N m, N]", "peak power\n[W]", "work\n[J]"});
-  for (const study::Drive& drive : study.drives()) {
-    const study::Demand d = study.demand(drive);
-    table.add({drive.name, fmt::format("{:.5g}", d.peak), fmt::format("{:.4g}", d.peak_time),
-               fmt::format("{:.5g}", d.rms), fmt::format("{:.5g}", d.peak_power), fmt::format("{:.5g}", d.work)});
-  }
-  return table.str();
-}
 
 /// The scene with the motions of the file in the place of its own.
 study::Prepared led_scene(const Engine& engine, const std::string& file) {
@@ -58,33 +42,18 @@ ExitStatus inverse(const InverseArguments& given) {
   const Scene& scene = led.scene;
   const std::string title = led.title() + ": inverse dynamics";
   write_file(folder / "inverse.svg", inverse_picture(title, study));
-  if (arguments.json) {
-    print(json_text({{"scene", scene.file},
-                     {"name", scene.name},
-                     {"formulation", scene.formulation_name},
-                     {"status", name(summary.status)},
-                     {"message", summary.message},
-                     {"t_end", summary.reached},
-                     {"drives", drives_json(study)}}));
-  } else {
-    print(fmt::format("{} ({}, {}, {} outputs, {})\n\n{}\nresults.csv, run.json and inverse.svg in {}\n", title,
-                      scene.formulation_name, scene.integrator_name, study.times().size(), study::outcome_text(summary),
-                      table_text(study), folder.string()));
-  }
-  if (summary.status != RunStatus::completed) complain(std::string(name(summary.status)) + ": " + summary.message);
-  return exit_status(summary.status);
+  print(arguments.json ? json_text(inverse_json(scene, summary, study))
+                       : inverse_text(title, scene, summary, study) + "\nresults.csv, run.json and inverse.svg in " +
+                             folder.string() + '\n');
+  return ended(summary);
 }
 
-std::function<ExitStatus()> add_inverse(CLI::App& c) {
-  const auto arguments = std::make_shared<InverseArguments>();
-  InverseArguments& a = *arguments;
-  add_scene(c, a);
-  add_formulation(c, a);
-  c.add_option("--motion", a.motion,
-               "CSV file with columns t[s] and hinge coordinates, in the place of the scene's motions")
-      ->type_name("FILE");
-  add_output(c, a, "Folder of the results; default: results/<scene>-inverse");
-  return [arguments] { return inverse(*arguments); };
+void add_inverse(Options& o, InverseArguments& a) {
+  add_scene(o, a);
+  add_formulation(o, a);
+  o.value("--motion", a.motion, "FILE",
+          "CSV file with columns t[s] and hinge coordinates, in the place of the scene's motions");
+  add_output(o, a, "Folder of the results; default: results/<scene>-inverse");
 }
 
 }  // namespace
@@ -94,6 +63,6 @@ const Command inverse_command = {
     "  withy inverse scenes/spin-up.yaml\n"
     "  withy inverse scenes/two-link-slew.yaml --motion scenes/motions/two-link-pick.csv --set loads={} "
     "--out results/pick",
-    &add_inverse};
+    &taking<InverseArguments, add_inverse, inverse>};
 
 }  // namespace withy::app

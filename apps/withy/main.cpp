@@ -1,61 +1,37 @@
-#include <csignal>
-#include <cstdlib>
 #include <exception>
-#include <functional>
 #include <new>
 #include <string>
 #include <variant>
 
-#include "withy/apps/withy/command_line.hpp"
+#include "withy/apps/withy/commands.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/core/plugin/floating_point.hpp"
+#include "withy/program/output.hpp"
+#include "withy/program/sudden_end.hpp"
 #include "withy/results/results_error.hpp"
 
 namespace {
 
-using withy::app::ExitStatus;
+using withy::program::ExitStatus;
 
 ExitStatus run_program(int argc, const char* const* argv) {
-  const auto asked = withy::app::read_command_line(argc, argv);
-  const auto* command = std::get_if<std::function<ExitStatus()>>(&asked);
+  const auto asked = read_command_line(withy::app::withy_program(), argc, argv);
+  const auto* command = std::get_if<withy::program::Call>(&asked);
   const ExitStatus status = command != nullptr ? (*command)() : std::get<ExitStatus>(asked);
-  withy::app::finish_printing();
-  if (status == ExitStatus::interrupted && !withy::app::has_complained()) withy::app::complain("interrupted");
+  withy::program::finish_printing();
+  if (status == ExitStatus::interrupted && !withy::program::has_complained()) withy::program::complain("interrupted");
   return status;
 }
 
 ExitStatus fail(ExitStatus status, const std::string& why) {
-  withy::app::complain(why);
+  withy::program::complain(why);
   return status;
-}
-
-bool returned = false;  ///< main has come to its end: whatever runs after it is no part of a command
-
-/// Nothing but a plugin ends the program before its end, and what it was at is then not done.
-void refuse_early_end() {
-  if (returned) return;
-  withy::app::complain("a plugin has ended the program by a call of exit(): what was asked for is not done");
-  std::_Exit(static_cast<int>(ExitStatus::environment));
-}
-
-[[noreturn]] void explain_termination() {
-  withy::app::complain("an exception has left code that must not let one out, as a plugin's evaluation: cannot go on");
-  std::_Exit(static_cast<int>(ExitStatus::environment));
-}
-
-/// What would end the program without a word or a status of its own.
-void watch_for_ends() {
-  std::atexit(refuse_early_end);
-  std::at_quick_exit(refuse_early_end);
-  std::set_terminate(explain_termination);
-  std::signal(SIGXFSZ, SIG_IGN);  // a write past a limit of the file's size then fails, and is reported as any other
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  watch_for_ends();
+  withy::program::watch_for_sudden_ends();
   ExitStatus status = ExitStatus::environment;
   try {
     withy::FloatingPointGuard arithmetic;
@@ -77,6 +53,6 @@ int main(int argc, char** argv) {
   } catch (...) {
     status = fail(ExitStatus::environment, "a plugin throws what is no exception of C++");
   }
-  returned = true;
+  withy::program::end_is_due();
   return static_cast<int>(status);
 }

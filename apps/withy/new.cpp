@@ -1,28 +1,15 @@
-#include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/command.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/starting_scenes.hpp"
 #include "withy/study/input_error.hpp"
-
-// The files of scenes/new, from templates.S.
-extern "C" const char withy_new_beam[], withy_new_satellite[], withy_new_arm[], withy_new_turbine[];
 
 namespace withy::app {
 namespace {
-
-struct Template {
-  const char* kind;
-  const char* text;
-};
-const std::array templates = {Template{"beam", withy_new_beam}, Template{"satellite", withy_new_satellite},
-                              Template{"arm", withy_new_arm}, Template{"turbine", withy_new_turbine}};
 
 struct NewArguments {
   std::string kind;
@@ -31,9 +18,9 @@ struct NewArguments {
   bool json = false;
 };
 
-const Template& template_of(const std::string& kind) {
+const StartingScene& scene_of(const std::string& kind) {
   std::vector<std::string> kinds;
-  for (const Template& t : templates) {
+  for (const StartingScene& t : starting_scenes()) {
     if (t.kind == kind) return t;
     kinds.emplace_back(t.kind);
   }
@@ -44,7 +31,7 @@ const Template& template_of(const std::string& kind) {
 }
 
 ExitStatus write_new(const NewArguments& arguments) {
-  const Template& chosen = template_of(arguments.kind);
+  const StartingScene& chosen = scene_of(arguments.kind);
   const std::string file = arguments.file.empty() ? arguments.kind + ".yaml" : arguments.file;
   if (std::filesystem::exists(file) && !arguments.force)
     throw study::InputError(file + " is there already: name another file, or add --force to replace it");
@@ -54,14 +41,11 @@ ExitStatus write_new(const NewArguments& arguments) {
   return ExitStatus::done;
 }
 
-std::function<ExitStatus()> add_new(CLI::App& c) {
-  const auto arguments = std::make_shared<NewArguments>();
-  NewArguments& a = *arguments;
-  c.add_option("KIND", a.kind, "beam, satellite, arm or turbine")->required();
-  c.add_option("FILE", a.file, "Where to write it; default: KIND.yaml in the current folder");
-  c.add_flag("--force", a.force, "Replace the file where there is one");
-  add_json(c, a.json);
-  return [arguments] { return write_new(*arguments); };
+void add_new(Options& o, NewArguments& a) {
+  o.argument("KIND", a.kind, "beam, satellite, arm or turbine").required();
+  o.argument("FILE", a.file, "Where to write it; default: KIND.yaml in the current folder");
+  o.flag("--force", a.force, "Replace the file where there is one");
+  add_json(o, a.json);
 }
 
 }  // namespace
@@ -69,6 +53,6 @@ std::function<ExitStatus()> add_new(CLI::App& c) {
 const Command new_command = {"new", "Write a commented scene to start from",
                              "  withy new satellite\n"
                              "  withy new arm robot.yaml",
-                             &add_new};
+                             &taking<NewArguments, add_new, write_new>};
 
 }  // namespace withy::app

@@ -1,22 +1,14 @@
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "withy/apps/withy/command.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/results/json_text.hpp"
-#include "withy/results/output_file.hpp"
-#include "withy/results/report/gltf.hpp"
-#include "withy/results/report/paraview.hpp"
+#include "withy/results/report/finished_runs.hpp"
 #include "withy/results/report/report_page.hpp"
-#include "withy/results/results_error.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct ReportArguments {
   std::vector<std::string> runs;  ///< folders
@@ -26,46 +18,9 @@ struct ReportArguments {
   bool json = false;
 };
 
-/// The page of a folder, or the file itself.
-std::vector<std::string> runs_of(const fs::path& given) {
-  const fs::path file = fs::is_directory(given) ? given / report_name : given;
-  if (fs::exists(file)) return read_report(file);
-  if (!fs::exists(given)) throw study::InputError("there is no folder '" + given.string() + "'");
-  throw ResultsError(given.string() + " holds no " + report_name +
-                     (fs::exists(given / "results.csv") ? ": its run was killed, or made by a build without the page; "
-                                                          "run it again, or see its results.csv with withy plot"
-                                                        : ": it is no folder of a run or a comparison"));
-}
-
-std::string title_of(const std::vector<std::string>& runs) {
-  std::vector<std::string> titles;
-  std::string all;
-  for (const std::string& run : runs) {
-    std::string title = nlohmann::ordered_json::parse(run).at("title");
-    if (std::find(titles.begin(), titles.end(), title) != titles.end()) continue;
-    all += (all.empty() ? "" : ", ") + title;
-    titles.push_back(std::move(title));
-  }
-  return all;
-}
-
 void print_counted(std::size_t runs, const ReportArguments& arguments) {
   print(arguments.json ? json_text({{"file", arguments.out}, {"runs", runs}})
                        : std::to_string(runs) + (runs == 1 ? " run in " : " runs in ") + arguments.out + '\n');
-}
-
-/// The motion of runs for other programs, by the ending of the file's name; false where it is that of a page.
-bool wrote_motion(const ReportArguments& arguments, const std::vector<std::string>& runs) {
-  const fs::path out = arguments.out;
-  if (out.extension() != ".glb" && out.extension() != ".pvd") return false;
-  std::vector<Animation> animations;
-  for (const std::string& run : runs) animations.emplace_back(run);
-  if (out.extension() == ".glb")
-    write_file(out, gltf_binary(animations));
-  else
-    write_paraview(out, animations);
-  print_counted(runs.size(), arguments);
-  return true;
 }
 
 ExitStatus report(const ReportArguments& arguments) {
@@ -75,38 +30,37 @@ ExitStatus report(const ReportArguments& arguments) {
   }
   ReportContent content;
   for (const std::string& folder : arguments.runs)
-    for (std::string& run : runs_of(folder)) content.runs.push_back(std::move(run));
+    for (std::string& run : runs_at(folder)) content.runs.push_back(std::move(run));
   if (arguments.reference > static_cast<int>(content.runs.size()))
     throw study::InputError("--reference: need a number from 1 to " + std::to_string(content.runs.size()) +
                             ", the count of runs, got " + std::to_string(arguments.reference));
-  if (wrote_motion(arguments, content.runs)) return ExitStatus::done;
-  if (const std::string end = fs::path(arguments.out).extension().string(); end != ".html" && end != ".htm")
+  if (write_motion(arguments.out, content.runs)) {
+    print_counted(content.runs.size(), arguments);
+    return ExitStatus::done;
+  }
+  const std::filesystem::path out = arguments.out;
+  if (out.extension() != ".html" && out.extension() != ".htm")
     throw study::InputError("--out: need a name that ends with .html (a page), .glb (glTF) or .pvd (ParaView), got '" +
                             arguments.out + "'");
-  if (fs::exists(arguments.out) && !arguments.force) static_cast<void>(read_report(arguments.out));
-  content.title = title_of(content.runs);
+  if (std::filesystem::exists(out) && !arguments.force) static_cast<void>(read_report(out));
+  content.title = title_of_runs(content.runs);
   content.reference = arguments.reference - 1;
   write_report(arguments.out, content);
   print_counted(content.runs.size(), arguments);
   return ExitStatus::done;
 }
 
-std::function<ExitStatus()> add_report(CLI::App& c) {
-  const auto arguments = std::make_shared<ReportArguments>();
-  ReportArguments& a = *arguments;
-  c.add_option("RUN", a.runs, "Folders of finished runs and comparisons, or their report.html")->required();
-  c.add_option("--out", a.out,
-               "File of the page; a name that ends with .glb gets the motion as glTF, one with .pvd as a series for "
-               "ParaView")
-      ->type_name("FILE")
-      ->capture_default_str();
-  c.add_option("--reference", a.reference,
-               "Number of the run that differences are taken from, from 1; default: the last")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  c.add_flag("--force", a.force, "Replace a file that is no report");
-  add_json(c, a.json);
-  return [arguments] { return report(*arguments); };
+void add_report(Options& o, ReportArguments& a) {
+  o.argument("RUN", a.runs, "Folders of finished runs and comparisons, or their report.html").required();
+  o.value("--out", a.out, "FILE",
+          "File of the page; a name that ends with .glb gets the motion as glTF, one with .pvd as a series for "
+          "ParaView")
+      .with_default();
+  o.value("--reference", a.reference, "N",
+          "Number of the run that differences are taken from, from 1; default: the last")
+      .positive();
+  o.flag("--force", a.force, "Replace a file that is no report");
+  add_json(o, a.json);
 }
 
 }  // namespace
@@ -117,6 +71,6 @@ const Command report_command = {"report", "Show several finished runs on one pag
                                 "  withy report results/two-link-slew-quadratic results/two-link-slew-ruthless "
                                 "--reference 1 --out slews.html\n"
                                 "  withy report results/two-link-slew-quadratic --out slew.glb",
-                                &add_report};
+                                &taking<ReportArguments, add_report, report>};
 
 }  // namespace withy::app

@@ -1,14 +1,9 @@
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "withy/apps/withy/configuration.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/results/json_text.hpp"
-#include "withy/results/output_file.hpp"
-#include "withy/results/report/figures_page.hpp"
-#include "withy/results/report/report_page.hpp"
 #include "withy/results/response_files.hpp"
 
 namespace withy::app {
@@ -19,27 +14,14 @@ struct ResponseArguments : ConfigurationArguments, OutputArguments {
   bool csv = false;
 };
 
-void write_files(const ResultsFolder& folder, const study::Configuration& c, const study::Response& r) {
-  const std::string title =
-      r.opened ? r.model.inputs[0].name + " opened" : r.model.inputs[0].name + " to " + r.model.outputs[0].name;
-  write_file(folder / "response.json", json_text(response_json(c, r)));
-  write_file(folder / "response.csv", response_csv(r));
-  const std::string whole = c.prepared().title() + ": " + title;
-  const Picture bode = bode_picture(r, whole), nichols = nichols_picture(r, whole);
-  write_file(folder / "bode.svg", svg_plot(bode));
-  write_file(folder / "nichols.svg", svg_plot(nichols));
-  write_figures_page(folder / report_name, whole, response_text(c, r),
-                     {{"Bode", bode.legend, bode.panels}, {"Nichols", nichols.legend, nichols.panels}});
-}
-
 ExitStatus respond(const ResponseArguments& arguments) {
   const Engine engine(arguments);
   const study::Configuration c = configuration_of(engine, arguments, study::Sampling::kept);
-  const auto folder = take_folder(arguments, "response", provenance_of(engine.scene(), engine.plugins()),
-                                  {"response.json", "response.csv", "bode.svg", "nichols.svg", report_name});
+  const auto folder =
+      take_folder(arguments, "response", provenance_of(engine.scene(), engine.plugins()), response_content());
   try {
     const study::Response r = study::response(c, arguments.question);
-    if (folder != nullptr) write_files(*folder, c, r);
+    if (folder != nullptr) write_response(folder->path(), c, r);
     if (arguments.json)
       print(json_text(response_json(c, r)));
     else if (arguments.csv)
@@ -53,36 +35,27 @@ ExitStatus respond(const ResponseArguments& arguments) {
   return ExitStatus::done;
 }
 
-std::function<ExitStatus()> add_response(CLI::App& c) {
-  const auto arguments = std::make_shared<ResponseArguments>();
-  ResponseArguments& a = *arguments;
-  add_scene(c, a);
-  add_formulation(c, a);
-  add_configuration(c, a);
-  c.add_option("--input,--inputs", a.question.input,
-               "A load of the type input, or a hinge; or a load that feeds back, or LOAD.HINGE, whose loop is opened")
-      ->type_name("NAME")
-      ->required();
-  c.add_option("--output,--outputs", a.question.output,
-               "One component of an output of the scene (imu.x), a coordinate (elbow.0), or of a tip (link2.tip.y)")
-      ->type_name("NAME");
-  c.add_option("--from", a.question.from, "Lowest frequency; default: a decade below all poles")
-      ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
-  c.add_option("--to", a.question.to, "Highest frequency; default: a decade above all poles, or half the samples' rate")
-      ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
-  c.add_option("--points", a.question.per_decade, "Frequencies a decade; more where a resonance is sharp")
-      ->type_name("N")
-      ->check(CLI::Range(5, 100000))
-      ->capture_default_str();
-  c.add_option("--reduce", a.question.reduce, "Balanced truncation to so many states, with the bound of its error")
-      ->type_name("N")
-      ->check(CLI::Range(0, 100000));
-  c.add_flag("--csv", a.csv, "Print the values as a table");
-  add_output(c, a,
+void add_response(Options& o, ResponseArguments& a) {
+  add_scene(o, a);
+  add_formulation(o, a);
+  add_configuration(o, a);
+  o.value("--input,--inputs", a.question.input, "NAME",
+          "A load of the type input, or a hinge; or a load that feeds back, or LOAD.HINGE, whose loop is opened")
+      .required();
+  o.value("--output,--outputs", a.question.output, "NAME",
+          "One component of an output of the scene (imu.x), a coordinate (elbow.0), or of a tip (link2.tip.y)");
+  o.value("--from", a.question.from, "HZ", "Lowest frequency; default: a decade below all poles").positive();
+  o.value("--to", a.question.to, "HZ",
+          "Highest frequency; default: a decade above all poles, or half the samples' rate")
+      .positive();
+  o.value("--points", a.question.per_decade, "N", "Frequencies a decade; more where a resonance is sharp")
+      .between(5, 100000)
+      .with_default();
+  o.value("--reduce", a.question.reduce, "N", "Balanced truncation to so many states, with the bound of its error")
+      .between(0, 100000);
+  o.flag("--csv", a.csv, "Print the values as a table");
+  add_output(o, a,
              "Folder for report.html, response.json, response.csv, bode.svg and nichols.svg; default: none is kept");
-  return [arguments] { return respond(*arguments); };
 }
 
 }  // namespace
@@ -91,6 +64,6 @@ const Command response_command = {
     "response", "Transfer function from an input to an output, resonances, and the margins of a loop",
     "  withy response scenes/loads-of-the-slew.yaml --input shoulder --output box.y --to 100\n"
     "  withy response scenes/pd-arm.yaml --input control.shoulder --out results/loop",
-    &add_response};
+    &taking<ResponseArguments, add_response, respond>};
 
 }  // namespace withy::app

@@ -23,15 +23,10 @@ std::string default_folder(const SceneArguments& arguments, const std::string& w
   return (std::filesystem::path("results") / (name + folder_suffix(arguments.options.overrides))).string();
 }
 
-ExitStatus exit_status(RunStatus status) {
-  switch (status) {
-    case RunStatus::completed:
-      return ExitStatus::done;
-    case RunStatus::interrupted:
-      return ExitStatus::interrupted;
-    default:
-      return ExitStatus::stopped;
-  }
+ExitStatus ended(const RunSummary& summary) {
+  if (summary.status == RunStatus::completed) return ExitStatus::done;
+  complain(std::string(name(summary.status)) + ": " + summary.message);
+  return summary.status == RunStatus::interrupted ? ExitStatus::interrupted : ExitStatus::stopped;
 }
 
 }  // namespace withy::app

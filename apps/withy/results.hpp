@@ -21,7 +21,7 @@ Provenance provenance_of(const Scene& scene, const Plugins& plugins);
 /// `results/<scene>-<what>`, with what `--integrator` and `--set` say behind it.
 std::string default_folder(const SceneArguments& arguments, const std::string& what);
 
-/// Exit status that a run's end stands for.
-ExitStatus exit_status(RunStatus status);
+/// Says why a run did not come to its end. \returns the exit status that its end stands for
+ExitStatus ended(const RunSummary& summary);
 
 }  // namespace withy::app

@@ -1,8 +1,5 @@
-#include <CLI/CLI.hpp>
 
-#include "withy/apps/withy/command.hpp"
 #include "withy/apps/withy/engine.hpp"
-#include "withy/apps/withy/output.hpp"
 #include "withy/campaign/plan_schema.hpp"
 
 namespace withy::app {
@@ -23,17 +20,14 @@ ExitStatus schema(const SchemaArguments& arguments) {
   return ExitStatus::done;
 }
 
-std::function<ExitStatus()> add_schema(CLI::App& c) {
-  const auto arguments = std::make_shared<SchemaArguments>();
-  SchemaArguments& a = *arguments;
-  add_common(c, a);
-  c.add_flag("--sweep", a.sweep, "Of the plans of sweeps instead");
-  return [arguments] { return schema(*arguments); };
+void add_schema(Options& o, SchemaArguments& a) {
+  add_common(o, a);
+  o.flag("--sweep", a.sweep, "Of the plans of sweeps instead");
 }
 
 }  // namespace
 
 const Command schema_command = {"schema", "Print the JSON Schema of scenes, for editors",
-                                "  withy schema\n  withy schema --sweep", &add_schema};
+                                "  withy schema\n  withy schema --sweep", &taking<SchemaArguments, add_schema, schema>};
 
 }  // namespace withy::app

@@ -11,8 +11,6 @@
 
 namespace withy::app {
 
-extern const Command sweep_command;
-
 struct SweepArguments : CommonArguments {
   std::string plan;
   std::string store;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/central_difference.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
@@ -99,6 +100,11 @@ void Dynamics::show(const State& state) {
   changed();
 }
 
+bool Dynamics::is_reached(std::size_t load) const {
+  const HostedMotion* motion = hosted_motion(*model().loads()[load].load);
+  return motion != nullptr && !motion->jumps();
+}
+
 double Dynamics::input(std::size_t load) const {
   const LoadNode& node = model().loads()[load];
   return node.load->input()->value(state_.time, node.discrete(std::span(state_.y)));
@@ -106,6 +112,7 @@ double Dynamics::input(std::size_t load) const {
 
 void Dynamics::set_input(std::size_t load, double value) {
   const LoadNode& node = model().loads()[load];
+  if (is_reached(load)) return;
   node.load->input()->set(state_.time, state_.time, value, node.discrete(std::span(state_.y)));
   changed();
 }

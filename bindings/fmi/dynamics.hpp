@@ -52,7 +52,9 @@ class Dynamics {
   /// Goes to a state of a simulation, which deals with what jumps by itself.
   void show(const State& state);
   [[nodiscard]] double input(std::size_t load) const;
-  /// Holds from now on.
+  /// Whether an input is what a motion reaches at the end of a step: it cannot be set at once.
+  [[nodiscard]] bool is_reached(std::size_t load) const;
+  /// Holds from now on; nothing of what is reached.
   void set_input(std::size_t load, double value);
 
   /// ẏ of the moving states. \throws Discarded where there is none.

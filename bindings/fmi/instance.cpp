@@ -178,6 +178,10 @@ void Instance::exit_initialization() {
   d.begin();
   if (kind_ == Kind::co_simulation) {
     make_session();
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      const std::size_t load = variables_.all[variables_.input(i)].index;
+      if (is_input_set_[i] != 0 && d.is_reached(load)) session_->set_input(load, inputs_[i]);
+    }
     d.show(session_->state());
     for (const std::string& remark : session_->stepper().remarks())
       say(Status::ok, log_all, "The integrator: " + remark + ".");

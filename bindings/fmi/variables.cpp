@@ -7,6 +7,8 @@
 
 #include "withy/bindings/fmi/scene_numbers.hpp"
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/hosted_motion.hpp"
+#include "withy/core/simulation/instants.hpp"
 #include "withy/results/result_columns.hpp"
 #include "withy/scene/sha256.hpp"
 #include "withy/study/input_error.hpp"
@@ -58,7 +60,8 @@ void add_inputs(Variables& v, const Model& model, const State& initial) {
     const InputPort* port = load.load->input();
     if (port == nullptr) continue;
     const double value = port->value(initial.time, load.discrete(std::span(initial.y)));
-    v.all.push_back({Kind::input, l, load.name, port->unit(), "load '" + load.name + "'", value});
+    const char* kind = hosted_motion(*load.load) != nullptr ? "motion '" : "load '";
+    v.all.push_back({Kind::input, l, load.name, port->unit(), kind + load.name + "'", value});
     ++v.inputs;
   }
 }
@@ -111,7 +114,8 @@ Variables variables_of(const study::Prepared& prepared, Registry& registry) {
   Variables v;
   v.all.push_back({Kind::time, 0, "t", "s", "time"});
   add_states(v, prepared.model(), prepared.scene.initial);
-  add_inputs(v, prepared.model(), prepared.scene.initial);
+  // Motions of hosts begin where the hinges are.
+  add_inputs(v, prepared.model(), begun(prepared.model(), *prepared.equations, prepared.scene.initial));
   add_outputs(v, prepared);
   for (const SceneNumber& n : scene_numbers(prepared.scene, registry)) {
     v.all.push_back(

@@ -35,6 +35,9 @@ inline Array array_of(std::vector<double> numbers, std::vector<py::ssize_t> shap
 
 /// Libraries, scenes, their runs and studies.
 void bind_scene(py::module_& m);
+/// Plugins of the type `python` for a library.
+void admit_parts_in_python(Registry& registry);
+void bind_parts_in_python(py::module_& m);
 /// Many cases of a scene, for executors of Python.
 void bind_sweep(py::module_& m);
 

@@ -82,9 +82,12 @@ struct SharedEquations {
   Array normalized(const Array& y) {
     const std::span<const double> at = span_of(y, equations.size(), "y");
     Array scaled(static_cast<py::ssize_t>(at.size()));
-    std::copy(at.begin(), at.end(), scaled.mutable_data());
+    const std::span<double> out(scaled.mutable_data(), at.size());
+    std::copy(at.begin(), at.end(), out.begin());
+    // Who holds the lock may need the interpreter, for a load in Python.
+    const py::gil_scoped_release released;
     const std::lock_guard lock(busy);
-    equations.normalize({scaled.mutable_data(), at.size()});
+    equations.normalize(out);
     return scaled;
   }
   void evaluate(double t, std::span<const double> y, std::span<double> y_dot) {
@@ -193,6 +196,7 @@ void bind_equations(py::module_& m) {
       .def("_input_units", [](const E& e) { return units_of(e.equations.inputs()); })
       .def("_input", [](const E& e, std::size_t i) { return e.equations.input(i); })
       .def("_set_input", [](E& e, std::size_t i, double value) {
+        const py::gil_scoped_release released;
         const std::lock_guard lock(e.busy);
         e.equations.set_input(i, value);
       });
@@ -266,4 +270,5 @@ PYBIND11_MODULE(_withy, m) {
   bind_equations(m);
   bind_simulation(m);
   withy::python::bind_sweep(m);
+  withy::python::bind_parts_in_python(m);
 }

@@ -41,24 +41,28 @@ void write_hdf5(const std::filesystem::path& path, const std::vector<std::string
   file->end();
 }
 
+/// The plugins, with loads and bodies in Python; remarks go to a function, or nowhere.
+Library open_library(std::vector<std::filesystem::path> plugins, const py::object& log) {
+  LibraryOptions options{std::move(plugins), {}};
+  if (!log.is_none())
+    options.log = [log](std::string_view remark) {
+      const py::gil_scoped_acquire held;
+      try {
+        log(py::str(remark.data(), remark.size()));
+      } catch (py::error_already_set& e) {
+        e.discard_as_unraisable("withy's log");
+      }
+    };
+  Library made(std::move(options));
+  admit_parts_in_python(made.registry());
+  return made;
+}
+
 }  // namespace
 
 void bind_scene(py::module_& m) {
   py::class_<Library>(m, "Library")
-      .def(py::init([](std::vector<std::filesystem::path> plugins, const py::object& log) {
-             LibraryOptions options{std::move(plugins), {}};
-             if (!log.is_none())
-               options.log = [log](std::string_view remark) {
-                 const py::gil_scoped_acquire held;
-                 try {
-                   log(py::str(remark.data(), remark.size()));
-                 } catch (py::error_already_set& e) {
-                   e.discard_as_unraisable("withy's log");
-                 }
-               };
-             return Library(std::move(options));
-           }),
-           py::arg("plugins"), py::arg("log"))
+      .def(py::init(&open_library), py::arg("plugins"), py::arg("log"))
       .def("schema", [](const Library& l) { return withy::schema(l.registry()); });
   const auto axes = [](const std::vector<std::string>& formulations, const std::vector<std::string>& families,
                        const std::vector<int>& modes, const std::vector<std::string>& integrators,

@@ -43,7 +43,7 @@ struct MultibladeForm {
 };
 
 /// Orders the blades so that A over 1/B of a turn is A with the blades exchanged, and transforms it.
-/// \param period of one turn of the rotor [s], the turning form's own
+/// \param form its period is one turn of the rotor
 /// \throws std::domain_error where no order does: the blades are not equal, or not equally spaced, or do not turn.
 MultibladeForm multiblade_form(const TurningForm& form, const Held& held, const std::vector<std::string>& speed_names,
                                const Blades& branches);

@@ -3,12 +3,19 @@
 #include <algorithm>
 
 #include "withy/core/deformation/rod_table.hpp"
+#include "withy/core/model/switched_load.hpp"
 
 namespace withy {
 namespace {
 
 /// Σ m ρ ρᵀ of an inertia Σ m (ρ·ρ 1 − ρ ρᵀ).
 Matrix3 second_moment(const Matrix3& inertia) { return 0.5 * inertia.trace() * Matrix3::Identity() - inertia; }
+
+const FieldLoad* first_field(const LoadNode& node) {
+  if (const auto* field = dynamic_cast<const FieldLoad*>(node.load.get())) return field;
+  const auto* switched = dynamic_cast<const LoadOfForms*>(node.load.get());
+  return switched == nullptr ? nullptr : dynamic_cast<const FieldLoad*>(&switched->first());
+}
 
 }  // namespace
 
@@ -24,17 +31,28 @@ std::vector<MassPoint> mass_points(const Body& body) {
     }
     return points;
   }
-  for (const Particle& p : body.shape().particles) points.push_back({p.mass, Matrix3::Zero(), p.at});
-  const bool rigid = body.shape().modes() == 0;
-  for (const Section& s : body.shape().sections) {
-    const auto same = std::find_if(points.begin(), points.end(), [&](const MassPoint& p) { return p.at.X == s.at.X; });
-    if (rigid && same != points.end()) {
-      same->second += second_moment(s.inertia);
-    } else {
-      points.push_back({0, second_moment(s.inertia), s.at});
-    }
+  return mass_points(body.shape().particles, body.shape().sections, body.shape().modes());
+}
+
+std::vector<MassPoint> mass_points(const std::vector<Particle>& particles, const std::vector<Section>& sections,
+                                   Eigen::Index modes) {
+  std::vector<MassPoint> points;
+  for (const Particle& p : particles) points.push_back({p.mass, Matrix3::Zero(), p.at});
+  for (const Section& s : sections) points.push_back({0, second_moment(s.inertia), s.at});
+  if (modes > 0 || points.size() < 2) return points;
+  MassPoint center{.mass = 0, .second = Matrix3::Zero(), .at = points.front().at};
+  Vector3 moment = Vector3::Zero();
+  for (const MassPoint& p : points) {
+    center.mass += p.mass;
+    moment += p.mass * p.at.X;
   }
-  return points;
+  if (!(center.mass > 0)) return points;
+  if (particles.size() > 1) center.at.X = moment / center.mass;
+  for (const MassPoint& p : points) {
+    const Vector3 arm = p.at.X - center.at.X;
+    center.second += p.second + p.mass * arm * arm.transpose();
+  }
+  return {center};
 }
 
 std::vector<double> mass_beyond(const Body& body, double x) {
@@ -81,14 +99,36 @@ void FieldLoad::wrenches(double t, std::span<const FrameMotion> motions, std::sp
 
 const FieldLoad* field_of(const Model& model) {
   for (const LoadNode& node : model.loads())
-    if (const auto* field = dynamic_cast<const FieldLoad*>(node.load.get())) return field;
+    if (const FieldLoad* field = first_field(node)) return field;
   return nullptr;
 }
 
-Vector3 field_acceleration(const Model& model, double t, const FrameMotion& motion) noexcept {
+bool acts_on_mass(const LoadNode& node) { return first_field(node) != nullptr; }
+
+const FieldLoad* acting_field(const LoadNode& node, std::span<const double> y) noexcept {
+  if (const auto* field = dynamic_cast<const FieldLoad*>(node.load.get())) return field;
+  const auto* switched = dynamic_cast<const LoadOfForms*>(node.load.get());
+  return switched == nullptr ? nullptr : dynamic_cast<const FieldLoad*>(switched->acting(node.discrete(y)));
+}
+
+Vector3 field_acceleration(const Model& model, double t, std::span<const double> y,
+                           const FrameMotion& motion) noexcept {
   Vector3 sum = Vector3::Zero();
   for (const LoadNode& node : model.loads())
-    if (const auto* field = dynamic_cast<const FieldLoad*>(node.load.get())) sum += field->acceleration(t, motion);
+    if (const FieldLoad* field = acting_field(node, y)) sum += field->acceleration(t, motion);
+  return sum;
+}
+
+Wrench field_wrench(const Model& model, double t, std::span<const double> y, const MassPoint& point,
+                    const FrameMotion& motion) noexcept {
+  Wrench sum;
+  for (const LoadNode& node : model.loads()) {
+    const FieldLoad* field = acting_field(node, y);
+    if (field == nullptr) continue;
+    const Wrench own = field->wrench(t, point, motion);
+    sum.moment += own.moment;
+    sum.force += own.force;
+  }
   return sum;
 }
 

@@ -23,6 +23,11 @@ std::vector<MassPoint> mass_points(const Body& body);
 /// Of a rod: the share of each of its mass points that lies beyond x [m]. Empty where the body is no rod.
 std::vector<double> mass_beyond(const Body& body, double x);
 
+/// The mass of a part of a body that is no rod: as mass_points has that of the whole, of a body without modes as one
+/// point, its centre.
+std::vector<MassPoint> mass_points(const std::vector<Particle>& particles, const std::vector<Section>& sections,
+                                   Eigen::Index modes);
+
 /// A load on distributed mass: its wrench at a mass point depends on the motion of that point alone. The mass points of
 /// all bodies are frames to it, and to whatever asks where it acts: those of body b are {b, −1}, {b, −2}, …
 class FieldLoad : public BoundLoad {
@@ -50,6 +55,11 @@ class FieldLoad : public BoundLoad {
   std::size_t scratch() const override { return 0; }
   void add(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
            std::span<double> /*efforts*/, std::span<double> /*scratch*/) const noexcept override {}
+  bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
+                       Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
+                       Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
+    return true;
+  }
   void begin(State& /*state*/) const override {}
 
  private:
@@ -62,9 +72,17 @@ class FieldLoad : public BoundLoad {
 
 /// The first load on distributed mass that a model has; null where it has none.
 const FieldLoad* field_of(const Model& model);
+/// Whether a load acts on distributed mass at some state.
+bool acts_on_mass(const LoadNode& node);
+/// The load on distributed mass that a load is at y, as State::y; null where it is none then.
+const FieldLoad* acting_field(const LoadNode& node, std::span<const double> y) noexcept;
 
-/// What all of these loads of a model give mass that moves so, at time t [s]: an acceleration [m/s²], world axes.
-Vector3 field_acceleration(const Model& model, double t, const FrameMotion& motion) noexcept;
+/// What all of these loads of a model give mass that moves so, at (t, y) as of State: an acceleration [m/s²], world
+/// axes.
+Vector3 field_acceleration(const Model& model, double t, std::span<const double> y, const FrameMotion& motion) noexcept;
+/// What they exert there on a mass point that moves so.
+Wrench field_wrench(const Model& model, double t, std::span<const double> y, const MassPoint& point,
+                    const FrameMotion& motion) noexcept;
 
 /// Where a frame or, under a load on distributed mass, a mass point is fixed: at `pose` in a section of its body.
 struct FramePlace {

@@ -7,6 +7,15 @@
 
 namespace withy::equations {
 
+namespace {
+
+/// BodyPlan::frame has indices of frames below their count as they are, those of mass points among them.
+FrameIndex at_point(const sensed::CutPlan& cut, std::size_t k) {
+  return {static_cast<int>(cut.body), static_cast<int>(cut.first_point + k)};
+}
+
+}  // namespace
+
 using sensed::First;
 using sensed::Mode;
 using sensed::Second;
@@ -32,6 +41,8 @@ SensedReactions::SensedReactions(const sensed::Plan& plan, const AppliedLoads& l
     plain_.emplace(plan);
   }
   if (!loops_of(plan.model).empty()) untruncated_.emplace(plan);
+  for (const sensed::CutPlan& cut : plan.cuts) on_parts_.resize(on_parts_.size() + cut.mass.size());
+  if (!on_parts_.empty()) shown_.emplace(plan);
 }
 
 void SensedReactions::observe(const State& state, std::span<const double> accelerations) noexcept {
@@ -39,6 +50,7 @@ void SensedReactions::observe(const State& state, std::span<const double> accele
   std::fill(sections_.begin(), sections_.end(), Wrench{});
   if (first_) find_inertia(*first_, state, accelerations);
   if (second_) find_inertia(*second_, state, accelerations);
+  if (shown_) find_on_parts(state);
   if (plain_) find_applied(*plain_, state);
   if (applied_first_) find_applied(*applied_first_, state);
   if (applied_second_) find_applied(*applied_second_, state);
@@ -89,6 +101,25 @@ void SensedReactions::find_applied(Part<S>& part, const State& state) noexcept {
   take_off(part, loads_.frames(), loads_.wrenches(state.time, state.y, work_.data()), true);
 }
 
+/// Frames are shown to loads without truncation, but that ruthless bodies are undeformed.
+void SensedReactions::find_on_parts(const State& state) noexcept {
+  const sensed::Kept kept{.ruthless = false, .speeds = true};
+  sensed::set_pass(shown_->pass, plan_, state.y, no_accelerations_, kept, [](double q, double q_dot, double) {
+    return Mode<double>{q, q_dot};
+  });
+  shown_->pass.outward();
+  auto wrench = on_parts_.begin();
+  for (const sensed::CutPlan& cut : plan_.cuts) {
+    const sensed::PoseOf<double>& WB = shown_->pass.bodies[cut.body].WB;
+    for (std::size_t k = 0; k < cut.mass.size(); ++k, ++wrench) {
+      const sensed::StepOf<double> at = shown_->pass.frame(cut.body, cut.first_point + k);
+      const Matrix3 R = WB.R * at.X.R;
+      const FrameMotion motion{R, WB.p + WB.R * at.X.p, R * at.V.w, R * at.V.v};
+      *wrench = field_wrench(plan_.model, state.time, state.y, cut.mass[k], motion);
+    }
+  }
+}
+
 void SensedReactions::add(const State& state, std::span<const FrameIndex> frames,
                           std::span<const Wrench> wrenches) noexcept {
   const sensed::Kept kept{.ruthless = true, .speeds = false};
@@ -116,10 +147,13 @@ void SensedReactions::take_off(Part<S>& part, std::span<const FrameIndex> frames
     reactions_[b].moment -= R * sensed::on_hinge(f.w);
     reactions_[b].force -= R * sensed::on_hinge(f.v);
   }
+  auto on_part = on_parts_.begin();
   for (std::size_t c = 0; c < plan_.cuts.size(); ++c) {
     const sensed::CutPlan& cut = plan_.cuts[c];
     sensed::TwistOf<S> own;
     if (weight) own = sensed::weight(part.pass, cut.body, plan_, cut);
+    for (std::size_t k = 0; weight && k < cut.mass.size(); ++k, ++on_part)
+      own += sensed::on_body(part.pass, plan_, at_point(cut, k), *on_part);
     for (std::size_t i = 0; i < wrenches.size(); ++i) {
       const FrameIndex& at = frames[i];
       if (static_cast<std::size_t>(at.body) != cut.body) continue;

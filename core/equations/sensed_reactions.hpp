@@ -44,6 +44,8 @@ class SensedReactions {
   template <class S>
   void take_off(Part<S>& part, std::span<const FrameIndex> frames, std::span<const Wrench> wrenches,
                 bool weight) noexcept;
+  /// What loads on distributed mass exert on the parts beyond cuts that have mass points of their own.
+  void find_on_parts(const State& state) noexcept;
   /// Of what hangs on the part beyond a cut, `own` being the part's own; about the section, in its axes.
   template <class S>
   [[nodiscard]] sensed::TwistOf<S> at_cut(const Part<S>& part, const sensed::CutPlan& cut,
@@ -54,7 +56,8 @@ class SensedReactions {
   Work work_;
   std::vector<Wrench> reactions_, sections_;
   std::vector<double> no_accelerations_;
-  std::optional<Part<double>> plain_, untruncated_;
+  std::vector<Wrench> on_parts_;  ///< cut after cut, world axes
+  std::optional<Part<double>> plain_, untruncated_, shown_;
   std::optional<Part<sensed::First>> first_, applied_first_;
   std::optional<Part<sensed::Second>> second_, applied_second_;
 };

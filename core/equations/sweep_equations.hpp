@@ -17,6 +17,7 @@
 #include "withy/core/equations/sensing.hpp"
 #include "withy/core/equations/work_slices.hpp"
 #include "withy/core/kinematics/observation.hpp"
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/forward_dynamics.hpp"
 #include "withy/core/reference/reference.hpp"
 #include "withy/core/tangents/state_jacobian.hpp"
@@ -227,8 +228,11 @@ class SweepEquations final : public EquationsOfMotion,
     // The sweep leaves all efforts on driven speeds in the place of the loads'.
     double* on_driven = on_driven_.in(work).data();
     for (const Slot& slot : driven_) on_driven = std::copy_n(efforts.data() + slot.speed, slot.speeds, on_driven);
-    if (!model_->motions().empty())
-      model_->prescribe_accelerations(t, {y_dot.data() + layout().positions, layout().speeds});
+    if (!model_->motions().empty()) {
+      const std::span<double> u_dot(y_dot.data() + layout().positions, layout().speeds);
+      model_->prescribe_accelerations(t, u_dot);
+      hosted_.prescribe(t, y, u_dot);
+    }
     return efforts;
   }
   /// All that an evaluation gives beside accelerations: position rates and power of these speeds, the rates of the
@@ -320,6 +324,7 @@ class SweepEquations final : public EquationsOfMotion,
   ElasticPart elastic_;
   RateMap rates_;
   std::vector<std::string> savings_;
+  HostedMotions hosted_{*model_};
   std::vector<Slot> driven_;  ///< hinges that motions drive, in State's order
   Lazy<ReferenceDynamics> reference_;
   Lazy<StateJacobian> linearization_;

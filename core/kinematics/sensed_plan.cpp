@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/sweep/mass_table.hpp"
 #include "withy/core/tree/invariants.hpp"
 #include "withy/core/tree/rigid_inertia.hpp"
@@ -95,12 +94,14 @@ void Plan::add_cut(const SectionPlace& place) {
   const double close = 1e-9 * node.body->shape().length;
   const auto x_of = [&](std::size_t frame) { return body.sections[body.frames[frame].section].at.X.x(); };
   for (std::size_t f = 0; f < body.named; ++f) cut.frames.push_back(x_of(f) >= place.x - close ? 1 : 0);
-  if (body.frames.size() > body.named) {
-    const std::vector<double> shares = mass_beyond(*node.body, place.x);
+  if (const FieldLoad* field = field_of(model)) {
+    std::vector<double> shares = mass_beyond(*node.body, place.x);
     if (shares.empty()) {
-      throw std::invalid_argument("body '" + node.name +
-                                  "' cannot be cut under a load on distributed mass; need a beam with modes, clamped "
-                                  "at its root, without extension and shear");
+      // The points of the whole body are not those of its part: the part has its own.
+      shares.resize(field->points_of(place.body).size(), 0.0);
+      cut.mass = mass_points(beyond.particles, beyond.sections, body.modes);
+      cut.first_point = body.frames.size();
+      for (const MassPoint& point : cut.mass) body.frames.push_back(placed_at(body, point.at, Pose{}));
     }
     cut.frames.insert(cut.frames.end(), shares.begin(), shares.end());
   }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/sensor.hpp"
 #include "withy/core/sweep/rod/rod_terms.hpp"
@@ -53,7 +54,7 @@ struct BodyPlan {
   StrainOrder order = StrainOrder::quadratic;
   Truncation truncation = Truncation::none;
   std::vector<SectionFields> sections;
-  std::vector<SectionFrame> frames;  ///< of the body, in its order, then its mass points under loads on mass
+  std::vector<SectionFrame> frames;  ///< of the body, in its order, then its mass points and cuts' under loads on mass
   std::size_t named = 0;             ///< those that are not mass points
   SectionFrame F;      ///< of the inboard hinge, on the parent; at `F.pose` in the world where there is none
   std::size_t M = 0;   ///< of the inboard hinge, on this body: index in `frames`
@@ -78,9 +79,13 @@ struct CutPlan {
   std::vector<double> rod_share;    ///< of a rod: the share of each node's mass
   std::vector<std::size_t> hinges;  ///< that hang on the part
   std::vector<double> frames;       ///< of the body: the share that the part has of what acts there
-  bool inboard = false;             ///< the body's own hinge holds the part beyond
-  Matrix3X curvature;               ///< as BodyCut
-  Vector3 stiffness;                ///< as BodyCut
+  /// Where loads on distributed mass act on the part, of a body that is no rod: their frames are the body's from
+  /// `first_point` on.
+  std::vector<MassPoint> mass;
+  std::size_t first_point = 0;
+  bool inboard = false;  ///< the body's own hinge holds the part beyond
+  Matrix3X curvature;    ///< as BodyCut
+  Vector3 stiffness;     ///< as BodyCut
 };
 
 /// One a body of the model, in its order.

@@ -197,7 +197,7 @@ class SwitchedInput final : public InputPort {
   const InputPort& port_;
 };
 
-class BoundSwitchedLoad final : public BoundLoad, public LoadNumbers {
+class BoundSwitchedLoad final : public BoundLoad, public LoadNumbers, public LoadOfForms {
  public:
   explicit BoundSwitchedLoad(Forms forms)
       : forms_(std::move(forms)), discrete_(forms_), continuous_(forms_, discrete_) {
@@ -245,6 +245,10 @@ class BoundSwitchedLoad final : public BoundLoad, public LoadNumbers {
       std::fill(values.begin(), values.end(), 0.0);
     }
   }
+  const BoundLoad& first() const noexcept override { return *forms_.front(); }
+  const BoundLoad* acting(std::span<const double> discrete) const noexcept override {
+    return discrete_.acting(discrete);
+  }
   double end() const override { return forms_.front()->end(); }
   void begin(State& state) const override { forms_.front()->begin(state); }
   std::unique_ptr<BoundLoad> rebound(const Model& model, const Terms& terms) const override {
@@ -290,8 +294,6 @@ std::unique_ptr<BoundLoad> SwitchedLoad::bind(const Model& model) const {
           "an event changes where the load acts, its sample or its states; need a change of its numbers alone");
     if (dynamic_cast<const ForeignLaw*>(forms.back().get()) != nullptr)
       throw std::invalid_argument("an event cannot switch or change a load whose law is not withy's own");
-    for (const FrameIndex& at : forms.back()->frames())
-      if (at.frame < 0) throw std::invalid_argument("an event cannot change a load on distributed mass");
   }
   return std::make_unique<BoundSwitchedLoad>(std::move(forms));
 }

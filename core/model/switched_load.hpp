@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "withy/core/plugin/load.hpp"
@@ -21,11 +22,20 @@ class SwitchedLoad final : public Load {
 
   /// Numbers of forms as they stand in the discrete states: the first form is the one of a state of zeros.
   static constexpr double as_stated = 0, off = -1;
-  /// Index in State::y of a load's form. \param node of a SwitchedLoad
+  /// Index in State::y of a load's form. \param slot of a SwitchedLoad
   [[nodiscard]] static std::size_t place_of_form(const LoadSlot& slot) { return slot.first + slot.count - 1; }
 
  private:
   std::vector<std::unique_ptr<Load>> forms_;
+};
+
+/// What a bound SwitchedLoad is too (dynamic_cast).
+class LoadOfForms {
+ public:
+  virtual ~LoadOfForms() = default;
+  [[nodiscard]] virtual const BoundLoad& first() const noexcept = 0;
+  /// The form that acts where the load's discrete states are these; null where it is off.
+  [[nodiscard]] virtual const BoundLoad* acting(std::span<const double> discrete) const noexcept = 0;
 };
 
 }  // namespace withy

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <stdexcept>
 
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/reference/first_order_energy.hpp"
 #include "withy/core/reference/reference_tree.hpp"
 
@@ -91,10 +92,11 @@ void add_elastic_forces(const Model& model, std::span<const double> y, Eigen::Ve
   }
 }
 
-std::vector<PrescribedRate> prescribed_at(const Model& model, double t) {
+std::vector<PrescribedRate> prescribed_at(const Model& model, double t, std::span<const double> y) {
   std::vector<PrescribedRate> prescribed;
   std::vector<double> u_dot(model.layout().speeds);
   model.prescribe_accelerations(t, u_dot);
+  HostedMotions(model).prescribe(t, y, u_dot);
   for (const MotionNode& node : model.motions()) {
     const Slot& slot = model.layout().hinges[static_cast<std::size_t>(node.hinge)];
     for (std::size_t i = 0; i < slot.speeds; ++i) prescribed.push_back({slot.speed + i, u_dot[slot.speed + i]});
@@ -161,7 +163,7 @@ DenseSystem ReferenceDynamics::system(double t, std::span<const double> y) const
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(s.mass.data(), n, n) = all.M;
   s.force.assign(all.f.data(), all.f.data() + n);
   s.applied.assign(all.applied.data(), all.applied.data() + n);
-  s.prescribed = prescribed_at(*model_, t);
+  s.prescribed = prescribed_at(*model_, t, y);
   std::vector<double> scratch(model_->load_scratch());
   for (const LoadNode& node : model_->loads())
     node.load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), s.applied, scratch);

@@ -10,13 +10,13 @@ namespace {
 Vector3 vector_of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 /// By the place of mass that moves with a body frame: of the field itself, and of its velocity.
-Matrix3 gradient_of(const Model& model, double t, const FrameMotion& at) {
+Matrix3 gradient_of(const Model& model, const State& state, const FrameMotion& at) {
   static const MassPoint unit{.mass = 1, .second = Matrix3::Zero(), .at = {}};
   Matrix3 gradient = Matrix3::Zero();
   for (const LoadNode& node : model.loads()) {
-    const auto* field = dynamic_cast<const FieldLoad*>(node.load.get());
+    const FieldLoad* field = acting_field(node, state.y);
     if (field == nullptr) continue;
-    const FieldLoad::Slope slope = field->slope(t, unit, at);
+    const FieldLoad::Slope slope = field->slope(state.time, unit, at);
     gradient += slope.block<3, 3>(3, 3) + slope.block<3, 3>(3, 9) * skew<double>(at.angular_velocity);
   }
   return gradient;
@@ -39,7 +39,7 @@ Vector3 force_on(const Model& model, std::size_t body, const State& state, const
     const Vector3 arm = frame.R * r;
     m.position += arm;
     m.velocity += frame.angular_velocity.cross(arm) + frame.R * r_rate;
-    force += point.mass * field_acceleration(model, state.time, m);
+    force += point.mass * field_acceleration(model, state.time, state.y, m);
   }
   return force;
 }
@@ -56,8 +56,8 @@ std::vector<BodyMotion> felt_motions(const Model& model, const EquationsOfMotion
   for (std::size_t b = felt.size(); b-- > 0;) {
     BodyMotion& B = felt[b];
     const FrameMotion frame{B.R, B.p, B.rate, vector_of(seen->frame_velocity(static_cast<int>(b), 0).linear)};
-    B.acceleration -= field_acceleration(model, state.time, frame);
-    B.gradient = gradient_of(model, state.time, frame);
+    B.acceleration -= field_acceleration(model, state.time, state.y, frame);
+    B.gradient = gradient_of(model, state, frame);
     forces[b] += force_on(model, b, state, frame);
     B.force -= forces[b];
     if (const int parent = model.hinges()[b].parent; parent >= 0) forces[static_cast<std::size_t>(parent)] += forces[b];

@@ -44,6 +44,7 @@ class Clocks {
   /// As those of Renewal.
   [[nodiscard]] std::string failure(const State& state) const { return renewal_.failure(state); }
   [[nodiscard]] std::string refusal(const State& state) const { return renewal_.refusal(state); }
+  void forget() const { renewal_.forget(); }
 
  private:
   struct Clock {

@@ -30,7 +30,6 @@ Renewal::Renewal(const Model& model, const EquationsOfMotion& equations) : model
   for (const LoadSlot& slot : model.layout().discrete_slots) {
     const BoundLoad& load = *model.loads()[slot.load].load;
     scratch = std::max(scratch, load.scratch());
-    if (const auto* law = dynamic_cast<const ForeignLaw*>(&load)) foreign_.push_back({slot, law});
     Measured m{.part = dynamic_cast<const SampledPart*>(load.discrete()), .sources = {}};
     for (const std::string& name : m.part == nullptr ? std::vector<std::string>{} : m.part->measures()) {
       const SignalSource source = find_signal(model, name);
@@ -45,6 +44,9 @@ Renewal::Renewal(const Model& model, const EquationsOfMotion& equations) : model
     most = std::max(most, m.sources.size());
     measured_.push_back(std::move(m));
   }
+  for (std::size_t i = 0; i < model.loads().size(); ++i)
+    if (const auto* law = dynamic_cast<const ForeignLaw*>(model.loads()[i].load.get()))
+      foreign_.push_back({{i, model.loads()[i].slot.first, model.loads()[i].slot.count}, law});
   scratch_.resize(scratch);
   values_.resize(most);
   if (outputs) {
@@ -101,6 +103,10 @@ std::string Renewal::said(const State& state, std::string (ForeignLaw::*what)(st
 std::string Renewal::failure(const State& state) const { return said(state, &ForeignLaw::failure); }
 
 std::string Renewal::refusal(const State& state) const { return said(state, &ForeignLaw::refusal); }
+
+void Renewal::forget() const {
+  for (const Foreign& f : foreign_) f.law->forget();
+}
 
 void Renewal::operator()(State& state, const LoadSlot& slot, const Crossing& crossing) {
   const Layout& layout = model_.layout();

@@ -32,6 +32,8 @@ class Renewal {
   [[nodiscard]] std::string failure(const State& state) const;
   /// Why no simulation can go on from this state, which was saved; empty: it can.
   [[nodiscard]] std::string refusal(const State& state) const;
+  /// A simulation goes on from a saved state: the failures of before are no longer its own.
+  void forget() const;
 
  private:
   /// What a load measures.

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/simulation/instants.hpp"
 
 namespace withy {
@@ -29,7 +30,10 @@ Session::Session(const Model& model, const EquationsOfMotion& equations, const I
       loops_(equations, loop_.state()),
       with_inputs_(loop_.state()) {
   for (std::size_t l = 0; l < model.loads().size(); ++l)
-    if (model.loads()[l].load->input() != nullptr) settings_.push_back({l});
+    if (model.loads()[l].load->input() != nullptr) {
+      const HostedMotion* motion = hosted_motion(*model.loads()[l].load);
+      settings_.push_back({.load = l, .rests = motion != nullptr && !motion->jumps()});
+    }
 }
 
 const Session::Setting& Session::setting(std::size_t load) const {
@@ -53,19 +57,31 @@ void Session::set_input(std::size_t load, double value) {
   s.value = value;
 }
 
+/// Copies the state for what is to be set in it; whether lines end at its time.
+bool Session::end_lines() {
+  const double now = state().time;
+  bool ended = false;
+  with_inputs_ = state();
+  for (const Setting& s : settings_) {
+    if (s.reached != now) continue;
+    ended = true;
+    const auto held = model_.loads()[s.load].discrete(std::span(with_inputs_.y));
+    if (s.rests && !s.waiting) port_of(model_, s.load).set(now, now, 0, held);
+  }
+  return ended;
+}
+
 /// Puts what is waiting into the state, for a step to t. Values that stay what they are change nothing.
 void Session::apply_settings(double t) {
   const double now = state().time;
-  bool changed = false;
-  with_inputs_ = state();
+  bool changed = end_lines();
   for (Setting& s : settings_) {
-    changed = changed || s.reached == now;  // a line ends here
     if (!s.waiting) continue;
     s.waiting = false;
     const InputPort& port = port_of(model_, s.load);
     const LoadNode& load = model_.loads()[s.load];
     const auto held = load.discrete(std::span(state().y));
-    if (port.is_set(held) && port.value(now, held) == s.value && port.value(t, held) == s.value) continue;
+    if (!s.rests && port.is_set(held) && port.value(now, held) == s.value && port.value(t, held) == s.value) continue;
     changed = true;
     port.set(now, t, s.value, load.discrete(std::span(with_inputs_.y)));
     if (port.interpolates()) s.reached = t;
@@ -89,7 +105,8 @@ SessionEnd Session::advance(double t, bool halt) {
       if (s.reached > state().time) next = std::min(next, s.reached);
     SessionEnd end = go(next);
     if (!end.reached || next == t) return end;
-    loop_.replace(with_inputs_ = state());
+    end_lines();
+    loop_.replace(with_inputs_);
   }
 }
 

@@ -67,6 +67,7 @@ class Session final : private SteppingObserver {
     bool waiting = false;  ///< `value` is not in the state yet
     double value = 0;
     double reached = -std::numeric_limits<double>::infinity();  ///< time at which its line ends, or ended [s]
+    bool rests = false;  ///< at its end the line is ended: a position or a rate, after which there is no acceleration
   };
   bool before_step(const Stepper& stepper) override;
   bool output(const State& state) override;
@@ -74,6 +75,7 @@ class Session final : private SteppingObserver {
   void passed(const EventTime& event) override;
   void acted(const State& before, const State& after) override;
   void apply_settings(double t);
+  bool end_lines();
   [[nodiscard]] SessionEnd go(double t);
   [[nodiscard]] SessionEnd bad_end(Stop stop);
   void remember(Memory& memory);

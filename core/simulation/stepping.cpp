@@ -159,7 +159,7 @@ bool Stepping::to(double limit, bool watching) {
     ended_.step = stepper_->step(limit);
     step_evaluations_ += stepper_->statistics().evaluations - made;
     check_arithmetic();
-    if (ended_.step.outcome != StepResult::Outcome::ok) return end(Cause::failed);
+    if (ended_.step.outcome != StepResult::Outcome::ok) return sound(state()) && end(Cause::failed);
     if (watching && !zeros_.empty()) {
       handled_ = zeros_.find(*stepper_, before_.time);
       const bool cut = std::any_of(handled_.begin(), handled_.end(), [&](const Zero& z) { return changes_the_run(z); });
@@ -167,7 +167,7 @@ bool Stepping::to(double limit, bool watching) {
       if (cut && next_instant() < limit) return true;  // an event has made another due
       if (cut) continue;
     }
-    if (!after_step()) return false;
+    if (!after_step() || !sound(state())) return false;
   }
   return true;
 }
@@ -261,6 +261,7 @@ bool Stepping::cut_at(double time, std::size_t noted) {
 
 void Stepping::resume(const State& state, std::span<const double> memory) {
   if (const std::string why = clocks_.refusal(state); !why.empty()) throw std::invalid_argument(why);
+  clocks_.forget();
   stepper_->resume(state, memory);
   clocks_.go_on_after(state.time);
 }

@@ -103,8 +103,8 @@ std::vector<AppliedWrench<Jet>> wrenches_of(const LoadNode& load, const Model& m
     return all;
   };
   Eigen::Matrix<Jet, 6, Eigen::Dynamic> all = wrenches_at(motions).cast<Jet>();
-  if (const auto* field = dynamic_cast<const FieldLoad*>(load.load.get())) {
-    add_slopes(*field, t, motions, frames, all);
+  if (acts_on_mass(load)) {
+    if (const FieldLoad* field = acting_field(load, y)) add_slopes(*field, t, motions, frames, all);
   } else {
     depends = add_differences(wrenches_at, motions, frames, all);
   }

@@ -5,13 +5,17 @@
 
 #include "withy/core/kinematics/signals.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/plugin/foreign_law.hpp"
 #include "withy/loads/control/bound_control.hpp"
 
 namespace withy {
 namespace {
 
+std::unique_ptr<BoundLoad> make_continuous(const Model& model, const Terms& terms, const ControlEnds& ends,
+                                           const std::shared_ptr<const ControlBlock>& block);
+
 /// In continuous time: the block's states are the load's.
-class ContinuousControl final : public BoundControl, public ContinuousPart {
+class ContinuousControl : public BoundControl, public ContinuousPart {
  public:
   ContinuousControl(const Model& model, const Terms& terms, ControlEnds ends, std::shared_ptr<const ControlBlock> block)
       : BoundControl(model, std::move(ends), std::move(block)),
@@ -26,7 +30,7 @@ class ContinuousControl final : public BoundControl, public ContinuousPart {
 
   std::unique_ptr<BoundLoad> rebound(const Model& model, const Terms& terms) const override {
     if (!signals_.of_frames() && !signals_.of_loads()) return nullptr;
-    return std::make_unique<ContinuousControl>(model, terms, ends(), shared_block());
+    return make_continuous(model, terms, ends(), shared_block());
   }
   const ContinuousPart* continuous() const override { return this; }
   std::vector<double> discontinuities() const override { return block().discontinuities(); }
@@ -133,13 +137,28 @@ class ContinuousControl final : public BoundControl, public ContinuousPart {
   bool follows_accelerations_ = false;  ///< what it commands does, at once
 };
 
+/// The same with a law that is not the engine's own. It has no discrete states to fail in.
+class ForeignContinuous final : public ContinuousControl, public ForeignLaw {
+ public:
+  using ContinuousControl::ContinuousControl;
+  std::string failure(std::span<const double> discrete) const override { return block().foreign()->failure(discrete); }
+  std::string refusal(std::span<const double> discrete) const override { return block().foreign()->refusal(discrete); }
+  void forget() const override { block().foreign()->forget(); }
+};
+
+std::unique_ptr<BoundLoad> make_continuous(const Model& model, const Terms& terms, const ControlEnds& ends,
+                                           const std::shared_ptr<const ControlBlock>& block) {
+  if (block->foreign() != nullptr) return std::make_unique<ForeignContinuous>(model, terms, ends, block);
+  return std::make_unique<ContinuousControl>(model, terms, ends, block);
+}
+
 class Control final : public Load {
  public:
   Control(ControlEnds ends, std::shared_ptr<const ControlBlock> block)
       : ends_(std::move(ends)), block_(std::move(block)) {}
   std::unique_ptr<BoundLoad> bind(const Model& model) const override {
     if (ends_.sample > 0) return make_sampled_control(model, ends_, block_);
-    return std::make_unique<ContinuousControl>(model, Terms{}, ends_, block_);
+    return make_continuous(model, Terms{}, ends_, block_);
   }
 
  private:

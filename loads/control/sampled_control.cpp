@@ -103,6 +103,7 @@ class ForeignControl final : public SampledControl, public ForeignLaw {
   std::string refusal(std::span<const double> discrete) const override {
     return block().foreign()->refusal(of_block(discrete));
   }
+  void forget() const override { block().foreign()->forget(); }
 };
 
 }  // namespace

@@ -14,13 +14,13 @@ namespace {
 namespace fs = std::filesystem;
 
 template <class Number>
-constexpr const char* type_of = nullptr;
+constexpr const char* vtk_type = nullptr;
 template <>
-constexpr const char* type_of<float> = "Float32";
+constexpr const char* vtk_type<float> = "Float32";
 template <>
-constexpr const char* type_of<std::int32_t> = "Int32";
+constexpr const char* vtk_type<std::int32_t> = "Int32";
 template <>
-constexpr const char* type_of<std::uint8_t> = "UInt8";
+constexpr const char* vtk_type<std::uint8_t> = "UInt8";
 
 /// An array in the text of a grid: its bytes behind their count.
 template <class Number>
@@ -29,7 +29,7 @@ std::string array_text(const char* attributes, const std::vector<Number>& number
   const std::uint64_t size = numbers.size() * sizeof(Number);
   std::memcpy(bytes.data(), &size, sizeof(size));
   if (size > 0) std::memcpy(bytes.data() + sizeof(size), numbers.data(), size);
-  return fmt::format("<DataArray type=\"{}\" {} format=\"binary\">{}</DataArray>\n", type_of<Number>, attributes,
+  return fmt::format("<DataArray type=\"{}\" {} format=\"binary\">{}</DataArray>\n", vtk_type<Number>, attributes,
                      base64(bytes));
 }
 

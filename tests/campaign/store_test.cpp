@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <random>
+#include <sstream>
 
 #include "withy/campaign/case_lanes.hpp"
 #include "withy/campaign/collect.hpp"
@@ -144,6 +146,42 @@ TEST(Sweeps, AreTheSameToTheLastByteWhateverTheJobsShardsAndOrder) {
     alone.seconds = kept.seconds = 0;
     EXPECT_EQ(encode(alone), encode(kept));
   }
+}
+
+/// What outputs have been over a run are columns of the table, found between rows: x = 0.3 cos ωt, two rows of each.
+TEST(Sweeps, KeepWhatOutputsHaveBeenOverARun) {
+  const PlanFolder folder;
+  folder.write("block.yaml", R"(format: withy/1
+time: {end: 3, output: 3}
+integrator: {name: dopri5, rtol: 1e-9, atol: 1e-11}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+outputs: {seen: {type: hinge, hinge: slide}}
+initial: {hinges: {slide: {position: [0.3]}}}
+loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 30}}
+)");
+  const auto planned = [&](const std::string& keep) {
+    folder.write("over.yaml",
+                 "format: withy-sweep/1\nscene: block.yaml\nvary: {loads.spring.stiffness: {grid: [18, 50]}}\n"
+                 "keep: {" +
+                     keep + "}\n");
+    return read_plan((folder / "over.yaml").string(), plugins());
+  };
+  const Plan plan = planned("final: [seen.rate.max, slide, seen.position.rms]");
+  EXPECT_TRUE(run(folder, plan, "over", {1, 1, 1, {}}).whole());
+  std::istringstream table(table_of(folder, "over"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_THAT(line, HasSubstr(",final.seen.rate.max[m/s],final.slide[m],final.seen.position.rms[m]"));
+  for (const double w : {3.0, 5.0}) {
+    std::getline(table, line);
+    const std::size_t rms = line.rfind(','), slide = line.rfind(',', rms - 1), rate = line.rfind(',', slide - 1);
+    EXPECT_NEAR(std::stod(line.substr(rate + 1)), 0.3 * w, 1e-8) << line;
+    EXPECT_NEAR(std::stod(line.substr(slide + 1)), 0.3 * std::cos(3 * w), 1e-7) << line;
+    EXPECT_NEAR(std::stod(line.substr(rms + 1)), 0.3 * std::sqrt(0.5 + std::sin(6 * w) / (12 * w)), 1e-8) << line;
+  }
+  EXPECT_THROW(planned("peak: [seen.rate.max]"), SceneError);
+  EXPECT_THROW(planned("final: [seen.rate.most]"), SceneError);
 }
 
 /// Cases of the driven arm: of two integrators with steps of their own, some of them too long, of two structures and of

@@ -31,7 +31,10 @@ Arguments with(Arguments arguments, const Arguments& more) {
 Finished ended_by(int signal, const Folder& folder, const Arguments& arguments) {
   Process process(folder, with({WITHY_PROGRAM}, arguments));
   const auto under_way = [&] {
-    if (signal == SIGKILL) return std::filesystem::exists(folder.path() / "out/checkpoint.previous.cbor");
+    // Both generations: the older one comes first, and where files are slow the newest is long in coming.
+    if (signal == SIGKILL)
+      return std::filesystem::exists(folder.path() / "out/checkpoint.previous.cbor") &&
+             std::filesystem::exists(folder.path() / "out/checkpoint.cbor");
     std::error_code none;
     const auto size = std::filesystem::file_size(folder.path() / "out/results.csv", none);
     return !none && size > 20'000;

@@ -5,12 +5,12 @@
 #include <memory>
 #include <sstream>
 
-#include "withy/apps/withy/allocations.hpp"
-#include "withy/apps/withy/colour.hpp"
+#include "withy/program/allocations.hpp"
+#include "withy/program/colour.hpp"
 #include "withy/results/svg_plot.hpp"
 #include "withy/results/text_table.hpp"
 
-namespace withy::app {
+namespace withy::program {
 namespace {
 
 TEST(Allocations, OfOperatorNewMallocAndEigenAreCounted) {
@@ -100,4 +100,4 @@ TEST(TextTable, AHeadOfTwoLinesStandsOnTwoLines) {
 }
 
 }  // namespace
-}  // namespace withy::app
+}  // namespace withy::program

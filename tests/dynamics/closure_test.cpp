@@ -109,9 +109,7 @@ void expect_roots_carried(const Case& c, const std::string& what) {
   const Model& model = *c.scene.model;
   std::vector<SectionPlace> roots;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    const Body& body = *model.bodies()[b].body;
-    const bool under_field = field_of(model) != nullptr && body.rod() == nullptr;
-    if (model.hinges()[b].child_frame == 0 && !under_field && body.cut(0)) roots.push_back({static_cast<int>(b), 0});
+    if (model.hinges()[b].child_frame == 0 && model.bodies()[b].body->cut(0)) roots.push_back({static_cast<int>(b), 0});
   }
   const auto sensed = c.equations->make_sensed_state(roots);
   ASSERT_TRUE(sensed->observe(c.state)) << what;

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "withy/host/simulation.hpp"
+#include "withy/study/input_error.hpp"
 #include "withy/tests/fmi/importer.hpp"
 
 namespace withy::test {
@@ -325,6 +326,55 @@ TEST(Agreement, ParametersStartValuesInputsAndToleranceActAsInTheScene) {
       EXPECT_EQ(instance.set(fmu.reference("command"), -1), fmi3OK);
       simulation.set_input("command", -1);
     }
+  }
+  for (const host::Port& output : simulation.outputs()) {
+    if (output.name == "work") continue;
+    EXPECT_EQ(instance.get(fmu.reference(output.name)), simulation.output(output.name)) << output.name;
+  }
+}
+
+/// A position of a hinge that the host sets is an input by the motion's name, the same to the last bit as in a hosted
+/// simulation, also where it is set before initialization ends. Model exchange cannot reach positions, and says so.
+TEST(Agreement, MotionsOfHostsAreInputsOfCoSimulation) {
+  const host::Scene scene = host::Scene::parse(library(), R"(format: withy/1
+time: {end: 1}
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}
+  boom: {type: beam, length: 1, mass_per_length: 0.5, bending_y: {stiffness: 30, modes: 2}}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub, child: boom}
+motions: {turn: {type: input, hinge: axle}}
+initial: {hinges: {axle: {position: [0.3]}}}
+)");
+  const auto out = [](const char* name) { return scratch() / name; };
+  const auto prepared = scene.prepare();
+  const auto packed = [&](bool model_exchange) {
+    const fmi::Export what{2, model_exchange, true, out("moved.fmu")};
+    static_cast<void>(fmi::export_fmu(*prepared, {}, library().registry(), what));
+  };
+  EXPECT_THROW(packed(true), study::InputError);
+  packed(false);
+  const Unpacked fmu = unpack(out("moved.fmu"), 2);
+  Instance2 instance(fmu, fmi2CoSimulation);
+  host::Simulation simulation(scene);
+  const std::uint32_t turn = fmu.reference("turn");
+  EXPECT_EQ(instance.fmi.SetupExperiment(instance.c, fmi2False, 0, 0, fmi2False, 0), fmi2OK);
+  EXPECT_EQ(instance.fmi.EnterInitializationMode(instance.c), fmi2OK);
+  EXPECT_EQ(instance.get(turn), 0.3);
+  for (int k = 1; k <= 20; ++k) {
+    const double t = 0.05 * k, q = 0.3 + 0.2 * (1 - std::cos(3 * t));
+    if (k < 15) {
+      EXPECT_EQ(instance.set(turn, q), fmi2OK) << instance.heard.last;
+      simulation.set_input("turn", q);
+    }
+    if (k == 1) {
+      EXPECT_EQ(instance.fmi.ExitInitializationMode(instance.c), fmi2OK) << instance.heard.last;
+    }
+    ASSERT_EQ(instance.fmi.DoStep(instance.c, 0.05 * (k - 1), t - 0.05 * (k - 1), fmi2True), fmi2OK)
+        << instance.heard.last;
+    simulation.step(t);
+    EXPECT_NEAR(simulation.output("axle"), k < 15 ? q : simulation.output("axle"), 1e-7);
   }
   for (const host::Port& output : simulation.outputs()) {
     if (output.name == "work") continue;

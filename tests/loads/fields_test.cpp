@@ -250,6 +250,48 @@ loads: {earth: {type: gravity-gradient, rate: 0.3, axes: orbit}}
   EXPECT_NEAR(f.bodies[f.boom].gradient(0, 0), 3 * 0.09, 1e-15);
 }
 
+/// A bead slides outward in axes that turn at 2, from 0.5 s on at 3, from 0.8 s on not at all: r as of cosh and sinh,
+/// then straight on. An accelerometer on it feels nothing along the slide, a reaction across it Coriolis' force; the
+/// energy that the field has given is its work.
+TEST(Fields, change_at_events) {
+  LoadedScene c(R"(format: withy/1
+time: {end: 1, output: 0.1}
+integrator: {name: dopri5, rtol: 1e-11, atol: 1e-13}
+bodies: {bead: {type: rigid, mass: 2}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: bead}}
+initial: {hinges: {slide: {position: [0.3]}}}
+loads: {axes: {type: rotating-frame, rate: 2}}
+outputs: {imu: {type: accelerometer, of: bead}, held: {type: reaction, hinge: slide}}
+events: {faster: {at: 0.5, do: {set: loads.axes.rate=3}}, off: {at: 0.8, do: {switch_off: axes}}}
+)");
+  const std::vector<State> states = c.run();
+  double r = 0.3, v = 0, from = 0, rate = 2;
+  SensorReader reader(c.scene.outputs, *c.equations);
+  std::vector<double> seen(reader.columns().size());
+  for (const State& s : states) {
+    if (from < 0.5 && s.time >= 0.5 - 1e-12) {
+      r = 0.3 * std::cosh(1.0), v = 0.6 * std::sinh(1.0), from = 0.5, rate = 3;
+    }
+    if (from < 0.8 && s.time >= 0.8 - 1e-12) {
+      const double r0 = r, v0 = v;
+      r = r0 * std::cosh(0.9) + v0 / 3 * std::sinh(0.9), v = 3 * r0 * std::sinh(0.9) + v0 * std::cosh(0.9);
+      from = 0.8, rate = 0;
+    }
+    const double t = s.time - from;
+    const double place = rate > 0 ? r * std::cosh(rate * t) + v / rate * std::sinh(rate * t) : r + v * t;
+    const double speed = rate > 0 ? rate * r * std::sinh(rate * t) + v * std::cosh(rate * t) : v;
+    EXPECT_NEAR(c.position(s, "slide"), place, 1e-9) << s.time;
+    EXPECT_NEAR(c.rate(s, "slide"), speed, 1e-9) << s.time;
+    EXPECT_NEAR(s.y.back(), speed * speed - 0, 1e-8) << "work is the kinetic energy of 2 kg at " << s.time;
+    if (std::abs(s.time - from) < 1e-12) continue;  // both sides of a jump
+    ASSERT_TRUE(reader.read(s, seen));
+    EXPECT_NEAR(seen[0], 0, 1e-9) << s.time;
+    EXPECT_NEAR(seen[1], 2 * rate * speed, 1e-8) << s.time;
+    EXPECT_NEAR(seen[4], 2 * 2 * rate * speed, 1e-8) << s.time;
+  }
+  EXPECT_LT(std::abs(c.summary.energy_drift), 1e-9);
+}
+
 TEST(Fields, refuse_what_has_no_meaning) {
   const std::string head =
       "format: withy/1\ntime: {end: 1}\nbodies: {a: {type: rigid, mass: 1}}\n"

@@ -54,6 +54,14 @@ def test_a_run_is_a_table_by_names(slew):
         result["shoulde"]
 
 
+def test_statistics_are_those_of_outputs_that_ask_for_them(slew):
+    assert slew.run().statistics == {}
+    watched = slew.copy().set("outputs", "{turn: {type: hinge, hinge: shoulder, statistics: true}}")
+    position = watched.run().statistics["turn.position"]
+    assert position["unit"] == "rad" and position["max"]["value"] == pytest.approx(math.radians(60), abs=0.01)
+    assert position["min"]["t"] < position["max"]["t"] and position["rms"] >= abs(position["mean"])
+
+
 def test_scenes_are_values(slew):
     fast = slew.copy().set("loads.slew.time_scale", 1.2).set("integrator.rtol", 1e-5)
     assert slew.run().t[-1] > fast.run(formulation="ruthless").t[-1]

@@ -1,6 +1,8 @@
 // What errors are measured by, and what a study makes of them.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "withy/study/accuracy.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/probe.hpp"
@@ -119,6 +121,54 @@ Yardstick yardstick_of(Evaluator& evaluator) {
                                               evaluator.registry(), evaluator.outputs(), goal, {});
   EXPECT_TRUE(found.reference) << found.trouble;
   return {*found.reference, Accuracy::parse("1%").limits(evaluator.outputs(), found.reference->scales)};
+}
+
+Prepared wave(double phase) {
+  return prepare(SceneValues::parse(R"(format: withy/1
+time: {end: 0.75, output: 0.001}
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+outputs: {wave: {type: expression, value: sin(6.283185307179586 * t - )" +
+                                        std::to_string(phase) + R"(), unit: N}}
+)",
+                                    "text"),
+                 plugins());
+}
+
+/// What a sine has been over three quarters of its period is a measure, as its value is. Errors of it are those at the
+/// end: between two sines, one behind the other, the extremes are as far apart as the waves are when the first has one,
+/// and the same in the end.
+TEST(Outputs, AreWhatSensorsHaveBeenOverARun) {
+  const Prepared scene = wave(0), late = wave(0.1);
+  const std::vector<std::string> names = {"wave.min", "wave.max", "wave.mean", "wave.rms", "wave.integral", "wave"};
+  const Outputs outputs(scene.model(), names, scene.scene.outputs);
+  ASSERT_EQ(outputs.list().size(), 6U);
+  EXPECT_EQ(outputs.list()[1].label, "wave.max");
+  EXPECT_EQ(outputs.list()[1].unit, "N");
+  EXPECT_EQ(outputs.list()[4].unit, "N s");
+  OutputReader reader(outputs, scene.model(), *scene.equations, scene.scene.outputs);
+  OutputReader behind(outputs, late.model(), *late.equations, late.scene.outputs);
+  State state = scene.scene.initial;
+  Distances apart = outputs.none(), ranges = outputs.none();
+  std::vector<double> first, read;
+  for (int k = 0; k <= 750; ++k) {
+    state.time = 1e-3 * k;
+    read = reader.read(state);
+    if (k == 0) first = read;
+    outputs.raise(read, behind.read(state), apart);
+    outputs.raise_ranges(read, first, ranges);
+  }
+  const double pi = 3.141592653589793;
+  const std::vector<double> expected = {-1, 1, 1 / (2 * pi * 0.75), std::sqrt(0.5), 1 / (2 * pi), -1};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(read[outputs.list()[i].at], expected[i], 1e-5) << names[i];
+    EXPECT_NEAR(ranges[i], i == 4 ? 0.75 : 1, 1e-9) << names[i];
+  }
+  EXPECT_NEAR(apart[0], 1 - std::cos(0.1), 1e-5);  // the late one has not been at its least yet
+  EXPECT_NEAR(apart[1], 0, 1e-5);                  // 0.1 and more apart while the first was there and the other not
+  EXPECT_NEAR(apart[5], 2 * std::sin(0.05), 1e-5);
+
+  EXPECT_THROW(Outputs(scene.model(), {"wave.most"}, scene.scene.outputs), InputError);
 }
 
 TEST(Probe, PassesOnlyWithTheReferencesOwnErrorOnTop) {

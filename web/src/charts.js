@@ -11,16 +11,21 @@ class Panel {
     this.owner = owner;
     this.group = group;
     this.log = false;
-    const lively = group.series.filter(s => !s.flat);
-    // What never changes is there to be switched on.
-    for (const s of group.series) s.on = (lively.length ? lively : group.series).slice(0, most_shown).includes(s);
     this.element = document.createElement('figure');
     this.element.innerHTML = `<figcaption><span class="name"></span><button class="log" aria-pressed="false" title="Logarithms of magnitudes (L)">log</button></figcaption><div class="chart"></div><div class="more"></div>`;
     this.element.querySelector('.name').textContent = `${group.title}${group.title.endsWith(group.unit) ? '' : `  [${group.unit}]`}`;
     this.button = this.element.querySelector('.log');
     this.button.onclick = () => this.toggle_log();
     this.element.addEventListener('pointerenter', () => { owner.under = this; });
+  }
+
+  // Numbers are read when the panel comes into sight.
+  make() {
+    const { series } = this.group, lively = series.filter(s => !s.flat);
+    // What never changes is there to be switched on.
+    for (const s of series) s.on = (lively.length ? lively : series).slice(0, most_shown).includes(s);
     this.chips();
+    this.draw();
   }
 
   // A button for each column that is not shown at first; the legend takes away the others.
@@ -79,6 +84,7 @@ class Panel {
     const colours = palette(dark), ink = dark ? '#c9d1d9' : '#24292f', faint = dark ? '#2d333b' : '#e3e7eb';
     const [least, most] = this.chart ? [this.chart.scales.x.min, this.chart.scales.x.max] : [];
     this.chart?.destroy();
+    this.chart = null;
     const axis = { stroke: ink, grid: { stroke: faint, width: 1 }, ticks: { stroke: faint }, font: '12px system-ui, sans-serif' };
     const limit = this.group.limit && !this.log ? this.group.limit : null;
     this.chart = new uPlot({
@@ -104,11 +110,13 @@ class Panel {
         })),
       ],
       hooks: {
-        draw: [u => this.mark(u, ink, limit)],
+        draw: [u => { this.mark(u, limit); this.at(); }],
         ready: [u => u.over.addEventListener('click', () => { if (!this.dragged(u)) this.owner.seek(u.posToVal(u.cursor.left, 'x')); })],
       },
     }, this.aligned(curves), holder);
-    this.tell();
+    this.hand = this.chart.over.appendChild(Object.assign(document.createElement('div'), { className: 'hand' }));
+    this.told = -1;
+    this.at();
     if (least != null && this.zoomed(least, most)) this.chart.setScale('x', { min: least, max: most });
   }
 
@@ -118,36 +126,43 @@ class Panel {
   }
   dragged(u) { return u.select.width > 3; }
 
-  // The time of the animation, and a limit.
-  mark(u, ink, limit) {
-    const { ctx, bbox } = u, ratio = uPlot.pxRatio;
-    const line = (x0, y0, x1, y1, color, dash) => {
-      ctx.strokeStyle = color;
-      ctx.setLineDash(dash.map(d => d * ratio));
-      ctx.lineWidth = ratio;
-      ctx.beginPath();
-      ctx.moveTo(x0, y0);
-      ctx.lineTo(x1, y1);
-      ctx.stroke();
-      ctx.setLineDash([]);
-    };
-    if (limit) {
-      const y = u.valToPos(limit, 'y', true);
-      if (y >= bbox.top && y <= bbox.top + bbox.height) line(bbox.left, y, bbox.left + bbox.width, y, '#d55e00', [6, 4]);
-    }
-    const x = u.valToPos(this.owner.time, 'x', true);
-    if (x >= bbox.left && x <= bbox.left + bbox.width) line(x, bbox.top, x, bbox.top + bbox.height, ink, [2, 3]);
+  mark(u, limit) {
+    if (!limit) return;
+    const { ctx, bbox } = u, ratio = uPlot.pxRatio, y = u.valToPos(limit, 'y', true);
+    if (y < bbox.top || y > bbox.top + bbox.height) return;
+    ctx.save();
+    ctx.strokeStyle = '#d55e00';
+    ctx.setLineDash([6 * ratio, 4 * ratio]);
+    ctx.lineWidth = ratio;
+    ctx.beginPath();
+    ctx.moveTo(bbox.left, y);
+    ctx.lineTo(bbox.left + bbox.width, y);
+    ctx.stroke();
+    ctx.restore();
+  }
+
+  // The time of the animation: a line that moves over the plot, which is not drawn again.
+  at() {
+    const { chart, hand, owner } = this;
+    if (!chart) return;
+    const x = chart.valToPos(owner.time, 'x');
+    hand.hidden = !(x >= 0 && x <= chart.bbox.width / uPlot.pxRatio);
+    hand.style.transform = `translateX(${x}px)`;
+    this.tell();
   }
 
   // The numbers at the time of the animation, where the pointer asks for no others.
   tell() {
     const t = this.chart.data[0];
+    if (this.chart.cursor.idx != null) this.told = -1;
     if (this.chart.cursor.idx != null || t.length === 0) return;
     let low = 0, high = t.length - 1;
     while (low < high) {
       const middle = (low + high + 1) >> 1;
       if (t[middle] <= this.owner.time) low = middle; else high = middle - 1;
     }
+    if (low === this.told) return;
+    this.told = low;
     this.chart.setLegend({ idx: low }, false);
   }
 
@@ -185,22 +200,19 @@ export class Charts {
     this.watch = new IntersectionObserver(entries => {
       for (const entry of entries) {
         const panel = this.panels.find(p => p.element === entry.target);
-        panel.seen = entry.isIntersecting || panel.seen;
-        if (entry.isIntersecting && !panel.chart) panel.draw();
+        panel.seen = entry.isIntersecting;
+        if (entry.isIntersecting && !panel.chart) panel.make();
+        else if (entry.isIntersecting) panel.at();
       }
     }, { rootMargin: '400px' });
     for (const panel of this.panels) this.watch.observe(panel.element);
     new ResizeObserver(() => this.panels.forEach(p => p.resize())).observe(element);
   }
   redraw() { for (const panel of this.panels) if (panel.chart) panel.draw(); }
-  all() { for (const panel of this.panels) if (!panel.chart) panel.draw(); }
+  all() { for (const panel of this.panels) if (!panel.chart) panel.make(); }
   at(time) {
     this.time = time;
-    for (const panel of this.panels) {
-      if (!panel.chart || panel.element.hidden) continue;
-      panel.chart.redraw(false, false);
-      panel.tell();
-    }
+    for (const panel of this.panels) if (panel.chart && panel.seen) panel.at();
   }
   filter(text) {
     const words = text.toLowerCase().split(/\s+/).filter(Boolean);

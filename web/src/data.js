@@ -7,19 +7,37 @@ function bytes(text) {
   return out.buffer;
 }
 
+// A member that is made when it is asked for first: of a long run most plots are never scrolled to.
+function lazy(object, name, make) {
+  Object.defineProperty(object, name, {
+    configurable: true,
+    enumerable: true,
+    get() {
+      const value = make();
+      Object.defineProperty(object, name, { value, enumerable: true });
+      return value;
+    },
+  });
+  return object;
+}
+
 // Puts arrays of numbers in the place of their indices.
 export function unpack(run) {
-  const doubles = index => new Float64Array(bytes(run.arrays[index]));
+  const { animation, arrays } = run;
+  const doubles = index => new Float64Array(bytes(arrays[index]));
   for (const column of run.table.columns) {
-    column.data = doubles(column.data);
-    if (column.samples != null) column.samples = doubles(column.samples);
+    const { data, samples } = column;
+    lazy(column, 'data', () => doubles(data));
+    if (samples != null) lazy(column, 'samples', () => doubles(samples));
   }
-  const { animation } = run;
   animation.times = doubles(animation.times);
-  animation.numbers = new Float32Array(bytes(run.arrays[animation.numbers]));
+  animation.numbers = new Float32Array(bytes(arrays[animation.numbers]));
   // Pages of earlier versions have none.
-  for (const arrow of animation.arrows ??= []) arrow.numbers = new Float32Array(bytes(run.arrays[arrow.numbers]));
-  for (const series of run.validity) series.data = doubles(series.data);
+  for (const arrow of animation.arrows ??= []) arrow.numbers = new Float32Array(bytes(arrays[arrow.numbers]));
+  for (const series of run.validity) {
+    const { data } = series;
+    lazy(series, 'data', () => doubles(data));
+  }
   run.time = run.table.columns[0].data;
   delete run.arrays;
   return run;
@@ -71,23 +89,22 @@ function attitude(w, x, y, z) {
   return [unwrapped(a), b, unwrapped(c)];
 }
 
-// Numbers of several columns at the same times.
+// Several columns by name, and whether each has numbers at the moments of the animation; null where one is missing.
 function together(run, names) {
   const columns = names.map(name => run.table.columns.find(c => c.name === name));
   if (columns.some(c => !c)) return null;
-  return columns[0].samples
-    ? { t: run.animation.times, values: columns.map(c => c.samples) }
-    : { t: run.time, values: columns.map(c => c.data) };
+  const sampled = 'samples' in columns[0];
+  return { t: sampled ? run.animation.times : run.time, values: () => columns.map(c => sampled ? c.samples : c.data) };
 }
 
-// The quantities of a run: {group, name, unit, t, y, limit?}, groups in the order of the page.
+// The quantities of a run: {group, name, unit, t, y, limit?}, groups in the order of the page; y is made when asked for.
 export function quantities(run) {
   const out = [];
-  const add = (group, name, unit, t, y, more = {}) => out.push({ group, name, unit, t, y, ...more });
+  const add = (group, name, unit, t, y, more = {}) => out.push(lazy({ group, name, unit, t, ...more }, 'y', y));
   // Angles that say again what a quaternion beside them says.
   const told = new Set(run.table.columns.filter(c => c.name.endsWith('.qw')).flatMap(c => ['rx', 'ry', 'rz'].map(r => c.name.replace(/qw$/, r))));
   for (const column of run.table.columns.slice(1)) {
-    const { name, unit, data } = column;
+    const { name, unit } = column, data = () => column.data;
     const last = name.slice(name.lastIndexOf('.') + 1);
     const quaternion = /^(.*)\.q([wxyz])$/.exec(name);
     if (quaternion) {
@@ -95,7 +112,8 @@ export function quantities(run) {
       const base = quaternion[1];
       const parts = together(run, ['qw', 'qx', 'qy', 'qz'].map(q => `${base}.${q}`));
       if (!parts) continue;
-      attitude(...parts.values).forEach((y, i) => add(`Attitude of ${base}: turns about x, y, z in this order`, `${base}.${'xyz'[i]}`, 'deg', parts.t, y));
+      const angles = lazy({}, 'all', () => attitude(...parts.values()));
+      for (const i of [0, 1, 2]) add(`Attitude of ${base}: turns about x, y, z in this order`, `${base}.${'xyz'[i]}`, 'deg', parts.t, () => angles.all[i]);
     } else if (name.endsWith('_energy') || name === 'work') add('Energies', name, unit, run.time, data);
     else if (/^(linear|angular)_momentum\./.test(name)) add(name.startsWith('linear') ? 'Linear momentum' : 'Angular momentum', name, unit, run.time, data);
     else if (/\.tip\.deflection_[xyz]$/.test(name)) add('Deflection of tips', name, unit, run.time, data);
@@ -103,20 +121,21 @@ export function quantities(run) {
     else if (/\.motion_effort(\.\d+)?$/.test(name)) add(`Effort of motions, ${unit}`, name, unit, run.time, data);
     else if (/\.rate(\.\d+)?$/.test(name)) add(unit === 'rad/s' ? 'Rates of hinges' : unit === 'm/s' ? 'Speeds of hinges' : 'Rates of modal coordinates', name, unit && unit !== '1' ? unit : '1/s', run.time, data);
     else if (unit === 'rad' && told.has(name)) continue;
-    else if (unit === 'rad' && data.some(v => Math.abs(v) > 20 * Math.PI)) add('Turns', name, 'turns', run.time, data.map(v => v / 2 / Math.PI));
-    else if (unit === 'rad') add('Angles', name, 'deg', run.time, data.map(v => v * degrees));
+    else if (unit === 'rad' && column.data.some(v => Math.abs(v) > 20 * Math.PI)) add('Turns', name, 'turns', run.time, () => column.data.map(v => v / 2 / Math.PI));
+    else if (unit === 'rad') add('Angles', name, 'deg', run.time, () => column.data.map(v => v * degrees));
     else if (unit === '' || unit === '1') add('Modal coordinates', name, '1', run.time, data);
     else if (name.includes('.')) add(`${name.slice(0, -last.length - 1)}, ${unit}`, name, unit, run.time, data);
     else add(unit === 'm' ? 'Travel of hinges' : `${name}, ${unit}`, name, unit, run.time, data);
   }
   const energy = together(run, ['kinetic_energy', 'potential_energy', 'work']);
   if (energy) {
-    const [T, V, W] = energy.values;
-    const drift = T.map((v, i) => v + V[i] - W[i] - (T[0] + V[0] - W[0]));
-    add('Drift of energy: kinetic + potential − work, less its first value', 'drift', 'J', energy.t, drift);
+    add('Drift of energy: kinetic + potential − work, less its first value', 'drift', 'J', energy.t, () => {
+      const [T, V, W] = energy.values();
+      return T.map((v, i) => v + V[i] - W[i] - (T[0] + V[0] - W[0]));
+    });
   }
   for (const series of run.validity)
-    add('Validity: each over its limit, which is 1', series.name, '1', run.animation.times, series.data.map(v => v / series.limit), { limit: 1 });
+    add('Validity: each over its limit, which is 1', series.name, '1', run.animation.times, () => series.data.map(v => v / series.limit), { limit: 1 });
   return out;
 }
 
@@ -137,14 +156,13 @@ export function grouped(runs) {
       groups.set(q.group, group);
       const series = group.series.get(q.name) ?? { name: q.name, of: [] };
       group.series.set(q.name, series);
-      series.of.push({ run, t: q.t, y: q.y });
+      series.of.push(lazy({ run, t: q.t }, 'y', () => q.y));
     }
   }
   const all = [...groups.values()];
   for (const group of all) {
     group.series = [...group.series.values()];
-    const flat = s => s.of.every(({ y }) => y.every(v => v === y[0]));
-    for (const s of group.series) s.flat = flat(s);
+    for (const s of group.series) lazy(s, 'flat', () => s.of.every(({ y }) => y.every(v => v === y[0])));
   }
   return all.sort((a, b) => rank(a.title) - rank(b.title));
 }

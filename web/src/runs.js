@@ -44,6 +44,7 @@ export function show_runs(page) {
   }
 
   function pause() {
+    if (playing) view?.rest();
     playing = false;
     $('play').textContent = '▶';
     $('play').setAttribute('aria-label', 'Play');
@@ -59,6 +60,7 @@ export function show_runs(page) {
   function advance(now) {
     if (!playing) return;
     const next = time + (now - before) / 1000 * Number($('speed').value);
+    view?.frame(now - before);
     before = now;
     if (next >= end) { seek(end); pause(); return; }
     seek(next);

@@ -1,7 +1,7 @@
 // The bodies of a run as meshes, brought to where they are at a time.
 import {
   BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, DoubleSide, Group, InstancedMesh, Line, LineBasicMaterial,
-  LineDashedMaterial, LineSegments, Matrix4, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
+  LineDashedMaterial, LineSegments, Matrix4, Mesh, MeshLambertMaterial, Quaternion, SphereGeometry, Vector3,
 } from 'three';
 import { ConvexHull } from 'three/examples/jsm/math/ConvexHull.js';
 
@@ -48,7 +48,8 @@ export class Shapes {
     this.motion = motion;
     this.size = size;
     this.group = new Group();
-    const solid = (color, more = {}) => new MeshStandardMaterial({ color, roughness: 0.55, metalness: 0.05, transparent: faint, opacity: faint ? 0.55 : 1, ...more });
+    // Lambert's law is half the work of a physical material where no graphics hardware does it.
+    const solid = (color, more = {}) => new MeshLambertMaterial({ color, transparent: faint, opacity: faint ? 0.55 : 1, ...more });
     this.flexible = solid(colours.flexible, { side: DoubleSide });
     this.rigid = solid(colours.rigid, { transparent: true, opacity: faint ? 0.45 : 0.8 });
     this.joint = solid(colours.joint);
@@ -72,7 +73,9 @@ export class Shapes {
   make(body) {
     const item = { body, group: new Group() };
     if (body.kind === 'line') {
-      item.tube = new Mesh(geometry_of(body.count * around + 2, grid(body.count, around, true)), this.flexible);
+      const count = body.count * around;
+      item.tube = new Mesh(geometry_of(count, grid(body.count, around, true)), this.flexible);
+      item.tube.geometry.setAttribute('normal', new BufferAttribute(new Float32Array(3 * count), 3));
       item.tube.frustumCulled = false;
       this.group.add(item.tube);
     } else if (body.kind === 'strip') {
@@ -179,7 +182,7 @@ export class Shapes {
 
   // A tube around the deformed middle line.
   bend({ body, tube }, scale) {
-    const position = tube.geometry.attributes.position, n = body.count;
+    const { position, normal: outward } = tube.geometry.attributes, n = body.count;
     const radius = this.radius;
     side.set(0, 0, 1).applyQuaternion(body.pose.q);
     for (let k = 0; k < n; ++k) {
@@ -191,11 +194,12 @@ export class Shapes {
       normal.crossVectors(side, b);
       for (let j = 0; j < around; ++j) {
         const angle = 2 * Math.PI * j / around, u = radius * Math.cos(angle), v = radius * Math.sin(angle);
-        position.setXYZ(k * around + j, c.x + u * side.x + v * normal.x, c.y + u * side.y + v * normal.y, c.z + u * side.z + v * normal.z);
+        const x = u * side.x + v * normal.x, y = u * side.y + v * normal.y, z = u * side.z + v * normal.z;
+        position.setXYZ(k * around + j, c.x + x, c.y + y, c.z + z);
+        outward.setXYZ(k * around + j, x / radius, y / radius, z / radius);
       }
     }
-    position.needsUpdate = true;
-    tube.geometry.computeVertexNormals();
+    position.needsUpdate = outward.needsUpdate = true;
   }
 
   warp(surface, body, scale) {

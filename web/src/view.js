@@ -6,6 +6,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { Arrows } from './arrows.js';
 import { palette } from './data.js';
 import { Motion } from './motion.js';
+import { Pace } from './pace.js';
 import { Shapes } from './shapes.js';
 
 // 1, 2 or 5 times a power of ten, at most x.
@@ -21,8 +22,15 @@ export class View {
     this.motions = runs.map(run => new Motion(run.animation));
     this.show = { trails: true, ghosts: true, axes: false, follow: false, sensors: true };
     this.scale = 1;
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    // Without alpha, which three.js would ask for, the browser need not mix the picture with the page behind it.
+    const canvas = document.createElement('canvas'), wanted = { alpha: false, antialias: true, preserveDrawingBuffer: true };
+    const context = canvas.getContext('webgl2', wanted);
+    if (!context) throw new Error('no WebGL 2');
+    this.renderer = new WebGLRenderer({ canvas, context, ...wanted });
+    // To ask for the errors of shaders is to wait for them; they are three.js's own, tested where this page is.
+    this.renderer.debug.checkShaderErrors = false;
+    this.pace = new Pace(Math.min(2, window.devicePixelRatio));
+    this.renderer.setPixelRatio(this.pace.finest);
     element.append(this.renderer.domElement);
     this.camera = new PerspectiveCamera(35, 1, 0.01, 1000);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
@@ -212,6 +220,20 @@ export class View {
     this.camera.aspect = w / h;
     this.camera.updateProjectionMatrix();
     if (!this.turned) this.look('home'); else this.draw();
+  }
+
+  // While the motion plays, pixels are as fine as the machine draws them in time; a picture that stands has all of them.
+  frame(milliseconds) {
+    if (this.pace.frame(milliseconds)) this.refine();
+  }
+  rest() {
+    this.pace.rest();
+    this.refine();
+    if (this.width) this.draw();
+  }
+  refine() {
+    this.renderer.setPixelRatio(this.pace.ratio); // the size that it is shown at stays
+    this.element.dataset.pixels = this.pace.ratio;
   }
 
   draw() {

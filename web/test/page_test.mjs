@@ -5,6 +5,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
+import { Pace } from '../src/pace.js';
 import { in_browser, opened, text } from './browser.mjs';
 import { check_gltf } from './gltf.mjs';
 
@@ -118,6 +119,51 @@ async function check_controls(browser, troubles) {
   await page.close();
 }
 
+// Where frames come late a moving picture has fewer pixels as far as fewer help; one that stands has all of them.
+function check_pace() {
+  const settled = (time_of, pace = new Pace(2)) => {
+    for (let i = 0; i < 400; ++i) pace.frame(time_of(pace.ratio));
+    return pace;
+  };
+  const pixels = settled(ratio => 5 + 8 * ratio ** 2);
+  assert.ok(pixels.ratio < 2 && 5 + 8 * pixels.ratio ** 2 < 1000 / 45, `${pixels.ratio}`);
+  assert.equal(settled(() => 16, settled(() => 16, pixels)).ratio, 2, 'all of them again when the machine is free');
+  assert.equal(settled(() => 16.7).ratio, 2);
+  const elsewhere = new Pace(2), ratios = [];
+  for (let i = 0; i < 400; ++i) { elsewhere.frame(40); ratios.push(elsewhere.ratio); }
+  assert.ok(ratios.filter(r => r === 2).length > 300 && Math.min(...ratios) === 1.5, 'fewer that do not help are given up');
+  pixels.frame(60);
+  pixels.rest();
+  assert.equal(pixels.ratio, 2);
+}
+
+// The same of the page, with a clock on which a frame takes as long as its pixels do: no time of this machine counts.
+async function check_adapts(browser, troubles) {
+  const page = await browser.newPage({ viewport: { width: 640, height: 480 } });
+  page.on('pageerror', e => troubles.push(`error: ${e.stack}`));
+  await page.addInitScript(() => {
+    let clock = 0;
+    performance.now = () => clock;
+    window.requestAnimationFrame = act => setTimeout(() => {
+      const canvas = document.querySelector('#view canvas');
+      clock += canvas ? 40 * (canvas.width / canvas.clientWidth) ** 2 : 16;
+      act(clock);
+    });
+  });
+  await page.goto(`file://${join(folder, 'craft/report.html')}#t=0`);
+  await page.waitForSelector('body[data-ready]');
+  const fineness = () => page.$eval('#view canvas', c => c.width / c.clientWidth);
+  assert.ok(Math.abs(await fineness() - 1) < 0.01);
+  await page.focus('#view');
+  await page.selectOption('#speed', '0.01');
+  await page.keyboard.press('Space');
+  await page.waitForFunction(() => document.querySelector('#view').dataset.pixels === '0.55');
+  assert.ok(Math.abs(await fineness() - 0.55) < 0.01, `${await fineness()}`);
+  await page.keyboard.press('Space');
+  assert.ok(Math.abs(await fineness() - 1) < 0.01, 'the picture that stands is sharp');
+  await page.close();
+}
+
 // Every column is on the page: attitudes as angles.
 async function check_columns(browser, troubles) {
   const page = await opened(browser, join(folder, 'craft/report.html'), 't=2', troubles);
@@ -162,7 +208,9 @@ await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
     run('report', join(folder, name), '--out', motion);
     await check_gltf(motion, data_of(page));
   }
+  check_pace();
   const troubles = [];
+  await check_adapts(browser, troubles);
   await check_controls(browser, troubles);
   await check_columns(browser, troubles);
   await check_several(browser, troubles);

@@ -1,4 +1,4 @@
-"""Dynamics of trees of rigid and flexible bodies.
+"""Dynamics of trees of rigid and flexible bodies::
 
     import withy
     scene = withy.load("arm.yaml")
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _withy
 from ._errors import PluginError, SceneError, SimulationStopped, StoreError
+from ._foreign import python_body, python_load
 from ._parts import Parts, parts, shortcuts
 from ._result import Result, nearest, unknown
 from ._scene import Scene, load, loads
@@ -25,7 +26,7 @@ if TYPE_CHECKING:  # made from the plugins when the module is built
     from ._shortcuts import *  # noqa: F403
 
 __all__ = ["Equations", "Parts", "PluginError", "Result", "Scene", "SceneError", "Simulation", "SimulationStopped", "Snapshot",
-           "StoreError", "SweepResult", "load", "loads", "parts", "sweep"]
+           "StoreError", "SweepResult", "load", "loads", "parts", "python_body", "python_load", "sweep"]
 
 if not TYPE_CHECKING:
 

@@ -161,10 +161,13 @@ parts = Parts()
 
 
 def shortcuts() -> dict[str, Callable[..., dict[str, Any]]]:
-    """Those that are functions of the package: ids that one section of parts with names alone has."""
+    """Those that are functions of the package: ids that one section of parts with names alone has. What a load and a
+    motion share is the load's."""
     found: dict[str, list[Callable[..., dict[str, Any]]]] = {}
     for section in (parts.bodies, parts.hinges, parts.loads, parts.motions, parts.outputs):
         for name, make in section._all().items():
+            if section is parts.motions and name in parts.loads._all():
+                continue
             found.setdefault(name, []).append(make)
     return {name: makes[0] for name, makes in found.items() if len(makes) == 1}
 

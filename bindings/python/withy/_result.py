@@ -59,6 +59,12 @@ class Result(Mapping):
         """What was modelled, what was left out, and how large that was."""
         return self.summary["certificate"]
 
+    @property
+    def statistics(self) -> dict[str, Any]:
+        """Of each number of outputs with ``statistics: true``: ``min`` and ``max`` with their times, ``mean``, ``rms``,
+        ``integral`` and ``unit``; empty where the scene has none."""
+        return self.summary.get("outputs", {})
+
     def __getitem__(self, name: str) -> numpy.ndarray:
         """The numbers of a column [rows], a view of the table. KeyError with the nearest name where there is none."""
         if name not in self._index:

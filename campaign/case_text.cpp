@@ -1,0 +1,54 @@
+#include "withy/campaign/case_text.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "withy/campaign/derived.hpp"
+#include "withy/campaign/slurm.hpp"
+#include "withy/results/json_text.hpp"
+#include "withy/results/text_table.hpp"
+#include "withy/study/point.hpp"
+
+namespace withy::campaign {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The run of the case by itself, with all its results.
+std::string run_command_of(const Plan& plan, const SceneValues& scene, const std::vector<Value>& values) {
+  std::string text = "withy run " + scene.file();
+  const auto add = [&](const std::string& path, const Value& value) {
+    text += " --set " + quoted(study::Change{path, value}.text());
+  };
+  for (const auto& [path, value] : plan.set) add(path, value);
+  const std::vector<std::string> paths = varied_paths(plan);
+  for (std::size_t a = 0; a < values.size(); ++a)
+    if (values[a].kind() != Value::Kind::null) add(paths[a], values[a]);
+  return text;
+}
+
+}  // namespace
+
+Json case_json(const Plan& plan, const CaseResult& result) {
+  Json j = {{"case", result.index},
+            {"status", result.status},
+            {"message", result.message},
+            {"values", Json::object()},
+            {"results", Json::object()}};
+  const std::vector<std::string> paths = varied_paths(plan), columns = kept_columns(plan);
+  for (std::size_t a = 0; a < result.values.size(); ++a) j["values"][paths[a]] = value_json(result.values[a]);
+  for (std::size_t i = 0; i < result.numbers.size(); ++i) j["results"][columns[i]] = result.numbers[i];
+  j["command"] = run_command_of(plan, plan.base->values, result.values);
+  return j;
+}
+
+std::string case_text(const Json& j) {
+  TextTable table({"<", ""});
+  for (const char* part : {"values", "results"})
+    for (const auto& [name, value] : j.at(part).items()) table.add({name, plain_text(value)});
+  return fmt::format("case {}: {}\n\n{}\nThe same run with all its results:\n  {}\n", j.at("case").dump(),
+                     j.at("status").get<std::string>(), table.str(), j.at("command").get<std::string>());
+}
+
+}  // namespace withy::campaign

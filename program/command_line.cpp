@@ -1,0 +1,127 @@
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <sstream>
+
+#include "withy/program/command.hpp"
+#include "withy/program/output.hpp"
+#include "withy/scene/names.hpp"
+
+namespace withy::program {
+namespace {
+
+/// Adds a command with its options; what it returns is called once they are read.
+Call add(CLI::App& parser, const Command& command) {
+  CLI::App& own = *parser.add_subcommand(command.name, command.meaning);
+  own.footer(std::string("Examples:\n") + command.examples);
+  Options options(own);
+  return command.add(options);
+}
+
+/// Which option a word that the parser does not know may have been.
+std::string meant_option(const CLI::App& parser, const CLI::ExtrasError& e, int argc, const char* const* argv) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : parser.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    if (!word.starts_with("--") || std::string(e.what()).find(word) == std::string::npos) continue;
+    const std::string guess = nearest(word, known);
+    if (!guess.empty() && guess != word) return in_quotes(word) + " is no option; did you mean " + guess + "?";
+  }
+  return {};
+}
+
+/// Parses with this parser; what is not the command's to answer is printed, and its status returned.
+std::optional<ExitStatus> parse(CLI::App& parser, const Program& program, int argc, const char* const* argv) {
+  try {
+    parser.parse(argc, argv);
+    return {};
+  } catch (const CLI::ExtrasError& e) {
+    const std::vector<CLI::App*> chosen = parser.get_subcommands();
+    const std::string meant = meant_option(chosen.empty() ? parser : *chosen.back(), e, argc, argv);
+    complain(meant.empty() ? e.what() : meant);
+    complain(std::string(program.name) + ' ' + (chosen.empty() ? "" : chosen.back()->get_name() + " ") +
+             "--help names what there is");
+    return ExitStatus::bad_input;
+  } catch (const CLI::ParseError& e) {
+    std::ostringstream out;
+    std::ostringstream err;
+    const int code = parser.exit(e, out, err);
+    print(out.str());
+    complain(err.str());
+    return code == 0 ? ExitStatus::done : ExitStatus::bad_input;
+  }
+}
+
+/// One that names its commands, for its help, its version and what is wrong without a command.
+ExitStatus without_command(CLI::App& parser, const Program& program, int argc, const char* const* argv) {
+  parser.require_subcommand(1);
+  for (const Command* command : program.commands) parser.add_subcommand(command->name, command->meaning);
+  return parse(parser, program, argc, argv).value_or(ExitStatus::done);
+}
+
+ExitStatus unknown(const Program& program, const std::string& name) {
+  std::vector<std::string> names;
+  std::string all;
+  for (const Command* command : program.commands) {
+    names.emplace_back(command->name);
+    all += (all.empty() ? "" : ", ") + names.back();
+  }
+  const std::string guess = nearest(name, names);
+  complain(in_quotes(name) + " is no command" + (guess.empty() ? "" : "; did you mean '" + guess + "'?") +
+           "\nCommands: " + all + "; " + program.name + " --help says what they do");
+  return ExitStatus::bad_input;
+}
+
+OptionDescription description_of(const CLI::Option& option) {
+  OptionDescription d;
+  for (const std::string& name : option.get_lnames()) d.names.push_back("--" + name);
+  for (const std::string& name : option.get_snames()) d.names.push_back("-" + name);
+  if (option.get_positional()) d.argument = option.get_name(true);
+  d.meaning = option.get_description();
+  d.takes_value = option.get_items_expected_max() > 0;
+  const std::string type = option.get_type_name();  // "WHEN:{auto,always,never}"
+  d.value = type.substr(0, type.find(':'));
+  const std::size_t begin = type.find('{'), end = type.find('}');
+  if (begin == std::string::npos || end == std::string::npos) return d;
+  std::istringstream list(type.substr(begin + 1, end - begin - 1));
+  for (std::string word; std::getline(list, word, ',');) d.choices.push_back(word);
+  return d;
+}
+
+CommandDescription description_of(const CLI::App& parser) {
+  CommandDescription d{parser.get_name(), parser.get_description(), {}, {}, {}};
+  for (const CLI::Option* option : parser.get_options()) d.options.push_back(description_of(*option));
+  std::istringstream footer(parser.get_footer());
+  std::string line;
+  std::getline(footer, line);  // "Examples:"
+  while (std::getline(footer, line)) d.examples.push_back(line.substr(line.find_first_not_of(' ')));
+  for (const CLI::App* part : parser.get_subcommands({})) d.parts.push_back(description_of(*part));
+  return d;
+}
+
+}  // namespace
+
+std::variant<Call, ExitStatus> read_command_line(const Program& program, int argc, const char* const* argv) {
+  CLI::App parser(program.meaning, program.name);
+  parser.set_version_flag("--version", std::string(program.name) + ' ' + program.version);
+  parser.footer(std::string("Examples:\n") + program.examples);
+  const std::string name = argc > 1 ? argv[1] : "";
+  if (name.empty() || name.front() == '-') return without_command(parser, program, argc, argv);
+  for (const Command* command : program.commands) {
+    if (name != command->name) continue;
+    Call call = add(parser, *command);
+    if (const auto status = parse(parser, program, argc, argv)) return *status;
+    return call;
+  }
+  return unknown(program, name);
+}
+
+CommandDescription description_of(const Program& program) {
+  CLI::App parser(program.meaning, program.name);
+  parser.set_version_flag("--version", "");
+  for (const Command* command : program.commands) static_cast<void>(add(parser, *command));
+  return description_of(parser);
+}
+
+}  // namespace withy::program

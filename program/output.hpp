@@ -1,0 +1,18 @@
+/// \file
+/// What the program prints: every byte is known to have left it, or the program fails.
+#pragma once
+
+#include <string_view>
+
+namespace withy::program {
+
+/// Writes to standard output. \throws std::system_error
+void print(std::string_view text);
+/// Makes sure that what was printed has left the program. \throws std::system_error
+void finish_printing();
+/// Writes to standard error, ending the text's last line if it does not end itself.
+void complain(std::string_view text) noexcept;
+/// Whether anything was complained of.
+bool has_complained() noexcept;
+
+}  // namespace withy::program

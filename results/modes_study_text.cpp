@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "withy/results/modes_text.hpp"
+
+namespace withy {
+namespace {
+
+std::string run_of_modes_text(const study::ModesOf& run, const std::optional<study::AgainstNext>& against,
+                              const study::Sweep& sweep, std::size_t count, bool poles) {
+  std::string text;
+  if (!run.points.front().modes.empty() || !sweep.none())
+    text += '\n' + (sweep.none() ? modes_text(run, count) : sweep_text(run, sweep.path, count));
+  if (const std::string words =
+          study::against_next_text(against, fmt::format("the {} lowest frequencies", against ? against->compared : 0));
+      !words.empty())
+    text += '\n' + words + '\n';
+  // Of a sweep the first value at which the equations are periodic speaks for all.
+  const auto frozen = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return at.frozen(); });
+  const study::ModesAt& spoken_of = frozen != run.points.end() ? *frozen : run.points.back();
+  if (spoken_of.turn) {
+    if (const std::string words = study::turn_text(*spoken_of.turn); !words.empty()) text += '\n' + words + '\n';
+  }
+  if (poles && !run.points.front().modes.empty()) text += '\n' + poles_text(run.points.front());
+  for (const study::ModesAt& at : run.points) {
+    if (at.turn)
+      text += turning_text(*at.turn, sweep.none() ? "" : fmt::format("{} = {}", sweep.path, sweep.text(at.value)));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string modes_study_text(const std::string& scene, const study::Sweep& sweep, const study::ModesFound& found,
+                             std::size_t count, bool poles) {
+  std::string text;
+  for (std::size_t i = 0; i < found.runs.size(); ++i)
+    text += fmt::format("{}{} in {}\n", i == 0 ? "" : "\n", scene, found.runs[i].formulation) +
+            run_of_modes_text(found.runs[i], found.against[i], sweep, count, poles);
+  return text;
+}
+
+}  // namespace withy

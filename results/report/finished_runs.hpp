@@ -1,0 +1,20 @@
+/// \file
+/// Finished runs, by the pages that they left: taken together on one page, or as motion for other programs.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace withy {
+
+/// The runs on the page of a folder, or on the page itself: RunReport::text of each.
+/// \throws study::InputError where there is no such folder; ResultsError where it holds no page
+std::vector<std::string> runs_at(const std::filesystem::path& given);
+/// Their titles, each once.
+std::string title_of_runs(const std::vector<std::string>& runs);
+/// Writes the motion of runs where the name ends with .glb (glTF) or .pvd (a series for ParaView); false where it does
+/// not. \throws std::system_error
+bool write_motion(const std::filesystem::path& out, const std::vector<std::string>& runs);
+
+}  // namespace withy

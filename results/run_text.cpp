@@ -1,0 +1,126 @@
+#include "withy/results/run_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <span>
+
+#include "withy/core/model/columns.hpp"
+#include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/hinge_rates.hpp"
+#include "withy/study/run.hpp"
+
+namespace withy {
+namespace {
+
+std::string name_of_sign(int sign) { return sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"); }
+
+/// Of a quaternion w x y z: intrinsic turns about x, y, z, R = Rx(a) Ry(b) Rz(c).
+std::string attitude(std::span<const double> q) {
+  const double w = q[0], x = q[1], y = q[2], z = q[3], size = w * w + x * x + y * y + z * z;
+  const auto degrees = [](double angle) { return angle * 180 / std::numbers::pi + 0.0; };
+  return fmt::format("{:.4f}, {:.4f}, {:.4f} deg, turned about x, y, z in this order",
+                     degrees(std::atan2(2 * (w * x - y * z), w * w - x * x - y * y + z * z)),
+                     degrees(std::asin(std::clamp(2 * (x * z + w * y) / size, -1.0, 1.0))),
+                     degrees(std::atan2(2 * (w * z - x * y), w * w + x * x - y * y - z * z)));
+}
+
+}  // namespace
+
+std::string readable(double value, const std::string& unit) {
+  constexpr double many = 20 * std::numbers::pi;  // a wheel: its turns tell more than its degrees
+  const std::string turns = std::abs(value) > many ? fmt::format(", {:.5g} turns", value / (2 * std::numbers::pi)) : "";
+  if (unit == "rad") return fmt::format("{:.4f} deg{}", value * 180 / std::numbers::pi, turns);
+  if (unit == "rad/s" && std::abs(value) > many)
+    return fmt::format("{:.6g} rad/s, {:.5g} rpm", value, value * 30 / std::numbers::pi);
+  return fmt::format("{:.6g}{}{}", value, unit.empty() || unit == "1" ? "" : " ", unit == "1" ? "" : unit);
+}
+
+std::string run_table(const study::Prepared& prepared, const RunSummary& summary) {
+  const Scene& scene = prepared.scene;
+  const Model& model = *scene.model;
+  std::string out;
+  const auto line = [&](const std::string& what, const std::string& text) {
+    out += fmt::format("{:<23} {}\n", what, text);
+  };
+  out += fmt::format("{} ({}, {})\n\n", prepared.title(), scene.formulation_name, scene.integrator_name);
+  line("outcome", study::outcome_text(summary));
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const auto columns = coordinate_columns(model.hinges()[h]);
+    const Slot& slot = model.layout().hinges[h];
+    std::size_t first = 0;
+    if (columns.size() >= 4 && columns[0].name.ends_with(".qw")) {
+      line("final " + model.hinges()[h].name, attitude(std::span(summary.final.y).subspan(slot.position, 4)));
+      first = 4;
+    }
+    for (std::size_t i = first; i < columns.size(); ++i)
+      line("final " + columns[i].name, readable(summary.final.y[slot.position + i], columns[i].unit));
+  }
+  for (const auto& [body, d] : summary.peak_deflection) {
+    line("peak deflection " + body, fmt::format("y {:.5g} m, z {:.5g} m", d[1], d[2]));
+  }
+  const auto effort_text = [&](const std::vector<double>& efforts, const Slot& slot, std::size_t i) {
+    const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(&slot - model.layout().hinges.data())];
+    return fmt::format("{:.5g} {}", efforts.at(slot.speed + i), hinge_rates(*hinge.hinge)[i].angular ? "N m" : "N");
+  };
+  for (const Slot& slot : model.layout().hinges) {
+    for (std::size_t i = 0; i < slot.speeds; ++i)
+      if (summary.peak_effort.at(slot.speed + i) > 0)
+        line("peak effort " + model.layout().speed_names[slot.speed + i], effort_text(summary.peak_effort, slot, i));
+  }
+  for (const MotionNode& motion : model.motions()) {
+    const Slot& slot = model.layout().hinges[static_cast<std::size_t>(motion.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i)
+      line("effort of motion " + motion.name,
+           fmt::format("peak {} on {}", effort_text(summary.peak_motion_effort, slot, i),
+                       model.layout().speed_names[slot.speed + i]));
+  }
+  for (const EventTime& e : summary.events)
+    line("event " + e.name,
+         fmt::format("{:.6g} s{}", e.time, e.direction > 0 ? ", upwards" : (e.direction < 0 ? ", downwards" : "")));
+  const EventBook book(model);
+  for (std::size_t i = 0; book.any() && i < book.plan().events.size(); ++i)
+    if (const double loss = book.numbers(summary.final.y, i).loss; loss != 0)
+      line("energy lost in " + book.plan().events[i].name, readable(loss, "J"));
+  if (summary.switchings > 0) line("switchings of loads", std::to_string(summary.switchings));
+  line("energy drift", fmt::format("{:.2g}", summary.energy_drift));
+  line("steps", fmt::format("{} ({} rejected), {} evaluations", summary.steps.accepted, summary.steps.rejected,
+                            summary.steps.evaluations));
+  line("CPU time", fmt::format("{:.4g} s", summary.cpu_seconds));
+  if (summary.conditioning.condition > 0) {
+    line("mass matrix at the end", fmt::format("condition {:.3g}, determinant {}", summary.conditioning.condition,
+                                               name_of_sign(summary.conditioning.determinant_sign)));
+  }
+  if (summary.status == RunStatus::completed && !summary.message.empty()) out += "\nnote: " + summary.message + '\n';
+  return out;
+}
+
+std::string extremes_text(const nlohmann::ordered_json& outputs) {
+  constexpr double small = 0.01;
+  const auto reach = [](const nlohmann::ordered_json& o) {
+    return std::max(std::abs(o["min"]["value"].get<double>()), std::abs(o["max"]["value"].get<double>()));
+  };
+  const auto kin_of = [](const std::string& name, const nlohmann::ordered_json& o) {
+    return name.substr(0, name.find('.')) + '[' + o["unit"].get<std::string>();
+  };
+  std::map<std::string, double> greatest;  // of an output, in one unit
+  for (const auto& [name, o] : outputs.items())
+    greatest[kin_of(name, o)] = std::max(greatest[kin_of(name, o)], reach(o));
+  std::size_t width = 23;
+  for (const auto& [name, o] : outputs.items()) width = std::max(width, name.size() + 9);
+  std::string out;
+  for (const auto& [name, o] : outputs.items()) {
+    if (reach(o) < small * greatest[kin_of(name, o)]) continue;
+    const std::string unit = o["unit"];
+    out += fmt::format("{:<{}} {} at {:.4g} s to {} at {:.4g} s\n", "range of " + name, width,
+                       readable(o["min"]["value"], unit), o["min"]["t"].get<double>(),
+                       readable(o["max"]["value"], unit), o["max"]["t"].get<double>());
+  }
+  return out.empty() ? out : '\n' + out;
+}
+
+}  // namespace withy

@@ -1,0 +1,27 @@
+#include "withy/results/timing_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace withy {
+
+nlohmann::ordered_json times_json(const study::EvaluationTimes& times) {
+  return {{"ns_per_evaluation", 1e9 * times.median},
+          {"ns_fastest_batch", 1e9 * times.fastest},
+          {"ns_slowest_batch", 1e9 * times.slowest},
+          {"evaluations", times.evaluations},
+          {"allocations_per_evaluation", times.allocations}};
+}
+
+nlohmann::ordered_json lanes_json(const study::LaneTimes& lanes, const study::EvaluationTimes& one) {
+  nlohmann::ordered_json result{{"evaluations_per_second", 1 / one.median}};
+  if (!lanes.refusal.empty()) {
+    result["one_at_a_time_because"] = lanes.refusal;
+    return result;
+  }
+  result["evaluations_per_second_in_lanes"] = 1 / lanes.times.median;
+  result["ratio"] = one.median / lanes.times.median;
+  result.update(times_json(lanes.times));
+  return result;
+}
+
+}  // namespace withy

@@ -1,0 +1,32 @@
+#include "withy/study/equilibrium.hpp"
+
+#include "withy/core/simulation/tips.hpp"
+#include "withy/study/continuous_states.hpp"
+#include "withy/study/turning.hpp"
+
+namespace withy::study {
+
+Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Registry& registry) {
+  refuse_continuous_states(c.prepared(), "'withy equilibrium'");
+  Equilibrium found;
+  found.steady = find_steady_state(c.dynamics(), c.state(), c.held());
+  const State& state = found.steady.state;
+  const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
+  found.derivatives = derivatives_text(tangents);
+  found.stays = stays_steady(c.dynamics(), tangents, state, c.held());
+  found.problem = no_steady_state(c, found.steady);
+  for (const Tip& tip : tips(c.prepared().model())) {
+    if (tip.flexible)
+      found.deflections.emplace_back(tip.body + ".tip", deflection(*c.prepared().equations, state.y, tip));
+  }
+  found.against = deflections_against_next(c, found.steady, holding, registry);
+  if (found.stays) return found;
+  found.passing = moving_freely(c, state);
+  found.changing = !found.passing.empty()
+                       ? passing_text(found.passing)
+                       : "The hinges turn and what acts on the free coordinates turns with them (gravity in the plane "
+                         "of rotation, as a rule): this state is steady at this angle alone.";
+  return found;
+}
+
+}  // namespace withy::study

@@ -1,0 +1,30 @@
+/// \file
+/// The state that a scene stays in, at rest or spinning steadily, and what can be said of it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "withy/study/against_next.hpp"
+#include "withy/study/configuration.hpp"
+
+namespace withy::study {
+
+struct Equilibrium {
+  SteadyState steady;
+  std::string problem;               ///< why there is none; empty where there is
+  bool stays = false;                ///< as the hinges turn
+  std::string changing;              ///< why it does not stay, and what to do; empty where it does
+  std::vector<std::string> passing;  ///< hinges that nothing holds at the rates they have: an instant of a motion
+  std::string derivatives;           ///< how they were found
+  std::vector<std::pair<std::string, std::array<double, 3>>> deflections;  ///< of flexible bodies' tips [m]
+  std::optional<AgainstNext> against;                                      ///< of these, in the next model up
+};
+
+/// \throws InputError where a load has continuous states; SceneError, PluginError
+Equilibrium find_equilibrium(const Configuration& configuration, const Holding& holding, Registry& registry);
+
+}  // namespace withy::study

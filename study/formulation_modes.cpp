@@ -1,0 +1,42 @@
+#include "withy/study/formulation_modes.hpp"
+
+#include <fmt/format.h>
+
+namespace withy::study {
+
+ModesFound find_modes(const Prepared& base, Registry& registry, const ModesQuestion& question,
+                      const std::function<Control(const std::string& formulation)>& control) {
+  std::vector<std::string> formulations = question.formulations;
+  if (formulations.empty()) formulations.push_back(base.scene.formulation_name);
+  ModesFound found;
+  for (const std::string& formulation : formulations) {
+    SceneValues values = base.values;
+    values.choose_formulation(formulation, "--formulations " + formulation);
+    const Control sweeping = control(formulation);
+    found.runs.push_back(sweep_modes(values, registry, question.start, question.holding, question.sweep, question.as_is,
+                                     question.wish, sweeping));
+    found.against.emplace_back();
+    if (question.sweep.none() && !sweeping.stop())
+      found.against.back() =
+          frequencies_against_next(found.runs.back(), values, registry, question.start, question.holding,
+                                   question.as_is, question.compared, control(formulation));
+    found.interrupted = sweeping.stop();
+  }
+  return found;
+}
+
+std::vector<std::string> modes_problems(const std::vector<ModesOf>& runs, const Sweep& sweep) {
+  std::vector<std::string> problems;
+  for (const ModesOf& run : runs) {
+    for (const ModesAt& at : run.points) {
+      if (at.turn && !at.turn->problem.empty()) problems.push_back("a whole turn: " + at.turn->problem);
+      if (at.turn && !at.turn->blade_problem.empty()) problems.push_back("--blades: " + at.turn->blade_problem);
+      if (!at.problem.empty())
+        problems.push_back(fmt::format("{}{}: {}", run.formulation,
+                                       sweep.none() ? "" : fmt::format(", {} = {}", sweep.path, at.value), at.problem));
+    }
+  }
+  return problems;
+}
+
+}  // namespace withy::study
