@@ -1,9 +1,11 @@
 /// \file
 /// Prescribed motions of hinges.
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 #include "withy/core/plugin/entry.hpp"
+#include "withy/core/plugin/formula.hpp"
 #include "withy/core/plugin/motion.hpp"
 #include "withy/loads/motion_input.hpp"
 #include "withy/loads/trajectory.hpp"
@@ -61,6 +63,17 @@ struct SpinUp {
   double end() const { return duration; }
 };
 
+/// A formula of the time, with its exact derivatives.
+struct FormulaMotion {
+  Formula formula;
+  MotionPoint operator()(double t) const noexcept {
+    const std::array<double, 3> x = formula.with_derivatives(t);
+    return {x[0], x[1], x[2]};
+  }
+  std::vector<double> jumps() const { return {}; }
+  double end() const { return 0; }
+};
+
 double value(const Value& p, const char* key) { return p.number_at(key); }
 
 std::unique_ptr<Motion> make_locked(const Value& /*p*/, const MakeContext& /*context*/) {
@@ -79,6 +92,18 @@ std::unique_ptr<Motion> make_quintic(const Value& p, const MakeContext& /*contex
 std::unique_ptr<Motion> make_sine(const Value& p, const MakeContext& /*context*/) {
   return std::make_unique<Following<SineMotion>>(
       SineMotion{value(p, "center"), value(p, "amplitude"), 1 / value(p, "period"), value(p, "phase")});
+}
+std::unique_ptr<Motion> make_expression(const Value& p, const MakeContext& context) {
+  const Value& given = p.at("value");
+  try {
+    Formula formula(given.text());
+    for (const std::string& name : formula.names())
+      if (name != "t") throw std::invalid_argument("there is nothing called '" + name + "'; need the time t alone");
+    return std::make_unique<Following<FormulaMotion>>(FormulaMotion{std::move(formula)});
+  } catch (const std::invalid_argument& e) {
+    context.diagnostics.error(given.place(), "got \"" + given.text() + "\": " + e.what());
+    return nullptr;
+  }
 }
 std::unique_ptr<Motion> make_table(const Value& p, const MakeContext& context) {
   const Value& rows = p.at("table");
@@ -125,6 +150,11 @@ void enroll(Enrollment& enrollment) {
                                          number("center", "rad", "coordinate about which it swings").otherwise(0.0),
                                          number("phase", "rad", "phase at time 0").otherwise(0.0)},
                           .make = &make_sine});
+  enrollment.add<Motion>(
+      {.id = "expression",
+       .summary = "A formula of the time t",
+       .parameters = {text("value", "coordinate [rad, m] as a formula of the time t [s], twice differentiable")},
+       .make = &make_expression});
   enrollment.add<Motion>(
       {.id = "table",
        .summary = "Cubic spline through given points, at rest in the first and the last or at rates",

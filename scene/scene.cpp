@@ -262,6 +262,14 @@ class SceneBuilder {
       check_driven(model);
     }
     model.prescribe(scene_.initial);
+    for (const MotionNode& node : model.motions()) {
+      const Slot& slot = model.layout().hinges[static_cast<std::size_t>(node.hinge)];
+      const double at = scene_.initial.y[slot.position], rate = scene_.initial.y[model.layout().positions + slot.speed];
+      if (std::isfinite(at) && std::isfinite(rate)) continue;
+      checker_.key_error(
+          "/motions/" + node.name,
+          fmt::format("has no finite coordinate and rate at {} s, where the simulation begins", scene_.initial.time));
+    }
     if (diagnostics_.ok() && !loops_of(model).empty()) {
       const Value remark = close_loops(model, scene_, given, checker_, scene_.initial);
       if (remark.kind() == Value::Kind::text) scene_.source.set("closing", remark);
@@ -283,7 +291,7 @@ class SceneBuilder {
       const auto compare = [&](std::size_t first, std::size_t count, const char* key) {
         for (std::size_t i = first; i < first + count; ++i) {
           const double given = scene_.initial.y[i], needed = moved.y[i];
-          if (std::abs(given - needed) <= driven_tolerance * (1 + std::abs(needed))) continue;
+          if (!std::isfinite(needed) || std::abs(given - needed) <= driven_tolerance * (1 + std::abs(needed))) continue;
           checker_.key_error(fmt::format("/initial/hinges/{}/{}", slot.name, key),
                              fmt::format("got {}, but motion '{}' has the hinge at {} at {} s; leave it out", given,
                                          node.name, needed, moved.time));

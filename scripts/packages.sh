@@ -28,6 +28,18 @@ withy run pendulum.yaml --out run >/dev/null
 withy fmu commanded-arm.yaml --out arm.fmu >/dev/null
 /usr/bin/python3 -c 'import withy; r = withy.load("commanded-arm.yaml").run(); assert r.status == "completed", r.status'
 TRY
+# Where withy and what it brings are gone: the FMU's library finds all it needs in the FMU and in the system.
+cat >"$work/try/load.sh" <<'TRY'
+set -eu
+cd "$(dirname "$0")"
+/usr/bin/python3 -c '
+import ctypes, glob, zipfile
+zipfile.ZipFile("arm.fmu").extractall("fmu")
+[file] = [f for f in glob.glob("fmu/binaries/x86_64-linux/*.so")]
+version = ctypes.CDLL(file, 2).fmi3GetVersion
+version.restype = ctypes.c_char_p
+print("An FMU of the version", version().decode(), "loads where withy is not")'
+TRY
 cat >"$work/try/build.sh" <<'TRY'
 set -eu
 cd "$(dirname "$0")"
@@ -60,5 +72,6 @@ mmdebstrap --quiet --variant=apt --format=null \
   --customize-hook='chroot "$1" sh -c "apt-get -qq -y --no-install-recommends install /root/libwithy-dev_* g++ libc6-dev pkg-config"' \
   --customize-hook='chroot "$1" sh /root/try/build.sh' \
   --customize-hook='chroot "$1" sh -c "dpkg --purge python3-withy withy libwithy-dev libwithy0 && ! find / -xdev -name \"*withy*\" -not -path \"/root/*\" -not -path \"/var/lib/*\" | grep ."' \
+  --customize-hook='chroot "$1" sh -c "dpkg --purge --force-depends libyaml-cpp0.7 && sh /root/try/load.sh"' \
   "$suite" - "${from[@]}"
-echo "In a bare $suite: installed, run, hosts compiled, purged"
+echo "In a bare $suite: installed, run, hosts compiled, purged; the FMU loads there"

@@ -16,9 +16,15 @@ struct Moduli {
   double y, z;
 };
 
+/// How far the outermost fibres are from the axes of bending [m], for their strains.
+struct Fibres {
+  double y, z;
+};
+
 class BoundSection final : public BoundSensor {
  public:
-  BoundSection(SectionPlace place, std::optional<Moduli> moduli) : place_(place), moduli_(moduli) {}
+  BoundSection(SectionPlace place, std::optional<Moduli> moduli, std::optional<Fibres> fibres)
+      : place_(place), moduli_(moduli), fibres_(fibres) {}
   std::vector<SensorColumn> columns() const override {
     std::vector<SensorColumn> c;
     add_columns(c, "f", "N");
@@ -27,6 +33,8 @@ class BoundSection final : public BoundSensor {
     add_columns(c, "elastic_m", "N m");
     if (moduli_) c.push_back({"stress_y", "Pa"});
     if (moduli_) c.push_back({"stress_z", "Pa"});
+    if (fibres_) c.push_back({"strain_y", "1"});
+    if (fibres_) c.push_back({"strain_z", "1"});
     return c;
   }
   std::vector<SectionPlace> sections() const override { return {place_}; }
@@ -36,20 +44,26 @@ class BoundSection final : public BoundSensor {
     put(load.inner.moment, values);
     put(load.curvature, values);
     put(load.elastic, values);
-    if (!moduli_) return;
-    values[0] = load.inner.moment.y() / moduli_->y;
-    values[1] = load.inner.moment.z() / moduli_->z;
+    if (moduli_) {
+      values[0] = load.inner.moment.y() / moduli_->y;
+      values[1] = load.inner.moment.z() / moduli_->z;
+      values = values.subspan(2);
+    }
+    if (!fibres_) return;
+    values[0] = -load.curvature.y() * fibres_->y;
+    values[1] = -load.curvature.z() * fibres_->z;
   }
 
  private:
   SectionPlace place_;
   std::optional<Moduli> moduli_;
+  std::optional<Fibres> fibres_;
 };
 
 class SectionSensor final : public Sensor {
  public:
-  SectionSensor(std::string of, double at, std::optional<Moduli> moduli)
-      : of_(std::move(of)), at_(at), moduli_(moduli) {}
+  SectionSensor(std::string of, double at, std::optional<Moduli> moduli, std::optional<Fibres> fibres)
+      : of_(std::move(of)), at_(at), moduli_(moduli), fibres_(fibres) {}
   std::unique_ptr<BoundSensor> bind(const Model& model, std::span<const SensorNode> /*before*/) const override {
     const std::vector<int> pieces = model.segments(of_);
     if (pieces.empty()) throw std::invalid_argument("there is no body '" + of_ + "'");
@@ -65,7 +79,7 @@ class SectionSensor final : public Sensor {
       // A place between two segments belongs to the outer one; the sum of their lengths may be off by rounding.
       if (x < own || (last && x <= own * (1 + 1e-9))) {
         const SectionPlace place{piece, std::min(x, own)};
-        return std::make_unique<BoundSection>(place, moduli_);
+        return std::make_unique<BoundSection>(place, moduli_, fibres_);
       }
       x -= own;
     }
@@ -77,12 +91,15 @@ class SectionSensor final : public Sensor {
   std::string of_;
   double at_;
   std::optional<Moduli> moduli_;
+  std::optional<Fibres> fibres_;
 };
 
 std::unique_ptr<Sensor> make_section(const Value& p, const MakeContext& /*context*/) {
   std::optional<Moduli> moduli;
   if (const Value* given = p.find("moduli")) moduli = {given->number_at("y"), given->number_at("z")};
-  return std::make_unique<SectionSensor>(p.text_at("of"), p.number_at("at"), moduli);
+  std::optional<Fibres> fibres;
+  if (const Value* given = p.find("fibres")) fibres = {given->number_at("y"), given->number_at("z")};
+  return std::make_unique<SectionSensor>(p.text_at("of"), p.number_at("at"), moduli, fibres);
 }
 
 }  // namespace
@@ -97,6 +114,11 @@ void enroll_section(Enrollment& enrollment) {
                           {number("y", "m^3", "section modulus about y").above(0),
                            number("z", "m^3", "section modulus about z").above(0)},
                           "for the bending stresses m/W at the outermost fibres")
+                          .optional(),
+                      map("fibres",
+                          {number("y", "m", "distance of the outermost fibre from the y axis").least(0),
+                           number("z", "m", "distance of the outermost fibre from the z axis").least(0)},
+                          "for the bending strains -k c there")
                           .optional()},
        .make = &make_section});
 }

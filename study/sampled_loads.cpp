@@ -39,6 +39,7 @@ SampledLoads::SampledLoads(const SmallMotions& motions)
     for (std::size_t i = 0; i < slot.count; ++i)
       names_.push_back(fmt::format("{}.held[{}]", model.loads()[slot.load].name, i));
   }
+  efforts_.setZero(motions_.by_effort().cols(), size());
   if (none()) return;
   find_period();
   differentiate();
@@ -120,7 +121,6 @@ Eigen::MatrixXd SampledLoads::differentiated(const std::vector<bool>& due) {
 }
 
 void SampledLoads::differentiate() {
-  efforts_.setZero(motions_.by_effort().cols(), size());
   const Eigen::VectorXd now = held(motions_.state());
   const Eigen::VectorXd change = renewed(motions_.state(), due(0)) - now;
   for (const Part& part : loads_) {

@@ -47,7 +47,8 @@ ExitStatus advise(const AdviseArguments& arguments) {
     return ExitStatus::stopped;
   }
   const std::string left_out = study::left_out(evaluator.model(advice.choice->point));
-  const std::vector<study::Change> new_changes = study::new_changes(engine.scene(), advice.choice->point, engine.registry());
+  const std::vector<study::Change> new_changes =
+      study::new_changes(engine.scene(), advice.choice->point, engine.registry());
   const std::vector<std::string> changes = texts_of(new_changes);
   if (!arguments.write.empty())
     write_changed(engine.prepared().values, new_changes, arguments.write, engine.registry());

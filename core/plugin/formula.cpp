@@ -12,31 +12,99 @@ namespace {
 
 using Numbers = std::span<const double>;
 
+/// A number with its first and second derivative.
+using Series = std::array<double, 3>;
+
+Series operator+(const Series& a, const Series& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Series operator*(const Series& a, const Series& b) {
+  return {a[0] * b[0], a[1] * b[0] + a[0] * b[1], a[2] * b[0] + 2 * a[1] * b[1] + a[0] * b[2]};
+}
+/// f(a) from f and its derivatives at a[0].
+Series chained(const Series& a, double f, double slope, double bend) {
+  return {f, slope * a[1], bend * a[1] * a[1] + slope * a[2]};
+}
+Series inverse(const Series& a) {
+  const double f = 1 / a[0];
+  return chained(a, f, -f * f, 2 * f * f * f);
+}
+Series root(const Series& a) {
+  const double f = std::sqrt(a[0]);
+  return chained(a, f, 0.5 / f, -0.25 / (f * a[0]));
+}
+Series power(const Series& a, const Series& b) {
+  const double f = std::pow(a[0], b[0]);
+  // A constant exponent leaves numbers of any sign their powers.
+  if (b[1] == 0 && b[2] == 0) {
+    const double slope = b[0] == 0 ? 0 : b[0] * std::pow(a[0], b[0] - 1);
+    return chained(a, f, slope, b[0] == 0 || b[0] == 1 ? 0 : b[0] * (b[0] - 1) * std::pow(a[0], b[0] - 2));
+  }
+  const Series exponent = b * chained(a, std::log(a[0]), 1 / a[0], -1 / (a[0] * a[0]));
+  return chained(exponent, f, f, f);
+}
+/// Of y over x, in any quadrant.
+Series turn(const Series& y, const Series& x) {
+  const double size = x[0] * x[0] + y[0] * y[0], area = x[0] * y[1] - y[0] * x[1];
+  return {std::atan2(y[0], x[0]), area / size,
+          (x[0] * y[2] - y[0] * x[2]) / size - 2 * area * (x[0] * x[1] + y[0] * y[1]) / (size * size)};
+}
+
+using AllSeries = std::span<const Series>;
+
 struct Function {
   std::string_view name;
   std::size_t least, most;  ///< numbers that it takes
   double (*of)(Numbers x);
+  Series (*series)(AllSeries x);
 };
 
 constexpr std::size_t any_number = Formula::most_pending;
 
+bool less(const Series& a, const Series& b) { return a[0] < b[0]; }
+
 constexpr std::array functions = {
-    Function{"sqrt", 1, 1, [](Numbers x) { return std::sqrt(x[0]); }},
-    Function{"abs", 1, 1, [](Numbers x) { return std::abs(x[0]); }},
-    Function{"sin", 1, 1, [](Numbers x) { return std::sin(x[0]); }},
-    Function{"cos", 1, 1, [](Numbers x) { return std::cos(x[0]); }},
-    Function{"tan", 1, 1, [](Numbers x) { return std::tan(x[0]); }},
-    Function{"atan", 1, 1, [](Numbers x) { return std::atan(x[0]); }},
-    Function{"exp", 1, 1, [](Numbers x) { return std::exp(x[0]); }},
-    Function{"log", 1, 1, [](Numbers x) { return std::log(x[0]); }},
-    Function{"atan2", 2, 2, [](Numbers x) { return std::atan2(x[0], x[1]); }},
-    Function{"min", 1, any_number, [](Numbers x) { return *std::min_element(x.begin(), x.end()); }},
-    Function{"max", 1, any_number, [](Numbers x) { return *std::max_element(x.begin(), x.end()); }},
+    Function{"sqrt", 1, 1, [](Numbers x) { return std::sqrt(x[0]); }, [](AllSeries x) { return root(x[0]); }},
+    Function{"abs", 1, 1, [](Numbers x) { return std::abs(x[0]); },
+             [](AllSeries x) { return chained(x[0], std::abs(x[0][0]), x[0][0] < 0 ? -1 : 1, 0); }},
+    Function{"sin", 1, 1, [](Numbers x) { return std::sin(x[0]); },
+             [](AllSeries x) { return chained(x[0], std::sin(x[0][0]), std::cos(x[0][0]), -std::sin(x[0][0])); }},
+    Function{"cos", 1, 1, [](Numbers x) { return std::cos(x[0]); },
+             [](AllSeries x) { return chained(x[0], std::cos(x[0][0]), -std::sin(x[0][0]), -std::cos(x[0][0])); }},
+    Function{"tan", 1, 1, [](Numbers x) { return std::tan(x[0]); },
+             [](AllSeries x) {
+               const double f = std::tan(x[0][0]), slope = 1 + f * f;
+               return chained(x[0], f, slope, 2 * f * slope);
+             }},
+    Function{"atan", 1, 1, [](Numbers x) { return std::atan(x[0]); },
+             [](AllSeries x) {
+               const double slope = 1 / (1 + x[0][0] * x[0][0]);
+               return chained(x[0], std::atan(x[0][0]), slope, -2 * x[0][0] * slope * slope);
+             }},
+    Function{"exp", 1, 1, [](Numbers x) { return std::exp(x[0]); },
+             [](AllSeries x) {
+               const double f = std::exp(x[0][0]);
+               return chained(x[0], f, f, f);
+             }},
+    Function{"log", 1, 1, [](Numbers x) { return std::log(x[0]); },
+             [](AllSeries x) {
+               const double slope = 1 / x[0][0];
+               return chained(x[0], std::log(x[0][0]), slope, -slope * slope);
+             }},
+    Function{"atan2", 2, 2, [](Numbers x) { return std::atan2(x[0], x[1]); },
+             [](AllSeries x) { return turn(x[0], x[1]); }},
+    Function{"min", 1, any_number, [](Numbers x) { return *std::min_element(x.begin(), x.end()); },
+             [](AllSeries x) { return *std::min_element(x.begin(), x.end(), less); }},
+    Function{"max", 1, any_number, [](Numbers x) { return *std::max_element(x.begin(), x.end()); },
+             [](AllSeries x) { return *std::max_element(x.begin(), x.end(), less); }},
     Function{"norm", 1, any_number,
              [](Numbers x) {
                double size = 0;
                for (const double value : x) size = std::hypot(size, value);
                return size;
+             },
+             [](AllSeries x) {
+               Series squares{};
+               for (const Series& each : x) squares = squares + each * each;
+               return root(squares);
              }},
 };
 
@@ -205,6 +273,39 @@ double Formula::operator()(std::span<const double> values) const noexcept {
     if (step.operation == Operation::multiply) a *= b;
     if (step.operation == Operation::divide) a /= b;
     if (step.operation == Operation::power) a = std::pow(a, b);
+  }
+  return stack[0];
+}
+
+std::array<double, 3> Formula::with_derivatives(double x) const noexcept {
+  std::array<Series, most_pending + 1> stack{};
+  std::size_t size = 0;
+  for (const Step& step : steps_) {
+    switch (step.operation) {
+      case Operation::number:
+        stack[size++] = {step.number, 0, 0};
+        continue;
+      case Operation::name:
+        stack[size++] = {x, 1, 0};
+        continue;
+      case Operation::negate:
+        stack[size - 1] = stack[size - 1] * Series{-1, 0, 0};
+        continue;
+      case Operation::function:
+        size -= step.count;
+        stack[size] = functions[step.index].series(AllSeries(stack).subspan(size, step.count));
+        ++size;
+        continue;
+      default:
+        break;
+    }
+    Series& a = stack[size - 2];
+    const Series& b = stack[--size];
+    if (step.operation == Operation::add) a = a + b;
+    if (step.operation == Operation::subtract) a = a + b * Series{-1, 0, 0};
+    if (step.operation == Operation::multiply) a = a * b;
+    if (step.operation == Operation::divide) a = a * inverse(b);
+    if (step.operation == Operation::power) a = power(a, b);
   }
   return stack[0];
 }

@@ -2,6 +2,7 @@
 /// Formulas of named numbers.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -21,6 +22,9 @@ class Formula {
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   /// \param values of the names, in their order
   [[nodiscard]] double operator()(std::span<const double> values) const noexcept;
+  /// The value of a formula of at most one name at x, with its first and second derivative by it, exact; of what has a
+  /// kink there those of one side.
+  [[nodiscard]] std::array<double, 3> with_derivatives(double x) const noexcept;
 
   static constexpr std::size_t most_pending = 64;  ///< numbers that wait for an operation
   static constexpr std::size_t most_names = 64;

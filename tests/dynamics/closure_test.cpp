@@ -195,30 +195,6 @@ void expect_closed(const Case& c, double tolerance, double step, const std::stri
                                   << "'";
 }
 
-/// left_open with all bodies bent by this share of what they are.
-double left_open_bent(Case& c, double share, const std::string& what) {
-  const State whole = c.state;
-  for (const Slot& b : c.scene.model->layout().bodies)
-    for (std::size_t i = 0; i < b.positions; ++i) c.state.y[b.position + i] *= share;
-  const double open = left_open(c, 3e-4, what).maxCoeff();
-  c.state = whole;
-  return open;
-}
-
-/// The sweeps turn the sections of a rod by Magnus' expansion of order 6, the reference by collocation of order 16.
-/// What lies between them is no fault of the balance but the rest of the expansion: it falls with the second or a
-/// higher power of the bending, and nothing in the plane and in straight rods. Elsewhere the balance closes as in other
-/// kinematics.
-void expect_closed_but_for_turns(Case& c, bool planar, const std::string& what) {
-  const double open = left_open_bent(c, 1, what);
-  EXPECT_LT(left_open_bent(c, 0, what), 1e-9) << what;
-  if (open < 1e-9) return;
-  EXPECT_FALSE(planar) << what;
-  EXPECT_LT(open, 1e-6) << what;
-  EXPECT_LT(left_open_bent(c, 0.5, what), open / 3) << what << ": it is left over by something else";
-  EXPECT_LT(left_open_bent(c, 0.125, what), std::max(1e-9, open / 100)) << what;
-}
-
 TEST(Closure, holds_for_every_body_of_random_trees) {
   const std::vector<std::string> untruncated = {"quadratic", "linear", "exact"};
   const std::string fields =
@@ -232,11 +208,7 @@ TEST(Closure, holds_for_every_body_of_random_trees) {
     Case c(random.text() + (planar ? "" : frame_loads(seed, bodies) + (seed % 5 < 2 ? fields : "")), formulation);
     c.state = random.state(*c.scene.model, c.scene.initial);
     const std::string what = formulation + ", seed " + std::to_string(seed);
-    if (formulation == "exact") {
-      expect_closed_but_for_turns(c, planar, what);
-    } else {
-      expect_closed(c, 1e-9, 3e-4, what);
-    }
+    expect_closed(c, 1e-9, 3e-4, what);
     expect_roots_carried(c, what);
     expect_rates(c, 3e-4, what);
   }

@@ -161,6 +161,31 @@ TEST(Sections, of_a_stiff_beam_carry_its_weight_its_load_and_its_spin) {
   }
 }
 
+/// Strains at fibres are those of the stiffness' own moment there: E times them is m c/I.
+TEST(Sections, of_a_bent_beam_show_strains_of_the_sign_of_stresses) {
+  Case c(
+      "format: withy/1\ntime: {end: 1}\nbodies: {boom: {type: beam, length: 2, mass_per_length: 1.5, bending_y: "
+      "{stiffness: 40, modes: 2}, bending_z: {stiffness: 60, modes: 1}}}\nhinges: {root: {type: weld, parent: world, "
+      "child: boom}}\noutputs: {cut: {type: section, of: boom, at: 0.3, moduli: {y: 1, z: 1}, fibres: {y: 0.01, z: "
+      "0.02}}}\n",
+      "quadratic");
+  for (const auto& [i, q] : {std::pair(0, 0.02), std::pair(1, -0.003), std::pair(2, 0.015)})
+    c.state.y[static_cast<std::size_t>(i)] = q;
+  SensorReader reader(c.scene.outputs, *c.equations);
+  std::vector<double> seen(reader.columns().size());
+  ASSERT_TRUE(reader.read(c.state, seen));
+  const auto of = [&](const std::string& name) {
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      if (reader.columns()[i].name == "cut." + name) return seen[i];
+    throw std::out_of_range(name);
+  };
+  EXPECT_NEAR(of("strain_y"), of("elastic_my") * 0.01 / 60, 1e-15);
+  EXPECT_NEAR(of("strain_z"), of("elastic_mz") * 0.02 / 40, 1e-15);
+  EXPECT_GT(std::abs(of("strain_y")), 1e-5);
+  EXPECT_GT(std::abs(of("strain_z")), 1e-5);
+  EXPECT_EQ(of("stress_y"), of("my"));
+}
+
 /// A scene counts along the whole of a beam in segments: at a joint the section carries what the weld there does.
 TEST(Sections, of_a_beam_in_segments_count_along_the_whole) {
   Case c(

@@ -1,10 +1,15 @@
 // Scenes in a program.
 #include <gmock/gmock.h>
 
+#include <cfenv>
+#include <clocale>
+#include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/host/equations.hpp"
+#include "withy/host/simulation.hpp"
 #include "withy/tests/host/arm.hpp"
 
 namespace withy {
@@ -110,6 +115,50 @@ TEST(HostedScene, with_inputs_runs_in_the_formulation_that_is_needed) {
   ASSERT_EQ(automatic.status, "completed") << automatic.message;
   EXPECT_GT(json::parse(automatic.json)["certificate"]["stretches"]["list"].size(), 1U);
   EXPECT_NEAR(automatic.column("shoulder").back(), quadratic.column("shoulder").back(), 0.01);
+}
+
+/// What of a process is everybody's.
+struct Process {
+  std::string locale = std::setlocale(LC_ALL, nullptr);
+  std::filesystem::path folder = std::filesystem::current_path();
+  int rounding = std::fegetround(), traps = ::fegetexcept();
+  std::vector<void (*)(int)> handlers;
+  std::vector<int> blocked;
+  Process() {
+    sigset_t mask;
+    ::pthread_sigmask(SIG_BLOCK, nullptr, &mask);
+    for (int signal = 1; signal < NSIG; ++signal) {
+      struct sigaction action {};
+      ::sigaction(signal, nullptr, &action);
+      handlers.push_back(action.sa_handler);
+      blocked.push_back(::sigismember(&mask, signal));
+    }
+  }
+  bool operator==(const Process&) const = default;
+};
+
+TEST(HostedScene, leaves_the_process_as_it_is_and_prints_nothing) {
+  const auto handler = std::signal(SIGINT, SIG_IGN);  // the host's own choice, which is to stay
+  const Process before;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  {
+    const host::Library own;
+    Scene arm = Scene(Scene::read(own, WITHY_SOURCES "/scenes/commanded-arm.yaml")).set("time.end", 0.1);
+    static_cast<void>(arm.run());
+    static_cast<void>(arm.compare({"ruthless", "linear"}, "quadratic"));
+    static_cast<void>(arm.linearize());
+    host::Simulation simulation(arm);
+    simulation.step(0.1);
+    EXPECT_THROW(simulation.step(0.05), std::invalid_argument);
+    EXPECT_THROW(Scene::parse(own, "bodies: {a: {type: rgid}}").check(), SceneError);
+    Scene failing = slew();
+    EXPECT_NE(failing.set("loads.slew.time_scale", 1.2).formulation("consistent").run().status, "completed");
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_TRUE(Process() == before);
+  std::signal(SIGINT, handler);
 }
 
 TEST(HostedScene, hears_the_remarks_of_the_library) {

@@ -31,6 +31,22 @@ TEST(MotionLaws, conform) {
       *motion("table", {{"table", Value::list({list_of({0, 1}), list_of({0.5, 2}), list_of({0.9, -1})})}}));
 }
 
+TEST(MotionLaws, of_formulas_have_exact_derivatives) {
+  const auto law = [](const char* text) { return motion("expression", {{"value", Value(std::string(text))}}); };
+  expect_motion_conforms(*law("0.3 * sin(5*t)^2 / (2 + cos(t)) - atan(t^3) + sqrt(1 + t^2) - (-t)^2"));
+  expect_motion_conforms(*law("exp(-t^2) * log(4 + t) + tan(0.3*t) + atan2(1 + sin(t), 2 - t) + norm(t, 1, cos(3*t))"));
+  expect_motion_conforms(*law("2^(0.5*t) + (1.5 + sin(t))^cos(t) + max(4 + t, 1) - min(-9, t) + abs(8 + t)"));
+  const MotionPoint p = law("0.2 * (1 - cos(3 * t))")->at(0.7);
+  EXPECT_DOUBLE_EQ(p.position, 0.2 * (1 - std::cos(2.1)));
+  EXPECT_DOUBLE_EQ(p.rate, 0.6 * std::sin(2.1));
+  EXPECT_NEAR(p.acceleration, 1.8 * std::cos(2.1), 1e-14);
+  EXPECT_EQ(law("t^2")->at(0).acceleration, 2);
+  EXPECT_THAT(problem_of(turntable + "motions: {m: {type: expression, hinge: axle, value: 2 * axle}}\n"),
+              HasSubstr("there is nothing called 'axle'"));
+  EXPECT_THAT(problem_of(turntable + "motions: {m: {type: expression, hinge: axle, value: sqrt(t - 1)}}\n"),
+              HasSubstr("/motions/m: has no finite coordinate and rate at 0 s"));
+}
+
 /// Theory, section 6, taken literally.
 TEST(MotionLaws, spin_up_is_that_of_the_benchmark) {
   const auto law = motion("spin-up", {{"rate", Value(6.0)}, {"duration", Value(15.0)}});

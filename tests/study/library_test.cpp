@@ -381,7 +381,8 @@ TEST(StudyAdvice, IsTheSameScenesRunOfItsChanges) {
   EXPECT_EQ(advice.confirmed.status, RunStatus::completed);
   EXPECT_LE(advice.choice->use + advice.yardstick->own_use(), 1);
   SceneValues advised = values;
-  for (const Change& change : new_changes(prepared.scene, advice.choice->point, plugins())) advised.set_text(change.text());
+  for (const Change& change : new_changes(prepared.scene, advice.choice->point, plugins()))
+    advised.set_text(change.text());
   const RunSummary again = simulate(prepare(advised, plugins()), plugins(), {});
   EXPECT_EQ(again.steps.evaluations, advice.confirmed.steps.evaluations);
   EXPECT_EQ(again.final.y, advice.confirmed.final.y);

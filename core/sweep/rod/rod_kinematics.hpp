@@ -109,8 +109,10 @@ struct RodKinematics<Spatial> {
   SharedNumbers<Pack> first;          ///< κ_i, ψ_i, Φ_i′, Φ_i at node pack k: element (k·n + i)·12
   SharedNumbers<Pack> step;           ///< nine moments (see magnus) for each i of four turns: element (s·n + i)·9
   SharedNumbers<int> after;           ///< for each turn the turn before it, −1: the root; those to nodes come first
-  SharedNumbers<Pack> inertia;        ///< of the nodes' sections about their axis; empty where they have none
-  std::size_t first_station = 0;      ///< turn to the first station
+  SharedNumbers<int> pieces;      ///< of each turn those that come before its last one, which is the turn's own step
+  std::size_t steps = 0;          ///< of all turns, then of pieces before the last, turn after turn; whole packs
+  SharedNumbers<Pack> inertia;    ///< of the nodes' sections about their axis; empty where they have none
+  std::size_t first_station = 0;  ///< turn to the first station
   std::vector<RodStation<Spatial>> stations;
 
   RodKinematics() = default;
@@ -131,7 +133,7 @@ struct RodKinematics<Spatial> {
 struct RodWork {
   Pack* slope;     ///< functions(n)·packs: integrands at the nodes, without what is tabulated
   Pack* value;     ///< r, w_i, P_i, b, a there
-  Pack* rotation;  ///< in space: quaternions w, x, y, z, one a turn
+  Pack* rotation;  ///< in space: quaternions w, x, y, z, one a turn, behind them work memory
 };
 
 /// Packs of work memory that a rod needs.
@@ -139,7 +141,7 @@ template <class Space>
 std::size_t rod_work(const RodKinematics<Space>& rod, int modes) {
   const int values = 2 * RodKinematics<Space>::functions(modes) * rod.integrals.packs;
   std::size_t turns = 0;
-  if constexpr (Space::angular == 3) turns = rod.after.size();
+  if constexpr (Space::angular == 3) turns = rod.steps;
   return static_cast<std::size_t>(values) + turns;
 }
 
@@ -205,9 +207,8 @@ template <int N>
     for (int c = 0; c < 3; ++c) at[(function + c) * packs] = v[c];
   };
   // Turns from node to node and to the stations, four at a time, then one after the other.
-  const std::size_t turns = rod.after.size();
   const Pack* moments = rod.step.data();
-  for (std::size_t s = 0; s < turns; s += lanes) {
+  for (std::size_t s = 0; s < rod.steps; s += lanes) {
     PackVector m0 = PackVector::zero(), m1 = m0, m2 = m0;
     for (int i = 0; i < n; ++i, moments += 9) {
       const Pack qi = spread(q[i]);
@@ -219,8 +220,14 @@ template <int N>
     }
     transpose(exponential(magnus(m0, m1, m2)), work.rotation + s);  // the last may hold turns by nothing
   }
-  for (std::size_t s = 0; s < turns; ++s) {
-    if (rod.after[s] >= 0) work.rotation[s] = product(work.rotation[rod.after[s]], work.rotation[s]);
+  const Pack* piece = work.rotation + rod.after.size();
+  for (std::size_t s = 0; s < rod.after.size(); ++s) {
+    const int last = rod.pieces[s];
+    Pack turn = last > 0 ? *piece : work.rotation[s];
+    for (int k = 1; k < last; ++k) turn = product(turn, piece[k]);
+    if (last > 0) turn = product(turn, work.rotation[s]);
+    piece += last;
+    work.rotation[s] = rod.after[s] >= 0 ? product(work.rotation[rod.after[s]], turn) : turn;
   }
   const PackVector direction{spread(rod.direction[0]), spread(rod.direction[1]), spread(rod.direction[2])};
   for (int k = 0; k < packs; ++k) {
