@@ -177,7 +177,7 @@ export class View {
 
   // Looks from a direction at all of the motion.
   look(from) {
-    const center = this.box.getCenter(new Vector3()), radius = this.box.getSize(new Vector3()).length() / 2;
+    const center = this.box.getCenter(new Vector3()), half = this.box.getSize(new Vector3()).multiplyScalar(0.5);
     if (this.show.follow) {
       this.motions[0].go(this.time ?? 0, this.scale);
       const corners = new Box3();
@@ -187,16 +187,29 @@ export class View {
     const direction = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] }[from];
     const d = direction ? new Vector3().fromArray(direction) : this.home();
     this.camera.up.copy(Math.abs(d.dot(this.up)) > 0.99 ? (from === 'z' ? new Vector3(0, 1, 0) : new Vector3(0, 0, 1)) : this.up);
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = Math.max(radius, 1e-6) / Math.sin(this.camera.fov * Math.PI / 360) / narrow * (this.flat >= 0 ? 0.85 : 0.95);
+    const distance = Math.max(this.distance_of(half, d.normalize()), 1e-6);
     this.camera.near = distance / 200;
     this.camera.far = distance * 50;
     this.camera.updateProjectionMatrix();
     this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(d.normalize(), distance);
+    this.camera.position.copy(center).addScaledVector(d, distance);
     this.turned = false;
     this.controls.update();
     this.draw();
+  }
+
+  // How far away a box is seen whole with a margin, in a direction. \param half of the box's edges
+  distance_of(half, direction) {
+    const right = new Vector3().crossVectors(this.camera.up, direction).normalize();
+    const up = new Vector3().crossVectors(direction, right);
+    const high = 0.92 * Math.tan(this.camera.fov * Math.PI / 360), wide = high * this.camera.aspect;
+    let distance = 0;
+    for (let k = 0; k < 8; ++k) {
+      const corner = new Vector3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1).multiply(half);
+      const across = Math.max(Math.abs(corner.dot(up)) / high, Math.abs(corner.dot(right)) / wide);
+      distance = Math.max(distance, corner.dot(direction) + across);
+    }
+    return distance;
   }
 
   // Across the plane of a motion that has one, else from above at a corner.
