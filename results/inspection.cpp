@@ -320,6 +320,9 @@ std::string inspection_text(const Scene& scene, const Json& j) {
   }
   for (const Json& load : j["loads"])
     out += fmt::format("\nload {}: {}\n", load["name"].get<std::string>(), load["type"].get<std::string>());
+  for (const Json& motion : j["motions"])
+    out += fmt::format("\nmotion {}: {} of hinge {}\n", motion["name"].get<std::string>(),
+                       motion["type"].get<std::string>(), motion["hinge"].get<std::string>());
   if (j.contains("constraints")) out += loops_text(j["constraints"]);
   out += outputs_text(j["outputs"]);
   if (!j["mass_matrix"].is_null()) out += matrix_text(j["mass_matrix"]);

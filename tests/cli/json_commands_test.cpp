@@ -80,6 +80,8 @@ TEST(Inspect, TextShowsTheTreeAndJsonTheSame) {
   const Finished text = withy(folder, {"inspect", "scenes/two-link-slew.yaml"});
   for (const json& body : j.at("bodies")) EXPECT_THAT(text.out, HasSubstr("─ " + body.at("name").get<std::string>()));
   for (const json& plugin : j.at("plugins")) EXPECT_THAT(text.out, HasSubstr(plugin.at("name").get<std::string>()));
+  EXPECT_THAT(withy(folder, {"inspect", "scenes/spinning-boom.yaml"}).out,
+              HasSubstr("motion spin: spin-up of hinge axle"));
 }
 
 TEST(Inspect, OnlyPluginsTheSceneNamesAreLoaded) {
