@@ -160,16 +160,22 @@ class Parts:
 parts = Parts()
 
 
-def shortcuts() -> dict[str, Callable[..., dict[str, Any]]]:
-    """Those that are functions of the package: ids that one section of parts with names alone has. What a load and a
+_WITH_FUNCTIONS = ("bodies", "hinges", "loads", "motions", "outputs")
+
+
+def _owners() -> dict[str, str]:
+    """The section of each id that is a function of the package: those that one section alone has. What a load and a
     motion share is the load's."""
-    found: dict[str, list[Callable[..., dict[str, Any]]]] = {}
-    for section in (parts.bodies, parts.hinges, parts.loads, parts.motions, parts.outputs):
-        for name, make in section._all().items():
-            if section is parts.motions and name in parts.loads._all():
-                continue
-            found.setdefault(name, []).append(make)
-    return {name: makes[0] for name, makes in found.items() if len(makes) == 1}
+    found: dict[str, list[str]] = {}
+    for section in _WITH_FUNCTIONS:
+        for name in getattr(parts, section)._all():
+            found.setdefault(name, []).append(section)
+    return {name: in_[0] for name, in_ in found.items() if len(in_) == 1 or in_ == ["loads", "motions"]}
+
+
+def shortcuts() -> dict[str, Callable[..., dict[str, Any]]]:
+    """Those that are functions of the package."""
+    return {name: getattr(parts, section)._all()[name] for name, section in _owners().items()}
 
 
 def _type(of: dict[str, Any], all_: dict[str, Any]) -> str:
@@ -191,10 +197,10 @@ def write_stub(file: str) -> None:
     lines = ['"""Functions that make parts of scenes: written by withy._parts from the plugins."""', "",
              "from collections.abc import Mapping, Sequence", "from typing import Any, Literal", "",
              "from numpy.typing import NDArray", ""]
-    short = shortcuts()
-    for section in ("bodies", "hinges", "loads", "motions", "outputs"):
+    owners = _owners()
+    for section in _WITH_FUNCTIONS:
         for id_, variant in _variants(section, all_):
-            if python_name(id_) not in short:
+            if owners.get(python_name(id_)) != section:
                 continue
             required = [k for k in variant.get("required", ()) if k != "type"]
             optional = [k for k in variant["properties"] if k != "type" and k not in required]
