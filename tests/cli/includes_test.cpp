@@ -50,6 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Includes, Forbidden,
                                          Include{"plugins/modes/a.cpp", "<boost/dll/shared_library.hpp>"},
                                          Include{"plugins/host/a.cpp", "\"withy/scene/scene.hpp\""},
                                          Include{"apps/a.cpp", "<yaml-cpp/yaml.h>"},
+                                         Include{"apps/a.cpp", "<CLI/CLI.hpp>"},
                                          Include{"tests/a.cpp", "  <CLI/CLI.hpp>"}));
 
 TEST(Includes, ARoomWithoutARuleIsFound) {
@@ -69,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
     Includes, Allowed,
     testing::Values(Include{"core/model/a.hpp", "\"withy/core/plugin/b.hpp\""}, Include{"core/model/a.hpp", "<vector>"},
                     Include{"core/model/a.hpp", "\"a.hpp\""}, Include{"core/model/a.hpp", "<Eigen/Core>"},
-                    Include{"scene/a.cpp", "<yaml-cpp/yaml.h>"}, Include{"apps/a.cpp", "<CLI/CLI.hpp>"},
+                    Include{"scene/a.cpp", "<yaml-cpp/yaml.h>"}, Include{"program/a.cpp", "<CLI/CLI.hpp>"},
                     Include{"plugins/host/a.cpp", "<boost/dll/shared_library.hpp>"}));
 
 TEST(Includes, TheProjectsOwnGoAllowedDirections) {
