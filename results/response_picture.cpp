@@ -52,7 +52,7 @@ Curve equal_closed_loop(double closed_decibels, std::size_t pen) {
   return curve;
 }
 
-constexpr std::size_t curve_pen = 6, reduced_pen = 1, closed_pen = 7, point_pen = 1;
+constexpr std::size_t curve_pen = 6, closed_pen = 7, point_pen = 1;
 
 }  // namespace
 
