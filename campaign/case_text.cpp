@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "withy/campaign/derived.hpp"
 #include "withy/campaign/slurm.hpp"
@@ -28,6 +30,18 @@ std::string run_command_of(const Plan& plan, const SceneValues& scene, const std
   return text;
 }
 
+/// \param numbers of Histories
+Json histories_json(const Plan& plan, std::span<const double> numbers) {
+  const std::vector<double>& times = plan.history.times;
+  Json j = {{"t[s]", times}};
+  for (const std::string& name : history_columns(plan)) {
+    Json& column = j[name] = Json::array();
+    for (const double x : numbers.first(times.size())) column.push_back(std::isnan(x) ? Json() : Json(x));
+    numbers = numbers.subspan(times.size());
+  }
+  return j;
+}
+
 }  // namespace
 
 Json case_json(const Plan& plan, const CaseResult& result) {
@@ -38,15 +52,22 @@ Json case_json(const Plan& plan, const CaseResult& result) {
             {"results", Json::object()}};
   const std::vector<std::string> paths = varied_paths(plan), columns = kept_columns(plan);
   for (std::size_t a = 0; a < result.values.size(); ++a) j["values"][paths[a]] = value_json(result.values[a]);
-  for (std::size_t i = 0; i < result.numbers.size(); ++i) j["results"][columns[i]] = result.numbers[i];
+  if (result.completed()) {
+    for (std::size_t i = 0; i < columns.size(); ++i) j["results"][columns[i]] = result.numbers.at(i);
+    if (!plan.history.of.empty())
+      j["histories"] = histories_json(plan, std::span(result.numbers).subspan(columns.size()));
+  }
   j["command"] = run_command_of(plan, plan.base->values, result.values);
   return j;
 }
 
 std::string case_text(const Json& j) {
-  TextTable table({"<", ""});
+  TextTable table({"<of the case", "value"});
   for (const char* part : {"values", "results"})
     for (const auto& [name, value] : j.at(part).items()) table.add({name, plain_text(value)});
+  if (j.contains("histories"))
+    table.add({"over time", fmt::format("{} columns at {} times, with --json", j["histories"].size() - 1,
+                                        j["histories"]["t[s]"].size())});
   return fmt::format("case {}: {}\n\n{}\nThe same run with all its results:\n  {}\n", j.at("case").dump(),
                      j.at("status").get<std::string>(), table.str(), j.at("command").get<std::string>());
 }

@@ -22,8 +22,8 @@ class Formula {
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   /// \param values of the names, in their order
   [[nodiscard]] double operator()(std::span<const double> values) const noexcept;
-  /// The value of a formula of at most one name at x, with its first and second derivative by it, exact; of what has a
-  /// kink there those of one side.
+  /// The value of a formula of at most one name at x, with its first and second derivative by it, exact; of abs,
+  /// min and max those of one side at a kink, of sqrt and norm none (not a number) at zero.
   [[nodiscard]] std::array<double, 3> with_derivatives(double x) const noexcept;
 
   static constexpr std::size_t most_pending = 64;  ///< numbers that wait for an operation

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
 
 #include "withy/campaign/case_lanes.hpp"
+#include "withy/campaign/case_text.hpp"
 #include "withy/campaign/collect.hpp"
 #include "withy/campaign/sweep_run.hpp"
 #include "withy/results/results_error.hpp"
@@ -232,6 +234,11 @@ loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 18}}
     }
     EXPECT_FALSE(std::getline(lines, line));
     EXPECT_THAT(folder.read(std::string(evaluation) + "/histories.svg"), HasSubstr("25 and 75 %"));
+    const auto alone = case_json(plan, run_case(plan, Cases(plan), 4, plugins(), {}));
+    EXPECT_EQ(alone.at("histories").at("t[s]").size(), 11U);
+    EXPECT_NEAR(alone.at("histories").at("slide[m]").at(8).get<double>(), 0.5 * std::cos(2.4), 1e-8);
+    EXPECT_TRUE(alone.at("histories").at("slide[m]").at(9).is_null());
+    EXPECT_THAT(case_text(alone), HasSubstr("1 columns at 11 times"));
   }
 }
 
