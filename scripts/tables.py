@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """tables.py [PROGRAM]: measures the small tables of the pages that are no trades and no times, into docs/measured, and puts
-them into the pages: ends of slews (loads), convergence of mode families, a round trip of inverse dynamics (modes), the
-reference turbine (models). Half a minute."""
+them into the pages: ends of slews (loads), convergence of mode families, a round trip of inverse dynamics (modes), arms
+in segments (bodies), the reference turbine (models). A minute."""
 import csv
 import json
 import math
@@ -122,6 +122,30 @@ def arm_families():
     record("families-arm", rows, "The first four frequencies: " + ", ".join(f"{f:.6g}" for f in exact) + " rad/s.")
 
 
+def segments():
+    def tip(pieces, modes, formulation, integrator, rtol):
+        family = "orthogonal-polynomials"
+        settings = [f"bodies.link1.segments={pieces}", f"bodies.link2.segments={pieces}",
+                    f"bodies.link1.bending_y={{stiffness: 112, modes: {modes}, family: {family}}}",
+                    f"bodies.link2.bending_y={{stiffness: 14, modes: {modes}, family: {family}}}",
+                    f"integrator={{name: {integrator}, rtol: {rtol}, atol: {rtol}}}"]
+        withy("run", "scenes/driven-arm.yaml", "--formulation", formulation, *(w for s in settings for w in ("--set", s)), "--out", work / "tip", "--force",
+              status=(0,))
+        last = list(csv.DictReader(open(work / "tip" / "results.csv")))[-1]
+        return [float(last[f"payload.tip.{c}[m]"]) for c in "xy"]
+
+    cases = [("one rod with 6 polynomials, `exact`, rtol 1e-9", (1, 6, "exact", "dopri5", 1e-9)),
+             ("4 segments of 2 polynomials, `quadratic`, rtol 1e-9", (4, 2, "quadratic", "dopri5", 1e-9)),
+             ("32 segments of 1 polynomial, `linear`, `rosenbrock-w`, rtol 1e-8", (32, 1, "linear", "rosenbrock-w", 1e-8))]
+    rows, exact = [["links", "tip x, y [m]", "away from `exact`"]], None
+    for name, case in cases:
+        at = tip(*case)
+        exact = exact or at
+        off = math.dist(at, exact)
+        rows.append([name, f"{at[0]:.6f}, {at[1]:.6f}", f"{1e6 * off:.2g} µm" if off else ""])
+    record("arm-in-segments", rows)
+
+
 def round_trip():
     rows = [["rows every", "1 mode: shoulder, elbow", "tip", "2 modes: shoulder, elbow", "tip"]]
     for step in ("4 ms", "2 ms", "1 ms"):
@@ -152,6 +176,7 @@ def turbine():
 slews()
 cantilevers()
 arm_families()
+segments()
 round_trip()
 turbine()
 subprocess.run(["scripts/docs.sh"], cwd=top, check=False)
