@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """tables.py [PROGRAM]: measures the small tables of the pages that are no trades and no times, into docs/measured, and puts
 them into the pages: ends of slews (loads), convergence of mode families, a round trip of inverse dynamics (modes), arms
-in segments (bodies), the reference turbine (models). A minute."""
+in segments (bodies), the reference turbine (models). Two minutes of CPU time."""
 import csv
 import json
 import math
@@ -136,7 +136,7 @@ def segments():
 
     cases = [("one rod with 6 polynomials, `exact`, rtol 1e-9", (1, 6, "exact", "dopri5", 1e-9)),
              ("4 segments of 2 polynomials, `quadratic`, rtol 1e-9", (4, 2, "quadratic", "dopri5", 1e-9)),
-             ("32 segments of 1 polynomial, `linear`, `rosenbrock-w`, rtol 1e-8", (32, 1, "linear", "rosenbrock-w", 1e-8))]
+             ("32 segments of 1 polynomial, `linear`, `rosenbrock-w`, rtol 1e-7", (32, 1, "linear", "rosenbrock-w", 1e-7))]
     rows, exact = [["links", "tip x, y [m]", "away from `exact`"]], None
     for name, case in cases:
         at = tip(*case)
