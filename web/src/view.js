@@ -54,7 +54,8 @@ export class View {
           const ends = [body.pose.p.clone(), motion.end_of(body, i, point).clone()];
           for (const hung of body.hung) ends.push(hung.now.p.clone().copy(body.flexible ? hung.now.p : hung.rest.p).applyQuaternion(body.pose.q).add(body.pose.p));
           for (const end of ends) way.expandByPoint(end);
-          if (body.box) {
+          if (body.surface) for (const corner of body.corners) ends.push(corner.clone().applyQuaternion(body.pose.q).add(body.pose.p));
+          else if (body.box) {
             const half = Math.max(...body.box.edges) / 2, p = new Vector3().fromArray(body.box.pose).applyQuaternion(body.pose.q).add(body.pose.p);
             ends.push(p.clone().addScalar(half), p.clone().addScalar(-half));
           }

@@ -8,6 +8,7 @@ import { Motion } from '../src/motion.js';
 import { Pace } from '../src/pace.js';
 import { in_browser, opened, text } from './browser.mjs';
 import { check_gltf } from './gltf.mjs';
+import { check_landmarks } from './landmarks.mjs';
 
 const [withy, scenes, chromium] = process.argv.slice(2);
 let folder, run;
@@ -211,6 +212,7 @@ await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   check_pace();
   const troubles = [];
   await check_adapts(browser, troubles);
+  await check_landmarks(browser, folder, run, scenes, troubles);
   await check_controls(browser, troubles);
   await check_columns(browser, troubles);
   await check_several(browser, troubles);
