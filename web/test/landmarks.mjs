@@ -102,6 +102,8 @@ async function check_plots(browser, folder, troubles) {
   }, [index, rows.map(r => [times[r], pin[r] * degrees])]);
   const selector = `#charts figure:nth-of-type(${index + 1}) canvas`;
   (await distance_of(page, places, '#0072b2', selector)).forEach((d, k) => assert.ok(d <= near, `the curve is ${d} px from row ${rows[k]}`));
+  // The legend tells the numbers of the animation's time, once the page is open.
+  assert.match(await page.textContent(`#charts figure:nth-of-type(${index + 1}) .u-legend`), /pin\D*[\d.]+/);
   const labels = await page.evaluate(() => document.querySelector('#charts').charts.panels.map(panel => {
     const { chart } = panel, context = document.createElement('canvas').getContext('2d');
     context.font = '12px system-ui, sans-serif';
