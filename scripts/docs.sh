@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # docs.sh [--check]: puts the tables of docs/ in the place of what stands between `<!-- measured: NAME -->` and
 # `<!-- end -->`, from the measurements in docs/measured/NAME.txt. With --check nothing is written: a page that says
-# something else than its measurements, a mark without a file and a file that no page shows are errors.
+# something else than its measurements, a mark without a file and a file that no page shows are errors. Between
+# `<!-- file: PATH -->` and `<!-- end -->` stands that file, in the same way.
 #
 # A file of measurements: lines `command: …`, `commit: …`, `date: …`; an empty line; rows with tabs between their cells,
 # the heads first; an empty line; sentences about them. scripts/gallery.sh writes those of the gallery, benchmarks.sh
@@ -34,28 +35,41 @@ markdown() {
     }' "$1"
 }
 
+# A source as a block of code.
+listing() {
+  printf '```%s\n' "${1##*.}"
+  cat "$1" || return
+  printf '```\n'
+}
+
 bad=0
 shown=" "
 text=$(mktemp)
 block=$(mktemp)
 trap 'rm -f "$text" "$block"' EXIT
 for page in docs/*.md; do
-  names=$(sed -n 's/^<!-- measured: \([a-z0-9-]*\) -->$/\1/p' "$page")
-  [ -n "$names" ] || continue
+  marks=$(sed -n -E 's/^<!-- ((measured|file): [A-Za-z0-9_./-]+) -->$/\1/p' "$page")
+  [ -n "$marks" ] || continue
   cp "$page" "$text"
-  for name in $names; do
-    shown+="$name "
-    if ! markdown "docs/measured/$name.txt" >"$block"; then
+  while read -r mark; do
+    name=${mark#*: }
+    if [ "${mark%%:*}" = file ]; then
+      if ! listing "$name" >"$block"; then
+        echo "$page: $name cannot be read" >&2
+        bad=1
+        continue
+      fi
+    elif shown+="$name " && ! markdown "docs/measured/$name.txt" >"$block"; then
       echo "$page: docs/measured/$name.txt is missing, or does not say its command, commit and date" >&2
       bad=1
       continue
     fi
-    awk -v name="$name" -v block="$block" '
-      $0 == "<!-- measured: " name " -->" { print; while ((getline line < block) > 0) print line; skip = 1; next }
+    awk -v mark="$mark" -v block="$block" '
+      $0 == "<!-- " mark " -->" { print; while ((getline line < block) > 0) print line; skip = 1; next }
       $0 == "<!-- end -->" { skip = 0 }
       !skip { print }' "$text" >"$text.new"
     mv "$text.new" "$text"
-  done
+  done <<<"$marks"
   cmp -s "$text" "$page" && continue
   if [ -n "$check" ]; then
     diff --label "$page" --label "docs/measured" -u "$page" "$text" >&2 || true
