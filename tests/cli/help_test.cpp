@@ -110,15 +110,6 @@ TEST_P(HelpOf, AnUnknownOptionIsBadInputAndLeavesStandardOutputAlone) {
   EXPECT_NE(f.err, "");
 }
 
-TEST(Help, AnFmuWithSourcesIsRefusedWithTheReason) {
-  const Folder folder;
-  const Finished f = withy(folder, {"fmu", "scenes/commanded-arm.yaml", "--sources", "--out", "arm.fmu"});
-  EXPECT_EQ(f.status, 2);
-  EXPECT_EQ(f.out, "");
-  EXPECT_THAT(f.err, HasSubstr("an importer would compile the whole engine"));
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "arm.fmu"));
-}
-
 TEST(Help, ColoursAreForTerminalsThatWantThem) {
   const Folder folder;
   const std::string program = WITHY_PROGRAM;
