@@ -15,7 +15,9 @@ struct ResponseArguments : ConfigurationArguments, OutputArguments {
   bool csv = false;
 };
 
-ExitStatus respond(const ResponseArguments& arguments) {
+ExitStatus respond(const ResponseArguments& given) {
+  ResponseArguments arguments = given;
+  arguments.outputs = {arguments.question.output};
   const Engine engine(arguments);
   const study::Configuration c = configuration_of(engine, arguments, study::Sampling::kept);
   const auto folder =
@@ -44,7 +46,7 @@ void add_response(Options& o, ResponseArguments& a) {
           "A load of the type input, or a hinge; or a load that feeds back, or LOAD.HINGE, whose loop is opened")
       .required();
   o.value("--output,--outputs", a.question.output, "NAME",
-          "One component of an output of the scene (imu.x), a coordinate (elbow.0), or of a tip (link2.tip.y)");
+          "One component of an output (imu.x, boom.tip.velocity.vy), a coordinate (elbow.0), or tip (link2.tip.y)");
   o.value("--from", a.question.from, "HZ", "Lowest frequency; default: a decade below all poles").positive();
   o.value("--to", a.question.to, "HZ",
           "Highest frequency; default: a decade above all poles, or half the samples' rate")

@@ -74,7 +74,7 @@ void add_trade(Options& o, TradeArguments& a) {
   o.list("--lock", a.lock, "HINGE,HINGE,...", "Of frequencies: hinges that are held");
   o.list("--spin", a.spin, "HINGE=RATE,...", "Of frequencies: hinges held at a constant rate");
   o.list("--outputs,--output", a.outputs, "NAME,...",
-         "What errors are measured on: hinges, BODY.tip, BODY.tip.deflection, outputs of the scene (root, root.mz)");
+         "What errors are measured on: hinges, BODY.tip, BODY.tip.deflection, outputs (root.mz, shoulder.effort)");
   o.value("--jobs", a.jobs, "N", "Points run at once; default: one a core");
   add_output(o, a, "Folder for table and picture, and for finished points: the same command continues");
 }
