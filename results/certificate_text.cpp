@@ -1,6 +1,7 @@
 #include "withy/results/certificate_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -93,6 +94,8 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model, double
   append(e.distances.forces, 1, "N");
   if (out.empty()) return "no hinge moves and no body has a tip";
   out = fmt::format("against {}, estimated by coarse runs: {}", e.against, out);
+  if (!e.at_most.empty())
+    out += fmt::format("; roughly at most that of {}, too little for coarse runs to tell", fmt::join(e.at_most, ", "));
   if (e.distances.until < e.end)
     out += fmt::format("; up to {:.4g} s, where the estimate's budget ended", e.distances.until);
   else if (e.end < reached)

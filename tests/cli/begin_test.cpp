@@ -207,6 +207,13 @@ TEST(Check, SaysWhatIsHardlyMeant) {
   const std::string light = said({"bodies.elbow_rotor.inertia=[1e-6, 1e-6, 1e-6, 0, 0, 0]"});
   EXPECT_THAT(light, HasSubstr("/loads/control/hinges/elbow: the servo on 'elbow' drives an inertia of"));
   EXPECT_THAT(light, Not(HasSubstr("the servo on 'shoulder'")));
+  // Functions without a moment at the tip, and the remedy that is named.
+  EXPECT_THAT(said({}, "scenes/spacecraft.yaml"), HasSubstr("/bodies/right_boom: 3 bending_y and 1 bending_z modes of "
+                                                            "clamped-free carry no moment at the tip"));
+  const std::vector<std::string> polynomials = {"bodies.right_boom.bending_y.family=orthogonal-polynomials",
+                                                "bodies.right_boom.bending_z.family=orthogonal-polynomials"};
+  EXPECT_THAT(said(polynomials, "scenes/spacecraft.yaml"), Not(HasSubstr("/bodies/right_boom")));
+  EXPECT_THAT(said({}, "scenes/rotating-blade.yaml"), Not(HasSubstr("clamped-free"))) << "it carries nothing";
   Finished f = withy(folder, {"check", "scenes/new/arm.yaml", "--set", "bodies.fore_link.damping_ratio=5", "--json"});
   EXPECT_EQ(json::parse(f.out).at("remarks").size(), 1U);
   f = withy(folder, {"check", "scenes/new/arm.yaml", "--set", "bodies.fore_link.damping_ratio=5", "--strict"});
