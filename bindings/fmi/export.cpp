@@ -53,7 +53,9 @@ void check_plugins(const study::Prepared& prepared) {
 void add_scene(ZipFile& zip, const study::Prepared& prepared, const SceneOptions& options) {
   const fs::path file = prepared.scene.file;
   const std::string folder = std::string("resources/") + scene_folder + '/';
-  zip.add(std::string("resources/") + recipe_file, write_recipe(file.filename().string(), options));
+  SceneOptions asked = options;
+  asked.overrides = prepared.scene.settings;  // outputs that were asked for, too
+  zip.add(std::string("resources/") + recipe_file, write_recipe(file.filename().string(), asked));
   zip.add(folder + file.filename().string(), prepared.values.text());
   for (const FileUsed& used : prepared.scene.sources.files) {
     const fs::path name = fs::path(used.path).lexically_normal();

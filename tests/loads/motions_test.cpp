@@ -47,6 +47,19 @@ TEST(MotionLaws, of_formulas_have_exact_derivatives) {
               HasSubstr("/motions/m: has no finite coordinate and rate at 0 s"));
 }
 
+/// Up to there the run is kept; the mass matrix is not said to be the reason.
+TEST(DrivenHinge, ends_where_its_motion_does_and_names_it) {
+  LoadedScene s(turntable + "motions: {turn: {type: expression, hinge: axle, value: sqrt(1-t)*sin(t)}}\n");
+  RunOptions options;
+  options.end = 2;
+  const RunSummary run = simulate(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options,
+                                  [&](const State& state) { EXPECT_TRUE(std::isfinite(s.rate(state, "axle"))); });
+  EXPECT_EQ(run.status, RunStatus::diverged);
+  EXPECT_THAT(run.message, HasSubstr("motion 'turn' has no finite coordinate at t = 1 s"));
+  EXPECT_THAT(run.message, testing::Not(HasSubstr("mass matrix")));
+  EXPECT_NEAR(run.reached, 1, 1e-6);
+}
+
 /// Theory, section 6, taken literally.
 TEST(MotionLaws, spin_up_is_that_of_the_benchmark) {
   const auto law = motion("spin-up", {{"rate", Value(6.0)}, {"duration", Value(15.0)}});
