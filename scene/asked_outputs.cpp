@@ -60,29 +60,29 @@ std::vector<std::string> parts_of(std::string_view name) {
   return parts;
 }
 
-std::string joined(std::span<const std::string> parts) {
+std::string dotted(std::span<const std::string> parts) {
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : ".") + part;
   return text;
 }
 
-bool has(const Value& scene, const char* key, const std::string& name) {
+bool scene_has(const Value& scene, const char* key, const std::string& name) {
   const Value* part = scene.find(key);
   return part != nullptr && part->has(name);
 }
 
-bool has(const Value& scene, Of of, const std::string& object) {
+bool scene_has(const Value& scene, Of of, const std::string& object) {
   switch (of) {
     case Of::hinge:
-      return has(scene, "hinges", object);
+      return scene_has(scene, "hinges", object);
     case Of::constraint:
-      return has(scene, "constraints", object);
+      return scene_has(scene, "constraints", object);
     case Of::frame:
-      return has(scene, "bodies", object.substr(0, object.find('.')));
+      return scene_has(scene, "bodies", object.substr(0, object.find('.')));
     case Of::body:
-      return has(scene, "bodies", object);
+      return scene_has(scene, "bodies", object);
     case Of::load:
-      return has(scene, "loads", object);
+      return scene_has(scene, "loads", object);
     case Of::all:
       return object.empty();
   }
@@ -93,7 +93,7 @@ const Quantity* quantity_of(const Value& scene, const std::string& word, const s
   const Quantity* first = nullptr;
   for (const Quantity& q : quantities) {
     if (word != q.word || object.empty() != (q.of == Of::all)) continue;
-    if (has(scene, q.of, object)) return &q;
+    if (scene_has(scene, q.of, object)) return &q;
     if (first == nullptr) first = &q;
   }
   return first;
@@ -125,10 +125,10 @@ std::optional<AskedOutput> asked_output(const Value& scene, std::string_view nam
   const std::vector<std::string> parts = parts_of(name.substr(0, at));
   for (std::size_t i = parts.size(); i-- > 0;) {
     if (at < name.size() && i + 1 < parts.size()) break;  // the argument follows the quantity
-    const std::string object = joined(std::span(parts).first(i));
+    const std::string object = dotted(std::span(parts).first(i));
     const Quantity* q = quantity_of(scene, parts[i], object);
     if (q == nullptr) continue;
-    AskedOutput asked{joined(std::span(parts).first(i + 1)), Value::map({{"type", Value(std::string(q->sensor))}})};
+    AskedOutput asked{dotted(std::span(parts).first(i + 1)), Value::map({{"type", Value(std::string(q->sensor))}})};
     if (q->object != nullptr) asked.definition.set(q->object, Value(object));
     if (q->show != nullptr) asked.definition.set("show", Value(std::string(q->show)));
     if (at == name.size()) return asked;

@@ -70,4 +70,13 @@ bool check_visual(const Value& visual, const Body& body, const std::string& dire
   return true;
 }
 
+std::set<std::string> meshes_of(const Value& bodies) {
+  std::set<std::string> files;
+  for (const auto& [name, body] : bodies.members()) {
+    const Value* visual = body.find("visual");
+    if (visual != nullptr && visual->has("mesh")) files.insert(visual->text_at("mesh"));
+  }
+  return files;
+}
+
 }  // namespace withy

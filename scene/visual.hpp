@@ -2,6 +2,7 @@
 /// How a scene wants a body drawn. It changes pictures alone, and no number of a result.
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "withy/core/plugin/body.hpp"
@@ -15,5 +16,8 @@ ParameterSpec visual_spec();
 /// shape that this body cannot have. \param directory where relative names of files begin
 /// \return whether all is well
 bool check_visual(const Value& visual, const Body& body, const std::string& directory, Diagnostics& diagnostics);
+
+/// Files of the meshes that bodies name, each once, as the scene has them. \param bodies as checked
+std::set<std::string> meshes_of(const Value& bodies);
 
 }  // namespace withy
