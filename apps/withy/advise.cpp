@@ -57,7 +57,7 @@ ExitStatus advise(const AdviseArguments& arguments) {
   if (folder != nullptr) {
     write_file(*folder / "advice.json", json);
     write_figures_page(*folder / report_name, engine.prepared().title() + ": advice", words, {advice_picture(advice)});
-    if (!arguments.json) text += "\nResults: " + arguments.out + '\n';
+    if (!arguments.json) text += folder_text(arguments.out);
   }
   if (!arguments.json && !arguments.write.empty()) text += "\nwritten to " + arguments.write + '\n';
   print(text);

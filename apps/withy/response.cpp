@@ -4,6 +4,7 @@
 #include "withy/apps/withy/configuration.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/response_files.hpp"
 
 namespace withy::app {
@@ -29,7 +30,7 @@ ExitStatus respond(const ResponseArguments& given) {
     else if (arguments.csv)
       print(response_csv(r));
     else
-      print(response_text(c, r) + (folder != nullptr ? "\nResults: " + arguments.out + '\n' : ""));
+      print(response_text(c, r) + (folder != nullptr ? folder_text(arguments.out) : ""));
   } catch (const std::domain_error& e) {
     complain(e.what());
     return ExitStatus::stopped;

@@ -60,8 +60,9 @@ ExitStatus run(const RunArguments& given) {
   print(arguments.json
             ? json_text(result.json)
             : run_table(engine.prepared(), summary) + extremes_text(result.json.value("outputs", Json::object())) +
-                  certificate_text(engine.model(), summary, result.run.certificate) + "\nresults in " + arguments.out +
-                  (has_report_page() ? ", to look at in its report.html\n" : ", drawn in its results.svg\n"));
+                  certificate_text(engine.model(), summary, result.run.certificate) +
+                  (has_report_page() ? folder_text(arguments.out)
+                                     : "\nresults in " + arguments.out + ", drawn in its results.svg\n"));
   const ExitStatus status = ended(summary);
   if (status == ExitStatus::interrupted) complain("the same command with --resume goes on from there");
   return status;

@@ -45,9 +45,7 @@ ExitStatus trade(const TradeArguments& arguments) {
   std::string text = arguments.json ? json_text(j) : trade_text(title, study, results, front, engine.registry());
   if (!arguments.out.empty()) {
     write_trade(arguments.out, engine.prepared(), j, results, front, engine.registry());
-    if (!arguments.json)
-      text += fmt::format("\ntrade.csv, trade.svg and trade.json in {}{}\n", arguments.out,
-                          has_report_page() ? ", to look at in its report.html" : "");
+    if (!arguments.json) text += folder_text(arguments.out, "trade.csv, trade.svg and trade.json");
   }
   print(text);
   if (whole) return ExitStatus::done;
