@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # docs.sh [--check]: puts the tables of docs/ in the place of what stands between `<!-- measured: NAME -->` and
-# `<!-- end -->`, from the measurements in docs/measured/NAME.txt. With --check nothing is written: a page that says
-# something else than its measurements, a mark without a file and a file that no page shows are errors.
+# `<!-- end -->`, from the measurements in docs/measured/NAME.txt, and sources that tests build and run in the place of
+# what stands after `<!-- source: PATH -->`. With --check nothing is written: a page that says something else than its
+# measurements and sources, a mark without a file and a file of measurements that no page shows are errors.
 #
 # A file of measurements: lines `command: …`, `commit: …`, `machine: …`, `date: …`; an empty line; rows with tabs between their cells,
 # the heads first; an empty line; sentences about them. scripts/gallery.sh writes those of the gallery, benchmarks.sh
@@ -35,28 +36,47 @@ markdown() {
     }' "$1"
 }
 
+# A file of the sources as a block; nobody reads one of more than 150 lines.
+shown_source() {
+  [ -f "$1" ] && [ "$(wc -l <"$1")" -le 150 ] || return 1
+  local language=${1##*.}
+  case $language in hpp) language=cpp ;; txt) language=cmake ;; esac
+  printf '```%s\n' "$language"
+  cat "$1"
+  printf '```\n'
+}
+
 bad=0
+scripts/choosing.py $check || bad=1
 shown=" "
 text=$(mktemp)
 block=$(mktemp)
 trap 'rm -f "$text" "$block"' EXIT
 for page in docs/*.md; do
-  names=$(sed -n 's/^<!-- measured: \([a-z0-9-]*\) -->$/\1/p' "$page")
-  [ -n "$names" ] || continue
+  marks=$(sed -n -E 's/^<!-- (measured: [a-z0-9-]*|source: [A-Za-z0-9_./-]*) -->$/\1/p' "$page")
+  [ -n "$marks" ] || continue
   cp "$page" "$text"
-  for name in $names; do
-    shown+="$name "
-    if ! markdown "docs/measured/$name.txt" >"$block"; then
-      echo "$page: docs/measured/$name.txt is missing, or does not say its command, commit and date" >&2
-      bad=1
-      continue
+  while read -r kind name; do
+    if [ "$kind" = source: ]; then
+      shown_source "$name" >"$block" || {
+        echo "$page: there is no file $name of at most 150 lines" >&2
+        bad=1
+        continue
+      }
+    else
+      shown+="$name "
+      if ! markdown "docs/measured/$name.txt" >"$block"; then
+        echo "$page: docs/measured/$name.txt is missing, or does not say its command, commit and date" >&2
+        bad=1
+        continue
+      fi
     fi
-    awk -v name="$name" -v block="$block" '
-      $0 == "<!-- measured: " name " -->" { print; while ((getline line < block) > 0) print line; skip = 1; next }
+    awk -v mark="<!-- $kind $name -->" -v block="$block" '
+      $0 == mark { print; while ((getline line < block) > 0) print line; skip = 1; next }
       $0 == "<!-- end -->" { skip = 0 }
       !skip { print }' "$text" >"$text.new"
     mv "$text.new" "$text"
-  done
+  done <<<"$marks"
   cmp -s "$text" "$page" && continue
   if [ -n "$check" ]; then
     diff --label "$page" --label "docs/measured" -u "$page" "$text" >&2 || true

@@ -6,9 +6,12 @@
 namespace {
 
 void enroll(withy::Enrollment& enrollment) {
-  enrollment.add(example::slow_linear());
+  enrollment.add(example::tautochrone());
+  enrollment.add(example::drag());
   enrollment.add(example::cycloid());
   enrollment.add(example::speed());
+  enrollment.add(example::slow_linear());
+  enrollment.add(example::heun3());
 }
 
 }  // namespace
