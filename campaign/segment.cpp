@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/crc.hpp>
 #include <cerrno>
@@ -19,8 +20,10 @@
 namespace withy::campaign {
 namespace {
 
-constexpr std::array statuses = {"completed",      "refused",     "diverged", "singular",
-                                 "step-underflow", "interrupted", "unknown"};
+/// In the order of their numbers in records; what is none of them is written as "unknown".
+constexpr std::array<std::string_view, 8> statuses = {"completed",      "refused",     "diverged", "singular",
+                                                      "step-underflow", "interrupted", "unknown",  "inaccurate"};
+constexpr std::uint8_t unknown_status = 6;
 constexpr std::size_t most_message = 4096;
 constexpr std::size_t most_record = std::size_t{1} << 24;
 constexpr std::size_t frame_head = 16;
@@ -100,9 +103,8 @@ std::string encode(const CaseResult& result) {
   std::string bytes;
   put(bytes, result.index);
   put(bytes, result.seconds);
-  std::uint8_t status = 0;
-  while (status + 1U < statuses.size() && result.status != statuses.at(status)) ++status;
-  put(bytes, status);
+  const auto known = std::find(statuses.begin(), statuses.end(), result.status);
+  put(bytes, known == statuses.end() ? unknown_status : static_cast<std::uint8_t>(known - statuses.begin()));
   put_text(bytes, std::string_view(result.message).substr(0, most_message));
   put(bytes, static_cast<std::uint32_t>(result.values.size()));
   for (const Value& value : result.values) {

@@ -238,6 +238,8 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
                               first.use() > 1 ? "; beyond it " + first.meaning : ""));
   }
   if (certificate.steps.product > 0) line("steps", step_limit_text(certificate.steps));
+  if (summary.steps.accepted > 0 && summary.energy_scale == 0)
+    line("steps", "nothing moves: there is no energy in the tree, and no work is done on it");
   return out;
 }
 

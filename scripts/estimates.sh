@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/measured.sh
 . scripts/measured.sh
 build=${1:-build/release}
-python3 - "$build/bin/withy" <<'PYTHON' | record_table estimates "scripts/estimates.sh" "Greatest hinge error [rad, m] and tip error [mm]; the truth by \`withy compare\`. CPU time of the estimate over that of the run, the least of five of each."
+python3 - "$build/bin/withy" <<'PYTHON' | record_table estimates "scripts/estimates.sh" "Greatest hinge error [rad, m] and tip error [mm]; the truth by \`withy compare\`. CPU time of the estimate over that of the run, the least of five of each. What is at most a number is so roughly: too little for coarse runs to tell."
 import json, subprocess, sys, tempfile
 
 def withy(*arguments):

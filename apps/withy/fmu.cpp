@@ -7,7 +7,6 @@
 #include "withy/apps/withy/engine.hpp"
 #include "withy/bindings/fmi/export.hpp"
 #include "withy/results/json_text.hpp"
-#include "withy/study/input_error.hpp"
 
 namespace withy::app {
 namespace {
@@ -15,17 +14,10 @@ namespace {
 struct FmuArguments : SceneArguments {
   int version = 3;
   std::vector<std::string> kinds{"me", "cs"};
-  std::string out;       ///< empty: the scene's name with .fmu
-  bool sources = false;  ///< to be refused with the reason, which an unknown option would not have
+  std::string out;  ///< empty: the scene's name with .fmu
 };
 
 ExitStatus make_fmu(const FmuArguments& a) {
-  if (a.sources)
-    throw study::OptionError(
-        "sources",
-        "no FMU carries withy's sources: an importer would compile the whole engine, and needs the "
-        "libraries that it is built on; leave the option out, and build the FMU's library for "
-        "another platform with withy on that platform (docs/fmi.md)");
   const Engine engine(a);
   fmi::Export what;
   what.version = a.version;
@@ -63,7 +55,7 @@ void add_fmu(Options& o, FmuArguments& a) {
   o.list("--kind", a.kinds, "KIND,...", "Model exchange (me), co-simulation (cs), or both; default: both")
       .among({"me", "cs"});
   o.value("--out", a.out, "FILE", "File; default: the scene's name with .fmu, in the working folder");
-  o.flag("--sources", a.sources, "Refused: an FMU has no sources in it (docs/fmi.md)");
+  o.list("--outputs,--output", a.outputs, "NAME,...", "Outputs to add, as those of withy run");
 }
 
 }  // namespace

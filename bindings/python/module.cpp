@@ -13,6 +13,7 @@
 
 #include "withy/bindings/python/bindings.hpp"
 #include "withy/bindings/python/followed.hpp"
+#include "withy/bindings/python/python_failure.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/host/equations.hpp"
 #include "withy/host/simulation.hpp"
@@ -136,6 +137,15 @@ void raise(const char* name, Arguments&&... arguments) {
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
+/// From what a load written in Python raised, where that is the reason.
+void raise_stopped(const SimulationStopped& e) {
+  const py::object cause = withy::python::raised_by_load(e.what());
+  const py::object error = py::module_::import("withy._errors")
+                               .attr("SimulationStopped")(e.what(), cause ? "load-failed" : e.status(), e.time());
+  if (cause) PyException_SetCause(error.ptr(), cause.inc_ref().ptr());
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
+}
+
 void translate(std::exception_ptr pointer) {
   try {
     if (pointer) std::rethrow_exception(pointer);
@@ -146,7 +156,7 @@ void translate(std::exception_ptr pointer) {
   } catch (const withy::PluginError& e) {
     raise("PluginError", e.what());
   } catch (const SimulationStopped& e) {
-    raise("SimulationStopped", e.what(), e.status(), e.time());
+    raise_stopped(e);
   } catch (const withy::ResultsError& e) {
     raise("StoreError", e.what());
   } catch (const withy::FolderBusy& e) {

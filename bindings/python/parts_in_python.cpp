@@ -6,12 +6,11 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <string>
 
+#include "withy/bindings/python/python_failure.hpp"
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/plugin/registry.hpp"
@@ -42,34 +41,6 @@ const py::object* object_of(const Value& p, const MakeContext& context) {
 
 namespace {
 
-/// What Python code has raised, once: what it then gives means nothing, and the run is to stop.
-class Failure {
- public:
-  [[nodiscard]] bool any() const { return failed_; }
-  void forget() { failed_ = false; }
-  [[nodiscard]] std::string text() const {
-    const std::lock_guard lock(mutex_);
-    return failed_ ? text_ : std::string();
-  }
-  /// With the interpreter held.
-  void note(const py::error_already_set& e) {
-    if (e.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();  // raised again where the call has come back
-    note(std::string(e.what()));
-  }
-  void note(std::string text) {
-    if (const std::size_t traceback = text.find("\n\nAt:\n"); traceback != std::string::npos)
-      text.replace(traceback, 6, ", at ");
-    const std::lock_guard lock(mutex_);
-    if (!failed_) text_ = "Python: " + text;
-    failed_ = true;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::atomic<bool> failed_ = false;
-  std::string text_;
-};
-
 Array copied(std::span<const double> numbers) {
   return Array(static_cast<py::ssize_t>(numbers.size()), numbers.data());
 }
@@ -84,25 +55,11 @@ void take(const py::object& given, std::span<double> to, const char* what) {
   std::copy_n(numbers.data(), to.size(), to.begin());
 }
 
-/// Calls Python; what it raises is noted, and false returned.
-template <class Act>
-bool guarded_call(Failure& failure, Act&& act) noexcept {
-  const py::gil_scoped_acquire held;
-  try {
-    act();
-    return true;
-  } catch (const py::error_already_set& e) {
-    failure.note(e);
-  } catch (const std::exception& e) {
-    failure.note(e.what());
-  }
-  return false;
-}
-
 /// A controller in Python: `effort(t, w)`, or with states z, `rates(t, w, z)` and `effort(t, w, z)`.
 class PythonBlock final : public ControlBlock, public ForeignLaw {
  public:
-  PythonBlock(py::object object, std::size_t inputs, std::size_t outputs) : inputs_(inputs), outputs_(outputs) {
+  PythonBlock(py::object object, int line, std::size_t inputs, std::size_t outputs)
+      : inputs_(inputs), outputs_(outputs), failure_(line) {
     effort_ = py::hasattr(object, "effort") ? object.attr("effort") : object;
     if (PyCallable_Check(effort_.ptr()) == 0) throw py::type_error("need a function, or an object with effort()");
     if (py::hasattr(object, "states")) states_ = object.attr("states").cast<std::vector<std::string>>();
@@ -121,15 +78,16 @@ class PythonBlock final : public ControlBlock, public ForeignLaw {
   void set_sample(double period) override { period_ = period; }
   void begin(double t, std::span<const double> w, std::span<double> z) const noexcept override {
     std::fill(z.begin(), z.end(), 0.0);
-    if (begin_) guarded_call(failure_, [&] { take(begin_(t, copied(w)), z, "begin()"); });
+    if (begin_) guarded_call(failure_, t, [&] { take(begin_(t, copied(w)), z, "begin()"); });
   }
   void rates(double t, std::span<const double> w, std::span<const double> z,
              std::span<double> rates) const noexcept override {
-    if (!states_.empty()) call(rates, [&] { take(rates_(t, copied(w), copied(z)), rates, "rates()"); });
+    if (!states_.empty()) call(rates, t, [&] { take(rates_(t, copied(w), copied(z)), rates, "rates()"); });
   }
   void output(double t, std::span<const double> w, std::span<const double> z,
               std::span<double> v) const noexcept override {
-    call(v, [&] { take(states_.empty() ? effort_(t, copied(w)) : effort_(t, copied(w), copied(z)), v, "effort()"); });
+    call(v, t,
+         [&] { take(states_.empty() ? effort_(t, copied(w)) : effort_(t, copied(w), copied(z)), v, "effort()"); });
   }
   /// One step of the explicit Euler method.
   void advance(double t, std::span<const double> w, std::span<double> z) const noexcept override {
@@ -145,9 +103,9 @@ class PythonBlock final : public ControlBlock, public ForeignLaw {
 
  private:
   template <class Act>
-  void call(std::span<double> results, Act&& act) const noexcept {
+  void call(std::span<double> results, double t, Act&& act) const noexcept {
     std::fill(results.begin(), results.end(), 0.0);
-    if (!failure_.any()) guarded_call(failure_, act);
+    if (!failure_.any()) guarded_call(failure_, t, act);
     if (failure_.any()) std::fill(results.begin(), results.end(), std::nan(""));
   }
 
@@ -169,7 +127,8 @@ Vector3 vector_of(const py::handle& given, const char* what) {
 /// `wrench(t, position, R, velocity, angular_velocity)` gives a moment and a force, all in world axes.
 class BoundPythonWrench final : public FrameLoad, public ForeignLaw {
  public:
-  BoundPythonWrench(FrameIndex frame, py::object object) : FrameLoad({frame}), object_(std::move(object)) {}
+  BoundPythonWrench(FrameIndex frame, py::object object, int line)
+      : FrameLoad({frame}), object_(std::move(object)), failure_(line) {}
   BoundPythonWrench(const BoundPythonWrench&) = delete;
   BoundPythonWrench& operator=(const BoundPythonWrench&) = delete;
   ~BoundPythonWrench() override {
@@ -179,7 +138,7 @@ class BoundPythonWrench final : public FrameLoad, public ForeignLaw {
   void wrenches(double t, std::span<const FrameMotion> motions, std::span<Wrench> wrenches) const noexcept override {
     wrenches[0] = {};
     if (!failure_.any())
-      guarded_call(failure_, [&] {
+      guarded_call(failure_, t, [&] {
         const FrameMotion& m = motions[0];
         Array R({3, 3});
         for (int i = 0; i < 9; ++i) R.mutable_data()[i] = m.R(i / 3, i % 3);
@@ -203,14 +162,16 @@ class BoundPythonWrench final : public FrameLoad, public ForeignLaw {
 
 class PythonWrench final : public Load {
  public:
-  PythonWrench(std::string frame, std::string object) : frame_(std::move(frame)), object_(std::move(object)) {}
+  PythonWrench(std::string frame, std::string object, int line)
+      : frame_(std::move(frame)), object_(std::move(object)), line_(line) {}
   std::unique_ptr<BoundLoad> bind(const Model& model) const override {
     const py::gil_scoped_acquire held;
-    return std::make_unique<BoundPythonWrench>(frame_index(model, frame_), objects().at(object_));
+    return std::make_unique<BoundPythonWrench>(frame_index(model, frame_), objects().at(object_), line_);
   }
 
  private:
   std::string frame_, object_;
+  int line_;
 };
 
 std::unique_ptr<Load> make_python_load(const Value& p, const MakeContext& context) {
@@ -223,7 +184,8 @@ std::unique_ptr<Load> make_python_load(const Value& p, const MakeContext& contex
         context.diagnostics.error(p.at(key).place(), "a load at a frame has none");
         return nullptr;
       }
-    if (py::hasattr(*object, "wrench")) return std::make_unique<PythonWrench>(p.text_at("frame"), p.text_at("object"));
+    if (py::hasattr(*object, "wrench"))
+      return std::make_unique<PythonWrench>(p.text_at("frame"), p.text_at("object"), p.place().line);
     context.diagnostics.error(p.place(), "the object has no wrench(), which a load at a frame needs");
     return nullptr;
   }
@@ -233,7 +195,8 @@ std::unique_ptr<Load> make_python_load(const Value& p, const MakeContext& contex
   ends->rate_too = !p.has("of") && p.has("hinge");
   const std::size_t inputs = p.has("of") ? ends->of.size() : (p.has("hinge") ? 2 : 0);
   try {
-    auto block = std::make_shared<PythonBlock>(*object, inputs, std::max<std::size_t>(1, ends->to.size()));
+    auto block =
+        std::make_shared<PythonBlock>(*object, p.place().line, inputs, std::max<std::size_t>(1, ends->to.size()));
     block->set_sample(ends->sample);
     return make_control(std::move(*ends), std::move(block));
   } catch (const std::exception& e) {

@@ -46,6 +46,15 @@ std::map<std::uint64_t, std::string> records(const std::filesystem::path& path) 
   return all;
 }
 
+TEST(Segments, KeepEveryStatusThatARunCanHave) {
+  CaseResult r = made(1);
+  for (const RunStatus status : {RunStatus::completed, RunStatus::inaccurate, RunStatus::diverged, RunStatus::singular,
+                                 RunStatus::step_underflow, RunStatus::interrupted}) {
+    r.status = name(status);
+    EXPECT_EQ(decode(encode(r))->status, name(status));
+  }
+}
+
 TEST(Segments, AnyDamageCostsTheRecordsItTouchesAndNoOther) {
   const PlanFolder folder;
   const std::filesystem::path path = folder / "a.segment";

@@ -101,6 +101,25 @@ TEST(Certificate, OfAQuadraticRunIsAgainstExactAndEstimatesOnDemand) {
 }
 
 // A stiff boom with a loose tolerance: the step is what the highest mode allows.
+TEST(Certificate, SaysThatNothingMovesAndNotWhatLimitsTheStep) {
+  const std::vector<std::string> still = {"scenes/spinning-boom.yaml",
+                                          "--set",
+                                          "initial={}",
+                                          "--set",
+                                          "gravity=[0, 0, 0]",
+                                          "--set",
+                                          "loads={}",
+                                          "--set",
+                                          "motions={}",
+                                          "--set",
+                                          "time.end=5"};
+  EXPECT_EQ(run_json(still).at("certificate").at("steps").at("limited_by"), "unknown");
+  std::vector<std::string> call = {"run"};
+  call.insert(call.end(), still.begin(), still.end());
+  const Folder folder;
+  EXPECT_THAT(withy(folder, call).out, testing::HasSubstr("nothing moves: there is no energy in the tree"));
+}
+
 TEST(Certificate, SaysThatStabilityLimitsTheStep) {
   const std::vector<std::string> stiff = {"scenes/two-link-slew.yaml",
                                           "--set",

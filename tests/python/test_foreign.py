@@ -1,10 +1,13 @@
 """Loads and bodies written in Python are those of withy that say the same; what they raise ends a run with its text."""
 
+import multiprocessing
 import pathlib
 import pickle
+import re
 import subprocess
 import sys
 import threading
+import traceback
 
 import numpy
 import pytest
@@ -74,19 +77,52 @@ def test_what_python_raises_is_the_reason_of_the_end():
         return 0.0
 
     for options in ({}, {"sample": 0.01}):
-        result = turntable(law=withy.python_load(failing, hinge="axle", **options)).run()
-        assert result.status == "diverged"
-        assert "load 'law': Python: ValueError: no wind today" in result.message
+        scene = turntable(law=withy.python_load(failing, hinge="axle", **options))
+        result = scene.run()
+        assert result.status == result.summary["status"] == "load-failed"
+        words = re.search(r"load 'law': written in Python \(line (\d+) of the scene\), raised ValueError at t = 0\.3\d* s: "
+                          r"no wind today \(test_foreign\.py, line \d+\)\.$", result.message)
+        assert words and "type: python" in "".join(scene.to_yaml().splitlines()[int(words[1]) - 1:][:2])
+        assert type(result.cause) is ValueError and str(result.cause) == "no wind today"
+        assert "in failing" in "".join(traceback.format_tb(result.cause.__traceback__))
         assert result.t[-1] < 0.32 and numpy.isfinite(result["axle"]).all()
+    assert turntable(law=withy.python_load(lambda t, w: 0.0, hinge="axle")).run().cause is None
     wrong = turntable(law=withy.python_load(lambda t, w: [1, 2], hinge="axle")).run()
-    assert "effort() gives 2 numbers; need 1" in wrong.message
+    assert wrong.status == "load-failed" and "effort() gives 2 numbers; need 1" in wrong.message
     sim = withy.Simulation(turntable(law=withy.python_load(failing, hinge="axle")))
-    with pytest.raises(withy.SimulationStopped, match="no wind today"):
+    with pytest.raises(withy.SimulationStopped, match="no wind today") as stopped:
         sim.step(1.0)
+    assert stopped.value.status == "load-failed" and type(stopped.value.__cause__) is ValueError
     with pytest.raises(withy.SceneError, match="this process has no object of Python 'Servo-1'"):
         turntable(law={"type": "python", "object": "Servo-1", "hinge": "axle"}).check()
     with pytest.raises(withy.SceneError, match="has no wrench"):
         turntable(law=withy.python_load(failing, frame="arm.tip")).check()
+
+
+class Mute(Exception):
+    def __str__(self):
+        raise RuntimeError("no text")
+
+
+def test_an_exception_without_a_text_ends_a_run_too():
+    def mute(t, w):
+        raise Mute
+
+    result = turntable(law=withy.python_load(mute, hinge="axle")).run()
+    assert result.status == "load-failed" and "raised an exception at t = 0 s" in result.message
+    assert type(result.cause) is Mute
+
+
+def test_a_forked_process_has_the_scenes_and_the_objects_of_before():
+    scene = turntable(law=withy.python_load(Servo(), of="axle", hinge="axle"))
+    expected = scene.run()["axle"]
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        for got in pool.map(axle_of, [scene] * 4):
+            assert numpy.array_equal(got, expected)
+
+
+def axle_of(scene):
+    return scene.run()["axle"]
 
 
 def test_who_goes_back_before_a_failure_goes_on():
@@ -108,7 +144,7 @@ def test_who_goes_back_before_a_failure_goes_on():
         sim.restore(middle)
         for why in ("first", "second"):
             down[:] = [why]
-            with pytest.raises(withy.SimulationStopped, match=f"load 'law': Python: ValueError: {why}"):
+            with pytest.raises(withy.SimulationStopped, match=f"load 'law': .* raised ValueError at t = 0\\.\\d* s: {why}"):
                 sim.step(0.5)
             sim.restore(middle)
         down.clear()
@@ -116,7 +152,7 @@ def test_who_goes_back_before_a_failure_goes_on():
         assert sim.outputs["axle"] == there
     equations = turntable(law=withy.python_load(moody, hinge="axle")).compile()
     down[:] = ["no"]
-    with pytest.raises(withy.SimulationStopped, match="load 'law': Python: ValueError: no"):
+    with pytest.raises(withy.SimulationStopped, match="load 'law': .* raised ValueError at t = 0.4 s: no "):
         equations.derivatives(0.4, equations.y0)
     assert numpy.isfinite(equations.derivatives(0.2, equations.y0)).all()
 

@@ -20,8 +20,9 @@ class SimulationStopped(RuntimeError):
     """A simulation cannot go on; the text is the physical reason.
 
     Attributes:
-        status: as in run.json: ``diverged``, ``singular``, ``step-underflow`` or ``interrupted``.
+        status: as in run.json: ``diverged``, ``singular``, ``step-underflow``, ``interrupted`` or ``load-failed``.
         time: of the last accepted state [s], where the simulation stands.
+        __cause__: what a load written in Python raised, where that is the reason.
     """
 
     def __init__(self, message: str, status: str = "", time: float = 0.0) -> None:

@@ -32,9 +32,9 @@ def python_load(law: Callable[..., Any] | object, *, of: str | Sequence[str] | N
     At a ``frame`` the method ``wrench(t, position, R, velocity, angular_velocity)`` gives the moment [N m] and the force [N],
     three numbers each; all of them, and R's columns, are in world axes.
 
-    An exception stops the run: ``result.message`` has its text. Laws must depend on their arguments alone: integrators ask
-    for states that they then reject. The object stays as long as the process, which alone knows it: a scene that is pickled
-    goes to forked processes, and is refused by others.
+    An exception stops the run: its status is ``load-failed``, its message has the text, and ``result.cause`` is the exception.
+    Laws must depend on their arguments alone: integrators ask for states that they then reject. The object stays as long as
+    the process, which alone knows it: a scene that is pickled goes to forked processes, and is refused by others.
 
     Args:
         law: the function or the object.

@@ -28,20 +28,22 @@ class Result(Mapping):
     """The table of a run by the names of its columns, those of results.csv: ``result["shoulder"]``.
 
     Attributes:
-        status: ``completed``, ``diverged``, ``singular``, ``step-underflow`` or ``interrupted``.
+        status: ``completed``, ``diverged``, ``singular``, ``step-underflow``, ``interrupted`` or ``load-failed``.
         message: the physical reason of a bad end, or what a completed run should not keep to itself; else empty.
         units: SI unit of each column by its name; empty for modal coordinates.
         table: all numbers [rows, columns], in SI units.
         summary: the content of run.json: peaks, events, steps, certificate.
+        cause: where the status is ``load-failed``, the exception that a load written in Python raised; else None.
     """
 
     def __init__(self, status: str, message: str, names: list[str], units: list[str], table: numpy.ndarray,
-                 text: str) -> None:
+                 text: str, cause: BaseException | None = None) -> None:
         self.status = status
         self.message = message
         self.units = dict(zip(names, units))
         self.table = table
-        self.summary: dict[str, Any] = json.loads(text)
+        self.cause = cause
+        self.summary: dict[str, Any] = {**json.loads(text), "status": status}
         self._index = {name: i for i, name in enumerate(names)}
 
     @property
