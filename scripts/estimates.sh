@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/measured.sh
 . scripts/measured.sh
 build=${1:-build/release}
-python3 - "$build/bin/withy" <<'PYTHON' | record_table estimates "scripts/estimates.sh" "Greatest hinge error [rad, m] and tip error [mm]; the truth by \`withy compare\`. CPU time of the estimate over that of the run, the least of five of each."
+python3 - "$build/bin/withy" <<'PYTHON' | record_table estimates "scripts/estimates.sh" "Greatest hinge error [rad, m] and tip error [mm]; the truth by \`withy compare\`. CPU time of the estimate over that of the run, the least of five of each. What is at most a number is so roughly: too little for coarse runs to tell."
 import json, subprocess, sys, tempfile
 
 def withy(*arguments):
@@ -33,7 +33,11 @@ for scene, formulation in cases:
         costs[when] = f"{100 * min(e for _, e in seconds) / least:.1f} %" if claimed else "said to be more"
     truth = withy("compare", file, "--formulations", formulation)["runs"][0]["distance"]
     def beside(kind, factor):
-        said = "none" if not claimed else f"{factor * greatest(claimed[kind]):.3g}"
+        if not claimed:
+            said = "none"
+        else:
+            bound = max(claimed[kind], key=claimed[kind].get, default="") in claimed["at_most"]
+            said = ("at most " if bound else "") + f"{factor * greatest(claimed[kind]):.3g}"
         return f"{said} / {factor * greatest(truth[kind]):.3g}"
     print(f"`{scene}`", f"`{formulation}`", beside("hinges", 1), beside("tips", 1e3), costs["auto"], costs["always"],
           sep="\t")
