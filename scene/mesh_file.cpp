@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t stl_head = 80, stl_facet = 50;
-constexpr std::uintmax_t most_bytes = std::uintmax_t{64} << 20;
+constexpr std::uintmax_t most_mesh_bytes = std::uintmax_t{64} << 20;
 
 [[noreturn]] void refuse(const std::string& why) { throw std::domain_error(why); }
 
@@ -178,8 +178,8 @@ TriangleMesh stl(std::string_view bytes) {
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(file, none)) refuse(fmt::format("there is no file '{}'", file.string()));
-  if (std::filesystem::file_size(file, none) > most_bytes)
-    refuse(fmt::format("need a file of at most {} MiB", most_bytes >> 20));
+  if (std::filesystem::file_size(file, none) > most_mesh_bytes)
+    refuse(fmt::format("need a file of at most {} MiB", most_mesh_bytes >> 20));
   std::ifstream stream(file, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
   if (!stream) refuse(fmt::format("'{}' cannot be read", file.string()));
