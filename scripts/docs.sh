@@ -46,6 +46,7 @@ shown_source() {
 }
 
 bad=0
+scripts/choosing.py $check || bad=1
 shown=" "
 text=$(mktemp)
 block=$(mktemp)

@@ -3,8 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -32,25 +36,112 @@ std::vector<std::pair<std::string, std::string>> blocks(const std::string& page)
   return all;
 }
 
-TEST(Tutorial, EveryCommandRunsOnTheScenesThatItHasWritten) {
-  const Folder folder;
-  std::ifstream in(WITHY_SOURCES "/docs/tutorial.md");
-  const std::string page{std::istreambuf_iterator<char>(in), {}}, program = WITHY_PROGRAM;
-  int commands = 0;
-  for (const auto& [language, text] : blocks(page)) {
-    // A file says its name in its first line.
-    if (language == "yaml") folder.write(text.substr(2, text.find('\n') - 2), text);
-    if (language != "sh") continue;
-    for (const std::string& line : lines(text)) {
-      ASSERT_TRUE(line.starts_with("withy ")) << line;
-      const Finished f = Process(folder, {"/bin/sh", "-c", '\'' + program + "' " + line.substr(6)}).wait();
-      EXPECT_EQ(f.status, 0) << line << '\n' << f.err;
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<std::string> pages() {
+  std::vector<std::string> all = {"README"};
+  for (const auto& entry : std::filesystem::directory_iterator(WITHY_SOURCES "/docs"))
+    if (entry.path().extension() == ".md") all.push_back("docs/" + entry.path().stem().string());
+  return all;
+}
+
+/// Runs the lines of a block as a user would type them, `withy` being the program and ~ the folder. A line that says
+/// so in its comment ends with another status than 0.
+void run_lines(const Folder& folder, std::string block) {
+  for (std::size_t at; (at = block.find("\\\n")) != std::string::npos;) block.replace(at, 2, "");
+  for (const std::string& line : lines(block)) {
+    if (line.empty() || line.starts_with('#')) continue;
+    const std::vector<std::string> w = words(line);
+    if (w[0].starts_with("scripts/")) {
+      EXPECT_TRUE(std::filesystem::exists(WITHY_SOURCES "/" + w[0])) << line;
+      continue;
+    }
+    if (w[0] == "xdg-open") {
+      EXPECT_TRUE(std::filesystem::exists(folder.path() / w[1])) << line;
+      continue;
+    }
+    ASSERT_TRUE(w[0] == "withy" || w[0] == "build/release/bin/withy" || w[0] == "mkdir")
+        << line << "\nrun by no test: its block says which test runs it, as ```sh test=FILE";
+    const std::string built = "build/release/bin/", program = WITHY_PROGRAM;
+    const std::string command = "withy() { '" + program + "' \"$@\"; }; HOME=$PWD; " +
+                                (line.starts_with(built) ? line.substr(built.size()) : line);
+    const std::size_t status = line.find("exit status ");
+    const Finished f = Process(folder, {"/bin/sh", "-c", command}).wait();
+    EXPECT_EQ(f.status, status == std::string::npos ? 0 : std::stoi(line.substr(status + 12))) << line << '\n' << f.err;
+    if (f.status == 0) {
       EXPECT_EQ(f.err, "") << line;
-      ++commands;
     }
   }
-  EXPECT_GE(commands, 12);
 }
+
+class Pages : public testing::TestWithParam<std::string> {};
+
+TEST_P(Pages, EveryCommandRunsOnTheScenesThatItHasWritten) {
+  const Folder folder;
+  for (const auto& [language, text] : blocks(text_of(WITHY_SOURCES "/" + GetParam() + ".md"))) {
+    const std::string first = text.substr(0, text.find('\n'));
+    // A file says its name in its first line.
+    if (language == "yaml" && first.starts_with("# ") && first.ends_with(".yaml"))
+      folder.write(first.substr(2), text);
+    else if (language == "sh")
+      run_lines(folder, text);
+    else if (language.starts_with("sh test="))
+      EXPECT_TRUE(std::filesystem::exists(WITHY_SOURCES "/" + language.substr(8))) << language;
+    else
+      EXPECT_FALSE(language.empty() && first.starts_with("withy ") && std::islower(first[6]))
+          << first << "\nis a command: its block is one of sh";
+  }
+}
+
+/// What stands in a line between single backquotes.
+std::vector<std::string> quoted(const std::string& line) {
+  std::vector<std::string> found;
+  for (std::size_t from = line.find('`'); from != std::string::npos;) {
+    const std::size_t to = line.find('`', from + 1);
+    if (to == std::string::npos) break;
+    found.push_back(line.substr(from + 1, to - from - 1));
+    from = line.find('`', to + 1);
+  }
+  return found;
+}
+
+TEST_P(Pages, CommandsInRunningTextExistWithTheirOptions) {
+  const Folder folder;
+  std::map<std::string, std::string> help;
+  bool inside = false;
+  for (const std::string& line : lines(text_of(WITHY_SOURCES "/" + GetParam() + ".md"))) {
+    if (line.starts_with("```")) inside = !inside;
+    if (inside) continue;
+    for (const std::string& phrase : quoted(line)) {
+      const std::vector<std::string> w = words(phrase);
+      if (w.size() < 2 || w[0] != "withy" || w[1].starts_with("--")) continue;
+      const std::size_t deep = w[1] == "sweep" && w.size() > 2 && !w[2].starts_with('-') ? 3 : 2;
+      std::vector<std::string> asked(w.begin() + 1, w.begin() + static_cast<std::ptrdiff_t>(deep));
+      asked.emplace_back("--help");
+      auto [known, first] = help.try_emplace(phrase.substr(0, phrase.find(" -")));
+      if (first) {
+        const Finished f = withy(folder, asked);
+        EXPECT_EQ(f.status, 0) << phrase << '\n' << f.err;
+        known->second = f.out;
+      }
+      for (const std::string& word : w) {
+        if (word.starts_with("--")) {
+          EXPECT_THAT(known->second, HasSubstr(word.substr(0, word.find_first_of("=,;")))) << phrase;
+        }
+      }
+    }
+  }
+}
+
+std::string page_name(const testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param.substr(info.param.find('/') + 1);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(Documentation, Pages, testing::ValuesIn(pages()), page_name);
 
 TEST(New, EveryKindIsPlausibleAndRuns) {
   const Folder folder;
