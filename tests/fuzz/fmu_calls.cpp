@@ -139,49 +139,11 @@ std::vector<std::function<fmi2Status()>> calls2(fmi2Component c, Arguments& a, s
       }};
 }
 
-std::vector<std::function<fmi3Status()>> calls3(fmi3Instance c, Arguments& a, std::array<fmi3FMUState, 2>& states) {
+/// Those of model exchange.
+std::vector<std::function<fmi3Status()>> integrator_calls3(fmi3Instance c, Arguments& a) {
   Choices& choose = a.choose;
   const std::size_t n = carried().states;
-  return {[c, &choose] {
-            return fmi3EnterInitializationMode(c, choose.rarely(), choose.number(), 0.1 * choose.number(), false, 0);
-          },
-          [c] { return fmi3ExitInitializationMode(c); },
-          [c] { return fmi3Terminate(c); },
-          [c, &a] { return a.t = 0, fmi3Reset(c); },
-          [c, &a, &choose] {
-            const auto r = a.references();
-            return fmi3GetFloat64(c, r.data(), r.size(), a.array(), choose.count(r.size()));
-          },
-          [c, &a, &choose] {
-            const auto r = a.references();
-            return fmi3SetFloat64(c, r.data(), r.size(), a.array(), choose.count(r.size()));
-          },
-          [c, &choose, &states] { return fmi3GetFMUState(c, choose.maybe(&states[choose.below(2)])); },
-          [c, &choose, &states] { return fmi3SetFMUState(c, choose.rarely() ? &states : states[choose.below(2)]); },
-          [c, &choose, &states] { return fmi3FreeFMUState(c, choose.maybe(&states[choose.below(2)])); },
-          [c, &a, &choose, &states] {
-            fmi3FMUState state = states[choose.below(2)];
-            const fmi3Status sized = fmi3SerializedFMUStateSize(c, state, &a.written);
-            a.bytes.resize(std::max(a.bytes.size(), a.written));
-            return sized != fmi3OK ? sized : fmi3SerializeFMUState(c, state, a.data(), a.written);
-          },
-          [c, &choose, &a, &states] {
-            if (choose.rarely()) a.bytes[choose.below(256)] ^= 1;
-            fmi3FMUState& state = states[choose.below(2)];
-            fmi3FreeFMUState(c, &state);
-            return fmi3DeserializeFMUState(c, a.data(), a.written, &state);
-          },
-          [c, &a, &choose] {
-            const auto u = a.references(), k = a.references();
-            return fmi3GetDirectionalDerivative(c, u.data(), u.size(), k.data(), k.size(), a.array(),
-                                                choose.count(k.size()), a.numbers.data() + 32, u.size());
-          },
-          [c, &a, &choose] {
-            const auto u = a.references(), k = a.references();
-            return fmi3GetAdjointDerivative(c, u.data(), u.size(), k.data(), k.size(), a.array(),
-                                            choose.count(u.size()), a.numbers.data() + 32, k.size());
-          },
-          [c] { return fmi3EnterEventMode(c); },
+  return {[c] { return fmi3EnterEventMode(c); },
           [c, &choose] {
             bool b[5] = {};
             double next = 0;
@@ -196,15 +158,62 @@ std::vector<std::function<fmi3Status()>> calls3(fmi3Instance c, Arguments& a, st
           [c, &a, &choose, n] { return fmi3SetContinuousStates(c, a.array(), choose.count(n)); },
           [c, &a, &choose, n] { return fmi3GetContinuousStateDerivatives(c, a.array(), choose.count(n)); },
           [c, &a, &choose] { return fmi3GetEventIndicators(c, a.array(), choose.count(carried().indicators)); },
-          [c, &a, &choose, n] { return fmi3GetContinuousStates(c, a.array(), choose.count(n)); },
-          [c, &a, &choose] {
-            bool b[3] = {};
-            double last = 0;
-            const double h = a.step();
-            const fmi3Status s = fmi3DoStep(c, a.t, h, true, b, b + 1, b + 2, choose.maybe(&last));
-            if (s == fmi3OK) a.t += h;
-            return s;
-          }};
+          [c, &a, &choose, n] { return fmi3GetContinuousStates(c, a.array(), choose.count(n)); }};
+}
+
+std::vector<std::function<fmi3Status()>> calls3(fmi3Instance c, Arguments& a, std::array<fmi3FMUState, 2>& states) {
+  Choices& choose = a.choose;
+  std::vector<std::function<fmi3Status()>> all = integrator_calls3(c, a);
+  const std::vector<std::function<fmi3Status()>> others{
+      [c, &choose] {
+        return fmi3EnterInitializationMode(c, choose.rarely(), choose.number(), 0.1 * choose.number(), false, 0);
+      },
+      [c] { return fmi3ExitInitializationMode(c); },
+      [c] { return fmi3Terminate(c); },
+      [c, &a] { return a.t = 0, fmi3Reset(c); },
+      [c, &a, &choose] {
+        const auto r = a.references();
+        return fmi3GetFloat64(c, r.data(), r.size(), a.array(), choose.count(r.size()));
+      },
+      [c, &a, &choose] {
+        const auto r = a.references();
+        return fmi3SetFloat64(c, r.data(), r.size(), a.array(), choose.count(r.size()));
+      },
+      [c, &choose, &states] { return fmi3GetFMUState(c, choose.maybe(&states[choose.below(2)])); },
+      [c, &choose, &states] { return fmi3SetFMUState(c, choose.rarely() ? &states : states[choose.below(2)]); },
+      [c, &choose, &states] { return fmi3FreeFMUState(c, choose.maybe(&states[choose.below(2)])); },
+      [c, &a, &choose, &states] {
+        fmi3FMUState state = states[choose.below(2)];
+        const fmi3Status sized = fmi3SerializedFMUStateSize(c, state, &a.written);
+        a.bytes.resize(std::max(a.bytes.size(), a.written));
+        return sized != fmi3OK ? sized : fmi3SerializeFMUState(c, state, a.data(), a.written);
+      },
+      [c, &choose, &a, &states] {
+        if (choose.rarely()) a.bytes[choose.below(256)] ^= 1;
+        fmi3FMUState& state = states[choose.below(2)];
+        fmi3FreeFMUState(c, &state);
+        return fmi3DeserializeFMUState(c, a.data(), a.written, &state);
+      },
+      [c, &a, &choose] {
+        const auto u = a.references(), k = a.references();
+        return fmi3GetDirectionalDerivative(c, u.data(), u.size(), k.data(), k.size(), a.array(),
+                                            choose.count(k.size()), a.numbers.data() + 32, u.size());
+      },
+      [c, &a, &choose] {
+        const auto u = a.references(), k = a.references();
+        return fmi3GetAdjointDerivative(c, u.data(), u.size(), k.data(), k.size(), a.array(), choose.count(u.size()),
+                                        a.numbers.data() + 32, k.size());
+      },
+      [c, &a, &choose] {
+        bool b[3] = {};
+        double last = 0;
+        const double h = a.step();
+        const fmi3Status s = fmi3DoStep(c, a.t, h, true, b, b + 1, b + 2, choose.maybe(&last));
+        if (s == fmi3OK) a.t += h;
+        return s;
+      }};
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
 }
 
 /// Half of the sequences begin where something can happen.
