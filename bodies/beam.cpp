@@ -74,7 +74,8 @@ class Reader {
       for (std::size_t i = 0; i < n; ++i) strain(k, static_cast<Eigen::Index>(i)) = of[i];
     }
     const Eigen::VectorXd even = Eigen::VectorXd::Ones(points);
-    const double miss = (strain * strain.completeOrthogonalDecomposition().solve(even) - even).norm() / even.norm();
+    const Eigen::VectorXd sum = strain.completeOrthogonalDecomposition().solve(even);
+    const double miss = (strain * sum - even).norm() / even.norm();
     if (miss < 1e-6) return true;
     context_.diagnostics.error(
         family.place(), fmt::format("these {} modes of a segment cannot be strained evenly, so that the segments would "

@@ -17,6 +17,7 @@
 #include "withy/campaign/trials.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/provenance.hpp"
+#include "withy/scene/asked_outputs.hpp"
 #include "withy/scene/describe.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/sha256.hpp"
@@ -90,11 +91,22 @@ class PlanBuilder {
           values.set(path, value, origin_of(plan_.file, reader_.key_place("/set/" + path)));
         plan_.set = set->members();
       }
+      ask_kept(values);
       return values;
     } catch (const std::system_error& e) {
       reader_.error(name->place(), e.what());
     }
     return {};
+  }
+
+  /// Adds outputs to the scene that are kept and whose names say what they are.
+  void ask_kept(SceneValues& values) {
+    for (const auto* names : {&plan_.final, &plan_.peak, &plan_.history.of})
+      for (const std::string& name : *names) {
+        if (defines_output(values.root(), name) || !asked_output(values.root(), name)) continue;
+        values.set("outputs", Value(name), origin_of(plan_.file, reader_.key_place("/keep")));
+        plan_.set.emplace_back("outputs", Value(name));
+      }
   }
 
   /// A list of names, or a map with them and an interval.

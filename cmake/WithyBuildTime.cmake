@@ -13,8 +13,9 @@
 # That asks for arguments that are matrices: a decomposition of an expression is instantiated anew.
 #
 # All but the core is compiled twelve sources at a time, programs as many as a room has: a room's sources instantiate
-# the same, apps took 292 s of CPU time and take 150 s, tests/cli 231 s and 76 s. The core's share too little:
-# core/analysis takes longer as one source. Names in unnamed namespaces must then differ within a room.
+# the same, apps took 292 s of CPU time and take 150 s, tests/cli 231 s and 76 s. Of the core four rooms are one source
+# each (simulation took 51 s and takes 34 s); core/analysis and core/tangents share too little and take longer as one.
+# Names in unnamed namespaces must then differ within a room.
 #
 # Programs and tests hold no loop that time is spent in: a release build compiles them at -O1. Precompiled headers keep
 # the level that they were compiled at and impose it on all who use them, whatever their own flags say: a group has one.
@@ -58,6 +59,17 @@ function(withy_unite target)
       set(count ${ARGV1})
     endif()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${count})
+  endif()
+endfunction()
+
+# withy_unite_rooms(TARGET ROOM...): compiles the sources of each of these folders as one.
+function(withy_unite_rooms target)
+  if(precompile AND WITHY_UNITE_SOURCES)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    foreach(room ${ARGN})
+      file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/*.cpp)
+      set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${room})
+    endforeach()
   endif()
 endfunction()
 

@@ -71,8 +71,7 @@ Matrix3 MjcfAngles::rotation(const Element& element, Diagnostics& diagnostics) c
     a.error("xyaxes", "got parallel axes; need two directions");
   }
   if (element.find("zaxis") != nullptr)
-    return Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), a.direction("zaxis", Vector3::UnitZ()))
-        .toRotationMatrix();
+    return rotation_between(Vector3::UnitZ(), a.direction("zaxis", Vector3::UnitZ()));
   return Matrix3::Identity();
 }
 

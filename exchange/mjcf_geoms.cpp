@@ -74,7 +74,7 @@ std::optional<MassProperties> mass_of_geom(const Element& geom, const MjcfAngles
     const Vector3 from((*ends)[0], (*ends)[1], (*ends)[2]), to((*ends)[3], (*ends)[4], (*ends)[5]);
     m.center = (from + to) / 2;
     half = (to - from).norm() / 2;
-    R = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), to - from).toRotationMatrix();
+    R = rotation_between(Vector3::UnitZ(), to - from);
   }
   const double r = (*size)[0];
   const Solid solid = type == "sphere"     ? ellipsoid(r, r, r)

@@ -12,6 +12,7 @@
 #include "withy/results/modes_files.hpp"
 #include "withy/results/scene_edit.hpp"
 #include "withy/results/trade_files.hpp"
+#include "withy/scene/asked_outputs.hpp"
 #include "withy/study/comparison.hpp"
 #include "withy/study/left_out.hpp"
 
@@ -32,6 +33,15 @@ study::Axes axes_of(const Scene::Axes& asked, study::Axes usual) {
   take(asked.tolerances, usual.tolerances);
   study::check_axes(usual);
   return usual;
+}
+
+/// The scene with those outputs that names say, made.
+std::shared_ptr<const study::Prepared> with_outputs(const Scene& scene, const std::vector<std::string>& names) {
+  std::shared_ptr<const study::Prepared> base = scene.prepare();
+  if (names.empty()) return base;
+  SceneValues values = base->values;
+  ask_outputs(values, names);
+  return std::make_shared<const study::Prepared>(study::prepare(std::move(values), scene.library().registry()));
 }
 
 std::string advice_of(const study::Prepared& prepared, const study::Outputs& outputs, const study::Accuracy& accuracy,
@@ -77,9 +87,9 @@ std::string Scene::trade(const Axes& axes, std::size_t jobs, const Follow& follo
 
 std::string Scene::advise(const std::string& accuracy, const std::vector<std::string>& outputs, const Axes& axes,
                           const Follow& follow) const {
-  const std::shared_ptr<const study::Prepared> base = prepare();
+  const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
   const study::Accuracy asked = study::Accuracy::parse(accuracy);
-  const study::Outputs measured(base->model(), outputs);
+  const study::Outputs measured(base->model(), outputs, base->scene.outputs);
   const study::Candidates candidates =
       study::candidates_for(*base, library().registry(), axes_of(axes, study::usual_axes()));
   study::Evaluator evaluator(*base, library().registry(), measured, control_of(follow));
@@ -97,7 +107,7 @@ std::string Scene::modes(const std::vector<std::string>& lock, const Follow& fol
 
 std::string Scene::linearize(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
                              const std::vector<std::string>& lock) const {
-  const std::shared_ptr<const study::Prepared> base = prepare();
+  const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
   const study::Configuration at(*base, base->scene.initial, {lock, {}}, study::Sampling::kept);
   try {
     return linear_model_json(at, study::linear_model(at, {inputs, outputs})).dump();

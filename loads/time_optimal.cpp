@@ -47,7 +47,8 @@ class Family {
     Vector miss = end(times, steps) - target_;
     for (int iteration = 0; iteration < 30; ++iteration) {
       if (miss.norm() < 1e-10) return times;
-      const Times change = -rough_slopes(times, miss + target_, steps).completeOrthogonalDecomposition().solve(miss);
+      const Eigen::MatrixXd J = rough_slopes(times, miss + target_, steps);
+      const Eigen::VectorXd wanted = -miss, change = J.completeOrthogonalDecomposition().solve(wanted);
       double part = 1;
       for (; part > least; part *= 0.5) {
         const Times next = times + part * change;
@@ -96,10 +97,10 @@ class Family {
   /// at its upper limit, and at its lower where it is negative.
   bool extremal(const Times& times, int steps) const {
     const Eigen::Index n = target_.size();
-    Times goal = Times::Zero(times.size());
-    goal[times.size() - 1] = 1;
+    const Eigen::VectorXd goal = Eigen::VectorXd::Unit(times.size(), times.size() - 1);
     const Eigen::MatrixXd adjoint = slopes(times, steps).transpose();
-    Vector costate = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(adjoint).solve(goal);
+    const Eigen::VectorXd nearest = adjoint.colPivHouseholderQr().solve(goal);
+    Vector costate = nearest;
     struct Sample {
       Vector state;
       const Segment* segment;

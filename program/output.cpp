@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "withy/program/colour.hpp"
+#include "withy/program/fold.hpp"
 
 namespace withy::program {
 
@@ -24,11 +25,11 @@ void write_out(std::string_view text) {
 }  // namespace
 
 void print(std::string_view text) {
-  // JSON is read by programs, on a terminal too.
-  if (shows_colours(STDOUT_FILENO) && !text.starts_with('{') && !text.starts_with('['))
-    write_out(with_outcomes_coloured(text));
-  else
-    write_out(text);
+  // JSON, scripts and the manual are read by programs, on a terminal too.
+  const std::size_t columns = text.find_first_of("{[#.") == 0 ? 0 : columns_of(STDOUT_FILENO);
+  if (columns == 0) return write_out(text);
+  const std::string lines = folded(text, columns);
+  write_out(shows_colours(STDOUT_FILENO) ? with_outcomes_coloured(lines) : lines);
 }
 
 void finish_printing() {
@@ -38,13 +39,14 @@ void finish_printing() {
 void complain(std::string_view text) noexcept {
   complained = true;
   // Where standard error cannot be written there is nobody left to tell: the exit status says it.
-  std::string bold;
+  std::string made;
   try {
-    if (shows_colours(STDERR_FILENO)) bold = with_places_bold(text);
+    if (const std::size_t columns = columns_of(STDERR_FILENO); columns > 0) made = folded(text, columns);
+    if (shows_colours(STDERR_FILENO)) made = with_places_bold(made);
   } catch (const std::bad_alloc&) {
-    bold.clear();  // without memory the text is written as it is
+    made.clear();  // without memory the text is written as it is
   }
-  const std::string_view shown = bold.empty() ? text : std::string_view(bold);
+  const std::string_view shown = made.empty() ? text : std::string_view(made);
   static_cast<void>(std::fwrite(shown.data(), 1, shown.size(), stderr));
   if (!text.empty() && text.back() != '\n') static_cast<void>(std::fputc('\n', stderr));
 }

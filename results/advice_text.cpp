@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -57,10 +58,18 @@ std::string floors_text(const AdviceReport& report) {
   return out;
 }
 
+/// Each output once; of an output of the scene its components, where they are few.
 std::string names_text(const study::Outputs& outputs) {
-  std::string names;
-  for (const std::string& n : outputs.names()) names += (names.empty() ? "" : ", ") + n;
-  return names;
+  constexpr std::ptrdiff_t few = 3;
+  const std::vector<study::Output>& all = outputs.list();
+  std::vector<std::string> names;
+  for (const study::Output& output : all) {
+    const auto same =
+        std::count_if(all.begin(), all.end(), [&](const study::Output& o) { return o.name == output.name; });
+    const std::string& name = output.measure == study::Measure::sensor && same <= few ? output.label : output.name;
+    if (names.empty() || names.back() != name) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::string milliseconds(double seconds) { return fmt::format("{:.3g} ms", 1e3 * seconds); }
@@ -176,10 +185,14 @@ std::string no_advice_text(const study::Advice& a, const AdviceQuestion& questio
         (nearest == nullptr || p.use < nearest->use))
       nearest = &p;
   if (nearest != nullptr)
-    text += fmt::format(" Nearest: {}, {} off, most in {}. Allow more --modes or tighter --tolerances.",
-                        nearest->point.text(), use_text(accuracy, nearest->use),
+    text += fmt::format(" Nearest: {}, {} off, most in {}.", nearest->point.text(), use_text(accuracy, nearest->use),
                         question.outputs.list()[a.yardstick->worst(nearest->distances)].label);
-  return text + measured;
+  else
+    text += " All were cut off when they were further off than that.";
+  return text +
+         " What to do: allow more --modes; give a body that carries something modes made for that, as family: "
+         "{name: clamped-loaded, tip_mass: ...}; ask of --output no more than you need, or less --accuracy." +
+         measured;
 }
 
 std::string advice_text(const AdviceReport& report) {

@@ -83,7 +83,8 @@ Json estimate_json(const Certificate& c) {
   return {{"against", c.estimate->against},           {"hinges", c.estimate->distances.hinges},
           {"tips", c.estimate->distances.tips},       {"deflections", c.estimate->distances.deflections},
           {"moments", c.estimate->distances.moments}, {"forces", c.estimate->distances.forces},
-          {"until", c.estimate->distances.until},     {"cpu_seconds", c.estimate->cpu_seconds}};
+          {"at_most", c.estimate->at_most},           {"until", c.estimate->distances.until},
+          {"evaluations", c.estimate->evaluations},   {"cpu_seconds", c.estimate->cpu_seconds}};
 }
 
 Json steps_json(const study::StepLimit& s) {

@@ -1,11 +1,15 @@
 #include "withy/results/certificate_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "withy/core/model/columns.hpp"
@@ -14,6 +18,29 @@ namespace withy {
 namespace {
 
 std::string percent(double ratio) { return fmt::format("{:.{}g} %", 100 * ratio, ratio < 0.995 ? 2 : 3); }
+
+/// A group of the ledger (docs/terms.md) for a reader who has no page at hand.
+std::string_view in_words(std::string_view group) {
+  using Words = std::pair<std::string_view, std::string_view>;
+  static constexpr std::array<Words, 7> all = {
+      Words{"M*1 a", "inertia of first order"},     {"M*2 a", "inertia of foreshortening"},
+      {"M*3 a", "inertia beyond first order"},      {"f1", "forces of speeds, as of rigid bodies"},
+      {"f2-1", "forces of speeds, first order"},    {"f2-2", "forces of speeds on foreshortening"},
+      {"f3", "forces of speeds beyond first order"}};
+  const auto* found = std::find_if(all.begin(), all.end(), [&](const Words& w) { return w.first == group; });
+  return found == all.end() ? group : found->second;
+}
+
+/// A term of the motion that stiffens or compresses a body, the same way.
+std::string motion_in_words(std::size_t term) {
+  constexpr const char* axes = "xyz";
+  const int axis = static_cast<int>(term % 3);
+  if (term < 3) return fmt::format("turning about {}", axes[axis]);
+  if (term < 6) return fmt::format("turning about {} and {} at once", axes[axis], axes[(axis + 1) % 3]);
+  if (term < 9) return fmt::format("angular acceleration about {}", axes[axis]);
+  if (term < 12) return fmt::format("acceleration along {} and weight", axes[axis]);
+  return "the bodies that it carries";
+}
 
 /// Errors of one kind, in the order of the model; of many the greatest.
 class ErrorList {
@@ -67,6 +94,8 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model, double
   append(e.distances.forces, 1, "N");
   if (out.empty()) return "no hinge moves and no body has a tip";
   out = fmt::format("against {}, estimated by coarse runs: {}", e.against, out);
+  if (!e.at_most.empty())
+    out += fmt::format("; roughly at most that of {}, too little for coarse runs to tell", fmt::join(e.at_most, ", "));
   if (e.distances.until < e.end)
     out += fmt::format("; up to {:.4g} s, where the estimate's budget ended", e.distances.until);
   else if (e.end < reached)
@@ -81,7 +110,7 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
     const std::size_t most = study::greatest_share(b.load);
     out += fmt::format("; {} load {:.2g} of the buckling load, most of it from {}",
                        b.load.greatest > -b.load.least ? "stiffening" : "compressive", b.load.size(),
-                       motion_term_name(most));
+                       motion_in_words(most));
   }
   if (const auto d = summary.peak_deflection_ratio.find(b.name); d != summary.peak_deflection_ratio.end())
     out += fmt::format("; tip deflection {:.2g} of its length", d->second);
@@ -124,13 +153,15 @@ std::string energy_text(const study::Certificate& c) {
 /// What the formulation drops, in shares of the greatest term on the same coordinates.
 std::string dropped_text(const study::Certificate& c) {
   constexpr std::size_t named = 3;
+  constexpr double worth_naming = 1e-4;
   std::string text;
   for (const study::DroppedForces& d : c.dropped) {
     text += fmt::format("{}on {} {}", text.empty() ? "" : "; ", d.group, percent(d.share));
     std::string terms;
     for (std::size_t i = 0; i < std::min(named, d.terms.size()); ++i)
-      if (d.terms[i].share > 0)
-        terms += fmt::format("{}{} {}", terms.empty() ? "" : ", ", d.terms[i].term, percent(d.terms[i].share));
+      if (d.terms[i].share > worth_naming)
+        terms +=
+            fmt::format("{}{} {}", terms.empty() ? "" : ", ", in_words(d.terms[i].term), percent(d.terms[i].share));
     if (!terms.empty()) text += fmt::format(" ({})", terms);
   }
   return text + " of the greatest force there";
@@ -151,6 +182,9 @@ std::vector<std::string> plan_text(const study::Certificate& certificate) {
 
 }  // namespace
 
+/// By how much longer steps have to become for a mode less to be proposed.
+constexpr double worth_telling = 1.2;
+
 std::string step_limit_text(const study::StepLimit& s) {
   if (!s.limit) return fmt::format("mean step times fastest mode {:.2g}", s.product);
   if (std::isinf(*s.limit))
@@ -158,7 +192,7 @@ std::string step_limit_text(const study::StepLimit& s) {
   std::string text = fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}", s.cause(),
                                  s.product, *s.limit);
   if (!s.maker.empty() && s.cause() == "stability") text += "; the fastest pole is " + s.maker;
-  if (s.fewer && s.fewer->fastest > 0 && s.fewer->fastest < s.fastest)
+  if (s.fewer && s.fewer->fastest > 0 && s.fastest > worth_telling * s.fewer->fastest)
     text +=
         fmt::format("; without {} the fastest mode is {:.3g} rad/s in place of {:.3g}, for steps {:.2g} times as long",
                     s.fewer->mode, s.fewer->fastest, s.fastest, s.fastest / s.fewer->fastest);
@@ -204,6 +238,8 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
                               first.use() > 1 ? "; beyond it " + first.meaning : ""));
   }
   if (certificate.steps.product > 0) line("steps", step_limit_text(certificate.steps));
+  if (summary.steps.accepted > 0 && summary.energy_scale == 0)
+    line("steps", "nothing moves: there is no energy in the tree, and no work is done on it");
   return out;
 }
 

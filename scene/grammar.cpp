@@ -1,5 +1,7 @@
 #include "withy/scene/grammar.hpp"
 
+#include "withy/scene/visual.hpp"
+
 namespace withy::grammar {
 namespace {
 
@@ -82,7 +84,8 @@ std::vector<ParameterSpec> body_members() {
   return {text("type", "body plugin"),
           named("frames", frame, "frames for hinges and loads, each fixed to the section at a station")
               .otherwise(Value::map({})),
-          text("formulation", "formulation for this body alone").naming(ParameterSpec::Refers::formulation).optional()};
+          text("formulation", "formulation for this body alone").naming(ParameterSpec::Refers::formulation).optional(),
+          visual_spec()};
 }
 
 std::vector<ParameterSpec> hinge_members() {

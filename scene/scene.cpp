@@ -14,6 +14,7 @@
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/file_notes.hpp"
 #include "withy/core/plugin/floating_point.hpp"
+#include "withy/scene/asked_outputs.hpp"
 #include "withy/scene/constraints.hpp"
 #include "withy/scene/control_order.hpp"
 #include "withy/scene/document.hpp"
@@ -152,7 +153,8 @@ class SceneBuilder {
     Value checked = Value::map({}, parts.place());
     for (const auto& [name, given] : parts.members()) {
       const std::string path = "/" + key + "/" + name;
-      if (const std::string problem = name_problem(name); !problem.empty()) {
+      const bool asked = key == "outputs" && says_its_name(document_.root, name, given);
+      if (const std::string problem = asked ? "" : name_problem(name); !problem.empty()) {
         checker_.key_error(path, fmt::format("got name {}; {}", in_quotes(name), problem));
       }
       Made<Interface> made;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "withy/scene/asked_outputs.hpp"
 #include "withy/scene/describe.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/names.hpp"
@@ -49,6 +50,14 @@ std::vector<std::string> split(std::string_view path) {
     if (keys.back().empty() || keys.back().size() > DocumentLimits::key_bytes) return {};
   }
   return keys;
+}
+
+/// A name, or a list of names.
+bool is_names(const Value& value) {
+  const auto& items = value.items();
+  return value.kind() == Value::Kind::text ||
+         (!items.empty() &&
+          std::all_of(items.begin(), items.end(), [](const Value& item) { return item.kind() == Value::Kind::text; }));
 }
 
 std::string joined(const std::vector<std::string>& keys) {
@@ -135,6 +144,21 @@ Value* SceneValues::target(const std::vector<std::string>& keys, int line) {
 /// Puts the document read in the place of what is at the path.
 void SceneValues::put(const std::vector<std::string>& keys, Document read, int line) {
   if (document_.root.kind() != Value::Kind::map) return;  // make_scene says what the scene has to be
+  if (keys.size() == 1 && keys[0] == "outputs" && is_names(read.root)) {
+    const std::vector<Value> one{read.root};
+    for (const Value& name : read.root.items().empty() ? one : read.root.items()) {
+      if (defines_output(document_.root, name.text())) continue;
+      const std::optional<AskedOutput> asked = asked_output(document_.root, name.text());
+      if (!asked) {
+        diagnostics_.error({line, 0, "/outputs"}, fmt::format("got {}, which names no output{}", in_quotes(name.text()),
+                                                              suggestion(name.text(), asked_names(document_.root))));
+        continue;
+      }
+      const Place place{line, 0, "/outputs/" + asked->name};
+      put({"outputs", asked->name}, {placed(asked->definition, place), {}, {}}, line);
+    }
+    return;
+  }
   Value* at = target(keys, line);
   if (at == nullptr) return;
   const std::string path = joined(keys);

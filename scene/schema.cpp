@@ -18,6 +18,7 @@ constexpr const char* quantity_pattern =
     "^[-+]?((0|[1-9][0-9]*)([.][0-9]*)?|[.][0-9]+)([eE][-+]?[0-9]+)? *[^-+.0-9eE "
     "].*$|^[-+]?(0|[1-9][0-9]*)([.][0-9]*)? *1/.*$";
 constexpr const char* name_pattern = "^(?!world$)[A-Za-z_][A-Za-z0-9_-]{0,63}$";
+constexpr const char* output_pattern = "^(?!world$)[A-Za-z_][A-Za-z0-9_.@-]*$";  // those that say what they are, too
 
 Json reference(const char* definition) { return {{"$ref", std::string("#/$defs/") + definition}}; }
 
@@ -69,6 +70,7 @@ class SchemaWriter {
     guess["description"] = "where closing the loops of constraints begins, for coordinates that the state does not say";
     properties["initial"]["properties"]["guess"] = std::move(guess);
     properties["outputs"] = plugins<Sensor>(grammar::sensor_members(), "sensors, whose numbers are results");
+    properties["outputs"]["propertyNames"] = {{"type", "string"}, {"pattern", output_pattern}};
     return {
         {"$schema", "https://json-schema.org/draft/2020-12/schema"},
         {"title", "Withy scene"},

@@ -13,6 +13,7 @@
 #include "withy/scene/names.hpp"
 #include "withy/scene/state.hpp"
 #include "withy/scene/topology.hpp"
+#include "withy/scene/visual.hpp"
 
 namespace withy {
 namespace {
@@ -124,6 +125,8 @@ class TreeBuilder {
       return;
     }
     if (!check_shape(*body, made.plugin->id, *value)) return;
+    if (const Value* visual = value->find("visual"))
+      good_ = check_visual(*visual, *body, checker_.make_context().directory, checker_.diagnostics()) && good_;
     node.body = body;
     if (node.body->segments().size() > 1) {
       add_segments(made.plugin->id, *value);

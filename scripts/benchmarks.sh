@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # benchmarks.sh [TABLE...]: times evaluations and integrators, and writes the tables of docs/performance.md and
-# docs/integrators.md. TABLE: bench-arm, bench-chain, lanes, stiff-cost; without one all of them, about ten minutes of a
-# machine that does nothing else. The programs are those of build/release.
+# docs/integrators.md. TABLE: bench-arm, bench-chain, equal-links, lanes, lane-sweeps, stiff-cost; without one all of
+# them, about ten minutes of a machine that does nothing else. The programs are those of build/release.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/measured.sh
@@ -89,11 +89,92 @@ table_stiff_cost() {
   } | record_table stiff-cost "scripts/benchmarks.sh stiff-cost"
 }
 
+# A chain of equal links hinged about five axes in turn: NUMBER KIND.
+chain() {
+  python3 - "$1" "$2" <<'PYTHON'
+import sys
+n, beams = int(sys.argv[1]), sys.argv[2] != "rigid"
+print("format: withy/1\ntime: {end: 1}\nbodies:")
+for i in range(n):
+    if beams:
+        print(f"  b{i}: {{type: beam, length: 0.4, mass_per_length: 0.5, "
+              "bending_y: {stiffness: 50, modes: 2}, bending_z: {stiffness: 70, modes: 2}}")
+    else:
+        print(f"  b{i}: {{type: rigid, mass: 0.2, center_of_mass: [0.2, 0, 0], inertia: [0.001, 0.003, 0.003, 0, 0, 0], "
+              "frames: {tip: {position: [0.4, 0, 0]}}}")
+print("hinges:")
+axes = ("0, 0, 1", "0, 1, 0", "0, 0.6, 0.8", "0.6, 0, 0.8", "0, 0.8, 0.6")
+for i in range(n):
+    print(f"  h{i}: {{type: revolute, axis: [{axes[i % 5]}], parent: {'world' if i == 0 else f'b{i - 1}.tip'}, child: b{i}}}")
+PYTHON
+}
+
+# ns a link, least of three, and the exponents of growth of the whole.
+table_equal_links() {
+  {
+    printf 'chain\t10 links\t1000 links\t10,000 links\texponent from 10 to 1000\tto 10,000\n'
+    local kind n
+    for kind in rigid ruthless quadratic; do
+      for n in 10 1000 10000; do
+        chain "$n" "$kind" >"$kept/chain.yaml"
+        for _ in 1 2 3; do
+          "$bin/withy" bench "$kept/chain.yaml" --formulation "${kind/rigid/ruthless}" >"$kept/bench.json"
+          printf '%s\t%s\t' "$kind" "$n"
+          python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["ns_fastest_batch"])' "$kept/bench.json"
+        done
+      done
+    done | awk -F'\t' '
+      { if (!(($1, $2) in ns) || $3 < ns[$1, $2]) ns[$1, $2] = $3 }
+      END {
+        split("rigid ruthless quadratic", kinds, " ")
+        for (i = 1; i <= 3; ++i) {
+          k = kinds[i]
+          printf "%s\t%.0f\t%.0f\t%.0f\t%.2f\t%.2f\n", k == "rigid" ? k : "`" k "` beams, 2+2 modes", ns[k, 10] / 10,
+                 ns[k, 1000] / 1000, ns[k, 10000] / 10000, log(ns[k, 1000] / ns[k, 10]) / log(100),
+                 log(ns[k, 10000] / ns[k, 10]) / log(1000) } }'
+  } | record_table equal-links "scripts/benchmarks.sh equal-links"
+}
+
+# CPU time of a sweep, least of three, beside the same with one case at a time.
+table_lane_sweeps() {
+  {
+    printf 'plan\tcases\tone at a time\tin lanes\tratio\n'
+    local plan
+    for plan in driven-arm-tolerances rigid-chain-masses; do
+      python3 - "$bin/withy" "scenes/sweeps/$plan.yaml" "$kept" <<'PYTHON'
+import os, re, resource, shutil, subprocess, sys
+withy, plan, kept = sys.argv[1:]
+text = open(plan).read()
+cases = int(re.search(r"^cases: (\d+)", text, re.M).group(1))
+folder = os.path.dirname(os.path.abspath(plan))
+text = re.sub(r"^scene: (\S+)", lambda m: "scene: " + os.path.normpath(os.path.join(folder, m.group(1))), text, flags=re.M)
+
+def milliseconds(text):
+    path, store = os.path.join(kept, "plan.yaml"), os.path.join(kept, "store")
+    open(path, "w").write(text)
+    least = None
+    for _ in range(3):
+        shutil.rmtree(store, ignore_errors=True)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([withy, "sweep", "run", path, "--jobs", "1", "--out", store], check=True, capture_output=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        least = used if least is None else min(least, used)
+    return 1e3 * least / cases
+
+lanes = milliseconds(text)
+alone = milliseconds(re.sub(r"^evaluation: in-lanes", "evaluation: one-at-a-time", text, flags=re.M))
+print(f"`{os.path.basename(plan)}`", cases, f"{alone:.3g}", f"{lanes:.3g}", f"{alone / lanes:.2f}", sep="\t")
+PYTHON
+    done
+  } | record_table lane-sweeps "scripts/benchmarks.sh lane-sweeps"
+}
+
 tables=("$@")
-[ $# -gt 0 ] || tables=(bench-arm bench-chain lanes stiff-cost)
+[ $# -gt 0 ] || tables=(bench-arm bench-chain equal-links lanes lane-sweeps stiff-cost)
 for table in "${tables[@]}"; do
   case $table in
-    bench-arm | bench-chain | lanes | stiff-cost) "table_${table//-/_}" ;;
+    bench-arm | bench-chain | equal-links | lanes | lane-sweeps | stiff-cost) "table_${table//-/_}" ;;
     *)
       echo "benchmarks.sh: no table '$table'" >&2
       exit 2

@@ -40,7 +40,8 @@ def cheapest(rows, percent):
     if not good:
         return "none tried"
     best = min(good, key=lambda r: float(r["CPU [ms]"]))
-    return f'{best["formulation"].strip("*")}, {best["modes"]}'
+    modes = best["modes"].replace("orthogonal-polynomials", "polynomials").replace(" clamped-free", "")
+    return f'{best["formulation"].strip("*")}, {modes}'
 
 
 heads, lines = [], ["scene\t" + "\t".join(formulations) + "\twithin 5 %\twithin 1 %"]

@@ -4,7 +4,7 @@
 # what stands after `<!-- source: PATH -->`. With --check nothing is written: a page that says something else than its
 # measurements and sources, a mark without a file and a file of measurements that no page shows are errors.
 #
-# A file of measurements: lines `command: …`, `commit: …`, `date: …`; an empty line; rows with tabs between their cells,
+# A file of measurements: lines `command: …`, `commit: …`, `machine: …`, `date: …`; an empty line; rows with tabs between their cells,
 # the heads first; an empty line; sentences about them. scripts/gallery.sh writes those of the gallery, benchmarks.sh
 # times, tolerances.sh and auto.sh what their names say; each with record_table of scripts/measured.sh.
 set -euo pipefail
@@ -31,7 +31,8 @@ markdown() {
     { print }
     END {
       if (of["commit"] == "" || of["date"] == "" || of["command"] == "") exit 1
-      printf "\n<sub>`%s`, at %s, %s</sub>\n", of["command"], of["commit"], of["date"]
+      on = of["machine"] == "" ? "" : " on " of["machine"]
+      printf "\n<sub>`%s`, at %s%s, %s</sub>\n", of["command"], of["commit"], on, of["date"]
     }' "$1"
 }
 

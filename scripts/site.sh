@@ -3,12 +3,13 @@
 # docs/site/index.md does not list stand under More; a picture or a link within the pages that leads nowhere is an error.
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 need_packages "${build_packages[@]}" python3-sphinx python3-myst-parser doxygen
-build release withy-python  # whose reference is made from it
+build release withy withy-python  # whose references are made from them
 
 pages=build/site-pages
 rm -rf "$pages" build/site build/reference
 mkdir -p "$pages" build/reference
 cp -r docs/*.md docs/decisions docs/pictures docs/site/* "$pages"
+scripts/scene_reference.py build/release/bin/withy >"$pages/scene-reference.md"
 # Links to files of the sources become their names: the site holds the pages alone.
 python3 - "$pages" <<'PYTHON'
 import pathlib, re, sys

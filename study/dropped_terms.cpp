@@ -52,7 +52,8 @@ class Sizes {
     squares_.all.resize(groups_.size());
     squares_.terms.resize(groups_.size());
   }
-  void enter(const State& state) {
+  /// \param weight the part of the time that the state stands for
+  void enter(const State& state, double weight) {
     const Layout& layout = prepared_.model().layout();
     if (!prepared_.equations->derivatives(state.time, state.y, rates_, work_).ok()) return;
     const auto a = std::span<const double>(rates_).subspan(layout.positions, layout.speeds);
@@ -64,9 +65,9 @@ class Sizes {
                                                   compiled_[2].equations.get(), compiled_[3].equations.get()});
     const TermForces forces = ledger.evaluate(state, a);
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      squares_.all[g] += std::pow(size_of(missing, groups_[g], inertias_), 2);
+      squares_.all[g] += weight * std::pow(size_of(missing, groups_[g], inertias_), 2);
       for (std::size_t k = 0; k < terms_of_motion; ++k)
-        squares_.terms[g].at(k) += std::pow(size_of(forces.at(k), groups_[g], inertias_), 2);
+        squares_.terms[g].at(k) += weight * std::pow(size_of(forces.at(k), groups_[g], inertias_), 2);
     }
   }
   [[nodiscard]] std::vector<DroppedForces> shares() const {
@@ -103,7 +104,10 @@ std::vector<DroppedForces> dropped_terms(const Prepared& prepared, const Beyond&
   const Model& model = prepared.model();
   if (along.empty() || model.layout().speeds > most_speeds || !loops_of(model).empty()) return {};
   Sizes sizes(prepared, beyond, registry);
-  for (const State& state : along) sizes.enter(state);
+  // The trapezoidal rule: states are not equally far apart.
+  const std::size_t n = along.size();
+  for (std::size_t i = 0; i < n; ++i)
+    sizes.enter(along[i], n > 1 ? (along[std::min(i + 1, n - 1)].time - along[i > 0 ? i - 1 : 0].time) / 2 : 1);
   return sizes.shares();
 }
 

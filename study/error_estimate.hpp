@@ -2,6 +2,8 @@
 /// The error of a run against equations that neglect less.
 #pragma once
 
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,20 +19,37 @@ struct Drifts {
 
 /// The error of a run's hinges and tips against the next model up, by integrating both coarsely with common steps.
 struct ErrorEstimate {
-  std::string against;       ///< formulation
-  NamedDistances distances;  ///< `until` is less than `end` where the evaluations allowed were spent
-  double end = 0;            ///< time the run reached [s]
+  std::string against;          ///< formulation
+  NamedDistances distances;     ///< `until` is less than `end` where the evaluations allowed were spent
+  double end = 0;               ///< time the run reached [s]
+  std::size_t evaluations = 0;  ///< of both models
   double cpu_seconds = 0;
   /// Of the equations of the run along the coarse one. What a hundred times the tolerance does not change is no error
   /// of the integration but what the formulation leaves out.
   Drifts drifts = {};
-  std::vector<State> along = {};  ///< a dozen of its states in these equations
+  /// Names of outputs whose error is too small for the coarse runs to tell: it is no more than what they differ by.
+  std::set<std::string> at_most = {};
 };
 
-/// Estimates it for the time that the run went, with no more evaluations of the pair than the run had of its own.
+/// What an estimate may cost.
+enum class Price {
+  tenth,  ///< of the run, by counts of evaluations and what they were measured to take: the same on every machine
+  any     ///< as many evaluations of the pair as the run had of its own, at tolerances that resolve its motion
+};
+
+/// An estimate, or why there is none.
+struct EstimateOutcome {
+  std::optional<ErrorEstimate> estimate;
+  std::string why_not;  ///< empty where there is one
+};
+
+/// Estimates it for the time that the run went. At a tenth of its cost both models take the steps that it pays for,
+/// stiffness and damping implicit (CoarseSteps), or where these do not come to the run's own end, those of radau at
+/// a low tolerance: what comes to another end tells nothing of the run.
 /// \param used the equations of the run, from its start to its end
 /// \throws InputError where there is no integrator dopri5; std::invalid_argument where a load has switching functions.
-ErrorEstimate estimate_error(const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond,
-                             const RunSummary& summary, Registry& registry, const std::function<bool()>& interrupted);
+EstimateOutcome estimate_error(const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond,
+                               const RunSummary& summary, Registry& registry, Price price,
+                               const std::function<bool()>& interrupted);
 
 }  // namespace withy::study

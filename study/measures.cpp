@@ -7,6 +7,7 @@
 
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/scene/names.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -62,9 +63,10 @@ constexpr std::array<std::pair<const char*, Shape>, 5> over_time = {{{".min", Sh
                                                                      {".integral", Shape::integral}}};
 
 /// The names that outputs may be asked for by.
-std::string known_names(const Model& model, const std::vector<Tip>& tips, std::span<const SensorNode> sensors) {
-  std::string list;
-  const auto add = [&](const std::string& name) { list += (list.empty() ? "" : ", ") + name; };
+std::vector<std::string> known_names(const Model& model, const std::vector<Tip>& tips,
+                                     std::span<const SensorNode> sensors) {
+  std::vector<std::string> list;
+  const auto add = [&](const std::string& name) { list.push_back(name); };
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
     if (model.layout().hinges[h].positions > 0) add(model.hinges()[h].name);
   for (const Tip& tip : tips) {
@@ -75,8 +77,17 @@ std::string known_names(const Model& model, const std::vector<Tip>& tips, std::s
     if (model.driven(h)) add(effort_name(model.hinges()[h]));
   for (const SensorNode& sensor : sensors)
     for (const Column& column : columns_of(sensor)) add(column.name);
-  if (!sensors.empty()) list += "; behind the name of an output .min, .max, .mean, .rms or .integral";
   return list;
+}
+
+/// What stands where a name is none of an output: the nearest, or all.
+std::string unknown_output(const std::string& name, const std::vector<std::string>& known) {
+  if (const std::string guess = nearest(name, known); !guess.empty())
+    return "got '" + name + "'; did you mean '" + guess + "'?";
+  return "got '" + name + "'; need one of: " + listed(known) +
+         "; or what it is, as HINGE.effort, FRAME.acceleration; behind the name of an output .min, .max, .mean, .rms "
+         "or "
+         ".integral";
 }
 
 double greatest(const std::map<std::string, double>& values) {
@@ -138,8 +149,7 @@ void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const 
   add_sensors(name, sensors);
   for (const auto& [word, over] : over_time)
     if (name.ends_with(word) && outputs_.size() == before) add_sensors(name.substr(0, name.rfind('.')), sensors, over);
-  if (outputs_.size() == before)
-    throw OptionError("outputs", "got '" + name + "'; need one of: " + known_names(model, tips, sensors));
+  if (outputs_.size() == before) throw OptionError("outputs", unknown_output(name, known_names(model, tips, sensors)));
 }
 
 void Outputs::add_sensors(const std::string& name, std::span<const SensorNode> sensors, Output::Shape over) {

@@ -11,7 +11,7 @@
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
-#include "withy/core/simulation/tips.hpp"
+#include "withy/study/tip_moments.hpp"
 
 namespace withy::study {
 namespace {
@@ -221,9 +221,10 @@ void look_at_angles(const Prepared& prepared, std::vector<Remark>& all) {
 
 }  // namespace
 
-std::vector<Remark> implausible(const Prepared& prepared) {
+std::vector<Remark> implausible(const Prepared& prepared, Registry& registry) {
   std::vector<Remark> all;
   look_at_bodies(prepared, all);
+  look_at_tip_moments(prepared, registry, all);
   look_at_servos(prepared, all);
   look_at_frames(prepared, all);
   look_at_angles(prepared, all);

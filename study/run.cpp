@@ -14,6 +14,7 @@
 #include "withy/study/accuracy.hpp"
 #include "withy/study/growth.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/remedy.hpp"
 #include "withy/study/rung_plan.hpp"
 
 namespace withy::study {
@@ -196,7 +197,8 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
     RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
     result.summary = run_planned(prepared, settings, plan);
     // What is inaccurate here is the choice, and nothing grows.
-    if (result.summary.status != RunStatus::inaccurate) result.summary.message += growth_text(prepared, result.summary);
+    if (result.summary.status != RunStatus::inaccurate)
+      result.summary.message += growth_text(prepared, result.summary) + remedy_text(prepared, result.summary);
     std::optional<ErrorEstimate> estimate = plan.estimate;
     if (estimate) estimate->end = result.summary.final.time;
     result.certificate = certify(prepared, {&result.summary, nullptr, std::move(plan), std::move(estimate)}, registry);
@@ -207,21 +209,30 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
   result.summary = run_plainly(prepared, settings, beyond ? beyond->equations.get() : nullptr);
   if (const Value* closing = prepared.scene.source.find("closing"))
     result.summary.message += (result.summary.message.empty() ? "" : " ") + closing->text();
-  result.summary.message += growth_text(prepared, result.summary);
-  std::optional<ErrorEstimate> estimate;
+  result.summary.message += growth_text(prepared, result.summary) + remedy_text(prepared, result.summary);
+  EstimateOutcome estimate;
   if (beyond && wanted(settings.estimate, *beyond) && !has_switches(prepared.model()) &&
       loops_of(prepared.model()).empty() && result.summary.status != RunStatus::interrupted &&
       result.summary.final.time > prepared.scene.initial.time)
-    estimate = estimate_error(prepared.scene, *prepared.equations, *beyond, result.summary, registry,
-                              settings.control.interrupted);
+    estimate =
+        estimate_error(prepared.scene, *prepared.equations, *beyond, result.summary, registry,
+                       settings.estimate == Estimate::always ? Price::any : Price::tenth, settings.control.interrupted);
   std::vector<DroppedForces> dropped;
-  if (estimate) dropped = dropped_terms(prepared, *beyond, estimate->along, registry);
-  std::string why_not =
-      estimate || !settings.look_beyond ? std::string() : without_estimate(prepared, result.summary, beyond, settings);
-  result.certificate = certify(
-      prepared,
-      {&result.summary, beyond ? &*beyond : nullptr, {}, std::move(estimate), std::move(why_not), std::move(dropped)},
-      registry);
+  if (beyond) dropped = dropped_terms(prepared, *beyond, result.summary.validity.along, registry);
+  std::string why_not;
+  if (!estimate.why_not.empty()) {
+    why_not = estimate.why_not;
+  } else if (!estimate.estimate && settings.look_beyond) {
+    why_not = without_estimate(prepared, result.summary, beyond, settings);
+  }
+  result.certificate = certify(prepared,
+                               {&result.summary,
+                                beyond ? &*beyond : nullptr,
+                                {},
+                                std::move(estimate.estimate),
+                                std::move(why_not),
+                                std::move(dropped)},
+                               registry);
   return result;
 }
 

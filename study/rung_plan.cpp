@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_times.hpp"
@@ -258,6 +259,7 @@ RungPlan plan_rungs(const Prepared& prepared, Registry& registry, double accurac
   plan.worst = planner->worst();
   const double until = plan.stretches.empty() ? start : plan.stretches.back().stretch.end;
   plan.estimate = {prepared.rungs[reference.rung].name, named(outputs, planner->errors(), until), end,
+                   std::accumulate(plan.evaluations.begin(), plan.evaluations.end(), std::size_t{0}),
                    thread_cpu_seconds() - began};
   // In the highest rung throughout nothing is estimated, and the run need not agree with the reference.
   const bool highest = plan.stretches.size() == 1 && plan.stretches.front().stretch.rung == reference.rung;

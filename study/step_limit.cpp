@@ -39,7 +39,8 @@ std::string StepLimit::cause() const {
 StepLimit step_limit(const Integrator& integrator, double start, const RunSummary& summary) {
   StepLimit s;
   s.limit = integrator.stability_limit();
-  if (summary.steps.accepted == 0) return s;
+  // What never moves is no measure of what its steps are limited by.
+  if (summary.steps.accepted == 0 || summary.energy_scale == 0) return s;
   s.mean = (summary.reached - start) / static_cast<double>(summary.steps.accepted);
   s.fastest = summary.fastest_mode;
   s.product = s.mean * s.fastest;

@@ -17,7 +17,6 @@ namespace {
 /// What is advised is the cheapest of these that holds the accuracy.
 struct AdviseArguments : SceneArguments, OutputArguments {
   std::string accuracy = "1%";
-  std::vector<std::string> outputs;        ///< that errors are measured on; empty: all of the usual ones
   study::Axes axes = study::usual_axes();  ///< families empty: the scene's, and another where it means the same beams
   std::string write;                       ///< file for the scene as advised; empty: none
 };
@@ -58,7 +57,7 @@ ExitStatus advise(const AdviseArguments& arguments) {
   if (folder != nullptr) {
     write_file(*folder / "advice.json", json);
     write_figures_page(*folder / report_name, engine.prepared().title() + ": advice", words, {advice_picture(advice)});
-    if (!arguments.json) text += "\nResults: " + arguments.out + '\n';
+    if (!arguments.json) text += folder_text(arguments.out);
   }
   if (!arguments.json && !arguments.write.empty()) text += "\nwritten to " + arguments.write + '\n';
   print(text);
@@ -73,10 +72,9 @@ void add_advise(Options& o, AdviseArguments& a) {
   o.value("--accuracy", a.accuracy, "A,...",
           "Greatest error of the outputs: a share of each one's own range, a length, an angle, or several")
       .with_default();
-  axis(
-      "--outputs,--output", a.outputs, "NAME,...",
-      "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection, HINGE.motion_effort, outputs of the scene "
-      "(root, or one component, root.mz); default: all but these last, and but hinges that motions drive");
+  axis("--outputs,--output", a.outputs, "NAME,...",
+       "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection, HINGE.motion_effort, outputs (root.mz, "
+       "shoulder.effort); default: all but these last, and but hinges that motions drive");
   axis("--formulations,--formulation", a.axes.formulations, "ID,...",
        "Formulations to choose from; default: all that take part in studies, plugins' too");
   axis("--families,--family", a.axes.families, "ID,...",

@@ -13,7 +13,7 @@ struct CheckArguments : SceneArguments {
 
 ExitStatus check(const CheckArguments& arguments) {
   const Engine engine(arguments);
-  const std::vector<study::Remark> remarks = study::implausible(engine.prepared());
+  const std::vector<study::Remark> remarks = study::implausible(engine.prepared(), engine.registry());
   print(arguments.json ? json_text(remarks_json(engine.scene(), remarks)) : remarks_text(engine.scene(), remarks));
   return arguments.strict && !remarks.empty() ? ExitStatus::bad_input : ExitStatus::done;
 }

@@ -34,6 +34,7 @@ struct CommonArguments {
 struct SceneArguments : CommonArguments {
   std::string scene;
   SceneOptions options;
+  std::vector<std::string> outputs;  ///< names of columns; those that say what they are are outputs of the scene
 };
 
 /// Commands that look at one state of a scene.

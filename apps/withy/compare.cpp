@@ -17,7 +17,6 @@ namespace {
 
 struct CompareArguments : SceneArguments, OutputArguments {
   std::vector<std::string> formulations;  ///< empty: the usual ones that can treat the scene
-  std::vector<std::string> outputs;       ///< that errors are measured on; empty: all of the usual ones
   std::string reference = "quadratic";    ///< formulation that the others' errors are measured against
   std::string over;  ///< `path=value,value,…`: the comparison is made at each value; may be empty
 };
@@ -64,7 +63,7 @@ void add_compare(Options& o, CompareArguments& a) {
                    "scene");
   o.value("--reference", a.reference, "ID", "Formulation the errors are measured against").with_default();
   o.list("--outputs,--output", a.outputs, "NAME,...",
-         "What errors are shown of, each beside its range: hinges, tips, outputs of the scene (root, root.mz)");
+         "What errors are shown of, each beside its range: hinges, tips, outputs (root, root.mz, shoulder.effort)");
   o.value("--over", a.over, "PATH=VALUE,VALUE,...", "Compare at each of these values of the scene");
   add_output(o, a, "Folder for results and pictures; default: nothing is kept");
 }

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "withy/program/progress.hpp"
+#include "withy/scene/asked_outputs.hpp"
 
 namespace withy::app {
 namespace {
@@ -56,7 +57,7 @@ void check_write(const std::string& file, const SceneArguments& arguments) {
 SceneValues read_values(const SceneArguments& arguments) {
   return as_input([&] {
     SceneValues values = SceneValues::read(arguments.scene);
-    values.apply(arguments.options);
+    ask_outputs(values.apply(arguments.options), arguments.outputs);
     return values;
   });
 }

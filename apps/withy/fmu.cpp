@@ -55,6 +55,7 @@ void add_fmu(Options& o, FmuArguments& a) {
   o.list("--kind", a.kinds, "KIND,...", "Model exchange (me), co-simulation (cs), or both; default: both")
       .among({"me", "cs"});
   o.value("--out", a.out, "FILE", "File; default: the scene's name with .fmu, in the working folder");
+  o.list("--outputs,--output", a.outputs, "NAME,...", "Outputs to add, as those of withy run");
 }
 
 }  // namespace

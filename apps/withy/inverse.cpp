@@ -7,6 +7,7 @@
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/recorded_run.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/study/recorded_motion.hpp"
 
 namespace withy::app {
@@ -43,8 +44,8 @@ ExitStatus inverse(const InverseArguments& given) {
   const std::string title = led.title() + ": inverse dynamics";
   write_file(folder / "inverse.svg", inverse_picture(title, study));
   print(arguments.json ? json_text(inverse_json(scene, summary, study))
-                       : inverse_text(title, scene, summary, study) + "\nresults.csv, run.json and inverse.svg in " +
-                             folder.string() + '\n');
+                       : inverse_text(title, scene, summary, study) +
+                             folder_text(folder.string(), "results.csv, run.json and inverse.svg"));
   return ended(summary);
 }
 

@@ -10,7 +10,7 @@ namespace withy::app {
 namespace {
 
 struct LinearizeArguments : ConfigurationArguments, OutputArguments {
-  study::Ports ports;
+  std::vector<std::string> inputs;
 };
 
 ExitStatus linearize(const LinearizeArguments& arguments) {
@@ -19,7 +19,7 @@ ExitStatus linearize(const LinearizeArguments& arguments) {
   const auto folder =
       take_folder(arguments, "linearize", provenance_of(engine.scene(), engine.plugins()), linear_model_content());
   try {
-    const study::LinearModel linear = study::linear_model(c, arguments.ports);
+    const study::LinearModel linear = study::linear_model(c, {arguments.inputs, arguments.outputs});
     const nlohmann::ordered_json json = linear_model_json(c, linear);
     if (folder != nullptr) write_linear_model(folder->path(), json, linear);
     print(json_text(json));
@@ -34,11 +34,11 @@ void add_linearize(Options& o, LinearizeArguments& a) {
   add_scene(o, a);
   add_formulation(o, a);
   add_configuration(o, a);
-  o.list("--inputs,--input", a.ports.inputs, "NAME,...",
+  o.list("--inputs,--input", a.inputs, "NAME,...",
          "Loads of the type input, hinges whose efforts are inputs, or all: every generalized speed; default: "
          "every input of the scene or, where there is none, every free hinge");
-  o.list("--outputs,--output", a.ports.outputs, "NAME,...",
-         "Outputs of the scene (imu, load1.mz), hinge coordinates (elbow.0), rates (elbow.0.rate), tips "
+  o.list("--outputs,--output", a.outputs, "NAME,...",
+         "Outputs (imu, load1.mz, boom.tip.acceleration), hinge coordinates (elbow.0), rates (elbow.0.rate), tips "
          "(link2.tip.y); default: the scene's or, where it names none, all others");
   add_output(o, a, "Folder for linear.json, linear.mat (MATLAB) and linear.npz (NumPy); default: none is kept");
 }

@@ -107,7 +107,7 @@ ExitStatus modes(const ModesArguments& arguments) {
     if (masses) print('\n' + effective_mass_text(*masses));
     if (damping) print('\n' + mounted_damping_text(*damping));
     if (damping && !arguments.write.empty()) print("\nwritten to " + arguments.write + '\n');
-    if (!arguments.out.empty()) print("\nResults: " + arguments.out + '\n');
+    if (!arguments.out.empty()) print(folder_text(arguments.out));
   }
   const std::vector<std::string> problems = study::modes_problems(all.runs, sweep);
   for (const std::string& problem : problems) complain(problem);

@@ -4,6 +4,7 @@
 #include "withy/apps/withy/configuration.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/response_files.hpp"
 
 namespace withy::app {
@@ -14,7 +15,9 @@ struct ResponseArguments : ConfigurationArguments, OutputArguments {
   bool csv = false;
 };
 
-ExitStatus respond(const ResponseArguments& arguments) {
+ExitStatus respond(const ResponseArguments& given) {
+  ResponseArguments arguments = given;
+  arguments.outputs = {arguments.question.output};
   const Engine engine(arguments);
   const study::Configuration c = configuration_of(engine, arguments, study::Sampling::kept);
   const auto folder =
@@ -27,7 +30,7 @@ ExitStatus respond(const ResponseArguments& arguments) {
     else if (arguments.csv)
       print(response_csv(r));
     else
-      print(response_text(c, r) + (folder != nullptr ? "\nResults: " + arguments.out + '\n' : ""));
+      print(response_text(c, r) + (folder != nullptr ? folder_text(arguments.out) : ""));
   } catch (const std::domain_error& e) {
     complain(e.what());
     return ExitStatus::stopped;
@@ -43,7 +46,7 @@ void add_response(Options& o, ResponseArguments& a) {
           "A load of the type input, or a hinge; or a load that feeds back, or LOAD.HINGE, whose loop is opened")
       .required();
   o.value("--output,--outputs", a.question.output, "NAME",
-          "One component of an output of the scene (imu.x), a coordinate (elbow.0), or of a tip (link2.tip.y)");
+          "One component of an output (imu.x, boom.tip.velocity.vy), a coordinate (elbow.0), or tip (link2.tip.y)");
   o.value("--from", a.question.from, "HZ", "Lowest frequency; default: a decade below all poles").positive();
   o.value("--to", a.question.to, "HZ",
           "Highest frequency; default: a decade above all poles, or half the samples' rate")

@@ -20,7 +20,9 @@ Provenance provenance_of(const Scene& scene, const Plugins& plugins) {
 std::string default_folder(const SceneArguments& arguments, const std::string& what) {
   std::string name = std::filesystem::path(arguments.scene).stem().string() + '-' + what;
   if (!arguments.options.integrator.empty()) name += '-' + arguments.options.integrator;
-  return (std::filesystem::path("results") / (name + folder_suffix(arguments.options.overrides))).string();
+  std::vector<std::string> set = arguments.options.overrides;
+  set.insert(set.end(), arguments.outputs.begin(), arguments.outputs.end());
+  return (std::filesystem::path("results") / (name + folder_suffix(set))).string();
 }
 
 ExitStatus ended(const RunSummary& summary) {

@@ -3,6 +3,7 @@
 #include "withy/apps/withy/engine.hpp"
 #include "withy/apps/withy/results.hpp"
 #include "withy/results/certificate_text.hpp"
+#include "withy/results/check_columns.hpp"
 #include "withy/results/hdf5_recorder.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/recorded_run.hpp"
@@ -47,6 +48,7 @@ ExitStatus run(const RunArguments& given) {
   RunArguments arguments = given;
   const Engine engine(arguments);
   study::check_accuracy(engine.prepared());
+  check_columns(engine.prepared(), arguments.outputs);
   if (!arguments.hdf5) arguments.hdf5 = hdf5_missing().empty();
   if (*arguments.hdf5 && !hdf5_missing().empty()) {
     complain("--hdf5: " + hdf5_missing());
@@ -58,8 +60,9 @@ ExitStatus run(const RunArguments& given) {
   print(arguments.json
             ? json_text(result.json)
             : run_table(engine.prepared(), summary) + extremes_text(result.json.value("outputs", Json::object())) +
-                  certificate_text(engine.model(), summary, result.run.certificate) + "\nresults in " + arguments.out +
-                  (has_report_page() ? ", to look at in its report.html\n" : ", drawn in its results.svg\n"));
+                  certificate_text(engine.model(), summary, result.run.certificate) +
+                  (has_report_page() ? folder_text(arguments.out)
+                                     : "\nresults in " + arguments.out + ", drawn in its results.svg\n"));
   const ExitStatus status = ended(summary);
   if (status == ExitStatus::interrupted) complain("the same command with --resume goes on from there");
   return status;
@@ -69,6 +72,8 @@ void add_run(Options& o, RunArguments& a) {
   add_scene(o, a);
   add_formulation(o, a);
   add_output(o, a, "Folder of the results; default: results/<scene>-<formulation>, with what is --set behind it");
+  o.list("--outputs,--output", a.outputs, "NAME,...",
+         "Outputs to add, by names as HINGE.effort, HINGE.reaction, FRAME.acceleration, BODY.section@X");
   o.value("--estimate", a.estimate, "WHEN",
           "Estimate the error against the next model up: auto (where that is quadratic), always, never")
       .among({"auto", "always", "never"})

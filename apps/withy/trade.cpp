@@ -45,9 +45,7 @@ ExitStatus trade(const TradeArguments& arguments) {
   std::string text = arguments.json ? json_text(j) : trade_text(title, study, results, front, engine.registry());
   if (!arguments.out.empty()) {
     write_trade(arguments.out, engine.prepared(), j, results, front, engine.registry());
-    if (!arguments.json)
-      text += fmt::format("\ntrade.csv, trade.svg and trade.json in {}{}\n", arguments.out,
-                          has_report_page() ? ", to look at in its report.html" : "");
+    if (!arguments.json) text += folder_text(arguments.out, "trade.csv, trade.svg and trade.json");
   }
   print(text);
   if (whole) return ExitStatus::done;
@@ -76,7 +74,7 @@ void add_trade(Options& o, TradeArguments& a) {
   o.list("--lock", a.lock, "HINGE,HINGE,...", "Of frequencies: hinges that are held");
   o.list("--spin", a.spin, "HINGE=RATE,...", "Of frequencies: hinges held at a constant rate");
   o.list("--outputs,--output", a.outputs, "NAME,...",
-         "What errors are measured on: hinges, BODY.tip, BODY.tip.deflection, outputs of the scene (root, root.mz)");
+         "What errors are measured on: hinges, BODY.tip, BODY.tip.deflection, outputs (root.mz, shoulder.effort)");
   o.value("--jobs", a.jobs, "N", "Points run at once; default: one a core");
   add_output(o, a, "Folder for table and picture, and for finished points: the same command continues");
 }

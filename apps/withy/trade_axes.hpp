@@ -15,7 +15,6 @@ struct TradeArguments : SceneArguments, OutputArguments {
   std::string measure = "runs";         ///< what that error is of: runs, frequencies
   std::size_t count = 2;                ///< modes whose frequencies are compared
   std::vector<std::string> lock, spin;  ///< for frequencies: as in ConfigurationArguments
-  std::vector<std::string> outputs;     ///< that errors are measured on; empty: all of the usual ones
   std::size_t jobs = 0;                 ///< threads; 0: one a core
 };
 

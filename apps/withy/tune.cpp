@@ -6,6 +6,7 @@
 #include "withy/apps/withy/results.hpp"
 #include "withy/campaign/tune_files.hpp"
 #include "withy/results/json_text.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/results/scene_edit.hpp"
 
 namespace withy::app {
@@ -35,7 +36,7 @@ ExitStatus tune(const TuneArguments& arguments) {
   const SceneValues& scene = engine.prepared().values;
   if (!arguments.write.empty()) write_changed(scene, fitted_changes(scene, result), arguments.write, engine.registry());
   std::string text = tune_text(result, title);
-  if (folder != nullptr) text += "\nResults: " + arguments.out + '\n';
+  if (folder != nullptr) text += folder_text(arguments.out);
   if (!arguments.write.empty()) text += "\nwritten to " + arguments.write + '\n';
   if (!arguments.json) print(text);
   return result.converged() ? ExitStatus::done : ExitStatus::stopped;

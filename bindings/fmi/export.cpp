@@ -10,6 +10,7 @@
 #include "withy/plugins/host/plugin_host.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/sha256.hpp"
+#include "withy/scene/visual.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/trees_alone.hpp"
 
@@ -50,20 +51,31 @@ void check_plugins(const study::Prepared& prepared) {
   }
 }
 
+/// A file that the scene names by `path`, into a folder of the archive; \return its bytes
+std::string add_named(ZipFile& zip, const std::string& folder, const std::string& scene, const std::string& path) {
+  const fs::path name = fs::path(path).lexically_normal();
+  if (name.is_absolute() || (name.begin() != name.end() && *name.begin() == ".."))
+    throw study::InputError(scene + ": file '" + path +
+                            "' is not beside or below the scene; an FMU carries files by names relative to it");
+  std::string bytes = read_bytes((fs::path(scene).parent_path() / name).string());
+  zip.add(folder + name.generic_string(), bytes);
+  return bytes;
+}
+
 void add_scene(ZipFile& zip, const study::Prepared& prepared, const SceneOptions& options) {
   const fs::path file = prepared.scene.file;
   const std::string folder = std::string("resources/") + scene_folder + '/';
-  zip.add(std::string("resources/") + recipe_file, write_recipe(file.filename().string(), options));
+  SceneOptions asked = options;
+  asked.overrides = prepared.scene.settings;  // outputs that were asked for, too
+  zip.add(std::string("resources/") + recipe_file, write_recipe(file.filename().string(), asked));
   zip.add(folder + file.filename().string(), prepared.values.text());
   for (const FileUsed& used : prepared.scene.sources.files) {
-    const fs::path name = fs::path(used.path).lexically_normal();
-    if (name.is_absolute() || (name.begin() != name.end() && *name.begin() == ".."))
-      throw study::InputError(prepared.scene.file + ": file '" + used.path +
-                              "' is not beside or below the scene; an FMU carries files by names relative to it");
-    const std::string bytes = read_bytes((file.parent_path() / name).string());
-    if (sha256(bytes) != used.sha256) throw study::InputError(used.path + ": has changed since the scene was read");
-    zip.add(folder + name.generic_string(), bytes);
+    if (sha256(add_named(zip, folder, prepared.scene.file, used.path)) != used.sha256)
+      throw study::InputError(used.path + ": has changed since the scene was read");
   }
+  // Pictures have files too, which the scene is not read without.
+  for (const std::string& mesh : meshes_of(prepared.scene.source.at("bodies")))
+    add_named(zip, folder, prepared.scene.file, mesh);
 }
 
 void add_library(ZipFile& zip, const Description& d) {

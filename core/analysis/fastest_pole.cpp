@@ -204,7 +204,9 @@ bool FastestPole::of_load_state() const { return cause.starts_with(state_of_load
 
 std::string describe(const FastestPole& pole, const Layout& layout) {
   if (pole.value == 0.0) return {};
-  std::string text = brief(pole.value.real());
+  constexpr double rounding = 1e-9;  // of what vibrates without growing or dying out
+  const bool still = std::abs(pole.value.real()) < rounding * std::abs(pole.value.imag());
+  std::string text = still ? "0" : brief(pole.value.real());
   if (pole.value.imag() != 0) text += " ± " + brief(pole.value.imag()) + "i";
   text += "/s: ";
   if (pole.of_load_state()) return text + pole.cause;

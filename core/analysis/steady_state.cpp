@@ -80,7 +80,8 @@ class Newton {
     return true;
   }
   [[nodiscard]] Eigen::VectorXd solve_for(const Eigen::VectorXd& residual) const {
-    return -scale_.cwiseProduct(solver_.solve(scale_.cwiseProduct(residual(free_))));
+    const Eigen::VectorXd scaled = scale_.cwiseProduct(residual(free_)), least = solver_.solve(scaled);
+    return -scale_.cwiseProduct(least);
   }
   /// Whether what is left over is rounding of the terms in it.
   [[nodiscard]] bool balanced(const Stiffness& t) const {

@@ -28,7 +28,8 @@ std::vector<double> mass_beyond(const Body& body, double x);
 std::vector<MassPoint> mass_points(const std::vector<Particle>& particles, const std::vector<Section>& sections,
                                    Eigen::Index modes);
 
-/// A load on distributed mass: its wrench at a mass point depends on the motion of that point alone. The mass points of
+/// A load on distributed mass: its wrench at a mass point depends on the motion of that point alone; at one without
+/// second moments it is a force, and the point's turning, which nobody finds, is that of its body. The mass points of
 /// all bodies are frames to it, and to whatever asks where it acts: those of body b are {b, −1}, {b, −2}, …
 class FieldLoad : public BoundLoad {
  public:

@@ -74,6 +74,12 @@ struct SectionMotion {
   Vector3 r_bias, w_bias;  ///< r̈ and ẇ where the rates do not change; of untruncated paths, in numbers
 };
 
+/// Forces on the particles of a link, with the places r = X + Φq + ½qᵀΓq where they act: sums over the particles.
+struct Gathered {
+  Vector3 force;                     ///< Σ f, world axes
+  Matrix3 reference, first, second;  ///< Σ X fᵀ, Σ Φq fᵀ, Σ ½qᵀΓq fᵀ
+};
+
 inline Vector3 vector(const Triple& t) { return {t[0], t[1], t[2]}; }
 
 constexpr int any_count = -1;  ///< of modes: not known when compiled
@@ -150,6 +156,10 @@ class FramePaths::Pass {
     const LinkMotion& link = links_[at.link];
     const SectionMotion& section = sections_[at.section];
     FrameMotion f;
+    if (!paths_.sections_[at.section].turns) {
+      const Vector3 arm = link.R_B * section.r;
+      return {link.R_B, link.p + arm, link.w, link.v + link.w.cross(arm) + link.R_B * section.r_rate};
+    }
     f.R = link.R_B * section.R * at.pose.R;
     carry(link, section, at.pose, link.R_B * (section.r + section.R * at.pose.p), f.position, f.angular_velocity,
           f.velocity);
@@ -191,8 +201,10 @@ class FramePaths::Pass {
       links_[l].force.setZero();
       links_[l].moment.setZero();
     }
+    push_particles(wrenches, efforts);
     for (std::size_t i = 0; i < wrenches.size(); ++i)
-      attach(paths_.frames_[i], wrenches[i].force.template cast<S>(), wrenches[i].moment.template cast<S>(), efforts);
+      if (paths_.sections_[paths_.frames_[i].section].turns)
+        attach(paths_.frames_[i], wrenches[i].force.template cast<S>(), wrenches[i].moment.template cast<S>(), efforts);
     for (std::size_t l = paths_.links_.size(); l-- > 0;) {
       const Link& link = paths_.links_[l];
       const LinkMotion& m = links_[l];
@@ -215,6 +227,83 @@ class FramePaths::Pass {
   }
 
  private:
+  template <class>
+  friend class Pass;
+
+  /// Forces on particles, on the links and their modes.
+  void push_particles(std::span<const Wrench> wrenches, std::span<double> efforts) requires(std::is_same_v<S, double>) {
+    for (std::size_t i = 0; i < wrenches.size(); ++i) {
+      const Place& at = paths_.frames_[i];
+      const Section& section = paths_.sections_[at.section];
+      if (section.turns) continue;
+      const Link& link = paths_.links_[at.link];
+      LinkMotion& m = links_[at.link];
+      const Vector3 in_body = m.R_B.transpose() * wrenches[i].force;
+      m.force += wrenches[i].force;
+      m.moment += m.R_B * sections_[at.section].r.cross(in_body);
+      const Spatial::Twist* J = partials_ + section.partials;
+      for (Eigen::Index j = 0; section.moves && j < link.modes; ++j)
+        efforts[link.modal.speed + static_cast<std::size_t>(j)] += frame_pass::vector(J[j].v).dot(in_body);
+    }
+  }
+  /// The same in duals: what is linear in the forces is summed in numbers, so that duals are met once a link.
+  void push_particles(std::span<const Wrench> wrenches, std::span<double> efforts) {
+    auto* const gathered = sweep::at<frame_pass::Gathered>(work_, paths_.gathered_offset_);
+    auto* const by_mode = sweep::at<Matrix3>(work_, paths_.by_mode_offset_);
+    for (std::size_t l = 0; l < paths_.links_.size(); ++l)
+      gathered[l] = {Vector3::Zero(), Matrix3::Zero(), Matrix3::Zero(), Matrix3::Zero()};
+    for (std::size_t k = 0; k < 2 * paths_.modes_; ++k) by_mode[k].setZero();
+    const Pass<double> full(paths_, work_, paths_.full_offset_);
+    for (std::size_t i = 0; i < wrenches.size(); ++i) {
+      const Place& at = paths_.frames_[i];
+      if (!paths_.sections_[at.section].turns)
+        gather(at, wrenches[i].force, full, gathered[at.link], by_mode + 2 * paths_.links_[at.link].mode);
+    }
+    for (std::size_t l = 0; l < paths_.links_.size(); ++l)
+      if (paths_.links_[l].particles) push(l, gathered[l], by_mode + 2 * paths_.links_[l].mode, efforts);
+  }
+
+  /// Adds a force on a particle to the sums of its link, and Φ_j fᵀ and (Γq)_j fᵀ to those of each mode.
+  void gather(const Place& at, const Vector3& force, const Pass<double>& full, frame_pass::Gathered& sums,
+              Matrix3* by_mode) const {
+    const Section& section = paths_.sections_[at.section];
+    const Link& link = paths_.links_[at.link];
+    sums.force += force;
+    sums.reference += section.at.X * force.transpose();
+    if (!section.moves) return;
+    const double* q = full.q_ + link.mode;
+    const Spatial::Twist* J = partials_ + section.partials;
+    Vector3 first = Vector3::Zero();
+    for (Eigen::Index j = 0; j < link.modes; ++j) {
+      const Vector3 phi = section.at.phi.col(j);
+      first += phi * q[j];
+      by_mode[2 * j] += phi * force.transpose();
+      by_mode[2 * j + 1] += (frame_pass::vector(J[j].v) - phi) * force.transpose();
+    }
+    sums.first += first * force.transpose();
+    sums.second += (full.sections_[at.section].r - section.at.X - first) * force.transpose();
+  }
+
+  /// With R the link's frame and K = Σ r fᵀ the moment about its origin is that of K R in its axes, and the effort on a
+  /// mode tr(Σ P fᵀ R).
+  void push(std::size_t l, const frame_pass::Gathered& sums, const Matrix3* by_mode, std::span<double> efforts) {
+    const Link& link = paths_.links_[l];
+    LinkMotion& m = links_[l];
+    const S small = frame_pass::elastic<S>(1.0), smaller = small * small;
+    const M3 K = sums.reference.template cast<S>() + M3(sums.first.template cast<S>() * small) +
+                 M3(sums.second.template cast<S>() * smaller);
+    const M3 W = K * m.R_B;
+    m.force += sums.force.template cast<S>();
+    m.moment += m.R_B * V3(W(1, 2) - W(2, 1), W(2, 0) - W(0, 2), W(0, 1) - W(1, 0));
+    for (Eigen::Index j = 0; j < link.modes; ++j) {
+      const M3 P = by_mode[2 * j].template cast<S>() + M3(by_mode[2 * j + 1].template cast<S>() * small);
+      S effort(0.0);
+      for (Eigen::Index a = 0; a < 3; ++a)
+        for (Eigen::Index b = 0; b < 3; ++b) effort += P(b, a) * m.R_B(a, b);
+      efforts[link.modal.speed + static_cast<std::size_t>(j)] += frame_pass::on_mode(effort);
+    }
+  }
+
   /// What of the accelerations of a frame at `arm` from its link's frame does not come from those of the latter.
   [[nodiscard]] std::pair<Vector3, Vector3> relative(const Place& at, const Vector3& arm) const {
     const LinkMotion& link = links_[at.link];
@@ -258,7 +347,33 @@ class FramePaths::Pass {
         return;
       }
     }
-    for (const std::size_t s : link.sections) expand(link, paths_.sections_[s], q, q_dot, sections_[s]);
+    for (const std::size_t s : link.sections) {
+      if (paths_.sections_[s].turns) {
+        expand(link, paths_.sections_[s], q, q_dot, sections_[s]);
+      } else if constexpr (std::is_same_v<S, double>) {
+        shift(link, paths_.sections_[s], q, q_dot, sections_[s]);
+      }
+    }
+  }
+
+  /// Theory (1), of a particle.
+  void shift(const Link& link, const Section& section, const double* q, const double* q_dot, SectionMotion& out) {
+    out = {section.at.X,    M3::Identity(),  M3::Identity(), Vector3::Zero(),
+           Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+    if (!section.moves) return;
+    const bool bends = !section.gamma.empty() && link.order != StrainOrder::linear;
+    for (Eigen::Index i = 0; i < link.modes; ++i) {
+      const Vector3 phi = section.at.phi.col(i);
+      Vector3 P = phi;
+      const Vector3* gamma = bends ? section.gamma.data() + i * link.modes : nullptr;
+      for (Eigen::Index j = 0; bends && j < link.modes; ++j) {
+        P += gamma[j] * q[j];
+        if (paths_.untruncated_) out.r_bias += gamma[j] * (q_dot[i] * q_dot[j]);
+      }
+      out.r += (phi + P) * (0.5 * q[i]);
+      out.r_rate += P * q_dot[i];
+      partials_[section.partials + static_cast<std::size_t>(i)] = {Triple(0, 0, 0), Triple(P[0], P[1], P[2])};
+    }
   }
 
   /// Theory (1), (2).

@@ -18,6 +18,7 @@ FramePaths::FramePaths(const Model& model, Terms terms, const std::vector<FrameI
     symmetric_ = symmetric_ || (link.modes > 0 && link.truncation == Truncation::symmetric);
     if (link.order != StrainOrder::exact || link.truncation != Truncation::none || link.modes == 0) {
       for (const std::size_t s : link.sections) {
+        link.particles = link.particles || !sections_[s].turns;
         sections_[s].partials = partials_;
         partials_ += static_cast<std::size_t>(link.modes);
       }
@@ -28,6 +29,7 @@ FramePaths::FramePaths(const Model& model, Terms terms, const std::vector<FrameI
     node.modes = static_cast<std::size_t>(link.modes);
     node.rod = model.bodies()[static_cast<std::size_t>(link.hinge->child)].body->rod();
     for (const std::size_t s : link.sections) {
+      sections_[s].turns = true;
       sections_[s].station = node.stations.size();
       sections_[s].partials = partials_;
       partials_ += node.modes;
@@ -42,6 +44,10 @@ FramePaths::FramePaths(const Model& model, Terms terms, const std::vector<FrameI
   full_offset_ = Pass<double>::take(*this, memory);
   if (strict_) first_order_offset_ = Pass<frame_pass::Dual>::take(*this, memory);
   if (symmetric_) first_order_offset_ = Pass<frame_pass::Second>::take(*this, memory);
+  if (strict_ || symmetric_) {
+    gathered_offset_ = memory.take<frame_pass::Gathered>(links_.size());
+    by_mode_offset_ = memory.take<Matrix3>(2 * modes_);
+  }
   turning_offset_ = memory.take<FrameAcceleration>(untruncated ? links_.size() : 0);
   work_size_ = memory.size();
 }
@@ -97,6 +103,7 @@ std::size_t FramePaths::link(const Model& model, Terms terms, int body) {
            .order = own.strain,
            .truncation = untruncated_ ? Truncation::none : own.truncation,
            .sections = {},
+           .particles = false,
            .rod = nullptr};
     if (l.modes > 0) l.modal = *model.layout().modes(index);
     modes_ += static_cast<std::size_t>(l.modes);
@@ -112,8 +119,11 @@ FramePaths::Place FramePaths::place(const Model& model, Terms terms, FrameIndex 
   const std::size_t l = link(model, terms, frame.body);
   const FramePlace f = place_of(model, frame);
   const Pose pose = f.pose * offset;
+  const bool turns = frame.frame >= 0 || !field_of(model)->point(frame).second.isZero(0);
   for (const std::size_t s : links_[l].sections) {
-    if (same_section(sections_[s].at, f.section)) return {l, s, pose};
+    if (!same_section(sections_[s].at, f.section)) continue;
+    sections_[s].turns = sections_[s].turns || turns;
+    return {l, s, pose};
   }
   links_[l].sections.push_back(sections_.size());
   const auto by_pairs = [](const std::array<Eigen::MatrixXd, 3>& m) {
@@ -124,7 +134,7 @@ FramePaths::Place FramePaths::place(const Model& model, Terms terms, FrameIndex 
     return all;
   };
   sections_.push_back(
-      {f.section, moved_by_modes(f.section), 0, 0, by_pairs(f.section.gamma), by_pairs(f.section.theta)});
+      {f.section, moved_by_modes(f.section), turns, 0, 0, by_pairs(f.section.gamma), by_pairs(f.section.theta)});
   return {l, sections_.size() - 1, pose};
 }
 

@@ -42,6 +42,7 @@ class FramePaths {
   struct Section {
     PointExpansion at;
     bool moves;            ///< false: the modes leave it where it is
+    bool turns;            ///< false: a particle alone is there, whose turning nobody asks for
     std::size_t partials;  ///< its first place among them, where it moves
     std::size_t station;   ///< of a rod
     /// Γ and Θ by pairs of modes, one row of the matrices after the other; empty where zero.
@@ -66,6 +67,7 @@ class FramePaths {
     StrainOrder order;
     Truncation truncation;
     std::vector<std::size_t> sections;
+    bool particles = false;          ///< some section does not turn
     std::shared_ptr<const Rod> rod;  ///< null where the kinematics is an expansion
   };
   /// The motion of all links in a scalar, in the work memory.
@@ -83,7 +85,7 @@ class FramePaths {
   std::size_t partials_ = 0;
   bool untruncated_ = false, strict_ = false, symmetric_ = false;
   std::size_t hinge_offset_ = 0, partials_offset_ = 0, full_offset_ = 0, first_order_offset_ = 0;
-  std::size_t turning_offset_ = 0, work_size_ = 0;
+  std::size_t turning_offset_ = 0, gathered_offset_ = 0, by_mode_offset_ = 0, work_size_ = 0;
 };
 
 }  // namespace withy

@@ -7,7 +7,7 @@
 namespace withy {
 namespace {
 
-using Kind = HingeKernel::Kind;
+using HingeKind = HingeKernel::Kind;
 
 void add(std::vector<Column>& columns, const std::string& name, std::initializer_list<const char*> suffixes,
          const std::string& unit) {
@@ -32,11 +32,11 @@ std::vector<Column> coordinate_columns(const HingeNode& hinge) {
     }
     return c;
   }
-  if (kernel->kind == Kind::revolute) add(c, hinge.name, {""}, "rad");
-  if (kernel->kind == Kind::prismatic) add(c, hinge.name, {""}, "m");
-  if (kernel->kind == Kind::spherical || kernel->kind == Kind::free)
+  if (kernel->kind == HingeKind::revolute) add(c, hinge.name, {""}, "rad");
+  if (kernel->kind == HingeKind::prismatic) add(c, hinge.name, {""}, "m");
+  if (kernel->kind == HingeKind::spherical || kernel->kind == HingeKind::free)
     add(c, hinge.name, {".qw", ".qx", ".qy", ".qz"}, "1");
-  if (kernel->kind == Kind::free) add(c, hinge.name, {".x", ".y", ".z"}, "m");
+  if (kernel->kind == HingeKind::free) add(c, hinge.name, {".x", ".y", ".z"}, "m");
   return c;
 }
 
@@ -55,10 +55,11 @@ std::vector<Column> rate_columns(const HingeNode& hinge) {
       c.push_back({numbered(hinge.name + ".rate", c.size(), hinge.hinge->speeds()), rate.angular ? "rad/s" : "m/s"});
     return c;
   }
-  if (kernel->kind == Kind::revolute) add(c, hinge.name, {".rate"}, "rad/s");
-  if (kernel->kind == Kind::prismatic) add(c, hinge.name, {".rate"}, "m/s");
-  if (kernel->kind == Kind::spherical || kernel->kind == Kind::free) add(c, hinge.name, {".wx", ".wy", ".wz"}, "rad/s");
-  if (kernel->kind == Kind::free) add(c, hinge.name, {".vx", ".vy", ".vz"}, "m/s");
+  if (kernel->kind == HingeKind::revolute) add(c, hinge.name, {".rate"}, "rad/s");
+  if (kernel->kind == HingeKind::prismatic) add(c, hinge.name, {".rate"}, "m/s");
+  if (kernel->kind == HingeKind::spherical || kernel->kind == HingeKind::free)
+    add(c, hinge.name, {".wx", ".wy", ".wz"}, "rad/s");
+  if (kernel->kind == HingeKind::free) add(c, hinge.name, {".vx", ".vy", ".vz"}, "m/s");
   return c;
 }
 

@@ -93,7 +93,7 @@ class Assembler {
     solver.setThreshold(1e-9);
     solver.compute(S);
     Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
-    const Eigen::VectorXd least = solver.solve(-missing);
+    const Eigen::VectorXd wanted = -missing, least = solver.solve(wanted);
     change(free) = factor.matrixU().solve(least).eval();
     return change;
   }

@@ -155,13 +155,15 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
   if (h.end.weakest.empty()) return "The mass matrix is not finite.";
   const bool negative = h.end.smallest_eigenvalue < 0 && !h.became_singular();
   std::string between;
-  if (h.change) between = " between t = " + brief(h.change->before) + " and " + brief(h.change->after) + " s";
+  if (h.change && brief(h.change->before) != brief(h.change->after))
+    between = " between t = " + brief(h.change->before) + " and " + brief(h.change->after) + " s";
   std::string text;
   if (h.became_singular()) {
-    text = "The mass matrix of this formulation became singular: det M came to zero" + between;
+    text = "The mass matrix of this formulation became singular, so that a motion has no inertia, as in no structure: ";
+    text += "det M came to zero" + between;
   } else if (h.change) {
-    text = "The mass matrix of this formulation became singular on the way and then indefinite: det M changed sign" +
-           between;
+    text = "The mass matrix of this formulation became singular on the way and then indefinite, so that a motion has ";
+    text += "negative inertia, as in no structure: det M changed sign" + between;
   } else if (h.lost_definiteness()) {
     text = "The mass matrix of this formulation lost its positive definiteness: det M is " +
            sign_text(h.end.determinant_sign) + ", at the start it was " + sign_text(h.start.determinant_sign);

@@ -13,7 +13,7 @@ namespace {
 
 /// Both equations as one system for a stepper, of one thread: y holds the positions of both, the
 /// speeds of both, the continuous and the discrete states of both, then the work of the first.
-class PairedEquations final : public EquationsOfMotion {
+class PairedEquations final : public EquationsOfMotion, private LinearlyImplicit {
  public:
   PairedEquations(const EquationsOfMotion& first, const EquationsOfMotion& second)
       : halves_{Half(first), Half(second)},
@@ -33,6 +33,22 @@ class PairedEquations final : public EquationsOfMotion {
       Half& half = halves_[i];
       take(y, i, half.y);
       const Evaluation e = half.equations->derivatives(t, half.y, half.y_dot, half.work);
+      if (!e.ok()) return e;
+      put(half.y_dot, i, y_dot);
+    }
+    y_dot.back() = halves_[0].y_dot.back();
+    return {};
+  }
+  [[nodiscard]] const LinearlyImplicit* linearly_implicit() const override {
+    return halves_[0].linear != nullptr && halves_[1].linear != nullptr ? this : nullptr;
+  }
+  Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base, double delta,
+                                  std::span<double> y_dot, Work&) const noexcept override {
+    for (std::size_t i = 0; i < 2; ++i) {
+      Half& half = halves_[i];
+      take(y, i, half.y);
+      take(base, i, half.base);
+      const Evaluation e = half.linear->implicit_derivatives(t, half.y, half.base, delta, half.y_dot, half.work);
       if (!e.ok()) return e;
       put(half.y_dot, i, y_dot);
     }
@@ -85,11 +101,24 @@ class PairedEquations final : public EquationsOfMotion {
     return {{{0, positions_}, {positions_, speeds_}, {continuous, continuous_}, {discrete, discrete_}}};
   }
   struct Half {
-    explicit Half(const EquationsOfMotion& e) : equations(&e), work(e.make_work()), y(e.size()), y_dot(e.size()) {}
+    explicit Half(const EquationsOfMotion& e)
+        : equations(&e),
+          linear(e.linearly_implicit()),
+          work(e.make_work()),
+          y(e.size()),
+          base(e.size()),
+          y_dot(e.size()) {}
     const EquationsOfMotion* equations;
+    const LinearlyImplicit* linear;  ///< null: they are not
     Work work;
-    std::vector<double> y, y_dot;
+    std::vector<double> y, base, y_dot;
   };
+  // Steppers of pairs do without factors of their own.
+  [[nodiscard]] Work make_factors() const override { return Work(0); }
+  Evaluation factorize(std::span<const double>, double, Work&) const noexcept override {
+    return {Evaluation::Outcome::singular};
+  }
+  void solve(std::span<double>, Work&) const noexcept override {}
   [[noreturn]] static void refuse() { throw std::logic_error("two models in one have no dynamics but their own"); }
 
   mutable std::array<Half, 2> halves_;
@@ -119,6 +148,10 @@ class PairObserver final : public SteppingObserver {
     emitted_ = both.time;
     output_(first_, second_);
     return true;
+  }
+  bool after_step(const Stepper& stepper, bool /*outputs*/) override {
+    const double t = stepper.state().time;
+    return !options_.at_steps || t < emitted_ + (1 - 1e-9) * options_.output || output(stepper.state());
   }
   void renew(Clocks& clocks, State& both) override {
     take(both);
@@ -170,7 +203,8 @@ PairedRun run_paired(const Model& model, const EquationsOfMotion& first, const E
   pair.put(begun(model, first, initial).y, 0, both.y);
   pair.put(begun(model, second, initial).y, 1, both.y);
   PairObserver observer(pair, {Renewal(model, first), Renewal(model, second)}, options, initial, output);
-  Stepping loop(model, pair, integrator.start(pair, both), {options.end, options.output});
+  const double never = 2 * (std::abs(initial.time) + std::abs(options.end)) + 1;
+  Stepping loop(model, pair, integrator.start(pair, both), {options.end, options.at_steps ? never : options.output});
   loop.run(observer);
   if (loop.state().time > observer.emitted()) observer.output(loop.state());
   return {loop.state().time, loop.stepper().statistics().evaluations, thread_cpu_seconds() - began};

@@ -14,6 +14,7 @@ namespace withy {
 struct PairedRunOptions {
   double end = 0;                     ///< [s]
   double output = 0.01;               ///< interval of outputs [s]
+  bool at_steps = false;              ///< outputs are ends of steps, at least the interval apart: nothing interpolates
   std::size_t most_evaluations = 0;   ///< of both together as one; 0: unlimited
   std::function<bool()> interrupted;  ///< asked between steps
 };

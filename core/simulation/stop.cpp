@@ -7,6 +7,28 @@
 #include "withy/core/plugin/closed_loops.hpp"
 
 namespace withy {
+namespace {
+
+/// The first motion without finite numbers from a time [s] on, and when; empty where there is none until `ahead` [s]
+/// after it.
+std::string nonfinite_motion(const Model& model, double time, double ahead) {
+  for (const MotionNode& node : model.motions()) {
+    for (double after = 0; after <= ahead; after = after > 0 ? 2 * after : ahead * 0x1p-30) {
+      const MotionPoint p = node.motion->at(time + after);
+      const bool placed = std::isfinite(p.position), moving = std::isfinite(p.rate);
+      if (!(placed && moving && std::isfinite(p.acceleration)))
+        return "motion '" + node.name + "' has no finite " +
+               (!placed  ? "coordinate"
+                : moving ? "acceleration"
+                         : "rate") +
+               " at t = " + brief(time + after) + " s";
+      if (!(ahead > 0)) break;
+    }
+  }
+  return {};
+}
+
+}  // namespace
 
 Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion& equations, const State& state,
              const StepStatistics& steps) {
@@ -15,6 +37,9 @@ Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion
   if (end.cause != SteppingEnd::Cause::failed) return {};
   if (!end.reason.empty()) return {RunStatus::diverged, end.reason, false};
   const StepResult& result = end.step;
+  if (result.outcome == StepResult::Outcome::nonfinite || result.outcome == StepResult::Outcome::step_underflow)
+    if (const std::string motion = nonfinite_motion(model, state.time, steps.largest_step); !motion.empty())
+      return {RunStatus::diverged, motion, false};
   const std::string body =
       result.body >= 0 ? " at body '" + model.bodies()[static_cast<std::size_t>(result.body)].name + "'" : "";
   switch (result.outcome) {

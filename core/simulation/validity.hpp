@@ -47,6 +47,7 @@ struct Validity {
   std::vector<BodyValidity> bodies;  ///< the flexible ones
   std::size_t samples = 0;
   NeglectedAcceleration neglected;  ///< no samples where there was nothing to compare with
+  std::vector<State> along;         ///< at most sixteen of the samples, spread over the time of the run
 };
 
 /// Samples one run. The interval is counted in evaluations of the equations of motion that steps make, which makes the
@@ -89,6 +90,7 @@ class ValidityWatch {
   void hold(const State& state, std::size_t evaluations);
   void sample(const State& state);
   void look_at_energies(const State& state, Watched& w) const;
+  void keep(const State& state);
   void compare_accelerations(const State& state);
 
   const Model& model_;
@@ -105,6 +107,8 @@ class ValidityWatch {
   std::size_t next_ = 0;  ///< evaluations at which the next sample is due
   State held_;            ///< to be sampled
   bool due_ = false;
+  std::vector<double> kept_;     ///< rows of time and y
+  std::size_t kept_states_ = 0;  ///< rows in use
 };
 
 }  // namespace withy

@@ -35,4 +35,9 @@ Eigen::Matrix<Scalar, 3, 3> skew(const Eigen::Matrix<Scalar, 3, 1>& a) {
 /// Rotation matrix of a quaternion w, x, y, z, which need not have unit length (it is scaled).
 Matrix3 rotation_from_quaternion(double w, double x, double y, double z);
 
+/// A rotation R that turns one direction to another, R from/|from| = to/|to|: the least one, and where they are
+/// opposite (to 1e-4 rad) a half turn about some normal of `from`. Neither is zero. (Eigen's FromTwoVectors would have
+/// each of its users compile a singular value decomposition: 10 s.)
+Matrix3 rotation_between(const Vector3& from, const Vector3& to);
+
 }  // namespace withy

@@ -452,8 +452,8 @@ Eigen::MatrixXd TangentDynamics::drift(std::span<const double> y) const {
       N.col(k) = rate(x, unit);
       bracket.col(k) = change(N.col(k), u) - change(along, unit);
     }
-    C.block(static_cast<Eigen::Index>(slot.speed), static_cast<Eigen::Index>(slot.speed), m, m) =
-        N.colPivHouseholderQr().solve(bracket);
+    const Eigen::MatrixXd change_of_speeds = N.colPivHouseholderQr().solve(bracket);
+    C.block(static_cast<Eigen::Index>(slot.speed), static_cast<Eigen::Index>(slot.speed), m, m) = change_of_speeds;
   }
   return C;
 }

@@ -76,6 +76,8 @@ class BoundField final : public FieldLoad {
   template <class S>
   std::pair<V3<S>, V3<S>> on(double t, const MassPoint& point, const M3<S>& R, const V3<S>& r, const V3<S>& w,
                              const V3<S>& v) const {
+    if (point.second.isZero(0))
+      return {V3<S>::Zero(), V3<S>(law_.template at<S>(t, r, v, M3<S>::Zero()).a * S(point.mass))};
     const M3<S> second = R * point.second.cast<S>() * R.transpose();
     const FieldAt<S> field = law_.template at<S>(t, r, v, second);
     const M3<S> pull = (field.by_position + M3<S>(field.by_velocity * skew<S>(w))) * second;

@@ -17,6 +17,8 @@ using Json = nlohmann::ordered_json;
 
 /// Of tubes and beads; the rings of a deep tree are many.
 constexpr std::size_t sides = 8;
+/// Half the thickness of the thinnest tube, over that of rods.
+constexpr double least_of_radius = 0.3;
 
 template <class Number>
 std::vector<Number> array_of(const Json& run, const Json& index) {
@@ -55,7 +57,9 @@ std::vector<std::size_t> joined(const std::string& kind, const std::vector<Vecto
 
 }  // namespace
 
-Animation::Body Animation::body_of(const nlohmann::ordered_json& part) {
+std::size_t Animation::Body::size() const { return 7 + (flexible ? (turns ? 6 : 3) * points.size() + 7 * hung : 0); }
+
+Animation::Body Animation::body_of(const nlohmann::ordered_json& part, const nlohmann::ordered_json& run) {
   Body body;
   body.name = part.at("name");
   body.kind = part.at("kind");
@@ -71,6 +75,23 @@ Animation::Body Animation::body_of(const nlohmann::ordered_json& part) {
   }
   body.ends.emplace_back(Vector3::Zero());
   for (const Json& hung : part.at("hung")) body.ends.push_back(vector_of(hung));
+  body.hung = part.at("hung").size();
+  if (part.contains("sections")) {
+    const Json& sections = part.at("sections");
+    const auto widths = array_of<float>(run, sections.at("widths"));
+    for (std::size_t i = 0; i + 1 < widths.size(); i += 2)
+      body.outlines.push_back({sections.at("rectangle").get<bool>(), widths[i], widths[i + 1]});
+    body.turns = sections.at("turns");
+  }
+  if (part.contains("surface")) {
+    Surface& given = body.given.emplace();
+    const auto vertices = array_of<float>(run, part.at("surface").at(0));
+    const auto triangles = array_of<std::uint32_t>(run, part.at("surface").at(1));
+    for (std::size_t i = 0; i + 2 < vertices.size(); i += 3)
+      given.vertices.emplace_back(vertices[i], vertices[i + 1], vertices[i + 2]);
+    for (std::size_t i = 0; i + 2 < triangles.size(); i += 3)
+      given.triangles.push_back({triangles[i], triangles[i + 1], triangles[i + 2]});
+  }
   if (part.contains("tip")) body.ends.push_back(vector_of(part.at("tip")));
   return body;
 }
@@ -95,9 +116,9 @@ Animation::Animation(std::string_view text) try {
   if (const Vector3 g = vector_of(motion.at("gravity")); g.norm() > 0) up_ = -g.normalized();
   std::size_t at = 0;
   for (const Json& part : motion.at("parts")) {
-    bodies_.push_back(body_of(part));
+    bodies_.push_back(body_of(part, run));
     bodies_.back().at = at;
-    at += 7 + (bodies_.back().flexible ? part.at("points").size() + 7 * part.at("hung").size() : 0);
+    at += bodies_.back().size();
   }
   if (at != size_) throw ResultsError("the report holds other numbers than it says");
   radius_ = 0.011 * extent();
@@ -109,15 +130,18 @@ Pose Animation::pose(std::size_t body, std::size_t moment) const {
   return pose_from(numbers_, moments_[moment] * size_ + bodies_[body].at);
 }
 
-std::vector<Vector3> Animation::points(const Body& body, std::size_t moment) const {
-  std::vector<Vector3> points = body.points;
-  if (!body.flexible) return points;
+Animation::Shape Animation::shape_at(const Body& body, std::size_t moment) const {
+  Shape shape{body.points, {}};
+  if (!body.flexible) return shape;
   const float* u = numbers_.data() + moments_[moment] * size_ + body.at + 7;
-  for (Vector3& p : points) {
-    p += Eigen::Map<const Eigen::Vector3f>(u).cast<double>();
+  const auto next = [&u] {
+    const Vector3 v = Eigen::Map<const Eigen::Vector3f>(u).cast<double>();
     u += 3;
-  }
-  return points;
+    return v;
+  };
+  for (Vector3& p : shape.points) p += next();
+  for (std::size_t i = 0; body.turns && i < body.points.size(); ++i) shape.y_axes.push_back(next());
+  return shape;
 }
 
 /// Of the system at the first moment [m].
@@ -126,38 +150,52 @@ double Animation::extent() const {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Pose X = pose(b, 0);
     room.extend(X.p);
-    for (const Vector3& p : points(bodies_[b], 0)) room.extend(X.p + X.R * p);
+    for (const Vector3& p : shape_at(bodies_[b], 0).points) room.extend(X.p + X.R * p);
     for (const Vector3& p : bodies_[b].ends) room.extend(X.p + X.R * p);
   }
   return std::max(room.diagonal().norm(), 1e-3);
 }
 
-Surface Animation::drawn(const Body& body, const std::vector<Vector3>& points) const {
+/// What is thinner than can be seen is drawn as thick as can be.
+Surface Animation::tube(const Body& body, const Shape& shape) const {
+  const bool known = body.outlines.size() == shape.points.size();
+  Tube tube{{}, {}, {Vector3::UnitY()}};
+  if (!shape.y_axes.empty()) tube.y_axes.clear();
+  for (const std::size_t i : body.line) {
+    tube.line.push_back(shape.points[i]);
+    if (!shape.y_axes.empty()) tube.y_axes.push_back(shape.y_axes[i]);
+    const Outline outline = known ? body.outlines[i] : Outline{false, radius_, radius_};
+    const double least = least_of_radius * radius_;
+    tube.outlines.push_back({outline.rectangle, std::max(outline.y, least), std::max(outline.z, least)});
+  }
+  Surface surface;
+  add_tube(tube, sides, surface);
+  return surface;
+}
+
+Surface Animation::drawn(const Body& body, const Shape& shape) const {
+  if (body.given) return *body.given;
   Surface surface;
   if (body.kind == "strip") {
-    add_sheet(points, body.columns, surface);
+    add_sheet(shape.points, body.columns, surface);
     return surface;
   }
-  if (body.line.size() > 1) {
-    std::vector<Vector3> line;
-    for (const std::size_t i : body.line) line.push_back(points[i]);
-    add_tube(line, radius_, sides, Vector3::UnitZ(), surface);
-    return surface;
-  }
+  if (body.line.size() > 1) return tube(body, shape);
   if (body.kind == "points")
-    for (const Vector3& p : points) add_bead(p, radius_, surface);
+    for (const Vector3& p : shape.points) add_bead(p, radius_, surface);
   if (body.kind != "box") return surface;
   if (body.has_box) add_box(body.edges.cwiseMax(1.6 * radius_), body.box, surface);
   const Vector3 from = body.has_box ? body.box.p : Vector3(Vector3::Zero());
   for (const Vector3& end : body.ends)
-    if ((end - from).norm() > radius_) add_tube({from, end}, 0.5 * radius_, sides, Vector3::UnitZ(), surface);
+    if ((end - from).norm() > radius_)
+      add_tube({{from, end}, {{false, 0.5 * radius_, 0.5 * radius_}}, {Vector3::UnitZ()}}, sides, surface);
   return surface;
 }
 
-Surface Animation::surface(std::size_t body) const { return drawn(bodies_[body], bodies_[body].points); }
+Surface Animation::surface(std::size_t body) const { return drawn(bodies_[body], {bodies_[body].points, {}}); }
 
 std::vector<Vector3> Animation::vertices(std::size_t body, std::size_t moment) const {
-  return drawn(bodies_[body], points(bodies_[body], moment)).vertices;
+  return drawn(bodies_[body], shape_at(bodies_[body], moment)).vertices;
 }
 
 }  // namespace withy

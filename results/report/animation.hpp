@@ -2,22 +2,15 @@
 /// The motion that a report holds, for programs that draw motions: bodies as surfaces, moment by moment.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "withy/core/spatial/pose.hpp"
+#include "withy/results/report/solids.hpp"
 
 namespace withy {
-
-/// A surface of triangles, vertices [m] in the axes of its body.
-struct Surface {
-  std::vector<Vector3> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-};
 
 /// One run in motion, as RunReport has put it on a page.
 class Animation {
@@ -38,8 +31,9 @@ class Animation {
   [[nodiscard]] bool sheet(std::size_t body) const { return bodies_[body].kind == "strip"; }
   /// Of a body at a moment, in the world.
   [[nodiscard]] Pose pose(std::size_t body, std::size_t moment) const;
-  /// Its surface at rest: a tube along a beam, the sheet of a plate, beads at the points of a body of data, the box of
-  /// a rigid body's mass and inertia with rods to what hangs on it. Without triangles where there is nothing to draw.
+  /// Its surface at rest: a tube along a beam, the sheet of a plate, beads at the points of a body of data, the surface
+  /// that a rigid body is given, or else the box of its mass and inertia with rods to what hangs on it. Without
+  /// triangles where there is nothing to draw.
   [[nodiscard]] Surface surface(std::size_t body) const;
   /// Its vertices, deformed as at a moment, body axes; those of `surface`, in their order.
   [[nodiscard]] std::vector<Vector3> vertices(std::size_t body, std::size_t moment) const;
@@ -53,13 +47,23 @@ class Animation {
     bool has_box = false;
     Vector3 edges = Vector3::Zero();
     Pose box;
+    std::size_t hung = 0;           ///< poses on which children hang
     std::vector<Vector3> ends;      ///< of rods from a rigid body's box
     std::vector<std::size_t> line;  ///< points that a tube goes along
+    std::vector<Outline> outlines;  ///< of the tube at its points; empty: as thick as is well seen
+    bool turns = false;             ///< whether its numbers have the y axes of sections
+    std::optional<Surface> given;   ///< that it is drawn with
     std::size_t at = 0;             ///< of its numbers in those of a moment
+    [[nodiscard]] std::size_t size() const;
   };
-  static Body body_of(const nlohmann::ordered_json& part);
-  [[nodiscard]] std::vector<Vector3> points(const Body& body, std::size_t moment) const;
-  [[nodiscard]] Surface drawn(const Body& body, const std::vector<Vector3>& points) const;
+  /// Points of a body and, where its numbers have them, the y axes of its sections.
+  struct Shape {
+    std::vector<Vector3> points, y_axes;
+  };
+  static Body body_of(const nlohmann::ordered_json& part, const nlohmann::ordered_json& run);
+  [[nodiscard]] Shape shape_at(const Body& body, std::size_t moment) const;
+  [[nodiscard]] Surface drawn(const Body& body, const Shape& shape) const;
+  [[nodiscard]] Surface tube(const Body& body, const Shape& shape) const;
   [[nodiscard]] double extent() const;
 
   std::string title_;
@@ -69,7 +73,7 @@ class Animation {
   std::size_t size_ = 0;  ///< numbers of a moment
   Vector3 up_ = Vector3::UnitZ();
   std::vector<Body> bodies_;
-  double radius_ = 0;  ///< of tubes [m]
+  double radius_ = 0;  ///< of rods and beads [m]
 };
 
 }  // namespace withy

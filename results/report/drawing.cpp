@@ -72,7 +72,8 @@ Json box_json(const ModalShape& shape) {
 
 }  // namespace
 
-Drawing::Drawing(const std::shared_ptr<const Model>& model, const Terms& terms) : tips_(tips(*model)) {
+Drawing::Drawing(const std::shared_ptr<const Model>& model, const Terms& terms, Looks looks)
+    : looks_(std::move(looks)), tips_(tips(*model)) {
   const std::shared_ptr<const Model> own = Model::in_kinematics(model, terms);
   std::vector<BodyNode> bodies = own->bodies();
   parts_.resize(bodies.size());
@@ -82,6 +83,7 @@ Drawing::Drawing(const std::shared_ptr<const Model>& model, const Terms& terms) 
     part.flexible = modes > 0;
     part.frame = add_frame(bodies[b], PointExpansion::rigid(Vector3::Zero(), modes), Vector3::Zero());
     add_points(bodies[b], part);
+    if (part.kind == Kind::line) add_sections(bodies[b], part);
   }
   for (const HingeNode& hinge : own->hinges()) {
     if (hinge.parent < 0) continue;
@@ -90,7 +92,8 @@ Drawing::Drawing(const std::shared_ptr<const Model>& model, const Terms& terms) 
     part.hung.push_back(hinge.parent_frame);
     part.offsets.push_back(hinge.offset);
   }
-  for (const Part& part : parts_) size_ += 7 + (part.flexible ? 3 * part.points.size() + 7 * part.hung.size() : 0);
+  for (const Part& part : parts_)
+    size_ += 7 + (part.flexible ? (part.turns ? 6 : 3) * part.points.size() + 7 * part.hung.size() : 0);
   model_ = std::make_shared<const Model>(std::move(bodies), own->hinges(), own->gravity());
   seen_ = observed_model(*model_, terms)->make_observation();
 }
@@ -128,6 +131,23 @@ bool Drawing::add_line(BodyNode& node, Part& part) const {
   }
   part.kind = Kind::line;
   return true;
+}
+
+void Drawing::add_sections(const BodyNode& node, Part& part) const {
+  std::vector<double> places;
+  for (const Vector3& p : part.at_rest) places.push_back(p.x());
+  part.sections = looks_.sections(node, places);
+  const bool round = std::all_of(part.sections.begin(), part.sections.end(), [](const Outline& o) {
+    return !o.rectangle && std::abs(o.y - o.z) <= 1e-3 * std::max(o.y, o.z);
+  });
+  const bool twists =
+      part.flexible && node.frames[static_cast<std::size_t>(part.points.back())].section.psi.row(0).any();
+  part.turns = twists && !round;
+}
+
+const Surface* Drawing::surface(std::size_t body) const {
+  const BodyNode& node = model_->bodies()[body];
+  return looks_.surface(node.segment ? node.segment->whole : node.name);
 }
 
 /// Of a body with corners `left` and `right` at its tip: sections across its middle line, which stay straight.
@@ -205,6 +225,8 @@ void Drawing::append(std::span<const double> y, std::vector<float>& numbers) {
       const Vector3 r = X_BW.p + X_BW.R * Eigen::Map<const Vector3>(point.position.data());
       append_vector(r - part.at_rest[i], numbers);
     }
+    for (std::size_t i = 0; part.turns && i < part.points.size(); ++i)
+      append_vector((X_BW * pose_of(seen_->frame_pose(body, part.points[i]))).R.col(1), numbers);
     for (std::size_t i = 0; i < part.hung.size(); ++i)
       append_pose(X_BW * pose_of(seen_->frame_pose(body, part.hung[i])) * part.offsets[i], numbers);
   }

@@ -12,6 +12,7 @@
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/results/report/looks.hpp"
 
 namespace withy {
 
@@ -20,13 +21,19 @@ namespace withy {
 class Drawing {
  public:
   /// \param terms of the formulation, for bodies that have none of their own
-  Drawing(const std::shared_ptr<const Model>& model, const Terms& terms);
+  Drawing(const std::shared_ptr<const Model>& model, const Terms& terms, Looks looks = {});
 
   /// What stays: of each body its name, its parent, kind, points at rest [m, body axes]; of a rigid one the box that
   /// has its mass and inertia; where its children hang on it.
   [[nodiscard]] nlohmann::ordered_json parts() const;
+  /// The surface that a body is given; null where there is none. The sections of a beam at its points; none of others.
+  [[nodiscard]] const Surface* surface(std::size_t body) const;
+  [[nodiscard]] const std::vector<Outline>& sections(std::size_t body) const { return parts_[body].sections; }
+  /// Whether `append` tells how the sections are turned: where they are not round and the body twists.
+  [[nodiscard]] bool turns(std::size_t body) const { return parts_[body].turns; }
   /// Of a state, y as in State, appended: of each body position [m] and quaternion w x y z in the world; of a flexible
-  /// one displacement of each point [m] and the poses on which its children hang, body axes.
+  /// one displacement of each point [m], if it turns the y axis of each section, and the poses on which its children
+  /// hang, body axes.
   void append(std::span<const double> y, std::vector<float>& numbers);
   /// Of a state, each body as a line in the world [m]: along a flexible body, or from a rigid body's root to what hangs
   /// on it.
@@ -47,20 +54,24 @@ class Drawing {
   struct Part {
     Kind kind = Kind::box;
     bool flexible = false;
-    int frame = 0;                 ///< of the body
-    std::vector<int> points;       ///< frames
-    std::vector<Vector3> at_rest;  ///< of the points
-    std::vector<int> children;     ///< bodies that hang on a flexible body
-    std::vector<int> hung;         ///< frames of these, one a child
-    std::vector<Pose> offsets;     ///< of the hinges in them
-    std::size_t columns = 1;       ///< points across a strip
+    int frame = 0;                       ///< of the body
+    std::vector<int> points;             ///< frames
+    std::vector<Vector3> at_rest;        ///< of the points
+    std::vector<int> children;           ///< bodies that hang on a flexible body
+    std::vector<int> hung;               ///< frames of these, one a child
+    std::vector<Pose> offsets;           ///< of the hinges in them
+    std::size_t columns = 1;             ///< points across a strip
+    std::vector<Outline> sections = {};  ///< of a beam, at its points
+    bool turns = false;
   };
   [[nodiscard]] std::span<const double> without_discrete(std::span<const double> y) const;
   void add_points(BodyNode& node, Part& part) const;
   bool add_strip(BodyNode& node, Part& part) const;
+  void add_sections(const BodyNode& node, Part& part) const;
   [[nodiscard]] bool add_line(BodyNode& node, Part& part) const;
   [[nodiscard]] nlohmann::ordered_json part_json(std::size_t body) const;
 
+  Looks looks_;
   std::shared_ptr<const Model> model_;  ///< with a frame at each point
   std::vector<Part> parts_;
   std::vector<Tip> tips_;

@@ -35,7 +35,7 @@ class Binary {
     const std::size_t times = scalars(run.times());
     Json children = Json::array();
     for (std::size_t b = 0; b < run.bodies(); ++b) children.push_back(add_body(run, b, times));
-    const Eigen::Quaterniond upright = Eigen::Quaterniond::FromTwoVectors(run.up(), Vector3::UnitY());
+    const Eigen::Quaterniond upright(rotation_between(run.up(), Vector3::UnitY()));
     roots_.push_back(add_to("nodes", {{"name", run.title()},
                                       {"rotation", {upright.x(), upright.y(), upright.z(), upright.w()}},
                                       {"children", std::move(children)}}));

@@ -16,7 +16,7 @@ Morph morph_of(const Animation& run, std::size_t body, double tolerance) {
   Morph morph;
   const double greatest = left.size() == 0 ? 0 : left.cwiseAbs().maxCoeff();
   if (!(greatest > 0)) return morph;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> principal(left.transpose() * left);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> principal(Eigen::MatrixXd(left.transpose() * left));
   morph.shapes.resize(left.rows(), moments);
   morph.weights.resize(moments, moments);
   Eigen::Index count = 0;

@@ -59,6 +59,10 @@ void write_page(const std::filesystem::path& file, std::size_t size, const Add& 
 
 bool has_report_page() { return !page().empty(); }
 
+std::string folder_text(const std::string& folder, const std::string& what) {
+  return "\n" + what + " in " + folder + (has_report_page() ? ", to look at in its report.html\n" : "\n");
+}
+
 void write_report(const std::filesystem::path& file, const ReportContent& content) {
   std::size_t size = 1000;
   for (const std::string& run : content.runs) size += run.size() + run.size() / 16;

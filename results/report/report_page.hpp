@@ -14,6 +14,10 @@ bool has_report_page();
 /// Where the page is in a folder of results.
 inline constexpr const char* report_name = "report.html";
 
+/// The last line of an answer that leaves a folder, an empty one before it: "results in out, to look at in its
+/// report.html" where this build has pages.
+std::string folder_text(const std::string& folder, const std::string& what = "results");
+
 /// What a page shows.
 struct ReportContent {
   std::string title;

@@ -94,10 +94,32 @@ Json arrows_json(const Arrows& arrows, Arrays& data) {
   return list;
 }
 
+/// Of what is drawn: what stays of each body, with its surface or its sections, if it has these.
+Json parts_json(const Drawing& drawing, Arrays& data) {
+  Json parts = drawing.parts();
+  for (std::size_t b = 0; b < parts.size(); ++b) {
+    if (const Surface* surface = drawing.surface(b)) {
+      std::vector<float> vertices;
+      for (const Vector3& v : surface->vertices)
+        for (const double x : v) vertices.push_back(static_cast<float>(x));
+      std::vector<std::uint32_t> triangles;
+      for (const auto& t : surface->triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+      parts[b]["surface"] = {data.add(vertices), data.add(triangles)};
+    }
+    const std::vector<Outline>& sections = drawing.sections(b);
+    if (sections.empty()) continue;
+    std::vector<float> widths;
+    for (const Outline& o : sections) widths.insert(widths.end(), {static_cast<float>(o.y), static_cast<float>(o.z)});
+    parts[b]["sections"] = {
+        {"rectangle", sections.front().rectangle}, {"turns", drawing.turns(b)}, {"widths", data.add(widths)}};
+  }
+  return parts;
+}
+
 }  // namespace
 
 RunReport::RunReport(const study::Prepared& prepared)
-    : prepared_(prepared), table_(most_stretches, most_moments, most_numbers) {}
+    : prepared_(prepared), looks_(prepared.scene), table_(most_stretches, most_moments, most_numbers) {}
 
 std::string RunReport::picture() const {
   const std::string& formulation = prepared_.scene.formulation_name;
@@ -106,7 +128,7 @@ std::string RunReport::picture() const {
 
 std::string RunReport::text(const study::CertifiedRun& ended, const Json& run) const {
   const Model& model = prepared_.model();
-  Drawing drawing(prepared_.scene.model, prepared_.scene.formulation->terms());
+  Drawing drawing(prepared_.scene.model, prepared_.scene.formulation->terms(), looks_);
   Arrows arrows(prepared_.scene, prepared_.scene.formulation->terms(), table_.columns());
   std::vector<double> times, rates, deflections;
   std::vector<float> numbers;
@@ -133,7 +155,7 @@ std::string RunReport::text(const study::CertifiedRun& ended, const Json& run) c
             {"table", table_json(table_, samples, data)},
             {"animation",
              {{"gravity", {g.x(), g.y(), g.z()}},
-              {"parts", drawing.parts()},
+              {"parts", parts_json(drawing, data)},
               {"size", drawing.size()},
               {"times", data.add(times)},
               {"numbers", data.add(numbers)},

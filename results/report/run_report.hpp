@@ -6,6 +6,7 @@
 #include <string>
 
 #include "withy/results/report/decimated_table.hpp"
+#include "withy/results/report/looks.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy {
@@ -25,6 +26,7 @@ class RunReport {
 
  private:
   const study::Prepared& prepared_;
+  Looks looks_;  ///< as they are before the run: a mesh that changes while it runs spoils nothing
   DecimatedTable table_;
 };
 

@@ -25,19 +25,32 @@ Vector3 across(const Vector3& v, const Vector3& direction) {
   return direction.unitOrthogonal();
 }
 
+/// Where on an outline a ring has vertex j, over the half widths.
+std::pair<double, double> ring_point(const Outline& outline, std::size_t j, std::size_t sides) {
+  const double angle = 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(sides);
+  const double c = std::cos(angle), s = std::sin(angle);
+  if (!outline.rectangle) return {c, s};
+  // Corners and the middles of edges.
+  const double far = std::max(std::abs(c), std::abs(s));
+  return {c / far, s / far};
+}
+
 }  // namespace
 
-void add_tube(const std::vector<Vector3>& line, double radius, std::size_t sides, Vector3 side, Surface& surface) {
+void add_tube(const Tube& tube, std::size_t sides, Surface& surface) {
   const Index first = next_vertex(surface);
   const auto n = static_cast<Index>(sides);
+  const std::vector<Vector3>& line = tube.line;
+  Vector3 side = tube.y_axes.front();
   for (std::size_t k = 0; k < line.size(); ++k) {
+    const Outline& outline = tube.outlines[tube.outlines.size() > 1 ? k : 0];
     const Vector3 chord = line[std::min(k + 1, line.size() - 1)] - line[k > 0 ? k - 1 : 0];
     const Vector3 along = chord.norm() > 0 ? Vector3(chord.normalized()) : Vector3(Vector3::UnitX());
-    side = across(side, along);
+    side = across(tube.y_axes.size() > 1 ? tube.y_axes[k] : side, along);
     const Vector3 other = along.cross(side);
     for (std::size_t j = 0; j < sides; ++j) {
-      const double angle = 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(sides);
-      surface.vertices.push_back(line[k] + radius * (std::cos(angle) * side + std::sin(angle) * other));
+      const auto [y, z] = ring_point(outline, j, sides);
+      surface.vertices.push_back(line[k] + y * outline.y * side + z * outline.z * other);
     }
   }
   const Index begin = next_vertex(surface), end = begin + 1, last = begin - n;
@@ -50,6 +63,19 @@ void add_tube(const std::vector<Vector3>& line, double radius, std::size_t sides
     surface.triangles.push_back({begin, first + (j + 1) % n, first + j});
     surface.triangles.push_back({end, last + j, last + (j + 1) % n});
   }
+}
+
+void add_ball(double radius, Surface& surface) {
+  // A tube along z whose rings are circles of latitude.
+  constexpr std::size_t rings = 16;
+  Tube tube{{}, {}, {Vector3::UnitX()}};
+  for (std::size_t k = 0; k <= rings; ++k) {
+    const double angle = std::numbers::pi * static_cast<double>(k) / rings;
+    const double r = radius * std::sin(angle);
+    tube.line.emplace_back(0, 0, -radius * std::cos(angle));
+    tube.outlines.push_back({false, r, r});
+  }
+  add_tube(tube, 2 * rings, surface);
 }
 
 void add_bead(const Vector3& center, double radius, Surface& surface) {

@@ -79,6 +79,20 @@ TEST(Plans, KeepColumnsOfHingesVectorsAndSingleResults) {
                                               "final.rod.tip.z[m]", "final.t[s]", "peak.pivot.rate[rad/s]"));
 }
 
+/// And a case that is run alone has them, too.
+TEST(Plans, KeepOutputsThatTheSceneDoesNotDefine) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(
+      "vary: {bodies.rod.mass: {grid: [1, 2]}}\nkeep: {final: [pivot.reaction.fx.max], peak: [pivot.acceleration]}\n");
+  EXPECT_THAT(kept_columns(plan), ElementsAre("final.pivot.reaction.fx.max[N]", "peak.pivot.acceleration[rad/s^2]"));
+  ASSERT_GE(plan.set.size(), 2U);
+  const auto& [path, name] = plan.set[plan.set.size() - 2];
+  EXPECT_EQ(path, "outputs");
+  EXPECT_EQ(name.text(), "pivot.reaction.fx.max");
+  EXPECT_THAT(folder.errors("vary: {bodies.rod.mass: {grid: [1]}}\nkeep: {final: [pivto.acceleration]}\n"),
+              HasSubstr("no hinge \"pivto\"; did you mean 'pivot'?"));
+}
+
 TEST(Plans, KeepHistoriesAtTimesThatAllCasesShare) {
   const PlanFolder folder;
   const std::string vary = "vary: {bodies.rod.mass: {grid: [1, 2]}}\n";

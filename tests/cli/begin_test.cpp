@@ -49,8 +49,9 @@ std::vector<std::string> pages() {
 }
 
 /// Runs the lines of a block as a user would type them, `withy` being the program and ~ the folder. A line that says
-/// so in its comment ends with another status than 0.
-void run_lines(const Folder& folder, std::string block) {
+/// so in its comment ends with another status than 0. \returns what the last one prints
+std::string run_lines(const Folder& folder, std::string block) {
+  std::string out;
   for (std::size_t at; (at = block.find("\\\n")) != std::string::npos;) block.replace(at, 2, "");
   for (const std::string& line : lines(block)) {
     if (line.empty() || line.starts_with('#')) continue;
@@ -63,8 +64,10 @@ void run_lines(const Folder& folder, std::string block) {
       EXPECT_TRUE(std::filesystem::exists(folder.path() / w[1])) << line;
       continue;
     }
-    ASSERT_TRUE(w[0] == "withy" || w[0] == "build/release/bin/withy" || w[0] == "mkdir")
-        << line << "\nrun by no test: its block says which test runs it, as ```sh test=FILE";
+    if (w[0] != "withy" && w[0] != "build/release/bin/withy" && w[0] != "mkdir") {
+      ADD_FAILURE() << line << "\nrun by no test: its block says which test runs it, as ```sh test=FILE";
+      continue;
+    }
     const std::string built = "build/release/bin/", program = WITHY_PROGRAM;
     const std::string command = "withy() { '" + program + "' \"$@\"; }; HOME=$PWD; " +
                                 (line.starts_with(built) ? line.substr(built.size()) : line);
@@ -74,25 +77,32 @@ void run_lines(const Folder& folder, std::string block) {
     if (f.status == 0) {
       EXPECT_EQ(f.err, "") << line;
     }
+    out = f.out;
   }
+  return out;
 }
 
 class Pages : public testing::TestWithParam<std::string> {};
 
 TEST_P(Pages, EveryCommandRunsOnTheScenesThatItHasWritten) {
   const Folder folder;
+  std::string out;
   for (const auto& [language, text] : blocks(text_of(WITHY_SOURCES "/" + GetParam() + ".md"))) {
     const std::string first = text.substr(0, text.find('\n'));
     // A file says its name in its first line.
-    if (language == "yaml" && first.starts_with("# ") && first.ends_with(".yaml"))
+    if (language == "yaml" && first.starts_with("# ") && first.ends_with(".yaml")) {
       folder.write(first.substr(2), text);
-    else if (language == "sh")
-      run_lines(folder, text);
-    else if (language.starts_with("sh test="))
+    } else if (language == "sh") {
+      out = run_lines(folder, text);
+    } else if (language == "text output") {
+      for (const std::string& line : lines(text))
+        EXPECT_THAT(out, HasSubstr(line)) << "the last command says otherwise";
+    } else if (language.starts_with("sh test=")) {
       EXPECT_TRUE(std::filesystem::exists(WITHY_SOURCES "/" + language.substr(8))) << language;
-    else
+    } else {
       EXPECT_FALSE(language.empty() && first.starts_with("withy ") && std::islower(first[6]))
           << first << "\nis a command: its block is one of sh";
+    }
   }
 }
 
@@ -197,6 +207,13 @@ TEST(Check, SaysWhatIsHardlyMeant) {
   const std::string light = said({"bodies.elbow_rotor.inertia=[1e-6, 1e-6, 1e-6, 0, 0, 0]"});
   EXPECT_THAT(light, HasSubstr("/loads/control/hinges/elbow: the servo on 'elbow' drives an inertia of"));
   EXPECT_THAT(light, Not(HasSubstr("the servo on 'shoulder'")));
+  // Functions without a moment at the tip, and the remedy that is named.
+  EXPECT_THAT(said({}, "scenes/spacecraft.yaml"), HasSubstr("/bodies/right_boom: 3 bending_y and 1 bending_z modes of "
+                                                            "clamped-free carry no moment at the tip"));
+  const std::vector<std::string> polynomials = {"bodies.right_boom.bending_y.family=orthogonal-polynomials",
+                                                "bodies.right_boom.bending_z.family=orthogonal-polynomials"};
+  EXPECT_THAT(said(polynomials, "scenes/spacecraft.yaml"), Not(HasSubstr("/bodies/right_boom")));
+  EXPECT_THAT(said({}, "scenes/rotating-blade.yaml"), Not(HasSubstr("clamped-free"))) << "it carries nothing";
   Finished f = withy(folder, {"check", "scenes/new/arm.yaml", "--set", "bodies.fore_link.damping_ratio=5", "--json"});
   EXPECT_EQ(json::parse(f.out).at("remarks").size(), 1U);
   f = withy(folder, {"check", "scenes/new/arm.yaml", "--set", "bodies.fore_link.damping_ratio=5", "--strict"});

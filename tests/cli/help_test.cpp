@@ -72,6 +72,14 @@ std::vector<std::string> too_wide(const std::string& out) {
   return wide;
 }
 
+/// Pages of runs and studies in a folder.
+std::size_t pages(const Folder& folder) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
+    count += entry.path().filename() == "report.html" ? 1 : 0;
+  return count;
+}
+
 class HelpOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(HelpOf, HasExamplesThatRun) {
@@ -82,7 +90,11 @@ TEST_P(HelpOf, HasExamplesThatRun) {
   const auto found = examples(help.out);
   ASSERT_FALSE(found.empty()) << help.out;
   for (const auto& arguments : found) {
+    const std::size_t before = pages(folder);
     const Finished f = withy(folder, arguments);
+    if (pages(folder) > before) {
+      EXPECT_THAT(f.out, HasSubstr("report.html")) << testing::PrintToString(arguments) << " leaves a page and says it";
+    }
     EXPECT_EQ(f.status, 0) << testing::PrintToString(arguments) << '\n' << f.err;
     EXPECT_NE(f.out, "");
     EXPECT_THAT(too_wide(f.out), testing::IsEmpty()) << testing::PrintToString(arguments);
@@ -113,6 +125,27 @@ TEST(Help, ColoursAreForTerminalsThatWantThem) {
   EXPECT_THAT(on_terminal("NO_COLOR=1"), testing::Not(HasSubstr("\033[32m")));
   EXPECT_THAT(withy(folder, {"run", "scenes/pendulum.yaml", "--out", "out", "--force"}).out,
               testing::Not(HasSubstr("\033")));
+}
+
+TEST(Help, SentencesFitATerminalAndStayWholeElsewhere) {
+  const Folder folder;
+  const auto widest = [](const std::string& text) {
+    std::ptrdiff_t most = 0;
+    for (const std::string& line : lines(text))
+      most = std::max(most, std::count_if(line.begin(), line.end(), [](char c) { return (c & '\xC0') != '\x80'; }));
+    return most;
+  };
+  for (const std::string command : {"run scenes/two-link-slew.yaml --out out --force",
+                                    "check scenes/two-link-slew.yaml", "inspect scenes/two-link-slew.yaml",
+                                    "plugins quadratic", "response scenes/pd-arm.yaml --input control.shoulder"}) {
+    const std::string call = std::string("'") + WITHY_PROGRAM + "' " + command;
+    const auto shell = [&](const std::string& text) { return Process(folder, {"/bin/sh", "-c", text}).wait().out; };
+    const std::string piped = shell("exec " + call);
+    const std::string shown = shell("exec env NO_COLOR=1 script -qec \"" + call + " 2>/dev/null\" /dev/null");
+    EXPECT_GT(widest(piped), 100) << command << ": a command whose sentences are short shows nothing";
+    EXPECT_GT(widest(shown), 20) << command;
+    EXPECT_LE(widest(shown), 100 + 1) << command << "\n" << shown;  // a terminal's lines end with \r\n
+  }
 }
 
 /// What bash offers behind the words.

@@ -7,6 +7,7 @@
 
 #include "withy/program/allocations.hpp"
 #include "withy/program/colour.hpp"
+#include "withy/program/fold.hpp"
 #include "withy/results/svg_plot.hpp"
 #include "withy/results/text_table.hpp"
 
@@ -37,6 +38,29 @@ TEST(Colour, OutcomesAndPlacesAreMarkedAndNothingElseChanges) {
   const std::string text = "t[s],x\n\n 1:2:\n";
   EXPECT_EQ(with_outcomes_coloured(text), text);
   EXPECT_EQ(with_places_bold(text), text);
+}
+
+TEST(Fold, LinesOfWordsGoOnBelowWhereTheirWordsBeginAndNothingElseChanges) {
+  EXPECT_EQ(folded("error         about one per cent of it\n", 30),
+            "error         about one per\n              cent of it\n");
+  EXPECT_EQ(folded("Reference: exact, three modes, of them one\nmore", 24),
+            "Reference: exact, three\n  modes, of them one\nmore");
+  EXPECT_EQ(folded("  a.yaml:3:7: /bodies: got µµµµµµ; need one", 26),
+            "  a.yaml:3:7: /bodies: got\n    µµµµµµ; need one");
+  EXPECT_EQ(folded("no", 40), "no");
+  EXPECT_EQ(folded("", 40), "");
+  // Tables, commands and words without a space.
+  for (const std::string whole :
+       {"name              error of everything\n----------------------\na   b c d e f g h i j k\n",
+        "  withy run scenes/pendulum.yaml --set time.end=4\n", "results/two-link-slew-quadratic/report.html\n\n\n"})
+    EXPECT_EQ(folded(whole, 16), whole);
+  // Whatever the width, the words are the same.
+  const std::string text =
+      "why   one: two three four, five\n      six: seven eight\n\nnine ten eleven twelve thirteen\n";
+  for (std::size_t width = 12; width < 60; ++width) {
+    std::istringstream before(text), after(folded(text, width));
+    for (std::string a, b; before >> a;) EXPECT_TRUE(after >> b && a == b) << width;
+  }
 }
 
 TEST(SvgPlot, AxisMarksAreRoundAndInside) {

@@ -42,6 +42,44 @@ std::vector<std::string> all_cells(const std::string& table) {
   return all;
 }
 
+/// The same names in every command; their numbers are those of sensors that a scene defines.
+TEST(Run, AddsOutputsByNamesThatSayWhatTheyAre) {
+  const Folder folder;
+  const std::vector<std::string> scene = {"scenes/loads-of-the-slew.yaml", "--set", "time.end=0.1"};
+  const auto run = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), scene.begin(), scene.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return withy(folder, arguments);
+  };
+  Finished f = run({"run"}, {"--output", "link1.section@0.mz,shoulder.effort,shoulder,elbow", "--out", "one"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const auto rows = lines(folder.read("one/results.csv"));
+  const auto head = cells(rows.front()), last = cells(rows.back());
+  const auto cell = [&](const std::string& name) {
+    const auto at = static_cast<std::size_t>(std::find(head.begin(), head.end(), name) - head.begin());
+    return at < last.size() ? last[at] : "no " + name;
+  };
+  EXPECT_EQ(cell("link1.section@0.mz[N m]"), cell("root.mz[N m]"));
+  EXPECT_EQ(cell("shoulder.effort[N m]"), cell("shoulder_torque[N m]"));
+  EXPECT_EQ(json::parse(folder.read("one/run.json")).at("set"),
+            json({"time.end=0.1", "outputs=link1.section@0.mz", "outputs=shoulder.effort"}));
+  f = run({"run"}, {"--output", "shoulder.efort"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("--output: no 'shoulder.efort'; did you mean 'shoulder.effort'?"));
+  f = run({"compare"}, {"--formulations", "quadratic,linear", "--output", "root.mz,link1.section@0.mz", "--json"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json errors = json::parse(f.out).at("runs")[1].at("outputs");
+  ASSERT_EQ(errors.size(), 2U);
+  EXPECT_EQ(errors[1].at("output"), "link1.section@0.mz");
+  EXPECT_EQ(errors[0].at("distance"), errors[1].at("distance"));
+  f = run({"linearize"}, {"--input", "shoulder", "--output", "root.mz,link1.section@0.mz"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json linear = json::parse(f.out);
+  EXPECT_EQ(linear.at("C")[0], linear.at("C")[1]);
+  f = run({"response"}, {"--input", "shoulder", "--output", "link1.section@0.mz", "--json"});
+  EXPECT_EQ(f.status, 0) << f.err;
+}
+
 TEST(Run, OfClosedLoopsAndOfActingEventsLeavesWhatTheyDid) {
   const Folder folder;
   Finished f = withy(folder, {"run", "scenes/gallery/four-bar.yaml", "--set", "time.end=0.1", "--out", "loop"});

@@ -168,6 +168,59 @@ TEST_P(FieldLoads, reach_the_root_of_every_beam_through_its_sections) {
 
 INSTANTIATE_TEST_SUITE_P(Formulations, FieldLoads, testing::ValuesIn(formulations), formulation_name);
 
+/// ∫ f g dm, or of the second moments about places, of fields that are columns of a matrix, with rows √weight · f.
+Eigen::MatrixXd integrals(const Eigen::MatrixXd& fields) { return fields.transpose() * fields; }
+
+/// The fields 1, X, Φ, Γ of mass, and Ψ, Θ beside 1 of what turns, at the points of a body.
+Eigen::MatrixXd fields_at(const PointExpansion& at, double weight, bool turning) {
+  std::vector<double> row{1};
+  const auto take = [&](const auto& m) { row.insert(row.end(), m.data(), m.data() + m.size()); };
+  if (!turning) take(at.X);
+  take(turning ? at.psi : at.phi);
+  for (const Eigen::MatrixXd& m : turning ? at.theta : at.gamma) take(m);
+  return std::sqrt(weight) * Eigen::Map<const Eigen::RowVectorXd>(row.data(), static_cast<Eigen::Index>(row.size()));
+}
+
+/// The mass matrix, weight and every force of a field that is linear in place and velocity are made of the integrals
+/// ∫ f g dm of the fields f, g = 1, X, Φ_i, Γ_ij, whatever a formulation keeps of them: where mass points have these as
+/// the body has, a field acts as through them. The points of a rod are not the particles that its mass matrix is of.
+TEST(MassPoints, have_all_integrals_of_the_body) {
+  const std::string beam = "type: beam, length: 1.4, ";
+  const std::string tapered = "mass_per_length: [[0, 1.2], [0.9, 0.7], [1.4, 0.5]], ";
+  const std::vector<std::string> bodies = {
+      beam + "mass_per_length: 0.8, bending_y: {stiffness: 40, modes: 4}, bending_z: {stiffness: 30, modes: 3}",
+      beam + "mass_per_length: 0.8, bending_y: {stiffness: 40, modes: 4, family: orthogonal-polynomials}",
+      beam + "mass_per_length: 0.8, bending_y: {stiffness: 40, modes: 6, family: free-free}",
+      beam + tapered + "bending_y: {stiffness: [[0, 40], [1.4, 9]], modes: 3}, bending_z: {stiffness: 50, modes: 2}",
+      beam + tapered + "bending_y: {stiffness: 40, modes: 2}, torsion: {stiffness: 30, inertia: 0.003, modes: 2}"};
+  for (const std::string& text : bodies) {
+    const Case c("format: withy/1\ntime: {end: 1}\nbodies: {b: {" + text +
+                     "}}\nhinges: {root: {type: weld, parent: world, child: b}}\n",
+                 "quadratic");
+    const Body& body = *c.scene.model->bodies()[0].body;
+    for (const bool turning : {false, true}) {
+      Eigen::MatrixXd of_points, of_body;
+      const auto add = [&](Eigen::MatrixXd& sum, const PointExpansion& at, double weight) {
+        const Eigen::MatrixXd one = integrals(fields_at(at, weight, turning));
+        if (sum.size() == 0) sum = Eigen::MatrixXd::Zero(one.rows(), one.cols());
+        sum += one;
+      };
+      for (const MassPoint& p : mass_points(body)) add(of_points, p.at, turning ? p.second.trace() : p.mass);
+      if (turning) {
+        for (const Section& s : body.shape().sections) add(of_body, s.at, 0.5 * s.inertia.trace());
+      } else {
+        for (const Particle& p : body.shape().particles) add(of_body, p.at, p.mass);
+      }
+      if (of_body.size() == 0) of_body = Eigen::MatrixXd::Zero(of_points.rows(), of_points.cols());
+      const Eigen::VectorXd size = of_points.diagonal().cwiseMax(of_body.diagonal()).cwiseSqrt();
+      for (Eigen::Index i = 0; i < of_body.rows(); ++i)
+        for (Eigen::Index j = 0; j <= i; ++j)
+          EXPECT_NEAR(of_points(i, j), of_body(i, j), 1e-12 * size[i] * size[j]) << text << ": " << i << ", " << j;
+      EXPECT_EQ(of_body(0, 0) > 0, !turning || text.find("torsion") != std::string::npos) << text;
+    }
+  }
+}
+
 /// N = ½ ρA ω² (L² − x²) in a rod at rest along the radius of turning axes, stiff or with modes of any strain that does
 /// not stretch it.
 TEST(FieldLoadsUntruncated, of_turning_axes_pull_a_rod_as_the_closed_form_says) {

@@ -90,6 +90,23 @@ TEST(Description, AnFmuHasItsSceneItsFilesALibraryADocumentAndLicences) {
   instance.initialize();
 }
 
+TEST(Description, AnFmuHasTheMeshesThatItsSceneIsNotReadWithout) {
+  const std::filesystem::path folder = scratch() / "drawn";
+  std::filesystem::create_directories(folder / "cad");
+  std::ofstream(folder / "cad/bus.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  std::ofstream(folder / "bus.yaml") << R"(format: withy/1
+bodies: {bus: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], visual: {mesh: cad/bus.obj}}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: bus}}
+loads: {motor: {type: input, hinge: axle}}
+time: {end: 1}
+)";
+  const Unpacked& fmu = exported((folder / "bus.yaml").string(), 3);
+  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(std::filesystem::is_regular_file(fmu.folder / "resources/scene/cad/bus.obj"));
+  Instance3 instance(fmu, true);
+  instance.initialize();
+}
+
 TEST(Description, TheLibraryNeedsTheRunTimesOfCAndCppAndWhatStandsBesideIt) {
   for (const int version : {2, 3}) {
     const std::filesystem::path library = exported(busy_arm_file(), version).library(version);

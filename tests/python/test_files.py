@@ -2,8 +2,11 @@
 
 import csv
 import os
+import re
+import shutil
 import subprocess
 import xml.etree.ElementTree
+import zipfile
 
 import numpy
 import pytest
@@ -33,6 +36,31 @@ def test_a_spreadsheet_reads_the_table(run):
     assert all(head.count("[") == head.count("]") == 1 and head.endswith("]") for head in heads)
     assert {"t[s]", "float.qw[1]", "left_boom.bending_y.1[1]"} <= set(heads)
     assert numbers.shape[1] == len(heads) and numpy.isfinite(numbers).all()
+
+
+def test_cells_are_plain_numbers_in_every_spreadsheet(run):
+    # RFC 4180 without quotes: heads that need none, and numbers that no program takes for a formula, a date or a text.
+    folder, heads, _ = run
+    text = (folder / "results.csv").read_bytes()
+    assert text.isascii() and b"\r" not in text and b'"' not in text and text.endswith(b"\n")
+    assert all(re.fullmatch(r"[A-Za-z_][\w.-]*\[[^\[\],]+\]", head) for head in heads)
+    cells = [cell for line in text.decode().splitlines()[1:] for cell in line.split(",")]
+    assert all(re.fullmatch(r"-?\d+(\.\d+)?(e[-+]?\d+)?", cell) for cell in cells)
+
+
+@pytest.mark.skipif(not shutil.which("soffice"), reason="LibreOffice is not installed")
+def test_libreoffice_reads_the_numbers_of_the_table(run, tmp_path):
+    folder, heads, numbers = run
+    subprocess.run(["soffice", f"-env:UserInstallation=file://{tmp_path}/profile", "--headless", "--convert-to", "xlsx", "--infilter=CSV:44,34,76,1,,1033",
+                    "--outdir", str(tmp_path), str(folder / "results.csv")], check=True, timeout=300, stdout=subprocess.DEVNULL)
+    with zipfile.ZipFile(tmp_path / "results.xlsx") as book:
+        sheet = xml.etree.ElementTree.fromstring(book.read("xl/worksheets/sheet1.xml"))
+    name = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
+    rows = [[(cell.get("t", "n"), cell.findtext(name + "v")) for cell in row] for row in sheet.iter(name + "row")]
+    assert len(rows[0]) == len(heads) and all(kind == "s" for kind, _ in rows[0])
+    assert all(kind == "n" for row in rows[1:] for kind, _ in row), "no date, no text"
+    read = numpy.array([[float(value) for _, value in row] for row in rows[1:]])
+    assert numpy.allclose(read, numbers, rtol=1e-14, atol=0), "a spreadsheet keeps 15 digits"
 
 
 def test_genfromtxt_reads_the_table_with_its_heads(run):

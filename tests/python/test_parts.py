@@ -155,6 +155,13 @@ def test_every_cell_of_the_tutorial_runs_and_says_what_comes_out():
     assert names["returns"][0] == names["returns"][1]
 
 
+def test_the_lines_of_the_readme_run(monkeypatch, capsys):
+    monkeypatch.chdir(SCENES.parent)
+    text = (SCENES.parent / "README.md").read_text()
+    exec(compile(text.partition("```python\n")[2].partition("```")[0], "README.md", "exec"), {})
+    assert re.fullmatch(r"completed 0\.\d+ m\n", capsys.readouterr().out)
+
+
 GOOD = """
     import numpy
     import withy

@@ -13,6 +13,7 @@
 #include "withy/results/csv_recorder.hpp"
 #include "withy/results/report/base64.hpp"
 #include "withy/results/report/decimated_table.hpp"
+#include "withy/results/report/looks.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/report/solids.hpp"
 #include "withy/results/results_error.hpp"
@@ -85,10 +86,62 @@ TEST(Solids, AreClosedAndTheirTrianglesLookOutwards) {
   const Pose pose{Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()).toRotationMatrix(), Vector3(4, -5, 6)};
   EXPECT_NEAR(volume([&](Surface& s) { add_box({1, 2, 3}, pose, s); }), 6, 1e-12);
   EXPECT_NEAR(volume([&](Surface& s) { add_bead(pose.p, 0.5, s); }), 4.0 / 3 * 0.125, 1e-13);
-  const std::vector<Vector3> line = {pose.p, (pose * Pose{Matrix3::Identity(), {0, 0, 1}}).p,
-                                     (pose * Pose{Matrix3::Identity(), {0, 0, 3}}).p};
-  const double octagon = 8 * 0.5 * 0.01 * std::sin(std::numbers::pi / 4);
-  EXPECT_NEAR(volume([&](Surface& s) { add_tube(line, 0.1, 8, Vector3::UnitZ(), s); }), 3 * octagon, 1e-13);
+  const auto on = [&](double z) { return (pose * Pose{Matrix3::Identity(), {0, 0, z}}).p; };
+  const std::vector<Vector3> line = {on(0), on(1), on(3)};
+  const std::vector<Vector3> y = {pose.R.col(0)};
+  const double octagon = 8 * 0.5 * std::sin(std::numbers::pi / 4);
+  EXPECT_NEAR(volume([&](Surface& s) { add_tube({line, {{false, 0.1, 0.2}}, y}, 8, s); }), 3 * octagon * 0.02, 1e-13);
+  EXPECT_NEAR(volume([&](Surface& s) { add_tube({line, {{true, 0.1, 0.2}}, y}, 8, s); }), 3 * 0.2 * 0.4, 1e-13);
+  // A pyramid's frustum, whose sections are turned by a quarter without a change of its volume.
+  const Outline wide{true, 0.2, 0.2}, narrow{true, 0.1, 0.1};
+  EXPECT_NEAR(volume([&](Surface& s) {
+                add_tube({{on(0), on(3)}, {wide, narrow}, y}, 8, s);
+              }),
+              3.0 / 3 * (0.16 + 0.04 + 0.08), 1e-13);
+  const double ball = 4 * std::numbers::pi / 3 * 0.125;
+  EXPECT_NEAR(volume([&](Surface& s) { add_ball(0.5, s); }), ball, 0.02 * ball);
+}
+
+TEST(Looks, SectionsOfBeamsAreThoseThatTheirInertiaTells) {
+  const double E = 70e9, rho = 2700, r = 0.03, area = std::numbers::pi * r * r, I = area * r * r / 4;
+  const auto beam = [&](std::vector<Value::Member> more) {
+    more.emplace_back("length", Value(2.0));
+    more.emplace_back("mass_per_length", Value(rho * area));
+    return Value::map(std::move(more));
+  };
+  const auto bending = [&](double EI, std::vector<Value::Member> more = {}) {
+    more.emplace_back("stiffness", Value(EI));
+    return Value::map(std::move(more));
+  };
+  const Value torsion = Value::map({{"stiffness", Value(1.0)}, {"inertia", Value(2 * rho * I)}});
+  const auto expect = [](const Outline& o, double y, double z, double tolerance) {
+    EXPECT_NEAR(o.y, y, tolerance * y);
+    EXPECT_NEAR(o.z, z, tolerance * z);
+  };
+  // A round bar, however the scene tells it; by its stiffness alone for the E/rho of metals, 0.3 % off.
+  expect(equivalent_section(beam({{"bending_y", bending(E * I)}}), 1), r, r, 0.01);
+  expect(equivalent_section(beam({{"bending_y", bending(1.0, {{"rotary_inertia", Value(rho * I)}})}}), 1), r, r, 1e-12);
+  expect(equivalent_section(beam({{"bending_z", bending(E * I)}, {"extension", bending(E * area)}}), 1), r, r, 1e-12);
+  expect(equivalent_section(beam({{"torsion", torsion}}), 1), r, r, 1e-12);
+  expect(equivalent_section(beam({{"bending_y", bending(5)}, {"bending_z", bending(5)}, {"torsion", torsion}}), 1), r,
+         r, 1e-12);
+  // Four times as stiff along y as along z: twice as wide, with the same polar inertia.
+  const Outline flat =
+      equivalent_section(beam({{"bending_y", bending(4)}, {"bending_z", bending(1)}, {"torsion", torsion}}), 1);
+  EXPECT_NEAR(flat.y / flat.z, 2, 1e-12);
+  EXPECT_NEAR(flat.y * flat.y + flat.z * flat.z, 2 * r * r, 1e-12);
+  // Tapered as its table is: the radius goes with the root of EI/mu.
+  const auto row = [](double x, double v) { return Value::list({Value(x), Value(v)}); };
+  const Value table = Value::list({row(0, E * I), row(2, E * I / 4)});
+  const Value tapered = beam({{"bending_y", Value::map({{"stiffness", table}})}});
+  EXPECT_NEAR(equivalent_section(tapered, 2).y, equivalent_section(tapered, 0).y / 2, 1e-12);
+  EXPECT_NEAR(equivalent_section(tapered, 1).y, equivalent_section(tapered, 0).y * std::sqrt(0.625), 1e-12);
+  // The root of the blade of the NREL 5 MW turbine, 3.542 m across, of composite.
+  const Value blade = Value::map({{"length", Value(61.5)},
+                                  {"mass_per_length", Value(709.731)},
+                                  {"bending_y", bending(1.81136e10)},
+                                  {"bending_z", bending(1.811e10)}});
+  expect(equivalent_section(blade, 0), 1.771, 1.771, 0.15);
 }
 
 TEST(Csv, IsReadBackAsItWasWrittenButForALastLineThatWasCut) {

@@ -10,6 +10,7 @@
 #include "scene_fixture.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/one_line.hpp"
 #include "withy/scene/same_content.hpp"
 
 namespace withy::test {
@@ -211,6 +212,65 @@ hinges:
   const std::string found = problems(bad, registry);
   EXPECT_THAT(found, testing::HasSubstr("/bodies/a/bending_y/stiffness"));
   EXPECT_THAT(found, testing::HasSubstr("/bodies/b/bending_y/stiffness"));
+}
+
+/// Outputs that a scene does not define are what their names say, in every way that they come in; a scene so written is
+/// one again.
+TEST_F(SceneValuesTest, AnOutputIsWhatItsNameSays) {
+  const std::vector<std::pair<std::string, std::string>> said = {
+      {"shoulder.effort", "{type: effort, hinge: shoulder}"},
+      {"shoulder.effort@motor", "{type: effort, hinge: shoulder, of: motor}"},
+      {"shoulder.motion", "{type: hinge, hinge: shoulder}"},
+      {"shoulder.acceleration", "{type: hinge, hinge: shoulder, show: acceleration}"},
+      {"root.reaction", "{type: reaction, hinge: root}"},
+      {"boom.tip.acceleration", "{type: frame, of: boom.tip, show: acceleration}"},
+      {"boom.tip.velocity@hub.out", "{type: frame, of: boom.tip, in: hub.out, show: velocity}"},
+      {"boom.tip.distance@hub", "{type: distance, to: boom.tip, from: hub}"},
+      {"boom.motion", "{type: frame, of: boom}"},
+      {"hub.out.gyro", "{type: gyro, of: hub.out}"},
+      {"boom.section@0.25", "{type: section, of: boom, at: 0.25}"},
+      {"boom.energy", "{type: energy, of: boom}"},
+      {"motor.power", "{type: power, of: motor}"},
+      {"momentum", "{type: momentum}"}};
+  std::string list, defined;
+  for (const auto& [name, definition] : said) {
+    SceneValues asked = values, stated = values;
+    asked.set_text("outputs=" + name);
+    stated.set_text("outputs.o=" + definition);
+    const Scene a = make_scene(asked, registry), b = make_scene(stated, registry);
+    ASSERT_EQ(a.outputs.size(), 1U) << name;
+    EXPECT_EQ(a.outputs[0].name, name);
+    EXPECT_TRUE(same_content(a.source.at("outputs").at(name), b.source.at("outputs").at("o"))) << name;
+    EXPECT_EQ(a.settings, std::vector<std::string>{"outputs=" + name});
+    list += (list.empty() ? "" : ",") + name + (name.ends_with("acceleration") ? ".max" : "");
+  }
+  values.set_text("outputs=[" + list + "]").set_text("outputs=motor.power");
+  EXPECT_EQ(make_scene(values, registry).outputs.size(), said.size());
+  EXPECT_EQ(make_scene(SceneValues::parse(in_one_line(values.root()), "again.yaml"), registry).outputs.size(),
+            said.size());
+  values.set_text("outputs.load={type: power, of: motor}").set_text("outputs=load");
+  EXPECT_EQ(make_scene(values, registry).outputs.size(), said.size() + 1) << "it is defined";
+}
+
+TEST_F(SceneValuesTest, NamesOfOutputsThatSayNothingAreReported) {
+  const auto of = [&](const std::string& outputs) {
+    SceneValues asked = values;
+    asked.set_text("outputs=" + outputs);
+    std::swap(asked, values);
+    const std::string text = problem();
+    std::swap(asked, values);
+    return text;
+  };
+  EXPECT_EQ(of("shoulder.efort"),
+            "--set 'outputs=shoulder.efort': /outputs: got \"shoulder.efort\", which names no output; did you mean "
+            "'shoulder.effort'?");
+  EXPECT_THAT(of("sholder.effort"), testing::HasSubstr("/outputs/sholder.effort/hinge: no hinge \"sholder\"; did you"));
+  EXPECT_THAT(of("[boom.tipp.gyro, boom.section@2, boom.section]"),
+              testing::AllOf(testing::HasSubstr("/outputs/boom.tipp.gyro/of: no frame \"boom.tipp\"; did you mean"),
+                             testing::HasSubstr("there is no section at 2 m"),
+                             testing::HasSubstr("/outputs/boom.section/at: missing")));
+  EXPECT_THAT(of("{shoulder.effort: {type: effort, hinge: root}}"), testing::HasSubstr("got name \"shoulder.effort\""));
+  EXPECT_THAT(of("hub.gyro@own"), testing::HasSubstr("names no output"));
 }
 
 }  // namespace

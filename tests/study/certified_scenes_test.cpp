@@ -38,7 +38,11 @@ struct Certified {
   [[nodiscard]] const EquationsOfMotion& equations() const { return *prepared.equations; }
 };
 
+/// Before the name of a scene that is run to its own end.
+const std::string whole = "whole:";
+
 SceneValues shortened(const std::string& file) {
+  if (file.starts_with(whole)) return SceneValues::read(file.substr(whole.size()));
   const auto is = [&](const char* name) { return file.find(name) != std::string::npos; };
   const double longest = is("orbiting-boom") ? 0.002 : is("long-chain") || is("spacecraft") ? 0.03 : 0.1;  // [s]
   SceneValues values = SceneValues::read(file);
@@ -176,6 +180,30 @@ void expect_deflections(const Certified& c) {
   }
 }
 
+/// Extremes of indicators against every output, by the dense reference: the rate of each body's frame, by differences
+/// of its rotations, never exceeds what is said to be its greatest.
+void expect_rates(const Certified& c) {
+  if (c.seen.size() < 10) return;
+  for (const BodyValidity& b : c.certificate().bodies) {
+    const int body = c.model().body(b.name);
+    if (body < 0 || !(b.fundamental > 0)) continue;
+    double most = 0;
+    for (std::size_t i = 1; i < c.seen.size(); ++i) {
+      const double h = c.seen[i].time - c.seen[i - 1].time;
+      if (!(h > 0)) continue;
+      const auto p = c.equations().frame_pose(c.seen[i - 1].y, body, 0).rotation,
+                 q = c.equations().frame_pose(c.seen[i].y, body, 0).rotation;
+      double trace = 0;
+      for (std::size_t k = 0; k < 9; ++k) trace += p[k] * q[k];
+      most = std::max(most, std::acos(std::clamp((trace - 1) / 2, -1.0, 1.0)) / h);
+    }
+    if (most * (c.seen[1].time - c.seen[0].time) > 1) continue;  // turns are not told apart
+    EXPECT_GE(b.rate_ratio * b.fundamental, 0.85 * most - 1e-6)
+        << b.name << ": samples miss no more than their spacing";
+    EXPECT_LE(b.rate_time, c.run.summary.final.time) << b.name;
+  }
+}
+
 /// The mean step, and the modulus of the fastest pole: the greatest eigenvalue of differences of the equations.
 void expect_steps(const Certified& c) {
   const StepLimit& said = c.certificate().steps;
@@ -217,19 +245,46 @@ void expect_error(const Certified& c, const Certified& tight, const Certified& u
       real = std::max(real, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
     }
     EXPECT_LE(real, 1.15 * found->second + 1e-5 * tip.length) << tip.body;
-    EXPECT_LE(found->second, 1.5 * real + 1e-5 * tip.length) << tip.body;
+    if (said.at_most.count(found->first) == 0) {
+      EXPECT_LE(found->second, 1.5 * real + 1e-5 * tip.length) << tip.body;
+    }
   }
 }
 
-/// Sizes of what is dropped wherever there is an estimate, and none where nothing is.
+/// Sizes of what is dropped wherever there is a model up, by the dense reference of both at the same states.
 void expect_dropped(const Certified& c) {
+  const std::vector<State>& along = c.run.summary.validity.along;
+  EXPECT_LE(along.size(), 16U);
+  if (!c.certificate().estimate) {
+    EXPECT_FALSE(c.certificate().without_estimate.empty()) << "why there is no estimate";
+  }
+  const std::optional<Beyond> up = next_model_up(c.prepared, plugins());
+  if (!up || along.empty() || !loops_of(c.model()).empty()) {
+    EXPECT_TRUE(c.certificate().dropped.empty());
+    return;
+  }
+  double missing = 0;
+  for (const State& state : along) {
+    const DenseSystem ours = c.equations().system(state.time, state.y),
+                      theirs = up->equations->system(state.time, state.y);
+    std::vector<double> f(state.y.size());
+    Work work = c.equations().make_work();
+    ASSERT_TRUE(c.equations().derivatives(state.time, state.y, f, work).ok());
+    for (std::size_t i = 0; i < ours.size; ++i) {
+      double force = ours.force[i] - theirs.force[i];
+      for (std::size_t j = 0; j < ours.size; ++j)
+        force += (theirs.mass[i * ours.size + j] - ours.mass[i * ours.size + j]) * f[c.model().layout().positions + j];
+      missing = std::max(missing, std::abs(force));
+    }
+  }
+  double share = 0;
   for (const DroppedForces& d : c.certificate().dropped) {
     EXPECT_TRUE(std::isfinite(d.share) && d.share >= 0) << d.group;
+    share = std::max(share, d.share);
     for (const DroppedTerm& t : d.terms) EXPECT_TRUE(std::isfinite(t.share) && t.share >= 0) << t.term;
   }
-  if (!c.certificate().estimate) {
-    EXPECT_TRUE(c.certificate().dropped.empty());
-    EXPECT_FALSE(c.certificate().without_estimate.empty()) << "why there is no estimate";
+  if (missing > 1e-6) {
+    EXPECT_GT(share, 0) << "where forces are missing they are told";
   }
 }
 
@@ -250,10 +305,10 @@ TEST_P(CertifiedScenes, AreAsTheirCertificatesSay) {
   };
   std::vector<std::pair<std::string, std::string>> cases;
   for (const char* f : {"quadratic", "ruthless", "inconsistent", "consistent", "linear", "symmetric", "exact"})
-    cases.emplace_back(f, "");
+    if (cases.size() < 2 || !GetParam().starts_with(whole)) cases.emplace_back(f, "");
   std::size_t looked_at = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const auto& [formulation, mixed] = cases[i];
+    const auto [formulation, mixed] = cases[i];  // a copy: the list grows
     SCOPED_TRACE(formulation + (mixed.empty() ? "" : ", " + mixed + " ruthless"));
     const std::optional<Certified> c = certified(GetParam(), formulation, mixed, false);
     if (!c) continue;
@@ -267,6 +322,7 @@ TEST_P(CertifiedScenes, AreAsTheirCertificatesSay) {
     expect_drifts(*c, *exact_run);
     expect_deflections(*c);
     expect_steps(*c);
+    if (GetParam().starts_with(whole)) expect_rates(*c);
     expect_dropped(*c);
     if (!c->certificate().estimate) continue;
     if (const std::optional<Certified>& up = in(c->certificate().estimate->against); up)
@@ -283,6 +339,21 @@ std::vector<std::string> all_scenes() {
   std::sort(all.begin(), all.end());
   return all;
 }
+
+/// What a tenth of a second does not show: rates that come late, loads that near buckling, errors that grow, drifts
+/// over many turns.
+std::vector<std::string> whole_scenes() {
+  std::vector<std::string> all;
+  for (const char* scene : {"screw", "spin-up", "beam-on-base", "spinning-boom"})
+    all.push_back(whole + WITHY_SOURCES + "/scenes/" + scene + ".yaml");
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Whole, CertifiedScenes, testing::ValuesIn(whole_scenes()), [](const auto& parameter) {
+  std::string name = std::filesystem::path(parameter.param).stem();
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 INSTANTIATE_TEST_SUITE_P(All, CertifiedScenes, testing::ValuesIn(all_scenes()), [](const auto& parameter) {
   std::string name = std::filesystem::path(parameter.param).stem();

@@ -4,19 +4,28 @@ import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Vector3
 const up = new Vector3(0, 1, 0), from = new Vector3(), along = new Vector3(), one = new Vector3(), other = new Vector3();
 const colours = dark => ({ force: dark ? '#e69f00' : '#b84a00', moment: dark ? '#e58fc0' : '#a5447c', acceleration: dark ? '#2fc79a' : '#00704f' });
 
+// With the prefix of its unit, as 60.5 MN m.
+function measured(value, unit) {
+  const prefixes = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm']];
+  const [scale, prefix] = /^N\b/.test(unit) ? prefixes.find(([s]) => value >= s) ?? prefixes.at(-1) : [1, ''];
+  return `${+(value / scale).toPrecision(3)} ${prefix}${unit.replace('^2', '²')}`;
+}
+
 export class Arrows {
   // size: of the whole system [m]
   constructor(motion, arrows, size, dark) {
     Object.assign(this, { motion, size, group: new Group() });
     const greatest = new Map();
     for (const a of arrows) greatest.set(a.unit, Math.max(greatest.get(a.unit) ?? 0, a.greatest));
-    this.items = arrows.filter(a => a.greatest > 0).map(a => {
+    // Moments that are what rounding leaves of forces are none.
+    if (greatest.get('N m') < 1e-9 * size * greatest.get('N')) greatest.delete('N m');
+    this.items = arrows.filter(a => a.greatest > 0 && greatest.has(a.unit)).map(a => {
       const kind = a.name.slice(a.name.lastIndexOf(' ') + 1), material = new MeshBasicMaterial({ color: colours(dark)[kind] });
       const shaft = new Mesh(new CylinderGeometry(size * 0.0045, size * 0.0045, 1, 8), material), head = new Mesh(new ConeGeometry(size * 0.014, size * 0.04, 12), material);
       for (const part of [shaft, head]) { part.frustumCulled = false; this.group.add(part); }
       return { arrow: a, shaft, head, scale: 0.22 * size / greatest.get(a.unit) };
     });
-    this.words = [...greatest].filter(([, v]) => v > 0).map(([unit, v]) => `${+v.toPrecision(3)} ${unit}`).join(', ');
+    this.words = [...greatest].filter(([, v]) => v > 0).map(([unit, v]) => measured(v, unit)).join(', ');
   }
 
   // Between two moments in proportion.

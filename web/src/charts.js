@@ -110,7 +110,8 @@ class Panel {
         })),
       ],
       hooks: {
-        draw: [u => { this.mark(u, limit); this.at(); }],
+        // uPlot empties its legend once it has drawn.
+        draw: [u => { this.mark(u, limit); queueMicrotask(() => { this.told = -1; this.at(); }); }],
         ready: [u => u.over.addEventListener('click', () => { if (!this.dragged(u)) this.owner.seek(u.posToVal(u.cursor.left, 'x')); })],
       },
     }, this.aligned(curves), holder);
@@ -157,9 +158,10 @@ class Panel {
     if (this.chart.cursor.idx != null) this.told = -1;
     if (this.chart.cursor.idx != null || t.length === 0) return;
     let low = 0, high = t.length - 1;
+    const now = this.owner.time + 1e-9 * (t[high] - t[0]); // times have been rounded
     while (low < high) {
       const middle = (low + high + 1) >> 1;
-      if (t[middle] <= this.owner.time) low = middle; else high = middle - 1;
+      if (t[middle] <= now) low = middle; else high = middle - 1;
     }
     if (low === this.told) return;
     this.told = low;

@@ -32,6 +32,10 @@ export function unpack(run) {
   }
   animation.times = doubles(animation.times);
   animation.numbers = new Float32Array(bytes(arrays[animation.numbers]));
+  for (const part of animation.parts) {
+    if (part.surface) part.surface = { vertices: new Float32Array(bytes(arrays[part.surface[0]])), triangles: new Uint32Array(bytes(arrays[part.surface[1]])) };
+    if (part.sections) part.sections.widths = new Float32Array(bytes(arrays[part.sections.widths]));
+  }
   // Pages of earlier versions have none.
   for (const arrow of animation.arrows ??= []) arrow.numbers = new Float32Array(bytes(arrays[arrow.numbers]));
   for (const series of run.validity) {

@@ -47,6 +47,16 @@ function scaled(q, s) {
   return q.set(q.x * f, q.y * f, q.z * f, Math.cos(half));
 }
 
+// Of the box around a surface.
+function corners_of(vertices) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < vertices.length; ++i) {
+    low[i % 3] = Math.min(low[i % 3], vertices[i]);
+    high[i % 3] = Math.max(high[i % 3], vertices[i]);
+  }
+  return Array.from({ length: 8 }, (_, k) => new Vector3(...[0, 1, 2].map(c => (k >> c & 1 ? high : low)[c])));
+}
+
 export class Motion {
   constructor(animation) {
     this.times = animation.times;
@@ -56,9 +66,17 @@ export class Motion {
     this.bodies = animation.parts.map(part => {
       const body = { ...part, at, pose: new Pose(), recorded: new Pose(), count: part.points.length / 3 };
       at += 7;
+      if (part.surface) body.corners = corners_of(part.surface.vertices);
       body.displacements = new Float32Array(part.points.length);
       body.pointsAt = at;
       if (part.flexible) at += part.points.length;
+      // The y axis of each section, where sections are not round and turn.
+      body.turns = part.sections?.turns ?? false;
+      body.yAxesAt = at;
+      if (body.turns) {
+        body.y_axes = new Float32Array(part.points.length);
+        at += part.points.length;
+      }
       body.hung = part.hung.map((numbers, i) => {
         const hung = { child: part.children[i], rest: new Pose().read(numbers, 0), now: new Pose(), drawn: new Pose(), at };
         if (part.flexible) at += 7;
@@ -94,6 +112,8 @@ export class Motion {
       if (body.flexible) {
         for (let k = 0; k < body.displacements.length; ++k)
           body.displacements[k] = a[I + body.pointsAt + k] * (1 - w) + a[J + body.pointsAt + k] * w;
+        for (let k = 0; body.turns && k < body.y_axes.length; ++k)
+          body.y_axes[k] = a[I + body.yAxesAt + k] * (1 - w) + a[J + body.yAxesAt + k] * w;
         for (const hung of body.hung) {
           mixed(hung.now, a, I + hung.at, J + hung.at, w, other);
           hung.drawn.p.copy(hung.now.p).sub(hung.rest.p).multiplyScalar(scale).add(hung.rest.p);
@@ -125,6 +145,14 @@ export class Motion {
     return out.applyQuaternion(body.pose.q).add(body.pose.p);
   }
 
+  // The y axis of section k in the world, drawn at `scale`; of one that does not turn, the body's own.
+  y_axis(body, k, scale, out) {
+    const y = body.y_axes;
+    if (y) out.set(scale * y[3 * k], 1 + scale * (y[3 * k + 1] - 1), scale * y[3 * k + 2]).normalize();
+    else out.set(0, 1, 0);
+    return out.applyQuaternion(body.pose.q);
+  }
+
   // The outermost point of a body at a recorded moment, as computed: for trails and the room the motion takes.
   end_of(body, i, out) {
     const a = this.numbers, I = i * this.size, k = body.count - 1;
@@ -133,7 +161,7 @@ export class Motion {
       const row = body.kind === 'strip' ? k - 1 : k;
       for (let c = 0; c < 3; ++c) out.setComponent(c, body.points[3 * row + c] + a[I + body.pointsAt + 3 * row + c]);
     } else if (body.tip) out.fromArray(body.tip);
-    else if (body.box) out.fromArray(body.box.pose);
+    else if (body.box && !body.surface) out.fromArray(body.box.pose);
     else out.set(0, 0, 0);
     return out.applyQuaternion(pose.q).add(pose.p);
   }

@@ -16,9 +16,10 @@ export function show_runs(page) {
   let dark = wish.get('theme') ? wish.get('theme') === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
   let time = start, playing = false, before = 0, view = null;
 
-  const charts = new Charts($('charts'), runs, grouped(runs), t => { pause(); seek(t); });
+  // What is drawn hangs on its elements, for tests and for those who look into a page with a browser's tools.
+  const charts = $('charts').charts = new Charts($('charts'), runs, grouped(runs), t => { pause(); seek(t); });
   try {
-    view = new View($('view'), runs);
+    view = $('view').view = new View($('view'), runs);
   } catch (e) {
     $('view').append(element('p', `No picture: this browser has no WebGL (${e.message}). The plots need none.`, { class: 'message' }));
   }

@@ -5,7 +5,9 @@ import {
 } from 'three';
 import { ConvexHull } from 'three/examples/jsm/math/ConvexHull.js';
 
-const around = 12; // points around a tube
+// Points around a section of half widths 1, and which way its surface looks there: an ellipse, a rectangle.
+const ellipse = Array.from({ length: 16 }, (_, j) => { const angle = Math.PI * j / 8, y = Math.cos(angle), z = Math.sin(angle); return [y, z, y, z]; });
+const rectangle = [[1, -1, 1, 0], [1, 1, 1, 0], [1, 1, 0, 1], [-1, 1, 0, 1], [-1, 1, -1, 0], [-1, -1, -1, 0], [-1, -1, 0, -1], [1, -1, 0, -1]];
 const a = new Vector3(), b = new Vector3(), c = new Vector3(), normal = new Vector3(), side = new Vector3();
 
 function geometry_of(count, index) {
@@ -55,7 +57,9 @@ export class Shapes {
     this.joint = solid(colours.joint);
     this.skin = solid(colours.flexible, { side: DoubleSide, transparent: true, opacity: faint ? 0.25 : 0.45, flatShading: true });
     this.ghost = new LineDashedMaterial({ color: colours.ghost, dashSize: size * 0.02, gapSize: size * 0.015 });
-    this.radius = size * 0.011;
+    this.radius = size * 0.011; // of joints, rods and dots
+    this.thinnest = size * 0.003; // half of what is thinner would not be seen
+    this.given = solid(colours.rigid, { side: DoubleSide, flatShading: true });
     this.items = motion.bodies.map(body => this.make(body));
     const joints = motion.bodies.filter(body => body.moves && body.parent >= 0);
     this.joints = new InstancedMesh(new SphereGeometry(this.radius * 1.35, 16, 12), this.joint, joints.length);
@@ -73,8 +77,10 @@ export class Shapes {
   make(body) {
     const item = { body, group: new Group() };
     if (body.kind === 'line') {
-      const count = body.count * around;
-      item.tube = new Mesh(geometry_of(count, grid(body.count, around, true)), this.flexible);
+      item.ring = body.sections?.rectangle ? rectangle : ellipse;
+      const around = item.ring.length, count = (body.count + 2) * around; // two rings more close the ends
+      const caps = [body.count, body.count + 1].flatMap(row => Array.from({ length: around - 2 }, (_, j) => row === body.count ? [0, j + 1, j + 2] : [0, j + 2, j + 1]).flat().map(k => row * around + k));
+      item.tube = new Mesh(geometry_of(count, [...grid(body.count, around, true), ...caps]), this.flexible);
       item.tube.geometry.setAttribute('normal', new BufferAttribute(new Float32Array(3 * count), 3));
       item.tube.frustumCulled = false;
       this.group.add(item.tube);
@@ -119,8 +125,15 @@ export class Shapes {
     return out;
   }
 
-  // The box of a rigid body's mass and inertia, and rods to where its children hang.
+  // The surface that a rigid body is given; else the box of its mass and inertia, and rods to where its children hang.
   make_box(body, item) {
+    if (body.surface) {
+      const geometry = new BufferGeometry();
+      geometry.setAttribute('position', new BufferAttribute(body.surface.vertices, 3));
+      geometry.setIndex(new BufferAttribute(body.surface.triangles, 1));
+      item.group.add(new Mesh(geometry, this.given));
+      return;
+    }
     const least = this.radius * 1.6;
     if (body.box) {
       const [x, y, z] = body.box.edges.map(e => Math.max(e, least));
@@ -180,23 +193,30 @@ export class Shapes {
     if (show.axes) this.turn_axes();
   }
 
-  // A tube around the deformed middle line.
-  bend({ body, tube }, scale) {
-    const { position, normal: outward } = tube.geometry.attributes, n = body.count;
-    const radius = this.radius;
-    side.set(0, 0, 1).applyQuaternion(body.pose.q);
+  // A tube around the deformed middle line, with the sections that the body has.
+  bend({ body, tube, ring }, scale) {
+    const { position, normal: outward } = tube.geometry.attributes, n = body.count, around = ring.length;
+    const widths = body.sections?.widths;
     for (let k = 0; k < n; ++k) {
       this.motion.point(body, Math.max(0, k - 1), scale, a);
       this.motion.point(body, Math.min(n - 1, k + 1), scale, b);
       this.motion.point(body, k, scale, c);
       b.sub(a).normalize();
+      if (k === 0 || body.turns) this.motion.y_axis(body, k, scale, side);
       side.addScaledVector(b, -side.dot(b)).normalize();
       normal.crossVectors(side, b);
+      const y = widths ? widths[2 * k] : this.radius, z = widths ? widths[2 * k + 1] : this.radius;
+      const u = Math.max(y, this.thinnest), v = Math.max(z, this.thinnest);
+      const ends = k === 0 ? n : k === n - 1 ? n + 1 : -1;
       for (let j = 0; j < around; ++j) {
-        const angle = 2 * Math.PI * j / around, u = radius * Math.cos(angle), v = radius * Math.sin(angle);
-        const x = u * side.x + v * normal.x, y = u * side.y + v * normal.y, z = u * side.z + v * normal.z;
-        position.setXYZ(k * around + j, c.x + x, c.y + y, c.z + z);
-        outward.setXYZ(k * around + j, x / radius, y / radius, z / radius);
+        const [fy, fz, ny, nz] = ring[j], length = Math.hypot(ny / u, nz / v), p = ny / u / length, q = nz / v / length;
+        const x = fy * u, w = fz * v;
+        position.setXYZ(k * around + j, c.x + x * side.x + w * normal.x, c.y + x * side.y + w * normal.y, c.z + x * side.z + w * normal.z);
+        outward.setXYZ(k * around + j, p * side.x + q * normal.x, p * side.y + q * normal.y, p * side.z + q * normal.z);
+        if (ends < 0) continue;
+        const sign = k === 0 ? -1 : 1, i = ends * around + j, at = k * around + j;
+        position.setXYZ(i, position.getX(at), position.getY(at), position.getZ(at));
+        outward.setXYZ(i, sign * b.x, sign * b.y, sign * b.z);
       }
     }
     position.needsUpdate = outward.needsUpdate = true;

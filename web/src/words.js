@@ -8,6 +8,12 @@ const element = (name, text, attributes = {}) => {
 };
 export { element };
 
+// What stands between backticks is to be typed.
+function with_code(holder, text) {
+  `${text}`.split('`').forEach((part, i, all) => holder.append(i % 2 && i + 1 < all.length ? element('code', part) : part));
+  return holder;
+}
+
 // "modelled    what it is": the program's two columns, where a line without the first belongs to the one before.
 function certificate_rows(text) {
   const rows = [];
@@ -23,7 +29,7 @@ function table_of(rows) {
   const table = element('table');
   for (const [name, values] of rows) {
     const row = element('tr'), cell = element('td');
-    for (const value of [values].flat()) cell.append(element('div', value));
+    for (const value of [values].flat()) cell.append(with_code(element('div'), value));
     row.append(element('th', name, { scope: 'row' }), cell);
     table.append(row);
   }
@@ -37,7 +43,7 @@ export function write_words(holder, runs) {
     const r = run.run, part = element('article');
     part.append(element('h2', runs.length > 1 ? run.label : 'Certificate'));
     if (runs.length > 1) part.append(element('p', run.outcome, { class: `state ${r.status}` }));
-    if (r.message) part.append(element('p', r.message, { class: 'message' }));
+    if (r.message) part.append(element('p', r.message, { class: r.status === 'completed' ? 'told' : 'message' }));
     part.append(table_of(certificate_rows(run.certificate)));
     const rows = [['integrator', r.integrator], ['energy drift', plain(r.energy_drift)],
       ['steps', `${r.steps} (${r.rejected_steps} rejected), ${r.evaluations} evaluations`], ['CPU time', `${plain(r.cpu_seconds)} s`]];

@@ -28,6 +28,20 @@ function middles(body, mesh) {
   return Array.from({ length: body.count }, (_, k) => mean(6 * k, 6));
 }
 
+// Rings have the widths of the page's sections, along the axes that these have when they are bent and twisted. What is
+// thinner than a hundredth of the whole may be drawn thicker.
+function check_sections(motion, body, mesh, scale, what) {
+  const position = mesh.geometry.attributes.position, at = v => mesh.getVertexPosition(v, new Vector3());
+  if (!body.sections || position.count !== body.count * sides + 2) return;
+  const inward = body.pose.q.clone().invert(), y = new Vector3();
+  for (let k = 0; k < body.count; ++k) {
+    const across = at(sides * k).sub(at(sides * k + sides / 2)).multiplyScalar(0.5), wide = body.sections.widths[2 * k];
+    assert.ok(across.length() > 0.999 * wide, `width of section ${k} of ${what}`);
+    if (wide > 0.01 * scale) assert.ok(across.length() < 1.001 * wide, `width of section ${k} of ${what}`);
+    if (body.turns) assert.ok(motion.y_axis(body, k, 1, y).applyQuaternion(inward).angleTo(across) < 0.03, `turn of section ${k} of ${what}`);
+  }
+}
+
 // Every body is where the page has it, at moments and, of flexible ones, with every point that it draws.
 export async function check_gltf(file, data) {
   const gltf = await loaded(file), run = unpack(data.runs[0]), motion = new Motion(run.animation);
@@ -44,7 +58,13 @@ export async function check_gltf(file, data) {
       const what = `${body.name} at ${motion.times[i]} s`;
       assert.ok(node.position.distanceTo(body.pose.p) < 1e-4 * scale, what);
       assert.ok(node.quaternion.angleTo(body.pose.q) < 1e-3, what);
+      if (body.surface) {
+        const { array } = node.geometry.attributes.position;
+        assert.deepEqual([...array], [...body.surface.vertices], `the surface that ${body.name} is given`);
+        assert.deepEqual([...node.geometry.index.array], [...body.surface.triangles]);
+      }
       if (!body.flexible) return;
+      check_sections(motion, body, node, scale, what);
       const greatest = Math.max(...body.displacements.map(Math.abs), 1e-9);
       const place = new Map(body.kind === 'points' ? chain(body).map((k, j) => [k, j]) : []);
       const points = middles(body, node), beads = node.geometry.attributes.position.count === 6 * body.count;

@@ -1,13 +1,14 @@
 // The page in a browser: it shows what the program computed, asks for nothing, and its controls work.
 //   node page_test.mjs WITHY SCENES CHROMIUM
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
 import { Pace } from '../src/pace.js';
 import { in_browser, opened, text } from './browser.mjs';
 import { check_gltf } from './gltf.mjs';
+import { check_landmarks } from './landmarks.mjs';
 
 const [withy, scenes, chromium] = process.argv.slice(2);
 let folder, run;
@@ -54,7 +55,7 @@ function check_arrows(file) {
 
 async function check_sensors(browser, troubles) {
   const page = await opened(browser, join(folder, 'loads/report.html'), 't=1.2&theme=light', troubles);
-  assert.match(await text(page, '#cell'), /longest arrows: [\d.]+ N, [\d.]+ N m, [\d.]+ m\/s\^2/);
+  assert.match(await text(page, '#cell'), /longest arrows: [\d.]+ k?N, [\d.]+ k?N m, [\d.]+ m\/s²/);
   const with_arrows = await picture(page);
   await page.uncheck('#sensors');
   assert.notEqual(await picture(page), with_arrows);
@@ -193,6 +194,38 @@ async function check_several(browser, troubles) {
   await page.close();
 }
 
+// A bus from a mesh, a dish, a ball, and a flat boom that tapers and twists.
+const looks = `format: withy/1
+name: craft with looks
+bodies:
+  bus: {type: rigid, mass: 120, inertia: [18, 20, 22, 0, 0, 0], visual: {mesh: bus.obj, scale: 1 mm},
+        frames: {left: {position: [0, 0.5, 0], orientation: {axis: [0, 0, 1], angle: 90 deg}}, top: {position: [0, 0, 0.7]}}}
+  boom: {type: beam, length: 3, mass_per_length: 0.6, bending_y: {stiffness: 10, modes: 2}, bending_z: {stiffness: 1.5, modes: 1},
+         torsion: {stiffness: 0.3, inertia: 0.0002, modes: 2}, visual: {width: [[0, 0.3], [3, 0.1]], height: 0.02}}
+  dish: {type: rigid, mass: 5, inertia: [0.1, 0.1, 0.1, 0, 0, 0], visual: {cylinder: {radius: 0.5, length: 0.1}, position: [0, 0, 0.05]}}
+  ball: {type: rigid, mass: 0.2, center_of_mass: [0, 0, 0.3], inertia: [0.01, 0.01, 0.01, 0, 0, 0], visual: {sphere: 0.1}}
+hinges:
+  float: {type: free, parent: world, child: bus}
+  root: {type: weld, parent: bus.left, child: boom}
+  axle: {type: revolute, axis: [0, 0, 1], parent: bus.top, child: dish}
+  end: {type: weld, parent: boom.tip, child: ball}
+initial: {hinges: {float: {rate: [0.2, 0.1, 0.3, 0, 0, 0]}, axle: {rate: [2]}}, bodies: {boom: {modes: [0.2, 0, 0.1, 0.5, 0]}}}
+time: {end: 4, output: 0.05}
+`;
+const bus = `v -400 -500 -700\nv 400 -500 -700\nv 400 500 -700\nv -400 500 -700\nv 0 0 700
+f 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n`;
+
+// What the scene says of them is on the page, in metres.
+function check_looks(file) {
+  const bodies = new Map(unpack(data_of(file).runs[0]).animation.parts.map(p => [p.name, p]));
+  const { vertices, triangles } = bodies.get('bus').surface;
+  assert.deepEqual([vertices.length, triangles.length], [15, 18]);
+  assert.ok(Math.abs(Math.max(...vertices) - 0.7) < 1e-6);
+  const { sections } = bodies.get('boom');
+  assert.ok(sections.turns && sections.rectangle);
+  [[0, 0.15], [1, 0.01], [sections.widths.length - 2, 0.05]].forEach(([i, half]) => assert.ok(Math.abs(sections.widths[i] - half) < 1e-6));
+}
+
 await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   [folder, run] = [own_folder, own_run];
   simulate('two-link-slew.yaml', 'arm');
@@ -202,7 +235,11 @@ await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   simulate('loads-of-the-slew.yaml', 'loads');
   check_arrows(join(folder, 'loads/report.html'));
   simulate('imported-boom.yaml', 'boom');
-  for (const name of ['arm', 'craft', 'panel', 'boom']) {
+  writeFileSync(join(folder, 'looks.yaml'), looks);
+  writeFileSync(join(folder, 'bus.obj'), bus);
+  run('run', join(folder, 'looks.yaml'), '--out', join(folder, 'looks'));
+  check_looks(join(folder, 'looks/report.html'));
+  for (const name of ['arm', 'craft', 'panel', 'boom', 'looks']) {
     const page = join(folder, name, 'report.html'), motion = join(folder, `${name}.glb`);
     check_motion(page);
     run('report', join(folder, name), '--out', motion);
@@ -211,12 +248,13 @@ await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   check_pace();
   const troubles = [];
   await check_adapts(browser, troubles);
+  await check_landmarks(browser, folder, run, scenes, troubles);
   await check_controls(browser, troubles);
   await check_columns(browser, troubles);
   await check_several(browser, troubles);
   await check_sensors(browser, troubles);
   await check_points(browser, troubles);
-  await (await opened(browser, join(folder, 'panel/report.html'), 'theme=dark', troubles)).close();
+  for (const name of ['panel', 'looks']) await (await opened(browser, join(folder, name, 'report.html'), 'theme=dark', troubles)).close();
   assert.deepEqual(troubles, []);
   console.log('the page shows, moves, compares and asks for nothing');
 });

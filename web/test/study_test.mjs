@@ -5,10 +5,12 @@ import { execSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { in_browser, opened, says, text } from './browser.mjs';
+import { check_words } from './landmarks.mjs';
 
 const [withy, scenes, chromium, pictures] = process.argv.slice(2).map(path => resolve(path));
 const page_data = file => JSON.parse(/<script type="application\/json" id="withy-data">([^]*?)<\/script>/.exec(readFileSync(file, 'utf8'))[1]).data;
-const shot = async (page, name) => { if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`), fullPage: true }); };
+// Words of a page stand apart; of a test with a folder for pictures the page is left there.
+const shot = async (page, name) => { await check_words(page); if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`), fullPage: true }); };
 const close = (a, b) => assert.ok(Math.abs(a - b) <= 1e-9 * Math.max(Math.abs(a), Math.abs(b)), `${a} and ${b}`);
 
 // Each model is a mark where its numbers say; a click tells all of it, with the command that runs it.

@@ -105,7 +105,7 @@ export class Figure {
     answers(e, about, chosen);
     return e;
   }
-  text(x, y, text, attributes) { this.svg.append(draw('text', { x, y, class: 'name', ...attributes }, text)); }
+  text(x, y, text, attributes) { return this.svg.appendChild(draw('text', { x, y, class: 'name', ...attributes }, text)); }
 }
 
 // Circle, square, triangle, diamond, downward triangle, cross: told apart without colour.

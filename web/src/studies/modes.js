@@ -89,12 +89,12 @@ export class Modes {
   // n times the rate: where a branch crosses one, n impulses a turn meet it.
   per_rev(figure) {
     const { values, rate } = this.data, last = values.at(-1), top = figure.y.high;
-    for (let n = 1; n <= this.harmonics; ++n) {
+    for (let n = this.harmonics; n > 0; --n) {
       const at = v => n * Math.abs(v) * rate / (this.unit === 'Hz' ? 2 * Math.PI : 1);
       const end = at(last) > top ? last * top / at(last) : last;
       if (at(last) === 0) continue;
-      figure.marks.prepend(figure.line([[values[0], at(values[0])], [end, at(end)]], { class: 'harmonic' }));
-      figure.text(figure.x(end) - 4, figure.y(at(end)) + (end === last ? -4 : 12), `${n} per turn`, { class: 'harmonic', 'text-anchor': 'end' });
+      // Under the branches, which their words must not cut.
+      figure.marks.prepend(figure.line([[values[0], at(values[0])], [end, at(end)]], { class: 'harmonic' }), figure.text(figure.x(end) - 4, figure.y(at(end)) + (end === last ? -4 : 12), `${n} per turn`, { class: 'harmonic', 'text-anchor': 'end' }));
     }
   }
 

@@ -1,0 +1,15 @@
+/// \file
+/// What its user can do about a run that ended badly.
+#pragma once
+
+#include <string>
+
+#include "withy/study/prepared.hpp"
+
+namespace withy::study {
+
+/// A sentence that begins with "What to do:", for the message of a run that diverged, came to a singular mass matrix or
+/// to steps below the resolution of time, or is inaccurate; empty for all others.
+std::string remedy_text(const Prepared& prepared, const RunSummary& summary);
+
+}  // namespace withy::study

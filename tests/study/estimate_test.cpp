@@ -1,0 +1,108 @@
+// The estimate that every run makes of its error: what it costs by counts, and how it stands beside that at any cost.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "withy/core/simulation/coarse_steps.hpp"
+#include "withy/study/run.hpp"
+#include "withy/tests/study/plugins.hpp"
+
+namespace withy::study {
+namespace {
+
+using test::plugins;
+
+struct Estimated {
+  Prepared prepared;
+  Beyond beyond;
+  RunSummary summary;
+
+  static Prepared of(const std::string& scene, const std::string& formulation) {
+    SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/" + scene + ".yaml");
+    return prepare(values.choose_formulation(formulation, "the test"), plugins());
+  }
+  Estimated(const std::string& scene, const std::string& formulation)
+      : prepared(of(scene, formulation)),
+        beyond(*next_model_up(prepared, plugins())),
+        summary(simulate(prepared, plugins(), {})) {}
+  [[nodiscard]] EstimateOutcome at(Price price) const {
+    return estimate_error(prepared.scene, *prepared.equations, beyond, summary, plugins(), price, {});
+  }
+};
+
+/// Every distance is within a factor of that at any cost, or no less where it is a bound.
+void expect_near(const ErrorEstimate& cheap, const ErrorEstimate& dear, double factor) {
+  const auto expect = [&](const std::map<std::string, double>& a, const std::map<std::string, double>& b) {
+    for (const auto& [name, real] : b) {
+      if (real < 1e-6) continue;
+      EXPECT_GE(a.at(name), real / factor) << name;
+      if (cheap.at_most.count(name) > 0) continue;
+      EXPECT_LE(a.at(name), real * factor) << name;
+    }
+  };
+  expect(cheap.distances.hinges, dear.distances.hinges);
+  expect(cheap.distances.tips, dear.distances.tips);
+  expect(cheap.distances.deflections, dear.distances.deflections);
+}
+
+class EstimatedScenes : public testing::TestWithParam<const char*> {};
+
+// Evaluations of both models were measured to take at most nine of a run: a hundredth of them is less than a tenth of
+// it.
+TEST_P(EstimatedScenes, say_their_error_for_few_evaluations) {
+  const Estimated e(GetParam(), "ruthless");
+  const EstimateOutcome cheap = e.at(Price::tenth), again = e.at(Price::tenth), dear = e.at(Price::any);
+  ASSERT_TRUE(cheap.estimate && again.estimate && dear.estimate) << cheap.why_not;
+  EXPECT_LE(cheap.estimate->evaluations, e.summary.steps.evaluations / 20);
+  EXPECT_LE(2 * cheap.estimate->evaluations, dear.estimate->evaluations);
+  EXPECT_EQ(cheap.estimate->distances.tips, again.estimate->distances.tips) << "the same input, the same bits";
+  EXPECT_EQ(cheap.estimate->distances.until, e.summary.final.time);
+  expect_near(*cheap.estimate, *dear.estimate, 1.35);
+}
+INSTANTIATE_TEST_SUITE_P(Measured, EstimatedScenes,
+                         testing::Values("two-link-slew", "driven-arm", "beam-on-base", "screw", "spacecraft", "pd-arm",
+                                         "spin-up"),
+                         [](const auto& parameter) {
+                           std::string name = parameter.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+// Coarse steps would lose the motion: no number is given, and how one is to be had is.
+TEST(Estimate, is_refused_where_its_share_does_not_follow_the_motion) {
+  const Estimated e("driven-arm", "consistent");
+  const EstimateOutcome cheap = e.at(Price::tenth);
+  EXPECT_FALSE(cheap.estimate);
+  EXPECT_THAT(cheap.why_not, testing::HasSubstr("`--estimate always`"));
+  EXPECT_TRUE(e.at(Price::any).estimate);
+}
+
+// The order on a tree with curved motion, and that fast vibrations do not limit the step.
+TEST(CoarseSteps, are_of_second_order_and_stable_however_stiff) {
+  const Prepared p = Estimated::of("beam-on-base", "quadratic");
+  const auto end_of = [&](double step) {
+    const auto stepper = CoarseSteps(step).start(*p.equations, p.scene.initial);
+    while (stepper->state().time < 0.25) EXPECT_EQ(stepper->step(0.25).outcome, StepResult::Outcome::ok);
+    return stepper->state().y;
+  };
+  const auto apart = [](const std::vector<double>& a, const std::vector<double>& b) {
+    double most = 0;
+    for (std::size_t i = 0; i < 7; ++i) most = std::max(most, std::abs(a[i] - b[i]));  // of the base
+    return most;
+  };
+  const std::vector<double> exact = end_of(0.25 / 4096);
+  const double coarse = apart(end_of(0.25 / 128), exact), fine = apart(end_of(0.25 / 256), exact);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.4);
+
+  SceneValues stiff = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/beam-on-base.yaml");
+  stiff.set("bodies.boom.bending_y.stiffness", Value(1e9), "the test");
+  const Prepared q = prepare(stiff.choose_formulation("quadratic", "the test"), plugins());
+  const auto stepper = CoarseSteps(0.01).start(*q.equations, q.scene.initial);
+  while (stepper->state().time < 1) ASSERT_EQ(stepper->step(1).outcome, StepResult::Outcome::ok);
+  for (const double y : stepper->state().y) EXPECT_LT(std::abs(y), 100);
+}
+
+}  // namespace
+}  // namespace withy::study
