@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <stdexcept>
 
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy {
 namespace {
@@ -48,8 +50,13 @@ void Clocks::begin(State& state) {
 }
 
 void Clocks::go_on_after(double time) {
+  constexpr double counted = 0x1p53;  // beyond, an index and the next are the same number
   for (Clock& clock : clocks_) {
     clock.index = std::floor(time / clock.period);
+    if (!(std::abs(clock.index) < counted))
+      throw std::invalid_argument("at t = " + brief(time) + " s the period of load '" +
+                                  model_.loads()[clock.slot.load].name + "', " + brief(clock.period) +
+                                  " s, is below the resolution of time");
     // The quotient is rounded; an instant is the product.
     while (clock.index * clock.period > time) clock.index -= 1;
     while (clock.index * clock.period <= time) clock.index += 1;

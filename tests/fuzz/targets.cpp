@@ -22,6 +22,7 @@
 #include "withy/scene/state.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/recorded_motion.hpp"
+#include "withy/tests/fuzz/calls.hpp"
 
 namespace withy::fuzz {
 namespace {
@@ -144,10 +145,12 @@ void read_a_segment(std::string_view bytes) {
 }  // namespace
 
 const std::map<std::string, Target>& targets() {
-  static const std::map<std::string, Target> all = {
-      {"scene", &read_a_scene}, {"state", &read_a_state},           {"sid", &read_input_data},
-      {"deck", &read_a_deck},   {"frd", &read_a_result_file},       {"csv", &read_csv},
-      {"model", &read_a_model}, {"checkpoint", &read_a_checkpoint}, {"segment", &read_a_segment}};
+  static const std::map<std::string, Target> all = {{"scene", &read_a_scene},     {"state", &read_a_state},
+                                                    {"sid", &read_input_data},    {"deck", &read_a_deck},
+                                                    {"frd", &read_a_result_file}, {"csv", &read_csv},
+                                                    {"model", &read_a_model},     {"checkpoint", &read_a_checkpoint},
+                                                    {"segment", &read_a_segment}, {"c", &call_the_c_interface},
+                                                    {"fmu", &call_an_fmu}};
   return all;
 }
 
