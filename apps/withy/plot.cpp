@@ -37,6 +37,11 @@ ExitStatus plot(const PlotArguments& arguments) {
   }
   const std::filesystem::path out =
       arguments.out.empty() ? runs.first_folder() / "plot.svg" : std::filesystem::path(arguments.out);
+  if (out.extension() != ".svg") {
+    const std::string stem = out.stem().string();
+    complain("pictures are SVG: need --out " + stem + ".svg; then `rsvg-convert -o " + stem + ".png " + stem + ".svg`");
+    return ExitStatus::bad_input;
+  }
   write_file(out, svg_plot(legend.size() == 1 ? legend.front() : "", legend, panels));
   const std::size_t count = panels.size();
   print(arguments.json ? json_text({{"file", out.string()}, {"columns", count}})

@@ -223,6 +223,10 @@ TEST(Run, LeavesAPictureThatPlotAndReportMakeAnew) {
     EXPECT_THAT(picture, HasSubstr(text));
   f = withy(folder, {"plot", "ruthless", "elbow", "--terminal"});
   EXPECT_THAT(f.out, HasSubstr("elbow [deg]"));
+  f = withy(folder, {"plot", "ruthless", "elbow", "--out", "elbow.png"});
+  EXPECT_EQ(f.status, 2);
+  EXPECT_THAT(f.err, HasSubstr("need --out elbow.svg; then `rsvg-convert -o elbow.png elbow.svg`"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "elbow.png"));
   f = withy(folder, {"plot", "ruthless", "elbw"});
   EXPECT_EQ(f.status, 2);
   EXPECT_THAT(f.err, HasSubstr("there is no column \"elbw\"; did you mean \"elbow\"?"));
