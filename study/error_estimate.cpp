@@ -38,7 +38,7 @@ class DriftWatch {
 };
 
 /// Of the cost of a run, for coarse steps; what else an estimate needs makes it a tenth.
-constexpr double share = 0.09;
+constexpr double share_of_run = 0.09;
 /// Fewer are not worth counting: a fifth of a millisecond, what it takes to read a scene many times over.
 constexpr std::size_t least_evaluations = 200;
 constexpr double least_readings = 60, most_readings = 500;
@@ -52,9 +52,9 @@ constexpr double resolved = 0.005;
 constexpr double beyond_its_own = 2;
 
 /// Two models compared along one coarse run.
-class Comparison {
+class PairedRuns {
  public:
-  Comparison(const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond, const RunSummary& summary,
+  PairedRuns(const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond, const RunSummary& summary,
              const std::function<bool()>& interrupted)
       : scene_(scene), used_(used), beyond_(beyond), summary_(summary), outputs_(Outputs::all(*scene.model)) {
     options_.end = summary.final.time;
@@ -127,12 +127,12 @@ double cost_of_a_pair(const Model& model) {
   return 2.2 + 1.1 * pairs / static_cast<double>(std::max<std::size_t>(model.layout().speeds, 1));
 }
 
-EstimateOutcome at_any_price(Comparison& comparison, const RunSummary& summary, Registry& registry) {
+EstimateOutcome at_any_price(PairedRuns& pair, const RunSummary& summary, Registry& registry) {
   const PairedTolerances t = paired_tolerances(summary);
-  comparison.options().most_evaluations = summary.steps.evaluations;
-  return {comparison.with(
-              *make_integrator(registry, "dopri5", Value::map({{"rtol", Value(t.rtol)}, {"atol", Value(t.atol)}}))),
-          {}};
+  pair.options().most_evaluations = summary.steps.evaluations;
+  return {
+      pair.with(*make_integrator(registry, "dopri5", Value::map({{"rtol", Value(t.rtol)}, {"atol", Value(t.atol)}}))),
+      {}};
 }
 
 }  // namespace
@@ -140,25 +140,25 @@ EstimateOutcome at_any_price(Comparison& comparison, const RunSummary& summary, 
 EstimateOutcome estimate_error(const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond,
                                const RunSummary& summary, Registry& registry, Price price,
                                const std::function<bool()>& interrupted) {
-  Comparison comparison(scene, used, beyond, summary, interrupted);
-  if (price == Price::any) return at_any_price(comparison, summary, registry);
+  PairedRuns pair(scene, used, beyond, summary, interrupted);
+  if (price == Price::any) return at_any_price(pair, summary, registry);
   const double span = summary.final.time - scene.initial.time;
-  const double paid = share * static_cast<double>(summary.steps.evaluations) / cost_of_a_pair(*scene.model);
+  const double paid = share_of_run * static_cast<double>(summary.steps.evaluations) / cost_of_a_pair(*scene.model);
   const auto allowed = std::max(static_cast<std::size_t>(paid), least_evaluations);
-  PairedRunOptions& options = comparison.options();
+  PairedRunOptions& options = pair.options();
   options.at_steps = true;
   options.output = span / std::clamp(static_cast<double>(allowed) / 3, least_readings, most_readings);
   if (used.linearly_implicit() != nullptr && beyond.equations->linearly_implicit() != nullptr) {
     options.most_evaluations = allowed + allowed / 4;  // steps land on discontinuities too
-    ErrorEstimate estimate = comparison.with(CoarseSteps(2 * span / static_cast<double>(allowed)));
-    if (comparison.comes_to_the_end(estimate)) return {std::move(estimate), {}};
+    ErrorEstimate estimate = pair.with(CoarseSteps(2 * span / static_cast<double>(allowed)));
+    if (pair.comes_to_the_end(estimate)) return {std::move(estimate), {}};
   }
   // Where loads are stiff.
   options.most_evaluations = allowed / 3;
   const PairedTolerances t = paired_tolerances(summary);
-  ErrorEstimate estimate = comparison.with(
+  ErrorEstimate estimate = pair.with(
       *make_integrator(registry, "radau", Value::map({{"rtol", Value(10 * t.rtol)}, {"atol", Value(10 * t.atol)}})));
-  if (comparison.comes_to_the_end(estimate)) return {std::move(estimate), {}};
+  if (pair.comes_to_the_end(estimate)) return {std::move(estimate), {}};
   return {{},
           "not estimated: what a tenth of the cost of this run pays for does not follow its motion; `--estimate "
           "always` compares with " +

@@ -23,7 +23,7 @@ std::vector<std::string> names(const Shown& s) {
 }
 
 /// A heavy arm of two joints, and a slide that is left alone.
-const std::string arm = R"(format: withy/1
+const std::string limited_arm = R"(format: withy/1
 gravity: [0, -9.81, 0]
 time: {end: 1, output: 0.05}
 integrator: {name: dopri5, rtol: 1e-9, atol: 1e-11}
@@ -48,7 +48,7 @@ TEST(Tracking, ErrorsAreThoseOfTheTrajectory) {
         "{stiffness: 30, damping: 3}}",
         "computed-torque, bandwidth: 8, duration: 0.8, hinges: {one: {to: 0.9}, two: {}}",
         "rigid-inverse-dynamics, duration: 0.8, hinges: {one: {to: 0.9}, two: {}}"}) {
-    const Shown s(arm +
+    const Shown s(limited_arm +
                   "outputs:\n  servo: {type: control, of: drive}\n  effort: {type: effort, hinge: two}\n  seen: "
                   "{type: hinge, hinge: one}\nloads:\n  drive: {type: " +
                   load + "}\n");
