@@ -1,5 +1,7 @@
 #include "withy/study/remedy.hpp"
 
+#include "withy/core/simulation/renewal.hpp"
+
 namespace withy::study {
 namespace {
 
@@ -21,11 +23,12 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
       return {};
     case RunStatus::inaccurate:
       return " What to do: take shorter steps (a smaller 'step', or 'rtol' of an integrator that controls its error), "
-             "or "
-             "one that no vibration limits, as radau.";
+             "or one that no vibration limits, as radau.";
     default:
       break;
   }
+  // A law of its own that has failed has said why: the engine has nothing to add.
+  if (!Renewal(prepared.model(), *prepared.equations).failure(summary.final).empty()) return {};
   if (bends && leaves_something_out(terms))
     return " What to do: run it with --formulation quadratic, which leaves out less; if that ends the same way it is "
            "the model and not the formulation.";
