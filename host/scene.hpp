@@ -74,9 +74,11 @@ class Scene {
   [[nodiscard]] Result run(const Follow& follow = {}) const;
 
   /// Studies as JSON text, in the form that the program's `--json` has.
+  /// In all of them `outputs` names what errors are measured on, outputs that the scene does not define too
+  /// (`"link1.tip"`, `"shoulder.effort"`); empty: the usual ones.
   /// Runs in several formulations and the distances of each from the reference.
   [[nodiscard]] std::string compare(const std::vector<std::string>& formulations, const std::string& reference,
-                                    const Follow& follow = {}) const;
+                                    const Follow& follow = {}, const std::vector<std::string>& outputs = {}) const;
   /// What `trade` and `advise` go over; empty: what the commands go over.
   struct Axes {
     std::vector<std::string> formulations, families;
@@ -85,7 +87,8 @@ class Scene {
     std::vector<double> tolerances;
   };
   /// Error against cost; every point with whether it is on the front.
-  [[nodiscard]] std::string trade(const Axes& axes, std::size_t jobs = 0, const Follow& follow = {}) const;
+  [[nodiscard]] std::string trade(const Axes& axes, std::size_t jobs = 0, const Follow& follow = {},
+                                  const std::vector<std::string>& outputs = {}) const;
   /// The cheapest model that holds an accuracy, "1%" or "1 mm, 0.1 deg"; "advice" is null where none does.
   [[nodiscard]] std::string advise(const std::string& accuracy, const std::vector<std::string>& outputs = {},
                                    const Axes& axes = {}, const Follow& follow = {}) const;

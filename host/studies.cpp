@@ -62,24 +62,26 @@ std::string advice_of(const study::Prepared& prepared, const study::Outputs& out
 }  // namespace
 
 std::string Scene::compare(const std::vector<std::string>& formulations, const std::string& reference,
-                           const Follow& follow) const {
-  const std::shared_ptr<const study::Prepared> base = prepare();
+                           const Follow& follow, const std::vector<std::string>& outputs) const {
+  const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
   std::vector<ComparisonAt> compared;
-  compared.push_back(
-      {{},
-       study::compare(base->values, library().registry(), formulations, reference,
-                      [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
-                        return study::simulate(prepared, library().registry(), output, control_of(follow));
-                      })});
+  compared.push_back({{},
+                      study::compare(
+                          base->values, library().registry(), formulations, reference,
+                          [&](const study::Prepared& prepared, const std::function<void(const State&)>& output) {
+                            return study::simulate(prepared, library().registry(), output, control_of(follow));
+                          },
+                          outputs)});
   return comparison_json(compared, reference, {}, {}, library().registry()).dump();
 }
 
-std::string Scene::trade(const Axes& axes, std::size_t jobs, const Follow& follow) const {
-  const std::shared_ptr<const study::Prepared> base = prepare();
+std::string Scene::trade(const Axes& axes, std::size_t jobs, const Follow& follow,
+                         const std::vector<std::string>& outputs) const {
+  const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
   const study::Axes usual{
       studied_formulations(library().registry()), {""}, {1, 2, 3}, {"dopri5", "imex"}, {1e-4, 1e-6}, {}};
   study::TradeStudy study(*base, library().registry(), study::points_of(axes_of(axes, usual)),
-                          {jobs, nullptr, control_of(follow)});
+                          {jobs, nullptr, control_of(follow), outputs});
   study.run();
   const auto results = study.results();
   return trade_json(base->scene, study, results, study::pareto_front(results)).dump();

@@ -86,15 +86,16 @@ void bind_scene(py::module_& m) {
       .def_property_readonly("changes", &Scene::changes)
       .def("run", &run)
       .def("compare",
-           [](const Scene& s, const Names& formulations, const std::string& reference, const py::object& progress) {
-             return followed(progress, [&](const Follow& f) { return s.compare(formulations, reference, f); });
+           [](const Scene& s, const Names& formulations, const std::string& reference, const Names& outputs,
+              const py::object& progress) {
+             return followed(progress, [&](const Follow& f) { return s.compare(formulations, reference, f, outputs); });
            })
       .def("trade",
-           [axes](const Scene& s, const Names& formulations, const Names& families, const std::vector<int>& modes,
-                  const Names& integrators, const std::vector<double>& tolerances, std::size_t jobs,
-                  const py::object& progress) {
+           [axes](const Scene& s, const Names& outputs, const Names& formulations, const Names& families,
+                  const std::vector<int>& modes, const Names& integrators, const std::vector<double>& tolerances,
+                  std::size_t jobs, const py::object& progress) {
              return followed(progress, [&](const Follow& f) {
-               return s.trade(axes(formulations, families, modes, integrators, tolerances), jobs, f);
+               return s.trade(axes(formulations, families, modes, integrators, tolerances), jobs, f, outputs);
              });
            })
       .def("advise",

@@ -255,6 +255,12 @@ def test_studies_give_what_the_program_prints(slew):
     assert scene.modes(["shoulder", "elbow"])["points"][0]["modes"][0]["hertz"] > 0
     axes = dict(formulations=["ruthless"], modes=[1], integrators=["dopri5"], tolerances=[1e-4])
     assert len(scene.trade(**axes)["points"]) == 1
+    # Outputs that the scene does not define are measures by what they are.
+    pushed = ["link2.tip.acceleration"]
+    errors = scene.compare(["ruthless"], outputs=pushed)["runs"][0]["outputs"]
+    assert {e["output"]: e["distance"] for e in errors}["link2.tip.acceleration.ay"] > 0
+    measured = scene.trade(outputs=pushed, **axes)
+    assert all(m["output"].startswith("link2.tip.acceleration.") for m in measured["outputs"])
     assert scene.advise("10%", **axes)["advice"]["formulation"] == "ruthless"
     with pytest.raises(withy.SceneError):
         scene.advise("3 kg")

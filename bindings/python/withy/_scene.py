@@ -240,16 +240,26 @@ class Scene:
         return Equations(self._with({} if formulation is None else {"formulation": formulation})._made, "")
 
     def compare(self, formulations: Sequence[str] = ("ruthless", "inconsistent", "consistent", "quadratic"),
-                reference: str = "quadratic", *, progress: Progress | None = None) -> dict[str, Any]:
-        """Runs several formulations: what ``withy compare --json`` prints, each run with its distance to the reference."""
-        return json.loads(self._made.compare(list(formulations), reference, progress))
+                reference: str = "quadratic", *, outputs: Sequence[str] = (),
+                progress: Progress | None = None) -> dict[str, Any]:
+        """Runs several formulations: what ``withy compare --json`` prints, each run with its distance to the reference.
 
-    def trade(self, *, formulations: Sequence[str] = (), families: Sequence[str] = (), modes: Sequence[int] = (),
-              integrators: Sequence[str] = (), tolerances: Sequence[float] = (), jobs: int = 0,
-              progress: Progress | None = None) -> dict[str, Any]:
-        """Error against cost over the product of the axes: what ``withy trade --json`` prints. ``jobs`` threads; 0: all."""
-        return json.loads(self._made.trade(list(formulations), list(families), list(modes), list(integrators),
-                                           list(tolerances), jobs, progress))
+        Args:
+            outputs: what errors are measured on, as in `advise`; the usual ones where left out.
+        """
+        return json.loads(self._made.compare(list(formulations), reference, list(outputs), progress))
+
+    def trade(self, *, outputs: Sequence[str] = (), formulations: Sequence[str] = (), families: Sequence[str] = (),
+              modes: Sequence[int] = (), integrators: Sequence[str] = (), tolerances: Sequence[float] = (),
+              jobs: int = 0, progress: Progress | None = None) -> dict[str, Any]:
+        """Error against cost over the product of the axes: what ``withy trade --json`` prints.
+
+        Args:
+            outputs: what errors are measured on, as in `advise`; the usual ones where left out.
+            jobs: threads; 0: all.
+        """
+        return json.loads(self._made.trade(list(outputs), list(formulations), list(families), list(modes),
+                                           list(integrators), list(tolerances), jobs, progress))
 
     def advise(self, accuracy: str | float, outputs: Sequence[str] = (), *, formulations: Sequence[str] = (),
                families: Sequence[str] = (), modes: Sequence[int] = (), integrators: Sequence[str] = (),
