@@ -21,8 +21,9 @@ namespace withy::campaign {
 namespace {
 
 /// In the order of their numbers in records; what is none of them is written as "unknown".
-constexpr std::array<std::string_view, 8> statuses = {"completed",      "refused",     "diverged", "singular",
-                                                      "step-underflow", "interrupted", "unknown",  "inaccurate"};
+constexpr std::array<std::string_view, 10> statuses = {"completed",      "refused",     "diverged", "singular",
+                                                       "step-underflow", "interrupted", "unknown",  "inaccurate",
+                                                       "load-failed",    "too-stiff"};
 constexpr std::uint8_t unknown_status = 6;
 constexpr std::size_t most_message = 4096;
 constexpr std::size_t most_record = std::size_t{1} << 24;

@@ -26,7 +26,7 @@ struct Follow {
 
 /// What a run gave. The columns are those of results.csv.
 struct Result {
-  std::string status;   ///< "completed", "diverged", "singular", "step-underflow", "interrupted"
+  std::string status;   ///< as in run.json: "completed", "diverged", "load-failed" and others
   std::string message;  ///< the physical reason of a bad end; else what a completed run should not keep to itself
   std::vector<Port> columns;
   std::vector<double> values;  ///< row after row, as many numbers in each as there are columns, SI units

@@ -13,7 +13,7 @@ class SimulationStopped : public std::runtime_error {
  public:
   SimulationStopped(std::string status, const std::string& reason, double time)
       : std::runtime_error(reason), status_(std::move(status)), time_(time) {}
-  /// As in run.json: "diverged", "singular", "step-underflow", "interrupted".
+  /// As in run.json: "diverged", "singular", "step-underflow", "interrupted", "load-failed".
   [[nodiscard]] const std::string& status() const { return status_; }
   [[nodiscard]] double time() const { return time_; }  ///< of the last accepted state [s]
 

@@ -14,7 +14,8 @@ constexpr const char *green = "\033[32m", *red = "\033[31m", *bold = "\033[1m", 
 /// Null where the word is no outcome.
 const char* colour_of(std::string_view word) {
   if (word == "completed") return green;
-  constexpr std::string_view bad[] = {"diverged", "singular", "step-underflow", "inaccurate", "interrupted", "refused"};
+  constexpr std::string_view bad[] = {"diverged",    "singular", "step-underflow", "inaccurate",
+                                      "interrupted", "refused",  "load-failed",    "too-stiff"};
   return std::find(std::begin(bad), std::end(bad), word) != std::end(bad) ? red : nullptr;
 }
 

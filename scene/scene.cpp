@@ -304,6 +304,22 @@ class SceneBuilder {
     }
   }
 
+  /// Reports loads whose samples come so often that the last ones of the run are no times of their own.
+  void check_samples(const Model& model) {
+    constexpr double most_samples = 0x1p53;  // beyond, the number of a sample and the next are the same
+    const double latest = std::max(std::abs(scene_.initial.time), std::abs(scene_.end.value_or(0)));
+    for (const LoadNode& node : model.loads()) {
+      const double period = node.load->discrete() == nullptr ? 0 : node.load->discrete()->period();
+      if (!(period > 0) || latest / period < most_samples) continue;
+      const Value* load = scene_.source.at("loads").find(node.name);
+      const Value* sample = load == nullptr ? nullptr : load->find("sample");
+      const Place place = sample != nullptr ? sample->place() : document_.key_place("/loads/" + node.name);
+      diagnostics_.error(place, fmt::format("got a period of {:g} s, too short to tell samples apart at t = {:g} s; "
+                                            "need more than {:.3g} s",
+                                            period, latest, latest / most_samples));
+    }
+  }
+
   void set_span(const Model& model) {
     for (const LoadNode& l : model.loads()) {
       if (const double end = l.load->end(); end > scene_.end.value_or(0)) scene_.end = end;
@@ -312,6 +328,7 @@ class SceneBuilder {
       if (const double end = m.motion->end(); end > scene_.end.value_or(0)) scene_.end = end;
     }
     if (const Value* end = scene_.source.at("time").find("end")) scene_.end = end->number();
+    check_samples(model);
     if (!scene_.end) return;
     const double span = *scene_.end - scene_.initial.time;
     if (span < 0) {

@@ -12,13 +12,14 @@
 namespace withy::study {
 namespace {
 
-/// Hinge coordinates and rates by the names of their speeds.
+/// Hinge coordinates and rates by the names of their speeds; rates answer to those of result tables too.
 void add_hinges(const Configuration& c, std::vector<LinearOutput>& outputs) {
   const Layout& layout = c.layout();
   const auto n = static_cast<Eigen::Index>(layout.speeds);
   std::vector<LinearOutput> rates;
   for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
     const Slot& slot = layout.hinges[h];
+    const std::vector<Column> columns = rate_columns(c.prepared().model().hinges()[h]);
     const std::vector<HingeRate> kinds = hinge_rates(*c.prepared().model().hinges()[h].hinge);
     for (std::size_t i = 0; i < slot.speeds; ++i) {
       const std::string& name = layout.speed_names[slot.speed + i];
@@ -29,7 +30,8 @@ void add_hinges(const Configuration& c, std::vector<LinearOutput>& outputs) {
       rates.push_back({{name + ".rate", kinds[i].angular ? "rad/s" : "m/s"},
                        -1,
                        c.state().y[layout.positions + slot.speed + i],
-                       Eigen::RowVectorXd::Unit(2 * n, n + speed)});
+                       Eigen::RowVectorXd::Unit(2 * n, n + speed),
+                       columns[i].name});
     }
   }
   outputs.insert(outputs.end(), rates.begin(), rates.end());
@@ -67,8 +69,9 @@ std::vector<LinearOutput> linear_outputs(const Configuration& c, const std::vect
   std::vector<LinearOutput> chosen;
   for (const std::string& name : names) {
     const std::size_t before = chosen.size();
+    const auto is = [&](const std::string& known) { return known == name || known.starts_with(name + '.'); };
     for (const LinearOutput& o : all)
-      if (o.column.name == name || o.column.name.starts_with(name + '.')) chosen.push_back(o);
+      if (is(o.column.name) || is(o.in_tables)) chosen.push_back(o);
     if (chosen.size() > before) continue;
     std::string known;
     for (const LinearOutput& o : all) known += (known.empty() ? "" : ", ") + o.column.name;

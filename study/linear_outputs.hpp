@@ -16,6 +16,7 @@ struct LinearOutput {
   int sensed = -1;  ///< index among the sensors' columns; −1: it has a row
   double value = 0;
   Eigen::RowVectorXd row = {};
+  std::string in_tables = {};  ///< what result tables call it, where that is another name
 };
 
 /// The outputs asked for, as Ports::outputs. \throws InputError where there is no such output

@@ -38,11 +38,6 @@ double longest_body(const Model& model) {
 
 using Shape = Output::Shape;
 
-std::size_t numbers_of(Shape shape) {
-  constexpr std::array<std::size_t, 8> numbers = {1, 3, 4, 2, 2, 2, 2, 2};
-  return numbers.at(static_cast<std::size_t>(shape));
-}
-
 /// q and −q are the same orientation.
 double distance(Output::Shape shape, std::span<const double> a, std::span<const double> b) {
   switch (shape) {
@@ -69,6 +64,8 @@ std::vector<std::string> known_names(const Model& model, const std::vector<Tip>&
   const auto add = [&](const std::string& name) { list.push_back(name); };
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
     if (model.layout().hinges[h].positions > 0) add(model.hinges()[h].name);
+  for (const HingeNode& hinge : model.hinges())
+    for (const Column& rate : rate_columns(hinge)) add(rate.name);
   for (const Tip& tip : tips) {
     add(tip_name(tip, false));
     if (tip.flexible) add(tip_name(tip, true));
@@ -85,7 +82,8 @@ std::string unknown_output(const std::string& name, const std::vector<std::strin
   if (const std::string guess = nearest(name, known); !guess.empty())
     return "got '" + name + "'; did you mean '" + guess + "'?";
   return "got '" + name + "'; need one of: " + listed(known) +
-         "; or what it is, as HINGE.effort, FRAME.acceleration; behind the name of an output .min, .max, .mean, .rms "
+         "; or what it is, as HINGE.rate, HINGE.effort, FRAME.acceleration; behind the name of an output .min, .max, "
+         ".mean, .rms "
          "or "
          ".integral";
 }
@@ -110,6 +108,11 @@ const char* measure_unit(std::size_t measure) {
 }
 
 std::string unit_over_time(const std::string& unit) { return unit.empty() || unit == "1" ? "s" : unit + " s"; }
+
+std::size_t Output::numbers() const {
+  constexpr std::array<std::size_t, 8> numbers = {1, 3, 4, 2, 2, 2, 2, 2};
+  return numbers.at(static_cast<std::size_t>(shape));
+}
 
 Outputs::Outputs(const Model& model, const std::vector<std::string>& names, std::span<const SensorNode> sensors)
     : length_(longest_body(model)) {
@@ -146,10 +149,43 @@ void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const 
   }
   for (std::size_t h = 0; h < model.hinges().size(); ++h)
     if (model.driven(h) && name == effort_name(model.hinges()[h])) add_effort(model, h);
+  add_rates(model, name, sensors.size());
   add_sensors(name, sensors);
-  for (const auto& [word, over] : over_time)
-    if (name.ends_with(word) && outputs_.size() == before) add_sensors(name.substr(0, name.rfind('.')), sensors, over);
+  for (const auto& [word, over] : over_time) {
+    if (!name.ends_with(word) || outputs_.size() > before) continue;
+    const std::string number = name.substr(0, name.rfind('.'));
+    add_rates(model, number, sensors.size(), over);
+    add_sensors(number, sensors, over);
+  }
   if (outputs_.size() == before) throw OptionError("outputs", unknown_output(name, known_names(model, tips, sensors)));
+}
+
+/// Of one column of a hinge's rates, or of all those of a name with numbers behind it.
+void Outputs::add_rates(const Model& model, const std::string& name, std::size_t sensors, Output::Shape over) {
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    const HingeNode& hinge = model.hinges()[h];
+    const std::vector<Column> columns = rate_columns(hinge);
+    for (std::size_t i = 0; i < columns.size() && name != hinge.name; ++i) {
+      const std::string& column = columns[i].name;
+      if (name != column && !column.starts_with(name + '.')) continue;
+      Output o{.name = column, .measure = Measure::sensor, .index = h};
+      o.coordinate = model.layout().positions + model.layout().hinges[h].speed + i;
+      o.label = column, o.unit = columns[i].unit, o.is_rate = true, o.group = sensors + h;
+      add_over(std::move(o), over);
+    }
+  }
+}
+
+/// What a number is, or has been over the run.
+void Outputs::add_over(Output number, Output::Shape over) {
+  if (over != Shape::number) {
+    number.shape = over;
+    for (const auto& [word, shape] : over_time)
+      if (shape == over) number.label += word;
+    number.name = number.label;
+    if (over == Shape::integral) number.unit = unit_over_time(number.unit), number.floor = 0;
+  }
+  add(std::move(number));
 }
 
 void Outputs::add_sensors(const std::string& name, std::span<const SensorNode> sensors, Output::Shape over) {
@@ -163,12 +199,7 @@ void Outputs::add_sensors(const std::string& name, std::span<const SensorNode> s
       o.label = columns[i].name, o.unit = columns[i].unit, o.group = s;
       o.floor = o.unit == "rad" ? hardly : o.unit == "m" ? hardly * length_ : 0;
       if (over != Shape::number) {
-        o.shape = over;
-        for (const auto& [word, shape] : over_time)
-          if (shape == over) o.label += word;
-        o.name = o.label;
-        if (over == Shape::integral) o.unit = unit_over_time(o.unit), o.floor = 0;
-        add(std::move(o));
+        add_over(std::move(o), over);
         continue;
       }
       // Of a whole orientation the four numbers of its quaternion are one angle, and its three angles say the same.
@@ -188,7 +219,7 @@ void Outputs::add(Output output) {
   if (output.label.empty()) output.label = output.name;
   if (output.unit.empty()) output.unit = measure_unit(static_cast<std::size_t>(output.measure));
   output.at = size_;
-  size_ += numbers_of(output.shape);
+  size_ += output.numbers();
   outputs_.push_back(std::move(output));
 }
 
@@ -277,107 +308,6 @@ PerMeasure Outputs::per_measure(const Distances& distances) const {
     m = std::max(m, distances[i]);
   }
   return most;
-}
-
-OutputReader::OutputReader(const Outputs& outputs, const Model& model, const EquationsOfMotion& equations,
-                           std::vector<SensorNode> sensors)
-    : outputs_(outputs),
-      model_(model),
-      equations_(equations),
-      seen_(equations.make_observation()),
-      tips_(tips(model)),
-      work_(0) {
-  if (outputs.has(Measure::sensor)) {
-    sensors_.emplace(std::move(sensors), equations);
-    sensed_.resize(sensors_->columns().size());
-  }
-  if (!outputs.has(Measure::moment) && !outputs.has(Measure::force)) return;
-  work_ = equations.make_work();
-  efforts_.resize(model.layout().speeds);
-}
-
-void OutputReader::Course::note(double t, double value) {
-  if (!begun) {
-    begun = true;
-    from = time = t;
-    first = last = least = greatest = value;
-    return;
-  }
-  integral += 0.5 * (t - time) * (last + value);
-  square += 0.5 * (t - time) * (last * last + value * value);
-  time = t, last = value;
-  // What is no number stays: comparisons with it would pass over it.
-  least = value < least || std::isnan(value) ? value : least;
-  greatest = value > greatest || std::isnan(value) ? value : greatest;
-}
-
-double OutputReader::Course::result(Output::Shape over) const {
-  const double span = time - from;
-  switch (over) {
-    case Shape::least:
-      return least;
-    case Shape::greatest:
-      return greatest;
-    case Shape::mean:
-      return span > 0 ? integral / span : last;
-    case Shape::rms:
-      return span > 0 ? std::sqrt(square / span) : std::abs(last);
-    case Shape::integral:
-      return integral;
-    default:
-      return last;
-  }
-}
-
-double OutputReader::Course::range(Output::Shape over) const {
-  return std::max(greatest - first, first - least) * (over == Shape::integral ? time - from : 1);
-}
-
-std::vector<double> OutputReader::read(const State& state) {
-  const std::span<const double> y(state.y);
-  std::vector<double> values;
-  values.reserve(outputs_.size());
-  seen_->observe(y);
-  if (!efforts_.empty() && !equations_.motion_efforts(state.time, y, efforts_, work_).ok())
-    std::fill(efforts_.begin(), efforts_.end(), std::numeric_limits<double>::quiet_NaN());
-  if (sensors_ && !sensors_->read(state, sensed_))
-    std::fill(sensed_.begin(), sensed_.end(), std::numeric_limits<double>::quiet_NaN());
-  courses_.resize(outputs_.list().size());
-  for (std::size_t i = 0; i < outputs_.list().size(); ++i) {
-    const Output& o = outputs_.list()[i];
-    switch (o.measure) {
-      case Measure::sensor:
-        if (o.over_a_run()) {
-          courses_[i].note(state.time, sensed_[o.coordinate]);
-          values.insert(values.end(), {courses_[i].result(o.shape), courses_[i].range(o.shape)});
-          break;
-        }
-        values.insert(values.end(), sensed_.begin() + static_cast<std::ptrdiff_t>(o.coordinate),
-                      sensed_.begin() + static_cast<std::ptrdiff_t>(o.coordinate + numbers_of(o.shape)));
-        break;
-      case Measure::place: {
-        const auto p = seen_->frame_pose(tips_[o.index].tip.body, tips_[o.index].tip.frame).position;
-        values.insert(values.end(), p.begin(), p.end());
-        break;
-      }
-      case Measure::deflection: {
-        const auto d = deflection(*seen_, tips_[o.index]);
-        values.insert(values.end(), d.begin(), d.end());
-        break;
-      }
-      case Measure::moment:
-      case Measure::force:
-        values.push_back(efforts_[o.coordinate]);
-        break;
-      case Measure::angle:
-      case Measure::slide: {
-        const auto x = y.subspan(model_.layout().hinges[o.index].position + o.coordinate, numbers_of(o.shape));
-        values.insert(values.end(), x.begin(), x.end());
-        break;
-      }
-    }
-  }
-  return values;
 }
 
 double NamedDistances::greatest_hinge() const { return greatest(hinges); }

@@ -26,7 +26,7 @@ enum class Measure {
   deflection,  ///< of a tip, in the frame of its body's root [m]
   moment,      ///< that a motion needs on a speed it prescribes [N m]
   force,       ///< the same [N]
-  sensor       ///< of an output that the scene names, in its own unit
+  sensor       ///< of an output that the scene names, or of a rate of a hinge, in its own unit
 };
 inline constexpr std::size_t measures = 7;
 /// One number for each measure.
@@ -51,7 +51,8 @@ struct Output {
   Measure measure = Measure::angle;
   Shape shape = Shape::number;
   std::size_t index = 0;  ///< of the hinge, or of the tip among tips(model)
-  /// First one among the hinge's; of efforts its speed; of sensors the first of its numbers among those of all.
+  /// First one among the hinge's; of efforts its speed; of sensors the first of its numbers among those of all; of
+  /// rates the element of State::y.
   std::size_t coordinate = 0;
   /// A range below this counts as this: a thousandth of a radian, of the body's length for deflections, of the longest
   /// body for slides and places. Efforts have none of their own: see `scales`.
@@ -59,10 +60,13 @@ struct Output {
   std::string label = {};  ///< the name, told apart from others of that name: "float.slide", "cross.1"
   std::size_t at = 0;      ///< first of its numbers in a reading
   std::string unit = {};   ///< SI
+  /// How many numbers it has in a reading.
+  [[nodiscard]] std::size_t numbers() const;
   /// Whether it is a number for the whole run, known at its end.
   [[nodiscard]] bool over_a_run() const { return shape >= Shape::least; }
-  /// Of sensors: the place of the sensor in the scene. What hardly moves beside others of its sensor and unit counts as
-  /// moving a thousandth as much as they do.
+  bool is_rate = false;  ///< of a hinge: no sensor shows it
+  /// Of sensors: the place of the sensor in the scene; rates of a hinge are as those of one sensor. What hardly moves
+  /// beside others of its sensor and unit counts as moving a thousandth as much as they do.
   std::size_t group = 0;
 };
 
@@ -70,12 +74,11 @@ struct Output {
 class Outputs {
  public:
   /// Every hinge that no motion drives, place and deflection of every tip, and the efforts that motions need; with
-  /// names, what these name: hinges, `body.tip`, `body.tip.deflection`, `hinge.motion_effort`; outputs of the scene,
-  /// whole or one component as `root.mz`, and what a component has been over the run as `root.mz.max` (`min`, `max`,
-  /// `mean`, `rms`, `integral`). An orientation among all components of one is measured as the angle of the
-  /// rotation between two.
-  /// \param sensors of the scene, bound to the model
-  /// \throws InputError where there is no such output, or nothing to measure.
+  /// names, what these name: hinges, `hinge.rate` and other columns of rates, `body.tip`, `body.tip.deflection`,
+  /// `hinge.motion_effort`; outputs of the scene, whole or one component as `root.mz`, and what a component or a rate
+  /// has been over the run as `root.mz.max` (`min`, `max`, `mean`, `rms`, `integral`). An orientation among all
+  /// components of one is measured as the angle of the rotation between two. \param sensors of the scene, bound to the
+  /// model \throws InputError where there is no such output, or nothing to measure.
   explicit Outputs(const Model& model, const std::vector<std::string>& names = {},
                    std::span<const SensorNode> sensors = {});
   /// The same with the hinges that motions drive; there may be none.
@@ -110,6 +113,9 @@ class Outputs {
   void add_tip(const Tip& tip, std::size_t index, bool deflection);
   void add_named(const Model& model, const std::vector<Tip>& tips, const std::string& name,
                  std::span<const SensorNode> sensors);
+  void add_rates(const Model& model, const std::string& name, std::size_t sensors,
+                 Output::Shape over = Output::Shape::number);
+  void add_over(Output number, Output::Shape over);
   void add_sensors(const std::string& name, std::span<const SensorNode> sensors,
                    Output::Shape over = Output::Shape::number);
 

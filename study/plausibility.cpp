@@ -11,6 +11,7 @@
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/study/step_limit.hpp"
 #include "withy/study/tip_moments.hpp"
 
 namespace withy::study {
@@ -139,6 +140,15 @@ void look_at_servos(const Prepared& prepared, std::vector<Remark>& all) {
   }
 }
 
+/// A motion that the integrator chosen does not follow to the end of the run.
+void look_at_steps(const Prepared& prepared, std::vector<Remark>& all) {
+  const std::optional<TooStiff> found = too_stiff(prepared, prepared.scene.initial, RunOptions().most_steps);
+  if (!found) return;
+  const Value* chosen = prepared.scene.source.find("integrator");
+  all.push_back({chosen != nullptr ? chosen->place() : prepared.scene.source.place(),
+                 found->text + "; use radau, or give the inertia that is missing"});
+}
+
 /// Every text of a value but the names of members.
 void add_texts(const Value& value, std::set<std::string>& texts) {
   if (value.kind() == Value::Kind::text) texts.insert(value.text());
@@ -226,6 +236,7 @@ std::vector<Remark> implausible(const Prepared& prepared, Registry& registry) {
   look_at_bodies(prepared, all);
   look_at_tip_moments(prepared, registry, all);
   look_at_servos(prepared, all);
+  look_at_steps(prepared, all);
   look_at_frames(prepared, all);
   look_at_angles(prepared, all);
   std::stable_sort(all.begin(), all.end(),

@@ -1,6 +1,8 @@
 #include "withy/study/remedy.hpp"
 
-#include "withy/core/simulation/renewal.hpp"
+#include <fmt/format.h>
+
+#include "withy/core/simulation/stop.hpp"
 
 namespace withy::study {
 namespace {
@@ -12,6 +14,19 @@ bool leaves_something_out(const Terms& terms) {
 
 bool has_modes(const Model& model) { return !model.layout().bodies.empty(); }
 
+/// Where a motion has no finite numbers any more.
+std::string motion_remedy(const Prepared& prepared, const NonfiniteMotion& motion) {
+  const Value* motions = prepared.scene.source.find("motions");
+  const Value* given = motions == nullptr ? nullptr : motions->find(motion.name);
+  const int line = given == nullptr ? 0 : given->place().line;
+  return fmt::format(
+      " What to do: change the law of '{}'{} so that its coordinate, rate and acceleration are finite up to the end of "
+      "the run: no division by zero, and no root or logarithm of what falls to zero or below; or end the run before, "
+      "as "
+      "--set time.end={:.3g}.",
+      motion.name, line > 0 ? fmt::format(" (line {} of the scene)", line) : "", 0.99 * motion.time);
+}
+
 }  // namespace
 
 std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
@@ -20,15 +35,21 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
   switch (summary.status) {
     case RunStatus::completed:
     case RunStatus::interrupted:
+    case RunStatus::load_failed:  // its law has said why: the engine has nothing to add
       return {};
+    case RunStatus::too_stiff:
+      return " What to do: run it with --integrator radau, whose steps no fast motion limits; or slow down what is "
+             "named "
+             "above: less damping or stiffness, or the inertia that it lacks (a motor has a rotor).";
     case RunStatus::inaccurate:
       return " What to do: take shorter steps (a smaller 'step', or 'rtol' of an integrator that controls its error), "
              "or one that no vibration limits, as radau.";
     default:
       break;
   }
-  // A law of its own that has failed has said why: the engine has nothing to add.
-  if (!Renewal(prepared.model(), *prepared.equations).failure(summary.final).empty()) return {};
+  if (summary.status == RunStatus::diverged || summary.status == RunStatus::step_underflow)
+    if (const auto motion = nonfinite_motion(prepared.model(), summary.reached, summary.steps.largest_step))
+      return motion_remedy(prepared, *motion);
   if (bends && leaves_something_out(terms))
     return " What to do: run it with --formulation quadratic, which leaves out less; if that ends the same way it is "
            "the model and not the formulation.";

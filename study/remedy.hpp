@@ -9,7 +9,8 @@
 namespace withy::study {
 
 /// A sentence that begins with "What to do:", for the message of a run that diverged, came to a singular mass matrix or
-/// to steps below the resolution of time, or is inaccurate; empty for all others.
+/// to steps below the resolution of time, is inaccurate or too stiff for its
+/// integrator; empty for all others.
 std::string remedy_text(const Prepared& prepared, const RunSummary& summary);
 
 }  // namespace withy::study

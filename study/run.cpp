@@ -16,6 +16,7 @@
 #include "withy/study/input_error.hpp"
 #include "withy/study/remedy.hpp"
 #include "withy/study/rung_plan.hpp"
+#include "withy/study/step_limit.hpp"
 
 namespace withy::study {
 namespace {
@@ -74,6 +75,10 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
     };
   options.resume = settings.resume;
   options.seen = settings.seen;
+  options.too_stiff = [&](const State& state) {
+    const std::optional<TooStiff> found = too_stiff(prepared, state, options.most_steps);
+    return found ? found->text : std::string();
+  };
   if (settings.checkpoint_seconds > 0) options.checkpoint_due = [&] { return timer.due(); };
   std::optional<StatisticsWatch> watch;
   std::vector<std::string> watched = watched_outputs(scene);

@@ -1,5 +1,8 @@
 #include "withy/study/step_limit.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <stdexcept>
 
 #include "withy/core/analysis/fastest_pole.hpp"
@@ -9,22 +12,30 @@
 namespace withy::study {
 namespace {
 
-/// Loads count: what a servo does is not among the vibrations of the modes. Models too large to be looked at as a whole
-/// keep the fastest mode.
-void find_fastest(const Prepared& prepared, const RunSummary& summary, StepLimit& s) {
+/// Loads count: what a servo does is not among the vibrations of the modes. Nothing of models too large to be looked at
+/// as a whole, and where there are no derivatives, as at the end of a run that failed.
+std::optional<FastestPole> pole_at(const Prepared& prepared, const State& state) {
   const Model& model = prepared.model();
-  if (model.layout().speeds > largest_examined || s.mean == 0 || !loops_of(model).empty()) return;
+  if (model.layout().speeds > largest_examined || !loops_of(model).empty()) return {};
   try {
     const TangentDynamics dynamics(prepared.scene.model, prepared.scene.formulation->terms());
-    const FastestPole pole = fastest_pole(dynamics, summary.final, driven_speeds(model, summary.final));
-    if (!(std::abs(pole.value) > 0)) return;
-    s.fastest = std::abs(pole.value);
-    s.product = s.mean * s.fastest;
-    s.maker = describe(pole, model.layout());
-    s.made_by_load = pole.cause.find(" of load ") != std::string::npos;
+    const FastestPole pole = fastest_pole(dynamics, state, driven_speeds(model, state));
+    if (std::abs(pole.value) > 0) return pole;
   } catch (const std::domain_error&) {
-    // At the end of a run that failed there may be no derivatives: the fastest mode is all that is known.
+    return {};
   }
+  return {};
+}
+
+/// Where no pole is known the fastest mode stays.
+void find_fastest(const Prepared& prepared, const RunSummary& summary, StepLimit& s) {
+  if (s.mean == 0) return;
+  const std::optional<FastestPole> pole = pole_at(prepared, summary.final);
+  if (!pole) return;
+  s.fastest = std::abs(pole->value);
+  s.product = s.mean * s.fastest;
+  s.maker = describe(*pole, prepared.model().layout());
+  s.made_by_load = pole->cause.find(" of load ") != std::string::npos;
 }
 
 }  // namespace
@@ -62,6 +73,22 @@ StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Regist
     if (able && registry.find<Integrator>(id) != nullptr) s.unlimited.push_back(id);
   }
   return s;
+}
+
+std::optional<TooStiff> too_stiff(const Prepared& prepared, const State& state, std::size_t most_steps) {
+  const Scene& scene = prepared.scene;
+  const std::optional<double> limit = scene.integrator->stability_limit();
+  if (!limit || !std::isfinite(*limit) || !scene.end) return {};
+  const std::optional<FastestPole> pole = pole_at(prepared, state);
+  if (!pole) return {};
+  TooStiff found{*limit / std::abs(pole->value), (*scene.end - state.time) * std::abs(pole->value) / *limit, {}};
+  if (!(found.steps > static_cast<double>(most_steps))) return {};
+  found.text = fmt::format(
+      "{} is stable to steps of about {:.1g} s, of which the run would need about {:.1g} where {:g} are "
+      "allowed; its fastest motion is {}",
+      scene.integrator_name, found.step, found.steps, static_cast<double>(most_steps),
+      describe(*pole, prepared.model().layout()));
+  return found;
 }
 
 }  // namespace withy::study

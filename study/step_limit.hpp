@@ -32,4 +32,14 @@ StepLimit step_limit(const Integrator& integrator, double start, const RunSummar
 /// Of a run of the scene itself; where stability limited it, with proposals.
 StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Registry& registry);
 
+/// What an integrator cannot follow to the end of a run.
+struct TooStiff {
+  double step = 0;   ///< [s] the longest that it is stable to
+  double steps = 0;  ///< of them to the end
+  std::string text;  ///< both, and what makes them so, in a clause
+};
+/// Where the steps to which the scene's integrator is stable about a state are more than `most_steps` up to the end of
+/// the run. Nothing where they are not, or where it is not known: of more than 200 speeds, with closed loops.
+std::optional<TooStiff> too_stiff(const Prepared& prepared, const State& state, std::size_t most_steps);
+
 }  // namespace withy::study

@@ -76,7 +76,7 @@ WITHY_API withy_status withy_scene_check(withy_scene* scene);
 
 /** Simulates to the end of the scene. WITHY_OK also where the run ends badly: ask withy_result_status. */
 WITHY_API withy_status withy_scene_run(withy_scene* scene, withy_result** result);
-/** "completed", "diverged", "singular", "step-underflow"; empty where the handle is none, as all texts. */
+/** As in run.json: "completed", "diverged", "load-failed" and others; empty where the handle is none, as all texts. */
 WITHY_API const char* withy_result_status(const withy_result* result);
 WITHY_API const char* withy_result_message(const withy_result* result);
 /** The content of run.json. */

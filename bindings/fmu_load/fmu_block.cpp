@@ -56,8 +56,10 @@ std::vector<unsigned char> unpacked(std::span<const double> numbers, std::size_t
 
 }  // namespace
 
-FmuBlock::FmuBlock(std::string file, std::shared_ptr<const Program> program, Wiring wiring, double t)
-    : file_(std::move(file)), program_(std::move(program)), wiring_(std::move(wiring)) {
+FmuBlock::FmuBlock(const std::string& file, int line, std::shared_ptr<const Program> program, Wiring wiring, double t)
+    : name_("FMU '" + file + "'" + (line > 0 ? " (line " + std::to_string(line) + " of the scene)" : "")),
+      program_(std::move(program)),
+      wiring_(std::move(wiring)) {
   const std::unique_ptr<Instance> first = make();
   if (!program_->description().keeps_states) return;
   const std::vector<double> zero(inputs());
@@ -105,7 +107,7 @@ void FmuBlock::write(std::span<double> z, double ticket, Instance& instance) con
 void FmuBlock::fail(std::span<double> z, double t, const char* why) const noexcept {
   z[0] = failed;
   try {
-    std::string text = "FMU '" + file_ + "' at t = " + brief(t) + " s: " + why;
+    std::string text = name_ + " at t = " + brief(t) + " s: " + why;
     const std::lock_guard lock(mutex_);
     failure_ = std::move(text);
   } catch (...) {
@@ -154,13 +156,13 @@ void FmuBlock::sample(double t, std::span<const double> w, std::span<double> z, 
 std::string FmuBlock::failure(std::span<const double> z) const {
   if (z[0] != failed) return {};
   const std::lock_guard lock(mutex_);
-  return failure_.empty() ? "FMU '" + file_ + "' has failed" : failure_;
+  return failure_.empty() ? name_ + " has failed" : failure_;
 }
 
 std::string FmuBlock::refusal(std::span<const double> z) const {
   if (z[0] == failed) return failure(z);
   if (z[0] == 0 || has(z[0]) || has_bytes(z)) return {};
-  return "FMU '" + file_ + "' cannot go on from a saved state: " +
+  return name_ + " cannot go on from a saved state: " +
          (z.size() > 1 ? "the bytes of its state have become more than twice as many as at its start"
                        : "it does not give its state away (canGetAndSetFMUstate and canSerializeFMUstate)");
 }

@@ -25,9 +25,9 @@ struct Wiring {
 /// that has been told the same goes on; else a new one is given the bytes, or the law refuses.
 class FmuBlock final : public ControlBlock, public ForeignLaw {
  public:
-  /// \param file name for messages
+  /// \param file name for messages, \param line of the load in the text of its scene
   /// \throws FmuError where it cannot be instantiated, initialized or saved.
-  FmuBlock(std::string file, std::shared_ptr<const Program> program, Wiring wiring, double t);
+  FmuBlock(const std::string& file, int line, std::shared_ptr<const Program> program, Wiring wiring, double t);
 
   std::size_t inputs() const override { return wiring_.inputs.size(); }
   std::size_t outputs() const override { return wiring_.outputs.size(); }
@@ -56,7 +56,7 @@ class FmuBlock final : public ControlBlock, public ForeignLaw {
   [[nodiscard]] bool has_bytes(std::span<const double> z) const { return z.size() > 1 && z[1] >= 0; }
   [[nodiscard]] Values parameters() const { return {wiring_.parameters, wiring_.parameter_values}; }
 
-  std::string file_;
+  std::string name_;  ///< "FMU 'valve.fmu' (line 12 of the scene)"
   std::shared_ptr<const Program> program_;
   Wiring wiring_;
   std::size_t memory_ = 1;

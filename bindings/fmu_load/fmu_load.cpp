@@ -47,7 +47,7 @@ class Reader {
     read_settings(wiring);
     if (context_.diagnostics.errors().size() != before) return nullptr;
     try {
-      auto block = std::make_shared<FmuBlock>(p_.text_at("file"), program, std::move(wiring), 0);
+      auto block = std::make_shared<FmuBlock>(p_.text_at("file"), p_.place().line, program, std::move(wiring), 0);
       block->set_sample(ends->sample);
       return std::make_unique<FmuLoad>(std::move(*ends), std::move(block));
     } catch (const FmuError& e) {

@@ -140,8 +140,8 @@ void raise(const char* name, Arguments&&... arguments) {
 /// From what a load written in Python raised, where that is the reason.
 void raise_stopped(const SimulationStopped& e) {
   const py::object cause = withy::python::raised_by_load(e.what());
-  const py::object error = py::module_::import("withy._errors")
-                               .attr("SimulationStopped")(e.what(), cause ? "load-failed" : e.status(), e.time());
+  const py::object error =
+      py::module_::import("withy._errors").attr("SimulationStopped")(e.what(), e.status(), e.time());
   if (cause) PyException_SetCause(error.ptr(), cause.inc_ref().ptr());
   PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
 }

@@ -25,9 +25,8 @@ py::tuple run(const Scene& scene, const py::object& progress) {
   Result result = followed(progress, [&](const Follow& follow) { return scene.run(follow); });
   const auto rows = static_cast<py::ssize_t>(result.rows()), columns = static_cast<py::ssize_t>(result.columns.size());
   const py::object cause = raised_by_load(result.message);
-  return py::make_tuple(cause ? "load-failed" : result.status, result.message, names_of(result.columns),
-                        units_of(result.columns), array_of(std::move(result.values), {rows, columns}), result.json,
-                        cause ? cause : py::none());
+  return py::make_tuple(result.status, result.message, names_of(result.columns), units_of(result.columns),
+                        array_of(std::move(result.values), {rows, columns}), result.json, cause ? cause : py::none());
 }
 
 /// The table of a run as results.h5 has it.

@@ -1,6 +1,7 @@
 #include "withy/core/simulation/simulate.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -31,6 +32,7 @@ class Run final : public SteppingObserver {
         output_(output),
         watch_(watch),
         summary_(summary),
+        start_(initial.time),
         hand_overs_(options.changing != nullptr ? options.changing->hand_overs() : std::vector<double>()),
         actions_(model, equations, options.events),
         loop_(model, equations, integrator.start(equations, begun(model, equations, initial)),
@@ -87,6 +89,9 @@ class Run final : public SteppingObserver {
                false};
     } else if (options_.most_seconds > 0 && seconds() > options_.most_seconds) {
       stop_ = {RunStatus::interrupted, "stopped after the " + brief(options_.most_seconds) + " s allowed", false};
+    } else if (out_of_reach(stepper)) {
+      if (std::string why = options_.too_stiff(stepper.state()); !why.empty())
+        stop_ = {RunStatus::too_stiff, std::move(why), false};
     }
     return stop_.status == RunStatus::completed;
   }
@@ -142,6 +147,15 @@ class Run final : public SteppingObserver {
     constexpr std::size_t first = 256, interval = 4;
     return accepted <= first || accepted % interval == 0;
   }
+  /// Whether the steps allowed are too few for the end at the mean of those made: looked at after 2¹⁸ of them, a second
+  /// or so, and each time that they have doubled.
+  [[nodiscard]] bool out_of_reach(const Stepper& stepper) const {
+    constexpr std::size_t first_look = std::size_t{1} << 18U;
+    const std::size_t made = stepper.statistics().accepted;
+    if (made < first_look || !std::has_single_bit(made) || !options_.too_stiff) return false;
+    const double t = stepper.state().time;
+    return (options_.end - t) * static_cast<double>(made) > static_cast<double>(options_.most_steps) * (t - start_);
+  }
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   }
@@ -196,6 +210,7 @@ class Run final : public SteppingObserver {
   const std::function<void(const State&)>& output_;
   StepWatch* watch_;  ///< null: there is none
   RunSummary& summary_;
+  double start_;                    ///< [s]
   std::vector<double> hand_overs_;  ///< increasing
   EventActions actions_;
   Stepping loop_;
@@ -303,6 +318,10 @@ std::string_view name(RunStatus status) {
       return "step-underflow";
     case RunStatus::interrupted:
       return "interrupted";
+    case RunStatus::load_failed:
+      return "load-failed";
+    case RunStatus::too_stiff:
+      return "too-stiff";
   }
   return "unknown";
 }

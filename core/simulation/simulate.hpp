@@ -28,9 +28,11 @@ enum class RunStatus {
   diverged,
   singular,
   step_underflow,
-  interrupted
+  interrupted,
+  load_failed,  ///< a load whose law is not the engine's own has failed
+  too_stiff     ///< the steps that the integrator is stable to never come to the end
 };
-/// "completed", "inaccurate", "diverged", "singular", "step-underflow", "interrupted".
+/// "completed", "inaccurate", "diverged", "singular", "step-underflow", "interrupted", "load-failed", "too-stiff".
 std::string_view name(RunStatus status);
 
 /// A run between two steps: `simulate` restores it and, with the same arguments otherwise, goes on as if it had not
@@ -54,6 +56,9 @@ struct RunOptions {
   /// Motion with no speed above this [m/s, rad/s] is rounding, and its energy balances or not.
   double least_speed = 1e-12;
   std::size_t most_steps = 100'000'000;
+  /// Asked now and then where at the pace of the steps so far `most_steps` are too few to come to the end: why they are
+  /// from this state on as well, in a clause without a full stop, which ends the run; empty: it goes on.
+  std::function<std::string(const State&)> too_stiff;
   double most_seconds = 0;            ///< wall time; 0: unlimited
   std::function<bool()> interrupted;  ///< asked between steps
   std::vector<RunEvent> events;       ///< looked for on the dense output; those that do not stop do not change the run

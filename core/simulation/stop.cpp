@@ -9,37 +9,35 @@
 namespace withy {
 namespace {
 
-/// The first motion without finite numbers from a time [s] on, and when; empty where there is none until `ahead` [s]
-/// after it.
-std::string nonfinite_motion(const Model& model, double time, double ahead) {
+std::string text_of(const NonfiniteMotion& motion) {
+  return "motion '" + motion.name + "' has no finite " + motion.quantity + " at t = " + brief(motion.time) + " s";
+}
+
+}  // namespace
+
+std::optional<NonfiniteMotion> nonfinite_motion(const Model& model, double time, double ahead) {
   for (const MotionNode& node : model.motions()) {
     for (double after = 0; after <= ahead; after = after > 0 ? 2 * after : ahead * 0x1p-30) {
       const MotionPoint p = node.motion->at(time + after);
       const bool placed = std::isfinite(p.position), moving = std::isfinite(p.rate);
       if (!(placed && moving && std::isfinite(p.acceleration)))
-        return "motion '" + node.name + "' has no finite " +
-               (!placed  ? "coordinate"
-                : moving ? "acceleration"
-                         : "rate") +
-               " at t = " + brief(time + after) + " s";
+        return NonfiniteMotion{node.name, !placed ? "coordinate" : moving ? "acceleration" : "rate", time + after};
       if (!(ahead > 0)) break;
     }
   }
   return {};
 }
 
-}  // namespace
-
 Stop stop_of(const SteppingEnd& end, const Model& model, const EquationsOfMotion& equations, const State& state,
              const StepStatistics& steps) {
   if (end.cause == SteppingEnd::Cause::crowded)
     return {RunStatus::step_underflow, "switches or events follow each other without time between them"};
   if (end.cause != SteppingEnd::Cause::failed) return {};
-  if (!end.reason.empty()) return {RunStatus::diverged, end.reason, false};
+  if (!end.reason.empty()) return {RunStatus::load_failed, end.reason, false};
   const StepResult& result = end.step;
   if (result.outcome == StepResult::Outcome::nonfinite || result.outcome == StepResult::Outcome::step_underflow)
-    if (const std::string motion = nonfinite_motion(model, state.time, steps.largest_step); !motion.empty())
-      return {RunStatus::diverged, motion, false};
+    if (const auto motion = nonfinite_motion(model, state.time, steps.largest_step))
+      return {RunStatus::diverged, text_of(*motion), false};
   const std::string body =
       result.body >= 0 ? " at body '" + model.bodies()[static_cast<std::size_t>(result.body)].name + "'" : "";
   switch (result.outcome) {

@@ -2,6 +2,7 @@
 /// Why a simulation cannot go on.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "withy/core/simulation/diagnosis.hpp"
@@ -16,6 +17,15 @@ struct Stop {
   std::string reason;    ///< a clause without its full stop
   bool physical = true;  ///< the equations are the reason, not the caller
 };
+
+/// A motion that ceases to have finite numbers.
+struct NonfiniteMotion {
+  std::string name;
+  std::string quantity;  ///< "coordinate", "rate" or "acceleration"
+  double time = 0;       ///< [s]
+};
+/// The first without finite numbers from a time [s] on; nothing where there is none until `ahead` [s] after it.
+std::optional<NonfiniteMotion> nonfinite_motion(const Model& model, double time, double ahead);
 
 /// The reason that stepping itself gives: no step can be made, or switches follow each other without time between.
 /// Completed where it gives none.

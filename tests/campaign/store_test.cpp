@@ -48,8 +48,9 @@ std::map<std::uint64_t, std::string> records(const std::filesystem::path& path) 
 
 TEST(Segments, KeepEveryStatusThatARunCanHave) {
   CaseResult r = made(1);
-  for (const RunStatus status : {RunStatus::completed, RunStatus::inaccurate, RunStatus::diverged, RunStatus::singular,
-                                 RunStatus::step_underflow, RunStatus::interrupted}) {
+  for (const RunStatus status :
+       {RunStatus::completed, RunStatus::inaccurate, RunStatus::diverged, RunStatus::singular,
+        RunStatus::step_underflow, RunStatus::interrupted, RunStatus::load_failed, RunStatus::too_stiff}) {
     r.status = name(status);
     EXPECT_EQ(decode(encode(r))->status, name(status));
   }

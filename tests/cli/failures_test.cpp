@@ -119,5 +119,22 @@ TEST(Failures, APluginFolderThatIsNotThereIsBadInput) {
   EXPECT_THAT(f.err, HasSubstr("nowhere"));
 }
 
+// 2^53 samples to the end: the number of one and of the next are the same.
+TEST(Failures, SamplesThatCannotBeToldApartAreBadInputAtReading) {
+  const Folder folder;
+  folder.write("fast.yaml",
+               "format: withy/1\ntime: {end: 2}\nbodies: {table: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+               "hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}\n"
+               "loads:\n  servo: {type: pid, hinge: axle, proportional: 1, sample: 1e-16}\n");
+  for (const char* command : {"check", "run"}) {
+    const Finished f = withy(folder, {command, "fast.yaml"});
+    EXPECT_EQ(f.status, 2) << command;
+    EXPECT_EQ(f.out, "");
+    EXPECT_THAT(f.err, HasSubstr("fast.yaml:6:60: /loads/servo/sample: got a period of 1e-16 s"));
+    EXPECT_THAT(f.err, HasSubstr("at t = 2 s; need more than 2.22e-16 s"));
+  }
+  EXPECT_EQ(withy(folder, {"check", "fast.yaml", "--set", "loads.servo.sample=2.23e-16"}).status, 0);
+}
+
 }  // namespace
 }  // namespace withy::test

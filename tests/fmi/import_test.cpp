@@ -2,9 +2,12 @@
 /// FMUs as controllers of scenes: a loop closed by one is that of the controller of its own kind, it can be gone back
 /// in, and what is wrong with an FMU is said with its place.
 #include <gmock/gmock.h>
+#include <sys/wait.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "withy/bindings/fmi/zip_file.hpp"
 #include "withy/host/simulation.hpp"
@@ -149,7 +152,8 @@ TEST(ImportedFmus, ThatKeepTheirStatesToThemselvesAreNotGoneBackIn) {
     sim.restore(before);
     FAIL();
   } catch (const std::invalid_argument& e) {
-    EXPECT_THAT(e.what(), HasSubstr("load 'law': FMU 'secret.fmu' cannot go on from a saved state"));
+    EXPECT_THAT(e.what(),
+                HasSubstr("load 'law': FMU 'secret.fmu' (line 9 of the scene) cannot go on from a saved state"));
   }
   sim.step(1);  // it stands where it stood
 }
@@ -199,14 +203,36 @@ TEST(ImportedFmus, ThatFailStopARunWithTheirWords) {
     const host::Scene scene =
         scene_of(turned("{type: fmu, file: " + file + ", of: axle, inputs: angle, to: nothing, set: [fail=0.505]}"));
     const host::Result result = scene.run();
-    EXPECT_EQ(result.status, "diverged");
-    EXPECT_THAT(result.message, HasSubstr("load 'law': FMU 'fails.fmu' at t = 0.51 s"));
+    EXPECT_EQ(result.status, "load-failed");
+    EXPECT_THAT(result.message, HasSubstr("load 'law': FMU 'fails.fmu' (line 9 of the scene) at t = 0.51 s: "));
     EXPECT_THAT(result.message, HasSubstr("DoStep gives error: the valve is stuck"));
     EXPECT_EQ(result.column("t").back(), 0.51);  // what is known up to there stays
     host::Simulation sim(scene);
-    EXPECT_THROW(sim.step(1), host::SimulationStopped);
+    try {
+      sim.step(1);
+      ADD_FAILURE() << "it stepped over the failure";
+    } catch (const host::SimulationStopped& e) {
+      EXPECT_EQ(e.status(), "load-failed");
+    }
     EXPECT_THROW(static_cast<void>(scene.linearize()), study::InputError);
   }
+}
+
+TEST(ImportedFmus, ThatFailEndARunOfTheProgram) {
+  const std::string file = ControllerFmu{.keeps_states = false}.pack("fails.fmu");
+  std::ofstream(scratch() / "failing.yaml")
+      << turned("{type: fmu, file: " + file + ", of: axle, inputs: angle, to: nothing, set: [fail=0.505]}");
+  const std::string folder = (scratch() / "failing").string();
+  const int status = std::system((std::string(WITHY_PROGRAM) + " run '" + (scratch() / "failing.yaml").string() +
+                                  "' --out '" + folder + "' > '" + folder + ".log' 2>&1")
+                                     .c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  const auto run = nlohmann::json::parse(std::ifstream(folder + "/run.json"));
+  EXPECT_EQ(run.at("status"), "load-failed");
+  EXPECT_EQ(run.at("t_end"), 0.51);
+  EXPECT_THAT(run.at("message").get<std::string>(),
+              HasSubstr("load 'law': FMU 'fails.fmu' (line 9 of the scene) at t = 0.51 s: fmi2DoStep gives error: the "
+                        "valve is stuck"));
 }
 
 TEST(ImportedFmus, AreRefusedWithThePlaceAndTheReason) {

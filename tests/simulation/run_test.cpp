@@ -151,6 +151,8 @@ TEST(Simulate, states_have_the_names_that_results_use) {
   EXPECT_EQ(name(RunStatus::singular), "singular");
   EXPECT_EQ(name(RunStatus::step_underflow), "step-underflow");
   EXPECT_EQ(name(RunStatus::interrupted), "interrupted");
+  EXPECT_EQ(name(RunStatus::load_failed), "load-failed");
+  EXPECT_EQ(name(RunStatus::too_stiff), "too-stiff");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <regex>
 
+#include "withy/study/plausibility.hpp"
 #include "withy/study/run.hpp"
 #include "withy/tests/study/plugins.hpp"
 
@@ -68,6 +69,50 @@ TEST(Causes, ABladePastTheSpeedThatItsFormulationKnows) {
   EXPECT_NEAR(number_after(s.message, "its fundamental frequency of "), 2.911, 0.002) << s.message;
   EXPECT_GT(number_after(s.message, "'blade' turns at "), 1);
   for (const char* other : {buckling_words, empty_words, wild_words}) EXPECT_THAT(s.message, Not(HasSubstr(other)));
+}
+
+TEST(Causes, AMotionThatCeasesToBeFinite) {
+  const std::string scene = R"(time: {end: 2}
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+motions: {turn: {type: expression, hinge: axle, value: sqrt(1 - t) * sin(t)}}
+)";
+  const RunSummary s = run_of_text(scene);
+  EXPECT_EQ(s.status, RunStatus::diverged);
+  EXPECT_THAT(s.message, HasSubstr("motion 'turn' has no finite coordinate at t = 1 s."));
+  EXPECT_THAT(s.message, HasSubstr("What to do: change the law of 'turn' (line 7 of the scene)"));
+  EXPECT_THAT(s.message, HasSubstr("--set time.end=0.99."));
+  // What it advises helps.
+  SceneValues shorter = SceneValues::parse("format: withy/1\n" + scene, "planted.yaml");
+  EXPECT_EQ(run_of(shorter.set("time.end", Value(0.99), "the test")).status, RunStatus::completed);
+}
+
+// d/J = 1500/1e-9 = 1.5e12/s: dopri5, stable to 1.7 over that of a vibration, would need 9e11 steps, of a motion that
+// dies out half as many.
+TEST(Causes, ADampedHingeThatMovesNextToNothing) {
+  const std::string scene = R"(time: {end: 1}
+bodies:
+  arm: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  wheel: {type: rigid, mass: 1, inertia: [1, 1, 1.0e-9, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, parent: world, child: arm, axis: [0, 0, 1]}
+  pin: {type: revolute, parent: arm, child: wheel, axis: [0, 0, 1]}
+motions: {turn: {type: expression, hinge: axle, value: "0.1*t^2"}}
+loads: {drag: {type: hinge-spring, hinge: pin, stiffness: 1, damping: 1500}}
+)";
+  const RunSummary s = run_of_text(scene);
+  EXPECT_EQ(s.status, RunStatus::too_stiff);
+  EXPECT_LE(s.steps.accepted, std::size_t{1} << 18U) << "it stops at its first look";
+  EXPECT_NEAR(number_after(s.message, "its fastest motion is "), -1.5e12, 1e9) << s.message;
+  EXPECT_NEAR(number_after(s.message, "of which the run would need about "), 9e11, 0.5e11) << s.message;
+  EXPECT_THAT(s.message, HasSubstr("damping of load 'drag' on pin"));
+  EXPECT_THAT(s.message, HasSubstr("What to do: run it with --integrator radau"));
+  // What it advises helps, and `check` says so beforehand.
+  SceneValues values = SceneValues::parse("format: withy/1\n" + scene, "planted.yaml");
+  const std::vector<Remark> remarks = implausible(prepare(values, plugins()), plugins());
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_THAT(remarks[0].text, HasSubstr("its fastest motion is -1.5e+12/s"));
+  EXPECT_EQ(run_of(values.set_text("integrator=radau", "the test")).status, RunStatus::completed);
 }
 
 TEST(Causes, AMassMatrixThatTurnsIndefinite) {

@@ -85,6 +85,30 @@ TEST(Outputs, HaveTheEffortsThatMotionsNeed) {
   EXPECT_GT(read[0], 0.1);
 }
 
+/// The name that result tables have is the name of a measure, and has what it has been over the run.
+TEST(Outputs, HaveTheRatesOfHinges) {
+  const Prepared scene = blade();
+  const Outputs outputs(scene.model(), {"axle.rate", "axle.rate.max"});
+  ASSERT_EQ(outputs.list().size(), 2U);
+  EXPECT_EQ(outputs.list()[0].label, "axle.rate");
+  EXPECT_EQ(outputs.list()[0].unit, "rad/s");
+  EXPECT_EQ(outputs.list()[1].label, "axle.rate.max");
+  OutputReader reader(outputs, scene.model(), *scene.equations);
+  State state = scene.scene.initial;
+  double greatest = 0;
+  for (const double t : {0.0, 5.0, 15.0, 10.0}) {
+    state.time = t;
+    scene.model().prescribe(state);
+    const double rate = state.y[scene.model().layout().positions + scene.model().layout().hinge("axle")->speed];
+    greatest = std::max(greatest, rate);
+    const std::vector<double> read = reader.read(state);
+    EXPECT_EQ(read[outputs.list()[0].at], rate);
+    EXPECT_EQ(read[outputs.list()[1].at], greatest);
+  }
+  EXPECT_EQ(greatest, 4) << "that of the spin-up, rad/s";
+  EXPECT_THROW(Outputs(scene.model(), {"axle.rates"}), InputError);
+}
+
 /// Of one component what the scene shows; of a whole output its orientation as an angle, and floors by its other
 /// numbers.
 TEST(Outputs, AreTheScenesSensorsByName) {

@@ -20,7 +20,8 @@ class SimulationStopped(RuntimeError):
     """A simulation cannot go on; the text is the physical reason.
 
     Attributes:
-        status: as in run.json: ``diverged``, ``singular``, ``step-underflow``, ``interrupted`` or ``load-failed``.
+        status: as in run.json: ``diverged``, ``singular``, ``step-underflow``, ``interrupted``, ``load-failed`` or
+            ``too-stiff``.
         time: of the last accepted state [s], where the simulation stands.
         __cause__: what a load written in Python raised, where that is the reason.
     """

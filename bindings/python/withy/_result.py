@@ -28,7 +28,8 @@ class Result(Mapping):
     """The table of a run by the names of its columns, those of results.csv: ``result["shoulder"]``.
 
     Attributes:
-        status: ``completed``, ``diverged``, ``singular``, ``step-underflow``, ``interrupted`` or ``load-failed``.
+        status: ``completed``, ``diverged``, ``singular``, ``step-underflow``, ``interrupted``, ``load-failed`` or
+            ``too-stiff``.
         message: the physical reason of a bad end, or what a completed run should not keep to itself; else empty.
         units: SI unit of each column by its name; empty for modal coordinates.
         table: all numbers [rows, columns], in SI units.
@@ -43,7 +44,7 @@ class Result(Mapping):
         self.units = dict(zip(names, units))
         self.table = table
         self.cause = cause
-        self.summary: dict[str, Any] = {**json.loads(text), "status": status}
+        self.summary: dict[str, Any] = json.loads(text)
         self._index = {name: i for i, name in enumerate(names)}
 
     @property
