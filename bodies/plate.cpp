@@ -14,6 +14,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "beam_quadrature.hpp"
@@ -74,16 +76,31 @@ class Plate final : public Body {
     if (*text == "tip") return expansion(sheet_.length, 0);
     if (*text == "left") return expansion(sheet_.length, sheet_.width / 2);
     if (*text == "right") return expansion(sheet_.length, -sheet_.width / 2);
-    return {};
+    const auto place = place_of(*text);
+    return place ? std::optional(expansion(place->first, place->second)) : std::nullopt;
   }
   std::string stations() const override {
     return fmt::format(
-        "root, tip, left and right (the corners at the tip), or a coordinate x of the middle line from 0 "
-        "to {} m",
-        sheet_.length);
+        "root, tip, left and right (the corners at the tip), a coordinate x of the middle line from 0 to {} m, or a "
+        "place '(x, y)' with y from -{} to {} m",
+        sheet_.length, sheet_.width / 2, sheet_.width / 2);
   }
 
  private:
+  /// Of "(x, y)" [m]; nothing where that is no place on the plate.
+  std::optional<std::pair<double, double>> place_of(std::string_view text) const {
+    const auto number = [](std::string_view word) {
+      word.remove_prefix(std::min(word.find_first_not_of(' '), word.size()));
+      double value = std::nan("");
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+      return error == std::errc() && end == word.data() + word.size() ? value : std::nan("");
+    };
+    const std::size_t comma = text.find(',');
+    if (comma == std::string_view::npos || !text.starts_with('(') || !text.ends_with(')')) return {};
+    const double x = number(text.substr(1, comma - 1)), y = number(text.substr(comma + 1, text.size() - comma - 2));
+    if (!(x >= 0 && x <= sheet_.length && std::abs(y) <= sheet_.width / 2)) return {};
+    return std::pair(x, y);
+  }
   Line along(double x) const {
     const auto n = static_cast<Eigen::Index>(along_->count());
     Line f{RowVectorXd(n), RowVectorXd(n), RowVectorXd(n)};

@@ -52,6 +52,28 @@ SecondOrder second_order_of(const Mesh& mesh, const Matrices& matrices, const Re
   }
 }
 
+Drawn drawn_as(const Mesh& mesh, const Matrices& matrices, const ReductionOptions& options, const Reduction& body) {
+  Drawn drawn;
+  try {
+    const OuterFaces outer = outer_faces(mesh, matrices);
+    const Eigen::Index n = body.modes.cols();
+    const auto numbers = 3 * static_cast<Eigen::Index>(outer.rows.size()) * (n * (n + 1) / 2);
+    Eigen::MatrixXd second;
+    if (body.second_order.empty())
+      drawn.lacking = "without the second order, for the geometric stiffness is not known";
+    else if (numbers > most_second_order)
+      drawn.lacking = "without the second order, which would make the file too large";
+    else
+      second = second_order_displacements(mesh, matrices, options, body);
+    drawn.text = surface_text(body, outer, second);
+    drawn.vertices = outer.rows.size();
+    drawn.faces = outer.faces.size();
+  } catch (const InputError& e) {
+    drawn.lacking = e.what();
+  }
+  return drawn;
+}
+
 }  // namespace
 
 Imported import(const ImportJob& job) {
@@ -70,6 +92,7 @@ Imported import(const ImportJob& job) {
   result.data = sid_of(result.body);
   static_cast<void>(body_of(result.data, {}, result.as_body));
   result.summary = summary_of(matrices, result.body, result.data);
+  result.drawn = drawn_as(mesh, matrices, options, result.body);
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include "withy/bodies/modal/sid_body.hpp"
 #include "withy/fem/reduce.hpp"
 #include "withy/fem/summary.hpp"
+#include "withy/fem/surface.hpp"
 
 namespace withy::fem {
 
@@ -30,12 +31,20 @@ struct SecondOrder {
   std::string lacking;   ///< why it is not known; empty where it is
 };
 
+/// How the body is drawn.
+struct Drawn {
+  std::string text;     ///< of the file, see surface_text; empty where the faces are not known
+  std::string lacking;  ///< why it is not known, or its second order is not; empty where all is known
+  std::size_t vertices = 0, faces = 0;
+};
+
 struct Imported {
   Reduction body;
   Summary summary;
   sid::Data data;     ///< what is written
   SidReport as_body;  ///< what the modal body makes of it
   SecondOrder second_order;
+  Drawn drawn;
 };
 
 /// \throws InputError, std::domain_error where the files do not describe a body that can be reduced.

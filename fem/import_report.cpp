@@ -17,7 +17,7 @@ Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 }  // namespace
 
 Json import_json(const Imported& imported, const std::string& file) {
-  const auto& [body, s, data, sid, second_order] = imported;
+  const auto& [body, s, data, sid, second_order, drawn] = imported;
   Json j;
   j["file"] = file;
   j["origin"] = vector_json(body.origin);
@@ -47,15 +47,27 @@ Json import_json(const Imported& imported, const std::string& file) {
     j["geometric_stiffness"]["reason"] = second_order.lacking;
   }
   j["missing"] = sid.missing;
+  j["surface"] = Json::object();
+  if (!drawn.text.empty())
+    j["surface"] = {{"file", surface_file(file)}, {"vertices", drawn.vertices}, {"faces", drawn.faces}};
+  if (!drawn.lacking.empty()) j["surface"]["lacking"] = drawn.lacking;
   return j;
 }
 
-std::string scene_snippet(const std::string& file, const sid::Data& data) {
+std::string surface_file(const std::string& file) {
+  return std::filesystem::path(file).replace_extension(".vtk").string();
+}
+
+std::string scene_snippet(const std::string& file, const Imported& imported) {
+  const sid::Data& data = imported.data;
   const std::string base = data.nodes.front().id;
+  const auto name = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
+  const std::string visual =
+      imported.drawn.text.empty() ? "" : fmt::format("    visual: {{mesh: {}}}\n", name(surface_file(file)));
   std::string text = fmt::format(
-      "bodies:\n  part:\n    type: modal\n    file: {}   # relative to the scene\n    damping_ratio: 0.01\nhinges:\n"
+      "bodies:\n  part:\n    type: modal\n    file: {}   # relative to the scene\n    damping_ratio: 0.01\n{}hinges:\n"
       "  mount: {{type: weld, parent: world, child: part}}   # holds the nodes of the root\n",
-      std::filesystem::path(file).filename().string());
+      name(file), visual);
   for (const sid::Node& node : data.nodes) {
     if (node.id != base) text += fmt::format("  # parent: part.{} attaches there\n", node.id);
   }
@@ -108,6 +120,14 @@ std::string import_text(const Json& j) {
     out += fmt::format("\nno geometric stiffness: {}\n", stiffness["reason"].get<std::string>());
   }
   for (const Json& lack : j["missing"]) out += fmt::format("missing: {}\n", lack.get<std::string>());
+  const Json& surface = j["surface"];
+  const std::string lacking = surface.value("lacking", "");
+  if (surface.contains("file"))
+    out +=
+        fmt::format("drawn by                           {} outer faces with {} vertices{}\n",
+                    surface["faces"].get<int>(), surface["vertices"].get<int>(), lacking.empty() ? "" : ", " + lacking);
+  else
+    out += fmt::format("drawn by the hull of its nodes: {}\n", lacking);
   return out;
 }
 

@@ -15,6 +15,8 @@ nlohmann::ordered_json import_json(const Imported& imported, const std::string& 
 /// The same in words. \param report of import_json
 std::string import_text(const nlohmann::ordered_json& report);
 /// Lines of a scene that use the file.
-std::string scene_snippet(const std::string& file, const sid::Data& data);
+std::string scene_snippet(const std::string& file, const Imported& imported);
+/// Where the body's surface is written: beside the file of Standard Input Data, with the ending .vtk.
+std::string surface_file(const std::string& file);
 
 }  // namespace withy::fem

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "interior.hpp"
@@ -131,7 +132,8 @@ class Reducer {
 
   /// Constraint modes, what the mesh does under motions of the interfaces, and its modes with the interfaces held.
   void solve() {
-    const Interior interior(m_.K, m_.M, interior_);
+    const auto shared = std::make_shared<const Interior>(m_.K, m_.M, interior_);
+    const Interior& interior = *shared;
     Interior::Modes held = interior.modes(options_.modes);
     body_.fixed_frequencies = std::move(held.frequencies);
     if (rigid_.cols() + held.shapes.cols() == 0)
@@ -142,6 +144,12 @@ class Reducer {
     V << constraint, held.shapes;
     take_modes(V);
     respond(interior, constraint);
+    body_.statics = [shared, constraint, K = Eigen::MatrixXd(constraint.transpose() * (m_.K * constraint))](
+                        const Eigen::MatrixXd& forces) -> Eigen::MatrixXd {
+      Eigen::MatrixXd u = shared->response(forces);
+      if (constraint.cols() > 0) u += constraint * K.ldlt().solve(constraint.transpose() * forces);
+      return u;
+    };
   }
 
   /// Statics of the mesh under the unit loads. Motions of the interior alone and constraint modes are orthogonal in K.

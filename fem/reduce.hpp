@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -43,6 +44,8 @@ struct Reduction {
   /// (3 + 3 i + c), what 12 inertial loads are sums of; then for each coordinate of an interface, three forces and, of
   /// a rigid section, three moments; then three forces at each station. In the order of `nodes`, without the base.
   Eigen::MatrixXd loaded;
+  /// Static displacements of the clamped mesh, its interfaces rigid, under forces: 3N×m of 3N×m.
+  std::function<Eigen::MatrixXd(const Eigen::MatrixXd& forces)> statics;
   Eigen::MatrixXd held;  ///< K loaded less what loads the mesh itself: forces that act through interfaces and the root
   /// Second-order displacements in the direction of each unit load, f · Γ_kl [load's work/mode²], n×n each; empty where
   /// they are not known.
@@ -63,6 +66,10 @@ Reduction reduce(const Matrices& matrices, const ReductionOptions& options);
 /// Returns by how much the stresses' forces miss those of K, relative.
 /// \throws InputError where the deck does not tell the stresses: what() says why; `body` is then as it was.
 double add_second_order(const Mesh& mesh, const Matrices& matrices, const ReductionOptions& options, Reduction& body);
+
+/// Γ_kl itself, on the whole mesh: 3N×n(n+1)/2, pairs k ≤ l, k outermost [m/mode²]. add_second_order has been called.
+Eigen::MatrixXd second_order_displacements(const Mesh& mesh, const Matrices& matrices, const ReductionOptions& options,
+                                           const Reduction& body);
 
 /// SID of the reduced body. Without the second order the first orders of Ct, Cr, Oe and of the nodes' phi and psi are
 /// left out, and readers say so.

@@ -78,4 +78,28 @@ double add_second_order(const Mesh& mesh, const Matrices& matrices, const Reduct
   return miss;
 }
 
+Eigen::MatrixXd second_order_displacements(const Mesh& mesh, const Matrices& matrices, const ReductionOptions& options,
+                                           const Reduction& body) {
+  const SolidElements elements(mesh, matrices);
+  const Eigen::Index n = body.modes.cols();
+  // Rigid sections turn by exp(θ̂), whose second order is no motion that the mesh could choose; all else follows.
+  Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(body.modes.rows(), n * (n + 1) / 2);
+  for (std::size_t i = 0; i < options.interfaces.size(); ++i) {
+    if (options.interfaces[i].nodes.size() == 1) continue;
+    const Section section = section_of(options.interfaces[i].nodes, matrices);
+    const Matrix3X& psi = body.nodes[i + 1].psi.m0;
+    Eigen::Index pair = 0;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      for (Eigen::Index l = k; l < n; ++l, ++pair) {
+        const Vector3 a = psi.col(k), b = psi.col(l);
+        for (std::size_t s = 0; s < section.rows.size(); ++s) {
+          const Vector3 r = section.arms.col(static_cast<Eigen::Index>(s));
+          turned.col(pair).segment<3>(3 * section.rows[s]) = 0.5 * (a.cross(b.cross(r)) + b.cross(a.cross(r)));
+        }
+      }
+    }
+  }
+  return turned + body.statics(elements.second_order_forces(body.modes) - matrices.K * turned);
+}
+
 }  // namespace withy::fem

@@ -71,7 +71,10 @@ Matrix3X SolidElements::at_nodes(const Solid& solid, const Eigen::MatrixXd& fiel
 
 Matrix3 SolidElements::stress(const Solid& solid, const Point& point, const Matrix3X& u) {
   const Matrix3 H = u * point.gradient.transpose();
-  const Matrix3 strain = 0.5 * (H + H.transpose());
+  return stress_of(solid, 0.5 * (H + H.transpose()));
+}
+
+Matrix3 SolidElements::stress_of(const Solid& solid, const Matrix3& strain) {
   return 2 * solid.shear * strain + solid.lame * strain.trace() * Matrix3::Identity();
 }
 
@@ -123,6 +126,29 @@ std::vector<Eigen::MatrixXd> SolidElements::geometric_stiffness(const Eigen::Mat
     for (Eigen::Index k = 0; k < n; ++k) {
       for (Eigen::Index l = k; l < n; ++l, ++pair)
         all[static_cast<std::size_t>(j)](k, l) = all[static_cast<std::size_t>(j)](l, k) = sum(pair, j);
+    }
+  }
+  return all;
+}
+
+Eigen::MatrixXd SolidElements::second_order_forces(const Eigen::MatrixXd& fields) const {
+  const Eigen::Index n = fields.cols();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(3 * nodes_, n * (n + 1) / 2);
+  std::vector<Matrix3> H(static_cast<std::size_t>(n));
+  for (const Solid& solid : solids_) {
+    std::vector<Matrix3X> phi;
+    for (Eigen::Index k = 0; k < n; ++k) phi.push_back(at_nodes(solid, fields, k));
+    for (const Point& point : solid.points) {
+      for (std::size_t k = 0; k < H.size(); ++k) H[k] = phi[k] * point.gradient.transpose();
+      Eigen::Index pair = 0;
+      for (std::size_t k = 0; k < H.size(); ++k) {
+        for (std::size_t l = k; l < H.size(); ++l, ++pair) {
+          const Matrix3 W = H[k].transpose() * H[l];
+          const Matrix3X f = -point.volume * stress_of(solid, 0.5 * (W + W.transpose())) * point.gradient;
+          for (std::size_t a = 0; a < solid.rows.size(); ++a)
+            all.col(pair).segment<3>(3 * solid.rows[a]) += f.col(static_cast<Eigen::Index>(a));
+        }
+      }
     }
   }
   return all;

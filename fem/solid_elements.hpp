@@ -23,6 +23,10 @@ class SolidElements {
   [[nodiscard]] std::vector<Eigen::MatrixXd> geometric_stiffness(const Eigen::MatrixXd& displacements,
                                                                  const Eigen::MatrixXd& fields) const;
 
+  /// Forces on the nodes that do −∫ σ(δ) : ∇φ_kᵀ ∇φ_l dV of work on every displacement δ, of all pairs k ≤ l of
+  /// `fields`, k outermost: 3N×n(n+1)/2.
+  [[nodiscard]] Eigen::MatrixXd second_order_forces(const Eigen::MatrixXd& fields) const;
+
  private:
   struct Point {
     double volume;
@@ -35,6 +39,7 @@ class SolidElements {
   };
   [[nodiscard]] static Matrix3X at_nodes(const Solid& solid, const Eigen::MatrixXd& fields, Eigen::Index column);
   [[nodiscard]] static Matrix3 stress(const Solid& solid, const Point& point, const Matrix3X& u);
+  [[nodiscard]] static Matrix3 stress_of(const Solid& solid, const Matrix3& strain);
 
   Eigen::Index nodes_;
   std::vector<Solid> solids_;

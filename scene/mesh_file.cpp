@@ -47,14 +47,14 @@ class Lines {
     return found;
   }
   [[noreturn]] void refuse_line(const std::string& why) const { refuse(fmt::format("line {}: {}", number_, why)); }
-  double coordinate() {
-    const std::string_view text = word();
+  [[nodiscard]] double number_in(std::string_view text) const {
     double x = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
     if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(x))
       refuse_line(fmt::format("got '{}'; need a coordinate", text));
     return x;
   }
+  double coordinate() { return number_in(word()); }
   Vector3 point() {
     const double x = coordinate(), y = coordinate(), z = coordinate();
     return {x, y, z};
@@ -173,22 +173,153 @@ TriangleMesh stl(std::string_view bytes) {
                   stl_head + 4 + std::size_t{count} * stl_facet, count));
 }
 
-}  // namespace
-
-TriangleMesh read_mesh(const std::filesystem::path& file) {
+std::string bytes_of(const std::filesystem::path& file) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(file, none)) refuse(fmt::format("there is no file '{}'", file.string()));
   if (std::filesystem::file_size(file, none) > most_mesh_bytes)
     refuse(fmt::format("need a file of at most {} MiB", most_mesh_bytes >> 20));
   std::ifstream stream(file, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  std::string bytes((std::istreambuf_iterator<char>(stream)), {});
   if (!stream) refuse(fmt::format("'{}' cannot be read", file.string()));
+  return bytes;
+}
+
+/// Of a file's name, in small letters.
+std::string ending(const std::filesystem::path& file) {
   std::string end = file.extension().string();
   std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  return end;
+}
+
+/// "mode_3" or "mode_3_5" from 1, as 2, or 2 and 4; nothing for other names.
+std::vector<Eigen::Index> modes_named(std::string_view name) {
+  std::vector<Eigen::Index> modes;
+  constexpr std::string_view begin = "mode";
+  if (!name.starts_with(begin)) return {};
+  for (name.remove_prefix(begin.size()); !name.empty() && modes.size() < 3;) {
+    Eigen::Index mode = 0;
+    const auto [end, error] = std::from_chars(name.data() + 1, name.data() + name.size(), mode);
+    if (name.front() != '_' || name.size() < 2 || error != std::errc() || mode < 1) return {};
+    modes.push_back(mode - 1);
+    name.remove_prefix(static_cast<std::size_t>(end - name.data()));
+  }
+  return modes.size() > 2 ? std::vector<Eigen::Index>{} : modes;
+}
+
+/// Reads the polygons of a VTK file in text and the vectors of their vertices.
+class VtkReader {
+ public:
+  explicit VtkReader(std::string_view text) : lines_(text) {}
+
+  ModeSurface read() {
+    bool ascii = false, polygons = false;
+    while (lines_.next()) {
+      const std::string_view word = lines_.word();
+      if (word == "ASCII") ascii = true;
+      if (word == "DATASET" && lines_.word() != "POLYDATA") lines_.refuse_line("need DATASET POLYDATA");
+      if ((word == "POINTS" || word == "POLYGONS") && !ascii)
+        lines_.refuse_line("need a VTK file in text, which says ASCII before its points");
+      if (word == "POINTS") points();
+      if (word == "POLYGONS") faces();
+      polygons = polygons || word == "POLYGONS";
+      if (word == "VECTORS") vectors();
+    }
+    if (!polygons) refuse("it is no VTK file with POLYGONS, or not all of one");
+    return surface();
+  }
+
+ private:
+  /// The next number, on this line or a later one.
+  double number() {
+    std::string_view word = lines_.word();
+    while (word.empty()) {
+      if (!lines_.next()) refuse("the file ends within its numbers");
+      word = lines_.word();
+    }
+    return lines_.number_in(word);
+  }
+  std::size_t count(double most) {
+    const double x = number();
+    if (!(x >= 0 && x <= most && x == std::floor(x)))
+      lines_.refuse_line(fmt::format("got {}; need a whole number from 0 to {}", x, most));
+    return static_cast<std::size_t>(x);
+  }
+
+  void points() {
+    mesh_.vertices.resize(count(most_triangles));
+    lines_.word();  // the type of the numbers
+    for (Vector3& v : mesh_.vertices)
+      for (double& x : v) x = number();
+  }
+  void faces() {
+    const std::size_t polygons = count(most_triangles);
+    count(8.0 * most_triangles);  // numbers, with each polygon's count
+    const auto vertices = static_cast<double>(mesh_.vertices.size());
+    std::vector<std::uint32_t> face;
+    for (std::size_t p = 0; p < polygons; ++p) {
+      face.resize(count(1000));
+      for (std::uint32_t& v : face) v = static_cast<std::uint32_t>(count(vertices - 1));
+      for (std::size_t k = 2; k < face.size(); ++k) mesh_.triangles.push_back({face[0], face[k - 1], face[k]});
+      if (mesh_.triangles.size() > most_triangles)
+        refuse(fmt::format("need at most {} triangles; import a coarser mesh for the picture", most_triangles));
+    }
+  }
+  void vectors() {
+    const std::string_view name = lines_.word();
+    const std::vector<Eigen::Index> modes = modes_named(name);
+    if (modes.empty()) lines_.refuse_line(fmt::format("got vectors '{}'; need mode_1, or mode_1_2 of a pair", name));
+    lines_.word();  // the type of the numbers
+    Eigen::VectorXf column(3 * static_cast<Eigen::Index>(mesh_.vertices.size()));
+    for (float& x : column) x = static_cast<float>(number());
+    if (!shapes_.emplace(modes, std::move(column)).second)
+      lines_.refuse_line("the vectors before this line have a name that others have");
+  }
+
+  /// Columns in the order of the modes.
+  ModeSurface surface() {
+    const auto n = std::count_if(shapes_.begin(), shapes_.end(), [](const auto& s) { return s.first.size() == 1; });
+    const auto pairs = static_cast<Eigen::Index>(shapes_.size()) - n;
+    const auto rows = 3 * static_cast<Eigen::Index>(mesh_.vertices.size());
+    ModeSurface surface{std::move(mesh_), Eigen::MatrixXf(rows, n), Eigen::MatrixXf(rows, pairs)};
+    const auto take = [&](std::vector<Eigen::Index> modes, auto column) {
+      const auto found = shapes_.find(modes);
+      std::string name = "mode";
+      for (const Eigen::Index k : modes) name += fmt::format("_{}", k + 1);
+      if (found == shapes_.end()) refuse(fmt::format("it has no vectors '{}' beside those of other modes", name));
+      column = found->second;
+    };
+    Eigen::Index pair = 0;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      take({k}, surface.first.col(k));
+      for (Eigen::Index l = k; pairs > 0 && l < n; ++l) {
+        if (pair == pairs) refuse("it has vectors of some pairs of modes; need those of all, or none");
+        take({k, l}, surface.second.col(pair++));
+      }
+    }
+    if (pair != pairs) refuse("it has vectors of pairs of modes that it has not");
+    return surface;
+  }
+
+  Lines lines_;
+  TriangleMesh mesh_;
+  std::map<std::vector<Eigen::Index>, Eigen::VectorXf> shapes_;
+};
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& file) {
+  const std::string bytes = bytes_of(file);
+  const std::string end = ending(file);
   if (end != ".stl" && end != ".obj") refuse("need a file that ends in .stl or .obj");
   TriangleMesh mesh = end == ".stl" ? stl(bytes) : obj(bytes);
   if (mesh.triangles.empty()) refuse("it has no triangles");
   return mesh;
+}
+
+ModeSurface read_mode_surface(const std::filesystem::path& file) {
+  const std::string bytes = bytes_of(file);
+  if (ending(file) != ".vtk") refuse("need a file that ends in .vtk, which withy import writes");
+  return VtkReader(bytes).read();
 }
 
 }  // namespace withy

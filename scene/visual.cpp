@@ -11,10 +11,59 @@
 namespace withy {
 namespace {
 
-constexpr const char* shapes[] = {"box", "sphere", "cylinder", "mesh", "radius", "width", "height"};
+constexpr const char* shapes[] = {"box", "sphere", "cylinder", "mesh", "radius", "width", "height", "thickness"};
 
 /// Whether a shape is the section of a beam.
 bool is_section(std::string_view key) { return key == "radius" || key == "width" || key == "height"; }
+bool is_plate(const Body& body) { return body.station("left") && body.station("right"); }
+bool is_beam(const Body& body) { return !is_plate(body) && body.shape().length > 0 && body.station(0.0); }
+bool bends(const Body& body) { return body.shape().modes() > 0; }
+
+/// Whether a body can be drawn with what is given of it.
+bool fits(const std::string& given, const Body& body) {
+  if (given == "thickness") return is_plate(body);
+  if (is_section(given.substr(0, given.find(',')))) return is_beam(body);
+  if (given == "mesh" && bends(body)) return !is_plate(body) && !is_beam(body);
+  return !bends(body);
+}
+
+/// What there is to choose from for a body.
+const char* choice(const Body& body) {
+  if (is_plate(body)) return "thickness, for a plate";
+  if (is_beam(body)) return "radius, or width and height, for a beam";
+  if (bends(body)) return "mesh, with the .vtk file that withy import wrote, for a body of modes";
+  return "box, sphere, cylinder or mesh, for a rigid body";
+}
+
+/// Whether the file of a mesh can be read, and has what the body needs.
+bool check_mesh(const Value& visual, const Body& body, const std::string& directory, Diagnostics& diagnostics) {
+  const Value& mesh = visual.at("mesh");
+  const auto refuse = [&](const std::string& why) {
+    diagnostics.error(mesh.place(), fmt::format("got '{}'; {}", mesh.text(), why));
+    return false;
+  };
+  const std::filesystem::path file = std::filesystem::path(directory) / mesh.text();
+  const Eigen::Index modes = body.shape().modes();
+  try {
+    if (modes == 0) {
+      read_mesh(file);
+      return true;
+    }
+    const Eigen::Index known = read_mode_surface(file).first.cols();
+    if (known != modes)
+      return refuse(
+          fmt::format("it has the shapes of {} modes, the body has {}; need the file that withy import wrote "
+                      "together with the body's",
+                      known, modes));
+  } catch (const std::domain_error& e) {
+    return refuse(e.what());
+  }
+  const bool placed = visual.at("position").numbers() != std::vector<double>{0, 0, 0} ||
+                      visual.at("orientation").numbers() != std::vector<double>{1, 0, 0, 0};
+  if (placed || visual.number_at("scale") != 1)
+    return refuse("its vertices are in m and in the body's axes; need no position, orientation or scale");
+  return true;
+}
 
 }  // namespace
 
@@ -27,11 +76,13 @@ ParameterSpec visual_spec() {
            number("length", "m", "length along z, half to each side").above(0)},
           "a cylinder about z")
           .optional(),
-      text("mesh", "a file, .stl or .obj; a relative name starts at the scene's directory").optional(),
+      text("mesh", "a file, .stl or .obj, of a flexible body .vtk; a relative name starts at the scene's directory")
+          .optional(),
       number("scale", "m", "length of the mesh's unit, as 1 mm").above(0).otherwise(1.0),
       number("radius", "m", "radius of a beam's round section").above(0).or_table("m").optional(),
       number("width", "m", "width along y of a beam's rectangular section").above(0).or_table("m").optional(),
-      number("height", "m", "height along z of a beam's rectangular section").above(0).or_table("m").optional()};
+      number("height", "m", "height along z of a beam's rectangular section").above(0).or_table("m").optional(),
+      number("thickness", "m", "thickness of a plate").above(0).optional()};
   for (ParameterSpec& pose : grammar::pose_members()) members.push_back(std::move(pose));
   return map("visual", std::move(members), "what the body looks like in pictures; no result depends on it").optional();
 }
@@ -40,34 +91,16 @@ bool check_visual(const Value& visual, const Body& body, const std::string& dire
   std::string given;
   for (const char* shape : shapes)
     if (visual.has(shape)) given += (given.empty() ? "" : ", ") + std::string(shape);
-  const bool section = is_section(given.substr(0, given.find(',')));
-  const auto refuse = [&](const Value& at, const std::string& why) {
-    diagnostics.error(at.place(), why);
+  const auto refuse = [&](const std::string& why) {
+    diagnostics.error(visual.place(), why);
     return false;
   };
-  if (given.empty())
-    return refuse(visual, "got no shape; need box, sphere, cylinder, mesh, radius, or width and height");
+  if (given.empty()) return refuse(fmt::format("got no shape; need {}", choice(body)));
   if (given.find(',') != std::string::npos && given != "width, height")
-    return refuse(
-        visual, fmt::format("got {}; need one shape: box, sphere, cylinder, mesh, radius, or width and height", given));
-  if (given == "width" || given == "height")
-    return refuse(visual, fmt::format("got {} alone; need width and height", given));
-  if (section && !(body.shape().length > 0 && body.station(0.0)))
-    return refuse(visual,
-                  fmt::format("got {}, which are of a beam's section; need box, sphere, cylinder or mesh", given));
-  if (!section && body.shape().modes() > 0)
-    return refuse(visual,
-                  fmt::format("got {}, which does not bend; a flexible body is drawn from its own data, a beam with "
-                              "radius, or width and height, if these are given",
-                              given));
-  if (!visual.has("mesh")) return true;
-  const Value& mesh = visual.at("mesh");
-  try {
-    read_mesh(std::filesystem::path(directory) / mesh.text());
-  } catch (const std::domain_error& e) {
-    return refuse(mesh, fmt::format("got '{}'; {}", mesh.text(), e.what()));
-  }
-  return true;
+    return refuse(fmt::format("got {}; need one shape: {}", given, choice(body)));
+  if (given == "width" || given == "height") return refuse(fmt::format("got {} alone; need width and height", given));
+  if (!fits(given, body)) return refuse(fmt::format("got {}; need {}", given, choice(body)));
+  return given != "mesh" || check_mesh(visual, body, directory, diagnostics);
 }
 
 std::set<std::string> meshes_of(const Value& bodies) {

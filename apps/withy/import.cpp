@@ -47,10 +47,11 @@ ExitStatus import_mesh(const ImportArguments& a) {
     const fem::Imported imported = fem::import(a);
     const std::string file = a.out.empty() ? std::filesystem::path(a.job).filename().string() + ".SID_FEM" : a.out;
     write_file(file, sid::write(imported.data));
+    if (!imported.drawn.text.empty()) write_file(fem::surface_file(file), imported.drawn.text);
     const auto report = fem::import_json(imported, file);
     print(a.json ? json_text(report)
                  : fem::import_text(report) + "\nwritten: " + file + "; in a scene:\n\n" +
-                       fem::scene_snippet(file, imported.data));
+                       fem::scene_snippet(file, imported));
     return ExitStatus::done;
   } catch (const fem::InputError& e) {
     throw InputError(e.what());

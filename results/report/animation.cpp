@@ -19,10 +19,20 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t sides = 8;
 /// Half the thickness of the thinnest tube, over that of rods.
 constexpr double least_of_radius = 0.3;
+/// The thickness of the thinnest sheet, over the same.
+constexpr double least_of_sheet = 0.2;
 
 template <class Number>
 std::vector<Number> array_of(const Json& run, const Json& index) {
   return numbers_of<Number>(run.at("arrays").at(index.get<std::size_t>()).get_ref<const std::string&>());
+}
+
+std::vector<std::array<std::uint32_t, 3>> triangles_of(const Json& run, const Json& index) {
+  const auto corners = array_of<std::uint32_t>(run, index);
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+    triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  return triangles;
 }
 
 Vector3 vector_of(const Json& json, std::size_t at = 0) {
@@ -57,7 +67,10 @@ std::vector<std::size_t> joined(const std::string& kind, const std::vector<Vecto
 
 }  // namespace
 
-std::size_t Animation::Body::size() const { return 7 + (flexible ? (turns ? 6 : 3) * points.size() + 7 * hung : 0); }
+std::size_t Animation::Body::size() const {
+  const std::size_t deformed = shapes.empty() ? (turns ? 6 : 3) * points.size() : weights();
+  return 7 + (flexible ? deformed + 7 * hung : 0);
+}
 
 Animation::Body Animation::body_of(const nlohmann::ordered_json& part, const nlohmann::ordered_json& run) {
   Body body;
@@ -65,6 +78,8 @@ Animation::Body Animation::body_of(const nlohmann::ordered_json& part, const nlo
   body.kind = part.at("kind");
   body.flexible = part.at("flexible");
   body.columns = part.value("columns", std::size_t{1});
+  body.thickness = part.value("thickness", 0.0);
+  if (part.contains("shapes")) body.shapes = array_of<float>(run, part.at("shapes"));
   const Json& points = part.at("points");
   for (std::size_t i = 0; i + 2 < points.size(); i += 3) body.points.push_back(vector_of(points, i));
   body.line = joined(body.kind, body.points);
@@ -83,14 +98,13 @@ Animation::Body Animation::body_of(const nlohmann::ordered_json& part, const nlo
       body.outlines.push_back({sections.at("rectangle").get<bool>(), widths[i], widths[i + 1]});
     body.turns = sections.at("turns");
   }
+  if (part.contains("triangles")) body.triangles = triangles_of(run, part.at("triangles"));
   if (part.contains("surface")) {
     Surface& given = body.given.emplace();
     const auto vertices = array_of<float>(run, part.at("surface").at(0));
-    const auto triangles = array_of<std::uint32_t>(run, part.at("surface").at(1));
     for (std::size_t i = 0; i + 2 < vertices.size(); i += 3)
       given.vertices.emplace_back(vertices[i], vertices[i + 1], vertices[i + 2]);
-    for (std::size_t i = 0; i + 2 < triangles.size(); i += 3)
-      given.triangles.push_back({triangles[i], triangles[i + 1], triangles[i + 2]});
+    given.triangles = triangles_of(run, part.at("surface").at(1));
   }
   if (part.contains("tip")) body.ends.push_back(vector_of(part.at("tip")));
   return body;
@@ -134,6 +148,15 @@ Animation::Shape Animation::shape_at(const Body& body, std::size_t moment) const
   Shape shape{body.points, {}};
   if (!body.flexible) return shape;
   const float* u = numbers_.data() + moments_[moment] * size_ + body.at + 7;
+  if (!body.shapes.empty()) {
+    const auto rows = static_cast<Eigen::Index>(3 * body.points.size()),
+               count = static_cast<Eigen::Index>(body.weights());
+    const Eigen::VectorXf moved = Eigen::Map<const Eigen::MatrixXf>(body.shapes.data(), rows, count) *
+                                  Eigen::Map<const Eigen::VectorXf>(u, count);
+    for (std::size_t i = 0; i < shape.points.size(); ++i)
+      shape.points[i] += moved.segment<3>(3 * static_cast<Eigen::Index>(i)).cast<double>();
+    return shape;
+  }
   const auto next = [&u] {
     const Vector3 v = Eigen::Map<const Eigen::Vector3f>(u).cast<double>();
     u += 3;
@@ -177,9 +200,10 @@ Surface Animation::drawn(const Body& body, const Shape& shape) const {
   if (body.given) return *body.given;
   Surface surface;
   if (body.kind == "strip") {
-    add_sheet(shape.points, body.columns, surface);
+    add_sheet(shape.points, body.columns, std::max(body.thickness, least_of_sheet * radius_), surface);
     return surface;
   }
+  if (body.kind == "mesh") return {shape.points, body.triangles};
   if (body.line.size() > 1) return tube(body, shape);
   if (body.kind == "points")
     for (const Vector3& p : shape.points) add_bead(p, radius_, surface);

@@ -27,13 +27,11 @@ class Animation {
   [[nodiscard]] std::size_t bodies() const { return bodies_.size(); }
   [[nodiscard]] const std::string& name(std::size_t body) const { return bodies_[body].name; }
   [[nodiscard]] bool flexible(std::size_t body) const { return bodies_[body].flexible; }
-  /// Whether its surface is a sheet, to be seen from both sides.
-  [[nodiscard]] bool sheet(std::size_t body) const { return bodies_[body].kind == "strip"; }
   /// Of a body at a moment, in the world.
   [[nodiscard]] Pose pose(std::size_t body, std::size_t moment) const;
-  /// Its surface at rest: a tube along a beam, the sheet of a plate, beads at the points of a body of data, the surface
-  /// that a rigid body is given, or else the box of its mass and inertia with rods to what hangs on it. Without
-  /// triangles where there is nothing to draw.
+  /// Its surface at rest: a tube along a beam, the sheet of a plate with its thickness, the outer faces of a mesh,
+  /// beads at the points of a body whose faces are not known, the surface that a rigid body is given, or else the box
+  /// of its mass and inertia with rods to what hangs on it. Without triangles where there is nothing to draw.
   [[nodiscard]] Surface surface(std::size_t body) const;
   /// Its vertices, deformed as at a moment, body axes; those of `surface`, in their order.
   [[nodiscard]] std::vector<Vector3> vertices(std::size_t body, std::size_t moment) const;
@@ -44,6 +42,9 @@ class Animation {
     bool flexible = false;
     std::vector<Vector3> points;  ///< at rest
     std::size_t columns = 1;      ///< points across a sheet
+    double thickness = 0;         ///< of a sheet [m]
+    std::vector<float> shapes;    ///< of its points, as ModeShapes has them, one behind the other
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of a mesh
     bool has_box = false;
     Vector3 edges = Vector3::Zero();
     Pose box;
@@ -55,6 +56,8 @@ class Animation {
     std::optional<Surface> given;   ///< that it is drawn with
     std::size_t at = 0;             ///< of its numbers in those of a moment
     [[nodiscard]] std::size_t size() const;
+    /// Shapes, each of three numbers a point.
+    [[nodiscard]] std::size_t weights() const { return points.empty() ? 0 : shapes.size() / (3 * points.size()); }
   };
   /// Points of a body and, where its numbers have them, the y axes of its sections.
   struct Shape {

@@ -1,7 +1,10 @@
 #include "withy/results/report/drawing.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -20,6 +23,8 @@ constexpr int least_sections = 4;
 constexpr std::size_t most_points = 1500;
 /// Nodes of a body of data.
 constexpr std::size_t most_nodes = 200;
+/// Points of a plate: along it, and across.
+constexpr int strip_rows = 16, strip_columns = 8;
 
 Pose pose_of(const WorldPose& p) {
   return {Eigen::Map<const RowMajor>(p.rotation.data()), Eigen::Map<const Vector3>(p.position.data())};
@@ -82,7 +87,8 @@ Drawing::Drawing(const std::shared_ptr<const Model>& model, const Terms& terms, 
     const Eigen::Index modes = bodies[b].body->shape().modes();
     part.flexible = modes > 0;
     part.frame = add_frame(bodies[b], PointExpansion::rigid(Vector3::Zero(), modes), Vector3::Zero());
-    add_points(bodies[b], part);
+    const Terms& own_terms = bodies[b].terms ? *bodies[b].terms : terms;
+    add_points(bodies[b], part, own_terms.strain != StrainOrder::linear);
     if (part.kind == Kind::line) add_sections(bodies[b], part);
   }
   for (const HingeNode& hinge : own->hinges()) {
@@ -93,14 +99,17 @@ Drawing::Drawing(const std::shared_ptr<const Model>& model, const Terms& terms, 
     part.offsets.push_back(hinge.offset);
   }
   for (const Part& part : parts_)
-    size_ += 7 + (part.flexible ? (part.turns ? 6 : 3) * part.points.size() + 7 * part.hung.size() : 0);
+    size_ += 7 + (part.flexible ? (part.turns ? 6 : 3) * part.points.size() +
+                                      static_cast<std::size_t>(part.shapes.shapes().cols()) + 7 * part.hung.size()
+                                : 0);
   model_ = std::make_shared<const Model>(std::move(bodies), own->hinges(), own->gravity());
   seen_ = observed_model(*model_, terms)->make_observation();
 }
 
-void Drawing::add_points(BodyNode& node, Part& part) const {
+void Drawing::add_points(BodyNode& node, Part& part, bool second_order) const {
+  if (add_strip(node, part, second_order) || add_mesh(node, part, second_order)) return;
   const auto drawn = [&] {
-    if (add_strip(node, part) || add_line(node, part)) return true;
+    if (add_line(node, part)) return true;
     std::istringstream names(node.body->stations());
     std::string name;
     while (std::getline(names >> std::ws, name, ',') && part.points.size() < most_nodes) {
@@ -150,32 +159,61 @@ const Surface* Drawing::surface(std::size_t body) const {
   return looks_.surface(node.segment ? node.segment->whole : node.name);
 }
 
-/// Of a body with corners `left` and `right` at its tip: sections across its middle line, which stay straight.
-bool Drawing::add_strip(BodyNode& node, Part& part) const {
+/// Of a body with corners `left` and `right` at its tip and stations "(x, y)": its surface, row by row from the root,
+/// each from the left.
+bool Drawing::add_strip(const BodyNode& node, Part& part, bool second_order) const {
   const double length = node.body->shape().length;
   const auto left = node.body->station("left"), right = node.body->station("right");
-  if (!left || !right || !(length > 0) || !node.body->station(0.0)) return false;
-  constexpr int sections = 16;
-  for (int i = 0; i <= sections; ++i) {
-    const auto section = node.body->station(length * i / sections);
-    if (!section) return false;
-    const bool tip = i == sections;
-    const Vector3 none = Vector3::Zero();
-    part.points.push_back(tip ? add_frame(node, *left, none)
-                              : add_frame(node, *section, Vector3::UnitY() * left->X.y()));
-    part.points.push_back(add_frame(node, *section, none));
-    part.points.push_back(tip ? add_frame(node, *right, none)
-                              : add_frame(node, *section, Vector3::UnitY() * right->X.y()));
-  }
-  part.columns = 3;
+  if (!left || !right || !(length > 0)) return false;
+  const double y_left = left->X.y(), width = y_left - right->X.y();
+  std::vector<PointExpansion> points;
+  for (int i = 0; i <= strip_rows; ++i)
+    for (int j = 0; j <= strip_columns; ++j) {
+      auto point =
+          node.body->station(fmt::format("({}, {})", length * i / strip_rows, y_left - width * j / strip_columns));
+      if (!point) return false;
+      part.at_rest.push_back(point->X);
+      points.push_back(std::move(*point));
+    }
+  part.shapes = {points, second_order};
+  part.columns = strip_columns + 1;
+  part.thickness = looks_.thickness(node.name);
   part.kind = Kind::strip;
   return true;
+}
+
+/// Of a body of modes whose outer faces the scene names.
+bool Drawing::add_mesh(const BodyNode& node, Part& part, bool second_order) const {
+  const ModeSurface* given = looks_.mode_surface(node.name);
+  if (given == nullptr) return false;
+  part.at_rest = given->mesh.vertices;
+  part.triangles = given->mesh.triangles;
+  part.shapes = {given->first, second_order ? given->second : Eigen::MatrixXf(given->first.rows(), 0)};
+  part.kind = Kind::mesh;
+  return true;
+}
+
+/// Weights of the shapes of a body at a state of the drawn model.
+Eigen::VectorXf Drawing::weights(std::size_t body, std::span<const double> y) const {
+  const Slot* modes = model_->layout().modes(body);
+  return modes == nullptr ? Eigen::VectorXf()
+                          : parts_[body].shapes.weights(y.subspan(modes->position, modes->positions));
+}
+
+/// Where a vertex is that shapes displace, in the world, at the state last seen.
+Vector3 Drawing::place(std::size_t body, std::size_t point, const Eigen::VectorXf& weights) const {
+  const Part& part = parts_[body];
+  Vector3 displacement = Vector3::Zero();
+  if (weights.size() > 0)
+    displacement = (part.shapes.shapes().middleRows<3>(3 * static_cast<Eigen::Index>(point)) * weights).cast<double>();
+  const Pose X_WB = pose_of(seen_->frame_pose(static_cast<int>(body), part.frame));
+  return X_WB.p + X_WB.R * (part.at_rest[point] + displacement);
 }
 
 Json Drawing::part_json(std::size_t body) const {
   const Part& part = parts_[body];
   const BodyNode& node = model_->bodies()[body];
-  static constexpr const char* kinds[] = {"box", "line", "strip", "points"};
+  static constexpr const char* kinds[] = {"box", "line", "strip", "mesh", "points"};
   Json j{{"name", node.segment ? node.segment->whole : node.name},
          {"kind", kinds[static_cast<int>(part.kind)]},
          {"parent", model_->hinges()[body].parent},
@@ -184,7 +222,10 @@ Json Drawing::part_json(std::size_t body) const {
   j["points"] = Json::array();
   for (const Vector3& X : part.at_rest)
     for (const double x : X) j["points"].push_back(x);
-  if (part.kind == Kind::strip) j["columns"] = part.columns;
+  if (part.kind == Kind::strip) {
+    j["columns"] = part.columns;
+    j["thickness"] = part.thickness;
+  }
   if (!part.flexible && part.kind == Kind::box) j["box"] = box_json(node.body->shape());
   j["children"] = part.children;
   j["hung"] = Json::array();
@@ -212,13 +253,16 @@ std::span<const double> Drawing::without_discrete(std::span<const double> y) con
 }
 
 void Drawing::append(std::span<const double> y, std::vector<float>& numbers) {
-  seen_->observe(without_discrete(y));
+  const std::span<const double> state = without_discrete(y);
+  seen_->observe(state);
   for (std::size_t b = 0; b < parts_.size(); ++b) {
     const Part& part = parts_[b];
     const auto body = static_cast<int>(b);
     const Pose X_WB = pose_of(seen_->frame_pose(body, part.frame));
     append_pose(X_WB, numbers);
     if (!part.flexible) continue;
+    const Eigen::VectorXf w = weights(b, state);
+    numbers.insert(numbers.end(), w.begin(), w.end());
     const Pose X_BW = X_WB.inverse();
     for (std::size_t i = 0; i < part.points.size(); ++i) {
       const WorldPose point = seen_->frame_pose(body, part.points[i]);
@@ -233,21 +277,28 @@ void Drawing::append(std::span<const double> y, std::vector<float>& numbers) {
 }
 
 std::vector<std::vector<Vector3>> Drawing::lines(std::span<const double> y) {
-  seen_->observe(without_discrete(y));
+  const std::span<const double> state = without_discrete(y);
+  seen_->observe(state);
   std::vector<std::vector<Vector3>> all;
   for (std::size_t b = 0; b < parts_.size(); ++b) {
     const Part& part = parts_[b];
-    const auto place = [&](int frame) { return pose_of(seen_->frame_pose(static_cast<int>(b), frame)); };
-    if (part.kind == Kind::line || part.kind == Kind::strip) {
+    const auto pose_at = [&](int frame) { return pose_of(seen_->frame_pose(static_cast<int>(b), frame)); };
+    if (part.kind == Kind::strip) {
+      const Eigen::VectorXf w = weights(b, state);
       all.emplace_back();
-      for (std::size_t i = part.columns / 2; i < part.points.size(); i += part.columns)
-        all.back().push_back(place(part.points[i]).p);
+      for (std::size_t i = part.columns / 2; i < part.at_rest.size(); i += part.columns)
+        all.back().push_back(place(b, i, w));
+      continue;
+    }
+    if (part.kind == Kind::line) {
+      all.emplace_back();
+      for (const int point : part.points) all.back().push_back(pose_at(point).p);
       continue;
     }
     for (std::size_t i = 0; i < part.hung.size(); ++i)
-      all.push_back({place(part.frame).p, (place(part.hung[i]) * part.offsets[i]).p});
+      all.push_back({pose_at(part.frame).p, (pose_at(part.hung[i]) * part.offsets[i]).p});
     const int tip = model_->bodies()[b].frame("tip");
-    if (tip >= 0) all.push_back({place(part.frame).p, place(tip).p});
+    if (tip >= 0) all.push_back({pose_at(part.frame).p, pose_at(tip).p});
   }
   return all;
 }

@@ -13,11 +13,12 @@
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/results/report/looks.hpp"
+#include "withy/results/report/mode_shapes.hpp"
 
 namespace withy {
 
-/// A model's bodies as boxes, lines, strips and points, each body in its own strain kinematics. A moment is one pass
-/// over the tree: time and memory in proportion to bodies and points.
+/// A model's bodies as boxes, lines, sheets, meshes and points, each body in its own strain kinematics. A moment is one
+/// pass over the tree: time and memory in proportion to bodies and points.
 class Drawing {
  public:
   /// \param terms of the formulation, for bodies that have none of their own
@@ -29,11 +30,17 @@ class Drawing {
   /// The surface that a body is given; null where there is none. The sections of a beam at its points; none of others.
   [[nodiscard]] const Surface* surface(std::size_t body) const;
   [[nodiscard]] const std::vector<Outline>& sections(std::size_t body) const { return parts_[body].sections; }
+  /// Of a sheet or a mesh the shapes that its displacements are sums of; of others none.
+  [[nodiscard]] const ModeShapes& shapes(std::size_t body) const { return parts_[body].shapes; }
+  /// Of a mesh, triangles of its points, counter-clockwise seen from outside; of others none.
+  [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& triangles(std::size_t body) const {
+    return parts_[body].triangles;
+  }
   /// Whether `append` tells how the sections are turned: where they are not round and the body twists.
   [[nodiscard]] bool turns(std::size_t body) const { return parts_[body].turns; }
   /// Of a state, y as in State, appended: of each body position [m] and quaternion w x y z in the world; of a flexible
-  /// one displacement of each point [m], if it turns the y axis of each section, and the poses on which its children
-  /// hang, body axes.
+  /// one the weights of its shapes, or displacement of each point [m], if it turns the y axis of each section, and the
+  /// poses on which its children hang, body axes.
   void append(std::span<const double> y, std::vector<float>& numbers);
   /// Of a state, each body as a line in the world [m]: along a flexible body, or from a rigid body's root to what hangs
   /// on it.
@@ -50,23 +57,29 @@ class Drawing {
   void append_deflections(std::vector<double>& numbers) const;
 
  private:
-  enum class Kind { box, line, strip, points };
+  enum class Kind { box, line, strip, mesh, points };
   struct Part {
     Kind kind = Kind::box;
     bool flexible = false;
-    int frame = 0;                       ///< of the body
-    std::vector<int> points;             ///< frames
-    std::vector<Vector3> at_rest;        ///< of the points
-    std::vector<int> children;           ///< bodies that hang on a flexible body
-    std::vector<int> hung;               ///< frames of these, one a child
-    std::vector<Pose> offsets;           ///< of the hinges in them
-    std::size_t columns = 1;             ///< points across a strip
+    int frame = 0;                 ///< of the body
+    std::vector<int> points;       ///< frames
+    std::vector<Vector3> at_rest;  ///< of the points, or of the vertices that shapes displace
+    std::vector<int> children;     ///< bodies that hang on a flexible body
+    std::vector<int> hung;         ///< frames of these, one a child
+    std::vector<Pose> offsets;     ///< of the hinges in them
+    std::size_t columns = 1;       ///< points across a strip
+    double thickness = 0;          ///< of a strip [m]
+    ModeShapes shapes = {};        ///< of a strip and a mesh, which have no frames as points
+    std::vector<std::array<std::uint32_t, 3>> triangles = {};
     std::vector<Outline> sections = {};  ///< of a beam, at its points
     bool turns = false;
   };
   [[nodiscard]] std::span<const double> without_discrete(std::span<const double> y) const;
-  void add_points(BodyNode& node, Part& part) const;
-  bool add_strip(BodyNode& node, Part& part) const;
+  void add_points(BodyNode& node, Part& part, bool second_order) const;
+  bool add_strip(const BodyNode& node, Part& part, bool second_order) const;
+  bool add_mesh(const BodyNode& node, Part& part, bool second_order) const;
+  [[nodiscard]] Vector3 place(std::size_t body, std::size_t point, const Eigen::VectorXf& weights) const;
+  [[nodiscard]] Eigen::VectorXf weights(std::size_t body, std::span<const double> y) const;
   void add_sections(const BodyNode& node, Part& part) const;
   [[nodiscard]] bool add_line(BodyNode& node, Part& part) const;
   [[nodiscard]] nlohmann::ordered_json part_json(std::size_t body) const;

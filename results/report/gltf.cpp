@@ -23,10 +23,9 @@ class Binary {
     json_ = {{"asset", {{"version", "2.0"}, {"generator", "withy"}}}, {"scene", 0}};
     for (const char* list : {"scenes", "nodes", "meshes", "materials", "accessors", "bufferViews", "animations"})
       json_[list] = Json::array();
-    // Colours that are told apart by those who do not see colours: of flexible and of rigid bodies, and sheets.
-    add_material("flexible", {0.0, 0.168, 0.445, 1.0}, false);
-    add_material("rigid", {0.55, 0.55, 0.58, 1.0}, false);
-    add_material("sheet", {0.0, 0.168, 0.445, 1.0}, true);
+    // Colours that are told apart by those who do not see colours: of flexible and of rigid bodies.
+    add_material("flexible", {0.0, 0.168, 0.445, 1.0});
+    add_material("rigid", {0.55, 0.55, 0.58, 1.0});
     json_["animations"].push_back({{"name", "run"}, {"samplers", Json::array()}, {"channels", Json::array()}});
   }
 
@@ -66,11 +65,10 @@ class Binary {
     return json_[list].size() - 1;
   }
 
-  void add_material(const char* name, const Json& color, bool both_sides) {
-    add_to("materials",
-           {{"name", name},
-            {"pbrMetallicRoughness", {{"baseColorFactor", color}, {"metallicFactor", 0.05}, {"roughnessFactor", 0.55}}},
-            {"doubleSided", both_sides}});
+  void add_material(const char* name, const Json& color) {
+    add_to("materials", {{"name", name},
+                         {"pbrMetallicRoughness",
+                          {{"baseColorFactor", color}, {"metallicFactor", 0.05}, {"roughnessFactor", 0.55}}}});
   }
 
   /// \param target what the numbers are for; 0: neither vertices nor indices
@@ -135,7 +133,7 @@ class Binary {
     Morph morph;
     if (run.flexible(body)) morph = morph_of(run, body, tolerance);
     if (!surface.triangles.empty()) {
-      const std::size_t material = run.sheet(body) ? 2 : run.flexible(body) ? 0 : 1;
+      const std::size_t material = run.flexible(body) ? 0 : 1;
       json["mesh"] = add_mesh(surface, run.name(body), material, morph);
     }
     const std::size_t node = add_to("nodes", std::move(json));

@@ -63,6 +63,13 @@ Outline given_section(const Value& visual, double x) {
   return {true, at_place(visual.at("width"), x) / 2, at_place(visual.at("height"), x) / 2};
 }
 
+/// Whether a body of the scene has modes.
+bool bends(const Scene& scene, const std::string& body) {
+  const auto& all = scene.model->bodies();
+  return std::any_of(all.begin(), all.end(),
+                     [&](const BodyNode& node) { return node.name == body && node.body->shape().modes() > 0; });
+}
+
 }  // namespace
 
 Outline equivalent_section(const Value& beam, double x) {
@@ -97,12 +104,23 @@ Outline equivalent_section(const Value& beam, double x) {
   return {false, std::min(solid * std::sqrt(square[0]), most), std::min(solid * std::sqrt(square[1]), most)};
 }
 
+double equivalent_thickness(const Value& plate) {
+  const double nu = plate.number_at("poisson_ratio");
+  const double square = 12 * (1 - nu * nu) * plate.number_at("stiffness") / plate.number_at("mass_per_area");
+  return std::min(std::sqrt(square / metal_modulus),
+                  most_of_length * std::min(plate.number_at("length"), plate.number_at("width")));
+}
+
 Looks::Looks(const Scene& scene) {
   const std::filesystem::path folder = std::filesystem::path(scene.file).parent_path();
   for (const auto& [name, value] : scene.source.at("bodies").members()) {
     bodies_.emplace(name, value);
     const Value* visual = value.find("visual");
     if (visual == nullptr) continue;
+    if (visual->has("mesh") && bends(scene, name)) {
+      mode_surfaces_.emplace(name, read_mode_surface(folder / visual->text_at("mesh")));
+      continue;
+    }
     if (Surface surface = surface_of(*visual, folder); !surface.triangles.empty())
       surfaces_.emplace(name, std::move(surface));
   }
@@ -111,6 +129,19 @@ Looks::Looks(const Scene& scene) {
 const Surface* Looks::surface(const std::string& body) const {
   const auto found = surfaces_.find(body);
   return found == surfaces_.end() ? nullptr : &found->second;
+}
+
+const ModeSurface* Looks::mode_surface(const std::string& body) const {
+  const auto found = mode_surfaces_.find(body);
+  return found == mode_surfaces_.end() ? nullptr : &found->second;
+}
+
+double Looks::thickness(const std::string& body) const {
+  const auto found = bodies_.find(body);
+  if (found == bodies_.end()) return 0;
+  const Value* visual = found->second.find("visual");
+  if (visual != nullptr && visual->has("thickness")) return visual->number_at("thickness");
+  return found->second.text_at("type") == "plate" ? equivalent_thickness(found->second) : 0;
 }
 
 std::vector<Outline> Looks::sections(const BodyNode& node, const std::vector<double>& x) const {

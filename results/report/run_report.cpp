@@ -94,6 +94,12 @@ Json arrows_json(const Arrows& arrows, Arrays& data) {
   return list;
 }
 
+std::vector<std::uint32_t> flat(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::vector<std::uint32_t> corners;
+  for (const auto& t : triangles) corners.insert(corners.end(), t.begin(), t.end());
+  return corners;
+}
+
 /// Of what is drawn: what stays of each body, with its surface or its sections, if it has these.
 Json parts_json(const Drawing& drawing, Arrays& data) {
   Json parts = drawing.parts();
@@ -102,10 +108,12 @@ Json parts_json(const Drawing& drawing, Arrays& data) {
       std::vector<float> vertices;
       for (const Vector3& v : surface->vertices)
         for (const double x : v) vertices.push_back(static_cast<float>(x));
-      std::vector<std::uint32_t> triangles;
-      for (const auto& t : surface->triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-      parts[b]["surface"] = {data.add(vertices), data.add(triangles)};
+      parts[b]["surface"] = {data.add(vertices), data.add(flat(surface->triangles))};
     }
+    const Eigen::MatrixXf& shapes = drawing.shapes(b).shapes();
+    if (shapes.size() > 0)
+      parts[b]["shapes"] = data.add(std::vector<float>(shapes.data(), shapes.data() + shapes.size()));
+    if (!drawing.triangles(b).empty()) parts[b]["triangles"] = data.add(flat(drawing.triangles(b)));
     const std::vector<Outline>& sections = drawing.sections(b);
     if (sections.empty()) continue;
     std::vector<float> widths;

@@ -101,13 +101,33 @@ void add_box(const Vector3& edges, const Pose& pose, Surface& surface) {
   for (const auto& f : faces) add_quadrilateral(v + f[0], v + f[1], v + f[2], v + f[3], surface);
 }
 
-void add_sheet(const std::vector<Vector3>& points, std::size_t columns, Surface& surface) {
-  const Index v = next_vertex(surface);
-  surface.vertices.insert(surface.vertices.end(), points.begin(), points.end());
-  const auto n = static_cast<Index>(columns);
-  for (Index row = 0; row + 2 * n <= points.size(); row += n)
-    for (Index k = 0; k + 1 < n; ++k)
-      add_quadrilateral(v + row + k, v + row + k + 1, v + row + n + k + 1, v + row + n + k, surface);
+void add_sheet(const std::vector<Vector3>& points, std::size_t columns, double thickness, Surface& surface) {
+  const Index v = next_vertex(surface), under = static_cast<Index>(points.size());
+  const auto n = static_cast<Index>(columns), rows = under / n;
+  const auto normal = [&](Index row, Index k) -> Vector3 {
+    const auto at = [&](Index r, Index c) -> const Vector3& { return points[r * n + c]; };
+    const Vector3 along = at(std::min(row + 1, rows - 1), k) - at(row > 0 ? row - 1 : 0, k);
+    const Vector3 across = at(row, std::min(k + 1, n - 1)) - at(row, k > 0 ? k - 1 : 0);
+    return across.cross(along).stableNormalized();
+  };
+  for (const double side : {0.5, -0.5})
+    for (Index row = 0; row < rows; ++row)
+      for (Index k = 0; k < n; ++k) surface.vertices.push_back(points[row * n + k] + side * thickness * normal(row, k));
+  std::vector<Index> rim;  // seen from above, counter-clockwise
+  for (Index k = 0; k + 1 < n; ++k) rim.push_back(v + k);
+  for (Index row = 0; row + 1 < rows; ++row) rim.push_back(v + row * n + n - 1);
+  for (Index k = n - 1; k > 0; --k) rim.push_back(v + (rows - 1) * n + k);
+  for (Index row = rows - 1; row > 0; --row) rim.push_back(v + row * n);
+  for (Index row = 0; row + 1 < rows; ++row)
+    for (Index k = 0; k + 1 < n; ++k) {
+      const Index a = v + row * n + k, b = a + n;
+      add_quadrilateral(a, a + 1, b + 1, b, surface);
+      add_quadrilateral(under + a, under + b, under + b + 1, under + a + 1, surface);
+    }
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const Index a = rim[i], b = rim[(i + 1) % rim.size()];
+    add_quadrilateral(a, under + a, under + b, b, surface);
+  }
 }
 
 }  // namespace withy

@@ -38,7 +38,8 @@ void add_ball(double radius, Surface& surface);
 void add_bead(const Vector3& center, double radius, Surface& surface);
 /// A box of edges [m] about the origin of a pose.
 void add_box(const Vector3& edges, const Pose& pose, Surface& surface);
-/// A sheet: rows of points behind each other.
-void add_sheet(const std::vector<Vector3>& points, std::size_t columns, Surface& surface);
+/// A sheet of a thickness [m], closed, about rows of points behind each other: above all points, then below. The side
+/// that is above sees a row go to its left and the next row behind it.
+void add_sheet(const std::vector<Vector3>& points, std::size_t columns, double thickness, Surface& surface);
 
 }  // namespace withy

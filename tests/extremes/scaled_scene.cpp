@@ -52,6 +52,7 @@ class Scaler {
   Json members(const Value& value, const std::vector<ParameterSpec>& specs) const {
     Json json = Json::object();
     for (const auto& [key, member] : value.members()) {
+      if (key == "visual") continue;  // a picture, from files in the units of the scene that is scaled
       const auto spec = std::find_if(specs.begin(), specs.end(), [&](const auto& s) { return s.key == key; });
       json[key] = spec == specs.end() ? plain(member) : one(member, *spec);
     }

@@ -92,6 +92,10 @@ TEST(Solids, AreClosedAndTheirTrianglesLookOutwards) {
   const double octagon = 8 * 0.5 * std::sin(std::numbers::pi / 4);
   EXPECT_NEAR(volume([&](Surface& s) { add_tube({line, {{false, 0.1, 0.2}}, y}, 8, s); }), 3 * octagon * 0.02, 1e-13);
   EXPECT_NEAR(volume([&](Surface& s) { add_tube({line, {{true, 0.1, 0.2}}, y}, 8, s); }), 3 * 0.2 * 0.4, 1e-13);
+  std::vector<Vector3> grid;  // 2 by 3, turned and moved
+  for (const double x : {0.0, 0.5, 1.5, 2.0})
+    for (const double y : {1.5, 0.5, -1.5}) grid.push_back((pose * Pose{Matrix3::Identity(), {x, y, 0}}).p);
+  EXPECT_NEAR(volume([&](Surface& s) { add_sheet(grid, 3, 0.01, s); }), 2 * 3 * 0.01, 1e-13);
   // A pyramid's frustum, whose sections are turned by a quarter without a change of its volume.
   const Outline wide{true, 0.2, 0.2}, narrow{true, 0.1, 0.1};
   EXPECT_NEAR(volume([&](Surface& s) {
@@ -142,6 +146,19 @@ TEST(Looks, SectionsOfBeamsAreThoseThatTheirInertiaTells) {
                                   {"bending_y", bending(1.81136e10)},
                                   {"bending_z", bending(1.811e10)}});
   expect(equivalent_section(blade, 0), 1.771, 1.771, 0.15);
+}
+
+TEST(Looks, ThicknessesOfPlatesAreThoseThatTheirStiffnessTells) {
+  const double E = 70e9, rho = 2700, h = 0.003, nu = 0.33;
+  const auto plate = [&](double width) {
+    return Value::map({{"length", Value(2.0)},
+                       {"width", Value(width)},
+                       {"mass_per_area", Value(rho * h)},
+                       {"stiffness", Value(E * h * h * h / 12 / (1 - nu * nu))},
+                       {"poisson_ratio", Value(nu)}});
+  };
+  EXPECT_NEAR(equivalent_thickness(plate(1)), h, 0.01 * h) << "0.3 % off for the E/rho of metals";
+  EXPECT_NEAR(equivalent_thickness(plate(0.02)), 0.002, 1e-15) << "a tenth of the shorter edge at most";
 }
 
 TEST(Csv, IsReadBackAsItWasWrittenButForALastLineThatWasCut) {

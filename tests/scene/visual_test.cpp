@@ -125,6 +125,75 @@ TEST(MeshFiles, WhatCannotBeReadIsSaidWithItsLine) {
   }
 }
 
+// A triangle with one mode and its second order.
+constexpr const char* triangle_vtk = R"(# vtk DataFile Version 3.0
+by hand
+ASCII
+DATASET POLYDATA
+POINTS 3 float
+0 0 0 1 0 0
+0 1 0
+POLYGONS 1 4
+3 0 1 2
+POINT_DATA 3
+VECTORS mode_1_1 float
+0 0 0  -1 0 0  0 -2 0
+VECTORS mode_1 float
+0 0 0
+0 0 1
+0 0 2
+)";
+
+TEST(MeshFiles, SurfacesOfBodiesThatBendHaveTheirModesInOrder) {
+  const MeshFile file(".vtk", triangle_vtk);
+  const ModeSurface surface = read_mode_surface(file.text());
+  ASSERT_EQ(surface.mesh.triangles.size(), 1U);
+  EXPECT_EQ(surface.mesh.vertices[2], Vector3(0, 1, 0));
+  ASSERT_EQ(surface.first.cols(), 1);
+  EXPECT_EQ(surface.first(8, 0), 2);
+  ASSERT_EQ(surface.second.cols(), 1);
+  EXPECT_EQ(surface.second(3, 0), -1);
+  const auto refused = [](const std::string& name, const std::string& from, const std::string& to) {
+    const MeshFile bad(name, replaced(triangle_vtk, from, to));
+    try {
+      (void)read_mode_surface(bad.text());
+    } catch (const std::domain_error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refused(".obj", "by", "by"), HasSubstr("need a file that ends in .vtk"));
+  EXPECT_THAT(refused(".vtk", "ASCII", "BINARY"), HasSubstr("line 5: need a VTK file in text"));
+  EXPECT_THAT(refused(".vtk", "POLYDATA", "UNSTRUCTURED_GRID"), HasSubstr("line 4: need DATASET POLYDATA"));
+  EXPECT_THAT(refused(".vtk", "3 0 1 2", "3 0 1 3"), HasSubstr("line 9: got 3; need a whole number from 0 to 2"));
+  EXPECT_THAT(refused(".vtk", "0 0 2\n", "0 0\n"), HasSubstr("the file ends within its numbers"));
+  EXPECT_THAT(refused(".vtk", "0 0 2\n", "0 0 up\n"), HasSubstr("line 16: got 'up'; need a coordinate"));
+  EXPECT_THAT(refused(".vtk", "mode_1 ", "displacement "),
+              HasSubstr("line 13: got vectors 'displacement'; need mode_1"));
+  EXPECT_THAT(refused(".vtk", "mode_1 ", "mode_2 "), HasSubstr("it has no vectors 'mode_1'"));
+  EXPECT_THAT(refused(".vtk", "mode_1_1", "mode_1_2"), HasSubstr("it has no vectors 'mode_1_1'"));
+  EXPECT_THAT(refused(".vtk", "POLYGONS 1 4\n3 0 1 2\n", ""), HasSubstr("no VTK file with POLYGONS"));
+}
+
+TEST_F(SceneTest, ABodyOfModesIsDrawnWithTheShapesOfItsOwn) {
+  const MeshFile triangle(".vtk", triangle_vtk);
+  const auto modal = [&](const std::string& visual) {
+    return problems(
+        "format: withy/1\ntime: {end: 1}\nbodies:\n  boom:\n    type: modal\n    file: " WITHY_SOURCE_DIRECTORY
+        "/scenes/cantilever.SID_FEM\n    visual: " +
+            visual + "\nhinges: {axle: {type: revolute, axis: [0, 1, 0], parent: world, child: boom}}\n",
+        registry);
+  };
+  EXPECT_EQ(modal("{mesh: " WITHY_SOURCE_DIRECTORY "/scenes/cantilever.vtk}"), "");
+  EXPECT_THAT(modal("{mesh: \"" + triangle.text() + "\"}"),
+              HasSubstr("7:20: /bodies/boom/visual/mesh: got '" + triangle.text() +
+                        "'; it has the shapes of 1 modes, the body has 8; need the file that withy import wrote"));
+  EXPECT_THAT(modal("{mesh: " WITHY_SOURCE_DIRECTORY "/scenes/cantilever.vtk, scale: 1 mm}"),
+              HasSubstr("need no position, orientation"));
+  EXPECT_THAT(modal("{mesh: bus.stl}"), HasSubstr("there is no file 'bus.stl'"));
+  EXPECT_THAT(modal("{radius: 1}"), HasSubstr("got radius; need mesh, with the .vtk file that withy import wrote"));
+}
+
 TEST_F(SceneTest, AMeshIsForPicturesAlone) {
   const MeshFile mesh(".obj", pyramid_obj);
   const auto with = [](const std::string& visual) {
@@ -155,9 +224,19 @@ TEST_F(SceneTest, ABodyIsDrawnWithOneShapeThatItCanHave) {
   EXPECT_THAT(hub("{}"), HasSubstr("8:13: /bodies/hub/visual: got no shape; need box, sphere"));
   EXPECT_THAT(hub("{box: [1, 1, 1], sphere: 1}"), HasSubstr("got box, sphere; need one shape"));
   EXPECT_THAT(hub("{box: [1, 0, 1]}"), HasSubstr("/bodies/hub/visual/box"));
-  EXPECT_THAT(hub("{radius: 0.1}"), HasSubstr("got radius, which are of a beam's section; need box"));
+  EXPECT_THAT(hub("{radius: 0.1}"), HasSubstr("got radius; need box, sphere, cylinder or mesh, for a rigid body"));
+  EXPECT_THAT(hub("{thickness: 0.1}"), HasSubstr("got thickness; need box"));
   EXPECT_THAT(boom("{width: 0.1}"), HasSubstr("got width alone; need width and height"));
-  EXPECT_THAT(boom("{box: [1, 1, 1]}"), HasSubstr("got box, which does not bend"));
+  EXPECT_THAT(boom("{box: [1, 1, 1]}"), HasSubstr("got box; need radius, or width and height, for a beam"));
+  const auto panel = [this](const std::string& visual) {
+    return problems(
+        "format: withy/1\ntime: {end: 1}\nbodies: {panel: {type: plate, length: 1, width: 1, mass_per_area: "
+        "2, stiffness: 5, visual: " +
+            visual + "}}\nhinges: {edge: {type: weld, parent: world, child: panel}}\n",
+        registry);
+  };
+  EXPECT_EQ(panel("{thickness: 20 mm}"), "");
+  EXPECT_THAT(panel("{radius: 0.1}"), HasSubstr("got radius; need thickness, for a plate"));
   EXPECT_THAT(boom("{radus: 1}"), HasSubstr("did you mean 'radius'?"));
 }
 

@@ -34,6 +34,8 @@ export function unpack(run) {
   animation.numbers = new Float32Array(bytes(arrays[animation.numbers]));
   for (const part of animation.parts) {
     if (part.surface) part.surface = { vertices: new Float32Array(bytes(arrays[part.surface[0]])), triangles: new Uint32Array(bytes(arrays[part.surface[1]])) };
+    if (part.shapes != null) part.shapes = new Float32Array(bytes(arrays[part.shapes]));
+    if (part.triangles != null) part.triangles = new Uint32Array(bytes(arrays[part.triangles]));
     if (part.sections) part.sections.widths = new Float32Array(bytes(arrays[part.sections.widths]));
   }
   // Pages of earlier versions have none.

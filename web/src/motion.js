@@ -47,6 +47,19 @@ function scaled(q, s) {
   return q.set(q.x * f, q.y * f, q.z * f, Math.cos(half));
 }
 
+// Which point of a body is its end: of a line the last, of a sheet the middle of the last row, of a mesh the farthest from
+// the root; -1 where points are none of its own.
+function outermost(body) {
+  const last = body.count - 1;
+  if (body.kind === 'strip') return last - (body.columns - 1) / 2;
+  if (body.kind === 'line' || body.kind === 'points') return last;
+  if (body.kind !== 'mesh') return -1;
+  const away = k => Math.hypot(...body.points.slice(3 * k, 3 * k + 3));
+  let farthest = 0;
+  for (let k = 1; k <= last; ++k) if (away(k) > away(farthest)) farthest = k;
+  return farthest;
+}
+
 // Of the box around a surface.
 function corners_of(vertices) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
@@ -69,7 +82,10 @@ export class Motion {
       if (part.surface) body.corners = corners_of(part.surface.vertices);
       body.displacements = new Float32Array(part.points.length);
       body.pointsAt = at;
-      if (part.flexible) at += part.points.length;
+      // Weights of shapes, where displacements are sums of these; else displacements.
+      body.weights = part.shapes ? part.shapes.length / part.points.length : 0;
+      if (part.flexible) at += part.shapes ? body.weights : part.points.length;
+      body.end = outermost(body);
       // The y axis of each section, where sections are not round and turn.
       body.turns = part.sections?.turns ?? false;
       body.yAxesAt = at;
@@ -110,7 +126,8 @@ export class Motion {
     for (const body of this.bodies) {
       mixed(body.recorded, a, I + body.at, J + body.at, w, other);
       if (body.flexible) {
-        for (let k = 0; k < body.displacements.length; ++k)
+        if (body.shapes) this.deform(body, I, J, w);
+        else for (let k = 0; k < body.displacements.length; ++k)
           body.displacements[k] = a[I + body.pointsAt + k] * (1 - w) + a[J + body.pointsAt + k] * w;
         for (let k = 0; body.turns && k < body.y_axes.length; ++k)
           body.y_axes[k] = a[I + body.yAxesAt + k] * (1 - w) + a[J + body.yAxesAt + k] * w;
@@ -138,6 +155,16 @@ export class Motion {
     });
   }
 
+  // The displacements of a body that are sums of shapes.
+  deform({ shapes, displacements: u, weights, pointsAt }, I, J, w) {
+    const a = this.numbers, n = u.length;
+    u.fill(0);
+    for (let s = 0; s < weights; ++s) {
+      const much = a[I + pointsAt + s] * (1 - w) + a[J + pointsAt + s] * w;
+      for (let k = 0, i = s * n; much !== 0 && k < n; ++k, ++i) u[k] += much * shapes[i];
+    }
+  }
+
   // A point k of a body in the world, drawn at `scale`.
   point(body, k, scale, out) {
     const X = body.points, u = body.displacements;
@@ -155,11 +182,15 @@ export class Motion {
 
   // The outermost point of a body at a recorded moment, as computed: for trails and the room the motion takes.
   end_of(body, i, out) {
-    const a = this.numbers, I = i * this.size, k = body.count - 1;
+    const a = this.numbers, I = i * this.size;
     const pose = new Pose().read(a, I + body.at);
-    if (body.kind === 'strip' || body.kind === 'line' || (body.kind === 'points' && k >= 0)) {
-      const row = body.kind === 'strip' ? k - 1 : k;
-      for (let c = 0; c < 3; ++c) out.setComponent(c, body.points[3 * row + c] + a[I + body.pointsAt + 3 * row + c]);
+    if (body.end >= 0) {
+      for (let c = 0; c < 3; ++c) {
+        const k = 3 * body.end + c;
+        let u = body.flexible && !body.shapes ? a[I + body.pointsAt + k] : 0;
+        for (let s = 0; s < body.weights; ++s) u += a[I + body.pointsAt + s] * body.shapes[s * body.points.length + k];
+        out.setComponent(c, body.points[k] + u);
+      }
     } else if (body.tip) out.fromArray(body.tip);
     else if (body.box && !body.surface) out.fromArray(body.box.pose);
     else out.set(0, 0, 0);

@@ -29,6 +29,25 @@ function grid(rows, columns, closed) {
   return index;
 }
 
+// Triangles that look the other way.
+const turned = index => index.map((_, i) => index[i - i % 3 + [0, 2, 1][i % 3]]);
+
+// A closed sheet about rows of points: all points above, all below, and the rim twice again, whose edges are sharp. Of the
+// rim, seen from above, the points counter-clockwise.
+function sheet(rows, columns) {
+  const above = turned(grid(rows, columns, false)), n = rows * columns, rim = [];
+  for (let k = 0; k + 1 < columns; ++k) rim.push(k);
+  for (let r = 0; r + 1 < rows; ++r) rim.push(r * columns + columns - 1);
+  for (let k = columns - 1; k > 0; --k) rim.push((rows - 1) * columns + k);
+  for (let r = rows - 1; r > 0; --r) rim.push(r * columns);
+  const below = turned(above).map(k => n + k);
+  const around = rim.flatMap((_, i) => {
+    const a = 2 * n + i, b = 2 * n + (i + 1) % rim.length, m = rim.length;
+    return [a, a + m, b + m, a, b + m, b];
+  });
+  return { rim, count: 2 * n + 2 * rim.length, index: [...above, ...below, ...around] };
+}
+
 // Triangles around the points of a body at rest, which has no surface of its own in its data; none where the points lie
 // in a plane or are too few.
 function hull_of(body) {
@@ -59,6 +78,7 @@ export class Shapes {
     this.ghost = new LineDashedMaterial({ color: colours.ghost, dashSize: size * 0.02, gapSize: size * 0.015 });
     this.radius = size * 0.011; // of joints, rods and dots
     this.thinnest = size * 0.003; // half of what is thinner would not be seen
+    this.faceted = solid(colours.flexible, { side: DoubleSide, flatShading: true });
     this.given = solid(colours.rigid, { side: DoubleSide, flatShading: true });
     this.items = motion.bodies.map(body => this.make(body));
     const joints = motion.bodies.filter(body => body.moves && body.parent >= 0);
@@ -85,9 +105,15 @@ export class Shapes {
       item.tube.frustumCulled = false;
       this.group.add(item.tube);
     } else if (body.kind === 'strip') {
-      item.surface = new Mesh(geometry_of(body.count, grid(body.count / body.columns, body.columns, false)), this.flexible);
+      item.sheet = sheet(body.count / body.columns, body.columns);
+      item.surface = new Mesh(geometry_of(item.sheet.count, item.sheet.index), this.flexible);
       item.surface.frustumCulled = false;
       this.group.add(item.surface);
+    } else if (body.kind === 'mesh') {
+      item.faces = new Mesh(geometry_of(body.count), this.faceted);
+      item.faces.geometry.setIndex(new BufferAttribute(body.triangles, 1));
+      item.faces.frustumCulled = false;
+      this.group.add(item.faces);
     } else if (body.kind === 'points') {
       item.dots = new InstancedMesh(new SphereGeometry(this.radius * 0.8, 10, 8), this.flexible, body.count);
       item.dots.frustumCulled = false;
@@ -109,7 +135,7 @@ export class Shapes {
         });
       }
     } else this.make_box(body, item);
-    if (body.flexible && body.kind !== 'points') {
+    if (body.flexible && (body.kind === 'line' || body.kind === 'strip')) {
       item.ghost = new Line(new BufferGeometry().setFromPoints(this.middle(body)), this.ghost);
       item.ghost.computeLineDistances();
       item.group.add(item.ghost);
@@ -175,7 +201,8 @@ export class Shapes {
       item.group.quaternion.copy(body.pose.q);
       if (item.ghost) item.ghost.visible = show.ghosts;
       if (item.tube) this.bend(item, scale);
-      if (item.surface) this.warp(item.surface, body, scale);
+      if (item.sheet) this.bend_sheet(item, scale);
+      if (item.faces) this.warp(item.faces, body, scale);
       if (item.hull) this.warp(item.hull, body, scale);
       if (item.dots) this.scatter(item, scale);
       if (item.rods) this.join(item, scale);
@@ -220,6 +247,29 @@ export class Shapes {
       }
     }
     position.needsUpdate = outward.needsUpdate = true;
+  }
+
+  // The two sides of a plate, half its thickness from its middle surface, and its rim.
+  bend_sheet({ body, surface, sheet: { rim } }, scale) {
+    const { position } = surface.geometry.attributes, n = body.count, columns = body.columns, rows = n / columns;
+    const half = Math.max(body.thickness ?? 0, 0.7 * this.thinnest) / 2;
+    for (let k = 0; k < n; ++k) {
+      const r = Math.floor(k / columns), j = k % columns;
+      this.motion.point(body, j > 0 ? k - 1 : k, scale, a);
+      this.motion.point(body, j + 1 < columns ? k + 1 : k, scale, side).sub(a);
+      this.motion.point(body, r > 0 ? k - columns : k, scale, a);
+      this.motion.point(body, r + 1 < rows ? k + columns : k, scale, b).sub(a);
+      normal.crossVectors(side, b).normalize();
+      this.motion.point(body, k, scale, c);
+      position.setXYZ(k, c.x + half * normal.x, c.y + half * normal.y, c.z + half * normal.z);
+      position.setXYZ(n + k, c.x - half * normal.x, c.y - half * normal.y, c.z - half * normal.z);
+    }
+    rim.forEach((k, i) => {
+      position.setXYZ(2 * n + i, position.getX(k), position.getY(k), position.getZ(k));
+      position.setXYZ(2 * n + rim.length + i, position.getX(n + k), position.getY(n + k), position.getZ(n + k));
+    });
+    position.needsUpdate = true;
+    surface.geometry.computeVertexNormals();
   }
 
   warp(surface, body, scale) {

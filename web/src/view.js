@@ -53,7 +53,7 @@ export class View {
         for (const body of motion.bodies) {
           const ends = [body.pose.p.clone(), motion.end_of(body, i, point).clone()];
           for (const hung of body.hung) ends.push(hung.now.p.clone().copy(body.flexible ? hung.now.p : hung.rest.p).applyQuaternion(body.pose.q).add(body.pose.p));
-          if (body.kind === 'strip') for (let k = 0; k < body.count; ++k) ends.push(motion.point(body, k, 1, new Vector3()));
+          if (body.kind === 'strip' || body.kind === 'mesh') for (let k = 0; k < body.count; ++k) ends.push(motion.point(body, k, 1, new Vector3()));
           for (const end of ends) way.expandByPoint(end);
           if (body.surface) for (const corner of body.corners) ends.push(corner.clone().applyQuaternion(body.pose.q).add(body.pose.p));
           else if (body.box) {

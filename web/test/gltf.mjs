@@ -22,7 +22,9 @@ function middles(body, mesh) {
     for (let v = first; v < first + count; ++v) sum.add(at(v));
     return sum.divideScalar(count);
   };
-  if (body.kind === 'strip') return Array.from({ length: body.count }, (_, k) => at(k));
+  if (body.kind === 'mesh') return Array.from({ length: body.count }, (_, k) => at(k));
+  // The two sides of a sheet.
+  if (body.kind === 'strip') return Array.from({ length: body.count }, (_, k) => at(k).add(at(body.count + k)).multiplyScalar(0.5));
   if (position.count === body.count * sides + 2) return Array.from({ length: body.count }, (_, k) => mean(sides * k, sides));
   assert.equal(position.count, 6 * body.count, 'beads');
   return Array.from({ length: body.count }, (_, k) => mean(6 * k, 6));
