@@ -11,7 +11,10 @@
 namespace withy::study {
 namespace {
 
-constexpr std::size_t most_windows = 24;
+constexpr std::size_t most_windows = 24, least_windows = 6;
+/// Every window ends with a landing, which costs a step: where steps are long there are fewer, such that the least rung
+/// takes about this many evaluations in one.
+constexpr std::size_t worth_a_window = 64;
 /// Readings of a whole run: each costs about an evaluation.
 constexpr double readings = 400;
 /// The loosest tolerance of coarse runs, which are made to the accuracy asked: both make nearly the same errors of
@@ -22,17 +25,17 @@ constexpr double loosest = 1e-2;
 /// imex, whose steps grow as vibrations of the start decay or no longer matter, which the beginning of a run does not
 /// show.
 constexpr double radau_weight = 2.4;
-/// The least rung is compared with the reference over so many windows at a time: each landing costs steps.
-constexpr std::size_t together = 3;
+/// The least rung is compared with the reference so many times: each landing costs steps.
+constexpr std::size_t comparisons = 8;
 /// Third-order terms beyond this part of the accuracy are looked at: (deflection over length)² of the range (spin-up:
 /// 0.36 % at 0.057, 0.49 % at 0.067).
 constexpr double worth_a_look = 0.02;
 
 /// Ends of windows [s]: outputs of the run, so that a change of rungs is one.
-std::vector<double> window_ends(double start, double end, double output) {
+std::vector<double> window_ends(double start, double end, double output, std::size_t most) {
   std::vector<double> ends;
   const double outputs = (end - start) / output;
-  const auto windows = static_cast<double>(std::clamp<std::size_t>(static_cast<std::size_t>(outputs), 1, most_windows));
+  const auto windows = static_cast<double>(std::clamp<std::size_t>(static_cast<std::size_t>(outputs), 1, most));
   for (double k = 1; k < windows; ++k) {
     const double t = std::round((start + (end - start) * k / windows) / output) * output;
     if (t > (ends.empty() ? start : ends.back()) && t < end - 1e-6 * output) ends.push_back(t);
@@ -121,9 +124,13 @@ ReferenceTracker::ReferenceTracker(const Prepared& prepared, Registry& registry,
       tolerance_(std::clamp(accuracy, 1e-7, loosest)),
       start_(begun(prepared.model(), *prepared.rungs.front().equations, prepared.scene.initial)),
       end_(end_of_run(prepared.scene)),
-      ends_(window_ends(start_.time, end_, prepared.scene.output)),
+      ends_(window_ends(start_.time, end_, prepared.scene.output, most_windows)),
       integrator_(
           cheapest_integrator(prepared, registry, outputs, tolerance_, start_, ends_, per_window_, evaluations)) {
+  const std::size_t over_the_run = per_window_ * ends_.size();
+  ends_ = window_ends(start_.time, end_, prepared.scene.output,
+                      std::clamp(over_the_run / worth_a_window, least_windows, most_windows));
+  per_window_ = over_the_run / ends_.size();
   const bool exact = prepared.rungs.back().terms.strain == StrainOrder::exact;
   second_ = prepared.rungs.size() - (exact ? 2 : 1);
   small_ = exact ? std::sqrt(worth_a_look * accuracy) : std::numeric_limits<double>::infinity();
@@ -150,10 +157,10 @@ bool ReferenceTracker::run(ReferenceTrack& track, double most_deflection, bool b
   Distances errors = outputs_.none();
   bool good = true;
   for (std::size_t k = 0; good && k < ends_.size(); ++k) {
-    if (beside && (k + 1) % together != 0 && k + 1 < ends_.size()) continue;
+    if (beside && (k + 1) % together() != 0 && k + 1 < ends_.size()) continue;
     WindowTrack window;
-    const std::size_t most =
-        beside && track.low != track.rung ? too_many() : std::numeric_limits<std::size_t>::max() / 2;
+    const std::size_t most = beside && track.low != track.rung ? too_many(track.windows.size())
+                                                               : std::numeric_limits<std::size_t>::max() / 2;
     const bool reached = run.track(ends_[k], control_, (end_ - start_.time) / readings, most, window);
     for (const std::vector<double>& values : window.readings)
       if (!values.empty()) extremes.raise(values);
@@ -177,9 +184,11 @@ bool ReferenceTracker::run(ReferenceTrack& track, double most_deflection, bool b
   return good && track.problem.empty();
 }
 
-std::size_t ReferenceTracker::too_many() const {
+std::size_t ReferenceTracker::together() const { return std::max<std::size_t>(ends_.size() / comparisons, 1); }
+
+std::size_t ReferenceTracker::too_many(std::size_t windows_done) const {
   constexpr std::size_t shorter = 2, at_first = 100;
-  return together * shorter * per_window_ + at_first;
+  return shorter * together() * per_window_ + (windows_done == 0 ? at_first : 0);
 }
 
 ReferenceTrack ReferenceTracker::beside_least() {
@@ -190,6 +199,7 @@ ReferenceTrack ReferenceTracker::beside_least() {
     track.low = low;
     const bool good = run(track, small_, true);
     if (!good) track.beside.clear();
+    seen_ = std::max(seen_, track.deflection);
     track.third_order = track.deflection * track.deflection;
     return good;
   };
@@ -201,7 +211,7 @@ ReferenceTrack ReferenceTracker::beside_least() {
 
 ReferenceTrack ReferenceTracker::highest() {
   ReferenceTrack track = blank();
-  if (run(track, small_, false) || !track.problem.empty()) {
+  if (!(seen_ > small_) && (run(track, small_, false) || !track.problem.empty())) {
     track.third_order = track.deflection * track.deflection;
     return track;
   }

@@ -53,8 +53,10 @@ class ReferenceTracker {
   /// Whether the accelerations of another rung can be taken once a step: where loads are stiff (radau was chosen) their
   /// difference is too, and it is taken explicitly.
   bool corrects() const { return integrator_ != "radau"; }
-  /// Evaluations over some windows that say that the correction shortens the steps.
-  std::size_t too_many() const;
+  /// Evaluations over the next `together` windows that say that the correction shortens the steps.
+  std::size_t too_many(std::size_t windows_done) const;
+  /// Windows over which the least rung goes along at a time.
+  std::size_t together() const;
 
   const Prepared& prepared_;
   Registry& registry_;
@@ -69,6 +71,7 @@ class ReferenceTracker {
   double end_;
   std::vector<double> ends_;    ///< of windows [s]
   std::size_t per_window_ = 0;  ///< evaluations, in the least rung
+  double seen_ = 0;             ///< greatest deflection over length of a tip, of references so far
   std::string integrator_;
 };
 

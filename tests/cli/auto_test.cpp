@@ -56,6 +56,35 @@ TEST(Auto, AsksMoreOfFormulationsWhereMoreIsAskedOfIt) {
   EXPECT_THAT(names("0.1%"), HasSubstr("quadratic"));
 }
 
+/// Long runs have more windows than short ones: each costs a landing of every coarse run.
+TEST(Auto, HasAsManyWindowsAsStepsPayFor) {
+  const Folder folder;
+  const auto windows = [&](const std::string& end) {
+    const Finished f = withy(folder, {"run", "scenes/two-link-slew.yaml", "--formulation", "auto", "--set",
+                                      "time.end=" + end, "--out", "out", "--force"});
+    EXPECT_EQ(f.status, 0) << f.err;
+    return run_json(folder).at("certificate").at("stretches").at("windows").get<int>();
+  };
+  const int of_short = windows("0.5"), of_long = windows("3");
+  EXPECT_GE(of_short, 6);
+  EXPECT_LE(2 * of_short, of_long) << "six times as long";
+  EXPECT_LE(of_long, 24);
+}
+
+/// With a load at a frame that modes move `symmetric` costs more than `quadratic`, which holds more.
+TEST(Auto, OffersNoRungThatCostsMoreThanTheNext) {
+  const Folder folder;
+  const auto symmetric = [&](const std::string& loads) {
+    const Finished f = withy(folder, {"run", "scenes/spin-up.yaml", "--formulation", "auto", "--set", "time.end=1",
+                                      "--set", "loads=" + loads, "--out", "out", "--force"});
+    EXPECT_EQ(f.status, 0) << f.err;
+    const json run = run_json(folder);
+    return run.at("certificate").at("stretches").at("evaluations").contains("symmetric");
+  };
+  EXPECT_TRUE(symmetric("{}"));
+  EXPECT_FALSE(symmetric("{push: {type: force, frame: blade.tip, law: constant, value: [0, 1, 0]}}"));
+}
+
 TEST(Auto, SaysWhereTheAccuracyAskedIsBeyondItsHighestFormulation) {
   const Folder folder;
   // A plate has no exact kinematics; this one bends by a good part of its width.
