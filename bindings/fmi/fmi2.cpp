@@ -73,16 +73,8 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
 void fmi2FreeInstance(fmi2Component c) { delete static_cast<Component*>(instance_of(c)); }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
-  return call(c, "fmi2SetDebugLogging", any, In::both, [&](Component& i) {
-    need(count == 0 || categories != nullptr, "need the names of categories");
-    std::set<std::string> wanted;
-    for (size_t k = 0; k < count; ++k) {
-      need(categories[k] != nullptr, "need the names of categories");
-      wanted.insert(categories[k]);
-    }
-    i.log().on = on != fmi2False;
-    i.log().categories = std::move(wanted);
-  });
+  return call(c, "fmi2SetDebugLogging", any, In::both,
+              [&](Component& i) { set_logging(i, on != fmi2False, count, categories); });
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerated, fmi2Real tolerance, fmi2Real start,
@@ -140,12 +132,7 @@ WITHY_FMI2_NONE(Boolean)
 WITHY_FMI2_NONE(String)
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return call(c, "fmi2GetFMUstate", any, In::both, [&](Component& i) {
-    need(state != nullptr, "need a place for the state");
-    SavedState* saved = i.save();
-    if (*state != nullptr) i.forget_if_own(static_cast<const SavedState*>(*state));
-    *state = saved;
-  });
+  return call(c, "fmi2GetFMUstate", any, In::both, [&](Component& i) { save_at(i, state); });
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
@@ -156,11 +143,7 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return call(c, "fmi2FreeFMUstate", any, In::both, [&](Component& i) {
-    if (state == nullptr || *state == nullptr) return;
-    i.forget(static_cast<const SavedState*>(*state));
-    *state = nullptr;
-  });
+  return call(c, "fmi2FreeFMUstate", any, In::both, [&](Component& i) { forget_at(i, state); });
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
@@ -171,11 +154,8 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  return call(c, "fmi2SerializeFMUstate", any, In::both, [&](Component& i) {
-    const auto found = i.serialize(static_cast<const SavedState*>(state));
-    need(bytes != nullptr && size >= found.size(), "need an array as long as fmi2SerializedFMUstateSize says");
-    std::copy(found.begin(), found.end(), bytes);
-  });
+  return call(c, "fmi2SerializeFMUstate", any, In::both,
+              [&](Component& i) { write_bytes(i, state, bytes, size, "fmi2SerializedFMUstateSize"); });
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {

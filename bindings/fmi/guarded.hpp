@@ -2,10 +2,14 @@
 /// What stands between a host in C and an instance: every call is checked, nothing throws across.
 #pragma once
 
+#include <algorithm>
 #include <exception>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "withy/bindings/fmi/instance.hpp"
 
@@ -92,11 +96,48 @@ inline std::span<const std::uint32_t> references(const std::uint32_t* vr, std::s
   return {vr, count};
 }
 
+/// Which messages the host wants.
+inline void set_logging(Instance& instance, bool on, std::size_t count, const char* const* categories) {
+  need(count == 0 || categories != nullptr, "need the names of categories");
+  std::set<std::string> wanted;
+  for (std::size_t k = 0; k < count; ++k) {
+    need(categories[k] != nullptr, "need the names of categories");
+    wanted.insert(categories[k]);
+  }
+  instance.log().on = on;
+  instance.log().categories = std::move(wanted);
+}
+
+/// Saves a state in the place of what a host may have there.
+inline void save_at(Instance& instance, void** state) {
+  need(state != nullptr, "need a place for the state");
+  SavedState* saved = instance.save();
+  if (*state != nullptr) instance.forget_if_own(static_cast<const SavedState*>(*state));
+  *state = saved;
+}
+
+/// Frees a saved state, if there is one.
+inline void forget_at(Instance& instance, void** state) {
+  if (state == nullptr || *state == nullptr) return;
+  instance.forget(static_cast<const SavedState*>(*state));
+  *state = nullptr;
+}
+
+/// \param Byte of the version: char or unsigned char; `size_function` is for the message
+template <class Byte>
+void write_bytes(const Instance& instance, const void* state, Byte* bytes, std::size_t size,
+                 const char* size_function) {
+  const std::vector<unsigned char> found = instance.serialize(static_cast<const SavedState*>(state));
+  if (bytes == nullptr || size < found.size())
+    throw std::invalid_argument(std::string("need an array as long as ") + size_function + " says");
+  std::copy(found.begin(), found.end(), bytes);
+}
+
 /// For types of which the FMU has no variable: nothing is asked for, or it is an error.
 inline Status none_of(const Instance& instance, const std::uint32_t* vr, std::size_t count, const char* type) {
   if (count == 0) return Status::ok;
-  throw std::invalid_argument("variable '" + instance.variable(references(vr, count)[0]).name +
-                              "' is a real number, not of type " + type);
+  throw std::invalid_argument(instance.variable(references(vr, count)[0]).quoted() + " is a real number, not of type " +
+                              type);
 }
 
 }  // namespace withy::fmi

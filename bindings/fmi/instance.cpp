@@ -22,8 +22,6 @@ Registry& registry() {
   return plugins;
 }
 
-std::string quoted(const Variable& v) { return "variable '" + v.name + "'"; }
-
 }  // namespace
 
 Instance::Instance(Kind kind, std::string name, std::string_view token, const std::string& resources, Log log)
@@ -243,7 +241,7 @@ void Instance::get(std::span<const std::uint32_t> references, double* values) {
 }
 
 void Instance::check_set(const Variable& v, double value) {
-  const auto refuse = [&](const std::string& why) { throw std::invalid_argument(quoted(v) + ": " + why); };
+  const auto refuse = [&](const std::string& why) { throw std::invalid_argument(v.quoted() + ": " + why); };
   const bool starting = is_in(Mode::instantiated | Mode::initialization);
   if (!std::isfinite(value)) refuse("got " + brief(value) + "; need a finite number");
   if (v.kind == Variable::Kind::parameter && v.tunable && !starting && !is_in(Mode::event | Mode::step))
@@ -291,65 +289,6 @@ void Instance::set(std::span<const std::uint32_t> references, const double* valu
   set_those(true);
   if (parameters_ != before && is_in(Mode::event | Mode::step)) retune(before);
   set_those(false);
-}
-
-std::vector<double> Instance::jacobian_along(std::span<const std::uint32_t> unknowns,
-                                             std::span<const std::uint32_t> knowns, const double* along) {
-  std::vector<double> along_states, along_inputs, derivatives, values, result;
-  std::vector<std::size_t> inputs, columns;
-  for (std::size_t k = 0; k < knowns.size(); ++k) {
-    const Variable& v = variable(knowns[k]);
-    if (v.kind == Variable::Kind::state) {
-      along_states.resize(variables_.states);
-      along_states[v.index] += along[k];
-    } else if (v.kind == Variable::Kind::input) {
-      inputs.push_back(v.index);
-      along_inputs.push_back(along[k]);
-    } else {
-      throw std::invalid_argument(quoted(v) + ": derivatives are with respect to states and inputs");
-    }
-  }
-  for (const std::uint32_t reference : unknowns) {
-    const Variable& v = variable(reference);
-    if (v.kind == Variable::Kind::derivative) {
-      derivatives.resize(variables_.states);
-    } else if (v.kind == Variable::Kind::output) {
-      columns.push_back(v.index);
-    } else if (v.kind != Variable::Kind::state) {
-      throw std::invalid_argument(quoted(v) + ": derivatives are those of derivatives of states and of outputs");
-    }
-  }
-  values.resize(columns.size());
-  dynamics().sensitivity(along_states, inputs, along_inputs, derivatives, columns, values);
-  std::size_t column = 0;
-  for (const std::uint32_t reference : unknowns) {
-    const Variable& v = variables_.all[reference];
-    if (v.kind == Variable::Kind::derivative) {
-      result.push_back(derivatives[v.index]);
-    } else if (v.kind == Variable::Kind::output) {
-      result.push_back(values[column++]);
-    } else {
-      result.push_back(along_states.empty() ? 0 : along_states[v.index]);
-    }
-  }
-  return result;
-}
-
-void Instance::directional(std::span<const std::uint32_t> unknowns, std::span<const std::uint32_t> knowns,
-                           const double* along_knowns, double* sensitivity) {
-  const std::vector<double> found = jacobian_along(unknowns, knowns, along_knowns);
-  std::copy(found.begin(), found.end(), sensitivity);
-}
-
-void Instance::adjoint(std::span<const std::uint32_t> unknowns, std::span<const std::uint32_t> knowns,
-                       const double* along_unknowns, double* sensitivity) {
-  std::vector<double> sums(knowns.size());
-  for (std::size_t k = 0; k < knowns.size(); ++k) {
-    constexpr double one = 1;
-    const std::vector<double> column = jacobian_along(unknowns, knowns.subspan(k, 1), &one);
-    for (std::size_t u = 0; u < unknowns.size(); ++u) sums[k] += along_unknowns[u] * column[u];
-  }
-  std::copy(sums.begin(), sums.end(), sensitivity);
 }
 
 void Instance::give(std::span<const double> numbers, double* array, std::size_t count) const {

@@ -35,6 +35,8 @@ struct Variable {
   bool of_state_alone = false;
   /// Of parameters: may be set between the steps of a simulation; else they are fixed.
   bool tunable = false;
+  /// "variable 'arm'", for messages.
+  [[nodiscard]] std::string quoted() const { return "variable '" + name + "'"; }
 };
 
 struct Variables {

@@ -3,10 +3,33 @@
 #include <cstdlib>
 
 #include "withy/bindings/fmi/fmi2.h"
-#include "withy/bindings/fmu_load/instance.hpp"
+#include "withy/bindings/fmu_load/instance_of.hpp"
 
 namespace withy::fmu_load {
 namespace {
+
+struct Version2 {
+  using Status = fmi2Status;
+  using Component = fmi2Component;
+  using State = fmi2FMUstate;
+  using Byte = fmi2Byte;
+  static constexpr Status ok = fmi2OK, warning = fmi2Warning;
+  static constexpr Named<decltype(fmi2FreeInstance)> free_instance{"fmi2FreeInstance"};
+  static constexpr Named<decltype(fmi2GetFMUstate)> get_state{"fmi2GetFMUstate"};
+  static constexpr Named<decltype(fmi2SetFMUstate)> set_state{"fmi2SetFMUstate"};
+  static constexpr Named<decltype(fmi2FreeFMUstate)> free_state{"fmi2FreeFMUstate"};
+  static constexpr Named<decltype(fmi2SerializedFMUstateSize)> size_of_state{"fmi2SerializedFMUstateSize"};
+  static constexpr Named<decltype(fmi2SerializeFMUstate)> write_state{"fmi2SerializeFMUstate"};
+  static constexpr Named<decltype(fmi2DeSerializeFMUstate)> read_state{"fmi2DeSerializeFMUstate"};
+};
+
+constexpr Named<decltype(fmi2Instantiate)> instantiate2{"fmi2Instantiate"};
+constexpr Named<decltype(fmi2SetupExperiment)> set_up2{"fmi2SetupExperiment"};
+constexpr Named<decltype(fmi2EnterInitializationMode)> enter2{"fmi2EnterInitializationMode"};
+constexpr Named<decltype(fmi2ExitInitializationMode)> exit2{"fmi2ExitInitializationMode"};
+constexpr Named<decltype(fmi2DoStep)> do_step2{"fmi2DoStep"};
+constexpr Named<decltype(fmi2GetReal)> get2{"fmi2GetReal"};
+constexpr Named<decltype(fmi2SetReal)> set2{"fmi2SetReal"};
 
 void hear(fmi2ComponentEnvironment environment, fmi2String /*name*/, fmi2Status status, fmi2String /*category*/,
           fmi2String format, ...) {
@@ -19,75 +42,38 @@ void hear(fmi2ComponentEnvironment environment, fmi2String /*name*/, fmi2Status 
   *static_cast<std::string*>(environment) = text;
 }
 
-class Instance2 final : public Instance {
+class Instance2 final : public InstanceOf<Version2> {
  public:
-  explicit Instance2(const Program& program) : program_(program) {
-    const auto instantiate = program.function<decltype(fmi2Instantiate)>("fmi2Instantiate");
+  explicit Instance2(const Program& program) : InstanceOf(program) {
     const std::string uri = "file://" + program.resources();
-    c_ = instantiate(program.description().identifier.c_str(), fmi2CoSimulation, program.description().token.c_str(),
-                     uri.c_str(), &callbacks_, fmi2False, fmi2False);
-    if (c_ == nullptr) throw FmuError(failed_call("fmi2Instantiate", fmi2Error, heard_));
+    take(function(instantiate2)(program.description().identifier.c_str(), fmi2CoSimulation,
+                                program.description().token.c_str(), uri.c_str(), &callbacks_, fmi2False, fmi2False),
+         instantiate2.name, fmi2Error);
   }
-  ~Instance2() override { program_.function<decltype(fmi2FreeInstance)>("fmi2FreeInstance")(c_); }
+  Instance2(const Instance2&) = delete;
+  Instance2& operator=(const Instance2&) = delete;
+  ~Instance2() override { release(); }
 
   void begin(double t, const Values& parameters, const Values& inputs) override {
-    call<decltype(fmi2SetupExperiment)>("fmi2SetupExperiment", fmi2False, 0.0, t, fmi2False, 0.0);
+    call(set_up2, fmi2False, 0.0, t, fmi2False, 0.0);
     set(parameters);
-    call<decltype(fmi2EnterInitializationMode)>("fmi2EnterInitializationMode");
+    call(enter2);
     set(inputs);
-    call<decltype(fmi2ExitInitializationMode)>("fmi2ExitInitializationMode");
+    call(exit2);
   }
   void step(double t, double h, const Values& inputs, std::span<const std::uint32_t> outputs,
             std::span<double> values) override {
     set(inputs);
-    call<decltype(fmi2DoStep)>("fmi2DoStep", t, h, fmi2True);
-    if (!outputs.empty()) call<decltype(fmi2GetReal)>("fmi2GetReal", outputs.data(), outputs.size(), values.data());
-  }
-  std::vector<unsigned char> save() override {
-    State state(*this);
-    call<decltype(fmi2GetFMUstate)>("fmi2GetFMUstate", &state.kept);
-    std::size_t size = 0;
-    call<decltype(fmi2SerializedFMUstateSize)>("fmi2SerializedFMUstateSize", state.kept, &size);
-    std::vector<unsigned char> bytes(size);
-    call<decltype(fmi2SerializeFMUstate)>("fmi2SerializeFMUstate", state.kept,
-                                          reinterpret_cast<fmi2Byte*>(bytes.data()), size);
-    return bytes;
-  }
-  void restore(std::span<const unsigned char> bytes) override {
-    State state(*this);
-    call<decltype(fmi2DeSerializeFMUstate)>("fmi2DeSerializeFMUstate", reinterpret_cast<const fmi2Byte*>(bytes.data()),
-                                            bytes.size(), &state.kept);
-    call<decltype(fmi2SetFMUstate)>("fmi2SetFMUstate", state.kept);
+    call(do_step2, t, h, fmi2True);
+    if (!outputs.empty()) call(get2, outputs.data(), outputs.size(), values.data());
   }
 
  private:
-  /// A state that the FMU has given, until the end of a call.
-  struct State {
-    explicit State(Instance2& of) : owner(of) {}
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
-    ~State() {
-      if (kept != nullptr) owner.program_.function<decltype(fmi2FreeFMUstate)>("fmi2FreeFMUstate")(owner.c_, &kept);
-    }
-    Instance2& owner;
-    fmi2FMUstate kept = nullptr;
-  };
-
-  template <class Function, class... Arguments>
-  void call(const char* name, Arguments... arguments) {
-    heard_.clear();
-    const fmi2Status status = program_.function<Function>(name)(c_, arguments...);
-    if (status != fmi2OK && status != fmi2Warning) throw FmuError(failed_call(name, status, heard_));
-  }
   void set(const Values& v) {
-    if (!v.references.empty())
-      call<decltype(fmi2SetReal)>("fmi2SetReal", v.references.data(), v.references.size(), v.numbers.data());
+    if (!v.references.empty()) call(set2, v.references.data(), v.references.size(), v.numbers.data());
   }
 
-  const Program& program_;
-  std::string heard_;
   const fmi2CallbackFunctions callbacks_{&hear, &std::calloc, &std::free, nullptr, &heard_};
-  fmi2Component c_ = nullptr;
 };
 
 }  // namespace
