@@ -1,0 +1,4 @@
+#pragma once
+typedef struct {
+  double torqueRequestBody[3];
+} CmdTorqueBodyMsgPayload;
