@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import time
 
 import numpy
 import pytest
@@ -89,15 +90,36 @@ def test_threads_and_processes_make_the_same_table_and_nothing_runs_twice(plan, 
     assert sum(f.stat().st_size for f in written) == sum(written.values())
 
 
+def _run_and_stay(task, *arguments):
+    """A task that has run its cases and has not said so."""
+    task(*arguments)
+    time.sleep(600)
+
+
+class Staying(concurrent.futures.Executor):
+    """Processes that come to the end of their first tasks only: however fast they are, some are at work when one is killed."""
+
+    def __init__(self, pool, ending):
+        self.pool, self.ending = pool, ending
+
+    def submit(self, task, *arguments):
+        self.ending -= 1
+        return self.pool.submit(task, *arguments) if self.ending >= 0 else self.pool.submit(_run_and_stay, task, *arguments)
+
+
 def test_a_killed_worker_loses_no_case(plan, undisturbed):
     store = plan.parent / "killed"
+    killed = []
     with processes() as executor:
 
-        def kill(done, all):
-            os.kill(next(iter(executor._processes)), signal.SIGKILL)
+        def kill(done, all):  # once: the pool ends the others, and a process that has ended cannot be killed
+            if not killed:
+                killed.append(next(iter(executor._processes)))
+                os.kill(killed[0], signal.SIGKILL)
 
         with pytest.raises(concurrent.futures.BrokenExecutor):
-            withy.sweep(plan, executor, out=store, parts=60, progress=kill)
+            withy.sweep(plan, Staying(executor, 20), out=store, parts=60, progress=kill)
+    assert killed
     with processes() as executor:
         assert table(withy.sweep(plan, executor, out=store, parts=60)) == table(undisturbed)
 
