@@ -46,7 +46,7 @@ class StackMemory {
 /// Stacks that hand the thread to each other: one of the thread's own and one of each lane.
 class Stacks {
  public:
-  static constexpr std::size_t thread = LaneEquations::count;  ///< index of the thread's own
+  static constexpr std::size_t thread = most_lanes;  ///< index of the thread's own
   /// Begins a stack; its function returns to the thread's own.
   void begin(std::size_t stack, std::function<void()> function) {
     stacks_[stack] = context::fiber(std::allocator_arg, StackMemory(),
@@ -133,7 +133,7 @@ class CaseLanes final : public Asked {
   /// Runs that have not ended are told to end: a stack must be left in the way it was entered.
   ~CaseLanes() override {
     filling_ = true;
-    for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    for (std::size_t i = 0; i < count_; ++i) {
       if (lanes_[i] == nullptr) continue;
       lanes_[i]->abandon();
       if (!stacks_.ended(i)) stacks_.go_to(Stacks::thread, i);
@@ -142,7 +142,7 @@ class CaseLanes final : public Asked {
 
   void run() {
     while (true) {
-      while (more_ && waiting_ == nullptr && free_lane() < lanes_.size()) take();
+      while (more_ && waiting_ == nullptr && free_lane() < count_) take();
       if (none_at_work()) {
         if (waiting_ == nullptr) return;
         together_ = lane_equations(*waiting_->equations());
@@ -159,7 +159,7 @@ class CaseLanes final : public Asked {
     lanes_[lane]->waiting = true;
     if (filling_) {
       stacks_.go_to(lane, Stacks::thread);
-    } else if (const std::size_t next = not_waiting(); next < lanes_.size()) {
+    } else if (const std::size_t next = not_waiting(); next < count_) {
       stacks_.go_to(lane, next);
     } else {
       evaluate();
@@ -168,7 +168,9 @@ class CaseLanes final : public Asked {
 
  private:
   [[nodiscard]] std::size_t free_lane() const {
-    return static_cast<std::size_t>(std::find(lanes_.begin(), lanes_.end(), nullptr) - lanes_.begin());
+    std::size_t i = 0;
+    while (i < count_ && lanes_[i] != nullptr) ++i;
+    return i;
   }
   [[nodiscard]] bool none_at_work() const {
     return std::all_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane == nullptr; });
@@ -213,32 +215,32 @@ class CaseLanes final : public Asked {
   /// Until a case has ended.
   void go_on() {
     std::size_t lane = not_waiting();
-    if (lane == lanes_.size()) {
+    if (lane == count_) {
       evaluate();
       lane = not_waiting();
     }
     filling_ = false;
     stacks_.go_to(Stacks::thread, lane);
     filling_ = true;
-    for (std::size_t i = 0; i < lanes_.size(); ++i)
+    for (std::size_t i = 0; i < count_; ++i)
       if (lanes_[i] != nullptr && stacks_.ended(i)) end(i);
   }
 
   /// A lane whose call has been answered.
   [[nodiscard]] std::size_t not_waiting() const {
     std::size_t i = 0;
-    while (i < lanes_.size() && (lanes_[i] == nullptr || lanes_[i]->waiting)) ++i;
+    while (i < count_ && (lanes_[i] == nullptr || lanes_[i]->waiting)) ++i;
     return i;
   }
 
   void evaluate() noexcept {
-    std::array<LaneCall*, LaneEquations::count> calls{};
-    for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    std::array<LaneCall*, most_lanes> calls{};
+    for (std::size_t i = 0; i < count_; ++i) {
       if (lanes_[i] == nullptr) continue;
       calls[i] = lanes_[i]->call();
       lanes_[i]->waiting = false;
     }
-    together_->derivatives(calls);
+    together_->derivatives(std::span(calls).first(count_));
   }
 
   void end(std::size_t lane) {
@@ -271,7 +273,8 @@ class CaseLanes final : public Asked {
   const CaseFlow& flow_;
   std::unique_ptr<LaneEquations> together_;
   std::unique_ptr<CaseRun> waiting_;  ///< for all lanes to be free
-  std::array<std::unique_ptr<Lane>, LaneEquations::count> lanes_;
+  std::size_t count_ = lane_count();  ///< of the lanes, which are the first of these
+  std::array<std::unique_ptr<Lane>, most_lanes> lanes_;
   Stacks stacks_;
   bool filling_ = true;  ///< the thread's own stack puts cases into lanes
   bool more_ = true;

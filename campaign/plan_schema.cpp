@@ -84,8 +84,8 @@ std::string plan_schema() {
   p["correlation"] = described(correlation, "correlations of values that are drawn");
   p["design"] = described({{"anyOf", {one_of(keys::designs), design}}}, "which cases there are");
   p["failures"] = described(one_of(keys::failures), "what a case that does not come to its end does to the others");
-  p["evaluation"] =
-      described(one_of(keys::evaluations), "whether cases that differ in numbers only are evaluated four at once");
+  p["evaluation"] = described(one_of(keys::evaluations),
+                              "whether cases that differ in numbers only are evaluated four or eight at once");
   plan["required"] = {"format", "scene", "vary"};
   Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Withy sweep"}};
   schema.update(plan);

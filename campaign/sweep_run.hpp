@@ -23,7 +23,7 @@ struct SweepOutcome {
   std::uint64_t failed = 0;   ///< of those that ran now
   std::uint64_t lost = 0;     ///< bytes of the store that belong to no record
   double seconds = 0;         ///< wall time
-  std::uint64_t alone = 0;    ///< of those that ran now, evaluated one at a time; the others four at once
+  std::uint64_t alone = 0;    ///< of those that ran now, evaluated one at a time; the others in lanes
   std::string alone_because;  ///< why the first of them that was met is
   /// The first that failed, if any did, in the order of the plan.
   std::optional<CaseResult> failure;

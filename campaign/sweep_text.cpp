@@ -24,7 +24,7 @@ std::string outcome_text(const SweepOutcome& outcome, const SweepSettings& setti
                   settings.shards > 1 ? fmt::format(" of part {} of {}", settings.shard, settings.shards) : "",
                   outcome.ran, outcome.seconds, outcome.before);
   if (outcome.alone > 0 && !outcome.alone_because.empty())
-    text += fmt::format("{} evaluated one at a time, not four at once: {}\n", outcome.alone, outcome.alone_because);
+    text += fmt::format("{} evaluated one at a time, not in lanes: {}\n", outcome.alone, outcome.alone_because);
   if (outcome.failure)
     text += fmt::format("{} failed, the first of them case {}: {}\n", outcome.failed, outcome.failure->index,
                         outcome.failure->message);

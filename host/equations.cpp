@@ -70,7 +70,7 @@ struct Equations::Parts {
   /// Equations with lanes, and what each lane works in.
   struct InLanes {
     explicit InLanes(const EquationsOfMotion& equations) : together(lane_equations(equations)) {
-      for (std::size_t k = 0; together != nullptr && k < LaneEquations::count; ++k)
+      for (std::size_t k = 0; together != nullptr && k < lane_count(); ++k)
         lanes.push_back(
             {std::vector<double>(equations.size()), std::vector<double>(equations.size()), equations.make_work(), {}});
     }
@@ -190,7 +190,7 @@ EvaluatedRows Equations::derivatives_many(double t, std::span<const double> y, s
   }
   for (std::size_t first = 0; first < count; first += lanes.size()) {
     const std::size_t some = std::min(lanes.size(), count - first);
-    std::array<LaneCall*, LaneEquations::count> calls{};
+    std::array<LaneCall*, most_lanes> calls{};
     for (std::size_t k = 0; k < some; ++k) {
       Parts::InLanes::One& lane = lanes[k];
       std::copy(p.full.begin(), p.full.end(), lane.y.begin());  // with the inputs
@@ -198,7 +198,7 @@ EvaluatedRows Equations::derivatives_many(double t, std::span<const double> y, s
       lane.call = {t, lane.y, lane.y_dot, &lane.work, {}};
       calls.at(k) = &lane.call;
     }
-    p.in_lanes->together->derivatives(calls);
+    p.in_lanes->together->derivatives(std::span(calls).first(lanes.size()));
     for (std::size_t k = 0; k < some; ++k) {
       if (!lanes[k].call.evaluation.ok()) return {first + k, lanes[k].call.evaluation};
       std::copy_n(lanes[k].y_dot.begin(), n, y_dot.begin() + static_cast<std::ptrdiff_t>((first + k) * n));

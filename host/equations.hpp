@@ -51,7 +51,7 @@ class Equations {
   /// y' at (t, y). Allocates nothing. Spans of another size than size() are std::invalid_argument.
   Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot);
   /// y' of many states at one time, row after row of size() numbers each. Where the equations have lanes (symmetric
-  /// formulations, hinges of one rate; LaneEquations) four rows are evaluated at once, and a row agrees with
+  /// formulations, hinges of one rate; LaneEquations) four or eight rows are evaluated at once, and a row agrees with
   /// `derivatives` to rounding; elsewhere in every bit. What a row gets depends on that row alone, to the last bit.
   /// Allocates at the first call. Spans that are not rows of size(), or not as many, are std::invalid_argument.
   EvaluatedRows derivatives_many(double t, std::span<const double> y, std::span<double> y_dot);

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "withy/core/equations/lane_equations.hpp"
+
 namespace withy {
 
 nlohmann::ordered_json times_json(const study::EvaluationTimes& times) {
@@ -18,6 +20,7 @@ nlohmann::ordered_json lanes_json(const study::LaneTimes& lanes, const study::Ev
     result["one_at_a_time_because"] = lanes.refusal;
     return result;
   }
+  result["at_once"] = lane_count();
   result["evaluations_per_second_in_lanes"] = 1 / lanes.times.median;
   result["ratio"] = one.median / lanes.times.median;
   result.update(times_json(lanes.times));

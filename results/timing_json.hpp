@@ -10,7 +10,7 @@ namespace withy {
 
 /// Nanoseconds of the median, fastest and slowest batch, evaluations timed, allocations of each.
 nlohmann::ordered_json times_json(const study::EvaluationTimes& times);
-/// What four cases at once cost beside one at a time, `one`; or why there is no such thing.
+/// What as many cases at once as there are lanes cost beside one at a time, `one`; or why there is no such thing.
 nlohmann::ordered_json lanes_json(const study::LaneTimes& lanes, const study::EvaluationTimes& one);
 
 }  // namespace withy

@@ -59,10 +59,10 @@ LaneTimes time_lanes(const EquationsOfMotion& equations, const State& state,
                      const std::function<std::size_t()>& allocations) {
   const std::unique_ptr<LaneEquations> lanes = lane_equations(equations);
   if (lanes == nullptr) return {lane_refusal(equations), {}};
-  std::array<std::vector<double>, LaneEquations::count> rates;
+  std::vector<std::vector<double>> rates(lane_count());
   std::vector<Work> work;
-  std::array<LaneCall, LaneEquations::count> calls;
-  std::array<LaneCall*, LaneEquations::count> asked{};
+  std::vector<LaneCall> calls(lane_count());
+  std::vector<LaneCall*> asked(lane_count());
   work.reserve(calls.size());
   for (std::size_t lane = 0; lane < calls.size(); ++lane) {
     rates[lane].resize(equations.size());

@@ -31,7 +31,7 @@ struct LaneTimes {
   EvaluationTimes times;
 };
 
-/// The same, four cases at once: times of one evaluation of one case.
+/// The same, a case in each lane at once: times of one evaluation of one case.
 /// \throws InputError where the equations cannot be evaluated at the state.
 LaneTimes time_lanes(const EquationsOfMotion& equations, const State& state,
                      const std::function<std::size_t()>& allocations);

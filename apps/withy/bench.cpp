@@ -14,7 +14,7 @@ namespace {
 
 struct BenchArguments : StateArguments {
   std::vector<std::string> formulations;  ///< `all` is every one found; empty: the scene's
-  bool lanes = false;                     ///< four cases at once too
+  bool lanes = false;                     ///< a case in each lane too
 };
 
 using Json = nlohmann::ordered_json;
@@ -60,7 +60,7 @@ void add_bench(Options& o, BenchArguments& a) {
   add_formulations(o, a.formulations, "--formulation,--formulations",
                    "One formulation, several, or all; default: the scene's");
   add_state(o, a);
-  o.flag("--lanes", a.lanes, "Four cases at once too, as `withy sweep run` evaluates them, and the ratio");
+  o.flag("--lanes", a.lanes, "Four or eight cases at once too, as `withy sweep run` evaluates them, and the ratio");
 }
 
 }  // namespace

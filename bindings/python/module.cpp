@@ -176,12 +176,12 @@ void bind_equations(py::module_& m) {
       .def("derivatives", &E::derivatives, py::arg("t"), py::arg("y"),
            "derivatives(t, y) -> numpy.ndarray\n\nTime derivative of y [n] at the time t [s]; the interpreter is free "
            "meanwhile. Raises SimulationStopped where the mass matrix cannot be solved or something is not finite.")
-      .def(
-          "derivatives_many", &E::derivatives_many, py::arg("t"), py::arg("y"),
-          "derivatives_many(t, y) -> numpy.ndarray\n\nTime derivatives [m, n] of the m states in the rows of y [m, n] "
-          "at the time t [s], four at once where the formulation is symmetric and every hinge has one rate. A row gets "
-          "the same bits whatever the others, and agrees with derivatives(t, row) to rounding. Raises "
-          "SimulationStopped with the number of the first row that cannot be evaluated.")
+      .def("derivatives_many", &E::derivatives_many, py::arg("t"), py::arg("y"),
+           "derivatives_many(t, y) -> numpy.ndarray\n\nTime derivatives [m, n] of the m states in the rows of y [m, n] "
+           "at the time t [s], four or eight at once where the formulation is symmetric and every hinge has one rate. "
+           "A row gets "
+           "the same bits whatever the others, and agrees with derivatives(t, row) to rounding. Raises "
+           "SimulationStopped with the number of the first row that cannot be evaluated.")
       .def("jacobian", &E::jacobian, py::arg("t"), py::arg("y"),
            "jacobian(t, y) -> numpy.ndarray\n\nDerivatives [n, n] of derivatives(t, y) with respect to y; exact, but "
            "for parts that loads leave to differences; with respect to a quaternion along its unit sphere.")

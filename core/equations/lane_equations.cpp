@@ -1,5 +1,6 @@
 #include "withy/core/equations/lane_equations.hpp"
 
+#include <array>
 #include <vector>
 
 #include "withy/core/equations/sweep_equations.hpp"
@@ -9,18 +10,25 @@
 namespace withy {
 namespace {
 
-static_assert(LaneEquations::count == lanes);
+static_assert(cases_at_once <= most_lanes);
 
 template <class Space>
 using One = equations::SweepEquations<sweep::SymmetricSweep<Space>>;
 
-/// The first numbers of four arrays, a lane each. In registers: a load waits for stores of its parts.
+/// The first numbers of an array a lane. In registers: a load waits for stores of its parts.
 template <class Number>
-void gather(const std::array<Number*, lanes>& from, std::size_t count, Lanes* to) {
-  for (std::size_t i = 0; i < count; ++i) to[i] = Lanes::of(Pack{from[0][i], from[1][i], from[2][i], from[3][i]});
+void gather(const std::array<Number*, cases_at_once>& from, std::size_t count, Lanes* to) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if constexpr (cases_at_once == 8) {
+      to[i] = Lanes::of(
+          LaneNumbers{from[0][i], from[1][i], from[2][i], from[3][i], from[4][i], from[5][i], from[6][i], from[7][i]});
+    } else {
+      to[i] = Lanes::of(LaneNumbers{from[0][i], from[1][i], from[2][i], from[3][i]});
+    }
+  }
 }
-void scatter(const Lanes* from, std::size_t count, const std::array<double*, lanes>& to) {
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
+void scatter(const Lanes* from, std::size_t count, const std::array<double*, cases_at_once>& to) {
+  for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
     for (std::size_t i = 0; i < count; ++i) to[lane][i] = from[i][lane];
   }
 }
@@ -50,15 +58,15 @@ class LanesOfSpace final : public LaneEquations {
     sweep_.put(lane, equations_[lane]->sweep());
   }
 
-  void derivatives(const std::array<LaneCall*, count>& calls) noexcept override {
+  void derivatives(std::span<LaneCall* const> calls) noexcept override {
     [[maybe_unused]] const equations::DenormalsAreZero guard;
     const std::size_t n = positions_, m = speeds_;
     Lanes *positions = numbers_.data(), *speeds = positions + n, *efforts = speeds + m, *result = efforts + m;
     // A lane without a call takes part with what stands here.
-    std::array<double*, count> applied, rates;
-    std::array<const double*, count> y;
+    std::array<double*, cases_at_once> applied, rates;
+    std::array<const double*, cases_at_once> y;
     applied.fill(idle_.data()), rates.fill(idle_.data()), y.fill(idle_.data());
-    for (std::size_t lane = 0; lane < count; ++lane) {
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (calls[lane] == nullptr) continue;
       const LaneCall& call = *calls[lane];
       applied[lane] = equations_[lane]->applied(call.t, call.y, call.y_dot, *call.work).data();
@@ -68,11 +76,11 @@ class LanesOfSpace final : public LaneEquations {
     gather(y, n + m, positions);  // the speeds follow
     gather(applied, m, efforts);
     if (sweep_.driven()) gather(rates, m, result);
-    std::array<Evaluation, count> evaluations;
+    std::array<Evaluation, cases_at_once> evaluations;
     sweep_.accelerations(positions, speeds, efforts, result, work_.data(), evaluations.data());
     scatter(result, m, rates);
     if (sweep_.driven()) scatter(efforts, m, applied);
-    for (std::size_t lane = 0; lane < count; ++lane) {
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (calls[lane] == nullptr) continue;
       LaneCall& call = *calls[lane];
       call.evaluation = evaluations[lane];
@@ -86,9 +94,9 @@ class LanesOfSpace final : public LaneEquations {
   sweep::LaneSweep<Space> sweep_;
   Work work_;
   std::size_t positions_, speeds_;
-  std::vector<Lanes> numbers_;                        ///< positions, speeds, efforts, accelerations
-  std::vector<double> idle_;                          ///< state and results of lanes without a call; of no meaning
-  std::array<const One<Space>*, count> equations_{};  ///< those of a lane without a call may be gone
+  std::vector<Lanes> numbers_;  ///< positions, speeds, efforts, accelerations
+  std::vector<double> idle_;    ///< state and results of lanes without a call; of no meaning
+  std::array<const One<Space>*, cases_at_once> equations_{};  ///< those of a lane without a call may be gone
 };
 
 template <class Space>
@@ -98,6 +106,8 @@ std::string refusal_of(const One<Space>& one) {
 }
 
 }  // namespace
+
+std::size_t lane_count() noexcept { return cases_at_once; }
 
 std::string lane_refusal(const EquationsOfMotion& equations) {
   if (const auto* planar = dynamic_cast<const One<Planar>*>(&equations)) return refusal_of(*planar);

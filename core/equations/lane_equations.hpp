@@ -2,7 +2,6 @@
 /// Equations of motion of several cases evaluated at once, a lane of a vector register each.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -21,21 +20,24 @@ struct LaneCall {
   Evaluation evaluation;
 };
 
-/// Four cases whose equations differ in numbers only. What a case gets does not depend, to the last bit, on its lane,
-/// on the others, on whether there are others or on when they came. It agrees with the case's own
+/// Cases whose equations differ in numbers only, lane_count() of them. What a case gets does not depend, to the last
+/// bit, on its lane, on the others, on how many there are or on when they came. It agrees with the case's own
 /// EquationsOfMotion::derivatives to rounding, not in every bit: sums are taken in another order. Of one thread.
 class LaneEquations {
  public:
-  static constexpr std::size_t count = 4;
-
   virtual ~LaneEquations() = default;
   /// Whether these equations may be put into a lane: they differ from those there in numbers only.
   [[nodiscard]] virtual bool fits(const EquationsOfMotion& equations) const = 0;
   /// Puts equations that fit into a lane, in the place of those there; they must outlive their calls. May allocate.
   virtual void put(std::size_t lane, const EquationsOfMotion& equations) = 0;
-  /// Evaluates the lanes that have a call; null: none. Allocates nothing.
-  virtual void derivatives(const std::array<LaneCall*, count>& calls) noexcept = 0;
+  /// Evaluates the lanes that have a call; null: none. Allocates nothing. \param calls one a lane
+  virtual void derivatives(std::span<LaneCall* const> calls) noexcept = 0;
 };
+
+/// The most lanes that any processor has.
+constexpr std::size_t most_lanes = 8;
+/// How many lanes this processor has: as many as a vector register holds numbers, four, or eight with AVX-512.
+[[gnu::visibility("default")]] std::size_t lane_count() noexcept;
 
 /// Lanes that all begin with these equations; null where they have none (see lane_refusal).
 [[gnu::visibility("default")]] std::unique_ptr<LaneEquations> lane_equations(const EquationsOfMotion& equations);

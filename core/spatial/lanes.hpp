@@ -1,6 +1,6 @@
 /// \file
-/// A number of each of four cases that are computed at once, and vectors and matrices of them. What becomes of a lane
-/// depends on that lane alone: no operation mixes two of them.
+/// A number of each of several cases that are computed at once, and vectors and matrices of them. What becomes of a
+/// lane depends on that lane alone: no operation mixes two of them.
 #pragma once
 
 #include <bit>
@@ -9,10 +9,21 @@
 
 namespace withy {
 
+#ifdef __AVX512F__
+constexpr std::size_t cases_at_once = 8;
+using LaneNumbers = double __attribute__((vector_size(64)));
+inline LaneNumbers spread_to_lanes(double a) { return LaneNumbers{a, a, a, a, a, a, a, a}; }
+inline void set_lane(LaneNumbers& p, std::size_t i, double a) { p[i] = a; }
+#else
+constexpr std::size_t cases_at_once = lanes;
+using LaneNumbers = Pack;
+inline LaneNumbers spread_to_lanes(double a) { return spread(a); }
+#endif
+
 /// A set of lanes, a bit each: those for which something holds.
 struct LaneSet {
   unsigned bits = 0;
-  static constexpr LaneSet all() { return {(1U << lanes) - 1}; }
+  static constexpr LaneSet all() { return {(1U << cases_at_once) - 1}; }
   [[nodiscard]] bool has(std::size_t lane) const { return (bits >> lane & 1U) != 0; }
   friend LaneSet operator&(LaneSet a, LaneSet b) { return {a.bits & b.bits}; }
 };
@@ -21,14 +32,15 @@ inline bool none(bool holds) { return !holds; }
 
 /// One number of each case. A plain number stands for the same in all of them.
 struct Lanes {
-  Pack p;
+  LaneNumbers p;
 
   Lanes() = default;
   // Written out: as a copy of its bytes it would go through memory.
   Lanes(const Lanes& a) : p(a.p) {}
   Lanes& operator=(const Lanes& a) { return p = a.p, *this; }
-  Lanes(double a) : p(spread(a)) {}  // NOLINT(google-explicit-constructor): constants stand in formulas as they are
-  static Lanes of(const Pack& p) {
+  Lanes(double a)
+      : p(spread_to_lanes(a)) {}  // NOLINT(google-explicit-constructor): constants stand in formulas as they are
+  static Lanes of(const LaneNumbers& p) {
     Lanes a;
     a.p = p;
     return a;
@@ -46,11 +58,14 @@ struct Lanes {
 
 /// Where a pivot is positive; of a plain number whether it is.
 inline LaneSet positive(const Lanes& a) {
-#ifdef __AVX__
+#ifdef __AVX512F__
+  using Bits = long long __attribute__((vector_size(64)));
+  return {static_cast<unsigned>(__builtin_ia32_cvtq2mask512(std::bit_cast<Bits>(a.p > spread_to_lanes(0.0))))};
+#elif defined(__AVX__)
   return {static_cast<unsigned>(__builtin_ia32_movmskpd256(std::bit_cast<Pack>(a.p > spread(0.0))))};
 #else
   LaneSet set;
-  for (std::size_t i = 0; i < lanes; ++i) set.bits |= a[i] > 0 ? 1U << i : 0U;
+  for (std::size_t i = 0; i < cases_at_once; ++i) set.bits |= a[i] > 0 ? 1U << i : 0U;
   return set;
 #endif
 }

@@ -57,14 +57,18 @@ inline void sine_cosine(double angle, double& sine, double& cosine) {
   sine = std::sin(angle);
   cosine = std::cos(angle);
 }
-/// Of four angles, each on its own.
+/// Of an angle of each case, each on its own.
 inline void sine_cosine(const Lanes& angle, Lanes& sine, Lanes& cosine) {
+#ifdef __AVX512F__
+  sine_cosine_of<long __attribute__((vector_size(64)))>(angle.p, sine.p, cosine.p);
+#else
   sine_cosine(angle.p, sine.p, cosine.p);
+#endif
   const Lanes furthest = 1e5;
   const LaneSet near = positive(furthest - angle) & positive(furthest + angle);
   if (near.bits == LaneSet::all().bits) [[likely]]
     return;
-  for (std::size_t i = 0; i < lanes; ++i) {
+  for (std::size_t i = 0; i < cases_at_once; ++i) {
     if (near.has(i)) continue;
     sine.set(i, std::sin(angle[i]));
     cosine.set(i, std::cos(angle[i]));

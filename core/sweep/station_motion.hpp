@@ -28,7 +28,7 @@ template <>
 struct ExponentialOf<Lanes> {
   Lanes a, b, c, db, dc;
   explicit ExponentialOf(const Lanes& s) {
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < cases_at_once; ++i) {
       const detail::ExponentialCoefficients<double> k(s[i]);
       a.set(i, k.a), b.set(i, k.b), c.set(i, k.c), db.set(i, k.db), dc.set(i, k.dc);
     }

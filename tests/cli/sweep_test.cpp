@@ -58,6 +58,59 @@ TEST(SweepCommand, MakesATableInTheOrderOfThePlanWithTheColumnsItSays) {
   EXPECT_EQ(status["missing"], 0);
 }
 
+/// Runs in AVX2 of a processor with AVX-512, as one without has it.
+class FourLanes {
+ public:
+  FourLanes() { ::setenv("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX512F", 1); }
+  ~FourLanes() { ::unsetenv("GLIBC_TUNABLES"); }
+  FourLanes(const FourLanes&) = delete;
+  FourLanes& operator=(const FourLanes&) = delete;
+};
+
+/// A store may be filled by processors of both kinds.
+TEST(SweepCommand, FourLanesAndEightMakeTheSameTableToTheLastByte) {
+  const auto at_once = [](const Folder& folder) {
+    const Finished timed = withy(folder, {"bench", "scenes/driven-arm.yaml", "--lanes"});
+    return json::parse(timed.out).at("lanes").at("at_once").get<int>();
+  };
+  const SweepFolder folder;
+  const int here = at_once(folder);
+  if (here == 4) GTEST_SKIP() << "this processor has four lanes";
+  EXPECT_EQ(here, 8);
+  {
+    const FourLanes without;
+    EXPECT_EQ(at_once(folder), 4);
+  }
+  const std::string cases = "evaluation: in-lanes\ncases: 11\nseed: 3\n",
+                    both = "formulation: {grid: [ruthless, quadratic]}";
+  const std::vector<std::string> plans = {
+      "scene: scenes/driven-arm.yaml\nset: {time.end: 0.5}\nkeep: {final: [shoulder, elbow, link2.tip], peak: "
+      "[link2.tip.deflection_y]}\nvary: {" +
+          both +
+          ", bodies.payload.mass: {uniform: {from: 1, to: 3}}, "
+          "bodies.link1.bending_y.modes: {grid: [1, 2, 3, 4]}}\n",
+      "scene: scenes/rigid-chain.yaml\nset: {time.end: 0.2}\nkeep: {final: [linear_momentum, angular_momentum]}\n"
+      "vary: {gravity.1: {uniform: {from: -10, to: -5}}}\n",
+      "scene: scenes/gallery/spinning-beam.yaml\nset: {time.end: 0.2}\nkeep: {final: [linear_momentum, "
+      "kinetic_energy]}\n"
+      "vary: {" +
+          both + ", bodies.beam.mass_per_length: {uniform: {from: 1.1, to: 1.3}}}\n"};
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const std::string file = "lanes" + std::to_string(i) + ".yaml";
+    folder.write(file, "format: withy-sweep/1\n" + plans[i] + cases);
+    const Finished eight = folder.sweep({"run", file, "--out", "eight"});
+    ASSERT_EQ(eight.status, 0) << eight.err;
+    EXPECT_THAT(eight.out, testing::Not(HasSubstr("one at a time"))) << plans[i];
+    {
+      const FourLanes without;
+      ASSERT_EQ(folder.sweep({"run", file, "--out", "four"}).status, 0);
+    }
+    EXPECT_EQ(folder.read("eight/table.csv"), folder.read("four/table.csv")) << plans[i];
+    std::filesystem::remove_all(folder.path() / "eight");
+    std::filesystem::remove_all(folder.path() / "four");
+  }
+}
+
 TEST(SweepCommand, ACaseAloneIsTheRunThatItsCommandMakes) {
   const SweepFolder folder;
   const Finished alone = folder.sweep({"case", "plan.yaml", "47", "--json"});

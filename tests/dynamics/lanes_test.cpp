@@ -1,9 +1,8 @@
 /// \file
-/// Four cases at once against each case by itself.
+/// Cases evaluated together, in the lanes of a vector register, against each case by itself.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -15,8 +14,6 @@
 
 namespace withy::test {
 namespace {
-
-constexpr std::size_t lane_count = LaneEquations::count;
 
 /// A chain of rigid links and beams on revolute and prismatic hinges under loads and, where asked, driven at its root.
 /// Text of one seed and another differs in numbers only.
@@ -53,16 +50,30 @@ std::string lane_chain(unsigned seed, bool planar, const std::string& beam, bool
          (driven ? "motions:\n  turn: {type: spin-up, hinge: h0, rate: " + number(1, 2) + ", duration: 0.6}\n" : "");
 }
 
-/// Four cases with states of their own, and what their evaluation gives.
-struct FourCases {
+/// Which case is in each lane; −1: nobody.
+using Places = std::vector<int>;
+/// Case i in lane i + shift, cyclically.
+Places in_order(std::size_t shift = 0) {
+  Places places(lane_count());
+  for (std::size_t i = 0; i < places.size(); ++i) places[(i + shift) % places.size()] = static_cast<int>(i);
+  return places;
+}
+Places only(std::size_t k, std::size_t lane) {
+  Places places(lane_count(), -1);
+  places[lane % places.size()] = static_cast<int>(k);
+  return places;
+}
+
+/// A case for each lane with a state of its own, and what their evaluation gives.
+struct LaneCases {
   std::vector<std::unique_ptr<Case>> cases;
   std::unique_ptr<LaneEquations> lanes;
-  std::vector<std::vector<double>> rates{lane_count};
+  std::vector<std::vector<double>> rates{lane_count()};
   std::vector<Work> work;
-  std::array<LaneCall, lane_count> calls;
+  std::vector<LaneCall> calls{lane_count()};
 
-  FourCases(const std::string& formulation, const std::function<std::string(unsigned)>& text) {
-    for (unsigned k = 0; k < lane_count; ++k) {
+  LaneCases(const std::string& formulation, const std::function<std::string(unsigned)>& text) {
+    for (unsigned k = 0; k < lane_count(); ++k) {
       cases.push_back(std::make_unique<Case>(text(k), formulation));
       Case& c = *cases.back();
       RandomScene random(100 + k, {});
@@ -75,10 +86,9 @@ struct FourCases {
   }
   [[nodiscard]] const EquationsOfMotion& equations(std::size_t k) const { return *cases[k]->equations; }
 
-  /// Evaluates case `of[lane]` in each lane; −1: nobody is there.
-  void evaluate(const std::array<int, lane_count>& of) {
-    std::array<LaneCall*, lane_count> asked{};
-    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+  void evaluate(const Places& of) {
+    std::vector<LaneCall*> asked(of.size());
+    for (std::size_t lane = 0; lane < of.size(); ++lane) {
       if (of[lane] < 0) continue;
       const auto k = static_cast<std::size_t>(of[lane]);
       lanes->put(lane, equations(k));
@@ -140,13 +150,14 @@ std::vector<LaneKind> lane_kinds() {
 
 TEST(Lanes, each_lane_solves_the_equations_of_its_own_case) {
   for (const LaneKind& kind : lane_kinds()) {
-    FourCases four(kind.formulation, [&](unsigned k) { return lane_chain(k, kind.planar, kind.beam, kind.driven); });
-    ASSERT_NE(four.lanes, nullptr) << kind.text() << ": " << lane_refusal(four.equations(0));
-    for (std::size_t k = 0; k < lane_count; ++k) EXPECT_TRUE(four.lanes->fits(four.equations(k))) << kind.text();
-    four.evaluate({0, 1, 2, 3});
-    for (std::size_t k = 0; k < lane_count; ++k) {
-      EXPECT_TRUE(four.calls[k].evaluation.ok()) << kind.text();
-      expect_lane_solves(*four.cases[k], four.rates[k], kind.text() + ", case " + std::to_string(k));
+    LaneCases several(kind.formulation, [&](unsigned k) { return lane_chain(k, kind.planar, kind.beam, kind.driven); });
+    ASSERT_NE(several.lanes, nullptr) << kind.text() << ": " << lane_refusal(several.equations(0));
+    for (std::size_t k = 0; k < lane_count(); ++k)
+      EXPECT_TRUE(several.lanes->fits(several.equations(k))) << kind.text();
+    several.evaluate(in_order());
+    for (std::size_t k = 0; k < lane_count(); ++k) {
+      EXPECT_TRUE(several.calls[k].evaluation.ok()) << kind.text();
+      expect_lane_solves(*several.cases[k], several.rates[k], kind.text() + ", case " + std::to_string(k));
     }
   }
 }
@@ -158,13 +169,13 @@ TEST(Lanes, each_lane_solves_the_equations_of_random_trees_in_a_plane) {
     for (unsigned seed = 1; seed <= 25; ++seed) {
       const SceneWish wish{
           .bodies = 2 + static_cast<int>(seed % 6), .planar = true, .any_root = seed % 2 == 0, .any_family = true};
-      FourCases four(formulation, [&](unsigned) { return RandomScene(seed, wish).text(); });
-      if (four.equations(0).layout().speeds == 0) continue;
-      ASSERT_NE(four.lanes, nullptr) << lane_refusal(four.equations(0));
-      four.evaluate({0, 1, 2, 3});
+      LaneCases several(formulation, [&](unsigned) { return RandomScene(seed, wish).text(); });
+      if (several.equations(0).layout().speeds == 0) continue;
+      ASSERT_NE(several.lanes, nullptr) << lane_refusal(several.equations(0));
+      several.evaluate(in_order());
       ++evaluated;
-      for (std::size_t k = 0; k < lane_count; ++k)
-        expect_lane_solves(*four.cases[k], four.rates[k], formulation + ", seed " + std::to_string(seed));
+      for (std::size_t k = 0; k < lane_count(); ++k)
+        expect_lane_solves(*several.cases[k], several.rates[k], formulation + ", seed " + std::to_string(seed));
     }
   }
   EXPECT_GT(evaluated, 30);
@@ -172,44 +183,48 @@ TEST(Lanes, each_lane_solves_the_equations_of_random_trees_in_a_plane) {
 
 TEST(Lanes, what_a_case_gets_depends_on_no_other_to_the_last_bit) {
   for (const LaneKind& kind : lane_kinds()) {
-    FourCases four(kind.formulation, [&](unsigned k) { return lane_chain(k, kind.planar, kind.beam, kind.driven); });
-    four.evaluate({0, 1, 2, 3});
-    const std::vector<std::vector<double>> among = four.rates;
+    LaneCases several(kind.formulation, [&](unsigned k) { return lane_chain(k, kind.planar, kind.beam, kind.driven); });
+    several.evaluate(in_order());
+    const std::vector<std::vector<double>> among = several.rates;
     const auto expect_unchanged = [&](std::size_t k, const char* how) {
-      expect_bits(four.rates[k], among[k], kind.text() + ", case " + std::to_string(k) + how);
+      expect_bits(several.rates[k], among[k], kind.text() + ", case " + std::to_string(k) + how);
     };
-    four.evaluate({3, 0, 1, 2});
-    for (std::size_t k = 0; k < lane_count; ++k) expect_unchanged(k, " in another lane");
-    for (int k = 0; k < static_cast<int>(lane_count); ++k) {
+    for (const std::size_t shift : {std::size_t{1}, lane_count() / 2 + 1}) {
+      several.evaluate(in_order(shift));
+      for (std::size_t k = 0; k < lane_count(); ++k) expect_unchanged(k, " in another lane");
+    }
+    for (std::size_t k = 0; k < lane_count(); ++k) {
       // A group that another case has begun, and what it has left in the other lanes.
-      four.lanes = lane_equations(four.equations(3));
-      four.evaluate({-1, -1, k, -1});
-      expect_unchanged(static_cast<std::size_t>(k), " alone");
+      several.lanes = lane_equations(several.equations(3));
+      several.evaluate(only(k, k + 2));
+      expect_unchanged(k, " alone");
     }
     // Beside cases that have no accelerations, or are far away.
-    std::vector<double>& lost = four.cases[1]->state.y;
-    std::vector<double>& far = four.cases[2]->state.y;
+    std::vector<double>& lost = several.cases[1]->state.y;
+    std::vector<double>& far = several.cases[2]->state.y;
     std::fill(lost.begin(), lost.end(), std::numeric_limits<double>::quiet_NaN());
     far[0] = 3e7;
-    four.evaluate({1, 2, 0, 3});
+    Places places = in_order();
+    std::rotate(places.begin(), places.begin() + 1, places.begin() + 3);
+    several.evaluate(places);
     expect_unchanged(0, " beside one without end");
     expect_unchanged(3, " beside one without end");
     std::vector<double> own(lost.size());
-    const Evaluation alone = four.equations(1).derivatives(0.3, lost, own, four.work[1]);
+    const Evaluation alone = several.equations(1).derivatives(0.3, lost, own, several.work[1]);
     EXPECT_FALSE(alone.ok()) << kind.text();
-    EXPECT_EQ(four.calls[0].evaluation.outcome, alone.outcome) << kind.text();
-    EXPECT_EQ(four.calls[0].evaluation.body, alone.body) << kind.text();
-    expect_lane_solves(*four.cases[2], four.rates[2], kind.text() + ", far away");
+    EXPECT_EQ(several.calls[0].evaluation.outcome, alone.outcome) << kind.text();
+    EXPECT_EQ(several.calls[0].evaluation.body, alone.body) << kind.text();
+    expect_lane_solves(*several.cases[2], several.rates[2], kind.text() + ", far away");
   }
 }
 
 TEST(Lanes, evaluations_allocate_nothing) {
-  FourCases four("quadratic", [](unsigned k) { return lane_chain(k, true, "modes: 2", true); });
-  four.evaluate({0, 1, 2, 3});
-  std::array<LaneCall*, lane_count> asked{};
-  for (std::size_t k = 0; k < lane_count; ++k) asked[k] = &four.calls[k];
+  LaneCases several("quadratic", [](unsigned k) { return lane_chain(k, true, "modes: 2", true); });
+  several.evaluate(in_order());
+  std::vector<LaneCall*> asked(lane_count());
+  for (std::size_t k = 0; k < lane_count(); ++k) asked[k] = &several.calls[k];
   const std::size_t before = allocations();
-  four.lanes->derivatives(asked);
+  several.lanes->derivatives(asked);
   EXPECT_EQ(allocations(), before);
 }
 

@@ -36,7 +36,7 @@ std::string LaneSweep<Space>::refusal(const SymmetricSweep<Space>& sweep) {
 
 template <class Space>
 LaneSweep<Space>::LaneSweep(const SymmetricSweep<Space>& sweep) : nodes_(sweep.nodes().size()) {
-  for (std::size_t lane = 0; lane < lanes; ++lane) put(lane, sweep);
+  for (std::size_t lane = 0; lane < cases_at_once; ++lane) put(lane, sweep);
   work_size_ = lay_out(nodes_);
   for (const SymmetricNode<Many>& node : nodes_) driven_ = driven_ || node.joint.driven;
 }
@@ -58,7 +58,7 @@ void LaneSweep<Space>::accelerations(const Lanes* positions, const Lanes* speeds
                                      std::byte* work, Evaluation* evaluations) const noexcept {
   const SymmetricState<Many> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_,
                                    0,         efforts};
-  for (std::size_t lane = 0; lane < lanes; ++lane) evaluations[lane] = {};
+  for (std::size_t lane = 0; lane < cases_at_once; ++lane) evaluations[lane] = {};
   for (const SymmetricNode<Many>& node : nodes_) {
     in_lanes_with_flavor(node, [&](auto n, auto flavor) { outward_motion<Many, n.value, flavor.value>(node, state); });
   }
@@ -68,7 +68,7 @@ void LaneSweep<Space>::accelerations(const Lanes* positions, const Lanes* speeds
     in_lanes_with_flavor(node,
                          [&](auto n, auto flavor) { good = inward_inertia<Many, n.value, flavor.value>(node, state); });
     if (good.bits == LaneSet::all().bits) continue;
-    for (std::size_t lane = 0; lane < lanes; ++lane)
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane)
       if (!good.has(lane) && evaluations[lane].ok()) evaluations[lane] = {Evaluation::Outcome::singular, node.body};
     if (none(good)) return;
   }

@@ -1,5 +1,5 @@
 /// \file
-/// The symmetric sweep over four cases at once: the kernels of symmetric_kernel.hpp with Lanes for numbers.
+/// The symmetric sweep over several cases at once: the kernels of symmetric_kernel.hpp with Lanes for numbers.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace withy::sweep {
 
-/// The space of four cases of a space.
+/// The space of several cases of a space.
 template <class Space>
 struct LanesOf;
 template <>
@@ -23,8 +23,8 @@ struct LanesOf<Spatial> {
   using Type = SpatialOf<Lanes>;
 };
 
-/// Four trees that differ in numbers only. The constants of a lane are those of the sweep put there; a lane that is not
-/// in use computes with what it last had, and nobody looks.
+/// As many trees as a register has numbers, that differ in numbers only. The constants of a lane are those of the sweep
+/// put there; a lane that is not in use computes with what it last had, and nobody looks.
 template <class Space>
 class LaneSweep {
  public:
