@@ -16,11 +16,18 @@
 namespace withy::campaign {
 namespace {
 
+/// Whether the table shows a column by this name; most names are shown as they are.
+bool shown_as(const std::string& column, const std::string& name) {
+  return column.find_first_of("[]") == std::string::npos ? column == name : column_name(column) == name;
+}
+
 std::vector<std::size_t> where(const std::vector<Column>& columns, const std::vector<std::string>& names) {
   std::vector<std::size_t> found;
-  for (const std::string& name : names)
+  for (const std::string& name : names) {
+    const std::string shown = column_name(name);
     for (std::size_t i = 0; i < columns.size(); ++i)
-      if (column_name(columns[i].name) == column_name(name)) found.push_back(i);
+      if (shown_as(columns[i].name, shown)) found.push_back(i);
+  }
   return found;
 }
 

@@ -52,10 +52,8 @@ std::string Checker::suggest(std::string_view name, const std::vector<std::strin
   return suggestion(name, candidates);
 }
 
-bool Checker::is_map(const Value& value, const std::string& expected) const {
-  if (value.kind() == Value::Kind::map || value.kind() == Value::Kind::null) return true;
+void Checker::no_map(const Value& value, const std::string& expected) const {
   diagnostics_.error(value.place(), fmt::format("got {}; need {}", shown(value), expected));
-  return false;
 }
 
 std::optional<Value> Checker::number(const Value& value, const ParameterSpec& spec, const std::string& unit) const {
@@ -107,27 +105,29 @@ bool Checker::refers(const Place& place, const std::string& name, ParameterSpec:
 std::optional<Value> Checker::mode_family(const Value& value) const {
   const bool short_form = value.kind() == Value::Kind::text;
   Made<ModeFamily> made;
-  auto checked = check_plugin_map(short_form ? Value::map({{"name", value}}, value.place()) : value, "name",
-                                  {grammar::family_name()}, *this, made);
-  if (checked && short_form) return value;
-  return checked;
+  const Value* checked = check_plugin_map(short_form ? Value::map({{"name", value}}, value.place()) : value, "name",
+                                          {grammar::family_name()}, *this, made);
+  if (checked == nullptr) return {};
+  return short_form ? value : std::move(made.value);
 }
 
 std::optional<Value> Checker::formulation(const Value& value) const {
   const bool short_form = value.kind() == Value::Kind::text;
   Made<Formulation> made;
-  auto checked =
+  const Value* checked =
       check_plugin_map(short_form ? Value::map({{"name", value}}, value.place()) : grammar::named_formulation(value),
                        "name", {grammar::formulation_name()}, *this, made);
-  if (checked && short_form) return value;
-  return checked;
+  if (checked == nullptr) return {};
+  return short_form ? value : std::move(made.value);
 }
 
 std::optional<Value> Checker::motion(const Value& value) const {
   const bool short_form = value.kind() == Value::Kind::text;
   Made<Motion> made;
-  return check_plugin_map(short_form ? Value::map({{"type", value}}, value.place()) : value, "type",
-                          {grammar::motion_type()}, *this, made);
+  if (check_plugin_map(short_form ? Value::map({{"type", value}}, value.place()) : value, "type",
+                       {grammar::motion_type()}, *this, made) == nullptr)
+    return {};
+  return std::move(made.value);
 }
 
 std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec) const {
@@ -173,7 +173,13 @@ std::optional<Value> Checker::row(const Value& value, const ParameterSpec& spec)
   }
   Value result = Value::list({}, value.place());
   bool good = true;
+  const bool alike = spec.kind != ParameterSpec::Kind::table;  // the items of a table have units of their own
   for (std::size_t i = 0; i < value.items().size(); ++i) {
+    if (const Value& given = value.items()[i];
+        alike && given.kind() == Value::Kind::number && in_range(given.number(), spec)) {
+      result.items().push_back(given);
+      continue;
+    }
     ParameterSpec item = spec;
     item.kind = ParameterSpec::Kind::number;
     if (spec.kind == ParameterSpec::Kind::table) {
@@ -263,11 +269,11 @@ std::optional<Value> Checker::texts(const Value& value, const ParameterSpec& spe
 }
 
 std::optional<Value> Checker::named(const Value& value, const ParameterSpec& spec) const {
-  if (!is_map(value, expectation(spec))) return {};
+  if (!is_map(value, [&] { return expectation(spec); })) return {};
   Value result = Value::map({}, value.place());
   bool good = true;
   for (const auto& [name, member] : value.members()) {
-    const std::string path = member.place().path;
+    const std::string& path = member.place().path;
     if (spec.refers == ParameterSpec::Refers::nothing) {
       if (const std::string problem = name_problem(name); !problem.empty()) {
         key_error(path, fmt::format("got name {}; {}", in_quotes(name), problem));
@@ -286,40 +292,55 @@ std::optional<Value> Checker::named(const Value& value, const ParameterSpec& spe
   return result;
 }
 
-std::optional<Value> Checker::check_members(const Value& value, const std::vector<ParameterSpec>& members,
-                                            Value* partial) const {
-  const std::vector<std::string> known = keys_of(members);
-  Value result = Value::map({}, value.place());
-  if (!is_map(value, "a map with " + listed(known))) return {};
+std::optional<Value> Checker::check_members(const Value& value, const std::vector<ParameterSpec>& members) const {
+  Value result;
+  if (!read_members(value, {&members}, result)) return {};
+  return result;
+}
+
+bool Checker::read_members(const Value& value, std::initializer_list<const std::vector<ParameterSpec>*> lists,
+                           Value& result) const {
+  const auto known = [&] {
+    std::vector<std::string> keys;
+    for (const auto* members : lists)
+      for (const ParameterSpec& spec : *members) keys.push_back(spec.key);
+    return keys;
+  };
+  const auto knows = [&](const std::string& key) {
+    return std::any_of(lists.begin(), lists.end(), [&](const std::vector<ParameterSpec>* members) {
+      return std::any_of(members->begin(), members->end(), [&](const ParameterSpec& spec) { return spec.key == key; });
+    });
+  };
+  if (!is_map(value, [&] { return "a map with " + listed(known()); })) return false;
+  result = Value::map({}, value.place());
   bool good = true;
   for (const auto& [key, member] : value.members()) {
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    key_error(member.place().path, fmt::format("unknown key {}{}", in_quotes(key), suggestion(key, known)));
+    if (knows(key)) continue;
+    key_error(member.place().path, fmt::format("unknown key {}{}", in_quotes(key), suggestion(key, known())));
     good = false;
   }
-  for (const ParameterSpec& spec : members) {
-    const Value* member = value.find(spec.key);
-    const std::string path = value.place().path + "/" + spec.key;
-    Value fallback;
-    if (member == nullptr && spec.fallback) {
-      fallback = placed(*spec.fallback, {value.place().line, value.place().column, path});
-      member = &fallback;
-    }
-    if (member == nullptr) {
-      if (!spec.required) continue;
-      key_error(path, fmt::format("missing: {}; need {}", spec.meaning, expectation(spec)));
-      good = false;
-      continue;
-    }
-    if (auto checked = check(*member, spec)) {
-      result.members().emplace_back(spec.key, std::move(*checked));
-    } else {
-      good = false;
-    }
+  for (const auto* members : lists)
+    for (const ParameterSpec& spec : *members) good = read_member(value, spec, result) && good;
+  return good;
+}
+
+/// The member of a specification, or its default.
+bool Checker::read_member(const Value& value, const ParameterSpec& spec, Value& result) const {
+  const auto path = [&] { return value.place().path + "/" + spec.key; };
+  const Value* member = value.find(spec.key);
+  Value fallback;
+  if (member == nullptr && spec.fallback) {
+    fallback = placed(*spec.fallback, {value.place().line, value.place().column, path()});
+    member = &fallback;
   }
-  if (partial != nullptr) *partial = result;
-  if (!good) return {};
-  return result;
+  if (member == nullptr) {
+    if (!spec.required) return true;
+    key_error(path(), fmt::format("missing: {}; need {}", spec.meaning, expectation(spec)));
+    return false;
+  }
+  auto checked = check(*member, spec);
+  if (checked) result.members().emplace_back(spec.key, std::move(*checked));
+  return checked.has_value();
 }
 
 std::optional<Value> Checker::check(const Value& value, const ParameterSpec& spec) const {

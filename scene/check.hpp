@@ -3,8 +3,10 @@
 /// ranges and defaults.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <unordered_set>
 #include <vector>
 
@@ -55,11 +57,23 @@ class Checker {
   /// its name or a map of its `name` and options, one that refers to a motion the same with `type`, which becomes a
   /// map.
   std::optional<Value> check(const Value& value, const ParameterSpec& spec) const;
-  /// The same for a map with these members. Members that are right are in `partial`, if given, whatever the others are.
-  std::optional<Value> check_members(const Value& value, const std::vector<ParameterSpec>& members,
-                                     Value* partial = nullptr) const;
-  /// True for a map or, as an empty map, null; otherwise reports what was expected.
-  bool is_map(const Value& value, const std::string& expected) const;
+  /// The same for a map with these members.
+  std::optional<Value> check_members(const Value& value, const std::vector<ParameterSpec>& members) const;
+  /// The same for members of several lists: those that are right are in `result`, whatever the others are.
+  /// \returns whether all are right.
+  bool read_members(const Value& value, std::initializer_list<const std::vector<ParameterSpec>*> lists,
+                    Value& result) const;
+  /// True for a map or, as an empty map, null; otherwise reports what was expected: a text, or what makes one.
+  template <class Expected>
+  bool is_map(const Value& value, const Expected& expected) const {
+    if (value.kind() == Value::Kind::map || value.kind() == Value::Kind::null) return true;
+    if constexpr (std::is_invocable_v<Expected>) {
+      no_map(value, expected());
+    } else {
+      no_map(value, expected);
+    }
+    return false;
+  }
 
   Registry& registry() const { return registry_; }
   Diagnostics& diagnostics() const { return diagnostics_; }
@@ -86,6 +100,7 @@ class Checker {
   }
 
  private:
+  bool read_member(const Value& value, const ParameterSpec& spec, Value& result) const;
   std::optional<Value> number(const Value& value, const ParameterSpec& spec, const std::string& unit) const;
   std::optional<Value> text(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> mode_family(const Value& value) const;
@@ -99,6 +114,7 @@ class Checker {
   bool refers(const Place& place, const std::string& name, ParameterSpec::Refers what) const;
   void unknown_plugin(const Value& id, const std::string& kind, const std::vector<std::string>& ids) const;
   void got(const Value& value, const ParameterSpec& spec, const std::string& why = {}) const;
+  void no_map(const Value& value, const std::string& expected) const;
 
   const Document& document_;
   Registry& registry_;

@@ -41,15 +41,16 @@ std::vector<ParameterSpec> event_members() {
 
 }  // namespace
 
-std::vector<ParameterSpec> pose_members() {
-  return {
+const std::vector<ParameterSpec>& pose_members() {
+  static const std::vector<ParameterSpec> members = {
       vector("position", 3, "m", "position of the frame's origin").otherwise(numbers({0, 0, 0})),
       vector("orientation", 4, "1", "how the frame is turned: unit quaternion w, x, y, z, axis and angle, or angles")
           .otherwise(numbers({1, 0, 0, 0}))};
+  return members;
 }
 
-std::vector<ParameterSpec> scene_members() {
-  return {
+const std::vector<ParameterSpec>& scene_members() {
+  static const std::vector<ParameterSpec> members = {
       text("format", "version of the scene format").one_of({"withy/1"}),
       text("name", "title of the scene").otherwise(""),
       vector("gravity", 3, "m/s^2", "acceleration of gravity, world axes").otherwise(numbers({0, 0, 0})),
@@ -69,50 +70,64 @@ std::vector<ParameterSpec> scene_members() {
       named("events", event_members(), "what is looked for during a simulation, reported with its time, and done then")
           .otherwise(Value::map({})),
   };
+  return members;
 }
 
 std::vector<std::string> special_keys() {
   return {"formulation", "integrator", "bodies", "hinges", "loads", "motions", "constraints", "initial", "outputs"};
 }
 
-std::vector<ParameterSpec> body_members() {
-  std::vector<ParameterSpec> frame = pose_members();
-  // A text specification with a unit takes a name or a number: see Checker::check.
-  ParameterSpec at = text("at", "station that carries the frame: its name, or its coordinate along the body");
-  at.unit = std::string("m");
-  frame.push_back(std::move(at).otherwise("root"));
-  return {text("type", "body plugin"),
-          named("frames", frame, "frames for hinges and loads, each fixed to the section at a station")
-              .otherwise(Value::map({})),
-          text("formulation", "formulation for this body alone").naming(ParameterSpec::Refers::formulation).optional(),
-          visual_spec()};
+const std::vector<ParameterSpec>& body_members() {
+  static const std::vector<ParameterSpec> members = [] {
+    std::vector<ParameterSpec> frame = pose_members();
+    // A text specification with a unit takes a name or a number: see Checker::check.
+    ParameterSpec at = text("at", "station that carries the frame: its name, or its coordinate along the body");
+    at.unit = std::string("m");
+    frame.push_back(std::move(at).otherwise("root"));
+    return std::vector{
+        text("type", "body plugin"),
+        named("frames", frame, "frames for hinges and loads, each fixed to the section at a station")
+            .otherwise(Value::map({})),
+        text("formulation", "formulation for this body alone").naming(ParameterSpec::Refers::formulation).optional(),
+        visual_spec()};
+  }();
+  return members;
 }
 
-std::vector<ParameterSpec> hinge_members() {
-  return {
+const std::vector<ParameterSpec>& hinge_members() {
+  static const std::vector<ParameterSpec> members = {
       text("type", "hinge plugin"), text("parent", "what the hinge hangs on: world, a body, or body.frame"),
       text("child", "what it carries: a body, or body.frame"),
       map("offset", pose_members(), "fixed pose of the hinge frame F in the parent's frame").otherwise(Value::map({}))};
+  return members;
 }
 
-std::vector<ParameterSpec> load_members() { return {text("type", "load plugin")}; }
+const std::vector<ParameterSpec>& load_members() {
+  static const std::vector<ParameterSpec> members = {text("type", "load plugin")};
+  return members;
+}
 
-std::vector<ParameterSpec> sensor_members() {
-  return {
+const std::vector<ParameterSpec>& sensor_members() {
+  static const std::vector<ParameterSpec> members = {
       text("type", "sensor plugin"),
       boolean("statistics", "whether its extremes, mean and root mean square over a run are found, between outputs too")
           .optional()};
+  return members;
 }
 
-std::vector<ParameterSpec> motion_members() {
-  return {motion_type(), text("hinge", "hinge that it moves").naming(ParameterSpec::Refers::hinge)};
+const std::vector<ParameterSpec>& motion_members() {
+  static const std::vector<ParameterSpec> members = {
+      motion_type(), text("hinge", "hinge that it moves").naming(ParameterSpec::Refers::hinge)};
+  return members;
 }
 
-std::vector<ParameterSpec> constraint_members() {
-  return {text("type", "what the constraint is").one_of({"hinge"}), text("hinge", "hinge plugin that closes the loop"),
-          text("a", "frame that carries the hinge frame F: world, a body, or body.frame"),
-          text("b", "frame that is the hinge frame M: world, a body, or body.frame"),
-          map("offset", pose_members(), "fixed pose of F in frame a").otherwise(Value::map({}))};
+const std::vector<ParameterSpec>& constraint_members() {
+  static const std::vector<ParameterSpec> members = {
+      text("type", "what the constraint is").one_of({"hinge"}), text("hinge", "hinge plugin that closes the loop"),
+      text("a", "frame that carries the hinge frame F: world, a body, or body.frame"),
+      text("b", "frame that is the hinge frame M: world, a body, or body.frame"),
+      map("offset", pose_members(), "fixed pose of F in frame a").otherwise(Value::map({}))};
+  return members;
 }
 
 ParameterSpec choice_name(std::string_view kind, std::string_view otherwise) {

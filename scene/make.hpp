@@ -53,13 +53,15 @@ std::unique_ptr<Interface> make_object(const Plugin<Interface>& plugin, const Va
 }
 
 /// Checks a map against the members common to its kind and those of the plugin that `key` names.
+/// \returns `made.value`, or null where not all of it is right.
 template <class Interface>
-std::optional<Value> check_plugin_map(const Value& given, const std::string& key, std::vector<ParameterSpec> members,
-                                      const Checker& checker, Made<Interface>& made) {
+const Value* check_plugin_map(const Value& given, const std::string& key, const std::vector<ParameterSpec>& members,
+                              const Checker& checker, Made<Interface>& made) {
   made.value = Value::map({}, given.place());
-  if (!checker.is_map(given, fmt::format("a map with '{}' and what that {} takes", key, kind_name<Interface>()))) {
-    return {};
-  }
+  const auto expected = [&] {
+    return fmt::format("a map with '{}' and what that {} takes", key, kind_name<Interface>());
+  };
+  if (!checker.is_map(given, expected)) return nullptr;
   const Value* id = given.find(key);
   Value fallback;
   if (id == nullptr) {
@@ -71,12 +73,11 @@ std::optional<Value> check_plugin_map(const Value& given, const std::string& key
   if (id->kind() == Value::Kind::null) {
     checker.key_error(given.place().path + "/" + key,
                       fmt::format("missing; need one of: {}", listed(checker.registry().ids<Interface>())));
-    return {};
+    return nullptr;
   }
   made.plugin = checker.plugin<Interface>(*id);
-  if (made.plugin == nullptr) return {};
-  members.insert(members.end(), made.plugin->parameters.begin(), made.plugin->parameters.end());
-  return checker.check_members(given, members, &made.value);
+  if (made.plugin == nullptr) return nullptr;
+  return checker.read_members(given, {&members, &made.plugin->parameters}, made.value) ? &made.value : nullptr;
 }
 
 }  // namespace withy

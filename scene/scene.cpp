@@ -44,11 +44,11 @@ class SceneBuilder {
   /// Complete only if no problem was reported.
   Scene build() {
     const Value& root = document_.root;
-    const std::vector<ParameterSpec> members = grammar::scene_members();
-    if (!checker_.is_map(root, "a map with " + listed(keys_of(members)))) return std::move(scene_);
+    const std::vector<ParameterSpec>& members = grammar::scene_members();
+    if (!checker_.is_map(root, [&] { return "a map with " + listed(keys_of(members)); })) return std::move(scene_);
     const Value plain = split(root, members);
     scene_.source = Value::map({}, root.place());
-    checker_.check_members(plain, members, &scene_.source);
+    checker_.read_members(plain, {&members}, scene_.source);
     read_plain_values();
     scene_.formulation = choose<Formulation>("formulation", grammar::default_formulation, scene_.formulation_name);
     scene_.integrator = choose<Integrator>("integrator", grammar::default_integrator, scene_.integrator_name);
@@ -63,7 +63,7 @@ class SceneBuilder {
     scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);
     if (document_.root.find("constraints") != nullptr) {
-      const Value constraints = part("constraints");
+      const Value& constraints = part("constraints");
       const Value* loads = document_.root.find("loads");
       for (const auto& [name, given] : constraints.members())
         if (loads != nullptr && loads->kind() == Value::Kind::map && loads->has(name))
@@ -122,15 +122,16 @@ class SceneBuilder {
   }
 
   /// A map under a key of the scene; an empty one, after reporting, where there is none.
-  Value part(const std::string& key) {
+  const Value& part(const std::string& key) {
     const Value* given = document_.root.find(key);
     const Place place = given == nullptr ? document_.key_place("/" + key) : given->place();
     if (given == nullptr && (key == "bodies" || key == "hinges")) {
       diagnostics_.error(place, fmt::format("missing; need a map of {}", key));
     }
-    if (given == nullptr || !checker_.is_map(*given, "a map of names")) return Value::map({}, place);
+    Value& none = none_.emplace_back(Value::map({}, place));
+    if (given == nullptr || !checker_.is_map(*given, "a map of names")) return none;
     if (key == "bodies" && given->members().empty()) diagnostics_.error(place, "got none; need at least one body");
-    return given->kind() == Value::Kind::map ? *given : Value::map({}, place);
+    return given->kind() == Value::Kind::map ? *given : none;
   }
 
   template <class Interface>
@@ -149,7 +150,7 @@ class SceneBuilder {
   /// Checks the plugins named under a key of the scene and makes them; `add` gives each to the model if there is one.
   template <class Interface, class Add>
   void add_parts(const std::string& key, const std::vector<ParameterSpec>& members, bool to_model, Add&& add) {
-    const Value parts = part(key);
+    const Value& parts = part(key);
     Value checked = Value::map({}, parts.place());
     for (const auto& [name, given] : parts.members()) {
       const std::string path = "/" + key + "/" + name;
@@ -162,14 +163,14 @@ class SceneBuilder {
       const auto value = check_plugin_map(given, "type", members, checker_, made);
       if (!value) continue;
       auto object = make_object(*made.plugin, *value, checker_);
-      checked.members().emplace_back(name, *value);
+      const Value& kept = checked.members().emplace_back(name, std::move(made.value)).second;
       if (object == nullptr || !to_model) continue;
       refused_.erase(name);
       try {
-        add(name, *value, std::move(object));
+        add(name, kept, std::move(object));
       } catch (const std::invalid_argument& e) {
         // What rests on a part that is reported needs no report of its own.
-        if (!mentions(*value, refused_)) checker_.key_error(path, e.what());
+        if (!mentions(kept, refused_)) checker_.key_error(path, e.what());
         refused_.insert(name);
       }
     }
@@ -346,6 +347,7 @@ class SceneBuilder {
   Checker checker_;
   Scene scene_;
   Vector3 gravity_ = Vector3::Zero();
+  std::list<Value> none_;          ///< in the place of parts that there are not
   std::set<std::string> refused_;  ///< loads, motions, constraints and outputs that are reported already
 };
 

@@ -134,9 +134,9 @@ class TreeBuilder {
       add_ends(node, *value);
       if (node.body != nullptr) add_frames(value->at("frames"), *node.body);
     }
-    body_values_.emplace_back(name, *value);
     if (auto counts = mode_counts(*value, made.plugin->parameters); !counts.empty())
       tree_.modes.push_back({name, std::move(counts)});
+    body_values_.emplace_back(name, std::move(made.value));
   }
 
   bool check_shape(const Body& body, const std::string& plugin, const Value& value) {
@@ -360,7 +360,7 @@ class TreeBuilder {
     node.hinge = hinges_.of(*made.plugin, *value, checker_);
     if (node.hinge == nullptr) good_ = false;
     hinge_nodes_.push_back(std::move(node));
-    hinge_values_.emplace_back(name, *value);
+    hinge_values_.emplace_back(name, std::move(made.value));
   }
 
   const Checker& checker_;

@@ -83,7 +83,7 @@ ParameterSpec visual_spec() {
       number("width", "m", "width along y of a beam's rectangular section").above(0).or_table("m").optional(),
       number("height", "m", "height along z of a beam's rectangular section").above(0).or_table("m").optional(),
       number("thickness", "m", "thickness of a plate").above(0).optional()};
-  for (ParameterSpec& pose : grammar::pose_members()) members.push_back(std::move(pose));
+  for (const ParameterSpec& pose : grammar::pose_members()) members.push_back(pose);
   return map("visual", std::move(members), "what the body looks like in pictures; no result depends on it").optional();
 }
 

@@ -87,7 +87,7 @@ bool EffortWatch::hides_a_peak() const {
   constexpr double worthwhile = 1 + 1e-6;
   const auto rises = [&](double first, double middle, double last, double peak) {
     const double a = std::abs(first), b = std::abs(middle), c = std::abs(last);
-    if (b < a || b < c || !(h1 > 0) || !(h2 > 0)) return false;
+    if (b < a || b < c || (b == a && b == c) || !(h1 > 0) || !(h2 > 0)) return false;
     const double up = (b - a) / h1, down = (b - c) / h2;
     const double bend = (up + down) / (h1 + h2), slope = (up * h2 - down * h1) / (h1 + h2);
     return bend > 0 && b + slope * slope / (4 * bend) > worthwhile * peak;
