@@ -44,7 +44,10 @@ class Beam final : public Body, private Rod {
         shape_.mode_names.push_back(std::string(s.name) + "[" + std::to_string(i) + "]");
       }
     }
-    integrate_fields(kinematics);
+    std::vector<LinearFields> fields;
+    fields.reserve(quadrature_.nodes().size());
+    for (const double x : quadrature_.nodes()) fields.push_back(linear_fields(x));
+    integrate_fields(kinematics, fields);
     const Eigen::Index n = shape_.modes();
     shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(n, n);
     Eigen::MatrixXd modal_mass = Eigen::MatrixXd::Zero(n, n);
@@ -57,29 +60,18 @@ class Beam final : public Body, private Rod {
       shape_.sections.push_back({Vector3(0, central, central).asDiagonal(), middle});
     }
     const auto& x = quadrature_.nodes();
+    if (!rigid) shape_.particles.reserve(x.size());
     for (std::size_t k = 0; k < x.size(); ++k) {
       const double w = quadrature_.weights()[k];
-      const LinearFields f = linear_fields(x[k]);
-      const PointExpansion e = expansion(x[k], f, gamma_at_nodes_.row(static_cast<Eigen::Index>(k)),
-                                         theta_at_nodes_.row(static_cast<Eigen::Index>(k)));
+      const LinearFields& f = fields[k];
       const double mass = w * material.mass_per_length(x[k]);
-      if (!rigid) shape_.particles.push_back({mass, e});
+      if (!rigid)
+        shape_.particles.push_back({mass, expansion(x[k], f, gamma_at_nodes_.row(static_cast<Eigen::Index>(k)),
+                                                    theta_at_nodes_.row(static_cast<Eigen::Index>(k)))});
       modal_mass += mass * f.phi.transpose() * f.phi;
       shape_.stiffness += w * stiffness_of(f, x[k]);
     }
-    const SectionQuadrature along(length_, wave_number(strains_), kinks(material, strains_));
-    for (std::size_t k = 0; k < along.nodes().size(); ++k) {
-      const double at = along.nodes()[k];
-      Matrix3 inertia = Matrix3::Zero();
-      for (const auto& [axis, per_length] : material.inertias) {
-        inertia += along.weights()[k] * per_length(at) * axis * axis.transpose();
-      }
-      if (inertia.isZero(0)) continue;
-      const LinearFields f = linear_fields(at);
-      shape_.sections.push_back({inertia, expansion(at, f, quadrature_.integral_to(at, gamma_slope_),
-                                                    quadrature_.integral_to(at, theta_slope_))});
-      modal_mass += f.psi.transpose() * inertia * f.psi;
-    }
+    if (!material.inertias.empty()) add_sections(modal_mass);
     shape_.damping = material.damping.matrix(shape_.stiffness, modal_mass);
   }
 
@@ -215,6 +207,23 @@ class Beam final : public Body, private Rod {
     return f;
   }
 
+  /// The sections that have rotary inertia, and what they add to the modal mass.
+  void add_sections(Eigen::MatrixXd& modal_mass) {
+    const SectionQuadrature along(length_, wave_number(strains_), kinks(material_, strains_));
+    for (std::size_t k = 0; k < along.nodes().size(); ++k) {
+      const double at = along.nodes()[k];
+      Matrix3 inertia = Matrix3::Zero();
+      for (const auto& [axis, per_length] : material_.inertias) {
+        inertia += along.weights()[k] * per_length(at) * axis * axis.transpose();
+      }
+      if (inertia.isZero(0)) continue;
+      const LinearFields f = linear_fields(at);
+      shape_.sections.push_back({inertia, expansion(at, f, quadrature_.integral_to(at, gamma_slope_),
+                                                    quadrature_.integral_to(at, theta_slope_))});
+      modal_mass += f.psi.transpose() * inertia * f.psi;
+    }
+  }
+
   /// Integrand of ½ qᵀKq: EI κ², GJ t′², EA u′² or kGA γ², coordinates of different strains being independent.
   Eigen::MatrixXd stiffness_of(const LinearFields& f, double x) const {
     Eigen::MatrixXd k = Eigen::MatrixXd::Zero(shape_.modes(), shape_.modes());
@@ -229,14 +238,12 @@ class Beam final : public Body, private Rod {
   }
 
   /// Θ and Γ at the nodes by running integrals; a row holds the upper triangles of the three components.
-  void integrate_fields(const StrainKinematics& kinematics) {
+  void integrate_fields(const StrainKinematics& kinematics, const std::vector<LinearFields>& fields) {
     const Eigen::Index n = shape_.modes();
     const Eigen::Index pairs = n * (n + 1) / 2;
     const auto nodes = static_cast<Eigen::Index>(quadrature_.nodes().size());
     theta_slope_.resize(nodes, 3 * pairs);
     gamma_slope_.resize(nodes, 3 * pairs);
-    std::vector<LinearFields> fields;
-    for (const double x : quadrature_.nodes()) fields.push_back(linear_fields(x));
     const auto each_pair = [&](auto&& action) {
       Eigen::Index column = 0;
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -260,8 +267,9 @@ class Beam final : public Body, private Rod {
     gamma_at_nodes_ = quadrature_.running_integral(gamma_slope_);
   }
 
-  PointExpansion expansion(double x, const LinearFields& f, const Eigen::RowVectorXd& gamma,
-                           const Eigen::RowVectorXd& theta) const {
+  using PairFields = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
+
+  PointExpansion expansion(double x, const LinearFields& f, const PairFields& gamma, const PairFields& theta) const {
     const Eigen::Index n = shape_.modes();
     PointExpansion e = PointExpansion::rigid(Vector3(x, 0, 0), n);
     e.phi = f.phi;
