@@ -3,7 +3,7 @@
 
 #include "withy/apps/withy/command.hpp"
 #include "withy/results/json_text.hpp"
-#include "withy/results/output_file.hpp"
+#include "withy/results/picture_file.hpp"
 #include "withy/results/plotted_runs.hpp"
 #include "withy/results/terminal_plot.hpp"
 
@@ -37,12 +37,7 @@ ExitStatus plot(const PlotArguments& arguments) {
   }
   const std::filesystem::path out =
       arguments.out.empty() ? runs.first_folder() / "plot.svg" : std::filesystem::path(arguments.out);
-  if (out.extension() != ".svg") {
-    const std::string stem = out.stem().string();
-    complain("pictures are SVG: need --out " + stem + ".svg; then `rsvg-convert -o " + stem + ".png " + stem + ".svg`");
-    return ExitStatus::bad_input;
-  }
-  write_file(out, svg_plot(legend.size() == 1 ? legend.front() : "", legend, panels));
+  write_picture(out, svg_plot(legend.size() == 1 ? legend.front() : "", legend, panels));
   const std::size_t count = panels.size();
   print(arguments.json ? json_text({{"file", out.string()}, {"columns", count}})
                        : std::to_string(count) + (count == 1 ? " column in " : " columns in ") + out.string() + '\n');
@@ -54,7 +49,7 @@ void add_plot(Options& o, PlotArguments& a) {
              "Folders of runs, then names of columns, or what stands before a dot in them; without names: the "
              "coordinates of hinges and the deflections of tips")
       .required();
-  o.value("--out", a.out, "FILE", "File of the picture; default: plot.svg in the first folder");
+  o.value("--out", a.out, "FILE", "File of the picture, .svg or .png; default: plot.svg in the first folder");
   o.list("--over", a.over, "X,…",
          "A place [m] for each column: their least and greatest over these in place of time, an envelope");
   o.flag("--terminal", a.terminal, "Draw in the terminal");

@@ -207,6 +207,51 @@ TEST(Run, ResultsNameArmColumnsWithUnits) {
   }
 }
 
+/// Plots with programs of a folder alone.
+Finished plotted_with(const Folder& folder, const std::string& programs) {
+  return Process(folder, {"/usr/bin/env", "PATH=" + programs, WITHY_PROGRAM, "plot", "out", "pivot", "--out", "p.png"})
+      .wait();
+}
+
+TEST(Plot, DrawsPngByLibrsvgAndSaysWhereThatIsMissing) {
+  const Folder folder;
+  ASSERT_EQ(withy(folder, {"run", "scenes/pendulum.yaml", "--set", "time.end=0.2", "--out", "out"}).status, 0);
+  const auto left = [&] {
+    std::size_t files = 0;
+    for (const auto& file : std::filesystem::directory_iterator(folder.path()))
+      files += file.path().filename().string().starts_with("p.png");
+    return files;
+  };
+  const Finished missing = plotted_with(folder, "/nowhere");
+  EXPECT_EQ(missing.status, 3);
+  EXPECT_THAT(missing.err, HasSubstr("rsvg-convert, which is not installed (Debian: apt install librsvg2-bin)"));
+  EXPECT_EQ(left(), 0U);
+  folder.write("broken/rsvg-convert", "#!/bin/sh\necho 'no fonts' >&2\nexit 7\n");
+  std::filesystem::permissions(folder.path() / "broken/rsvg-convert", std::filesystem::perms::owner_all);
+  const Finished broken = plotted_with(folder, (folder.path() / "broken").string());
+  EXPECT_EQ(broken.status, 3);
+  EXPECT_THAT(broken.err, AllOf(HasSubstr("no fonts"), HasSubstr("p.png could not be drawn: rsvg-convert ended with "
+                                                                 "status 7")));
+  EXPECT_EQ(left(), 0U);
+  if (!std::filesystem::exists("/usr/bin/rsvg-convert")) GTEST_SKIP() << "rsvg-convert is not installed";
+  const Finished drawn = plotted_with(folder, "/usr/bin");
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_THAT(drawn.out, HasSubstr(" in p.png"));
+  EXPECT_EQ(left(), 1U);
+  const std::string png = folder.read("p.png");
+  ASSERT_TRUE(png.starts_with("\x89PNG\r\n\x1a\n"));
+  // The head has width and height, most significant byte first: two pixels for each of the picture's units.
+  const auto number = [&](std::size_t at) {
+    unsigned value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = 256 * value + static_cast<unsigned char>(png.at(at + i));
+    return value;
+  };
+  ASSERT_EQ(withy(folder, {"plot", "out", "pivot", "--out", "p.svg"}).status, 0);
+  const std::string svg = folder.read("p.svg");
+  EXPECT_THAT(svg, HasSubstr("width=\"" + std::to_string(number(16) / 2) + "\" height=\"" +
+                             std::to_string(number(20) / 2) + "\""));
+}
+
 TEST(Run, LeavesAPictureThatPlotAndReportMakeAnew) {
   const Folder folder;
   const auto run = [&](const std::string& formulation) {
@@ -223,10 +268,9 @@ TEST(Run, LeavesAPictureThatPlotAndReportMakeAnew) {
     EXPECT_THAT(picture, HasSubstr(text));
   f = withy(folder, {"plot", "ruthless", "elbow", "--terminal"});
   EXPECT_THAT(f.out, HasSubstr("elbow [deg]"));
-  f = withy(folder, {"plot", "ruthless", "elbow", "--out", "elbow.png"});
+  f = withy(folder, {"plot", "ruthless", "elbow", "--out", "elbow.gif"});
   EXPECT_EQ(f.status, 2);
-  EXPECT_THAT(f.err, HasSubstr("need --out elbow.svg; then `rsvg-convert -o elbow.png elbow.svg`"));
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "elbow.png"));
+  EXPECT_THAT(f.err, HasSubstr("got the file 'elbow.gif' for a picture; need a name that ends in .svg or .png"));
   f = withy(folder, {"plot", "ruthless", "elbw"});
   EXPECT_EQ(f.status, 2);
   EXPECT_THAT(f.err, HasSubstr("there is no column \"elbw\"; did you mean \"elbow\"?"));
