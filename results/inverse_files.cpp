@@ -36,22 +36,35 @@ std::string demands_text(const study::InverseStudy& study) {
   return table.str();
 }
 
+/// Names stand for the rest of a file that has many, as results.csv of a run.
+std::string ignored_text(const std::vector<std::string>& ignored) {
+  constexpr std::size_t most = 6;
+  if (ignored.empty()) return "";
+  const std::size_t shown = std::min(most, ignored.size());
+  std::string text = "\nColumns left out, for no hinge of one coordinate has their names: ";
+  for (std::size_t i = 0; i < shown; ++i) text += (i > 0 ? ", " : "") + ignored[i];
+  return text + (ignored.size() > shown ? fmt::format(" and {} more.\n", ignored.size() - shown) : ".\n");
+}
+
 }  // namespace
 
-Json inverse_json(const Scene& scene, const RunSummary& summary, const study::InverseStudy& study) {
+Json inverse_json(const Scene& scene, const RunSummary& summary, const study::InverseStudy& study,
+                  const std::vector<std::string>& ignored) {
   return {{"scene", scene.file},
           {"name", scene.name},
           {"formulation", scene.formulation_name},
           {"status", name(summary.status)},
           {"message", summary.message},
           {"t_end", summary.reached},
-          {"drives", drives_json(study)}};
+          {"drives", drives_json(study)},
+          {"ignored", ignored}};
 }
 
 std::string inverse_text(const std::string& title, const Scene& scene, const RunSummary& summary,
-                         const study::InverseStudy& study) {
+                         const study::InverseStudy& study, const std::vector<std::string>& ignored) {
   return fmt::format("{} ({}, {}, {} outputs, {})\n\n{}", title, scene.formulation_name, scene.integrator_name,
-                     study.times().size(), study::outcome_text(summary), demands_text(study));
+                     study.times().size(), study::outcome_text(summary), demands_text(study)) +
+         ignored_text(ignored);
 }
 
 std::string inverse_picture(const std::string& title, const study::InverseStudy& study) {

@@ -74,17 +74,19 @@ Extended extended(const std::vector<double>& times, const std::vector<double>& v
   return {c[0], c[1] / scale};
 }
 
-/// Refuses a column that is hardly meant to be left out: its name is near that of a hinge which has no column.
-void refuse_misspelt(const std::vector<std::string>& head, const Model& model, const std::string& file,
-                     const RecordedMotion& motion) {
+/// Notes the columns that are left out. Refuses one that is hardly meant to be: its name is near that of a hinge which
+/// has no column.
+void leave_out(const std::vector<std::string>& head, const Model& model, const std::string& file,
+               RecordedMotion& motion) {
   std::vector<std::string> missing;
   for (const HingeNode& hinge : model.hinges())
     if (coordinate_columns(hinge).size() == 1 && !motion.coordinates.contains(hinge.name))
       missing.push_back(hinge.name);
   for (const std::string& text : head) {
     const Head h(text);
-    const bool other = h.name == "t" || h.name.find('.') != std::string::npos || motion.coordinates.contains(h.name);
-    const std::string guess = other ? "" : nearest(h.name, missing);
+    if (h.name == "t" || motion.coordinates.contains(h.name)) continue;
+    motion.ignored.push_back(text);
+    const std::string guess = h.name.find('.') != std::string::npos ? "" : nearest(h.name, missing);
     if (!guess.empty())
       throw InputError(fmt::format("{}:1: no hinge is named '{}'; did you mean '{}'?", file, h.name, guess));
   }
@@ -106,7 +108,7 @@ std::vector<Source> sources_of(const std::vector<std::string>& head, const Model
     }
   }
   const bool timed = !sources.empty() && sources.front().values == &motion.times;
-  if (timed) refuse_misspelt(head, model, file, motion);
+  if (timed) leave_out(head, model, file, motion);
   if (timed && !motion.coordinates.empty()) return sources;
   std::string known;
   for (const HingeNode& hinge : model.hinges())

@@ -15,11 +15,12 @@ namespace withy::study {
 struct RecordedMotion {
   std::vector<double> times;                               ///< [s], increasing, from 0
   std::map<std::string, std::vector<double>> coordinates;  ///< by hinge [rad, m]
+  std::vector<std::string> ignored;                        ///< heads of columns that no hinge has, as the file has them
 };
 
 /// Reads a CSV file with the head `t[s],shoulder[rad],elbow[deg],…`: as many hinges of one coordinate as it names, in
-/// any unit that measures them. Other columns are left out, so that results.csv of a run is such a file. \throws
-/// InputError with file and line.
+/// any unit that measures them. Other columns are left out and named, so that results.csv of a run is such a file; one
+/// whose name is near that of a hinge without a column is an error. \throws InputError with file, line and column.
 RecordedMotion read_recorded_motion(const std::filesystem::path& file, const Model& model);
 
 /// The scene with these motions in the place of its own, through the rows by cubic splines; it ends with the last row.

@@ -17,17 +17,19 @@ struct InverseArguments : SceneArguments, OutputArguments {
   std::string motion;  ///< file with hinge coordinates over time; empty: the scene's motions
 };
 
-/// The scene with the motions of the file in the place of its own.
-study::Prepared led_scene(const Engine& engine, const std::string& file) {
+/// The scene with the motions of the file in the place of its own. \param ignored columns that are left out
+study::Prepared led_scene(const Engine& engine, const std::string& file, std::vector<std::string>& ignored) {
   if (file.empty()) return engine.prepared();
   const study::RecordedMotion motion = study::read_recorded_motion(file, engine.model());
+  ignored = motion.ignored;
   return study::prepare(study::led_by(engine.prepared().values, motion), engine.registry());
 }
 
 ExitStatus inverse(const InverseArguments& given) {
   InverseArguments arguments = given;
   const Engine engine(arguments);
-  const study::Prepared led = led_scene(engine, arguments.motion);
+  std::vector<std::string> ignored;
+  const study::Prepared led = led_scene(engine, arguments.motion, ignored);
   study::InverseStudy study(led);
   if (arguments.out.empty()) arguments.out = default_folder(arguments, "inverse");
   const std::filesystem::path folder = arguments.out;
@@ -43,8 +45,8 @@ ExitStatus inverse(const InverseArguments& given) {
   const Scene& scene = led.scene;
   const std::string title = led.title() + ": inverse dynamics";
   write_file(folder / "inverse.svg", inverse_picture(title, study));
-  print(arguments.json ? json_text(inverse_json(scene, summary, study))
-                       : inverse_text(title, scene, summary, study) +
+  print(arguments.json ? json_text(inverse_json(scene, summary, study, ignored))
+                       : inverse_text(title, scene, summary, study, ignored) +
                              folder_text(folder.string(), "results.csv, run.json and inverse.svg"));
   return ended(summary);
 }

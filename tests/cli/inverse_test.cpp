@@ -135,6 +135,25 @@ TEST(Inverse, WorkIsTheEnergyThatTheMotionGives) {
   EXPECT_EQ(drive.at("unit"), "N m");
 }
 
+TEST(Inverse, SaysWhichColumnsItLeavesOut) {
+  const Folder folder;
+  const auto led = [&](const std::string& head, std::vector<std::string> more) {
+    folder.write("path.csv", head + "\n0,0,1,2,3\n1,0.1,1,2,3\n");
+    more.insert(more.begin(),
+                {"inverse", "scenes/two-link-slew.yaml", "--motion", "path.csv", "--set", "loads={}", "--out"});
+    const Finished f = withy(folder, more);
+    EXPECT_EQ(f.status, 0) << f.err;
+    return f.out;
+  };
+  const std::string head = "t[s],shoulder[rad],motor[A],note[1],elbow.motion_effort[N m]";
+  EXPECT_THAT(led(head, {"words"}),
+              HasSubstr("Columns left out, for no hinge of one coordinate has their names: motor[A], note[1], "
+                        "elbow.motion_effort[N m].\n"));
+  EXPECT_EQ(json::parse(led(head, {"json", "--json"})).at("ignored"),
+            (json{"motor[A]", "note[1]", "elbow.motion_effort[N m]"}));
+  EXPECT_THAT(led("t[s],shoulder[rad]", {"all"}), testing::Not(HasSubstr("left out")));
+}
+
 TEST(Inverse, WhatIsNoMotionIsBadInput) {
   const Folder folder;
   const auto refused = [&](const std::string& table, const char* message) {
