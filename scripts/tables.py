@@ -3,7 +3,6 @@
 them into the pages: ends of slews (loads), convergence of mode families, a round trip of inverse dynamics (modes), arms
 in segments (bodies), the reference turbine (models). Two minutes of CPU time."""
 import csv
-import json
 import math
 import pathlib
 import subprocess
@@ -12,39 +11,18 @@ import tempfile
 
 import numpy
 
+import recorded
+
 top = pathlib.Path(__file__).resolve().parents[1]
-program = sys.argv[1] if len(sys.argv) > 1 else "build/release/bin/withy"
+program = recorded.Program(sys.argv[1:])
 work = pathlib.Path(tempfile.mkdtemp())
 
 
-def withy(*words, status=(0, 1)):
-    done = subprocess.run([program, *map(str, words)], cwd=top, capture_output=True, text=True)
-    if done.returncode not in status:
-        sys.exit(f"withy {' '.join(map(str, words))}: {done.stderr}")
-    return done.stdout
-
-
-def told(*words):
-    return json.loads(withy(*words, "--json"))
-
-
-def frequencies(*words):
-    """Of the vibrations, in order [rad/s]."""
-    modes = told("modes", *words)["runs"][0]["points"][0]["modes"]
-    return sorted(m["frequency"] for m in modes if m["frequency"] > 1e-9)
+withy, told, frequencies = program.run, program.told, program.frequencies
 
 
 def record(name, rows, sentence=""):
-    def git(*words):
-        return subprocess.run(["git", *words], cwd=top, capture_output=True, text=True)
-    commit = git("rev-parse", "--short", "HEAD").stdout.strip()
-    if git("diff", "--quiet", "HEAD", "--", ":!docs").returncode:
-        commit += " with changes"
-    day = subprocess.run(["date", "+%Y-%m-%d"], capture_output=True, text=True).stdout.strip()
-    body = "\n".join("\t".join(map(str, r)) for r in rows)
-    (top / f"docs/measured/{name}.txt").write_text(
-        f"command: scripts/tables.py\ncommit: {commit}\ndate: {day}\n\n{body}\n" + (f"\n{sentence}\n" if sentence else ""))
-    print(name)
+    recorded.record(name, "scripts/tables.py", rows, sentence)
 
 
 def share(x):
