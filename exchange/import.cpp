@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 #include "elastodyn.hpp"
 #include "mjcf.hpp"
@@ -83,6 +84,15 @@ ImportedScene import_tree(const ModelImport& what, const std::string& text, Regi
   return scene;
 }
 
+/// \throws std::invalid_argument where the file cannot be read
+std::string model_text(const std::string& file) {
+  try {
+    return read_bytes(file);
+  } catch (const std::system_error& e) {
+    throw std::invalid_argument(e.what());
+  }
+}
+
 }  // namespace
 
 bool is_model_file(const std::string& file) {
@@ -91,7 +101,7 @@ bool is_model_file(const std::string& file) {
 }
 
 ImportedScene import_model(const ModelImport& what, Registry& registry) {
-  const std::string text = read_bytes(what.file);
+  const std::string text = model_text(what.file);
   if (extension_of(what.file) != ".dat") return import_tree(what, text, registry);
   if (!what.flexible.empty() || what.free_base || what.mend_inertias)
     throw std::invalid_argument("--flexible, --free-base and --mend-inertias are for URDF and MJCF");

@@ -52,6 +52,9 @@ inline const Slot& single_coordinate(const Model& model, const std::string& hing
 /// \throws std::invalid_argument where the model has no such rate.
 inline std::size_t speed_index(const Model& model, const RateName& rate) {
   const Slot& slot = hinge_slot(model, rate.hinge);
+  if (slot.speeds == 0)
+    throw std::invalid_argument("hinge '" + rate.hinge +
+                                "' holds its body still and has no rates; need one that moves");
   if (rate.component >= slot.speeds)
     throw std::invalid_argument("hinge '" + rate.hinge + "' has " + std::to_string(slot.speeds) +
                                 " rates; there is no component " + std::to_string(rate.component) +

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <optional>
 #include <sstream>
 
@@ -17,18 +18,22 @@ Call add(CLI::App& parser, const Command& command) {
   return command.add(options);
 }
 
-/// Which option a word that the parser does not know may have been.
+/// What is wrong with words that the parser does not know: which option the first may have been.
 std::string meant_option(const CLI::App& parser, const CLI::ExtrasError& e, int argc, const char* const* argv) {
   std::vector<std::string> known;
   for (const CLI::Option* option : parser.get_options())
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  std::string first;
   for (int i = 1; i < argc; ++i) {
     const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
-    if (!word.starts_with("--") || std::string(e.what()).find(word) == std::string::npos) continue;
+    if (!word.starts_with("-") || std::string(e.what()).find(word) == std::string::npos) continue;
     const std::string guess = nearest(word, known);
     if (!guess.empty() && guess != word) return in_quotes(word) + " is no option; did you mean " + guess + "?";
+    if (first.empty() && guess != word) first = word;
   }
-  return {};
+  const std::string scene =
+      std::find(known.begin(), known.end(), "--set") == known.end() ? "" : "; --set PATH=VALUE sets what a scene says";
+  return first.empty() ? std::string(e.what()) : in_quotes(first) + " is no option" + scene;
 }
 
 /// Parses with this parser; what is not the command's to answer is printed, and its status returned.
@@ -38,8 +43,7 @@ std::optional<ExitStatus> parse(CLI::App& parser, const Program& program, int ar
     return {};
   } catch (const CLI::ExtrasError& e) {
     const std::vector<CLI::App*> chosen = parser.get_subcommands();
-    const std::string meant = meant_option(chosen.empty() ? parser : *chosen.back(), e, argc, argv);
-    complain(meant.empty() ? e.what() : meant);
+    complain(meant_option(chosen.empty() ? parser : *chosen.back(), e, argc, argv));
     complain(std::string(program.name) + ' ' + (chosen.empty() ? "" : chosen.back()->get_name() + " ") +
              "--help names what there is");
     return ExitStatus::bad_input;

@@ -34,12 +34,16 @@ void Checker::key_error(const std::string& path, std::string message) const {
 }
 
 void Checker::got(const Value& value, const ParameterSpec& spec, const std::string& why) const {
+  std::string needed = expectation(spec);
+  // Which numbers they are, where their count alone would not tell.
+  if (spec.kind == ParameterSpec::Kind::vector && spec.count > 0 && !spec.meaning.empty())
+    needed += ": " + spec.meaning + axis_as_list(value);
   diagnostics_.error(value.place(),
-                     fmt::format("got {}{}; need {}", shown(value), why.empty() ? "" : ": " + why, expectation(spec)));
+                     fmt::format("got {}{}; need {}", shown(value), why.empty() ? "" : ": " + why, needed));
 }
 
 void Checker::unknown_plugin(const Value& id, const std::string& kind, const std::vector<std::string>& ids) const {
-  const std::string guess = id.kind() == Value::Kind::text ? nearest(id.text(), ids) : "";
+  const std::string guess = id.kind() == Value::Kind::text ? known_elsewhere(id.text(), ids) : "";
   diagnostics_.error(id.place(), fmt::format("no {} plugin {}{}; available: {}", kind, shown(id),
                                              guess.empty() ? "" : fmt::format("; did you mean '{}'?", guess),
                                              ids.empty() ? "none" : listed(ids)));
@@ -98,7 +102,10 @@ bool Checker::refers(const Place& place, const std::string& name, ParameterSpec:
                                            : names_->frames;
   if (known.has(name)) return true;
   if (what == signal && known.has(name.substr(0, name.find('.')))) return true;
-  diagnostics_.error(place, fmt::format("no {} {}{}", referent(what), in_quotes(name), suggest(name, known.names())));
+  // A station is a frame where a hinge uses it.
+  const bool on_body = what == frame && names_->bodies.has(name.substr(0, name.find('.')));
+  diagnostics_.error(place, fmt::format("no {} {}{}{}", referent(what), in_quotes(name), suggest(name, known.names()),
+                                        on_body ? "; frames of the body name its other places" : ""));
   return false;
 }
 

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "withy/scene/names.hpp"
 #include "withy/scene/orientation.hpp"
@@ -152,6 +155,27 @@ Value placed(Value value, const Place& place) {
     member = placed(std::move(member), {place.line, place.column, place.path + "/" + key});
   }
   return value;
+}
+
+std::string axis_as_list(const Value& value) {
+  if (value.kind() != Value::Kind::text) return "";
+  std::string_view text = value.text();
+  const bool negative = text.starts_with('-');
+  if (negative || text.starts_with('+')) text.remove_prefix(1);
+  constexpr std::string_view axes = "xyz";
+  if (text.size() != 1 || axes.find(text) == std::string_view::npos) return "";
+  std::array<int, 3> list{};
+  list.at(axes.find(text)) = negative ? -1 : 1;
+  return fmt::format(", as [{}]", fmt::join(list, ", "));
+}
+
+std::string known_elsewhere(const std::string& name, const std::vector<std::string>& ids) {
+  static const std::map<std::string, std::string, std::less<>> methods = {
+      {"rk45", "dopri5"}, {"RK45", "dopri5"}, {"ode45", "dopri5"}, {"DOP853", "dop853"}, {"ode15s", "cvode"},
+      {"BDF", "cvode"},   {"bdf", "cvode"},   {"Radau", "radau"},  {"ode23tb", "radau"}};
+  const auto method = methods.find(name);
+  if (method != methods.end() && std::find(ids.begin(), ids.end(), method->second) != ids.end()) return method->second;
+  return nearest(name, ids);
 }
 
 }  // namespace withy

@@ -21,6 +21,11 @@ std::vector<std::string> keys_of(const Value& map);
 std::vector<std::string> keys_of(const std::vector<ParameterSpec>& members);
 /// "; did you mean 'length'?" or, where none is near, "; known: length, mass".
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates);
+/// Of "z" or "-x" where three numbers are needed, as ", as [0, 0, 1]"; empty for all else.
+std::string axis_as_list(const Value& value);
+/// The plugin of `ids` that is meant by a name: the one of the method that other programs call so, else the nearest;
+/// empty where none is near.
+std::string known_elsewhere(const std::string& name, const std::vector<std::string>& ids);
 /// The value and everything in it standing at `place`, with paths from there.
 Value placed(Value value, const Place& place);
 

@@ -84,15 +84,17 @@ class StateReader {
 
   /// Reads the list under `key` into the numbers of y from `first` on; null where there is none that is right.
   const Value* list(const Value& map, const char* key, std::size_t first, const std::vector<std::string>& units) {
-    return numbers(map.find(key), first, units);
+    return numbers(map.find(key), first, units, "");
   }
-  const Value* numbers(const Value* given, std::size_t first, const std::vector<std::string>& units) {
+  /// \param what they are; may be empty
+  const Value* numbers(const Value* given, std::size_t first, const std::vector<std::string>& units, const char* what) {
     if (given == nullptr) return nullptr;
     if (given->kind() != Value::Kind::list || given->items().size() != units.size()) {
       checker_.diagnostics().error(given->place(),
-                                   fmt::format("got {}; need a list of {}", shown(*given),
+                                   fmt::format("got {}; need a list of {}{}", shown(*given),
                                                units.size() == 1 ? "one finite number, in brackets"
-                                                                 : fmt::format("{} finite numbers", units.size())));
+                                                                 : fmt::format("{} finite numbers", units.size()),
+                                               what));
       good_ = false;
       return nullptr;
     }
@@ -129,7 +131,11 @@ class StateReader {
         good_ = good_ && coordinates.has_value();
         given = coordinates ? &*coordinates : nullptr;
       }
-      const Value* position = numbers(given, slot.position, hinge_units(hinge, false));
+      const char* what = !has_quaternion(hinge) ? ""
+                         : slot.positions == 4
+                             ? ", a unit quaternion w, x, y, z; or a map as {xyz: [a, b, c]}"
+                             : ", a unit quaternion w, x, y, z and x, y, z [m]; or a map with position, orientation";
+      const Value* position = numbers(given, slot.position, hinge_units(hinge, false), what);
       if (position != nullptr && has_quaternion(hinge)) {
         const std::span<double> q(state_.y.data() + slot.position, 4);
         if (!accept_quaternion(q, position->place(), checker_.diagnostics())) good_ = false;

@@ -309,7 +309,8 @@ class TreeBuilder {
       node(last).frames.push_back({name, *section, {}});
       return {last, static_cast<int>(node(last).frames.size()) - 1};
     }
-    error(end, fmt::format("body '{}' has no frame {}{}", entry.name, in_quotes(name), checker_.suggest(name, known)));
+    error(end, fmt::format("body '{}' has no frame {}{}; its frames name other places of it", entry.name,
+                           in_quotes(name), checker_.suggest(name, known)));
     return {};
   }
 

@@ -241,7 +241,22 @@ std::optional<double> plain_number(std::string_view text) {
   return value;
 }
 
-AnyQuantity read_any_quantity(std::string_view text) {
+namespace {
+
+/// Spaces that do not break, as text that is copied from pages has them between a number and its unit.
+std::string with_plain_spaces(std::string_view text) {
+  std::string plain(text);
+  for (const std::string_view space : {"\u00a0", "\u202f", "\u2009"})
+    for (std::size_t at = plain.find(space); at != std::string::npos; at = plain.find(space, at + 1))
+      plain.replace(at, space.size(), " ");
+  return plain;
+}
+
+}  // namespace
+
+AnyQuantity read_any_quantity(std::string_view given) {
+  const std::string plain = with_plain_spaces(given);
+  const std::string_view text = plain;
   double number = 0;
   const std::size_t length = leading_number(text, number);
   if (length == 0) {
@@ -256,7 +271,9 @@ AnyQuantity read_any_quantity(std::string_view text) {
   return {unit.unit->to_si(number), unit.unit->dimension, {}};
 }
 
-QuantityReading read_quantity(std::string_view text, std::string_view si_unit) {
+QuantityReading read_quantity(std::string_view given, std::string_view si_unit) {
+  const std::string plain = with_plain_spaces(given);
+  const std::string_view text = plain;
   const AnyQuantity read = read_any_quantity(text);
   if (!read.value) return {{}, read.problem};
   const UnitReading expected = read_unit(si_unit.empty() ? "1" : si_unit);

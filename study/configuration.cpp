@@ -143,8 +143,12 @@ bool rate_is_angular(const Model& model, const std::string& name, const std::str
 Spin read_spin(const Model& model, const std::string& hinge, const std::string& rate, const std::string& what) {
   const bool angular = rate_is_angular(model, hinge, what);
   if (const std::optional<double> number = plain_number(rate)) return {hinge, *number};
-  const QuantityReading quantity = read_quantity(rate, angular ? "rad/s" : "m/s");
-  if (!quantity.value) throw OptionError(what, "rate of '" + hinge + "': " + quantity.problem);
+  const char* unit = angular ? "rad/s" : "m/s";
+  const QuantityReading quantity = read_quantity(rate, unit);
+  if (!quantity.value)
+    throw OptionError(what, fmt::format("rate of '{}': got '{}'{}; need a number in {}, or one with its unit{}", hinge,
+                                        rate, quantity.problem.empty() ? "" : ": " + quantity.problem, unit,
+                                        angular ? ", as '60 rev/min'" : ""));
   return {hinge, *quantity.value};
 }
 
@@ -154,7 +158,7 @@ Holding read_holding(const Model& model, const std::vector<std::string>& lock, c
     const std::size_t equals = text.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
       throw OptionError("spin", "got '" + text + "'; need HINGE=RATE, as axle=6 or axle='60 rev/min'");
-    holding.spun.push_back(read_spin(model, text.substr(0, equals), text.substr(equals + 1), "--spin"));
+    holding.spun.push_back(read_spin(model, text.substr(0, equals), text.substr(equals + 1), "spin"));
   }
   return holding;
 }

@@ -7,6 +7,7 @@
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/scene/describe.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -73,9 +74,9 @@ std::vector<LinearOutput> linear_outputs(const Configuration& c, const std::vect
     for (const LinearOutput& o : all)
       if (is(o.column.name) || is(o.in_tables)) chosen.push_back(o);
     if (chosen.size() > before) continue;
-    std::string known;
-    for (const LinearOutput& o : all) known += (known.empty() ? "" : ", ") + o.column.name;
-    throw OptionError("outputs", "no '" + name + "'; known: " + known);
+    std::vector<std::string> known;
+    for (const LinearOutput& o : all) known.push_back(o.column.name);
+    throw OptionError("outputs", "no '" + name + "'" + suggestion(name, known));
   }
   return chosen;
 }

@@ -77,6 +77,7 @@ TEST(Modes, BadSweepsSpinsAndLocksAreNamed) {
       {{"--spin", "axle"}, "HINGE=RATE"},
       {{"--spin", "axle=5 kg"}, "axle"},
       {{"--lock", "axel"}, "known: axle"},
+      {{"--spin", "axle=fast"}, "--spin: rate of 'axle': got 'fast'; need a number in rad/s, or one with its unit, as"},
       {{"--sweep", "bodies.blade.lenth=1:2:2"}, "length"}};
   for (const auto& [options, named] : bad) {
     std::vector<std::string> arguments = {"modes", blade};

@@ -157,6 +157,31 @@ const Fault faults[] = {
      {"run", "s.yaml", "--formulatoin", "exact"},
      2,
      {"\"--formulatoin\" is no option; did you mean --formulation?", "withy run --help"}},
+    {"option_of_nothing",
+     "",
+     "",
+     {"run", "s.yaml", "--rtol", "1e-6"},
+     2,
+     {"\"--rtol\" is no option; --set PATH=VALUE sets what a scene says", "withy run --help"}},
+    {"rate_that_is_no_number",
+     "",
+     "",
+     {"modes", "s.yaml", "--spin", "shoulder=fast"},
+     2,
+     {"--spin: rate of 'shoulder': got 'fast'; need a number in rad/s, or one with its unit, as '60 rev/min'"}},
+    {"output_misspelt",
+     "",
+     "",
+     {"linearize", "s.yaml", "--outputs", "boom.tip.w"},
+     2,
+     {"--outputs: no 'boom.tip.w'; did you mean 'boom.tip."}},
+    {"model_missing", "", "", {"import", "nothing.urdf"}, 2, {"cannot read nothing.urdf: No such file"}},
+    {"picture_of_another_kind",
+     "",
+     "",
+     {"plot", "runs", "shoulder", "--out", "p.jpg"},
+     2,
+     {"got the file 'p.jpg' for a picture; need a name that ends in .svg or .png"}},
     {"value_without_a_path", "", "", {"run", "s.yaml", "--set", "time.end"}, 2, {"need path=value, as time.end=2"}},
     {"value_of_nobody", "", "", {"run", "s.yaml", "--set", "bodies.bom.length=3"}, 2, {"did you mean 'boom'?"}},
     {"formulation_misspelt", "", "", {"run", "s.yaml", "--formulation", "exat"}, 2, {"did you mean 'exact'?"}},
@@ -201,6 +226,7 @@ TEST_P(Faults, AreToldWithPlaceCauseAndRemedy) {
     scene.replace(at, from.size(), fault.to);
   }
   folder.write("s.yaml", scene);
+  folder.write("runs/results.csv", "t[s],shoulder[rad]\n0,0\n1,0.1\n");
   folder.write("misspelt.csv", "t[s],sholder[deg]\n0,0\n1,10\n");
   folder.write("text.csv", "t[s],shoulder[deg]\n0,0\n0.5,ten\n1,20\n");
   folder.write("back.csv", "t[s],shoulder[deg]\n0,0\n1,10\n0.5,20\n");

@@ -272,6 +272,28 @@ const BadScene bad_scenes[] = {
      "21:64: /loads/motor/hinges/shoulder: the law 'motion' needs 'motion'"},
     {"choice_of_another_law", "law: sine", "law: sinus",
      R"(21:53: /loads/motor/law: got "sinus": did you mean 'sine'?; need one of: constant, sine, table, steps)"},
+    {"inertia_of_three_numbers", "[0.01, 0.01, 0.01, 0, 0, 0]", "[0.01, 0.01, 0.01]",
+     "8:14: /bodies/hub/inertia: got a list of 3; need a list of 6 finite numbers [kg m^2]: elements xx, yy, zz, xy, "
+     "xz, yz of the inertia matrix about the centre of mass, body axes"},
+    {"axis_as_a_letter", "axis: [0, 0, 1]", "axis: -y",
+     "18:36: /hinges/shoulder/axis: got \"-y\"; need a list of 3 finite numbers: axis, the same components in the "
+     "hinge frames of parent and child; any length but zero, as [0, -1, 0]"},
+    {"gravity_as_a_number", "[0, -9.81, 0]", "-9.81",
+     "2:10: /gravity: got -9.81; need a list of 3 finite numbers [m/s^2]: acceleration of gravity, world axes"},
+    {"integrator_by_the_name_of_another_program", "gravity:", "integrator: ode45\ngravity:",
+     R"(2:13: /integrator/name: no integrator plugin "ode45"; did you mean 'dopri5'?)"},
+    {"load_on_a_weld", "hinge: shoulder,", "hinge: root,",
+     "21:3: /loads/motor: hinge 'root' holds its body still and has no rates; need one that moves"},
+    {"start_of_a_free_hinge_as_a_position", "hinges:\n  shoulder: {type: revolute, axis: [0, 0, 1],",
+     "initial: {hinges: {shoulder: {position: [0, 0, 1]}}}\nhinges:\n  shoulder: {type: free,",
+     "17:41: /initial/hinges/shoulder/position: got a list of 3; need a list of 7 finite numbers, a unit quaternion w, "
+     "x, y, z and x, y, z [m]; or a map with position, orientation"},
+    {"parent_in_the_middle_of_a_beam", "child: boom}",
+     "child: boom}\n  more: {type: weld, parent: boom.middle, child: hub}",
+     R"(20:30: /hinges/more/parent: body 'boom' has no frame "middle"; known: root, tip; its frames name other places )"},
+    {"output_of_a_place_without_a_frame", "loads:", "outputs: {end: {type: frame, of: boom.middle}}\nloads:",
+     R"(20:34: /outputs/end/of: no frame "boom.middle"; known: hub, hub.root, hub.out, boom, boom.root, boom.tip; )"
+     "frames of the body name its other places"},
     {"load_component_out_of_range", "hinge: shoulder,", "hinge: shoulder, component: 1,", "21:3: /loads/motor: "},
     {"bodies_as_a_list", "bodies:\n  hub:\n    type: rigid", "bodies: [hub]\nlimits:\n  hub:\n    type: rigid",
      "4:9: /bodies: got a list of 1; need a map of names"},
@@ -319,12 +341,14 @@ outputs:
   other_closing: {type: reaction, constraint: otter}
 )";
   // Each fault alone is reported, once; so is a name that nothing bears.
-  EXPECT_EQ(problems(replaced(good_scene, "law: sine", "law: sinus") + parts, registry),
-            "s.yaml:21:53: /loads/motor/law: got \"sinus\": did you mean 'sine'?; need one of: constant, sine, table, "
-            "steps\n"
-            "s.yaml:24:60: /constraints/loop/a: no frame \"boom.tpi\"; did you mean 'boom.tip'?\n"
-            "s.yaml:28:28: /outputs/place/of: no frame \"boom.tpi\"; did you mean 'boom.tip'?\n"
-            "s.yaml:31:3: /outputs/other_closing: there is no constraint 'otter'");
+  EXPECT_EQ(
+      problems(replaced(good_scene, "law: sine", "law: sinus") + parts, registry),
+      "s.yaml:21:53: /loads/motor/law: got \"sinus\": did you mean 'sine'?; need one of: constant, sine, table, "
+      "steps\n"
+      "s.yaml:24:60: /constraints/loop/a: no frame \"boom.tpi\"; did you mean 'boom.tip'?\n"
+      "s.yaml:28:28: /outputs/place/of: no frame \"boom.tpi\"; did you mean 'boom.tip'?; frames of the body name its "
+      "other places\n"
+      "s.yaml:31:3: /outputs/other_closing: there is no constraint 'otter'");
 }
 
 TEST_F(BadDocuments, TheErrorCarriesPlaceAndMessageForPrograms) {

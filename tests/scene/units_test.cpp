@@ -32,6 +32,8 @@ const Good quantities[] = {
     {"1 rev", "rad", 2 * pi},
     {"5 g", "kg", 0.005},
     {"5 kg", "kg", 5},
+    {"5\u00a0kg", "kg", 5},
+    {"5\u202fkg", "kg", 5},
     {"2 t", "kg", 2000},
     {"1 lb", "kg", 0.45359237},
     {"2 kg/m", "kg/m", 2},
