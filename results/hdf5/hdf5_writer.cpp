@@ -28,24 +28,29 @@ class Hdf5Writer final : public Hdf5Recorder {
   }
 
   void begin(const std::vector<Column>& columns) override {
-    if (!columns_.empty()) return;  // the table goes on
+    if (!names_.empty()) return;  // the table goes on
     const Hdf5Handle how = part_by_part(), cache = one_part();
+    wide_ = columns.size() > most_shared;
     const hsize_t none = 0, most = H5S_UNLIMITED;
     const Hdf5Handle space(need(H5Screate_simple(1, &none, &most)), &H5Sclose);
     for (const Column& column : columns) {
-      columns_.emplace_back(
-          need(H5Dcreate2(file_, column_name(column.name).c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, how, cache)),
-          &H5Dclose);
-      write_text(columns_.back(), "unit", column.unit.empty() ? "1" : column.unit);
+      names_.push_back(column_name(column.name));
+      Hdf5Handle dataset(need(H5Dcreate2(file_, names_.back().c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, how, cache)),
+                         &H5Dclose);
+      write_text(dataset, "unit", column.unit.empty() ? "1" : column.unit);
+      if (wide_)
+        need(dataset.close());
+      else
+        columns_.push_back(std::move(dataset));
     }
-    write_order(columns);
+    write_order();
     waiting_.assign(columns.size(), {});
-    if (columns.size() <= most_shared) need(H5Fflush(file_, H5F_SCOPE_LOCAL));
+    if (!wide_) need(H5Fflush(file_, H5F_SCOPE_LOCAL));
   }
 
   void describe_frames(const std::vector<std::string>& frames) override {
     for (std::size_t c = 0; c < frames.size(); ++c)
-      if (!frames[c].empty()) write_text(columns_[c], "frame", frames[c]);
+      if (!frames[c].empty()) with_column(c, [&](hid_t column) { write_text(column, "frame", frames[c]); });
     share();  // before the run, not with its first row: it writes all there is
   }
 
@@ -124,10 +129,20 @@ class Hdf5Writer final : public Hdf5Recorder {
   }
 
   /// The names of the datasets in the order of the table, since a file lists them by the alphabet.
-  void write_order(const std::vector<Column>& columns) const {
+  void write_order() const {
     std::string names;
-    for (const Column& column : columns) names += (names.empty() ? "" : "\n") + column_name(column.name);
+    for (const std::string& name : names_) names += (names.empty() ? "" : "\n") + name;
     write_text(file_, "columns", names);
+  }
+
+  /// A dataset that is open holds some 16 kB: of a wide table one is open at a time.
+  template <class Use>
+  void with_column(std::size_t c, Use&& use) const {
+    if (!wide_) return use(columns_[c]);
+    const Hdf5Handle cache = one_part();
+    Hdf5Handle column(need(H5Dopen2(file_, names_[c].c_str(), cache)), &H5Dclose);
+    use(column);
+    need(column.close());
   }
 
   void write_text(hid_t object, const std::string& name, const std::string& text) const {
@@ -145,11 +160,13 @@ class Hdf5Writer final : public Hdf5Recorder {
     const hsize_t count = waiting_.empty() ? 0 : waiting_.front().size(), first = rows_, size = rows_ + count;
     if (count == 0) return;
     const Hdf5Handle memory(need(H5Screate_simple(1, &count, nullptr)), &H5Sclose);
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      need(H5Dset_extent(columns_[c], &size));
-      const Hdf5Handle place(need(H5Dget_space(columns_[c])), &H5Sclose);
-      need(H5Sselect_hyperslab(place, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
-      need(H5Dwrite(columns_[c], H5T_NATIVE_DOUBLE, memory, place, H5P_DEFAULT, waiting_[c].data()));
+    for (std::size_t c = 0; c < waiting_.size(); ++c) {
+      with_column(c, [&](hid_t column) {
+        need(H5Dset_extent(column, &size));
+        const Hdf5Handle place(need(H5Dget_space(column)), &H5Sclose);
+        need(H5Sselect_hyperslab(place, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
+        need(H5Dwrite(column, H5T_NATIVE_DOUBLE, memory, place, H5P_DEFAULT, waiting_[c].data()));
+      });
       waiting_[c].clear();
     }
     rows_ = size;
@@ -157,7 +174,7 @@ class Hdf5Writer final : public Hdf5Recorder {
 
   /// From here on datasets grow and nothing else changes: others may read.
   void share() {
-    if (shared_ || columns_.size() > most_shared) return;
+    if (shared_ || wide_) return;
     need(H5Fstart_swmr_write(file_));
     shared_ = true;
   }
@@ -170,10 +187,12 @@ class Hdf5Writer final : public Hdf5Recorder {
 
   std::string name_;
   Hdf5Handle file_;
-  std::vector<Hdf5Handle> columns_;
+  std::vector<std::string> names_;            ///< of the columns
+  std::vector<Hdf5Handle> columns_;           ///< none of a wide table
   std::vector<std::vector<double>> waiting_;  ///< of each column the numbers of the next rows
   std::map<std::string, std::string> descriptions_;
-  hsize_t rows_ = 0;  ///< that the library has been given
+  hsize_t rows_ = 0;   ///< that the library has been given
+  bool wide_ = false;  ///< too many columns for others to read while they are written
   bool shared_ = false, ended_ = false;
   Clock::time_point began_ = Clock::now(), flushed_ = began_;
 };

@@ -78,6 +78,35 @@ TEST_F(Hdf5, WhatIsReadIsWhatWasWritten) {
   }
 }
 
+/// Of which datasets are open one at a time, filled part by part and in between.
+TEST_F(Hdf5, AWideTableIsReadAsItWasWritten) {
+  std::vector<Column> columns;
+  for (int c = 0; c < 300; ++c) columns.push_back({"c" + std::to_string(c), c % 2 == 0 ? "rad" : ""});
+  const std::vector<std::string> frames(columns.size(), "world");
+  const auto numbers = [&](std::size_t i) {
+    std::vector<double> all;
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      all.push_back(static_cast<double>(i) + 1e-3 * static_cast<double>(c));
+    return all;
+  };
+  constexpr std::size_t rows = 1100;
+  const auto file = make_hdf5_recorder(path_);
+  file->begin(columns);
+  file->describe_frames(frames);
+  for (std::size_t i = 0; i < rows; ++i) {
+    file->row(numbers(i));
+    if (i % 400 == 399) EXPECT_EQ(file->mark().rows, i + 1);
+  }
+  file->end();
+  MemoryRecorder table;
+  read_hdf5(path_, table);
+  ASSERT_EQ(table.rows().size(), rows);
+  ASSERT_EQ(table.columns().size(), columns.size());
+  EXPECT_EQ(table.columns()[298].name, "c298");
+  EXPECT_EQ(table.columns()[298].unit, "rad");
+  for (std::size_t i = 0; i < rows; ++i) ASSERT_TRUE(same(table.rows()[i], numbers(i))) << i;
+}
+
 TEST_F(Hdf5, OtherProgramsReadUnitsFramesAndWhatTheRunWas) {
   if (said("h5dump --version").find("h5dump") == std::string::npos) GTEST_SKIP() << "h5dump is not installed";
   write(3);
