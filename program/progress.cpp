@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "withy/program/fold.hpp"
+
 namespace withy::program {
 namespace {
 
@@ -41,6 +43,16 @@ void Progress::show(const std::string& text) {
   next_ = Clock::now() + std::chrono::milliseconds(100);
   shown_ = true;
   static_cast<void>(std::fputs(fmt::format("\r\033[K{}: {}", label_, text).c_str(), stderr));
+}
+
+void Progress::note(const std::string& text) {
+  if (!terminal_) return;
+  const double passed = std::chrono::duration<double>(Clock::now() - began_).count();
+  const std::size_t columns = columns_of(STDERR_FILENO);
+  std::string line = fmt::format("{:6.1f} s  {}\n", passed, text);
+  if (columns > 0) line = folded(line, columns);
+  static_cast<void>(std::fputs(("\r\033[K" + line).c_str(), stderr));
+  next_ = Clock::now();  // the line below is due
 }
 
 void Progress::begin() {

@@ -12,8 +12,8 @@ void watch_for_interrupt();
 /// Whether one of them has come.
 bool interrupted();
 
-/// One line on standard error, renewed in place ten times a second and erased at the end; nothing where standard error
-/// is no terminal.
+/// One line on standard error, renewed in place ten times a second and erased at the end, and notes above it, which
+/// stay; nothing where standard error is no terminal.
 class Progress {
  public:
   explicit Progress(std::string label);
@@ -24,6 +24,8 @@ class Progress {
   void begin();
   /// Simulated time reached [s], of a run to `end`; with its rate [s/s] and the time that is left at it.
   void at(double t, double end);
+  /// A line that stays, with the time since this was made [s].
+  void note(const std::string& text);
   /// Points that are done, of all; with the time that is left at this rate.
   void of_points(double done, double all);
 

@@ -1,5 +1,7 @@
 #include "withy/study/advice.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -65,7 +67,7 @@ void finish(Search& search, Evaluator& evaluator, Advice& advice) {
 
 }  // namespace
 
-Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy) {
+Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, const Finding& finding) {
   const Scene& scene = evaluator.base().scene;
   if (has_switches(*scene.model))
     throw InputError(
@@ -77,7 +79,10 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   Advice advice;
   advice.limit_seconds = time_limit(evaluator);
   evaluator.limit(search_share * advice.limit_seconds);
-  Search search(evaluator, candidates, accuracy, advice);
+  if (finding)
+    finding(fmt::format("the search takes {:.3g} s of CPU time at most, the longer of 10 s and 20 runs in quadratic",
+                        advice.limit_seconds));
+  Search search(evaluator, candidates, accuracy, advice, finding);
   search.find_yardstick();
   if (advice.yardstick && !search.stopped()) {
     search.try_models();

@@ -2,6 +2,7 @@
 /// The cheapest model and integration that hold an accuracy: probes, cheapest first, against a converged reference.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,9 +32,16 @@ struct Advice {
   bool interrupted = false;                  ///< the user ended the search: there is no advice
 };
 
+/// Told while a search goes on, a sentence without its full stop: what it may cost, how exact the reference is by now,
+/// which model is the cheapest of those that hold the accuracy so far, and of each formulation how far the first of its
+/// models that does not is off. None of it is advice: what comes later may be cheaper, and may be found out to fail.
+using Finding = std::function<void(const std::string&)>;
+
 /// Searches the candidates. Nothing is chosen that does not complete a run as a scene that says so would, and nothing
 /// is "above" that does not hold the accuracy. \throws InputError where the scene has loads that switch by the state.
-Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy);
+/// \param finding may be empty
+Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
+              const Finding& finding = {});
 
 /// What the choice changes in the scene that it does not say already, formulation and integrator first.
 std::vector<Change> new_changes(const Scene& scene, const Point& choice, Registry& registry);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/scene/scene.hpp"
@@ -84,6 +85,7 @@ void Search::find_yardstick() {
   goal.tightest = policy::tightest;
   goal.enough = [&](const Reference& r) {
     const double use = own_use(r);
+    tell_reference(r);
     // Candidates are not to have more modes than the truth.
     const bool rich = !modal || r.point.modes >= candidates_.modes.back() || use < policy::most_poor_reference_use;
     const double gone = evaluator_.spent() / evaluator_.limit();
@@ -156,9 +158,35 @@ double Search::best_cost() const {
   return best != nullptr ? evaluator_.cost(*best) : infinite;
 }
 
+/// How far the truth is known by now.
+void Search::tell_reference(const Reference& r) const {
+  if (!finding_) return;
+  const Yardstick yardstick{r, accuracy_.limits(evaluator_.outputs(), r.scales)};
+  finding_(fmt::format("reference so far: {}, known to {:.2g} of the accuracy, least in {}", r.text(),
+                       yardstick.own_use(), evaluator_.outputs().list()[yardstick.worst(r.own)].label));
+}
+
+/// What is new in a probe: a cheaper model that holds, or the first of a formulation that does not.
+void Search::tell_probe(const Probe& probe, double best_before) {
+  if (!finding_) return;
+  const double cost = evaluator_.cost(probe);
+  if (probe.passed() && cost < best_before) {
+    const bool again = probe.point.key() == std::exchange(told_best_, probe.point.key());
+    if (again) return;  // its cost alone is known better
+    finding_(fmt::format("so far: {} holds the accuracy with {:.2g} of it, {:.2g} s a run", probe.point.text(),
+                         probe.use, cost));
+  } else if (probe.outcome == Probe::Outcome::inaccurate && told_.insert(probe.point.formulation).second) {
+    finding_(fmt::format("{} does not hold: {:.2g} of the accuracy in {}{}", probe.point.text(), probe.use,
+                         evaluator_.outputs().list()[yardstick().worst(probe.distances)].label,
+                         probe.walk.end == Walk::End::reached ? "" : ", and the run is not over"));
+  }
+}
+
 const Probe& Search::run(const Point& point, const Allowance& allowance) {
+  const double best_before = best_cost();
   advice_.probes.push_back(evaluator_.run(point, yardstick(), allowance));
   advice_.interrupted = advice_.interrupted || advice_.probes.back().outcome == Probe::Outcome::interrupted;
+  tell_probe(advice_.probes.back(), best_before);
   return advice_.probes.back();
 }
 

@@ -2,6 +2,8 @@
 /// The steps of a search for advice. Its numbers are in advice_search.cpp, with what they mean.
 #pragma once
 
+#include <set>
+
 #include "withy/study/advice.hpp"
 #include "withy/study/pace.hpp"
 
@@ -10,8 +12,9 @@ namespace withy::study {
 /// A search under way: what it is about does not change, what it has found is in the advice.
 class Search {
  public:
-  Search(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice)
-      : evaluator_(evaluator), candidates_(candidates), accuracy_(accuracy), advice_(advice) {}
+  Search(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice,
+         const Finding& finding)
+      : evaluator_(evaluator), candidates_(candidates), accuracy_(accuracy), advice_(advice), finding_(finding) {}
 
   void find_yardstick();
   void try_models();
@@ -24,6 +27,8 @@ class Search {
 
  private:
   void explain(const ReferenceFound& found);
+  void tell_reference(const Reference& r) const;
+  void tell_probe(const Probe& probe, double best_before);
   [[nodiscard]] bool affordable(const Walk& so_far);
   [[nodiscard]] double own_use(const Reference& r) const;
   [[nodiscard]] bool worth_trying(const std::string& integrator, const Point& model) const;
@@ -44,7 +49,10 @@ class Search {
   const Candidates& candidates_;
   const Accuracy& accuracy_;
   Advice& advice_;
-  Pace pace_;  ///< of the reference's run under way
+  const Finding& finding_;
+  std::set<std::string> told_;  ///< formulations of which it has been told that a model is not exact enough
+  std::string told_best_;       ///< the point that was last told to hold
+  Pace pace_;                   ///< of the reference's run under way
 };
 
 }  // namespace withy::study

@@ -115,8 +115,10 @@ std::string Point::formulation_text() const {
 }
 
 std::string Point::text() const {
-  std::string text = fmt::format("{}, {} mode{}{}, {} at {:g}", formulation_text(), modes, modes == 1 ? "" : "s",
-                                 family.empty() ? "" : ' ' + family, integrator, tolerance);
+  std::string text = formulation_text();
+  if (modes > 0) text += fmt::format(", {} mode{}", modes, modes == 1 ? "" : "s");  // else those of the scene
+  if (!family.empty()) text += (modes > 0 ? " " : ", ") + family;
+  text += fmt::format(", {} at {:g}", integrator, tolerance);
   for (const std::string& o : over) text += ", " + o;
   return text;
 }

@@ -35,8 +35,9 @@ ExitStatus advise(const AdviseArguments& arguments) {
   const study::Accuracy accuracy = study::Accuracy::parse(arguments.accuracy);
   const study::Outputs outputs(engine.model(), arguments.outputs, engine.scene().outputs);
   const study::Candidates candidates = study::candidates_for(engine.prepared(), engine.registry(), arguments.axes);
-  study::Evaluator evaluator(engine.prepared(), engine.registry(), outputs, study_control("advise, s of CPU time"));
-  const study::Advice advice = study::advise(evaluator, candidates, accuracy);
+  const auto [control, finding] = told_control("advise, s of CPU time");
+  study::Evaluator evaluator(engine.prepared(), engine.registry(), outputs, control);
+  const study::Advice advice = study::advise(evaluator, candidates, accuracy, finding);
   const AdviceQuestion question{engine.prepared(), outputs, accuracy};
   if (advice.interrupted) return ExitStatus::interrupted;
   if (!advice.choice) {

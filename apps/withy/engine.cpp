@@ -90,11 +90,13 @@ study::Control run_control(const std::string& label) {
   return {program::interrupted, [progress](double done, double all) { progress->at(done, all); }};
 }
 
-study::Control study_control(const std::string& label) {
+std::pair<study::Control, std::function<void(const std::string&)>> told_control(const std::string& label) {
   program::watch_for_interrupt();
   const auto progress = std::make_shared<program::Progress>(label);
   progress->begin();
-  return {program::interrupted, [progress](double done, double all) { progress->of_points(done, all); }};
+  return {{program::interrupted, [progress](double done, double all) { progress->of_points(done, all); }},
+          [progress](const std::string& text) { progress->note(text); }};
 }
+study::Control study_control(const std::string& label) { return told_control(label).first; }
 
 }  // namespace withy::app

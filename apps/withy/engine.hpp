@@ -65,5 +65,7 @@ State read_state(const study::Prepared& prepared, const std::string& file);
 study::Control run_control(const std::string& label);
 /// The same for a study of many points.
 study::Control study_control(const std::string& label);
+/// The same, and what tells a finding: a line that stays.
+std::pair<study::Control, std::function<void(const std::string&)>> told_control(const std::string& label);
 
 }  // namespace withy::app

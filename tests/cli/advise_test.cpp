@@ -1,5 +1,8 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <stdlib.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -17,6 +20,42 @@ const std::vector<std::string> arm = {"advise", "scenes/driven-arm.yaml", "--set
 Finished advise(const Folder& folder, std::vector<std::string> more, std::vector<std::string> first = arm) {
   first.insert(first.end(), more.begin(), more.end());
   return withy(folder, first);
+}
+
+/// What a program writes to a terminal that its standard error is.
+std::string on_a_terminal(const Folder& folder, std::vector<std::string> words) {
+  const int ours = ::posix_openpt(O_RDWR | O_NOCTTY);
+  if (ours < 0 || ::grantpt(ours) != 0 || ::unlockpt(ours) != 0) return {};
+  const char* const terminal = ::ptsname(ours);
+  words.insert(words.begin(), WITHY_PROGRAM);
+  std::string command = "exec 2>" + std::string(terminal) + ";";
+  for (const std::string& word : words) command += " '" + word + "'";
+  const int held = ::open(terminal, O_RDWR | O_NOCTTY);  // what was written is there to be read after the end
+  EXPECT_EQ(Process(folder, {"/bin/sh", "-c", command}).wait().status, 0);
+  std::string text(1 << 16, '\0');
+  ::fcntl(ours, F_SETFL, O_NONBLOCK);
+  const ssize_t read = ::read(ours, text.data(), text.size());
+  ::close(held);
+  ::close(ours);
+  text.resize(read > 0 ? static_cast<std::size_t>(read) : 0);
+  return text;
+}
+
+/// On a terminal, lines that stay say what has been found; where standard error is none, nothing does.
+TEST(Advise, TellsWhatItHasFoundWhileItSearches) {
+  const Folder folder;
+  const std::vector<std::string> call = {
+      "advise", "scenes/pendulum.yaml", "--formulations", "quadratic", "--integrators", "dopri5", "--accuracy", "1%"};
+  const std::string told = on_a_terminal(folder, call);
+  if (told.empty()) GTEST_SKIP() << "no terminals here";
+  EXPECT_THAT(told, HasSubstr(" s  the search takes 10 s of CPU time at most"));
+  EXPECT_THAT(told, HasSubstr(" s  reference so far: "));
+  EXPECT_THAT(told, HasSubstr(" s  so far: quadratic, dopri5 at "));
+  EXPECT_LT(told.find("reference so far"), told.find("  so far: quadratic"));
+  const Finished f = withy(folder, call);
+  EXPECT_EQ(f.status, 0);
+  EXPECT_EQ(f.err, "");
+  EXPECT_THAT(f.out, Not(HasSubstr("so far")));
 }
 
 /// The two-link arm driven hard: 10 % of a deflection is not to be had without the stiffening of link 2.

@@ -1,4 +1,5 @@
 // The library as a host uses it: a scene is a value, studies give values.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,6 +17,8 @@
 
 namespace withy::study {
 namespace {
+
+using testing::HasSubstr;
 
 using test::plugins;
 
@@ -376,8 +379,20 @@ TEST(StudyAdvice, IsTheSameScenesRunOfItsChanges) {
   const Candidates candidates =
       candidates_for(prepared, plugins(), {{"ruthless", "quadratic"}, {""}, {1, 2}, {"dopri5"}, {1e-3, 1e-5}, {}});
   Evaluator evaluator(prepared, plugins(), outputs, {});
-  const Advice advice = advise(evaluator, candidates, Accuracy::parse("5%"));
+  std::vector<std::string> findings;
+  const Advice advice = advise(evaluator, candidates, Accuracy::parse("5%"),
+                               [&](const std::string& finding) { findings.push_back(finding); });
   ASSERT_TRUE(advice.choice) << advice.trouble;
+  // What the search may cost, how exact the reference is, then models, of which a later one costs less: what is chosen
+  // is the last one, or one of those that are nearly as cheap.
+  ASSERT_GE(findings.size(), 3U);
+  EXPECT_THAT(findings[0], HasSubstr("the search takes 10 s of CPU time at most"));
+  EXPECT_THAT(findings[1], HasSubstr("reference so far: "));
+  EXPECT_THAT(findings[1], HasSubstr(" of the accuracy, least in "));
+  std::size_t holding = 0;
+  for (const std::string& finding : findings) holding += finding.starts_with("so far: ") ? 1 : 0;
+  EXPECT_GE(holding, 1U);
+  EXPECT_TRUE(findings.back().starts_with("so far: ") || findings.back().find(" does not hold: ") != std::string::npos);
   EXPECT_EQ(advice.confirmed.status, RunStatus::completed);
   EXPECT_LE(advice.choice->use + advice.yardstick->own_use(), 1);
   SceneValues advised = values;
