@@ -10,6 +10,7 @@
 #include "withy/core/simulation/step_watch.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/run.hpp"
+#include "withy/study/step_limit.hpp"
 
 namespace withy::campaign {
 namespace {
@@ -80,6 +81,7 @@ RunSummary CaseRun::simulate(const EquationsOfMotion& equations, const study::Co
   }
   RunOptions options = study::run_options(scene);
   options.interrupted = control.interrupted;
+  options.too_stiff = study::too_stiff_of(*prepared_);
   if (kept_->watches_steps()) {
     // A checkpoint after every step has its state, and changes nothing in a run.
     options.checkpoint_due = [] { return true; };

@@ -142,7 +142,7 @@ void look_at_servos(const Prepared& prepared, std::vector<Remark>& all) {
 
 /// A motion that the integrator chosen does not follow to the end of the run.
 void look_at_steps(const Prepared& prepared, std::vector<Remark>& all) {
-  const std::optional<TooStiff> found = too_stiff(prepared, prepared.scene.initial, RunOptions().most_steps);
+  const std::optional<TooStiff> found = too_stiff(prepared, prepared.scene.initial);
   if (!found) return;
   const Value* chosen = prepared.scene.source.find("integrator");
   all.push_back({chosen != nullptr ? chosen->place() : prepared.scene.source.place(),

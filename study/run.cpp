@@ -75,10 +75,7 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
     };
   options.resume = settings.resume;
   options.seen = settings.seen;
-  options.too_stiff = [&](const State& state) {
-    const std::optional<TooStiff> found = too_stiff(prepared, state, options.most_steps);
-    return found ? found->text : std::string();
-  };
+  options.too_stiff = too_stiff_of(prepared);
   if (settings.checkpoint_seconds > 0) options.checkpoint_due = [&] { return timer.due(); };
   std::optional<StatisticsWatch> watch;
   std::vector<std::string> watched = watched_outputs(scene);

@@ -91,4 +91,11 @@ std::optional<TooStiff> too_stiff(const Prepared& prepared, const State& state, 
   return found;
 }
 
+std::function<std::string(const State&)> too_stiff_of(const Prepared& prepared) {
+  return [&prepared](const State& state) {
+    const std::optional<TooStiff> found = too_stiff(prepared, state);
+    return found ? found->text : std::string();
+  };
+}
+
 }  // namespace withy::study

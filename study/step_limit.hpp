@@ -2,6 +2,7 @@
 /// What limited the steps of a run.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,9 @@ struct TooStiff {
 };
 /// Where the steps to which the scene's integrator is stable about a state are more than `most_steps` up to the end of
 /// the run. Nothing where they are not, or where it is not known: of more than 200 speeds, with closed loops.
-std::optional<TooStiff> too_stiff(const Prepared& prepared, const State& state, std::size_t most_steps);
+std::optional<TooStiff> too_stiff(const Prepared& prepared, const State& state,
+                                  std::size_t most_steps = RunOptions().most_steps);
+/// For RunOptions::too_stiff of runs of a scene, which must outlive them.
+std::function<std::string(const State&)> too_stiff_of(const Prepared& prepared);
 
 }  // namespace withy::study

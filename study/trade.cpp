@@ -9,6 +9,7 @@
 
 #include "withy/study/accuracy.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/step_limit.hpp"
 
 namespace withy::study {
 namespace {
@@ -33,6 +34,7 @@ TimedRun timed_run(const Prepared& model, const Outputs& outputs, const Control&
   RunOptions options = run_options(model.scene);
   options.events.clear();
   options.interrupted = control.interrupted;
+  options.too_stiff = too_stiff_of(model);
   TimedRun run;
   std::vector<State> states;
   double spent = 0;

@@ -405,5 +405,26 @@ keep: {peak: [pivot.rate, pivot]}
   EXPECT_NEAR(coarse.numbers[1], fine.numbers[1], 1e-12) << "it starts at its peak";
 }
 
+/// 1500 N m s/rad on 1e-9 kg m²: the case ends after a second of work with its reason, and the plan goes on.
+TEST(Cases, ThatAreTooStiffForTheirIntegratorStopEarly) {
+  const PlanFolder folder;
+  folder.write("stiff.yaml", R"(format: withy/1
+time: {end: 1}
+bodies: {wheel: {type: rigid, mass: 1, inertia: [1, 1, 1.0e-9, 0, 0, 0]}}
+hinges: {pin: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}
+loads: {drag: {type: hinge-spring, hinge: pin, stiffness: 1.0e-6, damping: 1}}
+initial: {hinges: {pin: {rate: [1]}}}
+)");
+  folder.write("plan.yaml",
+               "format: withy-sweep/1\nscene: stiff.yaml\nvary: {loads.drag.damping: {grid: [1.0e-9, 1500]}}\n"
+               "keep: {final: [pin]}\n");
+  const Plan plan = read_plan((folder / "plan.yaml").string(), plugins());
+  const Cases cases(plan);
+  EXPECT_TRUE(run_case(plan, cases, 0, plugins(), {}).completed());
+  const CaseResult stiff = run_case(plan, cases, 1, plugins(), {});
+  EXPECT_EQ(stiff.status, "too-stiff");
+  EXPECT_THAT(stiff.message, HasSubstr("its fastest motion is -1.5e+12/s: damping of load 'drag' on pin"));
+}
+
 }  // namespace
 }  // namespace withy::campaign
