@@ -11,7 +11,9 @@ else()
   if(NOT WITHY_NODE OR NOT WITHY_NPM)
     set(missing "node and npm were not found; on Debian: apt install nodejs npm")
   elseif(NOT EXISTS ${web}/node_modules/.package-lock.json OR ${web}/package-lock.json IS_NEWER_THAN ${web}/node_modules/.package-lock.json)
-    execute_process(COMMAND ${WITHY_NPM} ci --ignore-scripts --no-audit --no-fund WORKING_DIRECTORY ${web}
+    # Without a network npm would try again for a minute and more.
+    execute_process(COMMAND ${WITHY_NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=1
+      --fetch-retry-mintimeout=1000 --fetch-retry-maxtimeout=1000 WORKING_DIRECTORY ${web}
       RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE said TIMEOUT 120)
     if(failed)
       string(REGEX MATCH "npm error[^\n]*" said "${said}")
