@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -196,12 +197,14 @@ loads: {control: {type: pd-controller, law: constant, sample: 0.05, hinges: {axl
 
 TEST(Linearize, NamesOfInputsAndOutputsAreChecked) {
   const Folder folder;
-  for (const auto& [option, name] :
-       std::vector<std::pair<std::string, std::string>>{{"--inputs", "sholder"}, {"--outputs", "link3.tip"}}) {
+  const std::vector<std::array<std::string, 3>> bad = {{"--inputs", "sholder", "known: "},
+                                                       {"--outputs", "link3.tip", "did you mean 'link1.tip.x'?"},
+                                                       {"--outputs", "nowhere.near", "known: "}};
+  for (const auto& [option, name, said] : bad) {
     const Finished f = withy(folder, {"linearize", "scenes/two-link-slew.yaml", option, name});
     EXPECT_EQ(f.status, 2);
     EXPECT_THAT(f.err, HasSubstr(option));
-    EXPECT_THAT(f.err, HasSubstr("known: "));
+    EXPECT_THAT(f.err, HasSubstr(said));
   }
 }
 
