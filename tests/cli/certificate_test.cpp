@@ -33,20 +33,21 @@ json true_distances(const std::vector<std::string>& scene, const std::string& fo
 struct Claim {
   std::vector<std::string> scene;
   std::string formulation;
+  bool at_any_price_alone = false;
 };
 void PrintTo(const Claim& claim, std::ostream* out) { *out << claim.scene.at(0) << ' ' << claim.formulation; }
 
 class ErrorClaimed : public testing::TestWithParam<Claim> {};
 
 // Coarse steps at a tenth of the run's cost resolve what they are after to some per cent, a pair at any cost to one: a
-// factor of 1.2 leaves room for outputs that fall between. Strict runs say that they have an estimate at any cost
-// alone.
+// factor of 1.2 leaves room for outputs that fall between. Strict runs that pass near a singular mass matrix say that
+// they have an estimate at any cost alone.
 TEST_P(ErrorClaimed, IsTheTrueOneForHingesAndTips) {
   const Claim& claim = GetParam();
   std::vector<std::string> arguments = claim.scene;
   arguments.insert(arguments.end(), {"--formulation", claim.formulation});
   json certificate = run_json(arguments).at("certificate");
-  if (claim.formulation == "consistent") {
+  if (claim.at_any_price_alone) {
     EXPECT_TRUE(certificate.at("estimated_error").is_null());
     EXPECT_THAT(certificate.at("without_estimate").get<std::string>(), HasSubstr("`--estimate always`"));
     arguments.insert(arguments.end(), {"--estimate", "always"});
@@ -70,7 +71,8 @@ INSTANTIATE_TEST_SUITE_P(
     Scenes, ErrorClaimed,
     testing::Values(Claim{{"scenes/driven-arm.yaml"}, "linear"}, Claim{{"scenes/driven-arm.yaml"}, "ruthless"},
                     Claim{{"scenes/two-link-slew.yaml"}, "ruthless"},
-                    Claim{{"scenes/two-link-slew.yaml"}, "consistent"},
+                    Claim{{"scenes/two-link-slew.yaml"}, "consistent", true},
+                    Claim{{"scenes/beam-on-base.yaml"}, "consistent"},
                     Claim{{"scenes/two-link-slew.yaml", "--set", "loads.slew.time_scale=1.2"}, "ruthless"},
                     Claim{{"scenes/screw.yaml"}, "ruthless"}, Claim{{"scenes/beam-on-base.yaml"}, "ruthless"}));
 
