@@ -10,32 +10,15 @@
 namespace withy::sweep {
 
 template <class Space>
-FirstOrderNode<Space>::FirstOrderNode(const NodeSpec& given, Terms terms)
-    : body(given.body),
-      parent(given.parent),
-      parent_station(given.parent_station),
-      modes(static_cast<int>(given.modes)),
-      joint(given),
-      frozen(terms.truncation == Truncation::ruthless),
-      mode_position(given.mode_position),
-      mode_speed(given.mode_speed) {
-  const Invariants invariants(given, terms.strain);
-  const std::vector<Eigen::MatrixXd> slopes = modal_mass_slopes(given, terms.strain);
-  I0 = RigidPart<Space>(invariants.I0);
-  mass = invariants.I0.mass;
-  for (const RigidInertia& I : invariants.I1) {
-    I1.push_back(Variation<Space>::of(I));
-    moment1.push_back(Space::position(I.moment));
-  }
+FirstOrderNode<Space>::FirstOrderNode(const NodeSpec& given, Terms terms, const Invariants& invariants)
+    : FirstOrderConstants<Space>(given, terms, invariants), mass(invariants.I0.mass) {
+  for (const RigidInertia& I : invariants.I1) moment1.push_back(Space::position(I.moment));
   for (const RigidInertia& I : invariants.I2) moment2.push_back(Space::position(I.moment));
-  for (int i = 0; i < modes; ++i) {
-    C0.push_back(Space::Twist::of(invariants.C0.col(i)));
-    for (int j = 0; j < modes; ++j) {
-      C1.push_back(Space::Twist::of(invariants.C1[static_cast<std::size_t>(i)].col(j)));
-      G0.push_back(invariants.G0(i, j));
-      for (int k = 0; k < modes; ++k) G1.push_back(slopes[static_cast<std::size_t>(i)](j, k));
-      stiffness.push_back(given.stiffness(i, j));
-      damping.push_back(given.damping(i, j));
+  const std::vector<Eigen::MatrixXd> slopes = modal_mass_slopes(given, terms.strain);
+  const auto n = static_cast<Eigen::Index>(given.modes);
+  for (const Eigen::MatrixXd& slope : slopes) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index k = 0; k < n; ++k) G1.push_back(slope(j, k));
     }
   }
   for (const StationSpec& spec : rooted(in_strain_order(given, terms.strain)).stations) {
@@ -49,7 +32,9 @@ FirstOrderNode<Space>::FirstOrderNode(const NodeSpec& given, Terms terms)
 
 template <class Space>
 FirstOrderSweep<Space>::FirstOrderSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity) {
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i) nodes_.emplace_back(tree.nodes[i], terms[i]);
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    nodes_.emplace_back(tree.nodes[i], terms[i], Invariants(tree.nodes[i], terms[i].strain));
+  }
   for (std::size_t i = tree.nodes.size(); i-- > 0;) {
     const NodeSpec& spec = tree.nodes[i];
     if (spec.parent < 0) continue;
@@ -59,9 +44,7 @@ FirstOrderSweep<Space>::FirstOrderSweep(const NodeTree& tree, const std::vector<
     FirstOrderStation<Space>& station = parent.stations[static_cast<std::size_t>(spec.parent_station)];
     station.has_children = true;
     station.carried += nodes_[i].mass;
-    // Rooting turned the section's axes with the frame.
-    const NodeSpec& outer = tree.nodes[static_cast<std::size_t>(spec.parent)];
-    if (outer.root_station >= 0) nodes_[i].joint.F = Space::make(Pose{outer.M.R.transpose(), Vector3::Zero()} * spec.F);
+    turn_with_root(tree.nodes[static_cast<std::size_t>(spec.parent)], spec, nodes_[i].joint);
   }
   WorkLayout memory;
   std::size_t speeds = 0;
@@ -84,16 +67,6 @@ FirstOrderSweep<Space>::FirstOrderSweep(const NodeTree& tree, const std::vector<
   weight_offset_ = memory.template take<double>(heavy_ ? 2 * speeds : 0);
   work_size_ = memory.size();
   for (FirstOrderNode<Space>& node : nodes_) node.joint.pose_matters = node.parent >= 0 || heavy_;
-}
-
-template <class Space>
-std::vector<std::string> FirstOrderSweep<Space>::savings(const NodeTree& tree) const {
-  std::vector<std::string> lines;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (nodes_[i].modes > 0)
-      lines.push_back("'" + tree.nodes[i].name + "': mass integrals and their first derivatives, computed once");
-  }
-  return lines;
 }
 
 template <class Space>

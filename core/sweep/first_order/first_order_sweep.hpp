@@ -18,10 +18,9 @@
 #include <vector>
 
 #include "withy/core/plugin/equations.hpp"
-#include "withy/core/plugin/terms.hpp"
 #include "withy/core/sweep/first_order/first_order_algebra.hpp"
+#include "withy/core/sweep/first_order_constants.hpp"
 #include "withy/core/sweep/joint_step.hpp"
-#include "withy/core/sweep/node.hpp"
 
 namespace withy::sweep {
 
@@ -35,27 +34,15 @@ struct FirstOrderStation {
   double carried = 0;  ///< mass of all that hangs on it [kg]
 };
 
-/// Constants of a node; see Invariants.
 template <class Space>
-struct FirstOrderNode {
-  using Twist = typename Space::Twist;
-  int body = 0, parent = -1, parent_station = -1, modes = 0;
-  JointData<Space> joint;
-  bool frozen = false;  ///< ruthless: q = q̇ = 0 in inertia, velocity terms and weight
-  std::size_t mode_position = 0, mode_speed = 0;
-  std::vector<double> stiffness, damping;
-  RigidPart<Space> I0;
-  std::vector<Variation<Space>> I1;
-  std::vector<Twist> C0;
-  std::vector<Twist> C1;  ///< ∂C_i/∂q_k, element k n + i
-  std::vector<double> G0;
+struct FirstOrderNode : FirstOrderConstants<Space> {
   std::vector<double> G1;                                  ///< ∂G_ij/∂q_k, element (k n + i) n + j
   std::vector<typename Space::Position> moment1, moment2;  ///< derivatives of the first moment of mass
   double mass = 0;                                         ///< of it and all that hangs on it [kg]
   std::vector<FirstOrderStation<Space>> stations;
   std::size_t work = 0, work_stations = 0, work_J1 = 0, work_Y = 0, work_G = 0, work_y = 0, work_elimination = 0;
 
-  FirstOrderNode(const NodeSpec& spec, Terms terms);
+  FirstOrderNode(const NodeSpec& spec, Terms terms, const Invariants& invariants);
 };
 
 template <class Space>
@@ -68,7 +55,7 @@ class FirstOrderSweep {
   FirstOrderSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity);
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
   /// What was computed once for all evaluations, a line each.
-  [[nodiscard]] std::vector<std::string> savings(const NodeTree& tree) const;
+  static std::vector<std::string> savings(const NodeTree& tree) { return savings_of_first_order(tree); }
   /// As SymmetricSweep: accelerations, with M + δ D + δ² K in the place of M = M₀ + M₁, which may be
   /// indefinite: the evaluation says the sign of its determinant.
   Evaluation accelerations(const double* positions, const double* speeds, double* efforts, double delta, double* result,

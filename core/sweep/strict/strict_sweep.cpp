@@ -27,28 +27,9 @@ StrictStation<Space> strict_station_of(const StationSpec& spec) {
 }  // namespace
 
 template <class Space>
-StrictNode<Space>::StrictNode(const NodeSpec& given, Terms terms)
-    : body(given.body),
-      parent(given.parent),
-      parent_station(given.parent_station),
-      modes(static_cast<int>(given.modes)),
-      joint(given),
-      frozen(terms.truncation == Truncation::ruthless),
-      mode_position(given.mode_position),
-      mode_speed(given.mode_speed) {
-  const Invariants invariants(given, terms.strain);
-  I0 = RigidPart<Space>(invariants.I0);
-  for (const RigidInertia& I : invariants.I1) I1.push_back(Variation<Space>::of(I));
+StrictNode<Space>::StrictNode(const NodeSpec& given, Terms terms, const Invariants& invariants)
+    : FirstOrderConstants<Space>(given, terms, invariants) {
   for (const RigidInertia& I : invariants.I2) I2.push_back(Variation<Space>::of(I));
-  for (int i = 0; i < modes; ++i) {
-    C0.push_back(Space::Twist::of(invariants.C0.col(i)));
-    for (int j = 0; j < modes; ++j) {
-      C1.push_back(Space::Twist::of(invariants.C1[static_cast<std::size_t>(i)].col(j)));
-      G0.push_back(invariants.G0(i, j));
-      stiffness.push_back(given.stiffness(i, j));
-      damping.push_back(given.damping(i, j));
-    }
-  }
   for (const StationSpec& s : rooted(in_strain_order(given, terms.strain)).stations) {
     stations.push_back(strict_station_of<Space>(s));
   }
@@ -57,7 +38,9 @@ StrictNode<Space>::StrictNode(const NodeSpec& given, Terms terms)
 template <class Space>
 StrictSweep<Space>::StrictSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity) {
   WorkLayout memory;
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i) nodes_.emplace_back(tree.nodes[i], terms[i]);
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    nodes_.emplace_back(tree.nodes[i], terms[i], Invariants(tree.nodes[i], terms[i].strain));
+  }
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const NodeSpec& spec = tree.nodes[i];
     if (spec.parent < 0) continue;
@@ -66,10 +49,7 @@ StrictSweep<Space>::StrictSweep(const NodeTree& tree, const std::vector<Terms>& 
     const NodeSpec& parent = tree.nodes[static_cast<std::size_t>(spec.parent)];
     nodes_[static_cast<std::size_t>(spec.parent)].stations[static_cast<std::size_t>(spec.parent_station)].has_children =
         true;
-    // Rooting turned the section's axes with the frame.
-    if (parent.root_station >= 0) {
-      nodes_[i].joint.F = Space::make(Pose{parent.M.R.transpose(), Vector3::Zero()} * spec.F);
-    }
+    turn_with_root(parent, spec, nodes_[i].joint);
   }
   for (StrictNode<Space>& node : nodes_) {
     const auto n = static_cast<std::size_t>(node.modes);
@@ -83,16 +63,6 @@ StrictSweep<Space>::StrictSweep(const NodeTree& tree, const std::vector<Terms>& 
   const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
   world_acceleration_ = Space::Twist::of(Space::angle(Vector3::Zero()), Space::position(-g));
   for (StrictNode<Space>& node : nodes_) node.joint.pose_matters = node.parent >= 0 || !g.isZero(0);
-}
-
-template <class Space>
-std::vector<std::string> StrictSweep<Space>::savings(const NodeTree& tree) const {
-  std::vector<std::string> lines;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (nodes_[i].modes > 0)
-      lines.push_back("'" + tree.nodes[i].name + "': mass integrals and their first derivatives, computed once");
-  }
-  return lines;
 }
 
 template <class Space>

@@ -18,9 +18,8 @@
 #include <vector>
 
 #include "withy/core/plugin/equations.hpp"
-#include "withy/core/plugin/terms.hpp"
+#include "withy/core/sweep/first_order_constants.hpp"
 #include "withy/core/sweep/joint_step.hpp"
-#include "withy/core/sweep/node.hpp"
 
 namespace withy::sweep {
 
@@ -33,25 +32,14 @@ struct StrictStation {
   bool has_children = false;
 };
 
-/// Constants of a node; see Invariants.
 template <class Space>
-struct StrictNode {
-  using Twist = typename Space::Twist;
-  int body = 0, parent = -1, parent_station = -1, modes = 0;
-  JointData<Space> joint;
-  bool frozen = false;  ///< ruthless: order zero alone
-  bool leaf = true;     ///< nothing hangs on it
-  std::size_t mode_position = 0, mode_speed = 0;
-  std::vector<double> stiffness, damping;
-  RigidPart<Space> I0;
-  std::vector<Variation<Space>> I1, I2;
-  std::vector<Twist> C0;
-  std::vector<Twist> C1;  ///< ∂C_i/∂q_k, element k n + i
-  std::vector<double> G0;
+struct StrictNode : FirstOrderConstants<Space> {
+  bool leaf = true;  ///< nothing hangs on it
+  std::vector<Variation<Space>> I2;
   std::vector<StrictStation<Space>> stations;
   std::size_t work = 0, work_stations = 0, work_vectors = 0, work_scalars = 0;
 
-  StrictNode(const NodeSpec& spec, Terms terms);
+  StrictNode(const NodeSpec& spec, Terms terms, const Invariants& invariants);
 };
 
 /// The sweep over all nodes. Stations carry children only: rigid bodies are in the invariants.
@@ -61,7 +49,7 @@ class StrictSweep {
   StrictSweep(const NodeTree& tree, const std::vector<Terms>& terms, const Vector3& gravity);
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
   /// What was computed once for all evaluations, a line each.
-  [[nodiscard]] std::vector<std::string> savings(const NodeTree& tree) const;
+  static std::vector<std::string> savings(const NodeTree& tree) { return savings_of_first_order(tree); }
   /// Accelerations of all speeds from positions, speeds and applied efforts. Those of driven speeds are given in
   /// `result`; all efforts on them, the applied ones among them, are left in `efforts`.
   Evaluation accelerations(const double* positions, const double* speeds, double* efforts, double* result,
