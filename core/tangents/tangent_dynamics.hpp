@@ -93,6 +93,10 @@ class TangentDynamics {
                                                             const Eigen::VectorXd& a, Seeds seeds,
                                                             std::vector<bool>* differenced = nullptr,
                                                             std::span<const double> seen = {}) const;
+  /// Minus the residual without stiffness and accelerations: the efforts of wrenches at frames and those of speeds.
+  /// \param seen the state that the wrenches see
+  [[nodiscard]] Eigen::VectorXd frame_load_efforts(double t, std::span<const double> y,
+                                                   std::span<const double> seen) const;
   /// The residual; its derivatives along directions from `from` on, one a column.
   Eigen::VectorXd differentiate(double t, std::span<const double> y, const Eigen::VectorXd& a, std::size_t from,
                                 Eigen::Ref<Eigen::MatrixXd> columns, std::vector<bool>* differenced) const;
