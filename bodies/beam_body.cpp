@@ -19,6 +19,7 @@
 #include <cmath>
 
 #include "beam_quadrature.hpp"
+#include "withy/core/shape/modal_mass.hpp"
 
 namespace withy {
 namespace {
@@ -50,7 +51,7 @@ class Beam final : public Body, private Rod {
     integrate_fields(kinematics, fields);
     const Eigen::Index n = shape_.modes();
     shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(n, n);
-    Eigen::MatrixXd modal_mass = Eigen::MatrixXd::Zero(n, n);
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
     // Without modes it is a rigid body, to the last bit the one that a scene would write with ρL and ρL³/12.
     const bool rigid = n == 0 && material.mass_per_length.knots().empty();
     if (rigid) {
@@ -68,11 +69,11 @@ class Beam final : public Body, private Rod {
       if (!rigid)
         shape_.particles.push_back({mass, expansion(x[k], f, gamma_at_nodes_.row(static_cast<Eigen::Index>(k)),
                                                     theta_at_nodes_.row(static_cast<Eigen::Index>(k)))});
-      modal_mass += mass * f.phi.transpose() * f.phi;
+      add_products(mass, f.phi, gram);
       shape_.stiffness += w * stiffness_of(f, x[k]);
     }
-    if (!material.inertias.empty()) add_sections(modal_mass);
-    shape_.damping = material.damping.matrix(shape_.stiffness, modal_mass);
+    if (!material.inertias.empty()) add_sections(gram);
+    shape_.damping = material.damping.matrix(shape_.stiffness, gram);
   }
 
   const ModalShape& shape() const override { return shape_; }
@@ -208,7 +209,7 @@ class Beam final : public Body, private Rod {
   }
 
   /// The sections that have rotary inertia, and what they add to the modal mass.
-  void add_sections(Eigen::MatrixXd& modal_mass) {
+  void add_sections(Eigen::MatrixXd& gram) {
     const SectionQuadrature along(length_, wave_number(strains_), kinks(material_, strains_));
     for (std::size_t k = 0; k < along.nodes().size(); ++k) {
       const double at = along.nodes()[k];
@@ -220,7 +221,7 @@ class Beam final : public Body, private Rod {
       const LinearFields f = linear_fields(at);
       shape_.sections.push_back({inertia, expansion(at, f, quadrature_.integral_to(at, gamma_slope_),
                                                     quadrature_.integral_to(at, theta_slope_))});
-      modal_mass += f.psi.transpose() * inertia * f.psi;
+      add_products(inertia, f.psi, gram);
     }
   }
 

@@ -5,6 +5,7 @@
 #include "reduce.hpp"
 #include "sections.hpp"
 #include "solid_elements.hpp"
+#include "withy/core/shape/modal_mass.hpp"
 
 namespace withy::fem {
 namespace {
@@ -33,7 +34,7 @@ void subtract_turning(const Section& section, const Matrix3X& psi, const Eigen::
     // f · (a × (b × r)) = (f·b)(a·r) − (a·b)(f·r), symmetric in the modes.
     const Matrix3 symmetric = 0.5 * (dipole + dipole.transpose());
     const Matrix3 form = symmetric - dipole.trace() * Matrix3::Identity();
-    body.second_order[load] -= psi.transpose() * form * psi;
+    add_products(Matrix3(-form), psi, body.second_order[load]);
   }
 }
 

@@ -122,14 +122,16 @@ PointMotionOf<S> point_motion(const PointExpansion& e, StrainOrder order, const 
   m.r = e.X.template cast<S>() + m.P * q;
   if (order != StrainOrder::linear && n > 0) {
     for (Eigen::Index c = 0; c < 3; ++c) {
-      const auto gamma = e.gamma[static_cast<std::size_t>(c)].template cast<S>().eval();
-      const auto twist = e.theta[static_cast<std::size_t>(c)].template cast<S>().eval();
-      m.r[c] += S(0.5) * q.dot(gamma * q);
-      m.P.row(c) += (gamma * q).transpose();
-      m.r_bias[c] = q_dot.dot(gamma * q_dot);
-      theta[c] += S(0.5) * q.dot(twist * q);
-      T.row(c) += (twist * q).transpose();
-      theta_bias[c] = q_dot.dot(twist * q_dot);
+      // Lazily: the blocks of great products, in numbers with derivatives, would take seconds to compile.
+      const auto add = [&](const Eigen::MatrixXd& second, S& value, auto&& gradient, S& bias) {
+        const auto form = second.template cast<S>().eval();
+        const Eigen::Matrix<S, Eigen::Dynamic, 1> slope = form.lazyProduct(q), rate = form.lazyProduct(q_dot);
+        value += S(0.5) * q.dot(slope);
+        gradient += slope.transpose();
+        bias = q_dot.dot(rate);
+      };
+      add(e.gamma[static_cast<std::size_t>(c)], m.r[c], m.P.row(c), m.r_bias[c]);
+      add(e.theta[static_cast<std::size_t>(c)], theta[c], T.row(c), theta_bias[c]);
     }
   }
   m.r_rate = m.P * q_dot;

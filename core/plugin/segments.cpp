@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "withy/core/shape/modal_mass.hpp"
+
 namespace withy {
 namespace {
 
@@ -105,9 +107,7 @@ std::map<std::string, double> time_constants(const ModalShape& whole) {
   std::map<std::string, std::vector<Eigen::Index>> strains;
   for (Eigen::Index i = 0; i < whole.modes(); ++i)
     strains[strain_of(whole.mode_names[static_cast<std::size_t>(i)])].push_back(i);
-  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(whole.modes(), whole.modes());
-  for (const Particle& p : whole.particles) G += p.mass * p.at.phi.transpose() * p.at.phi;
-  for (const Section& s : whole.sections) G += s.at.psi.transpose() * s.inertia * s.at.psi;
+  const Eigen::MatrixXd G = modal_mass(whole);
   std::map<std::string, double> times;
   for (const auto& [strain, at] : strains) {
     const Eigen::MatrixXd K = whole.stiffness(at, at);

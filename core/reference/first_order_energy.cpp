@@ -132,7 +132,7 @@ struct Elastic {
 
 /// ⟨aᵀ b⟩ of matrices in two orders.
 Eigen::MatrixXd product(const Orders& a, const Orders& b) {
-  return a.zero.transpose() * b.total() + a.one.transpose() * b.zero;
+  return a.zero.transpose().lazyProduct(b.total()) + a.one.transpose().lazyProduct(b.zero);
 }
 
 /// J to second order in the rows of hinges, to first in those of modes, applied to a constant vector. `J`: evaluated

@@ -187,6 +187,7 @@ class ReferenceTree {
     for (const Section& s : shape.sections) section_of(s.inertia, point(b, s.at));
   }
 
+  /// Products of three rows are taken lazily: the blocks of great ones would take ten seconds to compile.
   /// M = Σ m JᵀJ + Σ J_ωᵀ I J_ω and f = −Σ m Jᵀ(a_bias − g) − Σ J_ωᵀ(I α_bias + ω × Iω).
   void assemble(MX<S>& M, VX<S>& f) const {
     const auto n = static_cast<Eigen::Index>(model_.layout().speeds);
@@ -197,13 +198,15 @@ class ReferenceTree {
       each(
           b,
           [&](double mass, const WorldMotion<S>& A) {
-            M += S(mass) * (A.JV.transpose() * A.JV);
-            f -= S(mass) * (A.JV.transpose() * (A.v_bias - g));
+            const M3X<S> momenta = S(mass) * A.JV;
+            M += momenta.transpose().lazyProduct(A.JV);
+            f -= momenta.transpose().lazyProduct(A.v_bias - g);
           },
           [&](const Matrix3& inertia, const WorldMotion<S>& A) {
             const M3<S> I = A.R * inertia.template cast<S>() * A.R.transpose();
-            M += A.JW.transpose() * I * A.JW;
-            f -= A.JW.transpose() * (I * A.w_bias + A.w.cross(I * A.w));
+            const M3X<S> momenta = I * A.JW;
+            M += A.JW.transpose().lazyProduct(momenta);
+            f -= A.JW.transpose().lazyProduct(I * A.w_bias + A.w.cross(I * A.w));
           });
     }
   }

@@ -4,13 +4,12 @@
 #include <Eigen/Eigenvalues>
 #include <numeric>
 
+#include "withy/core/shape/modal_mass.hpp"
+
 namespace withy {
 
 ElasticModes elastic_modes(const ModalShape& shape, const std::vector<Eigen::Index>& coordinates) {
-  const Eigen::Index n = shape.modes();
-  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n, n);
-  for (const Particle& p : shape.particles) G += p.mass * p.at.phi.transpose() * p.at.phi;
-  for (const Section& s : shape.sections) G += s.at.psi.transpose() * s.inertia * s.at.psi;
+  const Eigen::MatrixXd G = modal_mass(shape);
   ElasticModes modes;
   modes.mass = G(coordinates, coordinates);
   // Coordinates that move no mass have no frequencies.

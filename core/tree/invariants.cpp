@@ -116,7 +116,7 @@ std::vector<Eigen::MatrixXd> modal_mass_slopes(const NodeSpec& node, StrainOrder
     for (Eigen::Index k = 0; k < n; ++k) {
       Matrix3X gamma(3, n);  // Γ_k
       for (Eigen::Index c = 0; c < 3; ++c) gamma.row(c) = piece.at.gamma[static_cast<std::size_t>(c)].row(k);
-      const Eigen::MatrixXd half = piece.weight * gamma.transpose() * piece.at.phi;
+      const Eigen::MatrixXd half = piece.weight * gamma.transpose().lazyProduct(piece.at.phi);
       slopes[static_cast<std::size_t>(k)] += half + half.transpose();
     }
   }
