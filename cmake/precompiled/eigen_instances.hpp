@@ -43,7 +43,38 @@ WITHY_INSTANCE struct triangular_solve_matrix<double, Index, OnTheLeft, Upper, f
 WITHY_INSTANCE struct triangular_solve_matrix<double, Index, OnTheRight, Upper, false, ColMajor, ColMajor, 1>;
 WITHY_INSTANCE struct triangular_solve_matrix<double, Index, OnTheRight, Upper, false, RowMajor, ColMajor, 1>;
 
+// Complex matrices and vectors.
+using ComplexPack = gebp_traits<std::complex<double>, std::complex<double>>;
+using ConstComplexColumns = const_blas_data_mapper<std::complex<double>, Index, ColMajor>;
+using ConstComplexRows = const_blas_data_mapper<std::complex<double>, Index, RowMajor>;
+using ComplexColumns = blas_data_mapper<std::complex<double>, Index, ColMajor, Unaligned, 1>;
+WITHY_INSTANCE struct gebp_kernel<std::complex<double>, std::complex<double>, Index, ComplexColumns, ComplexPack::mr,
+                                  ComplexPack::nr, false, false>;
+WITHY_INSTANCE struct general_matrix_vector_product<Index, std::complex<double>, ConstComplexColumns, ColMajor, false,
+                                                    std::complex<double>, ConstComplexRows, false>;
+WITHY_INSTANCE struct general_matrix_vector_product<Index, std::complex<double>, ConstComplexColumns, ColMajor, false,
+                                                    std::complex<double>, ConstComplexColumns, false>;
+WITHY_INSTANCE struct general_matrix_vector_product<Index, std::complex<double>, ConstComplexRows, RowMajor, false,
+                                                    std::complex<double>, ConstComplexColumns, false>;
+
+// Orthogonal matrices as products of reflections.
+using Part = Block<MatrixXd, Dynamic, Dynamic, false>;
+using Triangle = Matrix<double, Dynamic, Dynamic, RowMajor>;
+WITHY_INSTANCE void make_block_householder_triangular_factor(Triangle&, const Part&,
+                                                             const Block<const VectorXd, Dynamic, 1, false>&);
+WITHY_INSTANCE void make_block_householder_triangular_factor(Triangle&, const Part&,
+                                                             const VectorBlock<const VectorXd>&);
+WITHY_INSTANCE void apply_block_householder_on_the_left(Part&, const Part&, const VectorBlock<const VectorXd>&, bool);
+
 }  // namespace internal
+
+WITHY_INSTANCE void MatrixBase<internal::Part>::applyHouseholderOnTheLeft(
+    const Block<const MatrixXd, Dynamic, 1, false>&, const double&, double*);
+WITHY_INSTANCE void MatrixBase<internal::Part>::applyHouseholderOnTheLeft(
+    const VectorBlock<Block<MatrixXd, Dynamic, 1, true>>&, const double&, double*);
+WITHY_INSTANCE void MatrixBase<internal::Part>::applyHouseholderOnTheRight(
+    const Block<const MatrixXd, Dynamic, 1, false>&, const double&, double*);
+WITHY_INSTANCE void ComplexSchur<MatrixXd>::reduceToTriangularForm(bool);
 
 WITHY_INSTANCE SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd>::compute(const EigenBase<MatrixXd>&,
                                                                                            int);

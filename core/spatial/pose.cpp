@@ -2,6 +2,10 @@
 
 namespace withy {
 
+Pose Pose::operator*(const Pose& C) const { return {R * C.R, p + R * C.p}; }
+
+Pose Pose::inverse() const { return {R.transpose(), -(R.transpose() * p)}; }
+
 Matrix3 rotation_from_quaternion(double w, double x, double y, double z) {
   return Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
 }

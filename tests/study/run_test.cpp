@@ -8,7 +8,6 @@
 #include "withy/core/simulation/step_watch.hpp"
 #include "withy/study/comparison.hpp"
 #include "withy/study/input_error.hpp"
-#include "withy/study/output_reader.hpp"
 #include "withy/tests/study/plugins.hpp"
 #include "withy/tests/study/scenes.hpp"
 
