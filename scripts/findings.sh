@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/measured.sh
 . scripts/measured.sh
 build=${1:-build/release}
-python3 - "$build/bin/withy" <<'PYTHON' | record_table findings "scripts/findings.sh" "Seconds on the clock from the beginning of \`withy advise --accuracy 1%\` until a line of its kind stood on the terminal, the reading of the scene included; one search each,. CPU time: of the search. None: no model held the accuracy in the time allowed, and the answer says so."
+python3 - "$build/bin/withy" <<'PYTHON' | record_table findings "scripts/findings.sh" "Seconds on the clock from the beginning of \`withy advise --accuracy 1%\` until a line of its kind stood on the terminal, the reading of the scene included; one search each. CPU time: of the search. None: no model held the accuracy in the time allowed, and the answer says so."
 import json, os, pty, re, subprocess, sys, time
 
 def search(scene):
