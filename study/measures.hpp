@@ -77,8 +77,9 @@ class Outputs {
   /// names, what these name: hinges, `hinge.rate` and other columns of rates, `body.tip`, `body.tip.deflection`,
   /// `hinge.motion_effort`; outputs of the scene, whole or one component as `root.mz`, and what a component or a rate
   /// has been over the run as `root.mz.max` (`min`, `max`, `mean`, `rms`, `integral`). An orientation among all
-  /// components of one is measured as the angle of the rotation between two. \param sensors of the scene, bound to the
-  /// model \throws InputError where there is no such output, or nothing to measure.
+  /// components of one is measured as the angle of the rotation between two.
+  /// \param sensors of the scene, bound to the model
+  /// \throws InputError where there is no such output, or nothing to measure.
   explicit Outputs(const Model& model, const std::vector<std::string>& names = {},
                    std::span<const SensorNode> sensors = {});
   /// The same with the hinges that motions drive; there may be none.
