@@ -10,7 +10,7 @@
 #include "withy/core/simulation/stepping.hpp"
 #include "withy/study/control.hpp"
 #include "withy/study/corrected_equations.hpp"
-#include "withy/study/measures.hpp"
+#include "withy/study/output_reader.hpp"
 #include "withy/study/prepared.hpp"
 
 namespace withy::study {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "withy/study/output_reader.hpp"
 #include "withy/study/walk.hpp"
 
 namespace withy::study {

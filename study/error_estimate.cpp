@@ -9,6 +9,7 @@
 #include "withy/core/simulation/paired_run.hpp"
 #include "withy/study/accuracy.hpp"
 #include "withy/study/corrected_equations.hpp"
+#include "withy/study/output_reader.hpp"
 
 namespace withy::study {
 namespace {

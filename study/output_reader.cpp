@@ -1,8 +1,8 @@
+#include "withy/study/output_reader.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "withy/study/measures.hpp"
 
 namespace withy::study {
 

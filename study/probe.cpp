@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "withy/core/simulation/run_times.hpp"
+#include "withy/study/output_reader.hpp"
 
 namespace withy::study {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/accuracy.hpp"
+#include "withy/study/output_reader.hpp"
 
 namespace withy::study {
 namespace {

@@ -14,6 +14,7 @@
 #include "withy/study/accuracy.hpp"
 #include "withy/study/growth.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/output_reader.hpp"
 #include "withy/study/remedy.hpp"
 #include "withy/study/rung_plan.hpp"
 #include "withy/study/step_limit.hpp"

@@ -9,6 +9,7 @@
 
 #include "withy/study/accuracy.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/output_reader.hpp"
 #include "withy/study/step_limit.hpp"
 
 namespace withy::study {

@@ -11,6 +11,7 @@
 
 #include "withy/study/advice.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/output_reader.hpp"
 #include "withy/tests/cli/campaign.hpp"
 #include "withy/tests/cli/random_machine.hpp"
 #include "withy/tests/study/plugins.hpp"

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "withy/study/accuracy.hpp"
+#include "withy/study/output_reader.hpp"
 #include "withy/study/run.hpp"
 #include "withy/study/walk.hpp"
 #include "withy/tests/cli/campaign.hpp"

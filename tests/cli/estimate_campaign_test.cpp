@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "withy/study/error_estimate.hpp"
+#include "withy/study/output_reader.hpp"
 #include "withy/study/run.hpp"
 #include "withy/tests/cli/campaign.hpp"
 #include "withy/tests/cli/random_machine.hpp"

@@ -12,6 +12,7 @@
 #include "withy/study/linear_model.hpp"
 #include "withy/study/measures.hpp"
 #include "withy/study/mounted_damping.hpp"
+#include "withy/study/output_reader.hpp"
 #include "withy/study/run.hpp"
 #include "withy/study/threshold.hpp"
 #include "withy/tests/study/plugins.hpp"

@@ -5,6 +5,7 @@
 
 #include "withy/study/accuracy.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/output_reader.hpp"
 #include "withy/study/probe.hpp"
 #include "withy/study/trade.hpp"
 #include "withy/tests/study/plugins.hpp"

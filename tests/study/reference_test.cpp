@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "withy/study/advice.hpp"
+#include "withy/study/output_reader.hpp"
 #include "withy/study/pace.hpp"
 #include "withy/tests/study/plugins.hpp"
 

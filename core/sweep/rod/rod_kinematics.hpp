@@ -195,18 +195,10 @@ template <int N>
   }
 }
 
+/// Turns of the rod's sections at the nodes and stations: from node to node four at a time, then one after the other.
 template <int N>
-[[gnu::noinline]] inline void rod_motion(const RodKinematics<Spatial>& rod, int modes, const double* q,
-                                         const double* q_dot, const RodWork& work) {
-  using Rod = RodKinematics<Spatial>;
-  const int n = count<N>(modes), packs = rod.integrals.packs;
-  const auto get = [&](const Pack* at, int function) {
-    return PackVector{at[function * packs], at[(function + 1) * packs], at[(function + 2) * packs]};
-  };
-  const auto put = [&](Pack* at, int function, const PackVector& v) {
-    for (int c = 0; c < 3; ++c) at[(function + c) * packs] = v[c];
-  };
-  // Turns from node to node and to the stations, four at a time, then one after the other.
+inline void rod_turns(const RodKinematics<Spatial>& rod, int modes, const double* q, Pack* rotation) {
+  const int n = count<N>(modes);
   const Pack* moments = rod.step.data();
   for (std::size_t s = 0; s < rod.steps; s += lanes) {
     PackVector m0 = PackVector::zero(), m1 = m0, m2 = m0;
@@ -218,65 +210,108 @@ template <int N>
         m2[c] += moments[6 + c] * qi;
       }
     }
-    transpose(exponential(magnus(m0, m1, m2)), work.rotation + s);  // the last may hold turns by nothing
+    transpose(exponential(magnus(m0, m1, m2)), rotation + s);  // the last may hold turns by nothing
   }
-  const Pack* piece = work.rotation + rod.after.size();
+  const Pack* piece = rotation + rod.after.size();
   for (std::size_t s = 0; s < rod.after.size(); ++s) {
     const int last = rod.pieces[s];
-    Pack turn = last > 0 ? *piece : work.rotation[s];
+    Pack turn = last > 0 ? *piece : rotation[s];
     for (int k = 1; k < last; ++k) turn = product(turn, piece[k]);
-    if (last > 0) turn = product(turn, work.rotation[s]);
+    if (last > 0) turn = product(turn, rotation[s]);
     piece += last;
-    work.rotation[s] = rod.after[s] >= 0 ? product(work.rotation[rod.after[s]], turn) : turn;
+    rotation[s] = rod.after[s] >= 0 ? product(rotation[rod.after[s]], turn) : turn;
   }
+}
+
+/// Three functions at one pack of nodes; see RodKinematics<Spatial>.
+struct RodPack {
+  Pack* at;
+  int packs;
+  [[nodiscard]] PackVector get(int function) const {
+    return {at[function * packs], at[(function + 1) * packs], at[(function + 2) * packs]};
+  }
+  void put(int function, const PackVector& v) const {
+    for (int c = 0; c < 3; ++c) at[(function + c) * packs] = v[c];
+  }
+};
+
+/// r′ and w_i′ without what is tabulated, and the axis, at the turns found.
+template <int N>
+inline void rod_slopes(const RodKinematics<Spatial>& rod, int modes, const double* q, const RodWork& work) {
+  using Rod = RodKinematics<Spatial>;
+  const int n = count<N>(modes), packs = rod.integrals.packs;
   const PackVector direction{spread(rod.direction[0]), spread(rod.direction[1]), spread(rod.direction[2])};
   for (int k = 0; k < packs; ++k) {
     const PackMatrix R = rotation(untransposed(work.rotation + 4 * k));
-    Pack* f = work.slope + k;
+    const RodPack f{work.slope + k, packs};
     const PackVector t = R * direction;
-    put(f, Rod::axis(n), t);
+    f.put(Rod::axis(n), t);
     PackVector stretch = t - direction;
     const Pack* first = rod.first.data() + k * n * 12;
     for (int i = 0; i < n; ++i, first += 12) {
       const PackVector kappa{first[0], first[1], first[2]};
-      put(f, Rod::w + 3 * i, R * kappa - kappa);
+      f.put(Rod::w + 3 * i, R * kappa - kappa);
       for (int c = 0; c < 3; ++c) stretch[c] -= first[6 + c] * spread(q[i]);
     }
-    put(f, 0, stretch);
+    f.put(0, stretch);
   }
-  rod.integrals.integrate(work.slope, work.value, Rod::P(n));
+}
+
+/// Adds what is tabulated to r and w_i, and finds P_i′, b′ and the part ω × (ω × t) of a′.
+template <int N>
+inline void rod_rates(const RodKinematics<Spatial>& rod, int modes, const double* q, const double* q_dot,
+                      const RodWork& work) {
+  using Rod = RodKinematics<Spatial>;
+  const int n = count<N>(modes), packs = rod.integrals.packs;
   for (int k = 0; k < packs; ++k) {
-    Pack* f = work.slope + k;
-    Pack* y = work.value + k;
-    const PackVector t = get(f, Rod::axis(n));
+    const RodPack f{work.slope + k, packs}, y{work.value + k, packs};
+    const PackVector t = f.get(Rod::axis(n));
     PackVector omega = PackVector::zero(), rate = omega;
     const Pack* first = rod.first.data() + k * n * 12;
     for (int i = 0; i < n; ++i, first += 12) {
-      const PackVector u = get(f, Rod::w + 3 * i);
-      PackVector w = get(y, Rod::w + 3 * i);
+      const PackVector u = f.get(Rod::w + 3 * i);
+      PackVector w = y.get(Rod::w + 3 * i);
       for (int c = 0; c < 3; ++c) {
         w[c] += first[3 + c];
         omega[c] += w[c] * spread(q_dot[i]);
         rate[c] += (u[c] + first[c]) * spread(q_dot[i]);
-        y[c * packs] += first[9 + c] * spread(q[i]);
+        y.at[c * packs] += first[9 + c] * spread(q[i]);
       }
-      put(y, Rod::w + 3 * i, w);
-      put(f, Rod::P(n) + 3 * i, cross(w, t) - PackVector{first[6], first[7], first[8]});
+      y.put(Rod::w + 3 * i, w);
+      f.put(Rod::P(n) + 3 * i, cross(w, t) - PackVector{first[6], first[7], first[8]});
     }
-    for (int c = 0; c < 3; ++c) y[c * packs] += rod.X[static_cast<std::size_t>(3 * k + c)];
-    put(f, Rod::b(n), cross(omega, rate));
-    put(f, Rod::a(n), cross(omega, cross(omega, t)));
+    for (int c = 0; c < 3; ++c) y.at[c * packs] += rod.X[static_cast<std::size_t>(3 * k + c)];
+    f.put(Rod::b(n), cross(omega, rate));
+    f.put(Rod::a(n), cross(omega, cross(omega, t)));
   }
-  rod.integrals.integrate(work.slope + Rod::P(n) * packs, work.value + Rod::P(n) * packs, 3 * n + 3);
+}
+
+/// Adds what is tabulated to P_i, and b × t to a′.
+template <int N>
+inline void rod_bias(const RodKinematics<Spatial>& rod, int modes, const RodWork& work) {
+  using Rod = RodKinematics<Spatial>;
+  const int n = count<N>(modes), packs = rod.integrals.packs;
   for (int k = 0; k < packs; ++k) {
-    Pack* f = work.slope + k;
-    Pack* y = work.value + k;
-    put(f, Rod::a(n), get(f, Rod::a(n)) + cross(get(y, Rod::b(n)), get(f, Rod::axis(n))));
+    const RodPack f{work.slope + k, packs}, y{work.value + k, packs};
+    f.put(Rod::a(n), f.get(Rod::a(n)) + cross(y.get(Rod::b(n)), f.get(Rod::axis(n))));
     const Pack* first = rod.first.data() + k * n * 12;
     for (int i = 0; i < n; ++i, first += 12) {
-      for (int c = 0; c < 3; ++c) y[(Rod::P(n) + 3 * i + c) * packs] += first[9 + c];
+      for (int c = 0; c < 3; ++c) y.at[(Rod::P(n) + 3 * i + c) * packs] += first[9 + c];
     }
   }
+}
+
+template <int N>
+[[gnu::noinline]] inline void rod_motion(const RodKinematics<Spatial>& rod, int modes, const double* q,
+                                         const double* q_dot, const RodWork& work) {
+  using Rod = RodKinematics<Spatial>;
+  const int n = count<N>(modes), packs = rod.integrals.packs;
+  rod_turns<N>(rod, modes, q, work.rotation);
+  rod_slopes<N>(rod, modes, q, work);
+  rod.integrals.integrate(work.slope, work.value, Rod::P(n));
+  rod_rates<N>(rod, modes, q, q_dot, work);
+  rod.integrals.integrate(work.slope + Rod::P(n) * packs, work.value + Rod::P(n) * packs, 3 * n + 3);
+  rod_bias<N>(rod, modes, work);
   rod.integrals.integrate(work.slope + Rod::a(n) * packs, work.value + Rod::a(n) * packs, 3);
 }
 
