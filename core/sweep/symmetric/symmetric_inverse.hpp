@@ -75,11 +75,6 @@ template <class Space, int N, Flavor flavor>
     const Twist* J = at<Twist>(s.work, node.work_J);
     typename Space::Inertia I = Space::Inertia::zero();
     Twist p = Twist::zero();
-    for (int i = 0; i < n; ++i) {
-      C[i] = Twist::zero();
-      h[i] = 0;
-    }
-    for (int i = 0; i < n * n; ++i) G[i] = 0;
     if constexpr (flavor == Flavor::frozen) {
       const auto square = Variation<Space>::bilinear(w.V, w.V);
       for (int i = 0; i < n; ++i) {

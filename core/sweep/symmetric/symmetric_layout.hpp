@@ -85,10 +85,16 @@ std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes) {
   WorkLayout memory;
   place_sums(nodes, memory);
   // What no pass leaves for another is shared by all nodes.
-  std::size_t most = 0;
-  for (const SymmetricNode<Space>& node : nodes) most = std::max(most, static_cast<std::size_t>(node.modes));
+  std::size_t most = 0, most_rod = 0;
+  for (const SymmetricNode<Space>& node : nodes) {
+    most = std::max(most, static_cast<std::size_t>(node.modes));
+    if constexpr (has_rods<Space>) {
+      if (!node.rod.empty()) most_rod = std::max(most_rod, rod_work(*node.rod, node.modes));
+    }
+  }
   const std::size_t shared_h = memory.template take<Scalar>(most);
   const std::size_t shared_P = memory.template take<typename Space::Group>(most * Space::linear);
+  const std::size_t shared_rod = memory.template take<Pack>(most_rod);
   for (SymmetricNode<Space>& node : nodes) {
     using Twist = typename Space::Twist;
     const auto n = static_cast<std::size_t>(node.modes);
@@ -98,11 +104,10 @@ std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes) {
     node.work_C = memory.template take<Twist>(n);
     node.work_G = memory.template take<Scalar>(n * n);
     node.work_y = memory.template take<Scalar>(n);
-    if constexpr (has_rods<Space>) {
-      if (!node.rod.empty()) node.work_rod = memory.template take<Pack>(rod_work(*node.rod, node.modes));
-    }
+    if (!node.rod.empty()) node.work_rod_mass = memory.template take<RodMass<Space>>(1);
     node.work_h = shared_h;
     node.work_P = shared_P;
+    node.work_rod = shared_rod;
     if (node.joint.driven) node.work_driven = memory.template take<DrivenWork<Space>>(1);
     if (node.root_station >= 0) node.work_root = memory.template take<RootWork<Space>>(1);
     if (!single(node.joint.kind) && node.joint.kind != Joint::fixed)

@@ -66,7 +66,8 @@ struct SymmetricNode {
   SharedValue<typename Space::Inertia> reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
   SharedValue<typename Space::Frame> M;          ///< hinge frame in the root station's section, where there is one
   SharedValue<RodKinematics<Space>> rod;         ///< in place of mass and rotary inertia where kinematics is exact
-  std::size_t work_h = 0, work_P = 0, work_rod = 0, work_root = 0, work_elimination = 0, work_driven = 0;
+  std::size_t work_h = 0, work_P = 0, work_rod = 0, work_rod_mass = 0, work_root = 0, work_elimination = 0,
+              work_driven = 0;
 
   SymmetricNode() = default;
   /// \param twin a node whose body's mass is the same, in the same place and terms; null: there is none

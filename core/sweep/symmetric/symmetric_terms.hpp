@@ -39,6 +39,14 @@ struct DrivenWork {
   typename Space::Twist p;
 };
 
+/// What the mass of a rod gives to I and p of (3); what it gives to C, G, h stands in the node's memory for these until
+/// its modes are eliminated. Found as soon as the rod has moved, so that all rods share the memory of their sections.
+template <class Space>
+struct RodMass {
+  typename Space::Inertia I;
+  typename Space::Twist p;
+};
+
 /// Work of a node.
 template <class Space>
 struct NodeWork {
