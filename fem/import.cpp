@@ -52,25 +52,38 @@ SecondOrder second_order_of(const Mesh& mesh, const Matrices& matrices, const Re
   }
 }
 
+/// Numbers of the second-order displacements of all vertices.
+Eigen::Index second_order_numbers(const OuterFaces& outer, const Reduction& body) {
+  const Eigen::Index n = body.modes.cols();
+  return 3 * static_cast<Eigen::Index>(outer.rows.size()) * (n * (n + 1) / 2);
+}
+
 Drawn drawn_as(const Mesh& mesh, const Matrices& matrices, const ReductionOptions& options, const Reduction& body) {
   Drawn drawn;
+  std::vector<std::string> lacking;
   try {
-    const OuterFaces outer = outer_faces(mesh, matrices);
-    const Eigen::Index n = body.modes.cols();
-    const auto numbers = 3 * static_cast<Eigen::Index>(outer.rows.size()) * (n * (n + 1) / 2);
+    OuterFaces outer = outer_faces(mesh, matrices);
+    const bool large =
+        outer.triangles() > most_drawn_triangles || second_order_numbers(outer, body) > most_second_order;
+    if (large && outer.polygons.size() > outer.faces) {
+      outer = outer_faces(mesh, matrices, FaceEdges::straight);
+      lacking.emplace_back("edges straight, for with the nodes in their middles the file would be too large");
+    }
+    if (!outer.left_out.empty()) lacking.push_back(fmt::format("without its elements of type {}", outer.left_out));
     Eigen::MatrixXd second;
     if (body.second_order.empty())
-      drawn.lacking = "without the second order, for the geometric stiffness is not known";
-    else if (numbers > most_second_order)
-      drawn.lacking = "without the second order, which would make the file too large";
+      lacking.emplace_back("without the second order, for the geometric stiffness is not known");
+    else if (second_order_numbers(outer, body) > most_second_order)
+      lacking.emplace_back("without the second order, which would make the file too large");
     else
       second = second_order_displacements(mesh, matrices, options, body);
     drawn.text = surface_text(body, outer, second);
     drawn.vertices = outer.rows.size();
-    drawn.faces = outer.faces.size();
+    drawn.faces = outer.faces;
   } catch (const InputError& e) {
-    drawn.lacking = e.what();
+    lacking = {e.what()};
   }
+  drawn.lacking = fmt::format("{}", fmt::join(lacking, ", "));
   return drawn;
 }
 

@@ -34,7 +34,7 @@ struct SecondOrder {
 /// How the body is drawn.
 struct Drawn {
   std::string text;     ///< of the file, see surface_text; empty where the faces are not known
-  std::string lacking;  ///< why it is not known, or its second order is not; empty where all is known
+  std::string lacking;  ///< why it is not known, or what of it is not drawn; empty where all is
   std::size_t vertices = 0, faces = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "element_faces.hpp"
 #include "element_shape.hpp"
 #include "text_lines.hpp"
 
@@ -123,12 +124,14 @@ class DeckReader {
       if (!number || *number <= 0) fault(fmt::format("got '{}'; need an element's number and nodes", line));
       const std::string type = name_in(keyword, "TYPE");
       // Of other elements it is not known how many lines they take.
-      if (element_shape(type) == nullptr) {
+      if (element_faces(type) == nullptr) {
         mesh_.other_elements.insert(type);
         return;
       }
-      const auto [it, fresh] = mesh_.elements.emplace(*number, Element{type, {}});
-      if (!fresh) fault(fmt::format("element {} is there twice", *number));
+      const bool known = element_shape(type) != nullptr;
+      const auto [it, fresh] = (known ? mesh_.elements : mesh_.drawn_only).emplace(*number, Element{type, {}});
+      if (!fresh || (known ? mesh_.drawn_only : mesh_.elements).contains(*number))
+        fault(fmt::format("element {} is there twice", *number));
       open_ = &it->second;
       if (const std::string set = name_in(keyword, "ELSET"); !set.empty()) add(*number, mesh_.element_sets[set]);
       first = 1;
@@ -138,7 +141,7 @@ class DeckReader {
       if (!node) fault(fmt::format("got '{}'; need a node's number", fields[i]));
       open_->nodes.push_back(*node);
     }
-    const auto count = static_cast<std::size_t>(element_shape(open_->type)->nodes);
+    const std::size_t count = element_faces(open_->type)->nodes;
     if (open_->nodes.size() > count)
       fault(fmt::format("got {} nodes; {} has {}", open_->nodes.size(), open_->type, count));
     if (open_->nodes.size() == count) open_ = nullptr;

@@ -21,7 +21,7 @@ class InputError : public std::runtime_error {
 };
 
 struct Element {
-  std::string type;         ///< in capitals, as "C3D20R"; one of element_shape()
+  std::string type;         ///< in capitals, as "C3D20R"
   std::vector<long> nodes;  ///< in the deck's order
 };
 
@@ -40,8 +40,9 @@ struct SolidSection {
 struct Mesh {
   std::map<long, Vector3> nodes;                          ///< by number [m]
   std::map<std::string, std::vector<long>> sets;          ///< of nodes
-  std::map<long, Element> elements;                       ///< by number
-  std::set<std::string> other_elements;                   ///< types of those that element_shape() does not know
+  std::map<long, Element> elements;                       ///< by number, of types that element_shape() knows
+  std::map<long, Element> drawn_only;                     ///< by number, of types that element_faces() knows alone
+  std::set<std::string> other_elements;                   ///< types that neither knows
   std::map<std::string, std::vector<long>> element_sets;  ///< numbers of elements
   std::map<std::string, Elastic> materials;               ///< those that are linear and isotropic
   std::vector<SolidSection> sections;

@@ -46,8 +46,11 @@ double add_second_order(const Mesh& mesh, const Matrices& matrices, const Reduct
   if (!(miss < tolerated))
     throw InputError(fmt::format(
         "the stresses that the deck's elements and materials give leave {:.1g} of the unit loads unbalanced; "
-        "need the deck that the stiffness matrix was made from",
-        miss));
+        "need the deck that the stiffness matrix was made from{}",
+        miss,
+        mesh.drawn_only.empty() ? ""
+                                : fmt::format(", without elements like its {}, whose stresses are not known",
+                                              mesh.drawn_only.begin()->second.type)));
   body.second_order = elements.geometric_stiffness(body.loaded, body.modes);
   for (Eigen::MatrixXd& work : body.second_order) work *= -1;
   for (std::size_t i = 0; i < options.interfaces.size(); ++i) {

@@ -28,10 +28,14 @@ std::map<long, Elastic> materials_of(const Mesh& mesh) {
 }  // namespace
 
 SolidElements::SolidElements(const Mesh& mesh, const Matrices& matrices) : nodes_(matrices.X.cols()) {
-  if (!mesh.other_elements.empty())
+  // Of shells and others beside solids it is seen later whether they bear anything: by what the stresses miss.
+  std::string unknown = mesh.other_elements.empty() ? "" : *mesh.other_elements.begin();
+  if (mesh.elements.empty() && !mesh.drawn_only.empty()) unknown = mesh.drawn_only.begin()->second.type;
+  if (!unknown.empty())
     throw InputError(
-        fmt::format("the deck has elements of type {}; known are C3D4, C3D6, C3D8, C3D10, C3D15, C3D20 and C3D20R",
-                    *mesh.other_elements.begin()));
+        fmt::format("the deck has elements of type {}, whose stresses are not known; known are those of C3D4, C3D6, "
+                    "C3D8, C3D10, C3D15, C3D20 and C3D20R",
+                    unknown));
   if (mesh.elements.empty()) throw InputError("there are no elements in the mesh's file; need the input deck");
   const std::map<long, Elastic> materials = materials_of(mesh);
   for (const auto& [number, element] : mesh.elements) {

@@ -5,52 +5,83 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <span>
+#include <optional>
+
+#include "element_faces.hpp"
 
 namespace withy::fem {
 namespace {
 
-using Face = std::vector<std::size_t>;
+/// Numbers of nodes, in the order of an element's face.
+struct NodedFace {
+  std::vector<long> corners, middles;
+  std::optional<long> centre;
+};
 
-// Corners of the faces, counter-clockwise from outside; numbering as in element_shape.cpp.
-const std::vector<Face> of_tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-const std::vector<Face> of_wedge = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
-const std::vector<Face> of_brick = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-
-const std::vector<Face>& faces_of(const Element& element) {
-  switch (element.nodes.size()) {
-    case 4:
-    case 10:
-      return of_tetrahedron;
-    case 6:
-    case 15:
-      return of_wedge;
-    default:
-      return of_brick;
-  }
+NodedFace face_of(const Element& element, const ElementFace& face) {
+  NodedFace noded;
+  for (const std::size_t i : face.corners) noded.corners.push_back(element.nodes.at(i));
+  for (const std::size_t i : face.middles) noded.middles.push_back(element.nodes.at(i));
+  if (face.centre) noded.centre = element.nodes.at(*face.centre);
+  return noded;
 }
 
-/// Outer faces by numbers of nodes, in the order of the elements.
-std::vector<std::vector<long>> faces_once(const Mesh& mesh) {
-  std::map<std::vector<long>, int> times;
-  const auto corners_of = [](const Element& element, const Face& face) {
-    std::vector<long> corners;
-    for (const std::size_t corner : face) corners.push_back(element.nodes.at(corner));
-    return corners;
-  };
-  const auto sorted = [](std::vector<long> corners) {
-    std::sort(corners.begin(), corners.end());
-    return corners;
-  };
-  for (const auto& [number, element] : mesh.elements)
-    for (const Face& face : faces_of(element)) ++times[sorted(corners_of(element, face))];
-  std::vector<std::vector<long>> once;
-  for (const auto& [number, element] : mesh.elements)
-    for (const Face& face : faces_of(element)) {
-      std::vector<long> corners = corners_of(element, face);
-      if (times.at(sorted(corners)) == 1) once.push_back(std::move(corners));
+std::vector<long> sorted_corners(const NodedFace& face) {
+  std::vector<long> corners = face.corners;
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+/// Of elements that are solid or that are not, in the order of their numbers.
+std::vector<NodedFace> faces_of(const Mesh& mesh, bool solid) {
+  std::vector<NodedFace> all;
+  for (const auto* elements : {&mesh.elements, &mesh.drawn_only})
+    for (const auto& [number, element] : *elements) {
+      const ElementFaces& known = *element_faces(element.type);
+      if (element.nodes.size() < known.nodes) throw InputError(fmt::format("element {} lacks nodes", number));
+      if (known.solid != solid) continue;
+      for (const ElementFace& face : known.faces) all.push_back(face_of(element, face));
     }
-  return once;
+  return all;
+}
+
+/// Faces of one solid alone, then those of sheets: a skin that lies on a solid, or on a sheet of the same nodes, is
+/// drawn with it.
+std::vector<NodedFace> faces_seen(const Mesh& mesh) {
+  std::vector<NodedFace> seen;
+  std::map<std::vector<long>, int> times;
+  std::vector<NodedFace> solids = faces_of(mesh, true);
+  for (const NodedFace& face : solids) ++times[sorted_corners(face)];
+  for (NodedFace& face : solids)
+    if (times.at(sorted_corners(face)) == 1) seen.push_back(std::move(face));
+  for (NodedFace& face : faces_of(mesh, false)) {
+    int& before = times[sorted_corners(face)];
+    if (before != 1) seen.push_back(std::move(face));
+    before = 1;
+  }
+  return seen;
+}
+
+/// The polygons of a face by numbers of nodes.
+std::vector<std::vector<long>> polygons_of(const NodedFace& face, FaceEdges edges) {
+  const std::vector<long>&corners = face.corners, &middles = face.middles;
+  if (middles.empty() || edges == FaceEdges::straight) return {corners};
+  std::vector<std::vector<long>> polygons;
+  const std::size_t n = corners.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    polygons.push_back({corners[i], middles[i], middles[(i + n - 1) % n]});
+    if (face.centre) polygons.back().insert(polygons.back().begin() + 2, *face.centre);
+  }
+  if (!face.centre) polygons.push_back(middles);
+  return polygons;
+}
+
+/// \throws InputError where the matrices do not have the node
+Eigen::Index row_of(long node, const Matrices& matrices) {
+  const auto at = std::lower_bound(matrices.nodes.begin(), matrices.nodes.end(), node);
+  if (at == matrices.nodes.end() || *at != node)
+    throw InputError(fmt::format("node {} of the deck's elements is not in the matrices", node));
+  return at - matrices.nodes.begin();
 }
 
 /// Numbers of one vector a line.
@@ -63,30 +94,34 @@ void append_vectors(const Column& column, const OuterFaces& outer, std::string& 
 
 }  // namespace
 
-OuterFaces outer_faces(const Mesh& mesh, const Matrices& matrices) {
-  if (!mesh.other_elements.empty())
-    throw InputError(
-        fmt::format("the deck has elements of type {}, whose faces are not known", *mesh.other_elements.begin()));
-  if (mesh.elements.empty()) throw InputError("there are no elements in the mesh's file");
-  for (const auto& [number, element] : mesh.elements)
-    if (element.nodes.size() < 4) throw InputError(fmt::format("element {} lacks nodes", number));
-  const std::vector<std::vector<long>> faces = faces_once(mesh);
+std::size_t OuterFaces::triangles() const {
+  std::size_t count = 0;
+  for (const auto& polygon : polygons) count += polygon.size() - 2;
+  return count;
+}
+
+OuterFaces outer_faces(const Mesh& mesh, const Matrices& matrices, FaceEdges edges) {
   OuterFaces outer;
-  for (const std::vector<long>& face : faces)
-    for (const long node : face) {
-      const auto at = std::lower_bound(matrices.nodes.begin(), matrices.nodes.end(), node);
-      if (at == matrices.nodes.end() || *at != node)
-        throw InputError(fmt::format("node {} of the deck's elements is not in the matrices", node));
-      outer.rows.push_back(at - matrices.nodes.begin());
+  if (!mesh.other_elements.empty()) outer.left_out = *mesh.other_elements.begin();
+  const std::vector<NodedFace> faces = faces_seen(mesh);
+  if (faces.empty())
+    throw InputError(outer.left_out.empty()
+                         ? "there are no elements in the mesh's file"
+                         : fmt::format("the deck has elements of type {}, whose faces are not known", outer.left_out));
+  outer.faces = faces.size();
+  std::vector<std::vector<Eigen::Index>> polygons;
+  for (const NodedFace& face : faces)
+    for (const std::vector<long>& nodes : polygons_of(face, edges)) {
+      std::vector<Eigen::Index>& own = polygons.emplace_back();
+      for (const long node : nodes) own.push_back(row_of(node, matrices));
+      outer.rows.insert(outer.rows.end(), own.begin(), own.end());
     }
-  std::vector<Eigen::Index> corners = outer.rows;  // of all faces, one behind the other
   std::sort(outer.rows.begin(), outer.rows.end());
   outer.rows.erase(std::unique(outer.rows.begin(), outer.rows.end()), outer.rows.end());
-  std::size_t next = 0;
-  for (const std::vector<long>& face : faces) {
-    std::vector<std::uint32_t>& own = outer.faces.emplace_back();
-    for (std::size_t i = 0; i < face.size(); ++i) {
-      const auto at = std::lower_bound(outer.rows.begin(), outer.rows.end(), corners[next++]);
+  for (const std::vector<Eigen::Index>& polygon : polygons) {
+    std::vector<std::uint32_t>& own = outer.polygons.emplace_back();
+    for (const Eigen::Index row : polygon) {
+      const auto at = std::lower_bound(outer.rows.begin(), outer.rows.end(), row);
       own.push_back(static_cast<std::uint32_t>(at - outer.rows.begin()));
     }
   }
@@ -99,10 +134,10 @@ std::string surface_text(const Reduction& body, const OuterFaces& outer, const E
       "POLYDATA\nPOINTS {} float\n",
       outer.rows.size());
   append_vectors(body.X.reshaped(), outer, text);
-  std::size_t numbers = outer.faces.size();
-  for (const auto& face : outer.faces) numbers += face.size();
-  text += fmt::format("POLYGONS {} {}\n", outer.faces.size(), numbers);
-  for (const auto& face : outer.faces) text += fmt::format("{} {}\n", face.size(), fmt::join(face, " "));
+  std::size_t numbers = outer.polygons.size();
+  for (const auto& polygon : outer.polygons) numbers += polygon.size();
+  text += fmt::format("POLYGONS {} {}\n", outer.polygons.size(), numbers);
+  for (const auto& polygon : outer.polygons) text += fmt::format("{} {}\n", polygon.size(), fmt::join(polygon, " "));
   text += fmt::format("POINT_DATA {}\n", outer.rows.size());
   const Eigen::Index n = body.modes.cols();
   for (Eigen::Index k = 0; k < n; ++k) {

@@ -1,5 +1,5 @@
 /// \file
-/// The outer faces of a mesh of solid elements, with the shapes of a reduced body's modes: how the body is drawn.
+/// The outer faces of a mesh, with the shapes of a reduced body's modes: how the body is drawn.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,26 @@
 
 namespace withy::fem {
 
-/// Faces that no two elements share, by the elements' corners: edges of quadratic elements are drawn straight.
+/// Faces that no two solids share, and those of shells, membranes and surfaces, each once, see element_faces().
 struct OuterFaces {
-  std::vector<Eigen::Index> rows;                 ///< of its vertices, in Matrices::nodes, ascending
-  std::vector<std::vector<std::uint32_t>> faces;  ///< three or four vertices each, counter-clockwise from outside
+  std::vector<Eigen::Index> rows;  ///< of its vertices, in Matrices::nodes, ascending
+  /// Three or four vertices each; of solids counter-clockwise from outside. A face with nodes in the middles of its
+  /// edges is several: of three corners four triangles, of four corners four triangles and what is between them.
+  std::vector<std::vector<std::uint32_t>> polygons;
+  std::size_t faces = 0;  ///< of elements
+  std::string left_out;   ///< a type of elements without faces that are known, as of beams; empty where there is none
+  [[nodiscard]] std::size_t triangles() const;  ///< that the polygons make
 };
 
-/// \throws InputError where the deck has no elements, elements that element_shape() does not know, or nodes that the
-/// matrices have not: what() says which.
-OuterFaces outer_faces(const Mesh& mesh, const Matrices& matrices);
+/// How faces with nodes in the middles of their edges are taken.
+enum class FaceEdges { bent, straight };
+
+/// \throws InputError where the deck has no elements that have faces, or nodes that the matrices have not: what() says
+/// which.
+OuterFaces outer_faces(const Mesh& mesh, const Matrices& matrices, FaceEdges edges = FaceEdges::bent);
+
+/// Triangles of a body that a picture takes, at most: as read_mode_surface() of scenes.
+inline constexpr std::size_t most_drawn_triangles = 100'000;
 
 /// Numbers of second-order shapes that a file takes, at most.
 inline constexpr Eigen::Index most_second_order = 2'000'000;

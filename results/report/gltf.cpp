@@ -66,7 +66,9 @@ class Binary {
   }
 
   void add_material(const char* name, const Json& color) {
+    // Both sides are seen: meshes may be sheets without a thickness.
     add_to("materials", {{"name", name},
+                         {"doubleSided", true},
                          {"pbrMetallicRoughness",
                           {{"baseColorFactor", color}, {"metallicFactor", 0.05}, {"roughnessFactor", 0.55}}}});
   }

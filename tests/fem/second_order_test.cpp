@@ -229,6 +229,21 @@ TEST(SecondOrder, is_refused_where_the_deck_does_not_tell_the_stresses) {
   EXPECT_EQ(with([](Mesh&) {}), "");
   EXPECT_THAT(with([](Mesh& m) { m.elements.clear(); }), HasSubstr("no elements in the mesh's file"));
   EXPECT_THAT(with([](Mesh& m) { m.other_elements.insert("S4"); }), HasSubstr("elements of type S4"));
+  EXPECT_THAT(with([](Mesh& m) {
+                m.drawn_only.emplace(9, Element{"S4", {1, 2, 3, 4}});
+                m.elements.clear();
+              }),
+              HasSubstr("elements of type S4"));
+  EXPECT_EQ(with([](Mesh& m) {
+              m.drawn_only.emplace(9, Element{"SFM3D4", {1, 2, 3, 4}});
+            }),
+            "")
+      << "a skin bears nothing, as the balance shows";
+  EXPECT_THAT(with([](Mesh& m) {
+                m.drawn_only.emplace(9, Element{"S4", {1, 2, 3, 4}});
+                m.materials["STEEL"].modulus *= 1.1;
+              }),
+              HasSubstr("without elements like its S4"));
   EXPECT_THAT(with([](Mesh& m) { m.materials.clear(); }), HasSubstr("material STEEL has no constant isotropic"));
   EXPECT_THAT(with([](Mesh& m) { m.sections.clear(); }), HasSubstr("element 1 has no *SOLID SECTION"));
   EXPECT_THAT(with([](Mesh& m) { m.materials["STEEL"].modulus *= 1.1; }), HasSubstr("leave 0.1 of the unit loads"));

@@ -1,7 +1,7 @@
 // The glTF of a run, read by three.js' loader, against the numbers on the run's page.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { AnimationMixer, Vector3 } from 'three';
+import { AnimationMixer, DoubleSide, Vector3 } from 'three';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
@@ -66,6 +66,7 @@ export async function check_gltf(file, data) {
         assert.deepEqual([...node.geometry.index.array], [...body.surface.triangles]);
       }
       if (!body.flexible) return;
+      assert.equal(node.material.side, DoubleSide, `${body.name} is seen from both sides`);
       check_sections(motion, body, node, scale, what);
       const greatest = Math.max(...body.displacements.map(Math.abs), 1e-9);
       const place = new Map(body.kind === 'points' ? chain(body).map((k, j) => [k, j]) : []);
