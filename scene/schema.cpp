@@ -251,19 +251,24 @@ class SchemaWriter {
 
   /// A hinge's coordinates: numbers, or of one that turns about any axis an orientation or a pose.
   Json position() {
-    Json forms = Json::array({reference("numbers")});
+    Json forms = Json::array({reference("numbers"), number_or_quantity({{"type", "number"}})});
     for (const Specs& form : orientation_forms()) forms.push_back(members(form));
     forms.push_back(members(grammar::pose_members()));
     return {{"anyOf", forms}};
   }
 
+  /// As many numbers as there are; where it is one, the number alone too.
+  Json list_or_one() {
+    return {{"anyOf", Json::array({reference("numbers"), number_or_quantity({{"type", "number"}})})}};
+  }
+
   Json state() {
-    const auto part = [](const char* first, const Json& of_first, const char* second) {
+    const auto part = [rates = list_or_one()](const char* first, const Json& of_first, const char* second) {
       return Json{{"type", "object"},
                   {"additionalProperties",
                    {{"type", "object"},
                     {"additionalProperties", false},
-                    {"properties", {{first, of_first}, {second, reference("numbers")}}}}}};
+                    {"properties", {{first, of_first}, {second, rates}}}}}};
     };
     const Json number = number_or_quantity({{"type", "number"}});
     const auto by_name = [](const Json& of_each) {
@@ -275,7 +280,7 @@ class SchemaWriter {
             {"additionalProperties", false},
             {"properties",
              {{"hinges", part("position", position(), "rate")},
-              {"bodies", part("modes", reference("numbers"), "rates")},
+              {"bodies", part("modes", list_or_one(), "rates")},
               {"loads", by_name(numbers_by_key)},
               {"inputs", by_name(number)},
               {"locked", {{"type", "array"}, {"items", reference("name")}}},

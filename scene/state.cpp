@@ -82,19 +82,26 @@ class StateReader {
     target = checked->number();
   }
 
-  /// Reads the list under `key` into the numbers of y from `first` on; null where there is none that is right.
+  /// Reads the list under `key`, or where it is one number the number, into the numbers of y from `first` on; null
+  /// where there is none that is right.
   const Value* list(const Value& map, const char* key, std::size_t first, const std::vector<std::string>& units) {
     return numbers(map.find(key), first, units, "");
   }
   /// \param what they are; may be empty
   const Value* numbers(const Value* given, std::size_t first, const std::vector<std::string>& units, const char* what) {
     if (given == nullptr) return nullptr;
+    if (units.size() == 1 && given->kind() != Value::Kind::list) {  // a number alone is a list of one
+      const auto x = checker_.check(*given, number("", units[0], ""));
+      if (x) state_.y[first] = x->number();
+      good_ = good_ && x.has_value();
+      return x ? given : nullptr;
+    }
     if (given->kind() != Value::Kind::list || given->items().size() != units.size()) {
-      checker_.diagnostics().error(given->place(),
-                                   fmt::format("got {}; need a list of {}{}", shown(*given),
-                                               units.size() == 1 ? "one finite number, in brackets"
-                                                                 : fmt::format("{} finite numbers", units.size()),
-                                               what));
+      checker_.diagnostics().error(
+          given->place(), fmt::format("got {}; need {}{}", shown(*given),
+                                      units.size() == 1 ? "one finite number"
+                                                        : fmt::format("a list of {} finite numbers", units.size()),
+                                      what));
       good_ = false;
       return nullptr;
     }

@@ -208,8 +208,10 @@ void look_at_hinge_angles(const Prepared& prepared, const std::string& hinge, co
     if (node.name != hinge || rates.size() != 1 || !rates.front().angular) continue;
     for (const char* key : {"from", "to", "target", "lower", "upper", "free_position"})
       if (const Value* angle = options.find(key)) look_at_angle(*angle, true, all);
-    if (const Value* position = options.find("position"))
+    if (const Value* position = options.find("position")) {
+      look_at_angle(*position, true, all);  // a number alone
       for (const Value& angle : position->items()) look_at_angle(angle, true, all);
+    }
   }
 }
 

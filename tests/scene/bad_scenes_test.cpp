@@ -240,7 +240,7 @@ const BadScene bad_scenes[] = {
     {"initial_unknown_hinge", "loads:", "initial: {hinges: {sholder: {position: [1]}}}\nloads:",
      R"(20:20: /initial/hinges/sholder: no hinge "sholder"; did you mean 'shoulder'?)"},
     {"initial_wrong_count", "loads:", "initial: {hinges: {shoulder: {position: [1, 2]}}}\nloads:",
-     "20:41: /initial/hinges/shoulder/position: got a list of 2; need a list of one finite number, in brackets"},
+     "20:41: /initial/hinges/shoulder/position: got a list of 2; need one finite number"},
     {"initial_wrong_unit", "loads:", "initial: {hinges: {shoulder: {position: [1 m]}}}\nloads:",
      R"(20:42: /initial/hinges/shoulder/position/0: got "1 m": 'm' is a wrong unit here; need finite [rad])"},
     {"initial_modes_of_a_rigid_body", "loads:", "initial: {bodies: {hub: {modes: []}}}\nloads:",

@@ -167,6 +167,9 @@ TEST_F(Schema, AcceptsEverySceneOfTheProject) {
   EXPECT_EQ(fault(replaced(good_scene, "length: 0.9", "length: 900 mm")), "");
   EXPECT_EQ(fault(replaced(good_scene, "clamped-free", "{name: clamped-loaded, tip_mass: 2 kg}")), "");
   EXPECT_EQ(fault(replaced(good_scene, "mass_per_length: 1.3", "mass_per_length: [[0, 1.3], [900 mm, 0.5]]")), "");
+  const std::string begun = std::string(good_scene) + "initial: {hinges: {shoulder: ";
+  EXPECT_EQ(fault(begun + "{position: 30 deg, rate: 0.1}}}\n"), "");
+  EXPECT_EQ(fault(begun + "{position: [30 deg], rate: [0.1]}}}\n"), "");
   EXPECT_EQ(fault("integrator: {rtol: 1e-9}\n" + std::string(good_scene)), "");
 }
 

@@ -72,6 +72,14 @@ TEST_F(States, MayCarryUnitsWhereTheHingeIsKnown) {
   EXPECT_EQ(s.y[layout.hinge("right_slide")->position], 0.005);
 }
 
+TEST_F(States, TakeANumberAloneWhereThereIsOne) {
+  const auto state = [&](const char* text) { return parse_state(text, "s", *scene.model, scene.initial); };
+  EXPECT_EQ(state("hinges: {left_drive: {position: 90 deg, rate: 60 rpm}, right_slide: {position: 0.005}}").y,
+            state("hinges: {left_drive: {position: [90 deg], rate: [60 rpm]}, right_slide: {position: [0.005]}}").y);
+  EXPECT_THAT(problem("hinges: {gimbal: {rate: 1 deg/s}}"), testing::HasSubstr("need a list of 3 finite numbers"));
+  EXPECT_THAT(problem("hinges: {left_drive: {rate: 1 m/s}}"), testing::HasSubstr("'m/s' is a wrong unit here"));
+}
+
 // Units come from the motion: a hinge need not be one the sweeps know.
 TEST_F(States, MayCarryUnitsOnEveryHinge) {
   const Scene screws = parse_scene(R"(format: withy/1
