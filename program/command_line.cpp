@@ -36,6 +36,18 @@ std::string meant_option(const CLI::App& parser, const CLI::ExtrasError& e, int 
   return first.empty() ? std::string(e.what()) : in_quotes(first) + " is no option" + scene;
 }
 
+/// What is missing, and what it is.
+std::string missing(const CLI::App& parser, const Program& program, const CLI::RequiredError& e) {
+  for (const CLI::Option* option : parser.get_options())
+    if (option->get_required() && option->count() == 0)
+      return option->get_name(option->get_positional()) + " is missing: " + option->get_description();
+  if (parser.get_subcommands({}).empty()) return e.what();
+  std::string all;
+  for (const CLI::App* part : parser.get_subcommands({})) all += (all.empty() ? "" : ", ") + part->get_name();
+  return std::string("which command? ") + (parser.get_parent() == nullptr ? program.name : parser.get_name()) +
+         " knows " + all;
+}
+
 /// Parses with this parser; what is not the command's to answer is printed, and its status returned.
 std::optional<ExitStatus> parse(CLI::App& parser, const Program& program, int argc, const char* const* argv) {
   try {
@@ -46,6 +58,12 @@ std::optional<ExitStatus> parse(CLI::App& parser, const Program& program, int ar
     complain(meant_option(chosen.empty() ? parser : *chosen.back(), e, argc, argv));
     complain(std::string(program.name) + ' ' + (chosen.empty() ? "" : chosen.back()->get_name() + " ") +
              "--help names what there is");
+    return ExitStatus::bad_input;
+  } catch (const CLI::RequiredError& e) {
+    const std::vector<CLI::App*> chosen = parser.get_subcommands();
+    const CLI::App& of = chosen.empty() ? parser : *chosen.back();
+    complain(missing(of, program, e));
+    complain(std::string(program.name) + ' ' + (chosen.empty() ? "" : of.get_name() + " ") + "--help says more");
     return ExitStatus::bad_input;
   } catch (const CLI::ParseError& e) {
     std::ostringstream out;

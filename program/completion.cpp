@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
 
 #include "withy/program/command_description.hpp"
@@ -15,11 +16,23 @@ struct Place {
   std::vector<std::pair<std::string, std::string>> values;   ///< "--out" or "1", the first argument: a kind or words
 };
 
-/// What completes a value: the words that it may be, or `files` or `folders`; empty where only the user knows.
+/// Which plugins an option names: "formulation" of "--formulations"; empty where it names none.
+std::string plugins_named(const OptionDescription& option) {
+  if (!option.value.starts_with("ID") || option.names.empty()) return {};
+  const std::string& name = option.names.front();
+  if (name == "--reference") return "formulation";
+  for (const std::string kind : {"formulation", "integrator"})
+    if (name == "--" + kind || name == "--" + kind + 's') return kind;
+  return name == "--families" ? "mode-family" : "";
+}
+
+/// What completes a value: the words that it may be, `plugins:KIND`, or `files` or `folders`; empty where only the user
+/// knows.
 std::string values_of(const OptionDescription& option) {
   std::string words;
   for (const std::string& w : option.choices) words += (words.empty() ? "" : " ") + w;
   if (!words.empty()) return words;
+  if (const std::string kind = plugins_named(option); !kind.empty()) return "plugins:" + kind;
   const bool out = !option.names.empty() && option.names.front() == "--out";
   if (out || option.value == "STORE" || option.value == "DIR" || option.value == "FOLDER") return "folders";
   return !option.argument.empty() || option.value == "FILE" ? "files" : "";
@@ -71,17 +84,22 @@ constexpr const char* bash_middle = R"(      */-*) ;;
   ((++position))
   case "$place" in
 )";
-constexpr const char* bash_end = R"(  esac
+// A list is completed behind its last comma.
+constexpr const char* bash_end = R"sh(  esac
+  local before_it=
+  [[ $word == *,* ]] && before_it=${word%,*},
   if [[ $word == -* ]]; then COMPREPLY=($(compgen -W "$options" -- "$word")); return; fi
   case "$values" in
     none) COMPREPLY=() ;;
     folders) compopt -o filenames; COMPREPLY=($(compgen -d -- "$word")) ;;
+    plugins:*) COMPREPLY=($(compgen -P "$before_it" -W "$(withy plugins 2> /dev/null |
+      sed -n "s/^${values#plugins:}  *\([^ ]*\).*/\1/p")" -- "${word#"$before_it"}")) ;;
     files) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")) ;;
     *) COMPREPLY=($(compgen -W "$parts $values" -- "$word")) ;;
   esac
 }
 complete -F _withy withy
-)";
+)sh";
 
 /// What the word before the cursor leaves to complete, at one place of the command line.
 std::string bash_values(const Place& place) {
@@ -115,6 +133,11 @@ std::string quoted(const std::string& text) {
 std::string zsh_action(const std::string& values) {
   if (values == "files") return "_files";
   if (values == "folders") return "_files -/";
+  constexpr std::string_view plugins = "plugins:";
+  if (values.starts_with(plugins))
+    return fmt::format(
+        "_sequence compadd - ${{(f)\"$(withy plugins 2> /dev/null | sed -n \"s/^{}  *\\([^ ]*\\).*/\\1/p\")\"}}",
+        values.substr(plugins.size()));
   return values.empty() || values == "none" ? " " : "(" + values + ")";
 }
 

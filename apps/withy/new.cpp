@@ -42,7 +42,7 @@ ExitStatus write_new(const NewArguments& arguments) {
 }
 
 void add_new(Options& o, NewArguments& a) {
-  o.argument("KIND", a.kind, "beam, satellite, arm or turbine").required();
+  o.value("KIND", a.kind, "{beam,satellite,arm,turbine}", "beam, satellite, arm or turbine").required();
   o.argument("FILE", a.file, "Where to write it; default: KIND.yaml in the current folder");
   o.flag("--force", a.force, "Replace the file where there is one");
   add_json(o, a.json);

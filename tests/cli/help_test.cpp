@@ -151,10 +151,11 @@ TEST(Help, SentencesFitATerminalAndStayWholeElsewhere) {
 /// What bash offers behind the words.
 std::vector<std::string> completed(const Folder& folder, const std::string& typed) {
   const std::string script = withy(folder, {"completion", "bash"}).out;
-  const Finished f = Process(folder, {"/bin/bash", "-c",
-                                      script + "\ncompopt() { :; }\nCOMP_WORDS=(" + typed +
-                                          ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_withy\necho ${COMPREPLY[@]}"})
-                         .wait();
+  const Finished f =
+      Process(folder, {"/bin/bash", "-c",
+                       script + "\ncompopt() { :; }\nwithy() { '" WITHY_PROGRAM "' \"$@\"; }\nCOMP_WORDS=(" + typed +
+                           ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_withy\necho ${COMPREPLY[@]}"})
+          .wait();
   EXPECT_EQ(f.err, "") << typed;
   return words(f.out);
 }
@@ -171,6 +172,25 @@ TEST(Help, BashCompletesCommandsOptionsWordsAndFiles) {
   EXPECT_THAT(completed(folder, "withy completion z"), ElementsAre("zsh"));
   EXPECT_THAT(completed(folder, "withy run scenes/pendulu"), Contains("scenes/pendulum.yaml"));
   EXPECT_THAT(completed(folder, "withy run scenes/pendulum.yaml --checkpoint 1"), testing::IsEmpty());
+  EXPECT_THAT(completed(folder, "withy new ''"), testing::UnorderedElementsAre("beam", "satellite", "arm", "turbine"));
+}
+
+TEST(Help, BashCompletesPluginsByTheirIds) {
+  const Folder folder;
+  using testing::ElementsAre;
+  EXPECT_THAT(completed(folder, "withy run s.yaml --formulation quad"), ElementsAre("quadratic"));
+  EXPECT_THAT(completed(folder, "withy run s.yaml --integrator dop"),
+              testing::UnorderedElementsAre("dopri5", "dop853"));
+  EXPECT_THAT(completed(folder, "withy compare s.yaml --formulations linear,rut"), ElementsAre("linear,ruthless"));
+  EXPECT_THAT(completed(folder, "withy trade s.yaml --families clamped-l"), ElementsAre("clamped-loaded"));
+}
+
+TEST(Help, WhatIsMissingIsSaidWithItsMeaning) {
+  const Folder folder;
+  EXPECT_THAT(withy(folder, {"run"}).err, HasSubstr("SCENE is missing: Scene file"));
+  EXPECT_THAT(withy(folder, {"new"}).err, HasSubstr("KIND is missing: beam, satellite, arm or turbine"));
+  EXPECT_THAT(withy(folder, {"sweep"}).err, HasSubstr("which command? sweep knows run, submit, status, collect, case"));
+  EXPECT_THAT(withy(folder, {}).err, HasSubstr("which command? withy knows new, check, run"));
 }
 
 TEST_P(HelpOf, NamesTheOptionsThatCompletionAndManualName) {
