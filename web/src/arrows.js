@@ -11,21 +11,28 @@ function measured(value, unit) {
   return `${+(value / scale).toPrecision(3)} ${prefix}${unit.replace('^2', '²')}`;
 }
 
+// Of the arrows of all runs, by unit: runs that are drawn over each other are compared. size: of the whole system [m]
+export function greatest_of(arrows, size) {
+  const greatest = new Map();
+  for (const a of arrows) greatest.set(a.unit, Math.max(greatest.get(a.unit) ?? 0, a.greatest));
+  // Moments that are what rounding leaves of forces are none.
+  if (greatest.get('N m') < 1e-9 * size * greatest.get('N')) greatest.delete('N m');
+  return greatest;
+}
+
+// How much the longest arrow of each unit stands for.
+export const longest_in_words = greatest => [...greatest].filter(([, v]) => v > 0).map(([unit, v]) => measured(v, unit)).join(', ');
+
 export class Arrows {
-  // size: of the whole system [m]
-  constructor(motion, arrows, size, dark) {
+  // size: of the whole system [m]; greatest: see greatest_of
+  constructor(motion, arrows, greatest, size, dark) {
     Object.assign(this, { motion, size, group: new Group() });
-    const greatest = new Map();
-    for (const a of arrows) greatest.set(a.unit, Math.max(greatest.get(a.unit) ?? 0, a.greatest));
-    // Moments that are what rounding leaves of forces are none.
-    if (greatest.get('N m') < 1e-9 * size * greatest.get('N')) greatest.delete('N m');
     this.items = arrows.filter(a => a.greatest > 0 && greatest.has(a.unit)).map(a => {
       const kind = a.name.slice(a.name.lastIndexOf(' ') + 1), material = new MeshBasicMaterial({ color: colours(dark)[kind] });
       const shaft = new Mesh(new CylinderGeometry(size * 0.0045, size * 0.0045, 1, 8), material), head = new Mesh(new ConeGeometry(size * 0.014, size * 0.04, 12), material);
       for (const part of [shaft, head]) { part.frustumCulled = false; this.group.add(part); }
       return { arrow: a, shaft, head, scale: 0.22 * size / greatest.get(a.unit) };
     });
-    this.words = [...greatest].filter(([, v]) => v > 0).map(([unit, v]) => measured(v, unit)).join(', ');
   }
 
   // Between two moments in proportion.

@@ -1,6 +1,7 @@
 // Plots over time: a panel for each group of columns, made when it comes into sight.
 import uPlot from 'uplot';
 import { dashes, palette, resampled } from './data.js';
+import { label_of } from './ticks.js';
 
 const most_shown = 8; // curves of a panel at first
 
@@ -181,17 +182,6 @@ function range(low, high, limit) {
   if (limit) low = Math.min(low, 0);
   const room = high > low ? 0.06 * (high - low) : Math.max(1e-12, 0.1 * Math.abs(low));
   return [low - room, high + room];
-}
-
-function label_of(v, ticks, log) {
-  if (v === 0) return '0';
-  if (log) return Math.log10(Math.abs(v)) % 1 === 0 || ticks.length < 12 ? v.toExponential(0).replace('e+', 'e') : '';
-  const step = ticks.length > 1 ? Math.abs(ticks[1] - ticks[0]) : Math.abs(v);
-  const most = Math.max(...ticks.map(Math.abs));
-  if (most >= 1e5 || most < 1e-3) return v.toExponential(Math.max(0, Math.min(6, Math.ceil(Math.log10(Math.abs(v) / step)))));
-  let digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-  while (digits < 9 && Math.abs(step * 10 ** digits - Math.round(step * 10 ** digits)) > 1e-6) ++digits;
-  return v.toFixed(digits);
 }
 
 export class Charts {

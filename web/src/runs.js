@@ -72,7 +72,7 @@ export function show_runs(page) {
     const s = Math.min(2, Math.max(0, exponent));
     $('scale').value = s;
     if (view) view.scale = s === 0 ? 1 : 10 ** s;
-    $('scale-value').textContent = s === 0 ? '1' : (10 ** s).toPrecision(2);
+    $('scale-value').textContent = `${+(10 ** s).toPrecision(2)}`;
     seek(time);
   }
 

@@ -3,7 +3,7 @@ import {
   AmbientLight, Box3, BufferGeometry, Color, DirectionalLight, GridHelper, Group, Line, LineBasicMaterial, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import { Arrows } from './arrows.js';
+import { Arrows, greatest_of, longest_in_words } from './arrows.js';
 import { palette } from './data.js';
 import { Motion } from './motion.js';
 import { Pace } from './pace.js';
@@ -100,7 +100,8 @@ export class View {
       this.scene.add(shapes.group);
       return shapes;
     });
-    this.arrows = this.motions.map((motion, i) => new Arrows(motion, this.runs[i].animation.arrows, this.size, dark));
+    this.greatest = greatest_of(this.runs.flatMap(run => run.animation.arrows), this.size);
+    this.arrows = this.motions.map((motion, i) => new Arrows(motion, this.runs[i].animation.arrows, this.greatest, this.size, dark));
     for (const arrows of this.arrows) this.scene.add(arrows.group);
     this.add_ground(dark);
     this.add_trails(colours);
@@ -122,10 +123,16 @@ export class View {
     for (let k = 0; k < 3; ++k) if (across.getComponent(k) === 0) center.setComponent(k, Math.round(center.getComponent(k) / this.cell) * this.cell);
     grid.position.copy(center);
     grid.visible = !this.show.follow;
-    const words = this.arrows.map(a => a.words).filter(Boolean)[0];
-    document.getElementById('cell').textContent = [grid.visible ? `squares of ${this.cell} m` : '', words ? `longest arrows: ${words}` : ''].filter(Boolean).join('; ');
     this.grid = grid;
     this.scene.add(grid);
+  }
+
+  // To which scale things are drawn, and what is not drawn where deformation is larger than it is.
+  write_caption() {
+    const arrows = this.show.sensors ? longest_in_words(this.greatest) : '', hidden = [arrows && 'arrows', this.show.trails && 'trails'].filter(Boolean);
+    const words = this.scale === 1 ? arrows && `longest arrows: ${arrows}` : hidden.length && `${hidden.join(' and ')} at Deformation × 1 only`;
+    const caption = [this.grid.visible && `squares of ${this.cell} m`, words].filter(Boolean).join('; '), place = document.getElementById('cell');
+    if (place.textContent !== caption) place.textContent = caption;
   }
 
   // The ways of the outermost points of bodies that carry nothing.
@@ -162,6 +169,7 @@ export class View {
       if (this.arrows[i].group.visible) this.arrows[i].go(own);
     });
     this.trails.visible = this.show.trails && this.scale === 1;
+    this.write_caption();
     for (const line of this.trails.children) {
       const motion = line.userData.motion;
       line.visible = !this.runs[this.motions.indexOf(motion)].hidden;

@@ -6,7 +6,9 @@ import { join } from 'node:path';
 import { Vector3 } from 'three';
 import { unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
+import { greatest_of, longest_in_words } from '../src/arrows.js';
 import { Pace } from '../src/pace.js';
+import { label_of } from '../src/ticks.js';
 import { in_browser, opened, text } from './browser.mjs';
 import { check_gltf } from './gltf.mjs';
 import { check_landmarks } from './landmarks.mjs';
@@ -30,6 +32,24 @@ function check_motion(file) {
       motion.go(motion.times[i], 30);
     }
   }
+}
+
+// Every tick says its own value, and those of one axis have as many digits.
+function check_ticks() {
+  const labels = (...ticks) => ticks.map(v => label_of(v, ticks, false)).join(' ');
+  assert.equal(labels(-1e-7, -7.5e-8, -5e-8, -2.5e-8, 0), '-1.0e-7 -7.5e-8 -5.0e-8 -2.5e-8 0');
+  assert.equal(labels(0, 2e-5, 4e-5), '0 2e-5 4e-5');
+  assert.equal(labels(1e6, 1.25e6, 1.5e6), '1.00e+6 1.25e+6 1.50e+6');
+  assert.equal(labels(0, 0.25, 0.5), '0 0.25 0.50');
+  assert.equal(labels(6000, 6020), '6000 6020');
+}
+
+// Runs on one page are compared: their arrows have one scale, which the page says.
+function check_common_scale() {
+  const arrow = (unit, greatest) => ({ unit, greatest });
+  const greatest = greatest_of([arrow('N', 0.05), arrow('N m', 0.3), arrow('N', 2860), arrow('m/s^2', 0)], 10);
+  assert.equal(greatest.get('N'), 2860);
+  assert.equal(longest_in_words(greatest), '2.86 kN, 300 mN m');
 }
 
 const picture = page => page.evaluate(() => document.querySelector('#view canvas').toDataURL());
@@ -58,8 +78,14 @@ async function check_sensors(browser, troubles) {
   const page = await opened(browser, join(folder, 'loads/report.html'), 't=1.2&theme=light', troubles);
   assert.match(await text(page, '#cell'), /longest arrows: [\d.]+ k?N, [\d.]+ k?N m, [\d.]+ m\/s²/);
   const with_arrows = await picture(page);
+  await page.focus('#view');
+  await page.keyboard.press('+');
+  assert.match(await text(page, '#cell'), /; arrows and trails at Deformation × 1 only$/);
+  await page.keyboard.press('-');
+  assert.match(await text(page, '#cell'), /longest arrows/);
   await page.uncheck('#sensors');
   assert.notEqual(await picture(page), with_arrows);
+  assert.doesNotMatch(await text(page, '#cell'), /arrows/);
   await page.close();
 }
 
@@ -254,6 +280,8 @@ function check_looks(file) {
   [[0, 0.15], [1, 0.01], [sections.widths.length - 2, 0.05]].forEach(([i, half]) => assert.ok(Math.abs(sections.widths[i] - half) < 1e-6));
 }
 
+check_ticks();
+check_common_scale();
 await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   [folder, run] = [own_folder, own_run];
   simulate('two-link-slew.yaml', 'arm');
