@@ -305,6 +305,21 @@ class PlanBuilder {
 
 }  // namespace
 
+std::string is_a_scene(const std::string& file) try {
+  Problems problems(file);
+  Document document;
+  if (!read_document(read_bytes(file), {}, document, problems.of_plan())) return {};
+  const Value* format = document.root.find("format");
+  if (format == nullptr || format->kind() != Value::Kind::text || !format->text().starts_with("withy/")) return {};
+  return fmt::format(
+      "{0} is a scene; need a plan of a sweep: a file that names a scene and says which of its values vary, as\n"
+      "  format: withy-sweep/1\n  scene: {1}\n  vary:\n    bodies.NAME.mass: {{grid: [1, 2, 3]}}\n"
+      "docs/sweep.md says more; withy run {0} runs the scene once",
+      file, std::filesystem::path(file).filename().string());
+} catch (const std::system_error&) {
+  return {};
+}
+
 Plan read_plan(const std::string& file, Registry& registry) {
   Problems problems(file);
   Document document;

@@ -155,7 +155,9 @@ StoreDescription description_of(const Plan& plan) {
 
 StoreDescription read_description(const std::filesystem::path& store) {
   if (auto about = described(store)) return *about;
-  throw ResultsError(store.string() + " is no store of a sweep");
+  throw ResultsError(
+      store.string() +
+      " is no store of a sweep; need the folder that withy sweep run PLAN --out STORE keeps its results in");
 }
 
 Store::Store(std::filesystem::path path, const Plan& plan, bool anew)

@@ -163,8 +163,9 @@ std::string question_text(const AdviceQuestion& question) {
 
 std::string no_advice_text(const study::Advice& a, const AdviceQuestion& question) {
   const study::Accuracy& accuracy = question.accuracy;
-  const std::string measured = fmt::format(" Measured: {:.2g} s of CPU time of the {:.2g} allowed, {} of {} models.",
-                                           a.cpu_seconds, a.limit_seconds, a.models_tried, a.models);
+  const std::string models = a.models == 0 ? "" : fmt::format(", {} of {} models", a.models_tried, a.models);
+  const std::string measured =
+      fmt::format(" Measured: {:.2g} s of CPU time of the {:.2g} allowed{}.", a.cpu_seconds, a.limit_seconds, models);
   const auto ended = [](std::string text) { return text.ends_with('.') ? text : text + '.'; };
   if (!a.trouble.empty()) return ended(a.trouble) + measured;
   std::string text = a.models_tried < a.models ? "the time for the search was over before a model was found that holds "
@@ -191,7 +192,7 @@ std::string no_advice_text(const study::Advice& a, const AdviceQuestion& questio
     text += " All were cut off when they were further off than that.";
   return text +
          " What to do: allow more --modes; give a body that carries something modes made for that, as family: "
-         "{name: clamped-loaded, tip_mass: ...}; ask of --output no more than you need, or less --accuracy." +
+         "{name: clamped-loaded, tip_mass: ...}; ask of --output no more than you need, or a coarser --accuracy." +
          measured;
 }
 
@@ -211,12 +212,8 @@ std::string advice_text(const AdviceReport& report) {
   if (a.steps.product > 0) lines.add("steps", step_limit_text(a.steps));
   add_reasons(lines, report);
   lines.add("left out", report.left_out);
-  if (!a.indicators.empty()) {
-    const study::Indicator& first = a.indicators.front();
-    lines.add("binds",
-              fmt::format("{}: {:.2g}, limit {:.3g}{}", first.text, first.value, first.limit,
-                          first.use() > 1 ? "; beyond it " + first.meaning + ", which the error above has in it" : ""));
-  }
+  if (const std::string limits = limits_text(a.indicators); !limits.empty())
+    lines.add("limits", limits + (a.indicators.front().use() > 1 ? ", which the error above has in it" : ""));
   for (const study::Probe& p : a.above)
     lines.add("next up",
               fmt::format("{}: {} off, {}", p.point.text(), use_text(accuracy, p.use), milliseconds(p.cost)));

@@ -104,8 +104,12 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model, double
 }
 
 std::string body_text(const BodyValidity& b, const RunSummary& summary) {
-  std::string out = fmt::format("turns at {:.2g} of the lowest frequency it has as it is carried, {:.4g} rad/s",
-                                b.rate_ratio, b.fundamental);
+  std::string out =
+      b.rate_ratio > 0
+          ? fmt::format("turns at {:.2g} of the lowest frequency it has as it is carried, {:.4g} rad/s", b.rate_ratio,
+                        b.fundamental)
+          : fmt::format("its root does not turn; the lowest frequency it has as it is carried is {:.4g} rad/s",
+                        b.fundamental);
   if (b.load.size() > 0) {
     const std::size_t most = study::greatest_share(b.load);
     out += fmt::format("; {} load {:.2g} of the buckling load, most of it from {}",
@@ -116,7 +120,8 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
     out += fmt::format("; tip deflection {:.2g} of its length", d->second);
   for (const HighestMode& h : b.highest)
     if (h.modes > 1)
-      out += fmt::format("; highest of {} {} modes has {} of their energy", h.modes, h.family, percent(h.share));
+      out += fmt::format("; highest of {} {}modes has {} of their energy", h.modes, study::before_mode(h.family),
+                         percent(h.share));
   return out;
 }
 
@@ -200,6 +205,17 @@ std::string step_limit_text(const study::StepLimit& s) {
   return text;
 }
 
+std::string limits_text(const std::vector<study::Indicator>& indicators) {
+  if (indicators.empty()) return {};
+  const study::Indicator& first = indicators.front();
+  const std::string how = fmt::format("{}: {:.2g}, limit {:.3g}", first.text, first.value, first.limit);
+  const auto passed =
+      std::count_if(indicators.begin(), indicators.end(), [](const study::Indicator& i) { return i.use() > 1; });
+  if (passed == 0) return "all are kept; nearest is " + how;
+  return fmt::format("{} passed, {}{}; beyond it {}", passed == 1 ? "one is" : fmt::format("{} are", passed),
+                     passed == 1 ? "" : "most of all ", how, first.meaning);
+}
+
 std::string certificate_text(const Model& model, const RunSummary& summary, const study::Certificate& certificate) {
   std::string out = "\ncertificate\n";
   const auto line = [&out](const std::string& what, const std::string& text) {
@@ -232,11 +248,7 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
     line("error", certificate.without_estimate);
   }
   for (const BodyValidity& b : certificate.bodies) line(b.name, body_text(b, summary));
-  if (!certificate.indicators.empty()) {
-    const study::Indicator& first = certificate.indicators.front();
-    line("binds", fmt::format("{}: {:.2g}, limit {:.3g}{}", first.text, first.value, first.limit,
-                              first.use() > 1 ? "; beyond it " + first.meaning : ""));
-  }
+  if (const std::string limits = limits_text(certificate.indicators); !limits.empty()) line("limits", limits);
   if (certificate.steps.product > 0) line("steps", step_limit_text(certificate.steps));
   if (summary.steps.accepted > 0 && summary.energy_scale == 0)
     line("steps", "nothing moves: there is no energy in the tree, and no work is done on it");

@@ -10,6 +10,9 @@ namespace withy {
 
 /// The certificate in plain words, ending its last line.
 std::string certificate_text(const Model& model, const RunSummary& summary, const study::Certificate& certificate);
+/// How a run stands against the limits of its formulation: the nearest, or which it has passed; empty where there is
+/// none.
+std::string limits_text(const std::vector<study::Indicator>& indicators);
 /// "limited by accuracy: mean step times fastest mode 0.11, stable to 1.73".
 std::string step_limit_text(const study::StepLimit& s);
 

@@ -12,8 +12,9 @@ std::string run_of_modes_text(const study::ModesOf& run, const std::optional<stu
   std::string text;
   if (!run.points.front().modes.empty() || !sweep.none())
     text += '\n' + (sweep.none() ? modes_text(run, count) : sweep_text(run, sweep.path, count));
-  if (const std::string words =
-          study::against_next_text(against, fmt::format("the {} lowest frequencies", against ? against->compared : 0));
+  if (const std::string words = study::against_next_text(
+          against, !against || against->compared == 1 ? "the lowest frequency"
+                                                      : fmt::format("the {} lowest frequencies", against->compared));
       !words.empty())
     text += '\n' + words + '\n';
   // Of a sweep the first value at which the equations are periodic speaks for all.

@@ -49,6 +49,14 @@ std::vector<std::string> comparison_content(const ComparisonQuestion& question) 
   return names;
 }
 
+std::string comparison_places(const std::filesystem::path& folder, const study::Variation& over) {
+  const char* page = has_report_page() ? report_name : "compare.svg";
+  const std::string first = (folder / below(over.path, over.values.front()) / page).string();
+  const std::size_t more = over.values.size() - 1;
+  return fmt::format("\nresults in {}, to look at in {}{}\n", folder.string(), first,
+                     more == 0 ? "" : fmt::format(" and those beside it, one a value of {}", over.path));
+}
+
 std::vector<ComparisonAt> record_comparison(const std::filesystem::path& folder, const SceneValues& values,
                                             Registry& registry, const ComparisonQuestion& question,
                                             const std::function<Provenance(const Scene&)>& provenance,

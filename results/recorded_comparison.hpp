@@ -24,6 +24,9 @@ struct ComparisonQuestion {
 /// What the comparison leaves in its folder, compare.json included.
 std::vector<std::string> comparison_content(const ComparisonQuestion& question);
 
+/// Where the pages of a comparison are, or its pictures where there are no pages: a line.
+std::string comparison_places(const std::filesystem::path& folder, const study::Variation& over);
+
 /// Compares at each value, and ends early where the user interrupts: what was compared up to there.
 /// \param folder empty: nothing is kept \param provenance of a run by its scene \param control of a run by its
 /// formulation \throws SceneError, InputError, PluginError; std::system_error where something cannot be written

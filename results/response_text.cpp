@@ -134,9 +134,9 @@ std::string response_text(const study::Configuration& c, const study::Response& 
                       r.model.output_derivatives == "exact" ? "" : "; output " + r.model.output_derivatives);
   if (r.opened) text += static_words(r) + "; " + peak_words(r) + '\n';
   text += root_rows(r, r.roots.poles, true) + root_rows(r, r.roots.zeros, false) + peak_rows(r);
-  if (r.roots.hidden.size() > 0)
-    text += fmt::format("\n{} poles that the input does not move or the output does not see are left out\n",
-                        r.roots.hidden.size());
+  if (const auto hidden = r.roots.hidden.size(); hidden > 0)
+    text += fmt::format("\nleft out: {} that the input does not move or the output does not see\n",
+                        hidden == 1 ? "one pole" : fmt::format("{} poles", hidden));
   if (r.margins) {
     text += fmt::format("\nLoop closed by {} = -k {}, at k = 1: {}\n", r.model.inputs[0].name,
                         r.opened ? "answer" : r.model.outputs[0].name, loop_words(*r.margins));

@@ -8,6 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/event_plan.hpp"
@@ -43,11 +46,8 @@ std::string readable(double value, const std::string& unit) {
 std::string run_table(const study::Prepared& prepared, const RunSummary& summary) {
   const Scene& scene = prepared.scene;
   const Model& model = *scene.model;
-  std::string out;
-  const auto line = [&](const std::string& what, const std::string& text) {
-    out += fmt::format("{:<23} {}\n", what, text);
-  };
-  out += fmt::format("{} ({}, {})\n\n", prepared.title(), scene.formulation_name, scene.integrator_name);
+  std::vector<std::pair<std::string, std::string>> lines;
+  const auto line = [&](std::string what, std::string text) { lines.emplace_back(std::move(what), std::move(text)); };
   line("outcome", study::outcome_text(summary));
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const auto columns = coordinate_columns(model.hinges()[h]);
@@ -95,6 +95,10 @@ std::string run_table(const study::Prepared& prepared, const RunSummary& summary
     line("mass matrix at the end", fmt::format("condition {:.3g}, determinant {}", summary.conditioning.condition,
                                                name_of_sign(summary.conditioning.determinant_sign)));
   }
+  std::size_t width = 23;  // that of the certificate below
+  for (const auto& [what, text] : lines) width = std::max(width, what.size());
+  std::string out = fmt::format("{} ({}, {})\n\n", prepared.title(), scene.formulation_name, scene.integrator_name);
+  for (const auto& [what, text] : lines) out += fmt::format("{:<{}} {}\n", what, width, text);
   if (summary.status == RunStatus::completed && !summary.message.empty()) out += "\nnote: " + summary.message + '\n';
   return out;
 }
@@ -113,13 +117,18 @@ std::string extremes_text(const nlohmann::ordered_json& outputs) {
   std::size_t width = 23;
   for (const auto& [name, o] : outputs.items()) width = std::max(width, name.size() + 9);
   std::string out;
+  std::size_t left_out = 0;
   for (const auto& [name, o] : outputs.items()) {
-    if (reach(o) < small * greatest[kin_of(name, o)]) continue;
+    if (reach(o) < small * greatest[kin_of(name, o)]) {
+      ++left_out;
+      continue;
+    }
     const std::string unit = o["unit"];
     out += fmt::format("{:<{}} {} at {:.4g} s to {} at {:.4g} s\n", "range of " + name, width,
                        readable(o["min"]["value"], unit), o["min"]["t"].get<double>(),
                        readable(o["max"]["value"], unit), o["max"]["t"].get<double>());
   }
+  if (left_out > 0) out += fmt::format("{} more are below a hundredth of these; run.json has them all\n", left_out);
   return out.empty() ? out : '\n' + out;
 }
 

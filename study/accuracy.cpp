@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -15,7 +16,9 @@ namespace {
 constexpr double least_distance = 1e-9;  // of its unit; what outputs without a scale may move by
 constexpr double least_effort = 1e-3;    // of the kinetic energy over a radian or the longest body
 
-constexpr double least_range = 1e-7;    // of its unit, of what a sensor shows
+constexpr double least_range = 1e-7;      // of its unit, of what a sensor shows
+constexpr double most_plain_share = 0.5;  // a number without % that is larger was meant in %
+
 constexpr double beside_others = 1e-3;  // of the greatest range of the same sensor's numbers of the same unit
 
 /// The greatest range among the numbers of an output's sensor that have its unit.
@@ -47,6 +50,12 @@ void read_part(Accuracy& a, const std::string& part, const std::string& whole) {
   if (!value)
     throw OptionError("accuracy", "got '" + part + "'; need a share as 1%, a length as 2mm or an angle as 0.1deg");
   if (*kind) throw OptionError("accuracy", "'" + whole + "' says the same twice");
+  if (kind == &a.share && plain_number(part) && *value >= most_plain_share)
+    throw OptionError(
+        "accuracy",
+        fmt::format("got '{0}', which without a unit is a share: an error of {1:.4g} % of each "
+                    "output's own range; need {0}%{2}",
+                    part, 100 * *value, *value > 1 ? "" : fmt::format(", or {:.4g}% if that is meant", 100 * *value)));
   if (!(*value > 0) || (kind == &a.share && *value > 1))
     throw OptionError("accuracy", fmt::format("got '{}'; need above 0{}", part, kind == &a.share ? ", at most 1" : ""));
   *kind = value;
@@ -112,6 +121,23 @@ void Accuracy::require_something_of(const Outputs& outputs) const {
                                     (lengths  ? "lengths"
                                      : angles ? "angles"
                                               : "neither lengths nor angles"));
+}
+
+Accuracy Accuracy::times(double factor) const {
+  const auto more = [factor](const std::optional<double>& allowed, double unit) -> std::optional<double> {
+    if (!allowed) return {};
+    const double x = factor * *allowed / unit, step = std::pow(10, std::floor(std::log10(x)) - 1);
+    return unit * step * std::ceil(x / step - least_distance);
+  };
+  Accuracy a{more(share, 0.01), more(angle, std::numbers::pi / 180), more(length, 1e-3)};
+  if (a.share) a.share = std::min(*a.share, 1.0);
+  return a;
+}
+
+std::string Accuracy::option() const {
+  std::string option = text();
+  std::erase(option, ' ');
+  return option;
 }
 
 std::string Accuracy::text() const {

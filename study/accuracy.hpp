@@ -36,6 +36,10 @@ struct Accuracy {
   void require_something_of(const Outputs& outputs) const;
   /// "1 %, 2 mm".
   [[nodiscard]] std::string text() const;
+  /// One that allows this many times as much, rounded up to two digits; a share to 100 % at most.
+  [[nodiscard]] Accuracy times(double factor) const;
+  /// As parse() reads it: "1%,2mm".
+  [[nodiscard]] std::string option() const;
 };
 
 }  // namespace withy::study

@@ -129,12 +129,13 @@ void Search::explain(const ReferenceFound& found) {
   }
   const Reference& r = *found.nearest;
   const Yardstick yardstick{r, accuracy_.limits(evaluator_.outputs(), r.scales)};
+  const double use = yardstick.own_use();
   advice_.trouble = fmt::format(
-      "no reference is exact enough: two runs that differ by a mode and a digit, the finer {}, are {:.2g} of the "
-      "accuracy apart, most in {}. Ask for {:.2g} times that accuracy, a shorter time (--set time.end=…) or other "
-      "outputs (--output)",
-      r.text(), yardstick.own_use(), evaluator_.outputs().list()[yardstick.worst(r.own)].label,
-      std::ceil(10 * yardstick.own_use() / policy::last_reference_use) / 10);
+      "no reference is exact enough to measure against: the two finest runs that there was time for (the finer one {}; "
+      "the other has a mode and a digit less) differ by {:.2g} times what is asked, most in {}. What to do: ask for "
+      "--accuracy {}, for a shorter time (--set time.end=...), or for other outputs (--output)",
+      r.text(), use, evaluator_.outputs().list()[yardstick.worst(r.own)].label,
+      accuracy_.times(use / policy::last_reference_use).option());
   if (found.unaffordable) advice_.trouble += ". A finer one costs too much: " + found.trouble;
 }
 

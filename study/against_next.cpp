@@ -85,7 +85,7 @@ std::string against_next_text(const std::optional<AgainstNext>& against, const s
     return fmt::format("How far {} are from those in {} is not known: {}.", what, against->formulation,
                        against->problem);
   if (against->compared == 0) return {};
-  return fmt::format("Against {}, {} are off by up to {:.2g} %, most {}.", against->formulation, what,
+  return fmt::format("Difference from {} in {}: up to {:.2g} %, most {}.", against->formulation, what,
                      100 * against->most, against->of);
 }
 

@@ -27,7 +27,7 @@ std::optional<AgainstNext> frequencies_against_next(const ModesOf& run, const Sc
 std::optional<AgainstNext> deflections_against_next(const Configuration& configuration, const SteadyState& steady,
                                                     const Holding& holding, Registry& registry);
 
-/// "against exact, the 6 lowest frequencies are off by up to 6.2 %, most link.bending_z[1]"; what nothing is known of
+/// "Difference from exact in the 6 lowest frequencies: up to 6.2 %, most link.bending_z[1]."; what nothing is known of
 /// is said too.
 std::string against_next_text(const std::optional<AgainstNext>& against, const std::string& what);
 

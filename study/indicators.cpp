@@ -27,12 +27,14 @@ void add_body(std::vector<Indicator>& all, const BodyValidity& b, const Terms& o
                    "deflections are not small"});
   for (const HighestMode& h : b.highest) {
     if (h.modes > 1)
-      all.push_back({"energy of the highest " + h.family + " mode of '" + b.name + "'", h.share, highest_mode_limit,
-                     "modes that were left out would take part"});
+      all.push_back({"energy of the highest " + before_mode(h.family) + "mode of '" + b.name + "'", h.share,
+                     highest_mode_limit, "modes that were left out would take part"});
   }
 }
 
 }  // namespace
+
+std::string before_mode(const std::string& family) { return family == "mode" ? "" : family + ' '; }
 
 std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary, std::optional<Terms> used) {
   const Terms terms = used.value_or(scene.formulation->terms());

@@ -21,6 +21,10 @@ struct Indicator {
   [[nodiscard]] double use() const { return value / limit; }
 };
 
+/// What the modes of a family are called before the word "mode": "bending_y ", and nothing of modes without a family,
+/// whose name is "mode" itself.
+std::string before_mode(const std::string& family);
+
 /// Those that matter to the scene's formulation, the one nearest to its limit (or furthest past it) first.
 /// \param used what the run kept in the end, where that is not what the scene's formulation says
 std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary, std::optional<Terms> used = {});

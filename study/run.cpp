@@ -166,13 +166,16 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
   if (prepared.scene.formulation->terms().strain == StrainOrder::exact && !beyond)
     return "nothing is left out: kinematics is exact and nothing is truncated";
   if (beyond && !beyond->highest) return "not estimated: it was not asked for";
+  std::string third = "terms of third order in the deflection are left out";
   // (deflection over length)² of the range: what second-order kinematics was measured to be off by.
-  double deflection = 0;
-  for (const auto& [body, ratio] : summary.peak_deflection_ratio) deflection = std::max(deflection, ratio);
-  const std::string third = fmt::format(
-      "terms of third order in the deflection are left out, about {:.2g} % of it where it is {:.2g} of a body's length",
-      100 * deflection * deflection, deflection);
-  if (!beyond) return third + "; not estimated: no body offers more";
+  if (!summary.peak_deflection_ratio.empty()) {
+    double deflection = 0;
+    for (const auto& [body, ratio] : summary.peak_deflection_ratio) deflection = std::max(deflection, ratio);
+    const double share = 100 * deflection * deflection;
+    third += fmt::format(", about {} % of it where it is {:.2g} of a body's length",
+                         share < 99.5 ? fmt::format("{:.2g}", share) : fmt::format("{:.0f}", share), deflection);
+  }
+  if (!beyond) return third + "; not measured, for no model of higher order can treat all bodies of the scene";
   return third +
          (settings.estimate == Estimate::never ? "" : "; `--estimate always` compares with " + beyond->formulation);
 }

@@ -48,9 +48,7 @@ ExitStatus compare(const CompareArguments& arguments) {
                                formulation_words(question.formulations, plugins.registry()) + left_out_text(left_out);
   if (!arguments.out.empty()) {
     write_file(*folder / "compare.json", json_text(j));
-    if (!arguments.json)
-      text += std::string("\nresults and pictures (") + (has_report_page() ? "report.html" : "compare.svg") + ") in " +
-              arguments.out + '\n';
+    if (!arguments.json) text += comparison_places(arguments.out, variation);
   }
   print(text);
   return groups.back().comparison.interrupted() ? ExitStatus::interrupted : ExitStatus::done;

@@ -221,12 +221,15 @@ TEST(Check, SaysWhatManyBodiesShareOnce) {
   std::string bodies, hinges;
   for (int i = 0; i < 60; ++i) {
     const std::string n = std::to_string(i);
-    bodies += "  l" + n + ": {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 100, modes: 2}}\n";
+    bodies += "  l" + n + ": {type: beam, length: 1, mass_per_length: 1, damping_ratio: " + std::to_string(2 + i) +
+              ", bending_y: {stiffness: 100, modes: 2}}\n";
     hinges += "  h" + n + ": {type: revolute, axis: [0, 0, 1], parent: " +
               (i == 0 ? "world" : "l" + std::to_string(i - 1) + ".tip") + ", child: l" + n + "}\n";
   }
   folder.write("chain.yaml", "format: withy/1\ntime: {end: 1}\nbodies:\n" + bodies + "hinges:\n" + hinges);
   const std::string text = withy(folder, {"check", (folder.path() / "chain.yaml").string()}).out;
+  EXPECT_THAT(text, HasSubstr("and 57 more: ")) << "each with its own damping ratio";
+  EXPECT_THAT(text, HasSubstr("5 to 61"));
   // Twenty bodies are looked at for functions with a moment at the tip.
   EXPECT_THAT(text, HasSubstr("and 17 more: 2 bending_y modes of clamped-free carry no moment at the tip"));
   Finished f = withy(folder, {"check", "scenes/new/arm.yaml", "--set", "bodies.fore_link.damping_ratio=5", "--json"});
