@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <string_view>
 #include <utility>
 
 #include "withy/program/command_description.hpp"
@@ -26,13 +25,14 @@ std::string plugins_named(const OptionDescription& option) {
   return name == "--families" ? "mode-family" : "";
 }
 
-/// What completes a value: the words that it may be, `plugins:KIND`, or `files` or `folders`; empty where only the user
-/// knows.
+/// What completes a value: the words that it may be, `plugin:KIND` or, of a list, `plugins:KIND`, or `files` or
+/// `folders`; empty where only the user knows.
 std::string values_of(const OptionDescription& option) {
   std::string words;
   for (const std::string& w : option.choices) words += (words.empty() ? "" : " ") + w;
   if (!words.empty()) return words;
-  if (const std::string kind = plugins_named(option); !kind.empty()) return "plugins:" + kind;
+  if (const std::string kind = plugins_named(option); !kind.empty())
+    return (option.value == "ID" ? "plugin:" : "plugins:") + kind;
   const bool out = !option.names.empty() && option.names.front() == "--out";
   if (out || option.value == "STORE" || option.value == "DIR" || option.value == "FOLDER") return "folders";
   return !option.argument.empty() || option.value == "FILE" ? "files" : "";
@@ -92,8 +92,8 @@ constexpr const char* bash_end = R"sh(  esac
   case "$values" in
     none) COMPREPLY=() ;;
     folders) compopt -o filenames; COMPREPLY=($(compgen -d -- "$word")) ;;
-    plugins:*) COMPREPLY=($(compgen -P "$before_it" -W "$(withy plugins 2> /dev/null |
-      sed -n "s/^${values#plugins:}  *\([^ ]*\).*/\1/p")" -- "${word#"$before_it"}")) ;;
+    plugin:* | plugins:*) COMPREPLY=($(compgen -P "$before_it" -W "$(withy plugins 2> /dev/null |
+      sed -n "s/^${values#*:}  *\([^ ]*\).*/\1/p")" -- "${word#"$before_it"}")) ;;
     files) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")) ;;
     *) COMPREPLY=($(compgen -W "$parts $values" -- "$word")) ;;
   esac
@@ -133,11 +133,9 @@ std::string quoted(const std::string& text) {
 std::string zsh_action(const std::string& values) {
   if (values == "files") return "_files";
   if (values == "folders") return "_files -/";
-  constexpr std::string_view plugins = "plugins:";
-  if (values.starts_with(plugins))
-    return fmt::format(
-        "_sequence compadd - ${{(f)\"$(withy plugins 2> /dev/null | sed -n \"s/^{}  *\\([^ ]*\\).*/\\1/p\")\"}}",
-        values.substr(plugins.size()));
+  if (const std::size_t colon = values.find(':'); colon != std::string::npos)
+    return fmt::format("{}compadd - ${{(f)\"$(withy plugins 2> /dev/null | sed -n \"s/^{}  *\\([^ ]*\\).*/\\1/p\")\"}}",
+                       values.starts_with("plugins") ? "_sequence " : "", values.substr(colon + 1));
   return values.empty() || values == "none" ? " " : "(" + values + ")";
 }
 

@@ -1,5 +1,7 @@
 #include "withy/results/recorded_comparison.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 

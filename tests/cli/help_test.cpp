@@ -185,6 +185,24 @@ TEST(Help, BashCompletesPluginsByTheirIds) {
   EXPECT_THAT(completed(folder, "withy trade s.yaml --families clamped-l"), ElementsAre("clamped-loaded"));
 }
 
+/// What zsh runs where it is to complete the value of an option: its script with a stand-in for _arguments.
+std::string zsh_action(const Folder& folder, const std::string& command, const std::string& option) {
+  const std::string script = withy(folder, {"completion", "zsh"}).out;
+  const std::string call = script.substr(0, script.rfind("_withy_\n")) + "\nwithy() { '" WITHY_PROGRAM "' \"$@\"; }\n" +
+                           "_arguments() { local s a; for s in \"$@\"; do [[ $s == *" + option +
+                           "* ]] && eval \"a=( ${s##*: :} )\" && print -r -- $a; done }\n_withy_" + command;
+  return Process(folder, {"zsh", "-f", "-c", call}).wait().out;
+}
+
+TEST(Help, ZshCompletesPluginsByTheirIds) {
+  const Folder folder;
+  if (Process(folder, {"/bin/sh", "-c", "command -v zsh"}).wait().out.empty()) GTEST_SKIP() << "zsh is not installed";
+  EXPECT_THAT(zsh_action(folder, "run", "--formulation"),
+              testing::AllOf(StartsWith("compadd - auto "), HasSubstr(" quadratic ")));
+  EXPECT_THAT(zsh_action(folder, "trade", "--integrators"),
+              testing::AllOf(StartsWith("_sequence compadd - "), HasSubstr(" dopri5 ")));
+}
+
 TEST(Help, WhatIsMissingIsSaidWithItsMeaning) {
   const Folder folder;
   EXPECT_THAT(withy(folder, {"run"}).err, HasSubstr("SCENE is missing: Scene file"));
