@@ -175,18 +175,22 @@ void bind_equations(py::module_& m) {
       .def(py::init<const Scene&, const std::string&>())
       .def("derivatives", &E::derivatives, py::arg("t"), py::arg("y"),
            "derivatives(t, y) -> numpy.ndarray\n\nTime derivative of y [n] at the time t [s]; the interpreter is free "
-           "meanwhile. Raises SimulationStopped where the mass matrix cannot be solved or something is not finite.")
+           "meanwhile.\n\nRaises:\n"
+           "    SimulationStopped: where the mass matrix cannot be solved or something is not finite.\n"
+           "    ValueError: where y has another shape.")
       .def("derivatives_many", &E::derivatives_many, py::arg("t"), py::arg("y"),
            "derivatives_many(t, y) -> numpy.ndarray\n\nTime derivatives [m, n] of the m states in the rows of y [m, n] "
            "at the time t [s], four or eight at once where the formulation is symmetric and every hinge has one rate. "
-           "A row gets "
-           "the same bits whatever the others, and agrees with derivatives(t, row) to rounding. Raises "
-           "SimulationStopped with the number of the first row that cannot be evaluated.")
+           "A row gets the same bits whatever the others, and agrees with derivatives(t, row) to rounding.\n\nRaises:\n"
+           "    SimulationStopped: with the number of the first row that cannot be evaluated.\n"
+           "    ValueError: where y has another shape.")
       .def("jacobian", &E::jacobian, py::arg("t"), py::arg("y"),
-           "jacobian(t, y) -> numpy.ndarray\n\nDerivatives [n, n] of derivatives(t, y) with respect to y; exact, but "
-           "for parts that loads leave to differences; with respect to a quaternion along its unit sphere.")
+           "jacobian(t, y) -> numpy.ndarray\n\nDerivatives [n, n] of derivatives(t, y) with respect to y [n], in SI "
+           "units; exact, but for parts that loads leave to differences; with respect to a quaternion along its unit "
+           "sphere.\n\nRaises:\n    SimulationStopped, ValueError: as derivatives() does.")
       .def("normalize", &E::normalized, py::arg("y"),
-           "normalize(y) -> numpy.ndarray\n\ny with its quaternions scaled to unit length.")
+           "normalize(y) -> numpy.ndarray\n\ny [n] with its quaternions scaled to unit length, a copy.\n\nRaises:\n"
+           "    ValueError: where y has another shape.")
       .def_property_readonly(
           "names", [](const E& e) { return names_of(e.equations.states()); },
           "Names of the numbers of y, as those of the result columns.")
@@ -225,13 +229,15 @@ void bind_simulation(py::module_& m) {
           "time", [](const S& s) { return s.simulation.time(); }, "Present time [s].")
       .def(
           "step", [](S& s, double t) { s.call([t](Simulation& own) { own.step(t); }); }, py::arg("t"),
-          "step(t) -> None\n\nIntegrates to the time t [s] and lands on it exactly, passing events on the way. Raises "
-          "SimulationStopped with the physical reason where it cannot go on.")
+          "step(t) -> None\n\nIntegrates to the time t [s] and lands on it exactly, passing events on the way.\n\n"
+          "Raises:\n    SimulationStopped: with the physical reason where it cannot go on; it stands at its last "
+          "accepted state.\n"
+          "    ValueError: where t lies before the present time or is not finite.")
       .def(
           "advance_to", [](S& s, double t) { return s.call([t](Simulation& own) { return own.advance_to(t); }); },
           py::arg("t"),
-          "advance_to(t) -> bool\n\nAs step, but halts at an event with `stop: true` that comes first. Returns whether "
-          "t is reached.")
+          "advance_to(t) -> bool\n\nAs step(), but halts at an event with `stop: true` that comes first. Returns "
+          "whether t [s] is reached.\n\nRaises:\n    SimulationStopped, ValueError: as step() does.")
       .def(
           "snapshot", [](S& s) { return s.call([](Simulation& own) { return own.snapshot(); }); },
           "snapshot() -> Snapshot\n\nWhat restore() goes back to.")
@@ -239,7 +245,8 @@ void bind_simulation(py::module_& m) {
           "restore", [](S& s, const Snapshot& to) { s.call([&to](Simulation& own) { own.restore(to); }); },
           py::arg("snapshot"),
           "restore(snapshot) -> None\n\nGoes on from there bit by bit as the simulation did that made it, with the "
-          "same inputs and times.")
+          "same inputs and times.\n\nRaises:\n    ValueError: where the snapshot is of another scene; nothing changes "
+          "then.")
       .def_property_readonly(
           "state", [](S& s) { return s.call([](Simulation& own) { return own.state(); }); },
           "The present state as JSON text, in the form of `initial` in a scene.")

@@ -288,13 +288,41 @@ def test_results_are_kept_as_the_program_keeps_them(slew, tmp_path):
             assert numpy.array_equal(file[name][:], result[name])
 
 
-def test_everything_is_documented():
+def test_everything_is_documented_with_what_it_raises():
+    cannot_fail = {"Scene.copy", "Simulation.snapshot", "python_load", "python_body"}
     for name in withy.__all__:
         thing = getattr(withy, name)
         assert thing.__doc__, name
-        for member, value in vars(thing).items() if isinstance(thing, type) else ():
-            if not member.startswith("_") and callable(value):
-                assert value.__doc__, f"{name}.{member}"
+        members = {name: thing}
+        if isinstance(thing, type):
+            members = {f"{name}.{member}": value for base in thing.__mro__ if base.__module__.startswith("withy")
+                       for member, value in vars(base).items() if not member.startswith("_") and callable(value)}
+        for member, value in members.items():
+            if callable(value):
+                assert value.__doc__, member
+                assert "Raises:" in value.__doc__ or member in cannot_fail, member
+
+
+def test_equations_say_what_was_wrong_with_an_array(slew):
+    equations = slew.compile("quadratic")
+    for call in (lambda y: equations.derivatives(0, y), lambda y: equations.jacobian(0, y), equations.normalize):
+        with pytest.raises(ValueError, match=f"need an array of {len(equations.y0)} numbers"):
+            call(equations.y0[1:])
+    for call in (equations.derivatives, equations.jacobian):
+        with pytest.raises(withy.SimulationStopped, match="t = 0 s"):
+            call(0, numpy.nan * equations.y0)
+
+
+def test_a_simulation_refuses_what_is_not_its_own(slew):
+    sim = withy.Simulation(slew)
+    sim.step(0.1)
+    for wrong in (0.05, float("nan")):
+        for call in (sim.step, sim.advance_to):
+            with pytest.raises(ValueError, match="lies before the present one"):
+                call(wrong)
+    with pytest.raises(ValueError, match="the snapshot is of another scene"):
+        sim.restore(withy.Simulation(withy.load(SCENES / "pendulum.yaml")).snapshot())
+    assert sim.time == 0.1
 
 
 def test_the_example_of_the_documentation_runs(tmp_path, monkeypatch):

@@ -108,6 +108,7 @@ def _factory(section: str, id_: str, variant: dict[str, Any], all_: dict[str, An
     lines = [f"{variant.get('description', id_)}.", "", "Args:"]
     for name, key in keys.items():
         lines += _described(name, variant["properties"][key], name in required, all_, "    ")
+    lines += ["", "Raises:", "    SceneError: where a parameter is missing or unknown."]
     make.__doc__ = "\n".join(lines)
     make.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY) for name in required] +

@@ -69,7 +69,11 @@ class Result(Mapping):
         return self.summary.get("outputs", {})
 
     def __getitem__(self, name: str) -> numpy.ndarray:
-        """The numbers of a column [rows], a view of the table. KeyError with the nearest name where there is none."""
+        """The numbers of a column [rows], a view of the table.
+
+        Raises:
+            KeyError: with the nearest name where there is none.
+        """
         if name not in self._index:
             raise unknown("column", name, list(self._index))
         return self.table[:, self._index[name]]
@@ -85,7 +89,11 @@ class Result(Mapping):
         return f"<withy.Result {self.status}, {end}, {len(self.table)} rows of {len(self)} columns>"
 
     def to_pandas(self):
-        """The table as a pandas.DataFrame with the times as its index."""
+        """The table as a pandas.DataFrame with the times as its index.
+
+        Raises:
+            ImportError: where there is no pandas.
+        """
         import pandas
 
         return pandas.DataFrame(self.table, columns=list(self)).set_index("t")
@@ -109,6 +117,10 @@ class Result(Mapping):
 
         Returns:
             The axes. In a script, ``axes.figure.savefig("run.svg")`` or ``matplotlib.pyplot.show()`` comes next.
+
+        Raises:
+            ImportError: where there is no matplotlib.
+            KeyError: with the nearest name where there is no such column.
         """
         import matplotlib.pyplot
 

@@ -40,7 +40,11 @@ def load(path: Path, plugins: Sequence[Path] = (), *, check: bool = True) -> Sce
 
 def loads(text: str, name: str = "scene", plugins: Sequence[Path] = (), *, check: bool = True) -> Scene:
     """Reads a scene from its text, as load() does. ``name`` stands for the file in messages; names of other files begin
-    at its folder."""
+    at its folder.
+
+    Raises:
+        SceneError: as load() does.
+    """
     return _checked(_withy.Scene.parse(library(plugins), text, name), plugins, check)
 
 
@@ -194,6 +198,9 @@ class Scene:
 
         Returns:
             The scene itself, so that calls can follow each other.
+
+        Raises:
+            TypeError: where the value is of another kind. What is wrong with it otherwise is said when the scene is needed.
         """
         self._made.set(path, _as_text(value))
         self._values = None
@@ -216,7 +223,11 @@ class Scene:
         return f"<withy.Scene {self._made.name}{changes}>"
 
     def check(self) -> None:
-        """Raises SceneError with every problem where the scene has any."""
+        """What ``withy check`` does.
+
+        Raises:
+            SceneError: with every problem where the scene has any.
+        """
         self._made.check()
 
     def run(self, *, progress: Progress | None = None, **options: Any) -> Result:
@@ -226,6 +237,10 @@ class Scene:
             progress: called with the time reached and the end [s].
             options: values of the scene for this run alone: ``formulation="exact"``, ``integrator={"name": "rk4",
                 "step": 1e-3}``, ``time={"end": 2}``.
+
+        Raises:
+            SceneError: where the scene, with these values, cannot be.
+            KeyboardInterrupt: at Ctrl-C, and what ``progress`` raises.
         """
         return Result(*self._with(options)._made.run(progress))
 
@@ -234,6 +249,9 @@ class Scene:
 
         Args:
             formulation: its name, or a dict with options; the scene's where left out.
+
+        Raises:
+            SceneError: where the scene cannot be, or has no such equations: loads that change at instants, ``auto``.
         """
         from . import Equations
 
@@ -246,6 +264,9 @@ class Scene:
 
         Args:
             outputs: what errors are measured on, as in `advise`; the usual ones where left out.
+
+        Raises:
+            SceneError: where the scene, or what is asked of it, cannot be.
         """
         return json.loads(self._made.compare(list(formulations), reference, list(outputs), progress))
 
@@ -257,6 +278,9 @@ class Scene:
         Args:
             outputs: what errors are measured on, as in `advise`; the usual ones where left out.
             jobs: threads; 0: all.
+
+        Raises:
+            SceneError: where the scene, or what is asked of it, cannot be.
         """
         return json.loads(self._made.trade(list(outputs), list(formulations), list(families), list(modes),
                                            list(integrators), list(tolerances), jobs, progress))
@@ -269,12 +293,19 @@ class Scene:
         Args:
             accuracy: a share (0.01 or ``"1%"``), a length or an angle (``"1 mm, 0.1 deg"``).
             outputs: what it is asked of: hinges, ``"link1.tip"``, ``"link1.tip.deflection"``; all where left out.
+
+        Raises:
+            SceneError: where the scene, or what is asked of it, cannot be.
         """
         return json.loads(self._made.advise(str(accuracy), list(outputs), list(formulations), list(families),
                                             list(modes), list(integrators), list(tolerances), progress))
 
     def modes(self, lock: Sequence[str] = (), *, progress: Progress | None = None) -> dict[str, Any]:
-        """Natural modes about the steady state, hinges in ``lock`` held: an element of "runs" of ``withy modes --json``."""
+        """Natural modes about the steady state, hinges in ``lock`` held: an element of "runs" of ``withy modes --json``.
+
+        Raises:
+            SceneError: where the scene, or what is asked of it, cannot be.
+        """
         return json.loads(self._made.modes(list(lock), progress))
 
     def linearize(self, inputs: Sequence[str] = (), outputs: Sequence[str] = (),
@@ -289,6 +320,7 @@ class Scene:
 
         Raises:
             SimulationStopped: where the mass matrix of what is free is singular.
+            SceneError: where the scene, or what is asked of it, cannot be.
         """
         linear = json.loads(self._made.linearize(list(inputs), list(outputs), list(lock)))
         for name, columns in (("A", "states"), ("B", "inputs"), ("C", "states"), ("D", "inputs")):

@@ -64,7 +64,11 @@ class SweepResult(Mapping):
         return self._columns
 
     def __getitem__(self, column: str) -> numpy.ndarray:
-        """Numbers in SI units, or texts where not all are numbers. Raises KeyError with the nearest name."""
+        """Numbers in SI units [cases], or texts where not all are numbers.
+
+        Raises:
+            KeyError: with the nearest name where there is no such column.
+        """
         table = self._table()
         if column not in table:
             raise unknown("column", column, list(table))
@@ -106,6 +110,7 @@ def sweep(plan: Path, executor: concurrent.futures.Executor | None = None, *, ou
     Raises:
         SceneError: where the plan or its scene has problems, all of them.
         StoreError: where the folder holds something else, or another process runs the same part.
+        ValueError: where ``parts`` is less than 1.
     """
     if parts is not None and parts < 1:
         raise ValueError(f"parts: got {parts}; need at least 1")
