@@ -191,7 +191,7 @@ std::string zsh_action(const Folder& folder, const std::string& command, const s
   const std::string call = script.substr(0, script.rfind("_withy_\n")) + "\nwithy() { '" WITHY_PROGRAM "' \"$@\"; }\n" +
                            "_arguments() { local s a; for s in \"$@\"; do [[ $s == *" + option +
                            "* ]] && eval \"a=( ${s##*: :} )\" && print -r -- $a; done }\n_withy_" + command;
-  return Process(folder, {"zsh", "-f", "-c", call}).wait().out;
+  return Process(folder, {"/usr/bin/env", "zsh", "-f", "-c", call}).wait().out;
 }
 
 TEST(Help, ZshCompletesPluginsByTheirIds) {
