@@ -100,3 +100,19 @@ def test_meshio_finds_the_tips_of_beams_where_the_table_has_them(run):
     withy("report", folder, folder, "--out", series)
     assert (folder / "motion" / "mine.vtu").exists()
     assert len(list((folder / "motion").glob("2_*.vtu"))) == len(numbers)
+
+
+def test_meshio_finds_a_node_in_the_middle_of_an_edge_where_the_engine_has_it(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    withy("run", os.path.join(SCENES, "imported-boom.yaml"), "--set", "bodies.boom.visual.mesh=cantilever.vtk", "--output", "camera.position", "--out", tmp_path)
+    with open(tmp_path / "results.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    series = tmp_path / "motion.pvd"
+    withy("report", tmp_path, "--out", series)
+    sets = xml.etree.ElementTree.parse(series).getroot().findall("Collection/DataSet")
+    for entry in sets[:: len(sets) // 5]:
+        row = min(rows, key=lambda row: abs(float(row["t[s]"]) - float(entry.get("timestep"))))
+        grid = meshio.read(tmp_path / entry.get("file"))
+        assert max(numpy.bincount(grid.cell_data["body"][0])) == 6 * 28, "28 outer faces of 8 nodes"
+        place = [float(row[f"camera.position.{axis}[m]"]) for axis in "xyz"]
+        assert numpy.linalg.norm(grid.points - place, axis=1).min() < 1e-6
