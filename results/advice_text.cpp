@@ -186,8 +186,9 @@ std::string no_advice_text(const study::Advice& a, const AdviceQuestion& questio
         (nearest == nullptr || p.use < nearest->use))
       nearest = &p;
   if (nearest != nullptr)
-    text += fmt::format(" Nearest: {}, {} off, most in {}.", nearest->point.text(), use_text(accuracy, nearest->use),
-                        question.outputs.list()[a.yardstick->worst(nearest->distances)].label);
+    text += fmt::format(" Nearest: {}, {} off, most in {}{}.", nearest->point.text(), use_text(accuracy, nearest->use),
+                        question.outputs.list()[a.yardstick->worst(nearest->distances)].label,
+                        nearest->use > 1 ? "" : ", which may be too much together with what the reference is off");
   else
     text += " All were cut off when they were further off than that.";
   return text +

@@ -128,7 +128,9 @@ std::string extremes_text(const nlohmann::ordered_json& outputs) {
                        readable(o["min"]["value"], unit), o["min"]["t"].get<double>(),
                        readable(o["max"]["value"], unit), o["max"]["t"].get<double>());
   }
-  if (left_out > 0) out += fmt::format("{} more are below a hundredth of these; run.json has them all\n", left_out);
+  if (left_out > 0)
+    out += fmt::format("{} below a hundredth of these; run.json has them all\n",
+                       left_out == 1 ? "one more is" : fmt::format("{} more are", left_out));
   return out.empty() ? out : '\n' + out;
 }
 
