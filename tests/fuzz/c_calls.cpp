@@ -100,6 +100,9 @@ class CHost {
     said(withy_result_values(result, column.name, choose_.maybe(values.data()),
                              choose_.count(withy_result_rows(result))),
          result);
+    for (const char* text : {withy_result_status(result), withy_result_message(result), withy_result_json(result)})
+      expect(text != nullptr, "a text that is none");
+    expect(withy_result_column(result, withy_result_columns(result)).name == nullptr, "a column past the end");
     withy_free(result);
   }
   void simulate() {
@@ -118,7 +121,15 @@ class CHost {
   }
   void set_input() {
     withy_simulation* s = one(simulations_);
-    said(withy_simulation_set_input(s, choose_.below(4), choose_.number()), s);
+    const std::size_t index = choose_.below(4);
+    said(withy_simulation_set_input(s, index, choose_.number()), s);
+    double value = 0;
+    said(withy_simulation_input(s, index, &value), s);
+    const char* name = withy_simulation_input_port(s, index).name;
+    expect((name != nullptr) == (index < withy_simulation_inputs(s)), "an input past the end, or none before it");
+    std::size_t found = 0;
+    expect(name == nullptr || (withy_simulation_input_index(s, name, &found) == WITHY_OK && found == index),
+           "an input that its own name does not find");
   }
   void look() {
     withy_simulation* s = one(simulations_);
@@ -153,6 +164,7 @@ class CHost {
     double* y = array();
     std::vector<double> y_dot(most);
     const std::size_t n = size_of(e);
+    expect(withy_equations_state_port(e, withy_equations_size(e)).name == nullptr, "a state past the end");
     if (choose_.below(2) == 0) said(withy_equations_initial(e, nullptr, y, n), e);
     said(withy_equations_set_input(e, "torque", choose_.number()), e);
     said(withy_equations_derivatives(e, choose_.number(), y, choose_.maybe(y_dot.data()), n), e);
