@@ -149,10 +149,14 @@ class Binary {
       for (const double x : X.p) places.push_back(static_cast<float>(x));
       turns.insert(turns.end(), {q.x(), q.y(), q.z(), q.w()});
     }
+    // What plays nothing shows the first moment, not all bodies on one place.
+    json_["nodes"][node]["translation"] = std::vector<float>(places.begin(), places.begin() + 3);
+    json_["nodes"][node]["rotation"] = std::vector<float>(turns.begin(), turns.begin() + 4);
     add_channel(node, "translation", times, add_numbers(places, "VEC3", 3, 0, Json::object()));
     add_channel(node, "rotation", times, add_numbers(turns, "VEC4", 4, 0, Json::object()));
     if (morph.shapes.cols() > 0 && !surface.triangles.empty()) {
       const Eigen::MatrixXf w = morph.weights.cast<float>();  // by columns: all weights of a key together
+      json_["nodes"][node]["weights"] = std::vector<float>(w.data(), w.data() + w.rows());
       add_channel(node, "weights", times,
                   add_numbers(std::vector<float>(w.data(), w.data() + w.size()), "SCALAR", 1, 0, Json::object()));
     }

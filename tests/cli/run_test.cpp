@@ -289,6 +289,18 @@ TEST(Run, LeavesAPictureThatPlotAndReportMakeAnew) {
   EXPECT_THAT(f.err, HasSubstr("it is no folder of a run or a comparison"));
 }
 
+TEST(Run, OfNoLengthIsAStateThatViewersDraw) {
+  const Folder folder;
+  ASSERT_EQ(withy(folder, {"run", "scenes/pendulum.yaml", "--set", "time.end=0", "--out", "still"}).status, 0);
+  const Finished f = withy(folder, {"report", "still", "--out", "still.glb"});
+  if (!std::filesystem::exists(folder.path() / "still/report.html")) GTEST_SKIP() << "a build without the page";
+  ASSERT_EQ(f.status, 0) << f.err;
+  const std::string file = folder.read("still.glb");  // heads of 20 bytes, JSON, its successor's length and name
+  const json rod = json::parse(file.substr(20, file.find(std::string("BIN\0", 4)) - 24))["nodes"][0];
+  EXPECT_EQ(rod["name"], "rod");
+  EXPECT_NEAR(rod["rotation"][2].get<double>(), 0.5, 1e-6) << "60 degrees about z: the sine of their half";
+}
+
 /// A picture of all that is recorded, from results.csv or, where there is none, from results.h5.
 std::string picture(const Folder& folder) {
   const Finished f = withy(folder, {"plot", "out"});

@@ -51,13 +51,15 @@ export async function check_gltf(file, data) {
   mixer.clipAction(gltf.animations[0]).play();
   assert.equal(root.children.length, motion.bodies.length);
   const scale = Math.max(...motion.numbers.slice(0, motion.size).map(Math.abs), 1);
-  for (const i of [0, 1, motion.times.length >> 1, motion.times.length - 2]) {
-    mixer.setTime(motion.times[i]);
+  // Before anything is played bodies are as at the first moment.
+  for (const i of [undefined, 0, 1, motion.times.length >> 1, motion.times.length - 2]) {
+    const t = motion.times[i ?? 0];
+    if (i !== undefined) mixer.setTime(t);
     gltf.scene.updateMatrixWorld(true);
-    motion.go(motion.times[i], 1);
+    motion.go(t, 1);
     motion.bodies.forEach((body, b) => {
       const node = root.children[b];
-      const what = `${body.name} at ${motion.times[i]} s`;
+      const what = `${body.name} at ${i === undefined ? 'rest' : `${t} s`}`;
       assert.ok(node.position.distanceTo(body.pose.p) < 1e-4 * scale, what);
       assert.ok(node.quaternion.angleTo(body.pose.q) < 1e-3, what);
       if (body.surface) {
