@@ -191,10 +191,12 @@ std::string no_advice_text(const study::Advice& a, const AdviceQuestion& questio
                         nearest->use > 1 ? "" : ", which may be too much together with what the reference is off");
   else
     text += " All were cut off when they were further off than that.";
-  return text +
-         " What to do: allow more --modes; give a body that carries something modes made for that, as family: "
-         "{name: clamped-loaded, tip_mass: ...}; ask of --output no more than you need, or a coarser --accuracy." +
-         measured;
+  const bool modal = a.yardstick->reference.point.modes > 0;
+  text += modal ? " What to do: allow more --modes; give a body that carries something modes made for that, as family: "
+                  "{name: clamped-loaded, tip_mass: ...};"
+                : " What to do: allow tighter --tolerances or a shorter time (--set time.end=...), since motions that "
+                  "begin alike may part;";
+  return text + " ask of --output no more than you need, or a coarser --accuracy." + measured;
 }
 
 std::string advice_text(const AdviceReport& report) {

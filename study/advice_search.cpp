@@ -48,6 +48,12 @@ constexpr double long_run = 0.2;
 constexpr int reference_levels = 9;
 constexpr double finer_level = 0.3;
 constexpr double tightest = 1e-9;
+/// The same where tolerance is all that can be finer.
+constexpr double finer_integration = 0.1, tightest_integration = 1e-12;
+/// An accuracy beyond this share is nothing to propose.
+constexpr double no_accuracy = 0.3;
+/// Of the run: a time shorter than this is nothing to propose.
+constexpr double worth_looking_at = 0.1;
 }  // namespace policy
 
 /// Linearly implicit: a step costs little more than an explicit one.
@@ -81,8 +87,8 @@ void Search::find_yardstick() {
                 {},
                 {}};
   goal.levels = policy::reference_levels;
-  goal.finer = policy::finer_level;
-  goal.tightest = policy::tightest;
+  goal.finer = modal ? policy::finer_level : policy::finer_integration;
+  goal.tightest = modal ? policy::tightest : policy::tightest_integration;
   goal.enough = [&](const Reference& r) {
     const double use = own_use(r);
     tell_reference(r);
@@ -129,13 +135,25 @@ void Search::explain(const ReferenceFound& found) {
   }
   const Reference& r = *found.nearest;
   const Yardstick yardstick{r, accuracy_.limits(evaluator_.outputs(), r.scales)};
-  const double use = yardstick.own_use();
+  const double use = yardstick.own_use(), times = use / policy::last_reference_use;
+  const bool askable = times * accuracy_.share.value_or(0) < policy::no_accuracy;
+  const Scene& scene = evaluator_.base().scene;
+  // Ranges are less up to there, and limits with them.
+  Distances closely = yardstick.limits;
+  for (double& limit : closely) limit *= policy::most_reference_use;
+  const double agree = agree_until(evaluator_.outputs(), r.readings, r.coarser, closely);
+  const bool long_enough =
+      agree - scene.initial.time > policy::worth_looking_at * (end_of_run(scene) - scene.initial.time);
   advice_.trouble = fmt::format(
-      "no reference is exact enough to measure against: the two finest runs that there was time for (the finer one {}; "
-      "the other has a mode and a digit less) differ by {:.2g} times what is asked, most in {}. What to do: ask for "
-      "--accuracy {}, for a shorter time (--set time.end=...), or for other outputs (--output)",
-      r.text(), use, evaluator_.outputs().list()[yardstick.worst(r.own)].label,
-      accuracy_.times(use / policy::last_reference_use).option());
+      "no reference is exact enough to measure against: the two finest runs{} (the finer one {}; the other has {} "
+      "less) "
+      "differ by {:.2g} times what is asked, most in {}. What to do: ask {}for a shorter time (--set time.end={}), or "
+      "for other outputs (--output)",
+      found.unaffordable ? " that there was time for" : "", r.text(),
+      r.point.modes > 0 ? "a mode and a digit" : "a digit of tolerance", use,
+      evaluator_.outputs().list()[yardstick.worst(r.own)].label,
+      askable ? fmt::format("for --accuracy {}, ", accuracy_.times(times).option()) : "",
+      long_enough ? fmt::format("{:.3g}, up to which they agree", agree) : "...");
   if (found.unaffordable) advice_.trouble += ". A finer one costs too much: " + found.trouble;
 }
 
@@ -193,6 +211,7 @@ const Probe& Search::run(const Point& point, const Allowance& allowance) {
 
 /// That part of the accuracy asked for, or the next candidate below it.
 double Search::exact_enough_tolerance(double part) const {
+  if (tightest_) return candidates_.tolerances.back();
   double share = policy::exact_enough;
   const Reference& r = yardstick().reference;
   for (std::size_t i = 0; i < r.scales.size(); ++i)
@@ -295,6 +314,11 @@ void Search::try_models() {
   for (const int modes : candidates_.more_modes)
     if (modes <= yardstick().reference.point.modes) more.push_back(modes);
   if (!more.empty()) try_models(more);
+  if (over() || std::any_of(advice_.probes.begin(), advice_.probes.end(), passed)) return;
+  // Where motions that begin alike part, as those of a chain that swings freely, an integration adds more than that.
+  tightest_ = true;
+  advice_.models = advice_.models_tried = 0;  // counted anew: they are the same
+  try_models(candidates_.modes);
 }
 
 void Search::try_models(const std::vector<int>& modes) {

@@ -53,6 +53,7 @@ class Search {
   std::set<std::string> told_;  ///< formulations of which it has been told that a model is not exact enough
   std::string told_best_;       ///< the point that was last told to hold
   Pace pace_;                   ///< of the reference's run under way
+  bool tightest_ = false;       ///< models are looked at with the tightest tolerance of all candidates
 };
 
 }  // namespace withy::study

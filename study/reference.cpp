@@ -133,14 +133,17 @@ class ReferenceSearch {
       for (std::size_t k = 0; k < changed.size(); ++k) rich->own[k] += changed[k];
       last = rich->readings;
       if (enough(*rich)) return rich;
-      keep_nearest(*rich);
+      keep_nearest(*rich, {});
     }
     return {};
   }
 
-  void keep_nearest(const Reference& r) {
-    if (!found.nearest || relative_error(r.own, r.scales) < relative_error(found.nearest->own, found.nearest->scales))
-      found.nearest = r;
+  void keep_nearest(const Reference& r, const Readings& coarser) {
+    // Where runs part by all they go through the finer one agrees for longer.
+    const auto off = [](const Reference& of) { return std::min(relative_error(of.own, of.scales), 1.0); };
+    if (found.nearest && off(r) > off(*found.nearest)) return;
+    found.nearest = r;
+    found.nearest->coarser = coarser;
   }
 
   ReferenceFound found;
@@ -198,7 +201,10 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
   }
   bool tried = false;  // this pair of levels with a lower rung
   for (int level = 0; coarse && level < goal.levels; ++level) {
-    std::optional<Reference> fine = search.at(search.finer(coarse->point));
+    const Point finer = search.finer(coarse->point);
+    // The same run again would agree with itself.
+    if (finer.key() == coarse->point.key()) break;
+    std::optional<Reference> fine = search.at(finer);
     if (!fine) break;
     const Distances last = distances(outputs, fine->readings, coarse->readings).first;
     fine->own = rest_of_series(last, apart);
@@ -207,7 +213,7 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
       found.reference = std::move(fine);
       return std::move(found);
     }
-    search.keep_nearest(*fine);
+    search.keep_nearest(*fine, coarse->readings);
     before = std::move(coarse), coarse = std::move(fine);
     tried = search.much_cheaper_below(coarse->point);
     if (tried) found.reference = search.add_to_lower(*coarse, *before);

@@ -27,6 +27,7 @@ struct Reference {
   Distances scales;   ///< what relative errors are shares of
   Distances own;      ///< from the run with one mode less and the tolerance before; empty: not known
   Walk walk;
+  Readings coarser = {};  ///< of the level before, of the nearest alone
   /// "exact, 5 modes, dop853 at 1e-07".
   [[nodiscard]] std::string text() const;
 };

@@ -175,4 +175,16 @@ std::pair<Distances, double> distances(const Outputs& outputs, const Readings& a
   return {greatest, until};
 }
 
+double agree_until(const Outputs& outputs, const Readings& a, const Readings& b, const Distances& limits) {
+  Distances greatest = outputs.none();
+  double until = 0;
+  for (std::size_t i = 0; i < std::min(a.times.size(), b.times.size()) && a.times[i] == b.times[i]; ++i) {
+    outputs.raise(a.values[i], b.values[i], greatest);
+    for (std::size_t k = 0; k < greatest.size(); ++k)
+      if (greatest[k] > limits[k]) return until;
+    until = a.times[i];
+  }
+  return until;
+}
+
 }  // namespace withy::study

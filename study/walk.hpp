@@ -55,5 +55,7 @@ struct Readings {
 };
 /// Greatest distances over the times that both have from the first on, and the last of these times.
 std::pair<Distances, double> distances(const Outputs& outputs, const Readings& a, const Readings& b);
+/// The last of these times up to which no distance is beyond its limit; 0 where there is none.
+double agree_until(const Outputs& outputs, const Readings& a, const Readings& b, const Distances& limits);
 
 }  // namespace withy::study

@@ -288,6 +288,39 @@ TEST(Advise, LoadsThatSwitchByTheStateAreRefusedPlainly) {
   EXPECT_THAT(f.err, HasSubstr("relay.yaml: a load switches at zeros of a function of the state"));
 }
 
+TEST(Advise, WhereMotionsThatBeginAlikePartItSaysForHowLongTheyDoNot) {
+  const Folder folder;
+  const std::vector<std::string> chain = {"advise", "scenes/rigid-chain.yaml", "--accuracy", "1%"};
+  const Finished whole = advise(folder, {}, chain);
+  EXPECT_EQ(whole.status, 1);
+  EXPECT_THAT(whole.err, HasSubstr("the other has a digit of tolerance less) differ by"));
+  const std::string before = "(--set ", after = ", up to which they agree)";
+  const std::size_t from = whole.err.find(before), to = whole.err.find(after);
+  ASSERT_TRUE(from != std::string::npos && to != std::string::npos) << whole.err;
+  // At the very end of it the tolerances of candidates are not enough: errors grow by a digit in half a second.
+  const std::string said = whole.err.substr(from + before.size(), to - from - before.size());
+  ASSERT_EQ(said.rfind("time.end=", 0), 0U) << said;
+  const std::string shorter = "time.end=" + json(0.75 * std::stod(said.substr(9))).dump();
+  const Finished part = advise(folder, {"--set", shorter, "--json"}, chain);
+  ASSERT_EQ(part.status, 0) << shorter << part.err;
+  // What is advised, against runs of another kind and as tight as they go.
+  const auto ends = [&](const std::vector<std::string>& settings) {
+    std::vector<std::string> words = {
+        "run", "scenes/rigid-chain.yaml", "--set", shorter, "--estimate", "never", "--json", "--out", "run", "--force"};
+    for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
+    return json::parse(withy(folder, words).out).at("final").at("hinges");
+  };
+  const json advice = json::parse(part.out);
+  const json advised = ends(advice.at("advice").at("overrides")),
+             truth = ends({"integrator={name: dopri5, rtol: 1e-12, atol: 1e-12}"});
+  for (const auto& [hinge, range] : advice.at("reference").at("ranges").items()) {
+    if (!truth.contains(hinge)) continue;
+    EXPECT_NEAR(advised.at(hinge).at("position").at(0).get<double>(),
+                truth.at(hinge).at("position").at(0).get<double>(), 0.01 * range.get<double>())
+        << hinge;
+  }
+}
+
 TEST(Advise, WritingAndSettingDoNotGoTogether) {
   const Folder folder;
   EXPECT_EQ(advise(folder, {"--modes", "1", "--accuracy", "20%", "--write", "x.yaml"}).status, 2);
