@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <utility>
@@ -72,7 +73,9 @@ void Progress::at(double t, double end) {
 void Progress::of_points(double done, double all) {
   if (!due()) return;
   const double passed = std::chrono::duration<double>(Clock::now() - began_).count();
-  std::string text = fmt::format("{:g} of {:g}", done, all);
+  // Seconds have a digit behind the point, what is counted has none.
+  const bool counted = done == std::floor(done) && all == std::floor(all);
+  std::string text = fmt::format("{:.{}f} of {:g}", done, counted ? 0 : 1, all);
   if (done > 0) text += fmt::format(", about {:.0f} s left", passed / done * (all - done));
   show(text);
 }

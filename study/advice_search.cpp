@@ -181,7 +181,7 @@ double Search::best_cost() const {
 void Search::tell_reference(const Reference& r) const {
   if (!finding_) return;
   const Yardstick yardstick{r, accuracy_.limits(evaluator_.outputs(), r.scales)};
-  finding_(fmt::format("reference so far: {}, known to {:.2g} of the accuracy, least in {}", r.text(),
+  finding_(fmt::format("reference so far: {}, known to {:.2g} times the accuracy asked, least well in {}", r.text(),
                        yardstick.own_use(), evaluator_.outputs().list()[yardstick.worst(r.own)].label));
 }
 
@@ -195,8 +195,8 @@ void Search::tell_probe(const Probe& probe, double best_before) {
     finding_(fmt::format("so far: {} holds the accuracy with {:.2g} of it, {:.2g} s a run", probe.point.text(),
                          probe.use, cost));
   } else if (probe.outcome == Probe::Outcome::inaccurate && told_.insert(probe.point.formulation).second) {
-    finding_(fmt::format("{} does not hold: {:.2g} of the accuracy in {}{}", probe.point.text(), probe.use,
-                         evaluator_.outputs().list()[yardstick().worst(probe.distances)].label,
+    finding_(fmt::format("{} does not hold: off by {:.2g} times the accuracy asked in {}{}", probe.point.text(),
+                         probe.use, evaluator_.outputs().list()[yardstick().worst(probe.distances)].label,
                          probe.walk.end == Walk::End::reached ? "" : ", and the run is not over"));
   }
 }

@@ -178,7 +178,7 @@ TEST(StudyAdvice, IsTheSameScenesRunOfItsChanges) {
   ASSERT_GE(findings.size(), 3U);
   EXPECT_THAT(findings[0], HasSubstr("the search takes 10 s of CPU time at most"));
   EXPECT_THAT(findings[1], HasSubstr("reference so far: "));
-  EXPECT_THAT(findings[1], HasSubstr(" of the accuracy, least in "));
+  EXPECT_THAT(findings[1], HasSubstr(" times the accuracy asked, least well in "));
   std::size_t holding = 0;
   for (const std::string& finding : findings) holding += finding.starts_with("so far: ") ? 1 : 0;
   EXPECT_GE(holding, 1U);
