@@ -97,7 +97,7 @@ std::vector<ParameterSpec> strain_parameters(const char* stiffness, const char* 
           text("family", "assumed-mode family").naming(ParameterSpec::Refers::mode_family).otherwise("clamped-free")};
 }
 
-std::vector<ParameterSpec> parameters() {
+std::vector<ParameterSpec> make_parameters() {
   std::vector<ParameterSpec> torsion = strain_parameters("torsional stiffness GJ");
   torsion.push_back(number("inertia", "kg m", "polar inertia per length, rho I_p").above(0).or_table("m"));
   const auto bending = [](const char* stiffness, const char* inertia) {
@@ -129,6 +129,11 @@ std::vector<ParameterSpec> parameters() {
           .otherwise(1)};
   for (ParameterSpec& spec : damping_parameters()) specs.push_back(std::move(spec));
   return specs;
+}
+
+const std::vector<ParameterSpec>& parameters() {
+  static const std::vector<ParameterSpec> all = make_parameters();
+  return all;
 }
 
 std::unique_ptr<Body> make_beam(const Value& p, const MakeContext& context) {

@@ -17,6 +17,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <mutex>
+#include <span>
 
 #include "beam_quadrature.hpp"
 #include "withy/core/shape/modal_mass.hpp"
@@ -29,6 +32,44 @@ struct LinearFields {
   Matrix3X phi, psi, psi_slope, gamma;  ///< Φ; ψ; curvature and twist rate κ = ψ′; elongation γ
 
   [[nodiscard]] SectionField field(Eigen::Index i) const { return {psi.col(i), psi_slope.col(i), gamma.col(i)}; }
+};
+
+/// Θ′, Γ′, Θ and Γ at the nodes of quadrature, a row each: the upper triangles of their three components.
+struct SecondFields {
+  Eigen::MatrixXd theta_slope, gamma_slope, theta, gamma;
+};
+
+/// What a beam's nodes of quadrature have whatever its stiffness and mass are.
+struct NodeFields {
+  std::shared_ptr<const std::vector<LinearFields>> linear;
+  std::shared_ptr<const SecondFields> pairs;
+};
+
+/// Fields of the beams that were made last, of any thread, by all that they depend on: a beam that varies in stiffness
+/// or mass alone, from case to case of a sweep, is not integrated again.
+class LastFields {
+ public:
+  template <class Make>
+  NodeFields of(std::vector<double> key, std::size_t pairs, Make&& make) {
+    constexpr std::size_t kept = 8, most_numbers = 1 << 15;
+    if (key.size() + pairs > most_numbers) return make();
+    const std::lock_guard lock(mutex_);
+    const auto same = [&](const std::vector<double>& other) {
+      return other.size() == key.size() && std::memcmp(other.data(), key.data(), key.size() * sizeof(double)) == 0;
+    };
+    auto found = std::find_if(last_.begin(), last_.end(), [&](const auto& entry) { return same(entry.first); });
+    if (found == last_.end()) {
+      if (last_.size() == kept) last_.pop_back();
+      last_.emplace_back(std::move(key), make());
+      found = last_.end() - 1;
+    }
+    std::rotate(last_.begin(), found, found + 1);
+    return last_.front().second;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::pair<std::vector<double>, NodeFields>> last_;  ///< the youngest first
 };
 
 class Beam final : public Body, private Rod {
@@ -45,10 +86,8 @@ class Beam final : public Body, private Rod {
         shape_.mode_names.push_back(std::string(s.name) + "[" + std::to_string(i) + "]");
       }
     }
-    std::vector<LinearFields> fields;
-    fields.reserve(quadrature_.nodes().size());
-    for (const double x : quadrature_.nodes()) fields.push_back(linear_fields(x));
-    integrate_fields(kinematics, fields);
+    const NodeFields fields = fields_at_nodes(kinematics);
+    pairs_ = fields.pairs;
     const Eigen::Index n = shape_.modes();
     shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(n, n);
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
@@ -64,13 +103,13 @@ class Beam final : public Body, private Rod {
     if (!rigid) shape_.particles.reserve(x.size());
     for (std::size_t k = 0; k < x.size(); ++k) {
       const double w = quadrature_.weights()[k];
-      const LinearFields& f = fields[k];
+      const LinearFields& f = (*fields.linear)[k];
       const double mass = w * material.mass_per_length(x[k]);
       if (!rigid)
-        shape_.particles.push_back({mass, expansion(x[k], f, gamma_at_nodes_.row(static_cast<Eigen::Index>(k)),
-                                                    theta_at_nodes_.row(static_cast<Eigen::Index>(k)))});
+        shape_.particles.push_back({mass, expansion(x[k], f, pairs_->gamma.row(static_cast<Eigen::Index>(k)),
+                                                    pairs_->theta.row(static_cast<Eigen::Index>(k)))});
       add_products(mass, f.phi, gram);
-      shape_.stiffness += w * stiffness_of(f, x[k]);
+      add_stiffness(w, f, x[k]);
     }
     if (!material.inertias.empty()) add_sections(gram);
     shape_.damping = material.damping.matrix(shape_.stiffness, gram);
@@ -89,8 +128,8 @@ class Beam final : public Body, private Rod {
       x = std::get<double>(name);
       if (!(x >= 0 && x <= length_)) return {};
     }
-    return expansion(x, linear_fields(x), quadrature_.integral_to(x, gamma_slope_),
-                     quadrature_.integral_to(x, theta_slope_));
+    return expansion(x, linear_fields(x), quadrature_.integral_to(x, pairs_->gamma_slope),
+                     quadrature_.integral_to(x, pairs_->theta_slope));
   }
   std::string stations() const override {
     return "root, tip, or a coordinate x from 0 to " + std::to_string(length_) + " m";
@@ -219,32 +258,69 @@ class Beam final : public Body, private Rod {
       }
       if (inertia.isZero(0)) continue;
       const LinearFields f = linear_fields(at);
-      shape_.sections.push_back({inertia, expansion(at, f, quadrature_.integral_to(at, gamma_slope_),
-                                                    quadrature_.integral_to(at, theta_slope_))});
+      shape_.sections.push_back({inertia, expansion(at, f, quadrature_.integral_to(at, pairs_->gamma_slope),
+                                                    quadrature_.integral_to(at, pairs_->theta_slope))});
       add_products(inertia, f.psi, gram);
     }
   }
 
   /// Integrand of ½ qᵀKq: EI κ², GJ t′², EA u′² or kGA γ², coordinates of different strains being independent.
-  Eigen::MatrixXd stiffness_of(const LinearFields& f, double x) const {
-    Eigen::MatrixXd k = Eigen::MatrixXd::Zero(shape_.modes(), shape_.modes());
+  void add_stiffness(double weight, const LinearFields& f, double x) {
     Eigen::Index at = 0;
     for (const BeamStrain& s : strains_) {
       const auto count = static_cast<Eigen::Index>(s.functions->count());
-      const auto strain = (s.kind == BeamData::Strain::elongation ? f.gamma : f.psi_slope).middleCols(at, count);
-      k.block(at, at, count, count) = s.stiffness(x) * strain.transpose() * strain;
+      const Matrix3X& strain = s.kind == BeamData::Strain::elongation ? f.gamma : f.psi_slope;
+      const double stiffness = s.stiffness(x);
+      for (Eigen::Index i = at; i < at + count; ++i) {
+        const Vector3 stress = stiffness * strain.col(i);
+        for (Eigen::Index j = at; j < at + count; ++j) shape_.stiffness(i, j) += weight * stress.dot(strain.col(j));
+      }
       at += count;
     }
-    return k;
+  }
+
+  /// The fields at the nodes of the quadrature.
+  NodeFields fields_at_nodes(const StrainKinematics& kinematics) const {
+    const auto make = [&]() -> NodeFields {
+      std::vector<LinearFields> linear;
+      linear.reserve(quadrature_.nodes().size());
+      for (const double x : quadrature_.nodes()) linear.push_back(linear_fields(x));
+      auto pairs = std::make_shared<const SecondFields>(integrated(kinematics, linear));
+      return {std::make_shared<const std::vector<LinearFields>>(std::move(linear)), std::move(pairs)};
+    };
+    if (!kinematics.complete()) return make();
+    static LastFields last;
+    const auto modes = static_cast<std::size_t>(shape_.modes());
+    return last.of(key_of_fields(), quadrature_.nodes().size() * 6 * modes * (modes + 1), make);
+  }
+
+  /// All that they depend on: the panels, where their nodes are; of each strain its kind and axis, and its functions.
+  std::vector<double> key_of_fields() const {
+    std::vector<double> key = quadrature_.nodes();
+    key.push_back(length_);
+    key.push_back(static_cast<double>(quadrature_.panels()));
+    for (const BeamStrain& s : strains_) {
+      const std::size_t count = s.functions->count(), first = key.size() + 5;
+      key.insert(key.end(), {static_cast<double>(s.kind), s.direction.x(), s.direction.y(), s.direction.z(),
+                             static_cast<double>(count)});
+      key.resize(first + 3 * count * quadrature_.nodes().size());
+      std::span<double> rest = std::span(key).subspan(first);
+      for (const double x : quadrature_.nodes()) {
+        s.functions->evaluate(x, rest.first(count), rest.subspan(count, count), rest.subspan(2 * count, count));
+        rest = rest.subspan(3 * count);
+      }
+    }
+    return key;
   }
 
   /// Θ and Γ at the nodes by running integrals; a row holds the upper triangles of the three components.
-  void integrate_fields(const StrainKinematics& kinematics, const std::vector<LinearFields>& fields) {
+  SecondFields integrated(const StrainKinematics& kinematics, const std::vector<LinearFields>& linear) const {
+    SecondFields at;
     const Eigen::Index n = shape_.modes();
     const Eigen::Index pairs = n * (n + 1) / 2;
     const auto nodes = static_cast<Eigen::Index>(quadrature_.nodes().size());
-    theta_slope_.resize(nodes, 3 * pairs);
-    gamma_slope_.resize(nodes, 3 * pairs);
+    at.theta_slope.resize(nodes, 3 * pairs);
+    at.gamma_slope.resize(nodes, 3 * pairs);
     const auto each_pair = [&](auto&& action) {
       Eigen::Index column = 0;
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -252,20 +328,22 @@ class Beam final : public Body, private Rod {
       }
     };
     for (Eigen::Index k = 0; k < nodes; ++k) {
-      const LinearFields& f = fields[static_cast<std::size_t>(k)];
+      const LinearFields& f = linear[static_cast<std::size_t>(k)];
       each_pair([&](Eigen::Index i, Eigen::Index j, Eigen::Index column) {
-        theta_slope_.block<1, 3>(k, column) = kinematics.rotation_slope(f.field(i), f.field(j)).transpose();
+        at.theta_slope.block<1, 3>(k, column) = kinematics.rotation_slope(f.field(i), f.field(j)).transpose();
       });
     }
-    theta_at_nodes_ = quadrature_.running_integral(theta_slope_);
+    at.theta = quadrature_.running_integral(at.theta_slope);
     for (Eigen::Index k = 0; k < nodes; ++k) {
-      const LinearFields& f = fields[static_cast<std::size_t>(k)];
+      const LinearFields& f = linear[static_cast<std::size_t>(k)];
       each_pair([&](Eigen::Index i, Eigen::Index j, Eigen::Index column) {
-        const Vector3 theta = theta_at_nodes_.block<1, 3>(k, column).transpose();
-        gamma_slope_.block<1, 3>(k, column) = kinematics.displacement_slope(f.field(i), f.field(j), theta).transpose();
+        const Vector3 theta = at.theta.block<1, 3>(k, column).transpose();
+        at.gamma_slope.block<1, 3>(k, column) =
+            kinematics.displacement_slope(f.field(i), f.field(j), theta).transpose();
       });
     }
-    gamma_at_nodes_ = quadrature_.running_integral(gamma_slope_);
+    at.gamma = quadrature_.running_integral(at.gamma_slope);
+    return at;
   }
 
   using PairFields = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
@@ -293,7 +371,7 @@ class Beam final : public Body, private Rod {
   std::vector<BeamStrain> strains_;
   BeamQuadrature quadrature_;
   ModalShape shape_;
-  Eigen::MatrixXd theta_slope_, gamma_slope_, theta_at_nodes_, gamma_at_nodes_;
+  std::shared_ptr<const SecondFields> pairs_;
 };
 
 }  // namespace

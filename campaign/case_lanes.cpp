@@ -11,6 +11,7 @@
 #include <memory>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "withy/campaign/asking_equations.hpp"
 #include "withy/core/equations/lane_equations.hpp"
@@ -22,10 +23,25 @@ namespace {
 
 namespace context = boost::context;
 
-/// Memory of stacks, with a page below that ends the process where one is too small.
-class StackMemory {
+/// Memory of stacks, with a page below that ends the process where one is too small. What a case has left the next one
+/// takes: its pages are there already.
+class StackPool {
  public:
-  context::stack_context allocate() {
+  StackPool() = default;
+  ~StackPool() {
+    for (const context::stack_context& stack : vacant_)
+      munmap(static_cast<std::byte*>(stack.sp) - stack.size, stack.size);
+  }
+  StackPool(const StackPool&) = delete;
+  StackPool& operator=(const StackPool&) = delete;
+
+  context::stack_context take() {
+    if (!vacant_.empty()) {
+      const context::stack_context stack = vacant_.back();
+      vacant_.pop_back();
+      return stack;
+    }
+    vacant_.reserve(most_lanes);  // so that giving back throws nothing
     void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK, -1, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
     mprotect(memory, guard, PROT_NONE);
@@ -34,13 +50,20 @@ class StackMemory {
     stack.sp = static_cast<std::byte*>(memory) + bytes;
     return stack;
   }
-  void deallocate(context::stack_context& stack) noexcept {
-    munmap(static_cast<std::byte*>(stack.sp) - stack.size, stack.size);
-  }
+  /// At most as many as there are lanes.
+  void give_back(const context::stack_context& stack) noexcept { vacant_.push_back(stack); }
 
  private:
   /// A run uses some kilobytes; pages that are not touched cost nothing.
   static constexpr std::size_t guard = 1 << 14, bytes = 1 << 20;
+  std::vector<context::stack_context> vacant_;
+};
+
+/// The pool as Boost asks for memory.
+struct StackMemory {
+  StackPool* pool;
+  context::stack_context allocate() const { return pool->take(); }
+  void deallocate(const context::stack_context& stack) const noexcept { pool->give_back(stack); }
 };
 
 /// Stacks that hand the thread to each other: one of the thread's own and one of each lane.
@@ -49,7 +72,7 @@ class Stacks {
   static constexpr std::size_t thread = most_lanes;  ///< index of the thread's own
   /// Begins a stack; its function returns to the thread's own.
   void begin(std::size_t stack, std::function<void()> function) {
-    stacks_[stack] = context::fiber(std::allocator_arg, StackMemory(),
+    stacks_[stack] = context::fiber(std::allocator_arg, StackMemory{&pool_},
                                     [this, stack, function = std::move(function)](context::fiber&& last) {
                                       stacks_[from_] = std::move(last);
                                       function();
@@ -66,6 +89,7 @@ class Stacks {
   }
 
  private:
+  StackPool pool_;  ///< outlives the stacks
   std::array<context::fiber, thread + 1> stacks_;
   std::size_t from_ = thread;  ///< the stack that has just been left
 };
@@ -185,7 +209,7 @@ class CaseLanes final : public Asked {
     }
     share_time();
     const double began = thread_cpu_seconds();
-    auto run = std::make_unique<CaseRun>(plan_, cases_, *index, registry_);
+    auto run = std::make_unique<CaseRun>(plan_, cases_, *index, registry_, parts_);
     if (run->equations() != nullptr) {
       const std::string why = run->alone_because();
       if (why.empty()) {
@@ -271,6 +295,7 @@ class CaseLanes final : public Asked {
   Registry& registry_;
   const study::Control& control_;
   const CaseFlow& flow_;
+  SceneParts parts_;
   std::unique_ptr<LaneEquations> together_;
   std::unique_ptr<CaseRun> waiting_;  ///< for all lanes to be free
   std::size_t count_ = lane_count();  ///< of the lanes, which are the first of these

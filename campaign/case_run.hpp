@@ -10,6 +10,7 @@
 
 #include "withy/campaign/cases.hpp"
 #include "withy/campaign/kept.hpp"
+#include "withy/scene/scene_parts.hpp"
 #include "withy/study/control.hpp"
 
 namespace withy::campaign {
@@ -29,7 +30,8 @@ class CaseRun {
  public:
   /// Makes its scene and its equations; where they cannot be had, that is its result. The plan and the registry must
   /// outlive it. \throws PluginError; what a plugin throws, as does the other.
-  CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry);
+  /// \param parts what the cases before it have in common with it
+  CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry, SceneParts& parts);
   CaseRun(const CaseRun&) = delete;
   CaseRun& operator=(const CaseRun&) = delete;
 

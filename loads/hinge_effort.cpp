@@ -1,30 +1,36 @@
 /// \file
 /// An effort on one rate of a hinge as a function of time: constant, sine, table or steps.
 #include "withy/core/plugin/registry.hpp"
+#include "withy/core/plugin/timed_effort.hpp"
 #include "withy/loads/hinge_rate.hpp"
 #include "withy/loads/time_law.hpp"
 
 namespace withy {
 namespace {
 
-using Effort = TimeLaw<double>;
+/// The bound loads of one load share its law.
+using Effort = std::shared_ptr<const TimeLaw<double>>;
 
-class BoundHingeEffort final : public BoundLoad {
+class BoundHingeEffort final : public BoundLoad, public TimedEffort {
  public:
   BoundHingeEffort(Effort effort, std::size_t speed) : effort_(std::move(effort)), speed_(speed) {}
   std::size_t scratch() const override { return 0; }
   void add(double t, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
            std::span<double> efforts, std::span<double> /*scratch*/) const noexcept override {
-    efforts[speed_] += effort_(t);
+    efforts[speed_] += (*effort_)(t);
   }
   bool add_derivatives(double /*t*/, std::span<const double> /*positions*/, std::span<const double> /*speeds*/,
                        Eigen::Ref<Eigen::MatrixXd> /*by_position*/,
                        Eigen::Ref<Eigen::MatrixXd> /*by_speed*/) const override {
     return true;  // a function of time alone
   }
-  std::vector<double> discontinuities() const override { return effort_.discontinuities(); }
-  double end() const override { return effort_.end(); }
+  std::vector<double> discontinuities() const override { return effort_->discontinuities(); }
+  double end() const override { return effort_->end(); }
   void begin(State& /*state*/) const override {}
+
+  std::size_t speed() const override { return speed_; }
+  double effort(double t) const noexcept override { return (*effort_)(t); }
+  const void* law() const override { return effort_.get(); }
 
  private:
   Effort effort_;
@@ -44,9 +50,9 @@ class HingeEffort final : public Load {
 };
 
 std::unique_ptr<Load> make_hinge_effort(const Value& p, const MakeContext& context) {
-  std::optional<Effort> effort = TimeLawReader<double>(p, context).read();
+  std::optional<TimeLaw<double>> effort = TimeLawReader<double>(p, context).read();
   if (!effort) return nullptr;
-  return std::make_unique<HingeEffort>(rate_name(p), std::move(*effort));
+  return std::make_unique<HingeEffort>(rate_name(p), std::make_shared<const TimeLaw<double>>(std::move(*effort)));
 }
 
 }  // namespace

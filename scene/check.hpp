@@ -8,6 +8,7 @@
 #include <string>
 #include <type_traits>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "withy/core/plugin/registry.hpp"
@@ -16,6 +17,8 @@
 #include "withy/scene/sources.hpp"
 
 namespace withy {
+
+class SceneParts;
 
 /// Names, in the order they came and quick to find.
 class NameList {
@@ -50,7 +53,12 @@ class Checker {
   /// From now on references are compared with these names; before, any name is taken.
   void know(const SceneNames* names) { names_ = names; }
   /// From now on plugins that are found are noted there.
-  void note(SceneSources* sources) { sources_ = sources; }
+  /// \returns where they were noted before
+  SceneSources* note(SceneSources* sources) const { return std::exchange(sources_, sources); }
+  [[nodiscard]] SceneSources* noted() const { return sources_; }
+  /// From now on what `parts` remembers is not checked and made again; null: nothing is remembered.
+  void remember(SceneParts* parts) { parts_ = parts; }
+  [[nodiscard]] SceneParts* parts() const { return parts_; }
 
   /// The value in SI units with defaults filled in; nothing where it, or anything in it, is wrong.
   /// A text specification that has a unit takes a name or a number in that unit; one that refers to a mode family takes
@@ -120,7 +128,8 @@ class Checker {
   Registry& registry_;
   Diagnostics& diagnostics_;
   const SceneNames* names_ = nullptr;
-  SceneSources* sources_ = nullptr;
+  mutable SceneSources* sources_ = nullptr;
+  SceneParts* parts_ = nullptr;
   mutable int suggested_ = 0;  ///< among many candidates
 };
 

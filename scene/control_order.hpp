@@ -18,7 +18,7 @@ namespace withy {
 struct PendingLoad {
   std::string name;
   std::set<std::string> needs;  ///< loads of the scene that it measures or acts through
-  std::unique_ptr<Load> load;
+  std::shared_ptr<const Load> load;
 };
 
 /// Names of loads of the scene that a checked load names under `of`, `to` or in its formula.

@@ -128,11 +128,11 @@ Value SceneEvents::changed(const std::string& event, const std::string& load, co
   return form;
 }
 
-std::unique_ptr<Load> SceneEvents::with_forms(const std::string& name, std::unique_ptr<Load> load) {
+std::shared_ptr<const Load> SceneEvents::with_forms(const std::string& name, std::shared_ptr<const Load> load) {
   const Value* loads = document_.root.find("loads");
   const Value* given = loads == nullptr ? nullptr : loads->find(name);
   bool switched = false;
-  std::vector<std::unique_ptr<Load>> forms;
+  std::vector<std::shared_ptr<const Load>> forms;
   forms.push_back(std::move(load));
   for (const auto& [event, value] : events_.members()) {
     const Value& asked = value.at("do");
@@ -152,7 +152,7 @@ std::unique_ptr<Load> SceneEvents::with_forms(const std::string& name, std::uniq
     forms.push_back(std::move(object));
   }
   if (!switched) return std::move(forms.front());
-  return std::make_unique<SwitchedLoad>(std::move(forms));
+  return std::make_shared<const SwitchedLoad>(std::move(forms));
 }
 
 std::optional<SceneEvents::Watched> SceneEvents::hinge_number(const Model& model, const Value& event) const {

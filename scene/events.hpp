@@ -26,7 +26,7 @@ class SceneEvents {
   /// Takes that back, in the values that the scene is kept as: they are to make the same scene again.
   void fasten(Value& hinges) const;
   /// The load in all forms that events give it; as it is where they give it none.
-  std::unique_ptr<Load> with_forms(const std::string& name, std::unique_ptr<Load> load);
+  std::shared_ptr<const Load> with_forms(const std::string& name, std::shared_ptr<const Load> load);
   /// Adds the events that act to the model, which has its loads; the others to `plain`.
   /// \param outputs of the scene, which events may watch
   void add_to(Model& model, const std::vector<SensorNode>& outputs, std::vector<RunEvent>& plain);

@@ -16,7 +16,7 @@ namespace withy {
 template <class Interface>
 class MadeOnce {
  public:
-  /// As make_object; null after reported problems.
+  /// As make_or_recall; null after reported problems.
   std::shared_ptr<const Interface> of(const Plugin<Interface>& plugin, const Value& value, const Checker& checker) {
     std::string key = plugin.id;
     for (const ParameterSpec& parameter : plugin.parameters) {
@@ -24,7 +24,7 @@ class MadeOnce {
       if (const Value* given = value.find(parameter.key)) append_content(key, *given);
     }
     std::shared_ptr<const Interface>& made = made_[key];
-    if (made == nullptr) made = make_object(plugin, value, checker);
+    if (made == nullptr) made = make_or_recall(plugin, value, checker);
     return made;
   }
 

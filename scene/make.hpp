@@ -7,9 +7,12 @@
 #include <memory>
 #include <new>
 
+#include "withy/core/plugin/file_notes.hpp"
 #include "withy/core/plugin/floating_point.hpp"
 #include "withy/scene/check.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/scene_parts.hpp"
+#include "withy/scene/sha256.hpp"
 
 namespace withy {
 
@@ -52,11 +55,32 @@ std::unique_ptr<Interface> make_object(const Plugin<Interface>& plugin, const Va
   return object;
 }
 
-/// Checks a map against the members common to its kind and those of the plugin that `key` names.
-/// \returns `made.value`, or null where not all of it is right.
+/// The same, or the object that was made of the same before, where the checker has remembered it.
 template <class Interface>
-const Value* check_plugin_map(const Value& given, const std::string& key, const std::vector<ParameterSpec>& members,
-                              const Checker& checker, Made<Interface>& made) {
+std::shared_ptr<const Interface> make_or_recall(const Plugin<Interface>& plugin, const Value& value,
+                                                const Checker& checker) {
+  SceneParts* const parts = checker.parts();
+  if (parts == nullptr) return make_object(plugin, value, checker);
+  if (auto known = parts->made(kind_name<Interface>(), &plugin, value))
+    return std::static_pointer_cast<const Interface>(std::move(known));
+  bool reads = false;
+  std::shared_ptr<const Interface> object;
+  {
+    const FileNotes notes([&](const std::string& file, std::string_view bytes) {
+      reads = true;
+      if (checker.noted() != nullptr) checker.noted()->add(FileUsed{file, sha256(bytes)});
+    });
+    object = make_object(plugin, value, checker);
+  }
+  if (object != nullptr && !reads) parts->remember(kind_name<Interface>(), &plugin, value, object);
+  return object;
+}
+
+/// check_plugin_map of what is not remembered.
+template <class Interface>
+const Value* check_plugin_map_anew(const Value& given, const std::string& key,
+                                   const std::vector<ParameterSpec>& members, const Checker& checker,
+                                   Made<Interface>& made) {
   made.value = Value::map({}, given.place());
   const auto expected = [&] {
     return fmt::format("a map with '{}' and what that {} takes", key, kind_name<Interface>());
@@ -78,6 +102,30 @@ const Value* check_plugin_map(const Value& given, const std::string& key, const 
   made.plugin = checker.plugin<Interface>(*id);
   if (made.plugin == nullptr) return nullptr;
   return checker.read_members(given, {&members, &made.plugin->parameters}, made.value) ? &made.value : nullptr;
+}
+
+/// Checks a map against the members common to its kind and those of the plugin that `key` names.
+/// \returns `made.value`, or null where not all of it is right.
+template <class Interface>
+const Value* check_plugin_map(const Value& given, const std::string& key, const std::vector<ParameterSpec>& members,
+                              const Checker& checker, Made<Interface>& made) {
+  SceneParts* const parts = checker.parts();
+  if (parts == nullptr) return check_plugin_map_anew(given, key, members, checker, made);
+  if (const SceneParts::Checked* known = parts->checked(kind_name<Interface>(), given)) {
+    for (const PluginUsed& plugin : known->sources.plugins) checker.noted()->add(plugin);
+    made.plugin = static_cast<const Plugin<Interface>*>(known->plugin);
+    made.value = known->value;
+    return &made.value;
+  }
+  const std::size_t before = checker.diagnostics().errors().size();
+  SceneSources sources;
+  SceneSources* const all = checker.note(&sources);
+  const Value* const value = check_plugin_map_anew(given, key, members, checker, made);
+  checker.note(all);
+  for (const PluginUsed& plugin : sources.plugins) all->add(plugin);
+  if (value != nullptr && checker.diagnostics().errors().size() == before)
+    parts->remember(kind_name<Interface>(), given, {made.plugin, *value, std::move(sources)});
+  return value;
 }
 
 }  // namespace withy

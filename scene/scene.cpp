@@ -22,6 +22,7 @@
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
+#include "withy/scene/scene_parts.hpp"
 #include "withy/scene/sha256.hpp"
 #include "withy/scene/state.hpp"
 #include "withy/scene/tree.hpp"
@@ -36,9 +37,12 @@ constexpr double driven_tolerance = 1e-6;
 /// Checks one document and makes the scene of it.
 class SceneBuilder {
  public:
-  SceneBuilder(const Document& document, Registry& registry, SceneSources& sources, Diagnostics& diagnostics)
-      : document_(document), diagnostics_(diagnostics), checker_(document, registry, diagnostics) {
+  SceneBuilder(const Document& document, Registry& registry, SceneSources& sources, SceneParts* parts,
+               Diagnostics& diagnostics)
+      : document_(document), diagnostics_(diagnostics), parts_(parts), checker_(document, registry, diagnostics) {
     checker_.note(&sources);
+    checker_.remember(parts);
+    if (parts != nullptr) parts->begin();
   }
 
   /// Complete only if no problem was reported.
@@ -62,6 +66,7 @@ class SceneBuilder {
     scene_.source.set("hinges", std::move(tree.hinges));
     scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);
+    known(0, tree.names);
     if (document_.root.find("constraints") != nullptr) {
       const Value& constraints = part("constraints");
       const Value* loads = document_.root.find("loads");
@@ -75,6 +80,7 @@ class SceneBuilder {
     }
     add_motions(tree.model.get());
     name_signals(document_, tree.model.get(), tree.names, checker_.registry());
+    known(1, tree.names);
     add_loads(tree.model.get(), events);
     tree.names.loads = {};
     if (const Value* loads = document_.root.find("loads"))
@@ -83,6 +89,7 @@ class SceneBuilder {
     for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
       if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr) tree.names.loads.add(load.name);
     add_motion_laws(tree.model.get());
+    known(2, tree.names);
     add_outputs(tree);
     if (tree.model != nullptr && diagnostics_.ok()) give_outputs(*tree.model, scene_.outputs, checker_);
     if (tree.model != nullptr && diagnostics_.ok()) events.add_to(*tree.model, scene_.outputs, scene_.events);
@@ -93,6 +100,11 @@ class SceneBuilder {
   }
 
  private:
+  /// Names are complete for a stage of making the scene.
+  void known(std::size_t stage, const SceneNames& names) {
+    if (parts_ != nullptr) parts_->know(stage, names);
+  }
+
   /// The members that hold plain values; unknown keys are reported.
   Value split(const Value& root, const std::vector<ParameterSpec>& members) {
     const std::vector<std::string> special = grammar::special_keys();
@@ -144,7 +156,7 @@ class SceneBuilder {
     if (!value) return nullptr;
     name = made.plugin->id;
     scene_.source.set(key, *value);
-    return make_object(*made.plugin, *value, checker_);
+    return make_or_recall(*made.plugin, *value, checker_);
   }
 
   /// Checks the plugins named under a key of the scene and makes them; `add` gives each to the model if there is one.
@@ -162,7 +174,7 @@ class SceneBuilder {
       refused_.insert(name);
       const auto value = check_plugin_map(given, "type", members, checker_, made);
       if (!value) continue;
-      auto object = make_object(*made.plugin, *value, checker_);
+      auto object = make_or_recall(*made.plugin, *value, checker_);
       const Value& kept = checked.members().emplace_back(name, std::move(made.value)).second;
       if (object == nullptr || !to_model) continue;
       refused_.erase(name);
@@ -188,7 +200,7 @@ class SceneBuilder {
     if (const Value* given = document_.root.find("loads"))
       for (const auto& [name, load] : given->members()) names.insert(name);
     add_parts<Load>("loads", grammar::load_members(), model != nullptr,
-                    [&](const std::string& name, const Value& value, std::unique_ptr<Load> load) {
+                    [&](const std::string& name, const Value& value, std::shared_ptr<const Load> load) {
                       loads.push_back({name, needed_loads(value, names), events.with_forms(name, std::move(load))});
                     });
     for (const PendingLoad& pending : in_order_of_need(std::move(loads), checker_)) {
@@ -201,7 +213,7 @@ class SceneBuilder {
   }
   void add_motions(Model* model) {
     add_parts<Motion>("motions", grammar::motion_members(), model != nullptr,
-                      [&](const std::string& name, const Value& value, std::unique_ptr<Motion> motion) {
+                      [&](const std::string& name, const Value& value, std::shared_ptr<const Motion> motion) {
                         model->add_motion(name, value.text_at("hinge"), std::move(motion));
                       });
   }
@@ -238,7 +250,7 @@ class SceneBuilder {
                                                          in_quotes(name), taken));
     }
     add_parts<Sensor>("outputs", grammar::sensor_members(), tree.model != nullptr,
-                      [&](const std::string& name, const Value&, const std::unique_ptr<Sensor>& sensor) {
+                      [&](const std::string& name, const Value&, const std::shared_ptr<const Sensor>& sensor) {
                         auto bound = sensor->bind(*tree.model, scene_.outputs);
                         if (bound == nullptr)
                           throw std::invalid_argument("the sensor cannot be bound and does not say why");
@@ -344,6 +356,7 @@ class SceneBuilder {
 
   const Document& document_;
   Diagnostics& diagnostics_;
+  SceneParts* parts_;  ///< null: nothing is remembered
   Checker checker_;
   Scene scene_;
   Vector3 gravity_ = Vector3::Zero();
@@ -351,16 +364,14 @@ class SceneBuilder {
   std::set<std::string> refused_;  ///< loads, motions, constraints and outputs that are reported already
 };
 
-}  // namespace
-
-Scene make_scene(const SceneValues& values, Registry& registry) {
+Scene make(const SceneValues& values, Registry& registry, SceneParts* parts) {
   Diagnostics diagnostics = values.problems();
   SceneSources sources;
   const FileNotes notes([&](const std::string& file, std::string_view bytes) {
     sources.add(FileUsed{file, withy::sha256(bytes)});
   });
   FloatingPointGuard arithmetic;  // of everything that a plugin is asked: shapes, stations, what binds loads
-  Scene scene = SceneBuilder(values.document(), registry, sources, diagnostics).build();
+  Scene scene = SceneBuilder(values.document(), registry, sources, parts, diagnostics).build();
   arithmetic.check("a plugin of this scene");
   if (!diagnostics.ok()) throw SceneError(values.file(), diagnostics.errors(), values.origins());
   scene.file = values.file();
@@ -368,6 +379,14 @@ Scene make_scene(const SceneValues& values, Registry& registry) {
   scene.sources = std::move(sources);
   scene.settings = values.settings();
   return scene;
+}
+
+}  // namespace
+
+Scene make_scene(const SceneValues& values, Registry& registry) { return make(values, registry, nullptr); }
+
+Scene make_scene(const SceneValues& values, Registry& registry, SceneParts& parts) {
+  return make(values, registry, &parts);
 }
 
 Scene parse_scene(std::string_view text, const std::string& file, Registry& registry, const SceneOptions& options) {

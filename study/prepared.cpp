@@ -7,6 +7,7 @@
 #include "withy/core/plugin/floating_point.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
+#include "withy/scene/scene_parts.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/point.hpp"
 
@@ -97,10 +98,8 @@ void make_rungs(Prepared& prepared, Registry& registry) {
   }
 }
 
-}  // namespace
-
-Prepared prepare(SceneValues values, Registry& registry) {
-  Scene scene = make_scene(values, registry);
+/// The scene of these values, compiled.
+Prepared compiled(SceneValues values, Scene scene, Registry& registry) {
   Prepared prepared{std::move(values), std::move(scene), nullptr, {}, {}};
   try {
     prepared.equations = prepared.scene.formulation->compile(prepared.scene.model);
@@ -117,6 +116,18 @@ Prepared prepare(SceneValues values, Registry& registry) {
     if (prepared.rungs.empty()) throw InputError(prepared.scene.file + ": formulation auto: no formulation is found");
   }
   return prepared;
+}
+
+}  // namespace
+
+Prepared prepare(SceneValues values, Registry& registry) {
+  Scene scene = make_scene(values, registry);
+  return compiled(std::move(values), std::move(scene), registry);
+}
+
+Prepared prepare(SceneValues values, Registry& registry, SceneParts& parts) {
+  Scene scene = make_scene(values, registry, parts);
+  return compiled(std::move(values), std::move(scene), registry);
 }
 
 RunOptions run_options(const Scene& scene) {

@@ -12,6 +12,10 @@
 #include "withy/core/simulation/simulate.hpp"
 #include "withy/scene/scene.hpp"
 
+namespace withy {
+class SceneParts;
+}
+
 namespace withy::study {
 
 /// Immutable; threads may share it.
@@ -34,6 +38,8 @@ struct Prepared {
 /// Makes the scene and compiles it.
 /// \throws SceneError; InputError where the formulation cannot treat the model; PluginError where a library is refused.
 Prepared prepare(SceneValues values, Registry& registry);
+/// The same with what `parts` remembers of scenes before.
+Prepared prepare(SceneValues values, Registry& registry, SceneParts& parts);
 
 /// How a run of the scene goes: its end, outputs, limits and events. \throws SceneError where it has no end.
 RunOptions run_options(const Scene& scene);

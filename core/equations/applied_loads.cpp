@@ -7,8 +7,11 @@
 namespace withy {
 
 AppliedLoads::AppliedLoads(const Model& model, Terms terms) : model_(model) {
-  for (const LoadNode& node : model.loads())
+  for (const LoadNode& node : model.loads()) {
     frames_.insert(frames_.end(), node.load->frames().begin(), node.load->frames().end());
+    const auto* timed = dynamic_cast<const TimedEffort*>(node.load.get());
+    timed_.push_back(timed == nullptr ? TimedLoad{} : TimedLoad{timed, timed->speed(), timed->law()});
+  }
   sweep::WorkLayout memory;
   scratch_offset_ = memory.take<double>(model.load_scratch());
   if (!frames_.empty()) {
@@ -30,6 +33,26 @@ void AppliedLoads::add(double t, std::span<const double> y, std::span<double> ef
     const BoundLoad& load = *loads[i].load;
     if (wanted(i)) load.add(t, positions, speeds, efforts, scratch(work).first(load.scratch()));
   }
+  add_rest(t, y, efforts, work, only);
+}
+
+void AppliedLoads::add_to_timed(double t, std::span<const double> y, std::span<const double> timed,
+                                std::span<double> efforts, std::byte* work) const noexcept {
+  const auto positions = y.first(model_.layout().positions);
+  const auto speeds = y.subspan(model_.layout().positions, model_.layout().speeds);
+  const std::vector<LoadNode>& loads = model_.loads();
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    if (timed_[i].effort != nullptr) {
+      efforts[timed_[i].speed] += timed[i];
+    } else {
+      loads[i].load->add(t, positions, speeds, efforts, scratch(work).first(loads[i].load->scratch()));
+    }
+  }
+  add_rest(t, y, efforts, work, -1);
+}
+
+inline void AppliedLoads::add_rest(double t, std::span<const double> y, std::span<double> efforts, std::byte* work,
+                                   int only) const noexcept {
   model_.add_state_efforts(t, y, efforts, scratch(work), only);
   if (paths_ != nullptr) paths_->add_efforts(wrenches(t, y, work, only), efforts, work + paths_offset_);
 }

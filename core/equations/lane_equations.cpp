@@ -1,6 +1,8 @@
 #include "withy/core/equations/lane_equations.hpp"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "withy/core/equations/sweep_equations.hpp"
@@ -33,6 +35,60 @@ void scatter(const Lanes* from, std::size_t count, const std::array<double*, cas
   }
 }
 
+/// Efforts that are functions of time alone, by lanes: found once for all lanes with one law that ask for one time, and
+/// not again where a lane asks for its last time again, as the stages of a Runge–Kutta step do. The number is that of
+/// the law whoever finds it.
+class TimedEfforts {
+ public:
+  /// Another case is in the lane.
+  void put(std::size_t lane, const std::vector<TimedLoad>& loads) {
+    of_[lane].loads = &loads;
+    of_[lane].found.assign(loads.size(), {std::numeric_limits<double>::quiet_NaN(), nullptr});
+    of_[lane].values.resize(loads.size());
+    const auto timed = [](const TimedLoad& load) { return load.effort != nullptr; };
+    of_[lane].any = std::any_of(loads.begin(), loads.end(), timed);
+  }
+  /// One number a load of the lane's case, at time t; nothing where no load is timed. \param calls those of this
+  /// evaluation: of a lane without one nobody knows whether its loads still are
+  std::span<const double> at(double t, std::size_t lane, std::span<LaneCall* const> calls) noexcept {
+    OfLane& own = of_[lane];
+    if (!own.any) return {};
+    for (std::size_t i = 0; i < own.values.size(); ++i) {
+      const TimedLoad& load = (*own.loads)[i];
+      if (load.effort == nullptr || own.found[i].t == t) continue;
+      const double* known = elsewhere(load.law, t, lane, calls);
+      own.values[i] = known != nullptr ? *known : load.effort->effort(t);
+      own.found[i] = {t, load.law};
+    }
+    return own.values;
+  }
+
+ private:
+  struct Found {
+    double t;  ///< [s]; NaN: at none
+    const void* law;
+  };
+  struct OfLane {
+    const std::vector<TimedLoad>* loads = nullptr;
+    std::vector<Found> found;
+    std::vector<double> values;
+    bool any = false;
+  };
+  /// What a lane before has found; null: none has.
+  [[nodiscard]] const double* elsewhere(const void* law, double t, std::size_t lane,
+                                        std::span<LaneCall* const> calls) const noexcept {
+    for (std::size_t other = 0; other < lane; ++other) {
+      if (calls[other] == nullptr) continue;
+      const OfLane& of = of_[other];
+      for (std::size_t i = 0; i < of.found.size(); ++i)
+        if (of.found[i].law == law && of.found[i].t == t) return &of.values[i];
+    }
+    return nullptr;
+  }
+
+  std::array<OfLane, cases_at_once> of_;
+};
+
 template <class Space>
 class LanesOfSpace final : public LaneEquations {
  public:
@@ -44,6 +100,7 @@ class LanesOfSpace final : public LaneEquations {
         numbers_(positions_ + 3 * speeds_, Lanes(0)),
         idle_(positions_ + speeds_, 0.0) {
     equations_.fill(&first);
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane) timed_.put(lane, first.loads().timed());
   }
 
   [[nodiscard]] bool fits(const EquationsOfMotion& equations) const override {
@@ -56,6 +113,7 @@ class LanesOfSpace final : public LaneEquations {
   void put(std::size_t lane, const EquationsOfMotion& equations) override {
     equations_[lane] = &dynamic_cast<const One<Space>&>(equations);
     sweep_.put(lane, equations_[lane]->sweep());
+    timed_.put(lane, equations_[lane]->loads().timed());
   }
 
   void derivatives(std::span<LaneCall* const> calls) noexcept override {
@@ -69,7 +127,11 @@ class LanesOfSpace final : public LaneEquations {
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (calls[lane] == nullptr) continue;
       const LaneCall& call = *calls[lane];
-      applied[lane] = equations_[lane]->applied(call.t, call.y, call.y_dot, *call.work).data();
+      const std::span<const double> timed = timed_.at(call.t, lane, calls);
+      const One<Space>& own = *equations_[lane];
+      applied[lane] = (timed.empty() ? own.applied(call.t, call.y, call.y_dot, *call.work)
+                                     : own.applied(call.t, call.y, call.y_dot, *call.work, timed))
+                          .data();
       y[lane] = call.y.data();
       rates[lane] = call.y_dot.data() + n;
     }
@@ -93,6 +155,7 @@ class LanesOfSpace final : public LaneEquations {
  private:
   sweep::LaneSweep<Space> sweep_;
   Work work_;
+  TimedEfforts timed_;
   std::size_t positions_, speeds_;
   std::vector<Lanes> numbers_;  ///< positions, speeds, efforts, accelerations
   std::vector<double> idle_;    ///< state and results of lanes without a call; of no meaning

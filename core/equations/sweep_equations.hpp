@@ -220,19 +220,22 @@ class SweepEquations final : public EquationsOfMotion,
   // For evaluations of several cases at once, which have a sweep of their own: what stands before it and after it.
   [[nodiscard]] const Sweep& sweep() const { return sweep_; }
   [[nodiscard]] const Terms& terms() const { return terms_; }
+  [[nodiscard]] const AppliedLoads& loads() const { return loads_; }
   /// The loads' efforts at (t, y), in the work memory; driven accelerations go into y_dot.
   std::span<double> applied(double t, std::span<const double> y, std::span<double> y_dot, Work& work) const noexcept {
     const std::span<double> efforts = efforts_.in(work);
     for (double& e : efforts) e = 0;
     loads_.add(t, y, efforts, of_loads_.in(work));
-    // The sweep leaves all efforts on driven speeds in the place of the loads'.
-    double* on_driven = on_driven_.in(work).data();
-    for (const Slot& slot : driven_) on_driven = std::copy_n(efforts.data() + slot.speed, slot.speeds, on_driven);
-    if (!model_->motions().empty()) {
-      const std::span<double> u_dot(y_dot.data() + layout().positions, layout().speeds);
-      model_->prescribe_accelerations(t, u_dot);
-      hosted_.prescribe(t, y, u_dot);
-    }
+    prescribe(t, y, y_dot, efforts, work);
+    return efforts;
+  }
+  /// The same for who has the efforts of loads that are functions of time alone; see AppliedLoads.
+  std::span<double> applied(double t, std::span<const double> y, std::span<double> y_dot, Work& work,
+                            std::span<const double> timed) const noexcept {
+    const std::span<double> efforts = efforts_.in(work);
+    for (double& e : efforts) e = 0;
+    loads_.add_to_timed(t, y, timed, efforts, of_loads_.in(work));
+    prescribe(t, y, y_dot, efforts, work);
     return efforts;
   }
   /// All that an evaluation gives beside accelerations: position rates and power of these speeds, the rates of the
@@ -279,6 +282,19 @@ class SweepEquations final : public EquationsOfMotion,
     factor_change_ = {factors, speeds};
     factor_sweep_ = {factors, sweep_.work_size()};
     factors_size_ = factors.size();
+  }
+
+  /// Driven accelerations into y_dot; what loads do on driven speeds is kept.
+  void prescribe(double t, std::span<const double> y, std::span<double> y_dot, std::span<const double> efforts,
+                 Work& work) const noexcept {
+    // The sweep leaves all efforts on driven speeds in the place of the loads'.
+    double* on_driven = on_driven_.in(work).data();
+    for (const Slot& slot : driven_) on_driven = std::copy_n(efforts.data() + slot.speed, slot.speeds, on_driven);
+    if (!model_->motions().empty()) {
+      const std::span<double> u_dot(y_dot.data() + layout().positions, layout().speeds);
+      model_->prescribe_accelerations(t, u_dot);
+      hosted_.prescribe(t, y, u_dot);
+    }
   }
 
   [[nodiscard]] std::span<const double> speeds_of(std::span<const double> y) const noexcept {

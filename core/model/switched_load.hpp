@@ -16,7 +16,7 @@ namespace withy {
 class SwitchedLoad final : public Load {
  public:
   /// \param forms the load as the scene states it, then with other parameters; at least one
-  explicit SwitchedLoad(std::vector<std::unique_ptr<Load>> forms) : forms_(std::move(forms)) {}
+  explicit SwitchedLoad(std::vector<std::shared_ptr<const Load>> forms) : forms_(std::move(forms)) {}
   /// \throws std::invalid_argument as those of the forms, and where these differ in more than numbers.
   [[nodiscard]] std::unique_ptr<BoundLoad> bind(const Model& model) const override;
 
@@ -26,7 +26,7 @@ class SwitchedLoad final : public Load {
   [[nodiscard]] static std::size_t place_of_form(const LoadSlot& slot) { return slot.first + slot.count - 1; }
 
  private:
-  std::vector<std::unique_ptr<Load>> forms_;
+  std::vector<std::shared_ptr<const Load>> forms_;
 };
 
 /// What a bound SwitchedLoad is too (dynamic_cast).

@@ -42,18 +42,18 @@ MassTable<Space>::MassTable(const NodeSpec& node) {
   const Eigen::Index columns = 1 + L * (1 + n + n * (n + 1) / 2);
   Eigen::MatrixXd fields(rows, columns);
   for (Eigen::Index k = 0; k < rows; ++k) {
-    const PointExpansion at = node.mass.at(static_cast<std::size_t>(k));
+    const PlacedPoint at = node.mass.point(static_cast<std::size_t>(k));
     const double root = std::sqrt(node.mass.mass(static_cast<std::size_t>(k)));
     Eigen::Index column = 0;
     fields(k, column++) = root;
     const auto put = [&](const Vector3& a) {
       for (Eigen::Index c = 0; c < L; ++c) fields(k, column++) = root * a[c];
     };
-    put(at.X);
-    for (Eigen::Index i = 0; i < n; ++i) put(at.phi.col(i));
+    put(at.X());
+    for (Eigen::Index i = 0; i < n; ++i) put(at.phi(i));
     for (Eigen::Index i = 0; i < n; ++i) {
       for (Eigen::Index j = i; j < n; ++j) {
-        const Vector3 g(at.gamma[0](i, j), at.gamma[1](i, j), at.gamma[2](i, j));
+        const Vector3 g = at.gamma(i, j);
         second_order = second_order || !g.isZero(0);
         put(g);
       }

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "withy/core/tree/steps.hpp"
 
@@ -68,20 +69,20 @@ bool across(const Vector3& a, const Vector3& unit, double scale) {
 
 }  // namespace
 
-bool fields_in_plane(const PointExpansion& e, const Vector3& n) {
-  bool good = true;
-  const auto size = [](const auto& a, const auto& b) { return a.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff(); };
-  if (e.phi.cols() == 0) return true;
-  const double linear = size(e.phi, e.psi);
-  for (Eigen::Index i = 0; i < e.phi.cols(); ++i) {
-    good = good && across(e.phi.col(i), n, linear) && along(e.psi.col(i), n, linear);
-    for (Eigen::Index j = 0; j < e.phi.cols(); ++j) {
-      const Vector3 gamma(e.gamma[0](i, j), e.gamma[1](i, j), e.gamma[2](i, j));
-      const Vector3 theta(e.theta[0](i, j), e.theta[1](i, j), e.theta[2](i, j));
-      good = good && across(gamma, n, linear * linear) && along(theta, n, linear * linear);
+bool fields_in_plane(const PlacedPoint& point, const Vector3& n) {
+  double phi = 0, psi = 0;
+  for (Eigen::Index i = 0; i < point.modes(); ++i) {
+    phi = std::max(phi, point.phi(i).cwiseAbs().maxCoeff());
+    psi = std::max(psi, point.psi(i).cwiseAbs().maxCoeff());
+  }
+  const double linear = phi + psi;
+  for (Eigen::Index i = 0; i < point.modes(); ++i) {
+    if (!across(point.phi(i), n, linear) || !along(point.psi(i), n, linear)) return false;
+    for (Eigen::Index j = 0; j < point.modes(); ++j) {
+      if (!across(point.gamma(i, j), n, linear * linear) || !along(point.theta(i, j), n, linear * linear)) return false;
     }
   }
-  return good;
+  return true;
 }
 
 std::optional<Vector3> plane_normal(const NodeTree& tree) {
@@ -111,7 +112,7 @@ std::optional<Vector3> plane_normal(const NodeTree& tree) {
     }
     const Vector3 in_node = R[i].transpose() * *normal;
     for (std::size_t k = 0; k < n.mass.size(); ++k) {
-      if (!fields_in_plane(n.mass.at(k), in_node)) return {};
+      if (!fields_in_plane(n.mass.point(k), in_node)) return {};
     }
     for (const Section& s : n.mass.sections()) {
       if (!fields_in_plane(s.at, in_node)) return {};

@@ -18,19 +18,14 @@ void drop_second_order(PointExpansion& e) {
 
 PointExpansion PlacedMass::placed(const PointExpansion& e) const {
   PointExpansion result = e;
-  for (const Pose& AB : moves_) result = moved(result, AB);
+  for (const FrameMove& move : moves_) result = moved(result, move.AB);
   if (linear_) drop_second_order(result);
   return result;
 }
 
-Vector3 PlacedMass::place(std::size_t particle) const {
-  Vector3 X = shape_->particles[particle].at.X;
-  for (const Pose& AB : moves_) X = AB.p + AB.R * X;
-  return X;
-}
-
 void PlacedMass::move(const Pose& AB) {
-  if (AB.R != Matrix3::Identity() || !AB.p.isZero(0)) moves_.push_back(AB);
+  const bool turns = AB.R != Matrix3::Identity();
+  if (turns || !AB.p.isZero(0)) moves_.push_back({AB, turns});
 }
 
 std::vector<Section> PlacedMass::sections() const {
@@ -39,7 +34,7 @@ std::vector<Section> PlacedMass::sections() const {
   result.reserve(shape_->sections.size());
   for (const Section& s : shape_->sections) {
     Matrix3 inertia = s.inertia;
-    for (const Pose& AB : moves_) inertia = Matrix3(AB.R * inertia * AB.R.transpose());
+    for (const auto& [AB, turns] : moves_) inertia = Matrix3(AB.R * inertia * AB.R.transpose());
     result.push_back({inertia, placed(s.at)});
   }
   return result;
@@ -52,7 +47,7 @@ std::string PlacedMass::identity() const {
   const auto shape = reinterpret_cast<std::uintptr_t>(shape_.get());
   append(&shape, sizeof shape);
   append(&linear_, sizeof linear_);
-  for (const Pose& AB : moves_) {
+  for (const auto& [AB, turns] : moves_) {
     append(AB.R.data(), 9 * sizeof(double));
     append(AB.p.data(), 3 * sizeof(double));
   }

@@ -21,6 +21,9 @@ Matrix3 basis_near_x(const Vector3& z);
 /// third axis is the normal. The node's frame becomes the hinge frame M where the hinge holds the node's frame.
 void align(PlacedTree& tree);
 /// Whether the modes move a section in the plane with this normal alone, both in one frame's axes.
-bool fields_in_plane(const PointExpansion& e, const Vector3& normal);
+bool fields_in_plane(const PlacedPoint& point, const Vector3& normal);
+inline bool fields_in_plane(const PointExpansion& e, const Vector3& normal) {
+  return fields_in_plane(PlacedPoint(e), normal);
+}
 
 }  // namespace withy::compilation
