@@ -114,7 +114,7 @@ void Monitor::note(const std::string& name, double length, const std::array<doub
 
 /// Exact kinematics integrates along the body, at the cost of an evaluation: only where the expansion says that the
 /// deflection has not been so great before.
-void Monitor::observe_end(End& end, const State& state, const Vector3& rough, bool& seen) {
+void Monitor::observe_end(End& end, const State& state, const Vector3& rough) {
   bool greater = false;
   for (std::size_t k = 0; k < 3; ++k) {
     const double size = std::abs(rough[static_cast<Eigen::Index>(k)]);
@@ -124,8 +124,7 @@ void Monitor::observe_end(End& end, const State& state, const Vector3& rough, bo
   if (!greater) return;
   std::array<double, 3> d{rough.x(), rough.y(), rough.z()};
   if (end.frame >= 0) {
-    if (!seen) seen_.observe(state.y);
-    seen = true;
+    see(state);
     d = seen_.deflection(end.body, end.frame);
   }
   *end.ratio = std::max(*end.ratio, std::hypot(d[0], d[1], d[2]) / end.length);
@@ -153,13 +152,18 @@ void Monitor::observe_within(End& end, const State& state, const Vector3& now, c
     between_.y = state.y;
     for (std::size_t i = 0; i < end.slot->positions; ++i)
       between_.y[q + i] = cubic(where, last_.y[q + i], h * last_.y[u + i], state.y[q + i], h * state.y[u + i]);
-    bool seen = false;
-    observe_end(end, between_, end.section.displacement(between_.y.data() + q), seen);
+    observe_end(end, between_, end.section.displacement(between_.y.data() + q));
   }
 }
 
+void Monitor::see(const State& state) {
+  if (seen_y_ == state.y) return;
+  seen_.observe(state.y);
+  seen_y_ = state.y;
+}
+
 void Monitor::look(const State& state) {
-  bool seen = false;
+  if (own_ == nullptr) seen_y_.clear();
   for (End& end : ends_) {
     const double* const q = state.y.data() + end.slot->position;
     const double* const u = state.y.data() + model_.layout().positions + end.slot->speed;
@@ -167,10 +171,10 @@ void Monitor::look(const State& state) {
     if (state.time > last_.time) observe_within(end, state, now, velocity);
     end.now = now;
     end.velocity = velocity;
-    observe_end(end, state, now, seen);
+    observe_end(end, state, now);
   }
   if (!wholes_.empty()) {
-    if (!seen) seen_.observe(state.y);
+    see(state);
     for (const Tip& tip : wholes_)
       note(tip.body, tip.length, deflection(seen_, tip), &summary_.peak_deflection[tip.body]);
   }
@@ -208,6 +212,7 @@ void Monitor::rebase_energy(const State& state, const std::function<void()>& cha
   const double jump = energy() - before;
   initial_energy_ += jump;
   initial_energies_.potential += jump;
+  seen_y_.clear();
 }
 
 void Monitor::pass_event(const State& before, const State& after) {
@@ -220,6 +225,7 @@ void Monitor::pass_event(const State& before, const State& after) {
       return kinetic(state, e) - e.kinetic;
     };
     initial_energy_ += own(after) - own(before);
+    seen_y_.clear();
   }
   audit_energy(after);
   look(after);
@@ -281,7 +287,8 @@ void Monitor::finish_momenta() {
 }
 
 void Monitor::audit_energy(const State& state) {
-  seen_.observe(state.y);
+  if (own_ == nullptr) seen_y_.clear();
+  see(state);
   const Energies e = seen_.energies();
   audit_momenta(e);
   const double kinetic_energy = kinetic(state, e);

@@ -28,7 +28,10 @@ class Monitor {
   /// Loads and motions begin here, or what they do may have jumped.
   void begin_efforts(const State& state) { effort_watch_.begin_at(state); }
   /// Brings the observation to an output.
-  void show(const State& state) { seen_.observe(state.y); }
+  void show(const State& state) {
+    seen_.observe(state.y);
+    seen_y_.clear();
+  }
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
   /// Energy against the work done. A state where they balance is to be trusted.
@@ -87,7 +90,9 @@ class Monitor {
     Vector3 now = Vector3::Zero(), velocity = Vector3::Zero();  ///< at the last accepted state, by the expansion
   };
   void look(const State& state);
-  void observe_end(End& end, const State& state, const Vector3& rough, bool& seen);
+  /// Brings the observation to a state, where it is not there yet.
+  void see(const State& state);
+  void observe_end(End& end, const State& state, const Vector3& rough);
   void observe_within(End& end, const State& state, const Vector3& now, const Vector3& velocity);
   void note(const std::string& name, double length, const std::array<double, 3>& d, std::array<double, 3>* peak);
   /// `visit` is given each peak of the summary, always in the same order.
@@ -102,6 +107,7 @@ class Monitor {
   RunSummary& summary_;
   std::unique_ptr<Observation> own_;  ///< null where another is used
   Observation& seen_;
+  std::vector<double> seen_y_;  ///< that `see` has brought it to; empty: somebody else may have moved it
   std::vector<End> ends_;
   std::vector<Tip> wholes_;  ///< of bodies in segments
   double deflection_limit_;
