@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "withy/core/equations/branch_equations.hpp"
 #include "withy/host/names.hpp"
 #include "withy/results/certificate_json.hpp"
 #include "withy/results/json_text.hpp"
@@ -12,6 +13,7 @@
 #include "withy/results/run_json.hpp"
 #include "withy/scene/document.hpp"
 #include "withy/scene/scene_values.hpp"
+#include "withy/study/input_error.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy::host {
@@ -41,6 +43,7 @@ struct Scene::Parts {
   std::string text, name;
   SceneValues values;
   std::vector<std::string> changes = {};
+  std::size_t threads = 1;
 };
 
 Scene::Scene(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -70,6 +73,13 @@ Scene& Scene::set(std::string_view path, std::string_view text) {
 Scene& Scene::formulation(const std::string& id) { return set("formulation", std::string_view(id)); }
 Scene& Scene::integrator(const std::string& id) { return set("integrator", std::string_view(id)); }
 
+Scene& Scene::threads(std::size_t count) {
+  if (count == 0 || count > most_threads)
+    throw study::InputError(fmt::format("threads: got {}; need 1 to {}", count, most_threads));
+  parts_->threads = count;
+  return *this;
+}
+
 void Scene::check() const { static_cast<void>(make_scene(parts_->values, library().registry())); }
 
 const std::string& Scene::text() const { return parts_->text; }
@@ -83,7 +93,11 @@ std::string Scene::values() const {
 const Library& Scene::library() const { return parts_->library; }
 
 std::shared_ptr<const study::Prepared> Scene::prepare() const {
-  return std::make_shared<const study::Prepared>(study::prepare(parts_->values, library().registry()));
+  study::Prepared prepared = study::prepare(parts_->values, library().registry());
+  if (parts_->threads > 1)
+    if (const std::string refusal = study::use_threads(prepared, parts_->threads); !refusal.empty())
+      library().log("one thread evaluates all: " + refusal);
+  return std::make_shared<const study::Prepared>(std::move(prepared));
 }
 
 Result Scene::run(const Follow& follow) const {

@@ -59,6 +59,11 @@ class Scene {
   Scene& set(std::string_view path, const char* text) { return set(path, std::string_view(text)); }
   Scene& formulation(const std::string& id);
   Scene& integrator(const std::string& id);
+  /// From now on runs, simulations and equations made of the scene evaluate the branches of its tree on that many
+  /// threads, where it has some: the same results to the last bit, sooner where branches are large. Without a
+  /// formulation that can, one thread evaluates all. \param count 1: no other thread; at most 256 \throws
+  /// study::InputError where it is none of these
+  Scene& threads(std::size_t count);
   /// Checks it. \throws as above.
   void check() const;
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # benchmarks.sh [TABLE...]: times evaluations and integrators, and writes the tables of docs/performance.md and
-# docs/integrators.md. TABLE: bench-arm, bench-chain, equal-links, lanes, lane-sweeps, stiff-cost; without one all of
+# docs/integrators.md. TABLE: bench-arm, bench-chain, equal-links, lanes, lane-sweeps, branches, stiff-cost; without one all of
 # them, about ten minutes of a machine that does nothing else. The programs are those of build/release.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -79,6 +79,27 @@ PYTHON
   } | record_table lanes "scripts/benchmarks.sh lanes"
 }
 
+# Wall time on a machine that does nothing else, or it says little.
+table_branches() {
+  {
+    printf 'links on each of two branches\tkind\tone thread [µs]\ttwo threads [µs]\tratio\thanding over [µs]\tpays from [µs]\n'
+    local kind n
+    for kind in rigid ruthless quadratic; do
+      for n in 10 100 1000; do
+        branches "$n" "$kind" >"$kept/branches.yaml"
+        "$bin/withy" bench "$kept/branches.yaml" --formulation "${kind/rigid/ruthless}" --threads 2 >"$kept/bench.json"
+        python3 - "$kept/bench.json" "$n" "$kind" <<'PYTHON'
+import json, sys
+t = json.load(open(sys.argv[1]))["threads"]
+kind = sys.argv[3] if sys.argv[3] == "rigid" else f"`{sys.argv[3]}` beams, 2+2 modes"
+print(sys.argv[2], kind, *(f"{t[k] / 1e3:.1f}" for k in ("ns_one_thread", "ns_all_threads")), f"{t['ratio']:.2f}",
+      *(f"{t[k] / 1e3:.2g}" for k in ("ns_hand_over", "pays_from_ns")), sep="\t")
+PYTHON
+      done
+    done
+  } | record_table branches "scripts/benchmarks.sh branches"
+}
+
 # "TITLE INTEGRATOR rtol T  error E  S steps N evaluations C ms  R x"
 table_stiff_cost() {
   {
@@ -89,25 +110,36 @@ table_stiff_cost() {
   } | record_table stiff-cost "scripts/benchmarks.sh stiff-cost"
 }
 
-# A chain of equal links hinged about five axes in turn: NUMBER KIND.
-chain() {
-  python3 - "$1" "$2" <<'PYTHON'
+# Chains of equal links hinged about five axes in turn, on what they hang on: NUMBER KIND PLACE...
+chains() {
+  python3 - "$@" <<'PYTHON'
 import sys
-n, beams = int(sys.argv[1]), sys.argv[2] != "rigid"
+n, beams, places = int(sys.argv[1]), sys.argv[2] != "rigid", sys.argv[3:]
 print("format: withy/1\ntime: {end: 1}\nbodies:")
-for i in range(n):
-    if beams:
-        print(f"  b{i}: {{type: beam, length: 0.4, mass_per_length: 0.5, "
-              "bending_y: {stiffness: 50, modes: 2}, bending_z: {stiffness: 70, modes: 2}}")
-    else:
-        print(f"  b{i}: {{type: rigid, mass: 0.2, center_of_mass: [0.2, 0, 0], inertia: [0.001, 0.003, 0.003, 0, 0, 0], "
-              "frames: {tip: {position: [0.4, 0, 0]}}}")
+if places != ["world"]:
+    print("  hub: {type: rigid, mass: 4, inertia: [1, 2, 3, 0, 0, 0], frames: {left: {position: [-0.3, 0, 0]}, "
+          "right: {position: [0.3, 0, 0]}}}")
+names = "bcdefg"
+for c in range(len(places)):
+    for i in range(n):
+        if beams:
+            print(f"  {names[c]}{i}: {{type: beam, length: 0.4, mass_per_length: 0.5, "
+                  "bending_y: {stiffness: 50, modes: 2}, bending_z: {stiffness: 70, modes: 2}}")
+        else:
+            print(f"  {names[c]}{i}: {{type: rigid, mass: 0.2, center_of_mass: [0.2, 0, 0], inertia: [0.001, 0.003, 0.003, 0, 0, 0], "
+                  "frames: {tip: {position: [0.4, 0, 0]}}}")
 print("hinges:")
+if places != ["world"]:
+    print("  float: {type: free, parent: world, child: hub}")
 axes = ("0, 0, 1", "0, 1, 0", "0, 0.6, 0.8", "0.6, 0, 0.8", "0, 0.8, 0.6")
-for i in range(n):
-    print(f"  h{i}: {{type: revolute, axis: [{axes[i % 5]}], parent: {'world' if i == 0 else f'b{i - 1}.tip'}, child: b{i}}}")
+for c, place in enumerate(places):
+    for i in range(n):
+        parent = place if i == 0 else f"{names[c]}{i - 1}.tip"
+        print(f"  h{names[c]}{i}: {{type: revolute, axis: [{axes[i % 5]}], parent: {parent}, child: {names[c]}{i}}}")
 PYTHON
 }
+chain() { chains "$1" "$2" world; }
+branches() { chains "$1" "$2" hub.left hub.right; }
 
 # ns a link, least of three, and the exponents of growth of the whole.
 table_equal_links() {
@@ -171,10 +203,10 @@ PYTHON
 }
 
 tables=("$@")
-[ $# -gt 0 ] || tables=(bench-arm bench-chain equal-links lanes lane-sweeps stiff-cost)
+[ $# -gt 0 ] || tables=(bench-arm bench-chain equal-links lanes lane-sweeps branches stiff-cost)
 for table in "${tables[@]}"; do
   case $table in
-    bench-arm | bench-chain | equal-links | lanes | lane-sweeps | stiff-cost) "table_${table//-/_}" ;;
+    bench-arm | bench-chain | equal-links | lanes | lane-sweeps | branches | stiff-cost) "table_${table//-/_}" ;;
     *)
       echo "benchmarks.sh: no table '$table'" >&2
       exit 2

@@ -130,6 +130,13 @@ Prepared prepare(SceneValues values, Registry& registry, SceneParts& parts) {
   return compiled(std::move(values), std::move(scene), registry);
 }
 
+std::string use_threads(Prepared& prepared, std::size_t threads) {
+  if (prepared.escalates()) return "the formulation changes along a run";
+  BranchEquations branched = on_threads(prepared.equations, threads);
+  if (branched.equations != nullptr) prepared.equations = std::move(branched.equations);
+  return branched.refusal;
+}
+
 RunOptions run_options(const Scene& scene) {
   RunOptions options;
   options.end = end_of_run(scene);

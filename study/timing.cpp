@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <ctime>
+#include <limits>
 #include <vector>
 
+#include "withy/core/equations/branch_equations.hpp"
 #include "withy/core/equations/lane_equations.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/study/input_error.hpp"
@@ -75,6 +78,38 @@ LaneTimes time_lanes(const EquationsOfMotion& equations, const State& state,
     return calls.front().evaluation.ok();
   };
   return {{}, time_calls(calls.size(), allocations, evaluate)};
+}
+
+ThreadTimes time_threads(const std::shared_ptr<const EquationsOfMotion>& equations, const State& state,
+                         std::size_t threads) {
+  ThreadTimes times;
+  times.count = threads;
+  const BranchEquations branched = on_threads(equations, threads);
+  times.refusal = branched.refusal;
+  if (branched.equations == nullptr) return times;
+  using Clock = std::chrono::steady_clock;
+  const auto batch = [&](const EquationsOfMotion& of) {
+    constexpr auto enough = std::chrono::milliseconds(1);
+    std::vector<double> rates(of.size());
+    Work work = of.make_work();
+    std::size_t made = 0;
+    const Clock::time_point began = Clock::now();
+    Clock::duration taken{};
+    for (; taken < enough; taken = Clock::now() - began, ++made)
+      if (!of.derivatives(state.time, state.y, rates, work).ok())
+        throw InputError("the equations of motion cannot be evaluated at this state; see withy eval");
+    return std::chrono::duration<double>(taken).count() / static_cast<double>(made);
+  };
+  times.one = times.several = std::numeric_limits<double>::infinity();
+  constexpr int turns = 200;
+  for (int turn = 0; turn < turns; ++turn) {
+    times.one = std::min(times.one, batch(*equations));
+    times.several = std::min(times.several, batch(*branched.equations));
+  }
+  times.hand_over = hand_over_seconds(threads);
+  times.share = branched.share;
+  times.pays_from = times.hand_over / (1 - times.share);
+  return times;
 }
 
 std::vector<std::string> timed_formulations(Registry& registry) {

@@ -24,11 +24,6 @@ void add_formulation(Options& o, SceneArguments& a) {
   o.value("--formulation", a.options.formulation, "ID", "Formulation, in place of the scene's");
 }
 
-void add_formulations(Options& o, std::vector<std::string>& formulations, const std::string& names,
-                      const std::string& meaning) {
-  o.list(names, formulations, "ID,ID,...", meaning);
-}
-
 void add_state(Options& o, StateArguments& a) {
   o.value("--state", a.state, "FILE", "State file (JSON or YAML); default: the scene's initial state");
 }

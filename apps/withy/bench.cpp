@@ -15,6 +15,7 @@ namespace {
 struct BenchArguments : StateArguments {
   std::vector<std::string> formulations;  ///< `all` is every one found; empty: the scene's
   bool lanes = false;                     ///< a case in each lane too
+  std::size_t threads = 1;                ///< that evaluate branches too; 1: none do
 };
 
 using Json = nlohmann::ordered_json;
@@ -30,6 +31,9 @@ Json measure(const Engine& engine, const BenchArguments& arguments) {
   result["coordinates"] = engine.model().layout().speeds;
   if (arguments.lanes)
     result["lanes"] = lanes_json(study::time_lanes(engine.equations(), state, &program::allocations), times);
+  if (arguments.threads > 1)
+    result["threads"] = threads_json(study::time_threads(engine.prepared().equations, state, arguments.threads),
+                                     engine.model().bodies().size());
   return result;
 }
 
@@ -57,10 +61,11 @@ ExitStatus bench(const BenchArguments& arguments) {
 
 void add_bench(Options& o, BenchArguments& a) {
   add_scene(o, a);
-  add_formulations(o, a.formulations, "--formulation,--formulations",
-                   "One formulation, several, or all; default: the scene's");
+  o.list("--formulation,--formulations", a.formulations, "ID,ID,...",
+         "One formulation, several, or all; default: the scene's");
   add_state(o, a);
   o.flag("--lanes", a.lanes, "Four or eight cases at once too, as `withy sweep run` evaluates them, and the ratio");
+  o.value("--threads", a.threads, "N", "On N threads too; from which size that pays").between(1UL, most_threads);
 }
 
 }  // namespace

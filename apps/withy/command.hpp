@@ -54,8 +54,6 @@ void add_common(Options& options, CommonArguments& arguments);
 /// The scene, `--integrator`, `--set` and what is common to all commands.
 void add_scene(Options& options, SceneArguments& arguments);
 void add_formulation(Options& options, SceneArguments& arguments);
-void add_formulations(Options& options, std::vector<std::string>& formulations, const std::string& names,
-                      const std::string& meaning);
 void add_state(Options& options, StateArguments& arguments);
 /// `--out` and `--force`.
 void add_output(Options& options, OutputArguments& arguments, const std::string& meaning);

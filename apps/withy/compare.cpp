@@ -56,9 +56,8 @@ ExitStatus compare(const CompareArguments& arguments) {
 
 void add_compare(Options& o, CompareArguments& a) {
   add_scene(o, a);
-  add_formulations(o, a.formulations, "--formulations,--formulation",
-                   "Formulations; default: those of ruthless,inconsistent,consistent,quadratic that can treat the "
-                   "scene");
+  o.list("--formulations,--formulation", a.formulations, "ID,ID,...",
+         "Formulations; default: of ruthless,inconsistent,consistent,quadratic those that can treat the scene");
   o.value("--reference", a.reference, "ID", "Formulation the errors are measured against").with_default();
   o.list("--outputs,--output", a.outputs, "NAME,...",
          "What errors are shown of, each beside its range: hinges, tips, outputs (root, root.mz, shoulder.effort)");

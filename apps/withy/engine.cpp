@@ -62,7 +62,7 @@ SceneValues read_values(const SceneArguments& arguments) {
   });
 }
 
-Engine::Engine(const SceneArguments& arguments)
+Engine::Engine(const SceneArguments& arguments, std::size_t threads)
     : plugins_(arguments), prepared_(study::prepare(read_values(arguments), registry())) {
   spdlog::debug("{}: {} bodies, {} generalized speeds", scene().file, model().bodies().size(), model().layout().speeds);
   for (const PluginRecord& p : plugins_.host().plugins()) {
@@ -70,6 +70,8 @@ Engine::Engine(const SceneArguments& arguments)
     if (p.state == PluginRecord::State::refused) spdlog::debug("refused {}: {}", p.file.string(), p.reason);
   }
   for (const std::string& saving : equations().savings()) spdlog::debug("compiled: {}", saving);
+  const std::string refusal = threads > 1 ? study::use_threads(prepared_, threads) : "";
+  if (!refusal.empty()) complain("--threads: one evaluates all: " + refusal);
 }
 
 std::string Engine::formulation_summary() const {

@@ -37,9 +37,10 @@ SceneValues read_values(const SceneArguments& arguments);
 
 class Engine {
  public:
-  /// Reads the scene, loads what it names and compiles it.
+  /// Reads the scene, loads what it names and compiles it. Where branches of its tree cannot be evaluated on as many
+  /// threads as asked for, it says why on standard error.
   /// \throws SceneError, InputError; PluginError where a plugin is refused.
-  explicit Engine(const SceneArguments& arguments);
+  explicit Engine(const SceneArguments& arguments, std::size_t threads = 1);
   [[nodiscard]] const study::Prepared& prepared() const { return prepared_; }
   [[nodiscard]] const Scene& scene() const { return prepared_.scene; }
   [[nodiscard]] const Model& model() const { return prepared_.model(); }

@@ -116,7 +116,7 @@ ExitStatus modes(const ModesArguments& arguments) {
 
 void add_modes(Options& o, ModesArguments& a) {
   add_scene(o, a);
-  add_formulations(o, a.formulations, "--formulations,--formulation", "Formulations; default: the scene's");
+  o.list("--formulations,--formulation", a.formulations, "ID,ID,...", "Formulations; default: the scene's");
   add_configuration(o, a);
   o.value("--sweep", a.sweep, "PATH=FROM:TO:COUNT", "Any number of the scene, or spin.HINGE, over a range");
   o.value("--count", a.count, "N", "Modes that are shown (files hold all)")

@@ -23,18 +23,15 @@ struct RunArguments : SceneArguments, OutputArguments {
   std::optional<double> checkpoint;
   std::optional<bool> hdf5;  ///< results.h5 too; not given: where HDF5 is there
   bool resume = false;       ///< go on from the checkpoint in the folder
+  std::size_t threads = 1;   ///< that sweep the branches of the tree
 };
-
-study::Estimate estimate_of(const std::string& text) {
-  if (text == "always") return study::Estimate::always;
-  return text == "never" ? study::Estimate::never : study::Estimate::automatic;
-}
 
 /// The run keeps checkpoints, and begins or goes on from where it was.
 RecordedRun recorded(const Engine& engine, const RunArguments& arguments) {
   const Provenance provenance = provenance_of(engine.scene(), engine.plugins());
   study::RunSettings settings;
-  settings.estimate = estimate_of(arguments.estimate);
+  if (arguments.estimate != "auto")
+    settings.estimate = arguments.estimate == "always" ? study::Estimate::always : study::Estimate::never;
   settings.control = run_control(engine.scene().formulation_name);
   settings.checkpoint_seconds = arguments.checkpoint.value_or(60);
   if (arguments.resume)
@@ -46,7 +43,7 @@ RecordedRun recorded(const Engine& engine, const RunArguments& arguments) {
 
 ExitStatus run(const RunArguments& given) {
   RunArguments arguments = given;
-  const Engine engine(arguments);
+  const Engine engine(arguments, arguments.threads);
   study::check_accuracy(engine.prepared());
   check_columns(engine.prepared(), arguments.outputs);
   if (!arguments.hdf5) arguments.hdf5 = hdf5_missing().empty();
@@ -89,6 +86,7 @@ void add_run(Options& o, RunArguments& a) {
          "Write the table as results.h5 too, with scene, certificate and versions; default: yes, where HDF5 is there");
   o.flag("--resume", a.resume,
          "Go on from the checkpoint in the folder of the results: the same command as before, and this");
+  o.value("--threads", a.threads, "N", "Branches of a large tree on N threads").between(1UL, most_threads);
 }
 
 }  // namespace

@@ -55,8 +55,8 @@ ExitStatus trade(const TradeArguments& arguments) {
 
 void add_trade(Options& o, TradeArguments& a) {
   add_scene(o, a);
-  add_formulations(o, a.axes.formulations, "--formulations,--formulation",
-                   "Formulations; default: all that take part in studies, plugins' too");
+  o.list("--formulations,--formulation", a.axes.formulations, "ID,ID,...",
+         "Formulations; default: all that take part in studies, plugins' too");
   o.list("--families,--family", a.axes.families, "ID,ID,...", "Mode families of bending; default: the scene's");
   o.list("--modes", a.axes.modes, "N,N,...", "Modes of each family of a beam; default: 1,2,3");
   o.list("--integrators", a.axes.integrators, "ID,ID,...",

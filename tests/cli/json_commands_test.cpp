@@ -71,6 +71,39 @@ TEST(Bench, OneFormulationIsOneObject) {
   EXPECT_EQ(result(folder, {"bench", "scenes/pendulum.yaml"}).at("formulation"), "quadratic");
 }
 
+TEST(Bench, SaysOfThreadsFromWhichSizeTheyPayOrWhyThereIsOne) {
+  const Folder folder;
+  std::string bodies =
+                  "  hub: {type: rigid, mass: 4, inertia: [1, 2, 3, 0, 0, 0], frames: {a: {position: [-1, 0, 0]}, b: "
+                  "{position: [1, 0, 0]}}}\n",
+              hinges = "  base: {type: free, parent: world, child: hub}\n";
+  for (const std::string arm : {"a", "b"}) {
+    for (int i = 0; i < 9; ++i) {
+      const std::string name = arm + std::to_string(i);
+      bodies += "  " + name + ": {type: beam, length: 0.5, mass_per_length: 1, bending_y: {stiffness: 90}}\n";
+      hinges += "  h" + name + ": {type: revolute, axis: [0, 0, 1], child: " + name +
+                ", parent: " + (i == 0 ? "hub." + arm : arm + std::to_string(i - 1) + ".tip") + "}\n";
+    }
+  }
+  folder.write("arms.yaml", "format: withy/1\ntime: {end: 0.02}\nbodies:\n" + bodies + "hinges:\n" + hinges +
+                                "loads:\n  push: {type: hinge-effort, hinge: ha0, value: 0.1}\n");
+  const json j = result(folder, {"bench", "arms.yaml", "--threads", "2"}).at("threads");
+  EXPECT_EQ(j.at("count"), 2);
+  EXPECT_GT(j.at("ns_all_threads"), 0.0);
+  EXPECT_GT(j.at("ns_hand_over"), 0.0);
+  EXPECT_LT(j.at("longest_share"), 0.6);
+  EXPECT_GE(j.at("pays_from_bodies"), 1);
+  EXPECT_EQ(result(folder, {"bench", "scenes/pendulum.yaml", "--threads", "2"}).at("threads").at("one_thread_because"),
+            "its tree has no two branches of some size");
+  // A run on threads is the run.
+  ASSERT_EQ(withy(folder, {"run", "arms.yaml", "--no-hdf5", "--out", "one"}).status, 0);
+  ASSERT_EQ(withy(folder, {"run", "arms.yaml", "--no-hdf5", "--out", "two", "--threads", "2"}).status, 0);
+  EXPECT_EQ(folder.read("two/results.csv"), folder.read("one/results.csv"));
+  const Finished alone = withy(folder, {"run", "scenes/pendulum.yaml", "--threads", "2", "--out", "pendulum"});
+  EXPECT_EQ(alone.status, 0);
+  EXPECT_THAT(alone.err, HasSubstr("--threads: one evaluates all: its tree has no two branches of some size"));
+}
+
 TEST(Inspect, TextShowsTheTreeAndJsonTheSame) {
   const Folder folder;
   const json j = result(folder, {"inspect", "scenes/two-link-slew.yaml", "--json"});

@@ -48,6 +48,35 @@ TEST(HostedScene, says_what_it_is_as_a_scene_again) {
               testing::ThrowsMessage<SceneError>(HasSubstr("did you mean 'link1'")));
 }
 
+/// A hub that floats, with arms of links.
+Scene with_arms(int links) {
+  std::string bodies =
+                  "  hub: {type: rigid, mass: 4, inertia: [1, 2, 3, 0, 0, 0], frames: {left: {position: [-1, 0, 0]}, "
+                  "right: {position: [1, 0, 0]}}}\n",
+              hinges = "  base: {type: free, parent: world, child: hub}\n";
+  for (const std::string arm : {"left", "right"}) {
+    for (int i = 0; i < links; ++i) {
+      const std::string name = arm + std::to_string(i);
+      bodies += "  " + name + ": {type: beam, length: 0.5, mass_per_length: 1, bending_y: {stiffness: 90}}\n";
+      hinges += "  h_" + name + ": {type: revolute, axis: [0, 0, 1], child: " + name +
+                ", parent: " + (i == 0 ? "hub." + arm : arm + std::to_string(i - 1) + ".tip") + "}\n";
+    }
+  }
+  return Scene::parse(library(), "format: withy/1\ntime: {end: 0.05}\nbodies:\n" + bodies + "hinges:\n" + hinges +
+                                     "loads:\n  push: {type: hinge-effort, hinge: h_left0, value: 0.1}\n");
+}
+
+TEST(HostedScene, has_the_same_results_on_any_number_of_threads) {
+  const host::Result one = with_arms(6).run();
+  ASSERT_EQ(one.status, "completed");
+  for (const std::size_t threads : {1, 2, 3}) {
+    const host::Result several = with_arms(6).threads(threads).run();
+    EXPECT_EQ(several.values, one.values) << threads;
+    EXPECT_EQ(json::parse(several.json)["peaks"], json::parse(one.json)["peaks"]) << threads;
+  }
+  EXPECT_THROW(with_arms(6).threads(0), std::runtime_error);
+}
+
 TEST(HostedScene, has_the_linear_model_of_its_equations) {
   const Scene arm = Scene::read(library(), WITHY_SOURCES "/scenes/commanded-arm.yaml");
   const json linear = json::parse(arm.linearize({}, {"shoulder"}));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -49,13 +50,17 @@ inline void with_flavor_alone(const SymmetricNode<Space>& node, Action&& action)
 }
 
 /// Gives each sum of articulated inertias its place: one for each that is alive at a time on the way inward, so that a
-/// chain needs one, which stays in the nearest cache.
+/// chain needs one, which stays in the nearest cache. Of a group of nodes that a thread has for itself, which goes
+/// before the last group, the trunk, the places are its own.
 template <class Space>
-void place_sums(std::vector<SymmetricNode<Space>>& nodes, WorkLayout& memory) {
-  std::vector<std::size_t> vacant;
+void place_sums(std::vector<SymmetricNode<Space>>& nodes, std::span<const std::size_t> groups, WorkLayout& memory) {
+  const std::size_t trunk = groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end());
+  const auto group = [&](std::size_t i) { return groups.empty() ? 0 : groups[i]; };
+  std::vector<std::vector<std::size_t>> vacancies(trunk + 1);
   std::map<std::pair<int, int>, std::size_t> sums;  // of node and station
-  for (std::size_t i = nodes.size(); i-- > 0;) {
+  const auto place = [&](std::size_t i) {
     SymmetricNode<Space>& node = nodes[i];
+    std::vector<std::size_t>& vacant = vacancies[group(i)];
     // Its own have been read when it writes to the next.
     for (int k = -1; k < static_cast<int>(node.stations.size()); ++k) {
       const auto own = sums.find({static_cast<int>(i), k});
@@ -64,7 +69,7 @@ void place_sums(std::vector<SymmetricNode<Space>>& nodes, WorkLayout& memory) {
       vacant.push_back(own->second);
       sums.erase(own);
     }
-    if (node.parent < 0) continue;
+    if (node.parent < 0) return;
     const auto [outer, first] = sums.try_emplace({node.parent, node.parent_station});
     if (first) {
       if (vacant.empty()) vacant.push_back(memory.template take<typename Space::Inertia>(1));
@@ -75,16 +80,20 @@ void place_sums(std::vector<SymmetricNode<Space>>& nodes, WorkLayout& memory) {
     node.begins_frozen =
         first && node.parent_station >= 0 && nodes[static_cast<std::size_t>(node.parent)].flavor == Flavor::frozen;
     node.work_outer_I = outer->second;
-  }
+  };
+  for (const bool of_trunk : {false, true})
+    for (std::size_t i = nodes.size(); i-- > 0;)
+      if ((group(i) == trunk) == of_trunk) place(i);
 }
 
-/// Lays out the work memory of all nodes. \returns its size in bytes
+/// Lays out the work memory of all nodes. \returns its size in bytes \param groups as Branches::groups, where threads
+/// sweep branches; else empty
 template <class Space>
-std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes) {
+std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes, std::span<const std::size_t> groups = {}) {
   using Scalar = typename Space::Scalar;
   WorkLayout memory;
-  place_sums(nodes, memory);
-  // What no pass leaves for another is shared by all nodes.
+  place_sums(nodes, groups, memory);
+  // What no pass leaves for another is shared by all nodes of a thread.
   std::size_t most = 0, most_rod = 0;
   for (const SymmetricNode<Space>& node : nodes) {
     most = std::max(most, static_cast<std::size_t>(node.modes));
@@ -92,10 +101,16 @@ std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes) {
       if (!node.rod.empty()) most_rod = std::max(most_rod, rod_work(*node.rod, node.modes));
     }
   }
-  const std::size_t shared_h = memory.template take<Scalar>(most);
-  const std::size_t shared_P = memory.template take<typename Space::Group>(most * Space::linear);
-  const std::size_t shared_rod = memory.template take<Pack>(most_rod);
-  for (SymmetricNode<Space>& node : nodes) {
+  std::vector<std::size_t> shared_h, shared_P, shared_rod;
+  const std::size_t count = groups.empty() ? 1 : *std::max_element(groups.begin(), groups.end()) + 1;
+  for (std::size_t k = 0; k < count; ++k) {
+    shared_h.push_back(memory.template take<Scalar>(most));
+    shared_P.push_back(memory.template take<typename Space::Group>(most * Space::linear));
+    shared_rod.push_back(memory.template take<Pack>(most_rod));
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    SymmetricNode<Space>& node = nodes[i];
+    const std::size_t group = groups.empty() ? 0 : groups[i];
     using Twist = typename Space::Twist;
     const auto n = static_cast<std::size_t>(node.modes);
     node.work = memory.template take<NodeWork<Space>>(1);
@@ -105,9 +120,9 @@ std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes) {
     node.work_G = memory.template take<Scalar>(n * n);
     node.work_y = memory.template take<Scalar>(n);
     if (!node.rod.empty()) node.work_rod_mass = memory.template take<RodMass<Space>>(1);
-    node.work_h = shared_h;
-    node.work_P = shared_P;
-    node.work_rod = shared_rod;
+    node.work_h = shared_h[group];
+    node.work_P = shared_P[group];
+    node.work_rod = shared_rod[group];
     if (node.joint.driven) node.work_driven = memory.template take<DrivenWork<Space>>(1);
     if (node.root_station >= 0) node.work_root = memory.template take<RootWork<Space>>(1);
     if (!single(node.joint.kind) && node.joint.kind != Joint::fixed)

@@ -175,12 +175,19 @@ std::vector<std::string> SymmetricSweep<Space>::savings(const NodeTree& tree) co
 }
 
 template <class Space>
-Evaluation SymmetricSweep<Space>::inward(const SymmetricState<Space>& state) const noexcept {
-  for (const SymmetricNode<Space>& node : nodes_) {
+[[gnu::noinline]] void SymmetricSweep<Space>::outward_motions(const SymmetricState<Space>& state,
+                                                              NodeRange nodes) noexcept {
+  for (std::size_t i = nodes.first; i < nodes.end; ++i) {
+    const SymmetricNode<Space>& node = state.nodes[i];
     with_flavor(node, [&](auto n, auto flavor) { outward_motion<Space, n.value, flavor.value>(node, state); });
   }
-  for (std::size_t i = nodes_.size(); i-- > 0;) {
-    const SymmetricNode<Space>& node = nodes_[i];
+}
+
+template <class Space>
+[[gnu::noinline]] Evaluation SymmetricSweep<Space>::inward_inertias(const SymmetricState<Space>& state,
+                                                                    NodeRange nodes) noexcept {
+  for (std::size_t i = nodes.end; i-- > nodes.first;) {
+    const SymmetricNode<Space>& node = state.nodes[i];
     bool good = true;
     with_flavor(node, [&](auto n, auto flavor) { good = inward_inertia<Space, n.value, flavor.value>(node, state); });
     if (!good) return {Evaluation::Outcome::singular, node.body};
@@ -189,10 +196,20 @@ Evaluation SymmetricSweep<Space>::inward(const SymmetricState<Space>& state) con
 }
 
 template <class Space>
-void SymmetricSweep<Space>::outward(const SymmetricState<Space>& state) const noexcept {
-  for (const SymmetricNode<Space>& node : nodes_) {
+[[gnu::noinline]] void SymmetricSweep<Space>::outward_accelerations(const SymmetricState<Space>& state,
+                                                                    NodeRange nodes) noexcept {
+  for (std::size_t i = nodes.first; i < nodes.end; ++i) {
+    const SymmetricNode<Space>& node = state.nodes[i];
     with_flavor(node, [&](auto n, auto flavor) { outward_acceleration<Space, n.value, flavor.value>(node, state); });
   }
+}
+
+template <class Space>
+Evaluation SymmetricSweep<Space>::accelerations(const SymmetricState<Space>& state, NodeRange nodes) noexcept {
+  outward_motions(state, nodes);
+  const Evaluation evaluation = inward_inertias(state, nodes);
+  if (evaluation.ok()) outward_accelerations(state, nodes);
+  return evaluation;
 }
 
 template <class Space>
@@ -200,15 +217,16 @@ Evaluation SymmetricSweep<Space>::accelerations(const double* positions, const d
                                                 double delta, double* result, std::byte* work) const noexcept {
   const SymmetricState<Space> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_,
                                     delta,     efforts};
-  const Evaluation evaluation = inward(state);
-  if (evaluation.ok()) outward(state);
-  return evaluation;
+  return accelerations(state, all());
 }
 
 template <class Space>
 Evaluation SymmetricSweep<Space>::factorize(const double* positions, const double* at_rest, double delta,
                                             std::byte* work) const noexcept {
-  return inward({positions, at_rest, at_rest, nullptr, work, nodes_.data(), &world_acceleration_, delta});
+  const SymmetricState<Space> state{positions, at_rest, at_rest, nullptr, work, nodes_.data(), &world_acceleration_,
+                                    delta};
+  outward_motions(state, all());
+  return inward_inertias(state, all());
 }
 
 template <class Space>
@@ -224,7 +242,7 @@ void SymmetricSweep<Space>::solve(const double* forces, double delta, double* re
     with_flavor_alone(nodes_[i],
                       [&](auto n, auto flavor) { inward_force<Space, n.value, flavor.value>(nodes_[i], state); });
   }
-  outward(state);
+  outward_accelerations(state, all());
 }
 
 template <class Space>

@@ -9,6 +9,7 @@
 
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/terms.hpp"
+#include "withy/core/sweep/branches.hpp"
 #include "withy/core/sweep/joint_step.hpp"
 #include "withy/core/sweep/mass_table.hpp"
 #include "withy/core/sweep/rod/rod_kinematics.hpp"
@@ -108,9 +109,16 @@ class SymmetricSweep {
   /// Solves (M + δ D + δ² K) result = forces with these factors.
   void solve(const double* forces, double delta, double* result, std::byte* work) const noexcept;
 
+  // The passes over a part of the nodes of a state. A node's numbers come from one code whoever asks for it: the same
+  // bits.
+  static void outward_motions(const SymmetricState<Space>& state, NodeRange nodes) noexcept;
+  static Evaluation inward_inertias(const SymmetricState<Space>& state, NodeRange nodes) noexcept;
+  static void outward_accelerations(const SymmetricState<Space>& state, NodeRange nodes) noexcept;
+  /// The three, one after the other.
+  static Evaluation accelerations(const SymmetricState<Space>& state, NodeRange nodes) noexcept;
+
  private:
-  Evaluation inward(const SymmetricState<Space>& state) const noexcept;
-  void outward(const SymmetricState<Space>& state) const noexcept;
+  [[nodiscard]] NodeRange all() const { return {0, nodes_.size()}; }
 
   std::vector<SymmetricNode<Space>> nodes_;
   typename Space::Twist world_acceleration_;
