@@ -7,6 +7,7 @@
 
 #include "withy/core/simulation/instants.hpp"
 #include "withy/study/advice_search.hpp"
+#include "withy/study/advice_yardstick.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -82,8 +83,8 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   if (finding)
     finding(fmt::format("the search takes {:.3g} s of CPU time at most, the longer of 10 s and 20 runs in quadratic",
                         advice.limit_seconds));
-  Search search(evaluator, candidates, accuracy, advice, finding);
-  search.find_yardstick();
+  find_yardstick(evaluator, candidates, accuracy, advice, finding);
+  Search search(evaluator, candidates, advice, finding);
   if (advice.yardstick && !search.stopped()) {
     search.try_models();
     search.choose();

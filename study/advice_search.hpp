@@ -1,22 +1,21 @@
 /// \file
-/// The steps of a search for advice. Its numbers are in advice_search.cpp, with what they mean.
+/// The steps of a search for advice, among models that a yardstick measures. Its numbers are in advice_search.cpp, with
+/// what they mean.
 #pragma once
 
 #include <set>
 
 #include "withy/study/advice.hpp"
-#include "withy/study/pace.hpp"
 
 namespace withy::study {
 
 /// A search under way: what it is about does not change, what it has found is in the advice.
 class Search {
  public:
-  Search(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice,
-         const Finding& finding)
-      : evaluator_(evaluator), candidates_(candidates), accuracy_(accuracy), advice_(advice), finding_(finding) {}
+  /// \param advice with its yardstick, but for stopped() and over()
+  Search(Evaluator& evaluator, const Candidates& candidates, Advice& advice, const Finding& finding)
+      : evaluator_(evaluator), candidates_(candidates), advice_(advice), finding_(finding) {}
 
-  void find_yardstick();
   void try_models();
   void choose();
   void simplify_bodies();
@@ -26,11 +25,7 @@ class Search {
   [[nodiscard]] bool over() const { return stopped() || evaluator_.out_of_time(); }
 
  private:
-  void explain(const ReferenceFound& found);
-  void tell_reference(const Reference& r) const;
   void tell_probe(const Probe& probe, double best_before);
-  [[nodiscard]] bool affordable(const Walk& so_far);
-  [[nodiscard]] double own_use(const Reference& r) const;
   [[nodiscard]] bool worth_trying(const std::string& integrator, const Point& model) const;
   void try_integrations(const Point& model, const std::string& integrator);
   [[nodiscard]] bool hold(const Point& above);
@@ -47,12 +42,10 @@ class Search {
 
   Evaluator& evaluator_;
   const Candidates& candidates_;
-  const Accuracy& accuracy_;
   Advice& advice_;
   const Finding& finding_;
   std::set<std::string> told_;  ///< formulations of which it has been told that a model is not exact enough
   std::string told_best_;       ///< the point that was last told to hold
-  Pace pace_;                   ///< of the reference's run under way
   bool tightest_ = false;       ///< models are looked at with the tightest tolerance of all candidates
 };
 

@@ -1,0 +1,157 @@
+#include "withy/study/advice_yardstick.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "withy/scene/scene.hpp"
+#include "withy/study/pace.hpp"
+
+namespace withy::study {
+namespace {
+
+/// The numbers of the search for a yardstick.
+namespace policy {
+/// Of the accuracy: what a reference's own error is to be, since nothing is chosen that needs this part of it.
+constexpr double good_reference_use = 0.1;
+/// The same where the search for a better one has taken this share of the time allowed.
+constexpr double most_reference_use = 0.25, reference_patience = 0.1;
+/// And where it has taken this share: what is left is better spent on models.
+constexpr double late_reference_use = 0.5, last_patience = 0.35;
+/// The same of a reference that has fewer modes than the richest candidate: what its next mode changes is then known.
+constexpr double most_poor_reference_use = 0.25 * most_reference_use;
+/// The same of the finest one there is where none of the levels is as good: less is left to what is chosen.
+constexpr double last_reference_use = 0.7;
+/// Of the time allowed: what the search for a reference may take.
+constexpr double reference_time = 0.6;
+/// Levels of a reference, the tolerance of each over that of the one before, and the tightest.
+constexpr int reference_levels = 9;
+constexpr double finer_level = 0.3;
+constexpr double tightest = 1e-9;
+/// The same where tolerance is all that can be finer.
+constexpr double finer_integration = 0.1, tightest_integration = 1e-12;
+/// An accuracy beyond this share is nothing to propose.
+constexpr double no_accuracy = 0.3;
+/// Of the run: a time shorter than this is nothing to propose.
+constexpr double worth_looking_at = 0.1;
+}  // namespace policy
+
+/// The search under way.
+class YardstickSearch {
+ public:
+  YardstickSearch(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice,
+                  const Finding& finding)
+      : evaluator_(evaluator), candidates_(candidates), accuracy_(accuracy), advice_(advice), finding_(finding) {}
+
+  void find();
+
+ private:
+  void explain(const ReferenceFound& found);
+  void tell(const Reference& r) const;
+  [[nodiscard]] bool affordable(const Walk& so_far);
+  [[nodiscard]] Yardstick of(const Reference& r) const { return {r, accuracy_.limits(evaluator_.outputs(), r.scales)}; }
+  [[nodiscard]] double own_use(const Reference& r) const { return of(r).own_use(); }
+
+  Evaluator& evaluator_;
+  const Candidates& candidates_;
+  const Accuracy& accuracy_;
+  Advice& advice_;
+  const Finding& finding_;
+  Pace pace_;  ///< of the reference's run under way
+};
+
+void YardstickSearch::find() {
+  const bool modal = candidates_.modes.back() > 0;
+  ReferenceGoal goal;
+  goal.first = {"",
+                reference_family(candidates_),
+                modal ? 2 : 0,
+                "dop853",
+                std::clamp(1e-3 * accuracy_.share.value_or(1e-3), 1e-8, 1e-5),
+                {},
+                {}};
+  goal.levels = policy::reference_levels;
+  goal.finer = modal ? policy::finer_level : policy::finer_integration;
+  goal.tightest = modal ? policy::tightest : policy::tightest_integration;
+  goal.enough = [&](const Reference& r) {
+    const double use = own_use(r);
+    tell(r);
+    // Candidates are not to have more modes than the truth.
+    const bool rich = !modal || r.point.modes >= candidates_.modes.back() || use < policy::most_poor_reference_use;
+    const double gone = evaluator_.spent() / evaluator_.limit();
+    return use <= (gone > policy::last_patience        ? policy::late_reference_use
+                   : gone > policy::reference_patience ? policy::most_reference_use
+                                                       : policy::good_reference_use) &&
+           rich;
+  };
+  goal.steady = [&](const Reference& r) { return own_use(r) <= policy::most_reference_use; };
+  goal.afford = [&](const Walk& so_far) { return affordable(so_far); };
+  ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); },
+                                        evaluator_.registry(), evaluator_.outputs(), goal, evaluator_.control());
+  advice_.interrupted = found.interrupted;
+  if (!found.reference && found.nearest && own_use(*found.nearest) <= policy::last_reference_use)
+    found.reference = std::move(found.nearest);
+  if (found.reference)
+    advice_.yardstick = of(*found.reference);
+  else
+    explain(found);
+}
+
+/// Whether the reference's runs, this one gone on with at its pace, keep within their share of the time.
+bool YardstickSearch::affordable(const Walk& so_far) {
+  const Scene& scene = evaluator_.base().scene;
+  const double spent = evaluator_.spent(), all = policy::reference_time * evaluator_.limit();
+  evaluator_.control().tell(spent, evaluator_.limit());
+  pace_.note(so_far.time - scene.initial.time, so_far.seconds);
+  return may_go_on(so_far.seconds, pace_.rest(end_of_run(scene) - scene.initial.time), all - spent + so_far.seconds);
+}
+
+/// Why no reference will do, and what may be asked instead.
+void YardstickSearch::explain(const ReferenceFound& found) {
+  advice_.nearest = found.nearest;
+  if (!found.nearest) {
+    advice_.trouble = "no reference to measure against";
+    if (!found.trouble.empty()) advice_.trouble += ": " + found.trouble;
+    return;
+  }
+  const Reference& r = *found.nearest;
+  const Yardstick yardstick = of(r);
+  const double use = yardstick.own_use(), times = use / policy::last_reference_use;
+  const bool askable = times * accuracy_.share.value_or(0) < policy::no_accuracy;
+  const Scene& scene = evaluator_.base().scene;
+  // Ranges are less up to there, and limits with them.
+  Distances closely = yardstick.limits;
+  for (double& limit : closely) limit *= policy::most_reference_use;
+  const double agree = agree_until(evaluator_.outputs(), r.readings, r.coarser, closely);
+  const bool long_enough =
+      agree - scene.initial.time > policy::worth_looking_at * (end_of_run(scene) - scene.initial.time);
+  advice_.trouble = fmt::format(
+      "no reference is exact enough to measure against: the two finest runs{} (the finer one {}; the other has {} "
+      "less) "
+      "differ by {:.2g} times what is asked, most in {}. What to do: ask {}for a shorter time (--set time.end={}), or "
+      "for other outputs (--output)",
+      found.unaffordable ? " that there was time for" : "", r.text(),
+      r.point.modes > 0 ? "a mode and a digit" : "a digit of tolerance", use,
+      evaluator_.outputs().list()[yardstick.worst(r.own)].label,
+      askable ? fmt::format("for --accuracy {}, ", accuracy_.times(times).option()) : "",
+      long_enough ? fmt::format("{:.3g}, up to which they agree", agree) : "...");
+  if (found.unaffordable) advice_.trouble += ". A finer one costs too much: " + found.trouble;
+}
+
+/// How far the truth is known by now.
+void YardstickSearch::tell(const Reference& r) const {
+  if (!finding_) return;
+  const Yardstick yardstick = of(r);
+  finding_(fmt::format("reference so far: {}, known to {:.2g} times the accuracy asked, least well in {}", r.text(),
+                       yardstick.own_use(), evaluator_.outputs().list()[yardstick.worst(r.own)].label));
+}
+
+}  // namespace
+
+void find_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice,
+                    const Finding& finding) {
+  YardstickSearch(evaluator, candidates, accuracy, advice, finding).find();
+}
+
+}  // namespace withy::study
