@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <list>
 #include <set>
 
 #include "withy/core/model/closing.hpp"
-#include "withy/core/model/event_plan.hpp"
-#include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/file_notes.hpp"
 #include "withy/core/plugin/floating_point.hpp"
@@ -24,15 +21,12 @@
 #include "withy/scene/names.hpp"
 #include "withy/scene/scene_parts.hpp"
 #include "withy/scene/sha256.hpp"
-#include "withy/scene/state.hpp"
+#include "withy/scene/span.hpp"
+#include "withy/scene/start.hpp"
 #include "withy/scene/tree.hpp"
 
 namespace withy {
 namespace {
-
-constexpr double most_outputs = 1e8;
-// What integration may have left between a driven hinge and its motion, for states that a run has written.
-constexpr double driven_tolerance = 1e-6;
 
 /// Checks one document and makes the scene of it.
 class SceneBuilder {
@@ -67,34 +61,19 @@ class SceneBuilder {
     scene_.modes = std::move(tree.modes);
     checker_.know(&tree.names);
     known(0, tree.names);
-    if (document_.root.find("constraints") != nullptr) {
-      const Value& constraints = part("constraints");
-      const Value* loads = document_.root.find("loads");
-      for (const auto& [name, given] : constraints.members())
-        if (loads != nullptr && loads->kind() == Value::Kind::map && loads->has(name))
-          checker_.key_error("/constraints/" + name, fmt::format("got name {}, which is that of a load; constraints "
-                                                                 "need their own",
-                                                                 in_quotes(name)));
-      scene_.source.set("constraints", add_constraints(constraints, tree, checker_));
-      if (tree.model != nullptr) note_refused(constraints, *tree.model);
-    }
+    add_constraints_to(tree);
     add_motions(tree.model.get());
     name_signals(document_, tree.model.get(), tree.names, checker_.registry());
     known(1, tree.names);
     add_loads(tree.model.get(), events);
-    tree.names.loads = {};
-    if (const Value* loads = document_.root.find("loads"))
-      for (const auto& [name, given] : loads->members())
-        if (refused_.contains(name)) tree.names.loads.add(name);
-    for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
-      if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr) tree.names.loads.add(load.name);
+    name_loads(tree);
     add_motion_laws(tree.model.get());
     known(2, tree.names);
     add_outputs(tree);
     if (tree.model != nullptr && diagnostics_.ok()) give_outputs(*tree.model, scene_.outputs, checker_);
     if (tree.model != nullptr && diagnostics_.ok()) events.add_to(*tree.model, scene_.outputs, scene_.events);
-    if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model);
-    if (tree.model != nullptr && diagnostics_.ok()) set_span(*tree.model);
+    if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model, document_, checker_, scene_);
+    if (tree.model != nullptr && diagnostics_.ok()) set_span(*tree.model, document_, checker_, scene_);
     scene_.model = std::move(tree.model);
     return std::move(scene_);
   }
@@ -189,9 +168,19 @@ class SceneBuilder {
     scene_.source.set(key, std::move(checked));
   }
 
-  void note_refused(const Value& constraints, const Model& model) {
+  void add_constraints_to(SceneTree& tree) {
+    if (document_.root.find("constraints") == nullptr) return;
+    const Value& constraints = part("constraints");
+    const Value* loads = document_.root.find("loads");
+    for (const auto& [name, given] : constraints.members())
+      if (loads != nullptr && loads->kind() == Value::Kind::map && loads->has(name))
+        checker_.key_error("/constraints/" + name, fmt::format("got name {}, which is that of a load; constraints "
+                                                               "need their own",
+                                                               in_quotes(name)));
+    scene_.source.set("constraints", add_constraints(constraints, tree, checker_));
+    if (tree.model == nullptr) return;
     for (const auto& [name, given] : constraints.members()) refused_.insert(name);
-    for (const LoopClosure* loop : loops_of(model)) refused_.erase(loop->name());
+    for (const LoopClosure* loop : loops_of(*tree.model)) refused_.erase(loop->name());
   }
 
   void add_loads(Model* model, SceneEvents& events) {
@@ -211,6 +200,17 @@ class SceneBuilder {
       }
     }
   }
+
+  /// The loads that other values may refer to, right or wrong; those that close loops are constraints.
+  void name_loads(SceneTree& tree) const {
+    tree.names.loads = {};
+    if (const Value* loads = document_.root.find("loads"))
+      for (const auto& [name, given] : loads->members())
+        if (refused_.contains(name)) tree.names.loads.add(name);
+    for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
+      if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr) tree.names.loads.add(load.name);
+  }
+
   void add_motions(Model* model) {
     add_parts<Motion>("motions", grammar::motion_members(), model != nullptr,
                       [&](const std::string& name, const Value& value, std::shared_ptr<const Motion> motion) {
@@ -263,97 +263,6 @@ class SceneBuilder {
     return std::find(names.begin(), names.end(), name) != names.end();
   }
 
-  /// Where the loads begin, then what the scene says; driven hinges where their motions have them.
-  void set_start(const Model& model) {
-    scene_.initial = model.reference_state();
-    for (const LoadNode& l : model.loads()) l.load->begin(scene_.initial);
-    if (const EventBook book(model); book.any()) book.begin(scene_.initial.y);
-    const Value* initial = document_.root.find("initial");
-    const Value stated = initial != nullptr ? without_guess(*initial, model, checker_, scene_.initial) : Value();
-    const Value* given = initial != nullptr ? &stated : nullptr;
-    if (given != nullptr) {
-      set_state(*given, model, checker_, scene_.initial);
-      scene_.source.set("initial", *initial);
-      check_driven(model);
-    }
-    model.prescribe(scene_.initial);
-    for (const MotionNode& node : model.motions()) {
-      const Slot& slot = model.layout().hinges[static_cast<std::size_t>(node.hinge)];
-      const double at = scene_.initial.y[slot.position], rate = scene_.initial.y[model.layout().positions + slot.speed];
-      if (std::isfinite(at) && std::isfinite(rate)) continue;
-      checker_.key_error(
-          "/motions/" + node.name,
-          fmt::format("has no finite coordinate and rate at {} s, where the simulation begins", scene_.initial.time));
-    }
-    if (diagnostics_.ok() && !loops_of(model).empty()) {
-      const Value remark = close_loops(model, scene_, given, checker_, scene_.initial);
-      if (remark.kind() == Value::Kind::text) scene_.source.set("closing", remark);
-    }
-    if (model.layout().continuous == 0) return;
-    // Where the loads' own states begin depends on all else; what the scene says of them goes first.
-    model.begin_continuous(scene_.initial);
-    const Value* loads = given == nullptr ? nullptr : given->find("loads");
-    if (loads != nullptr && diagnostics_.ok())
-      set_state(Value::map({{"loads", *loads}}, given->place()), model, checker_, scene_.initial);
-  }
-
-  /// Reports what `initial` says of driven hinges against their motions.
-  void check_driven(const Model& model) {
-    State moved = scene_.initial;
-    model.prescribe(moved);
-    for (const MotionNode& node : model.motions()) {
-      const Slot& slot = model.layout().hinges[static_cast<std::size_t>(node.hinge)];
-      const auto compare = [&](std::size_t first, std::size_t count, const char* key) {
-        for (std::size_t i = first; i < first + count; ++i) {
-          const double given = scene_.initial.y[i], needed = moved.y[i];
-          if (!std::isfinite(needed) || std::abs(given - needed) <= driven_tolerance * (1 + std::abs(needed))) continue;
-          checker_.key_error(fmt::format("/initial/hinges/{}/{}", slot.name, key),
-                             fmt::format("got {}, but motion '{}' has the hinge at {} at {} s; leave it out", given,
-                                         node.name, needed, moved.time));
-        }
-      };
-      compare(slot.position, slot.positions, "position");
-      compare(model.layout().positions + slot.speed, slot.speeds, "rate");
-    }
-  }
-
-  /// Reports loads whose samples come so often that the last ones of the run are no times of their own.
-  void check_samples(const Model& model) {
-    constexpr double most_samples = 0x1p53;  // beyond, the number of a sample and the next are the same
-    const double latest = std::max(std::abs(scene_.initial.time), std::abs(scene_.end.value_or(0)));
-    for (const LoadNode& node : model.loads()) {
-      const double period = node.load->discrete() == nullptr ? 0 : node.load->discrete()->period();
-      if (!(period > 0) || latest / period < most_samples) continue;
-      const Value* load = scene_.source.at("loads").find(node.name);
-      const Value* sample = load == nullptr ? nullptr : load->find("sample");
-      const Place place = sample != nullptr ? sample->place() : document_.key_place("/loads/" + node.name);
-      diagnostics_.error(place, fmt::format("got a period of {:g} s, too short to tell samples apart at t = {:g} s; "
-                                            "need more than {:.3g} s",
-                                            period, latest, latest / most_samples));
-    }
-  }
-
-  void set_span(const Model& model) {
-    for (const LoadNode& l : model.loads()) {
-      if (const double end = l.load->end(); end > scene_.end.value_or(0)) scene_.end = end;
-    }
-    for (const MotionNode& m : model.motions()) {
-      if (const double end = m.motion->end(); end > scene_.end.value_or(0)) scene_.end = end;
-    }
-    if (const Value* end = scene_.source.at("time").find("end")) scene_.end = end->number();
-    check_samples(model);
-    if (!scene_.end) return;
-    const double span = *scene_.end - scene_.initial.time;
-    if (span < 0) {
-      checker_.key_error("/time/end",
-                         fmt::format("got {}; need at least the initial time, {} s", *scene_.end, scene_.initial.time));
-    }
-    if (span / scene_.output > most_outputs) {
-      checker_.key_error("/time/output", fmt::format("got {} s, which makes {:.3g} outputs; need at most {:g}",
-                                                     scene_.output, span / scene_.output, most_outputs));
-    }
-  }
-
   const Document& document_;
   Diagnostics& diagnostics_;
   SceneParts* parts_;  ///< null: nothing is remembered
@@ -395,13 +304,6 @@ Scene parse_scene(std::string_view text, const std::string& file, Registry& regi
 
 Scene read_scene(const std::string& file, Registry& registry, const SceneOptions& options) {
   return make_scene(SceneValues::read(file).apply(options), registry);
-}
-
-double end_of_run(const Scene& scene) {
-  if (scene.end) return *scene.end;
-  const Place& time = scene.source.at("time").place();
-  throw SceneError(scene.file, {{{time.line, time.column, "/time/end"},
-                                 "missing, and no load or motion has an end of its own; need finite >= 0 [s]"}});
 }
 
 }  // namespace withy

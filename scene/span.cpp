@@ -1,0 +1,60 @@
+#include "withy/scene/span.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace withy {
+namespace {
+
+constexpr double most_outputs = 1e8;
+
+/// Reports loads whose samples come so often that the last ones of the run are no times of their own.
+void check_samples(const Model& model, const Scene& scene, const Document& document, const Checker& checker) {
+  constexpr double most_samples = 0x1p53;  // beyond, the number of a sample and the next are the same
+  const double latest = std::max(std::abs(scene.initial.time), std::abs(scene.end.value_or(0)));
+  for (const LoadNode& node : model.loads()) {
+    const double period = node.load->discrete() == nullptr ? 0 : node.load->discrete()->period();
+    if (!(period > 0) || latest / period < most_samples) continue;
+    const Value* load = scene.source.at("loads").find(node.name);
+    const Value* sample = load == nullptr ? nullptr : load->find("sample");
+    const Place place = sample != nullptr ? sample->place() : document.key_place("/loads/" + node.name);
+    checker.diagnostics().error(place,
+                                fmt::format("got a period of {:g} s, too short to tell samples apart at t = {:g} s; "
+                                            "need more than {:.3g} s",
+                                            period, latest, latest / most_samples));
+  }
+}
+
+}  // namespace
+
+void set_span(const Model& model, const Document& document, const Checker& checker, Scene& scene) {
+  for (const LoadNode& l : model.loads()) {
+    if (const double end = l.load->end(); end > scene.end.value_or(0)) scene.end = end;
+  }
+  for (const MotionNode& m : model.motions()) {
+    if (const double end = m.motion->end(); end > scene.end.value_or(0)) scene.end = end;
+  }
+  if (const Value* end = scene.source.at("time").find("end")) scene.end = end->number();
+  check_samples(model, scene, document, checker);
+  if (!scene.end) return;
+  const double span = *scene.end - scene.initial.time;
+  if (span < 0) {
+    checker.key_error("/time/end",
+                      fmt::format("got {}; need at least the initial time, {} s", *scene.end, scene.initial.time));
+  }
+  if (span / scene.output > most_outputs) {
+    checker.key_error("/time/output", fmt::format("got {} s, which makes {:.3g} outputs; need at most {:g}",
+                                                  scene.output, span / scene.output, most_outputs));
+  }
+}
+
+double end_of_run(const Scene& scene) {
+  if (scene.end) return *scene.end;
+  const Place& time = scene.source.at("time").place();
+  throw SceneError(scene.file, {{{time.line, time.column, "/time/end"},
+                                 "missing, and no load or motion has an end of its own; need finite >= 0 [s]"}});
+}
+
+}  // namespace withy
