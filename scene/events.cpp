@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
-#include "withy/core/model/columns.hpp"
-#include "withy/core/model/hinge_rates.hpp"
-#include "withy/core/model/limit_sensor.hpp"
 #include "withy/core/model/switched_load.hpp"
+#include "withy/scene/event_triggers.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
 #include "withy/scene/names.hpp"
@@ -50,26 +49,6 @@ std::optional<Setting> setting_of(const std::string& text) {
   if (dot == 0 || dot == std::string::npos || dot + 1 == path.size()) return {};
   const std::string key = path.substr(dot + 1);
   return Setting{path.substr(0, dot), key.substr(0, key.find_last_not_of(' ') + 1), text.substr(equals + 1)};
-}
-
-/// What the event watches; null after a reported error.
-std::shared_ptr<const BoundSensor> limit_of(const Model& model, const Value& event, const Checker& checker) {
-  const std::string& name = event.text_at("limit");
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < model.loads().size(); ++i) {
-    names.push_back(model.loads()[i].name);
-    if (names.back() != name) continue;
-    std::shared_ptr<const BoundSensor> sensor = limit_sensor(model, i);
-    if (sensor == nullptr)
-      checker.key_error(event.place().path + "/limit",
-                        fmt::format("load '{}' tells of no limit; need a controller, an actuator or a wheel with one "
-                                    "that measures coordinates of hinges, or a hinge-limit",
-                                    name));
-    return sensor;
-  }
-  checker.key_error(event.place().path + "/limit",
-                    fmt::format("no load {}{}", in_quotes(name), checker.suggest(name, names)));
-  return nullptr;
 }
 
 }  // namespace
@@ -153,78 +132,6 @@ std::shared_ptr<const Load> SceneEvents::with_forms(const std::string& name, std
   }
   if (!switched) return std::move(forms.front());
   return std::make_shared<const SwitchedLoad>(std::move(forms));
-}
-
-std::optional<SceneEvents::Watched> SceneEvents::hinge_number(const Model& model, const Value& event) const {
-  const std::string path = event.place().path;
-  const std::string& hinge = event.text_at("hinge");
-  const int number = model.hinge(hinge);
-  if (number < 0) {
-    std::vector<std::string> names;
-    for (const HingeNode& h : model.hinges()) names.push_back(h.name);
-    checker_.key_error(path + "/hinge", fmt::format("no hinge {}{}", in_quotes(hinge), checker_.suggest(hinge, names)));
-    return {};
-  }
-  const Slot& slot = model.layout().hinges[static_cast<std::size_t>(number)];
-  const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[static_cast<std::size_t>(number)].hinge);
-  const std::size_t component = event.count_at("component");
-  if (component >= rates.size()) {
-    checker_.key_error(path, fmt::format("hinge '{}' has {} rates; there is no component {} (they count from 0)", hinge,
-                                         rates.size(), component));
-    return {};
-  }
-  if (event.text_at("of") == "rate")
-    return Watched{static_cast<int>(model.layout().positions + slot.speed + component), 0};
-  if (!rates[component].coordinate) {
-    checker_.key_error(
-        path, fmt::format("rate {} of hinge '{}' is the derivative of no coordinate; need of: rate", component, hinge));
-    return {};
-  }
-  return Watched{static_cast<int>(slot.position + *rates[component].coordinate), 0};
-}
-
-std::optional<SceneEvents::Watched> SceneEvents::signal(const Model& model, const std::vector<SensorNode>& outputs,
-                                                        const Value& event) const {
-  const std::string& name = event.text_at("signal");
-  std::vector<std::string> known;
-  std::size_t column = 0;
-  for (const SensorNode& node : outputs) {
-    for (const Column& c : columns_of(node)) {
-      if (c.name == name) return Watched{-1, column};
-      known.push_back(c.name);
-      ++column;
-    }
-  }
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const Slot& slot = model.layout().hinges[h];
-    const auto find = [&](const std::vector<Column>& columns, std::size_t first) -> std::optional<Watched> {
-      for (std::size_t i = 0; i < columns.size(); ++i) {
-        if (columns[i].name == name) return Watched{static_cast<int>(first + i), 0};
-        known.push_back(columns[i].name);
-      }
-      return {};
-    };
-    if (const auto at = find(coordinate_columns(model.hinges()[h]), slot.position)) return at;
-    if (const auto at = find(rate_columns(model.hinges()[h]), model.layout().positions + slot.speed)) return at;
-  }
-  checker_.key_error(event.place().path + "/signal", fmt::format("no number of an output or a hinge {}{}",
-                                                                 in_quotes(name), checker_.suggest(name, known)));
-  return {};
-}
-
-std::optional<SceneEvents::Watched> SceneEvents::watched(const Model& model, const std::vector<SensorNode>& outputs,
-                                                         const Value& event) const {
-  int triggers = 0;
-  for (const char* key : {"hinge", "signal", "limit", "at", "after"}) triggers += event.has(key) ? 1 : 0;
-  if (triggers != 1) {
-    checker_.key_error(event.place().path,
-                       fmt::format("says {} when it happens; need one of: hinge, signal, limit, at, after",
-                                   triggers == 0 ? "nothing of" : "more than one thing of"));
-    return {};
-  }
-  if (event.has("hinge")) return hinge_number(model, event);
-  if (event.has("signal")) return signal(model, outputs, event);
-  return Watched{};
 }
 
 void SceneEvents::add_hinge_actions(const Model& model, const Value& asked, const char* key, Kind kind,
@@ -347,7 +254,7 @@ void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, s
   std::vector<SensorNode> limits;
   std::vector<std::size_t> at_limits;  // events that watch them, one each
   for (const auto& [name, given] : events_.members()) {
-    const std::optional<Watched> number = watched(model, outputs, given);
+    const std::optional<Watched> number = watched(model, outputs, given, checker_);
     if (!number) continue;
     if (!acts(name, given)) {
       const auto function = [index = static_cast<std::size_t>(number->element), value = given.number_at("value")](

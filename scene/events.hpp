@@ -4,7 +4,6 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -32,16 +31,7 @@ class SceneEvents {
   void add_to(Model& model, const std::vector<SensorNode>& outputs, std::vector<RunEvent>& plain);
 
  private:
-  struct Watched {
-    int element = -1;  ///< of State::y; −1: a sensor's number
-    std::size_t column = 0;
-  };
   [[nodiscard]] bool acts(const std::string& name, const Value& event) const;
-  [[nodiscard]] std::optional<Watched> hinge_number(const Model& model, const Value& event) const;
-  [[nodiscard]] std::optional<Watched> signal(const Model& model, const std::vector<SensorNode>& outputs,
-                                              const Value& event) const;
-  [[nodiscard]] std::optional<Watched> watched(const Model& model, const std::vector<SensorNode>& outputs,
-                                               const Value& event) const;
   void add_actions(const Model& model, const std::string& name, const Value& asked, ActingEvent& event) const;
   void add_hinge_actions(const Model& model, const Value& asked, const char* key, EventAction::Kind kind,
                          ActingEvent& event) const;
