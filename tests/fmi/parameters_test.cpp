@@ -1,0 +1,122 @@
+/// \file
+/// Parameters that importers tune between steps and at events act from then on.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "withy/tests/fmi/importer.hpp"
+
+namespace withy::test {
+namespace {
+
+/// A swinging arm with a spring, as an FMU.
+const Unpacked& sprung(int version) {
+  const std::filesystem::path file = scratch() / "sprung.yaml";
+  std::ofstream(file) << R"(format: withy/1
+time: {end: 1, output: 0.05}
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+gravity: [0, -9.8, 0]
+bodies: {boom: {type: beam, length: 1, mass_per_length: 0.5, bending_y: {stiffness: 30, modes: 1}}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: boom}}
+initial: {hinges: {axle: {position: [0.4]}}}
+loads:
+  spring: {type: hinge-spring, hinge: axle, stiffness: 3, damping: 0.1}
+  servo: {type: pid, hinge: axle, proportional: 2, integral: 3}
+  held: {type: pid, hinge: axle, proportional: 1, sample: 0.1}
+  drive: {type: input, hinge: axle}
+)";
+  return exported(file.string(), version);
+}
+
+/// From t = 0.3 on what was tuned there is what an FMU does that has had these parameters from its start, at this
+/// state.
+TEST(FmuParameters, AreTunedBetweenSteps) {
+  const std::vector<std::pair<std::string, double>> tuned{{"loads.spring.stiffness", 40},
+                                                          {"loads.servo.proportional", 9}};
+  const auto run = [&](const Unpacked& fmu, auto& early, auto& late, auto step) {
+    step(early, 0.0, 0.3);
+    const double drive = 0.7;
+    early.set(fmu.reference("drive"), drive);
+    for (const auto& [name, value] : tuned) {
+      EXPECT_EQ(static_cast<int>(early.set(fmu.reference(name), value)), 0) << early.heard.last;
+      EXPECT_EQ(static_cast<int>(late.set(fmu.reference(name), value)), 0) << late.heard.last;
+    }
+    for (const std::uint32_t state : fmu.states) late.set(state, early.get(state));
+    late.set(fmu.reference("drive"), drive);
+    // What is wrong is refused, and leaves everything as it is.
+    EXPECT_EQ(static_cast<int>(early.set(fmu.reference("loads.spring.stiffness"), -1)), 3);
+    EXPECT_THAT(early.heard.last, testing::HasSubstr("/loads/spring/stiffness"));
+    EXPECT_EQ(early.get(fmu.reference("loads.spring.stiffness")), 40);
+    EXPECT_EQ(static_cast<int>(early.set(fmu.reference("bodies.boom.length"), 2)), 3);
+    EXPECT_EQ(static_cast<int>(early.set(fmu.reference("loads.held.sample"), 0.2)), 3);
+  };
+  {
+    const Unpacked& fmu = sprung(2);
+    Instance2 early(fmu, fmi2CoSimulation), late(fmu, fmi2CoSimulation), other(fmu, fmi2CoSimulation);
+    const auto step = [](Instance2& i, double from, double length) {
+      EXPECT_EQ(i.fmi.DoStep(i.c, from, length, fmi2True), fmi2OK) << i.heard.last;
+    };
+    early.initialize();
+    other.initialize();
+    run(fmu, early, late, step);
+    late.initialize(0.3);
+    fmi2FMUstate state = nullptr;
+    ASSERT_EQ(early.fmi.GetFMUstate(early.c, &state), fmi2OK) << early.heard.last;
+    step(early, 0.3, 0.5);
+    step(late, 0.3, 0.5);
+    step(other, 0.0, 0.8);
+    const double there = early.get(fmu.reference("axle"));
+    EXPECT_NEAR(there, late.get(fmu.reference("axle")), 1e-8);
+    EXPECT_GT(std::abs(there - other.get(fmu.reference("axle"))), 0.01);
+    ASSERT_EQ(early.fmi.SetReal(early.c, std::vector{fmu.reference("loads.spring.stiffness")}.data(), 1,
+                                std::vector{1.0}.data()),
+              fmi2OK);
+    ASSERT_EQ(early.fmi.SetFMUstate(early.c, state), fmi2OK) << early.heard.last;
+    EXPECT_EQ(early.get(fmu.reference("loads.spring.stiffness")), 40);
+    step(early, 0.3, 0.5);
+    EXPECT_EQ(early.get(fmu.reference("axle")), there);  // bit by bit, with the parameters of then
+    early.fmi.FreeFMUstate(early.c, &state);
+  }
+  const Unpacked& fmu = sprung(3);
+  Instance3 early(fmu, true), late(fmu, true);
+  const auto step = [](Instance3& i, double from, double length) {
+    bool event = false, terminate = false, stopped = false;
+    double last = 0;
+    EXPECT_EQ(i.fmi.DoStep(i.c, from, length, true, &event, &terminate, &stopped, &last), fmi3OK) << i.heard.last;
+  };
+  early.initialize();
+  run(fmu, early, late, step);
+  EXPECT_EQ(late.fmi.EnterInitializationMode(late.c, false, 0, 0.3, false, 0), fmi3OK) << late.heard.last;
+  EXPECT_EQ(late.fmi.ExitInitializationMode(late.c), fmi3OK) << late.heard.last;
+  step(early, 0.3, 0.5);
+  step(late, 0.3, 0.5);
+  EXPECT_NEAR(early.get(fmu.reference("axle")), late.get(fmu.reference("axle")), 1e-8);
+}
+
+TEST(FmuParameters, AreTunedAtEventsOfModelExchange) {
+  const Unpacked& fmu = sprung(2);
+  Instance2 i(fmu, fmi2ModelExchange);
+  i.initialize();
+  const std::uint32_t stiffness = fmu.reference("loads.spring.stiffness"), rate = fmu.reference("der(axle.rate)");
+  for (const Described& v : fmu.variables)
+    if (v.reference == stiffness) {
+      EXPECT_EQ(v.attributes.at("variability"), "tunable");
+      EXPECT_EQ(v.attributes.at("start"), "3");
+      EXPECT_EQ(v.attributes.at("unit"), "N m/rad");
+    }
+  const double before = i.get(rate), angle = i.get(fmu.reference("axle"));
+  ASSERT_EQ(i.set(stiffness, 5), fmi2OK) << i.heard.last;
+  const double softened = i.get(rate);
+  ASSERT_EQ(i.set(stiffness, 7), fmi2OK) << i.heard.last;
+  EXPECT_LT(softened, before);
+  EXPECT_NEAR(i.get(rate) - softened, softened - before, 1e-9);  // accelerations are affine in it
+  EXPECT_EQ(i.get(fmu.reference("axle")), angle);
+  fmi2EventInfo info{};
+  ASSERT_EQ(i.fmi.NewDiscreteStates(i.c, &info), fmi2OK);
+  ASSERT_EQ(i.fmi.EnterContinuousTimeMode(i.c), fmi2OK);
+  EXPECT_EQ(i.set(stiffness, 3), fmi2Error);  // not between events
+  EXPECT_THAT(i.heard.last, testing::HasSubstr("is a tunable parameter"));
+}
+
+}  // namespace
+}  // namespace withy::test

@@ -1,0 +1,131 @@
+// Documents as wholes: problems all at once and each once, what no scene can be, and how much is read before that is
+// said.
+#include <gmock/gmock.h>
+
+#include "scene_fixture.hpp"
+
+namespace withy::test {
+namespace {
+
+class BadDocuments : public SceneTest {};
+
+TEST_F(BadDocuments, ProblemsAreReportedAllAtOnceInTheOrderOfTheFile) {
+  std::string text = replaced(good_scene, "mass: 20.0", "mass: -20.0");
+  text = replaced(text, "length: 0.9", "lenght: 0.9");
+  text = replaced(text, "modes: 2", "modes: many");
+  text = replaced(text, "parent: hub.out", "parent: hubb.out");
+  text = replaced(text, "period: 5", "period: 5 kg");
+  EXPECT_EQ(problems(text, registry),
+            "s.yaml:7:11: /bodies/hub/mass: got -20; need finite >= 0 [kg]\n"
+            "s.yaml:11:3: /bodies/boom/length: missing: length, undeformed; need finite > 0 [m]\n"
+            "s.yaml:13:5: /bodies/boom/lenght: unknown key \"lenght\"; did you mean 'length'?\n"
+            "s.yaml:15:40: /bodies/boom/bending_y/modes: got \"many\"; need whole number >= 0 and <= 1000\n"
+            "s.yaml:19:30: /hinges/root/parent: no body \"hubb\"; did you mean 'hub'?\n"
+            "s.yaml:21:82: /loads/motor/period: got \"5 kg\": 'kg' is a wrong unit here; need finite > 0 [s]");
+}
+
+TEST_F(BadDocuments, WhatRestsOnAPartThatIsReportedIsNotReportedToo) {
+  const std::string parts = R"(
+constraints:
+  loop: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: boom.tpi, b: world}
+  other: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: boom.tip, b: world}
+outputs:
+  closing: {type: reaction, constraint: loop}
+  place: {type: frame, of: boom.tpi}
+  twice: {type: expression, value: "2 * place.x", unit: m}
+  drive: {type: effort, hinge: shoulder, of: motor}
+  other_closing: {type: reaction, constraint: otter}
+)";
+  // Each fault alone is reported, once; so is a name that nothing bears.
+  EXPECT_EQ(
+      problems(replaced(good_scene, "law: sine", "law: sinus") + parts, registry),
+      "s.yaml:21:53: /loads/motor/law: got \"sinus\": did you mean 'sine'?; need one of: constant, sine, table, "
+      "steps\n"
+      "s.yaml:24:60: /constraints/loop/a: no frame \"boom.tpi\"; did you mean 'boom.tip'?\n"
+      "s.yaml:28:28: /outputs/place/of: no frame \"boom.tpi\"; did you mean 'boom.tip'?; frames of the body name its "
+      "other places\n"
+      "s.yaml:31:3: /outputs/other_closing: there is no constraint 'otter'");
+}
+
+TEST_F(BadDocuments, TheErrorCarriesPlaceAndMessageForPrograms) {
+  try {
+    parse_scene(replaced(good_scene, "mass: 20.0", "mass: -20.0"), "s.yaml", registry);
+    FAIL() << "no error";
+  } catch (const SceneError& e) {
+    ASSERT_EQ(e.problems().size(), 1u);
+    EXPECT_EQ(e.problems()[0].place.line, 7);
+    EXPECT_EQ(e.problems()[0].place.column, 11);
+    EXPECT_EQ(e.problems()[0].place.path, "/bodies/hub/mass");
+    EXPECT_EQ(e.problems()[0].message, "got -20; need finite >= 0 [kg]");
+  }
+}
+
+TEST_F(BadDocuments, WithoutAnEndCanBeReadButNotRun) {
+  const Scene scene = parse_scene(replaced(good_scene, "end: 1.0, ", ""), "s.yaml", registry);
+  EXPECT_FALSE(scene.end.has_value());
+  try {
+    (void)end_of_run(scene);
+    FAIL() << "no error";
+  } catch (const SceneError& e) {
+    EXPECT_STREQ(e.what(),
+                 "s.yaml:3:7: /time/end: missing, and no load or motion has an end of its own; need finite >= 0 [s]");
+  }
+}
+
+TEST_F(BadDocuments, WithoutContentAreRefused) {
+  EXPECT_EQ(problems("", registry), "s.yaml:1:1: empty; nothing to read");
+  EXPECT_EQ(problems("# only a comment\n", registry), "s.yaml:1:1: empty; nothing to read");
+  EXPECT_THAT(problems("just text", registry), testing::StartsWith("s.yaml:1:1: got \"just text\"; need a map"));
+  EXPECT_THAT(problems("[1, 2]", registry), testing::StartsWith("s.yaml:1:1: got a list of 2; need a map"));
+  EXPECT_THAT(problems("bodies: {}\nhinges: {}\nformat: withy/1\n", registry),
+              testing::HasSubstr("s.yaml:1:9: /bodies: got none; need at least one body"));
+}
+
+TEST_F(BadDocuments, OfAHundredMegabytesAreRefusedBeforeTheyAreParsed) {
+  const std::string text(std::size_t{100} << 20, ' ');
+  EXPECT_EQ(problems(text, registry), "s.yaml:1:1: more than 64 MiB; a scene is at most that large");
+}
+
+TEST_F(BadDocuments, DeepNestingIsRefused) {
+  EXPECT_THAT(problems("gravity: " + std::string(50'000'000, '['), registry),
+              testing::HasSubstr("nested deeper than 32 levels"));
+  EXPECT_THAT(problems("gravity: " + std::string(400, '[') + std::string(400, ']'), registry),
+              testing::HasSubstr("nested deeper than 32 levels"));
+  std::string map;
+  for (int i = 0; i < 1000; ++i) map += "{a: ";
+  EXPECT_THAT(problems("gravity: " + map, registry), testing::HasSubstr("nested deeper than 32 levels"));
+  std::string block = "gravity:\n";
+  for (int i = 1; i < 1000; ++i) block += std::string(static_cast<std::size_t>(i), ' ') + "a:\n";
+  EXPECT_THAT(problems(block, registry), testing::HasSubstr("nested deeper than 32 levels"));
+}
+
+TEST_F(BadDocuments, TooManyValuesAreRefused) {
+  std::string row = "gravity: [";
+  std::string column = "gravity:\n";
+  for (int i = 0; i <= 1'000'000; ++i) {
+    row += "0,";
+    column += "- 0\n";
+  }
+  EXPECT_THAT(problems(row + "0]", registry), testing::HasSubstr("more than 1000000 values"));
+  EXPECT_THAT(problems(column, registry), testing::HasSubstr("more than 1000000 values"));
+  // Never closed, so that a parser would look for the end first.
+  std::string open = "gravity: [";
+  for (int i = 0; i < 8'000'000; ++i) open += "0,";
+  EXPECT_THAT(problems(open, registry), testing::HasSubstr("more than 1000000 values"));
+}
+
+TEST_F(BadDocuments, AnAbsentFileIsASystemErrorThatNamesIt) {
+  try {
+    read_scene("no/such/scene.yaml", registry);
+    FAIL() << "no error";
+  } catch (const std::system_error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("no/such/scene.yaml"));
+    EXPECT_EQ(e.code(), std::errc::no_such_file_or_directory);
+  }
+  EXPECT_THROW(read_scene(WITHY_SOURCE_DIRECTORY, registry), std::system_error);
+}
+
+TEST_F(BadDocuments, TheGoodSceneIsGood) { EXPECT_EQ(problems(good_scene, registry), ""); }
+
+}  // namespace
+}  // namespace withy::test
