@@ -1,0 +1,126 @@
+// What is kept of cases: extremes between outputs and rows, values over a run, histories and their percentiles.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "withy/campaign/case_lanes.hpp"
+#include "withy/campaign/case_text.hpp"
+#include "withy/tests/campaign/store_fixture.hpp"
+
+namespace withy::campaign {
+namespace {
+
+using test::PlanFolder;
+using test::plugins;
+using testing::HasSubstr;
+
+/// What outputs have been over a run are columns of the table, found between rows: x = 0.3 cos ωt, two rows of each.
+TEST(Sweeps, KeepWhatOutputsHaveBeenOverARun) {
+  const PlanFolder folder;
+  folder.write("block.yaml", R"(format: withy/1
+time: {end: 3, output: 3}
+integrator: {name: dopri5, rtol: 1e-9, atol: 1e-11}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+outputs: {seen: {type: hinge, hinge: slide}}
+initial: {hinges: {slide: {position: [0.3]}}}
+loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 30}}
+)");
+  const auto planned = [&](const std::string& keep) {
+    folder.write("over.yaml",
+                 "format: withy-sweep/1\nscene: block.yaml\nvary: {loads.spring.stiffness: {grid: [18, 50]}}\n"
+                 "keep: {" +
+                     keep + "}\n");
+    return read_plan((folder / "over.yaml").string(), plugins());
+  };
+  const Plan plan = planned("final: [seen.rate.max, slide, seen.position.rms]");
+  EXPECT_TRUE(run(folder, plan, "over", {1, 1, 1, {}}).whole());
+  std::istringstream table(table_of(folder, "over"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_THAT(line, HasSubstr(",final.seen.rate.max[m/s],final.slide[m],final.seen.position.rms[m]"));
+  for (const double w : {3.0, 5.0}) {
+    std::getline(table, line);
+    const std::size_t rms = line.rfind(','), slide = line.rfind(',', rms - 1), rate = line.rfind(',', slide - 1);
+    EXPECT_NEAR(std::stod(line.substr(rate + 1)), 0.3 * w, 1e-8) << line;
+    EXPECT_NEAR(std::stod(line.substr(slide + 1)), 0.3 * std::cos(3 * w), 1e-7) << line;
+    EXPECT_NEAR(std::stod(line.substr(rms + 1)), 0.3 * std::sqrt(0.5 + std::sin(6 * w) / (12 * w)), 1e-8) << line;
+  }
+  EXPECT_THROW(planned("peak: [seen.rate.max]"), SceneError);
+  EXPECT_THROW(planned("final: [seen.rate.most]"), SceneError);
+}
+
+/// Percentiles over time are those of the closed form x = x0 cos 3t at every time, whatever the lanes; where an event
+/// ends cases they are of those that go on.
+TEST(Sweeps, KeepHistoriesAndTheirPercentilesOverTheCases) {
+  const PlanFolder folder;
+  folder.write("block.yaml", R"(format: withy/1
+time: {end: 1, output: 0.05}
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-12}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+events: {low: {hinge: slide, value: -0.45, direction: down, stop: true}}
+initial: {hinges: {slide: {position: [0.3]}}}
+loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 18}}
+)");
+  for (const char* evaluation : {"one-at-a-time", "in-lanes"}) {
+    folder.write("history.yaml", std::string("format: withy-sweep/1\nscene: block.yaml\nevaluation: ") + evaluation +
+                                     "\nvary: {initial.hinges.slide.position.0: {grid: [0.1, 0.2, 0.3, 0.4, 0.5]}}\n"
+                                     "keep: {history: {of: [slide], every: 0.1}}\n");
+    const Plan plan = read_plan((folder / "history.yaml").string(), plugins());
+    EXPECT_TRUE(run(folder, plan, evaluation, {1, 1, 1, {}}).whole());
+    EXPECT_TRUE(collect(folder / evaluation).histories);
+    std::istringstream lines(folder.read(std::string(evaluation) + "/histories.csv"));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "point,initial.hinges.slide.position.0,result,t[s],cases,least,p05,p25,median,p75,p95,greatest");
+    for (int i = 0; i <= 10; ++i) {
+      std::getline(lines, line);
+      std::istringstream cells(line);
+      std::vector<std::string> cell(12);
+      for (std::string& c : cell) std::getline(cells, c, ',');
+      EXPECT_EQ(cell[2], "slide[m]");
+      const double t = 0.1 * i, c = std::cos(3 * t);
+      // That from 0.5 m is at −0.45 m at 0.897 s.
+      std::vector<double> x = {0.1 * c, 0.2 * c, 0.3 * c, 0.4 * c};
+      if (i < 9) x.push_back(0.5 * c);
+      std::sort(x.begin(), x.end());
+      EXPECT_EQ(cell[4], std::to_string(x.size())) << line;
+      EXPECT_NEAR(std::stod(cell[3]), t, 1e-12);
+      const double n = static_cast<double>(x.size() - 1);
+      const double shares[] = {0, 0.05, 0.25, 0.5, 0.75, 0.95, 1};
+      for (std::size_t k = 0; k < 7; ++k) {
+        const auto below = static_cast<std::size_t>(shares[k] * n);
+        const double way = shares[k] * n - static_cast<double>(below), above = x[std::min(below + 1, x.size() - 1)];
+        EXPECT_NEAR(std::stod(cell[5 + k]), x[below] + way * (above - x[below]), 1e-8) << line;
+      }
+    }
+    EXPECT_FALSE(std::getline(lines, line));
+    EXPECT_THAT(folder.read(std::string(evaluation) + "/histories.svg"), HasSubstr("25 and 75 %"));
+    const auto alone = case_json(plan, run_case(plan, Cases(plan), 4, plugins(), {}));
+    EXPECT_EQ(alone.at("histories").at("t[s]").size(), 11U);
+    EXPECT_NEAR(alone.at("histories").at("slide[m]").at(8).get<double>(), 0.5 * std::cos(2.4), 1e-8);
+    EXPECT_TRUE(alone.at("histories").at("slide[m]").at(9).is_null());
+    EXPECT_THAT(case_text(alone), HasSubstr("1 columns at 11 times"));
+  }
+}
+
+TEST(Peaks, AreFoundBetweenOutputs) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(R"(vary: {time.output: {grid: [0.01, 1]}, time.end: {grid: [1]}}
+keep: {peak: [pivot.rate, pivot]}
+)");
+  const Cases cases(plan);
+  const CaseResult fine = run_case(plan, cases, 0, plugins(), {}), coarse = run_case(plan, cases, 1, plugins(), {});
+  ASSERT_TRUE(fine.completed() && coarse.completed());
+  // The outputs of the second are its turning points: between them it passes the bottom.
+  EXPECT_GT(fine.numbers[0], 3);
+  EXPECT_NEAR(coarse.numbers[0], fine.numbers[0], 0.01 * fine.numbers[0]);
+  EXPECT_NEAR(coarse.numbers[1], fine.numbers[1], 1e-12) << "it starts at its peak";
+}
+
+}  // namespace
+}  // namespace withy::campaign

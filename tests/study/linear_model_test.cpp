@@ -1,0 +1,120 @@
+// Linear models with inputs, sensors and sampled loads: what forces do to accelerations, and the map of a run.
+#include "withy/study/linear_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "withy/study/input_error.hpp"
+#include "withy/study/open_loop.hpp"
+#include "withy/study/run.hpp"
+#include "withy/tests/study/linear_scenes.hpp"
+
+namespace withy::study {
+namespace {
+
+using test::plugins;
+
+TEST(LinearModel, OfAFreeBodyHasWhatForcesDoToAccelerometers) {
+  const LinearModel m = linear_model(at_start(scene_of(free_body)), {});
+  ASSERT_EQ(m.inputs.size(), 2U) << "the scene's inputs are the default";
+  EXPECT_EQ(m.inputs[0].unit, "N");
+  EXPECT_EQ(m.inputs[1].unit, "N m");
+  const auto D = [&](const std::string& output, Eigen::Index input) {
+    return m.system.D(find(m.outputs, output), input);
+  };
+  // 1/m + r²/I of a push beside the centre of mass, r/I of a turn.
+  EXPECT_NEAR(D("box.y", 0), 1.0 / 4 + 0.25 / 5, 1e-12);
+  EXPECT_NEAR(D("box.x", 0), 0, 1e-12);
+  EXPECT_NEAR(D("box.y", 1), 0.5 / 5, 1e-12);
+  EXPECT_EQ(D("rate.z", 1), 0) << "a rate has no jump";
+  // Rates follow through the states: C B is what the rate begins with.
+  EXPECT_NEAR((m.system.C * m.system.B)(find(m.outputs, "rate.z"), 1), 1.0 / 5, 1e-10);
+}
+
+TEST(LinearModel, AccelerationsOfHingesAreRowsOfTheExactMatrices) {
+  // Spinning, bent and swinging, with friction that saturates within a thousandth of a radian a second.
+  const Prepared arm = prepare(
+      [] {
+        SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/pd-arm.yaml");
+        values.set_text("outputs={a: {type: hinge, hinge: elbow}, b: {type: hinge, hinge: shoulder}}");
+        return values;
+      }(),
+      plugins());
+  State state = arm.scene.initial;
+  for (std::size_t i = 0; i < arm.model().layout().speeds; ++i) {
+    state.y[i] += 0.01 * static_cast<double>(i % 3);
+    state.y[arm.model().layout().positions + i] = 0.02 * static_cast<double>(i % 4);
+  }
+  const LinearModel m = linear_model({arm, state, {}}, {{"shoulder", "elbow"}, {}});
+  for (const std::string hinge : {"elbow", "shoulder"}) {
+    const Eigen::Index row = find(m.outputs, std::string(hinge == "elbow" ? "a" : "b") + ".acceleration");
+    Eigen::Index rate = 0;
+    while (m.states[static_cast<std::size_t>(rate)] != hinge + ".0.rate") ++rate;
+    const double greatest = m.system.A.row(rate).cwiseAbs().maxCoeff();
+    EXPECT_LT((m.system.C.row(row) - m.system.A.row(rate)).cwiseAbs().maxCoeff(), 1e-8 * greatest) << hinge;
+    EXPECT_LT((m.system.D.row(row) - m.system.B.row(rate)).cwiseAbs().maxCoeff(),
+              1e-10 * m.system.B.row(rate).cwiseAbs().maxCoeff());
+  }
+}
+
+/// Two wheels on one axis are linear; their controllers sample every 20 and every 30 ms.
+TEST(LinearModel, OfLoadsSampledAtTwoRatesIsTheMapOfARunOverTheirCommonPeriod) {
+  const std::string text = R"(
+time: {end: 0.6}
+integrator: {name: dopri5, rtol: 1e-12, atol: 1e-14}
+bodies:
+  inner: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}
+  outer: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  base: {type: revolute, axis: [0, 0, 1], parent: world, child: inner}
+  joint: {type: revolute, axis: [0, 0, 1], parent: inner, child: outer}
+loads:
+  slow: {type: pd-controller, law: constant, sample: 0.03, hinges: {base: {stiffness: 30, damping: 10}}}
+  fast: {type: pd-controller, law: constant, sample: 0.02, hinges: {joint: {stiffness: 20, damping: 5}}}
+initial: {hinges: {base: {position: [0.1], rate: [0.5]}, joint: {position: [-0.3]}}}
+)";
+  const Prepared prepared = prepare(SceneValues::parse("format: withy/1\n" + text, "text"), plugins());
+  const LinearModel m = linear_model(at_start(prepared), {{"base"}, {"base", "joint"}});
+  EXPECT_DOUBLE_EQ(m.system.period, 0.06);
+  EXPECT_EQ(m.states.back(), "fast.held[0]");
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(m.system.A.rows());
+  z.head(4) << 0.1, -0.3, 0.5, 0;
+  for (int k = 0; k < 10; ++k) z = m.system.A * z;
+  const RunSummary run = simulate(prepared, plugins(), {});
+  ASSERT_EQ(run.status, RunStatus::completed);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(run.final.y[i], z[static_cast<Eigen::Index>(i)], 1e-10) << i;
+  EXPECT_THROW(static_cast<void>(open_loop(at_start(prepared), "fast")), InputError)
+      << "the slowest alone can be opened";
+}
+
+/// The second measures an acceleration which the efforts of both move, and what the first gives at the same instant.
+TEST(LinearModel, OfLoadsThatSampleAccelerationsIsTheMapOfARun) {
+  const std::string text = R"(
+time: {end: 0.6}
+integrator: {name: dopri5, rtol: 1e-12, atol: 1e-14}
+bodies: {cart: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}}
+outputs: {imu: {type: accelerometer, of: cart}}
+loads:
+  spring: {type: hinge-spring, hinge: slide, stiffness: 30}
+  slow: {type: expression, hinge: slide, value: -5 * slide.rate - 0.3 * imu.x, sample: 0.03}
+  fast: {type: transfer-function, hinge: slide, of: both, numerator: [0.02, 0.8], denominator: [0.05, 1], sample: 0.02}
+  both: {type: expression, value: imu.x + 0.1 * slow, to: nothing, sample: 0.02}
+initial: {hinges: {slide: {position: [0.1], rate: [0.5]}}}
+)";
+  const Prepared prepared = prepare(SceneValues::parse("format: withy/1\n" + text, "text"), plugins());
+  State rest = prepared.scene.initial;
+  std::fill(rest.y.begin(), rest.y.end(), 0.0);
+  const LinearModel m = linear_model({prepared, rest, {}, Sampling::kept}, {{"slide"}, {"slide"}});
+  EXPECT_DOUBLE_EQ(m.system.period, 0.06);
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(m.system.A.rows());
+  z.head(2) << 0.1, 0.5;
+  for (int k = 0; k < 10; ++k) z = m.system.A * z;
+  const RunSummary run = simulate(prepared, plugins(), {});
+  ASSERT_EQ(run.status, RunStatus::completed);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(run.final.y[i], z[static_cast<Eigen::Index>(i)], 1e-9) << i;
+}
+
+}  // namespace
+}  // namespace withy::study

@@ -1,0 +1,147 @@
+// Margins of loops: those of textbooks, and where a run begins to grow.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "withy/study/response.hpp"
+#include "withy/study/run.hpp"
+#include "withy/tests/study/linear_scenes.hpp"
+
+namespace withy::study {
+namespace {
+
+using std::numbers::pi;
+using test::plugins;
+
+/// A wheel of inertia J behind a controller of one hinge.
+std::string servo(const std::string& gains) {
+  return R"(
+bodies: {wheel: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}
+loads: {control: {type: pd-controller, law: constant, )" +
+         gains + "}}\n";
+}
+
+TEST(Loop, OfAControllerOnAWheelHasTheTextbooksMargins) {
+  const Response r = response(at_start(scene_of(servo("hinges: {axle: {stiffness: 8, damping: 4}}"))),
+                              {"control", "", {}, {}, 50, {}});
+  ASSERT_TRUE(r.margins && r.opened);
+  EXPECT_TRUE(r.margins->stable);
+  EXPECT_EQ(r.margins->upper(), nullptr);
+  EXPECT_EQ(r.margins->lower(), nullptr);
+  // L = (8 + 4 s)/(2 s²): |L| = 1 at ω⁴ = 4 ω² + 16, phase margin atan(ω/2).
+  const double omega = std::sqrt(2 + std::sqrt(20.0));
+  ASSERT_EQ(r.margins->phases.size(), 1U);
+  EXPECT_NEAR(r.margins->phase()->omega, omega, 1e-9);
+  EXPECT_NEAR(r.margins->phase()->angle, std::atan(omega / 2), 1e-9);
+}
+
+TEST(Loop, OfASampledDamperIsUnstableAtTwiceTheInertiaOverTheDamping) {
+  const Response r = response(at_start(scene_of(servo("sample: 0.05, hinges: {axle: {stiffness: 0, damping: 4}}"))),
+                              {"control", "", {}, {}, 50, {}});
+  ASSERT_TRUE(r.margins && r.margins->upper() != nullptr);
+  EXPECT_NEAR(r.margins->upper()->factor, 2 * 2 / (4 * 0.05), 1e-9);
+  EXPECT_NEAR(r.margins->upper()->omega, pi / 0.05, 1e-9);
+  // L = c T / (J (z − 1)) has the pole 1 and no zero.
+  EXPECT_EQ(r.roots.poles.size(), 1);
+}
+
+using Gains = std::vector<std::pair<std::string, double>>;
+
+/// Greatest |coordinate| in the last over that in the first fifth of a run with the controller's gains times `factor`.
+double growth_in_simulation(SceneValues values, double factor, const Gains& gains) {
+  for (const auto& [path, gain] : gains) values.set("loads.control." + path, Value(factor * gain), "the test");
+  const Prepared prepared = prepare(std::move(values), plugins());
+  const double end = *prepared.scene.end;
+  double first = 0, last = 0;
+  simulate(prepared, plugins(), [&](const State& s) {
+    double& most = s.time < 0.2 * end ? first : last;
+    if (s.time < 0.2 * end || s.time > 0.8 * end) most = std::max(most, std::abs(s.y[0]));
+  });
+  return last / first;
+}
+
+/// Where the margin says that the loop is on the edge, a run two per cent below decays and one two per cent above
+/// grows.
+void confirm(const std::string& text, bool from_below, const Gains& gains) {
+  SceneValues values = SceneValues::parse("format: withy/1\n" + text, "text");
+  const Prepared prepared = prepare(values, plugins());
+  State rest = prepared.scene.initial;
+  std::fill(rest.y.begin(), rest.y.end(), 0.0);
+  const Response r = response({prepared, rest, {}, Sampling::kept}, {"control", "", {}, {}, 100, {}});
+  ASSERT_TRUE(r.margins && r.margins->stable);
+  const GainMargin* margin = from_below ? r.margins->lower() : r.margins->upper();
+  ASSERT_NE(margin, nullptr);
+  const double inside = from_below ? 1.02 : 0.98, outside = from_below ? 0.98 : 1.02;
+  EXPECT_LT(growth_in_simulation(values, inside * margin->factor, gains), 0.9) << margin->factor;
+  EXPECT_GT(growth_in_simulation(values, outside * margin->factor, gains), 1.1) << margin->factor;
+}
+
+TEST(Loop, OfASampledControllerOfAFlexibleArmGoesUnstableInSimulationWhereItsMarginSays) {
+  confirm(R"(
+time: {end: 12, output: 0.02}
+integrator: {name: dopri5, rtol: 1e-8, atol: 1e-10}
+bodies:
+  hub: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0], frames: {out: {position: [0.1, 0, 0]}}}
+  boom: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 40, modes: 2, family: clamped-free}, damping_ratio: 0.02}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}
+  root: {type: weld, parent: hub.out, child: boom}
+loads: {control: {type: pd-controller, law: constant, sample: 0.02, hinges: {axle: {stiffness: 10, damping: 2}}}}
+initial: {hinges: {axle: {position: [0.001]}}}
+)",
+          false, {{"hinges.axle.stiffness", 10}, {"hinges.axle.damping", 2}});
+}
+
+// p⁺ = −g a with a from the p before: alone that converges for g below the mass felt, whatever the sample.
+TEST(Loop, OfASampledAccelerationGoesUnstableInSimulationWhereItsMarginSays) {
+  confirm(R"(
+time: {end: 6, output: 0.002}
+integrator: {name: dopri5, rtol: 1e-8, atol: 1e-10}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+outputs: {imu: {type: accelerometer, of: block}}
+loads:
+  spring: {type: hinge-spring, hinge: slide, stiffness: 30, damping: 0.5}
+  control: {type: pid, of: imu.x, hinge: slide, proportional: 1, sample: 0.01}
+initial: {hinges: {slide: {position: [0.01]}}}
+)",
+          false, {{"proportional", 1}});
+}
+
+TEST(Loop, ThatHoldsAPendulumUprightFallsInSimulationWhereItsMarginSays) {
+  confirm(R"(
+gravity: [-9.81, 0, 0]
+time: {end: 12, output: 0.02}
+integrator: {name: dopri5, rtol: 1e-10, atol: 1e-13}
+bodies:
+  pole: {type: rigid, mass: 2, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0]}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: pole}}
+loads: {control: {type: pd-controller, law: constant, hinges: {axle: {stiffness: 20, damping: 0.5}}}}
+initial: {hinges: {axle: {position: [1.0e-6], rate: [0]}}}
+)",
+          true, {{"hinges.axle.stiffness", 20}, {"hinges.axle.damping", 0.5}});
+}
+
+/// J s³ + k (k_d s² + k_p s + k_i) is stable for k above J k_i/(k_d k_p).
+TEST(Loop, ThatIntegratesGoesUnstableInSimulationWhereItsMarginSays) {
+  const std::string text = R"(
+time: {end: 60, output: 0.05}
+integrator: {name: dopri5, rtol: 1e-9, atol: 1e-12}
+bodies: {wheel: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}
+loads: {control: {type: pid, hinge: axle, proportional: 8, integral: 10, derivative: 4}}
+initial: {hinges: {axle: {position: [0.01]}}}
+)";
+  const Response r = response(at_start(prepare(SceneValues::parse("format: withy/1\n" + text, "text"), plugins())),
+                              {"control", "", {}, {}, 50, {}});
+  EXPECT_EQ(r.integrators, 3);
+  ASSERT_TRUE(r.margins && r.margins->lower() != nullptr);
+  EXPECT_NEAR(r.margins->lower()->factor, 2.0 * 10 / (4 * 8), 1e-8);
+  confirm(text, true, {{"proportional", 8}, {"integral", 10}, {"derivative", 4}});
+}
+
+}  // namespace
+}  // namespace withy::study
