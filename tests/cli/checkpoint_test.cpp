@@ -6,15 +6,13 @@
 
 #include <chrono>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "withy/tests/cli/process.hpp"
+#include "withy/tests/cli/json_result.hpp"
 
 namespace withy::test {
 namespace {
 
-using nlohmann::json;
 using testing::HasSubstr;
 
 using Arguments = std::vector<std::string>;
@@ -44,14 +42,6 @@ Finished ended_by(int signal, const Folder& folder, const Arguments& arguments) 
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   ::kill(process.id(), signal);
   return process.wait();
-}
-
-/// run.json without what is not the same in two runs of the same thing.
-json outcome(const Folder& folder, const std::string& out) {
-  json run = json::parse(folder.read(out + "/run.json"));
-  for (const char* key : {"cpu_seconds", "folder"}) run.erase(key);
-  run["certificate"].erase("estimated_error");
-  return run;
 }
 
 void expect_same(const Folder& folder) {

@@ -6,16 +6,14 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
-#include "withy/tests/cli/process.hpp"
+#include "withy/tests/cli/json_result.hpp"
 
 namespace withy::test {
 namespace {
 
-using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 using Arguments = std::vector<std::string>;
 
@@ -29,13 +27,6 @@ const std::vector<std::string> integrators = {
 int kills() {
   const char* asked = std::getenv("WITHY_KILLS");
   return asked != nullptr ? std::atoi(asked) : 2;
-}
-
-json outcome(const Folder& folder, const std::string& out) {
-  json run = json::parse(folder.read(out + "/run.json"));
-  run.erase("cpu_seconds");
-  run["certificate"].erase("estimated_error");  // with the time that the estimate took
-  return run;
 }
 
 class Kills : public testing::TestWithParam<std::string> {};

@@ -1,0 +1,61 @@
+/// \file
+/// Results in HDF5: the same as in the table, and readable where a run was killed.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "withy/tests/cli/process.hpp"
+
+namespace withy::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// A picture of all that is recorded, from results.csv or, where there is none, from results.h5.
+std::string picture(const Folder& folder) {
+  const Finished f = withy(folder, {"plot", "out"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  return folder.read("out/plot.svg");
+}
+
+TEST(Run, Hdf5HoldsTheTableThatTheCsvHolds) {
+  const Folder folder;
+  const std::vector<std::string> command = {"run", "scenes/attitude-jets.yaml", "--set", "time.end=40", "--out", "out"};
+  const Finished f = withy(folder, command);
+  ASSERT_EQ(f.status, 0) << f.err;
+  if (!std::filesystem::exists(folder.path() / "out/results.h5")) {
+    const Finished asked = withy(folder, {"run", "scenes/pendulum.yaml", "--hdf5"});
+    ASSERT_EQ(asked.status, 3) << "HDF5 is there, and a run leaves its file out";
+    GTEST_SKIP() << asked.err;
+  }
+  const std::string of_csv = picture(folder);
+  std::filesystem::remove(folder.path() / "out/results.csv");
+  EXPECT_EQ(picture(folder), of_csv);
+}
+
+TEST(Run, KilledItLeavesAnHdf5FileThatIsReadAndSaysThatItIsNotWhole) {
+  const Folder folder;
+  const std::vector<std::string> command = {WITHY_PROGRAM,  "run",    "scenes/pendulum.yaml", "--set",
+                                            "time.end=1e6", "--hdf5", "--checkpoint",         "0.05",
+                                            "--out",        "out"};
+  Process process(folder, command);
+  const auto file = folder.path() / "out/results.h5";
+  for (int i = 0; i < 600 && !std::filesystem::exists(folder.path() / "out/checkpoint.cbor"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ::kill(process.id(), SIGKILL);
+  const Finished ended = process.wait();
+  if (ended.status == 3) {
+    EXPECT_THAT(ended.err, HasSubstr("HDF5"));
+    return;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/run.json"));
+  std::filesystem::remove(folder.path() / "out/results.csv");
+  EXPECT_THAT(picture(folder), HasSubstr("pivot"));
+  EXPECT_NE(folder.read("out/results.h5").find("running"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace withy::test

@@ -1,0 +1,124 @@
+// What is wrong with a model is said with its place, all at once; damaged files are read or refused.
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "withy/scene/scene_error.hpp"
+#include "withy/tests/exchange/models.hpp"
+
+namespace withy::exchange {
+namespace {
+
+using testing::HasSubstr;
+
+/// What is wrong with it; empty where nothing is.
+std::string problems_of(const ModelImport& what) {
+  try {
+    imported(what);
+  } catch (const SceneError& e) {
+    return e.what();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(Import, ErrorsHaveTheirPlacesAndAllComeAtOnce) {
+  const Scratch file(".urdf", "");
+  const auto urdf = [&](const std::string& inside) {
+    file.write("<robot name='r'>\n" + inside + "\n</robot>\n");
+    return problems_of({file.file(), {}, false, 0, 0});
+  };
+  const std::string body =
+      "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>";
+  const std::string two = "<link name='a'>" + body + "\n<link name='b'>" + body + "\n";
+  const auto joint = [](const std::string& type, const std::string& rest) {
+    return "<joint name='j' type='" + type + "'><parent link='a'/><child link='b'/>" + rest + "</joint>";
+  };
+  EXPECT_EQ(urdf(two + joint("revolute", "")), "");
+  EXPECT_THAT(urdf(two + joint("revolut", "<axis xyz='0 0 0'/>")),
+              HasSubstr(".urdf:4:1: /robot[r]/joint[j]/@type: got \"revolut\""));
+  EXPECT_THAT(urdf(two + joint("revolute", "<axis xyz='0 0 0'/>")), HasSubstr("the direction 0 0 0"));
+  EXPECT_THAT(urdf(two + joint("fixed", "<origin xyz='1 2'/>")), HasSubstr("got \"1 2\"; need 3 finite numbers"));
+  EXPECT_THAT(urdf(two + joint("fixed", "<origin xyz='1 2 nan'/>")), HasSubstr("finite"));
+  EXPECT_THAT(urdf(two), HasSubstr("several links have no joint that holds them"));
+  EXPECT_THAT(
+      urdf(two + joint("fixed", "") + "<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint>"),
+      HasSubstr("the joints make a circle"));
+  EXPECT_THAT(urdf("<link name='alpha'>" + body +
+                   "<joint name='j' type='fixed'><parent link='alpa'/><child link='alpha'/></joint>"),
+              HasSubstr("did you mean 'alpha'?"));
+  EXPECT_THAT(urdf("<link name='a'>" + body + "\n<link name='b'/>" + joint("continuous", "")),
+              HasSubstr(".urdf:3:1: /robot[r]/link[b]: the link moves"));
+  EXPECT_THAT(urdf("<link name='a'><inertial><mass value='-1'/><inertia ixx='1' iyy='1' izz='9'/></inertial></link>"),
+              HasSubstr("the mass -1 kg"));
+  EXPECT_THAT(urdf("<link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='9'/></inertial></link>"),
+              HasSubstr("no distribution of mass"));
+  // The nearest that a mass can have: second moments 5.5, 3.5, -2.5 become 5.5, 3.5, 0, so that 1, 3, 9
+  // become 3.5, 5.5, 9.
+  file.write(
+      "<robot><link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='3' izz='9'/></inertial></link></robot>");
+  EXPECT_THAT(problems_of({file.file(), {}, false, 0, 0}), HasSubstr("principal moments 1, 3, 9"));
+  EXPECT_THAT(imported({file.file(), {}, false, 0, 0, true}).text, HasSubstr("inertia: [3.5, 5.5, 9, 0, 0, 0]"));
+  EXPECT_THAT(urdf("<link name='a'>"), HasSubstr("mismatched tag"));
+  file.write("<!DOCTYPE r [<!ENTITY a 'aa'>]><robot/>");
+  EXPECT_THAT(problems_of({file.file(), {}, false, 0, 0}), HasSubstr("a document type declaration"));
+  file.write("<sdf/>");
+  EXPECT_THAT(problems_of({file.file(), {}, false, 0, 0}), HasSubstr("need <robot> (URDF) or <mujoco> (MJCF)"));
+  // Two at once.
+  const std::string both = urdf(two + joint("revolute", "<origin xyz='x'/><axis xyz='0 0 0'/>"));
+  EXPECT_THAT(both, HasSubstr("@xyz: got \"x\""));
+  EXPECT_THAT(both, HasSubstr("the direction 0 0 0"));
+}
+
+TEST(Import, ErrorsOfWhatStandsBesideHaveTheirPlacesThere) {
+  const Scratch beside(".yaml", "");
+  const auto with = [&](const std::string& link) {
+    beside.write("format: withy-flexible/1\nlinks:\n" + link);
+    return problems_of({model_file("double-pendulum.urdf"), beside.file(), false, 0, 0});
+  };
+  EXPECT_EQ(with("  upper: {tip: elbow, bending_y: {stiffness: 60, modes: 2}}\n"), "");
+  EXPECT_THAT(with("  uper: {tip: elbow}\n"),
+              HasSubstr(".yaml:3:3: /links/uper: there is no link \"uper\"; did you mean 'upper'?"));
+  EXPECT_THAT(with("  upper: {tip: elbw}\n"), HasSubstr("there are: elbow"));
+  EXPECT_THAT(with("  upper:\n    tip: elbow\n    bending_y: {stiffness: -60, modes: 2}\n"), HasSubstr(".yaml:5:"));
+  EXPECT_THAT(with("  upper:\n    tip: elbow\n    bending_x: {stiffness: 60, modes: 2}\n"),
+              HasSubstr("did you mean 'bending_"));
+  EXPECT_THAT(with("  upper: {tip: [0, 0, 0]}\n"), HasSubstr("no length"));
+  EXPECT_THAT(with("  upper: {tip: elbow, y: [3, 0, 0]}\n"), HasSubstr("along the beam"));
+  const Scratch dat(".dat", text_of_file(model_file("tower.dat")));
+  EXPECT_THAT(problems_of({dat.file(), {}, false, 0, 0}), HasSubstr("--length is missing"));
+  std::string text = text_of_file(model_file("tower.dat"));
+  dat.write(text.replace(text.find("4885.76"), 7, "4885,7x"));
+  EXPECT_THAT(problems_of({dat.file(), {}, false, 87.6, 0}), HasSubstr(".dat:19:1: /: got \"7x\""));
+}
+
+/// Cut anywhere, or with a byte changed: a scene, or an error with a text.
+TEST(Import, DamagedFilesAreReadOrRefused) {
+  std::mt19937 random(11);
+  for (const char* name : {"double-pendulum.urdf", "cart-pole.xml", "tower.dat"}) {
+    const std::string whole = text_of_file(model_file(name));
+    const Scratch file(std::filesystem::path(name).extension().string(), whole);
+    const double length = std::string(name) == "tower.dat" ? 80 : 0;
+    int refused = 0;
+    for (int k = 0; k < 150; ++k) {
+      std::string text = whole;
+      if (k % 3 == 0) {
+        text.resize(random() % text.size());
+      } else {
+        for (int n = k % 3; n > 0; --n) text[random() % text.size()] = static_cast<char>(random() % 128);
+      }
+      file.write(text);
+      try {
+        EXPECT_FALSE(imported({file.file(), {}, false, length, 0}).text.empty());
+      } catch (const SceneError& e) {
+        EXPECT_NE(std::string(e.what()), "");
+        ++refused;
+      }
+    }
+    EXPECT_GT(refused, 50) << name;
+  }
+}
+
+}  // namespace
+}  // namespace withy::exchange

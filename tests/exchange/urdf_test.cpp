@@ -1,0 +1,137 @@
+// Trees of URDF have the accelerations that mechanics gives them, by hand, and go to URDF and back.
+#include "withy/exchange/urdf.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "withy/core/model/model.hpp"
+#include "withy/study/prepared.hpp"
+#include "withy/tests/exchange/models.hpp"
+
+namespace withy::exchange {
+namespace {
+
+/// Lagrange's equations of two pendulums in a plane; c: from hinge to centre of mass, I about it. The files' frames are
+/// turned, so that every convention of URDF counts: fixed-axis rpy, inertia in a frame of its own, axes of any length.
+TEST(Urdf, TheDoublePendulumMovesAsLagrangesEquationsSay) {
+  const double l = 0.9, m1 = 2, c1 = 0.4, m2 = 1.2, c2 = 0.35, I2 = 0.06, g = 9.81;
+  const double I1 = 0.12 * std::pow(std::cos(0.5), 2) + 0.125 * std::pow(std::sin(0.5), 2);
+  host::Equations f(scene_of({model_file("double-pendulum.urdf"), {}, false, 0, 0}));
+  for (const auto& [a, b, u, w] : {std::array{0.3, -1.1, 0.7, 2.0}, std::array{-2.0, 0.4, -1.5, 0.3}}) {
+    std::vector<double> y = f.y0();
+    put(f, y, "shoulder", a);
+    put(f, y, "elbow", b);
+    put(f, y, "shoulder.rate", u);
+    put(f, y, "elbow.rate", w);
+    Eigen::Matrix2d M;
+    M(0, 0) = I1 + m1 * c1 * c1 + I2 + m2 * (l * l + c2 * c2 + 2 * l * c2 * std::cos(b));
+    M(0, 1) = M(1, 0) = I2 + m2 * (c2 * c2 + l * c2 * std::cos(b));
+    M(1, 1) = I2 + m2 * c2 * c2;
+    const double k = m2 * l * c2 * std::sin(b), outer = m2 * g * c2 * std::cos(a + b);
+    const Eigen::Vector2d right(k * (2 * u * w + w * w) + (m1 * c1 + m2 * l) * g * std::cos(a) + outer - 0.3 * u,
+                                -k * u * u + outer);
+    const Eigen::Vector2d want = M.ldlt().solve(right);
+    const auto got = accelerations(f, y);
+    EXPECT_NEAR(got.at("shoulder.rate"), want[0], 1e-12 * (1 + std::abs(want[0])));
+    EXPECT_NEAR(got.at("elbow.rate"), want[1], 1e-12 * (1 + std::abs(want[1])));
+  }
+}
+
+/// A link that a file beside makes a beam moves as the same arm written by hand, in axes of its own.
+TEST(Urdf, AFlexibleLinkIsTheBeamThatTheFileBesideSays) {
+  host::Equations f(scene_of({model_file("double-pendulum.urdf"), model_file("bending-arm.yaml"), false, 0, 0}));
+  host::Equations by_hand(host::Scene::parse(plugins(), R"(format: withy/1
+gravity: [0, -9.81, 0]
+bodies:
+  upper:
+    type: beam
+    length: 0.9
+    mass_per_length: 2.2222222222222223
+    bending_y: {stiffness: 60, modes: 2, family: clamped-free}
+    damping_ratio: 0.01
+  fore_arm: {type: rigid, mass: 1.2, center_of_mass: [0.35, 0, 0], inertia: [0.015, 0.05, 0.06, 0, 0, 0]}
+hinges:
+  shoulder: {type: revolute, axis: [0, 0, -1], parent: world, child: upper}
+  elbow: {type: revolute, axis: [0, 0, -1], parent: upper.tip, child: fore_arm}
+loads:
+  damper: {type: hinge-spring, hinge: shoulder, stiffness: 0, damping: 0.3}
+)"));
+  std::map<std::string, double> numbers{
+      {"shoulder", 0.4},      {"elbow", -0.8},      {"upper.bending_y[1]", 0.03},     {"upper.bending_y[2]", -0.004},
+      {"shoulder.rate", 1.2}, {"elbow.rate", -2.0}, {"upper.bending_y[1].rate", 0.2}, {"upper.bending_y[2].rate", 0.1}};
+  std::vector<double> y = f.y0(), z = by_hand.y0();
+  for (const auto& [name, value] : numbers) {
+    put(f, y, name, value);
+    put(by_hand, z, name, value);
+  }
+  const auto got = accelerations(f, y), want = accelerations(by_hand, z);
+  ASSERT_EQ(got.size(), want.size());
+  for (const auto& [name, value] : want) EXPECT_NEAR(got.at(name), value, 1e-9 * (1 + std::abs(value))) << name;
+}
+
+/// Frames on both sides of hinges, offsets turned by 90 degrees about y (where angles of roll and yaw are not unique),
+/// a floating base, hinges of two motions.
+TEST(Urdf, ATreeThatGoesToUrdfAndBackHasTheSameAccelerations) {
+  const host::Scene scene = host::Scene::parse(plugins(), R"(format: withy/1
+name: "a <tree> & its \"names\""
+bodies:
+  base: {type: rigid, mass: 7, center_of_mass: [0.1, 0.2, -0.1], inertia: [0.5, 0.6, 0.7, 0.02, -0.03, 0.01], frames: {
+    grip: {position: [0.1, -0.3, 0.2], orientation: {xyz: [0.3, -1.1, 2.0]}}, side: {position: [0, 0.5, 0]}}}
+  arm: {type: rigid, mass: 2, center_of_mass: [0.3, 0, 0.05], inertia: [0.01, 0.2, 0.2, 0.001, 0, 0.002], frames: {
+    held: {position: [-0.05, 0.02, 0.01], orientation: {xyz: [1, 0.5, -0.4]}}, end: {position: [0.6, 0, 0], orientation: {xyz: [0.7, "90 deg", 0.2]}}}}
+  fork: {type: rigid, mass: 1.5, center_of_mass: [0, 0.1, 0.1], inertia: [0.03, 0.02, 0.03, 0, 0.004, 0]}
+  rod: {type: rigid, mass: 0.8, center_of_mass: [0.2, 0, 0], inertia: [0.001, 0.02, 0.02, 0, 0, 0], frames: {held: {position: [0.1, 0, 0], orientation: {xyz: [0, "-90 deg", 0]}}}}
+  slider: {type: rigid, mass: 0.6, inertia: [0.01, 0.01, 0.01, 0, 0, 0]}
+hinges:
+  float: {type: free, parent: world, child: base, offset: {position: [1, 2, 3], orientation: {xyz: [0.1, 0.2, 0.3]}}}
+  shoulder: {type: revolute, axis: [1, 2, -1], parent: base.grip, child: arm.held, offset: {position: [0.02, 0, 0], orientation: {xyz: [0, 0.4, 0]}}}
+  gimbal: {type: universal, first_axis: [0, 0, 1], second_axis: [1, 1, 0], parent: arm.end, child: fork}
+  sleeve: {type: cylindrical, axis: [0, 1, 1], parent: fork, child: rod.held}
+  rail: {type: prismatic, axis: [1, 0, 2], parent: rod, child: slider}
+)");
+  const auto prepared = scene.prepare();
+  const Urdf urdf = write_urdf(prepared->model(), "a <tree>");
+  const Scratch file(".urdf", urdf.text);
+  host::Scene back = scene_of({file.file(), {}, false, 0, 0});
+  back.set("gravity", "[0, 0, 0]");
+  host::Equations there(scene), here(back);
+  ASSERT_EQ(there.size(), here.size());
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int state = 0; state < 5; ++state) {
+    std::vector<double> y(there.size()), f(there.size()), f_back(there.size());
+    for (double& x : y) x = number(random);
+    there.normalize(y);
+    ASSERT_TRUE(there.derivatives(0, y, f).ok());
+    ASSERT_TRUE(here.derivatives(0, y, f_back).ok());
+    for (std::size_t i = 0; i < f.size(); ++i)
+      EXPECT_NEAR(f_back[i], f[i], 1e-12 * (1 + std::abs(f[i])))
+          << here.states()[i].name << " for " << there.states()[i].name;
+  }
+  EXPECT_TRUE(urdf.remarks.empty());
+}
+
+TEST(Urdf, WhatItCannotSayIsSaidWithTheName) {
+  const auto written = [](const std::string& hinge) {
+    return write_urdf(
+        host::Scene::parse(plugins(),
+                           "format: withy/1\nbodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+                           "hinges: {h: " +
+                               hinge + "}\n")
+            .prepare()
+            ->model(),
+        "r");
+  };
+  for (const char* hinge : {"{type: spherical, parent: world, child: b}",
+                            "{type: screw, axis: [1, 0, 0], pitch: 0.1, parent: world, child: b}",
+                            "{type: planar, parent: world, child: b}"})
+    EXPECT_THROW(written(hinge), std::domain_error) << hinge;
+  EXPECT_NO_THROW(written("{type: revolute, axis: [1, 0, 0], parent: world, child: b}"));
+}
+
+}  // namespace
+}  // namespace withy::exchange
