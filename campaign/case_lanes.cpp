@@ -103,7 +103,7 @@ class Asked {
 };
 
 /// A case in a lane, with equations that leave its stack for each evaluation.
-class Lane final : public AskingEquations {
+class Lane final : public AskingEquations, public StagedSteps {
  public:
   Lane(std::unique_ptr<CaseRun> run, const study::Control& control, std::size_t lane, Asked& asked)
       : AskingEquations(*run->equations()), run_(std::move(run)), control_(control), lane_(lane), asked_(asked) {}
@@ -118,7 +118,9 @@ class Lane final : public AskingEquations {
   }
   /// From now on it is told that it cannot go on.
   void abandon() { abandoned_ = true; }
-  [[nodiscard]] LaneCall* call() { return &call_; }
+  /// What it has asked for, one of the two: an evaluation, or a whole step.
+  [[nodiscard]] LaneCall* call() { return asks_step_ ? nullptr : &call_; }
+  [[nodiscard]] LaneStep* step() { return asks_step_ ? &step_ : nullptr; }
   /// Of a run that has ended. \throws what the run has thrown.
   CaseResult& result() {
     if (error_) std::rethrow_exception(error_);
@@ -132,9 +134,18 @@ class Lane final : public AskingEquations {
                          Work& work) const noexcept override {
     if (!abandoned_) {
       call_ = {t, y, y_dot, &work, {}};
+      asks_step_ = false;
       asked_.answer(lane_);
     }
     return abandoned_ ? Evaluation{Evaluation::Outcome::nonfinite} : call_.evaluation;
+  }
+  Outcome stages(const Step& step) const noexcept override {
+    if (!abandoned_) {
+      step_.step = step;
+      asks_step_ = true;
+      asked_.answer(lane_);
+    }
+    return abandoned_ ? Outcome{{Evaluation::Outcome::nonfinite}, 0} : step_.outcome;
   }
 
  private:
@@ -145,6 +156,8 @@ class Lane final : public AskingEquations {
   std::exception_ptr error_;
   bool abandoned_ = false;
   mutable LaneCall call_;
+  mutable LaneStep step_;
+  mutable bool asks_step_ = false;
 };
 
 class CaseLanes final : public Asked {
@@ -181,11 +194,9 @@ class CaseLanes final : public Asked {
   /// thread's own stack while lanes are filled.
   void answer(std::size_t lane) noexcept override {
     lanes_[lane]->waiting = true;
-    if (filling_) {
-      stacks_.go_to(lane, Stacks::thread);
-    } else if (const std::size_t next = not_waiting(); next < count_) {
-      stacks_.go_to(lane, next);
-    } else {
+    if (filling_) return stacks_.go_to(lane, Stacks::thread);
+    while (lanes_[lane]->waiting) {
+      if (const std::size_t next = not_waiting(); next < count_) return stacks_.go_to(lane, next);
       evaluate();
     }
   }
@@ -257,14 +268,28 @@ class CaseLanes final : public Asked {
     return i;
   }
 
+  /// Answers the lanes that have asked for an evaluation; where all ask for steps, those of one method.
   void evaluate() noexcept {
     std::array<LaneCall*, most_lanes> calls{};
+    std::array<LaneStep*, most_lanes> steps{};
+    const StageTable* table = nullptr;
+    bool any = false;
     for (std::size_t i = 0; i < count_; ++i) {
       if (lanes_[i] == nullptr) continue;
       calls[i] = lanes_[i]->call();
-      lanes_[i]->waiting = false;
+      any = any || calls[i] != nullptr;
+      LaneStep* const step = lanes_[i]->step();
+      if (step == nullptr) continue;
+      if (table == nullptr) table = step->step.table;
+      if (step->step.table == table) steps[i] = step;
     }
-    together_->derivatives(std::span(calls).first(count_));
+    for (std::size_t i = 0; i < count_; ++i)
+      if (any ? calls[i] != nullptr : steps[i] != nullptr) lanes_[i]->waiting = false;
+    if (any) {
+      together_->derivatives(std::span(calls).first(count_));
+    } else {
+      together_->steps(std::span(steps).first(count_));
+    }
   }
 
   void end(std::size_t lane) {

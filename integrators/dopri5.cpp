@@ -7,6 +7,20 @@
 namespace withy {
 namespace {
 
+/// The pair's stages, for equations that make whole steps.
+constexpr StageTable whole_dopri5 = [] {
+  StageTable table;
+  table.stages = 7;
+  table.c = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
+  table.a[1] = {1.0 / 5};
+  table.a[2] = {3.0 / 40, 9.0 / 40};
+  table.a[3] = {44.0 / 45, -56.0 / 15, 32.0 / 9};
+  table.a[4] = {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729};
+  table.a[5] = {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656};
+  table.a[6] = {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84};
+  return table;
+}();
+
 class Dopri5Stepper final : public AdaptiveStepper {
  public:
   static constexpr int order = 5;
@@ -19,28 +33,37 @@ class Dopri5Stepper final : public AdaptiveStepper {
 
  private:
   Trial attempt(double h) override {
-    const double t = state_.time;
     const Eigen::ArrayXd& k1 = slope_;
     const Eigen::ArrayXd& k7 = next_slope_;
+    if (const Evaluation e = staged() ? whole(h) : one_by_one(h); !e.ok()) return {e};
+    error_ = h * (71.0 / 57600 * k1 - 71.0 / 16695 * k3_ + 71.0 / 1920 * k4_ - 17253.0 / 339200 * k5_ +
+                  22.0 / 525 * k6_ - 1.0 / 40 * k7);
+    return {{}, error_ratio()};
+  }
+
+  Evaluation one_by_one(double h) {
+    const double t = state_.time;
+    const Eigen::ArrayXd& k1 = slope_;
     stage_ = y() + h / 5 * k1;
-    if (const Evaluation e = evaluate(t + h / 5, stage_, k2_); !e.ok()) return {e};
+    if (const Evaluation e = evaluate(t + h / 5, stage_, k2_); !e.ok()) return e;
     stage_ = y() + h * (3.0 / 40 * k1 + 9.0 / 40 * k2_);
-    if (const Evaluation e = evaluate(t + 3 * h / 10, stage_, k3_); !e.ok()) return {e};
+    if (const Evaluation e = evaluate(t + 3 * h / 10, stage_, k3_); !e.ok()) return e;
     stage_ = y() + h * (44.0 / 45 * k1 - 56.0 / 15 * k2_ + 32.0 / 9 * k3_);
-    if (const Evaluation e = evaluate(t + 4 * h / 5, stage_, k4_); !e.ok()) return {e};
+    if (const Evaluation e = evaluate(t + 4 * h / 5, stage_, k4_); !e.ok()) return e;
     stage_ = y() + h * (19372.0 / 6561 * k1 - 25360.0 / 2187 * k2_ + 64448.0 / 6561 * k3_ - 212.0 / 729 * k4_);
-    if (const Evaluation e = evaluate(t + 8 * h / 9, stage_, k5_); !e.ok()) return {e};
+    if (const Evaluation e = evaluate(t + 8 * h / 9, stage_, k5_); !e.ok()) return e;
     stage_ = y() + h * (9017.0 / 3168 * k1 - 355.0 / 33 * k2_ + 46732.0 / 5247 * k3_ + 49.0 / 176 * k4_ -
                         5103.0 / 18656 * k5_);
-    if (const Evaluation e = evaluate(t + h, stage_, k6_); !e.ok()) return {e};
+    if (const Evaluation e = evaluate(t + h, stage_, k6_); !e.ok()) return e;
     next_ =
         y() + h * (35.0 / 384 * k1 + 500.0 / 1113 * k3_ + 125.0 / 192 * k4_ - 2187.0 / 6784 * k5_ + 11.0 / 84 * k6_);
     // Normalized before the last stage, which is the first of the next step.
     normalize(next_);
-    if (const Evaluation e = evaluate(t + h, next_, next_slope_); !e.ok()) return {e};
-    error_ = h * (71.0 / 57600 * k1 - 71.0 / 16695 * k3_ + 71.0 / 1920 * k4_ - 17253.0 / 339200 * k5_ +
-                  22.0 / 525 * k6_ - 1.0 / 40 * k7);
-    return {{}, error_ratio()};
+    return evaluate(t + h, next_, next_slope_);
+  }
+  Evaluation whole(double h) {
+    const auto taken = [](Eigen::ArrayXd& k) { return std::span(k.data(), static_cast<std::size_t>(k.size())); };
+    return whole_step(whole_dopri5, h, std::array{taken(k2_), taken(k3_), taken(k4_), taken(k5_), taken(k6_)});
   }
 
   void accepted(double h) override {

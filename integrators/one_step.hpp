@@ -4,8 +4,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +15,7 @@
 #include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/memory.hpp"
+#include "withy/core/plugin/staged_steps.hpp"
 
 namespace withy {
 
@@ -28,6 +31,7 @@ class OneStep : public Stepper, public ClosingStepper {
         previous_time_(start.time),
         equations_(equations),
         loops_(dynamic_cast<const ClosedLoops*>(&equations)),
+        staged_(dynamic_cast<const StagedSteps*>(&equations)),
         work_(equations.make_work()),
         closing_work_(loops_ != nullptr ? equations.make_work() : Work(0)),
         size_(static_cast<Eigen::Index>(equations.size())) {
@@ -133,6 +137,31 @@ class OneStep : public Stepper, public ClosingStepper {
     return e;
   }
 
+  /// Whether the equations make all stages of a step at once.
+  [[nodiscard]] bool staged() const { return staged_ != nullptr; }
+  /// Has them made for a step h from state_ with slope_: fills next_ and next_slope_. \param slopes those of the stages
+  /// between the first and the last; empty: not wanted
+  template <std::size_t count>
+  Evaluation whole_step(const StageTable& table, double h, const std::array<std::span<double>, count>& slopes) {
+    const auto n = static_cast<std::size_t>(size_);
+    std::array<std::span<double>, count + 1> all;
+    std::copy(slopes.begin(), slopes.end(), all.begin());
+    all[count] = {next_slope_.data(), n};
+    last_ = Last::elsewhere;
+    const StagedSteps::Outcome outcome = staged_->stages({.table = &table,
+                                                          .t = state_.time,
+                                                          .h = h,
+                                                          .latest = latest_,
+                                                          .y = state_.y,
+                                                          .slope = {slope_.data(), n},
+                                                          .slopes = all,
+                                                          .end = {next_.data(), n},
+                                                          .work = &work_});
+    statistics_.evaluations += outcome.evaluations;
+    sign_ = outcome.evaluation.determinant_sign;
+    return outcome.evaluation;
+  }
+
   /// The same with stiffness and damping implicit, see LinearlyImplicit.
   Evaluation evaluate_implicit(const LinearlyImplicit& linear, double t, const Eigen::ArrayXd& values,
                                const Eigen::ArrayXd& base, double delta, Eigen::ArrayXd& slope) const {
@@ -233,7 +262,8 @@ class OneStep : public Stepper, public ClosingStepper {
   }
 
   const EquationsOfMotion& equations_;
-  const ClosedLoops* loops_;  ///< null: the equations are a tree's
+  const ClosedLoops* loops_;   ///< null: the equations are a tree's
+  const StagedSteps* staged_;  ///< null: stages are evaluated one by one
   mutable Work work_, closing_work_;
   std::unique_ptr<Observation> energy_;  ///< where loops are closed
   ClosingRecord closing_, closed_;       ///< of the step being tried, and of all that were accepted

@@ -6,6 +6,18 @@
 namespace withy {
 namespace {
 
+/// The method with the slope at the end of its step, for equations that make whole steps.
+constexpr StageTable whole_rk4 = [] {
+  StageTable table;
+  table.stages = 5;
+  table.c = {0, 0.5, 0.5, 1, 1};
+  table.a[1] = {0.5};
+  table.a[2] = {0, 0.5};
+  table.a[3] = {0, 0, 1};
+  table.a[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+  return table;
+}();
+
 class Rk4Stepper final : public EqualSteps {
  public:
   Rk4Stepper(const EquationsOfMotion& equations, const State& start, double step)
@@ -13,6 +25,7 @@ class Rk4Stepper final : public EqualSteps {
 
  private:
   Attempt attempt(double h) override {
+    if (staged()) return {whole_step(whole_rk4, h, std::array<std::span<double>, 3>())};
     const double t = state_.time;
     const Eigen::ArrayXd& k1 = slope_;
     if (const Evaluation e = evaluate(t + h / 2, stage_ = y() + h / 2 * k1, k2_); !e.ok()) return {e};

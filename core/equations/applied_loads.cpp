@@ -23,6 +23,11 @@ AppliedLoads::AppliedLoads(const Model& model, Terms terms) : model_(model) {
   work_size_ = memory.size() + (paths_ != nullptr ? paths_->work_size() : 0);
 }
 
+bool AppliedLoads::only_timed() const {
+  return paths_ == nullptr && model_.layout().continuous == 0 && model_.layout().discrete == 0 &&
+         std::all_of(timed_.begin(), timed_.end(), [](const TimedLoad& load) { return load.effort != nullptr; });
+}
+
 void AppliedLoads::add(double t, std::span<const double> y, std::span<double> efforts, std::byte* work,
                        int only) const noexcept {
   const auto positions = y.first(model_.layout().positions);

@@ -35,6 +35,8 @@ class AppliedLoads {
                     std::byte* work) const noexcept;
   /// One a load of the model.
   [[nodiscard]] const std::vector<TimedLoad>& timed() const { return timed_; }
+  /// Whether these are all that loads do.
+  [[nodiscard]] bool only_timed() const;
   /// Sets the derivatives of the loads' continuous states in y_dot; false where one of them is not finite.
   bool rates(double t, std::span<const double> y, std::span<double> y_dot, std::byte* work) const noexcept;
   /// Frames at which loads act, load after load.

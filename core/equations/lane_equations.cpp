@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <utility>
 #include <vector>
 
+#include "withy/core/equations/lane_efforts.hpp"
 #include "withy/core/equations/sweep_equations.hpp"
 #include "withy/core/sweep/lanes/lane_sweep.hpp"
 #include "withy/core/sweep/symmetric/symmetric_sweep.hpp"
@@ -34,60 +35,27 @@ void scatter(const Lanes* from, std::size_t count, const std::array<double*, cas
     for (std::size_t i = 0; i < count; ++i) to[lane][i] = from[i][lane];
   }
 }
-
-/// Efforts that are functions of time alone, by lanes: found once for all lanes with one law that ask for one time, and
-/// not again where a lane asks for its last time again, as the stages of a Runge–Kutta step do. The number is that of
-/// the law whoever finds it.
-class TimedEfforts {
- public:
-  /// Another case is in the lane.
-  void put(std::size_t lane, const std::vector<TimedLoad>& loads) {
-    of_[lane].loads = &loads;
-    of_[lane].found.assign(loads.size(), {std::numeric_limits<double>::quiet_NaN(), nullptr});
-    of_[lane].values.resize(loads.size());
-    const auto timed = [](const TimedLoad& load) { return load.effort != nullptr; };
-    of_[lane].any = std::any_of(loads.begin(), loads.end(), timed);
+/// Where there is a place for them.
+void scatter_to_some(const Lanes* from, std::size_t count, const std::array<double*, cases_at_once>& to) {
+  for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
+    if (to[lane] == nullptr) continue;
+    for (std::size_t i = 0; i < count; ++i) to[lane][i] = from[i][lane];
   }
-  /// One number a load of the lane's case, at time t; nothing where no load is timed. \param calls those of this
-  /// evaluation: of a lane without one nobody knows whether its loads still are
-  std::span<const double> at(double t, std::size_t lane, std::span<LaneCall* const> calls) noexcept {
-    OfLane& own = of_[lane];
-    if (!own.any) return {};
-    for (std::size_t i = 0; i < own.values.size(); ++i) {
-      const TimedLoad& load = (*own.loads)[i];
-      if (load.effort == nullptr || own.found[i].t == t) continue;
-      const double* known = elsewhere(load.law, t, lane, calls);
-      own.values[i] = known != nullptr ? *known : load.effort->effort(t);
-      own.found[i] = {t, load.law};
-    }
-    return own.values;
-  }
+}
 
- private:
-  struct Found {
-    double t;  ///< [s]; NaN: at none
-    const void* law;
-  };
-  struct OfLane {
-    const std::vector<TimedLoad>* loads = nullptr;
-    std::vector<Found> found;
-    std::vector<double> values;
-    bool any = false;
-  };
-  /// What a lane before has found; null: none has.
-  [[nodiscard]] const double* elsewhere(const void* law, double t, std::size_t lane,
-                                        std::span<LaneCall* const> calls) const noexcept {
-    for (std::size_t other = 0; other < lane; ++other) {
-      if (calls[other] == nullptr) continue;
-      const OfLane& of = of_[other];
-      for (std::size_t i = 0; i < of.found.size(); ++i)
-        if (of.found[i].law == law && of.found[i].t == t) return &of.values[i];
-    }
-    return nullptr;
-  }
+template <class Space>
+std::string refusal_of(const One<Space>& one) {
+  if (!one.terms().products_of_speeds) return "the formulation drops products of speeds";
+  return sweep::LaneSweep<Space>::refusal(one.sweep());
+}
 
-  std::array<OfLane, cases_at_once> of_;
-};
+/// The lanes that have a call.
+template <class Call>
+LaneSet called(std::span<Call* const> calls) {
+  LaneSet set;
+  for (std::size_t lane = 0; lane < cases_at_once; ++lane) set.bits |= calls[lane] != nullptr ? 1U << lane : 0U;
+  return set;
+}
 
 template <class Space>
 class LanesOfSpace final : public LaneEquations {
@@ -95,25 +63,32 @@ class LanesOfSpace final : public LaneEquations {
   explicit LanesOfSpace(const One<Space>& first)
       : sweep_(first.sweep()),
         work_(sweep_.work_size()),
+        copies_(first.rates().copies()),
         positions_(first.layout().positions),
         speeds_(first.layout().speeds),
+        size_(first.size()),
         numbers_(positions_ + 3 * speeds_, Lanes(0)),
-        idle_(positions_ + speeds_, 0.0) {
-    equations_.fill(&first);
-    for (std::size_t lane = 0; lane < cases_at_once; ++lane) timed_.put(lane, first.loads().timed());
+        efforts_(speeds_, Lanes(0)),
+        start_(size_, Lanes(0)),
+        stage_(size_, Lanes(0)),
+        slopes_(StageTable::most * size_, Lanes(0)),
+        idle_(size_, 0.0) {
+    for (std::vector<double>& y : stages_) y.resize(size_);
+    for (std::vector<double>& y_dot : rates_) y_dot.resize(size_);
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane) take_in(lane, first);
   }
 
   [[nodiscard]] bool fits(const EquationsOfMotion& equations) const override {
     const auto* one = dynamic_cast<const One<Space>*>(&equations);
-    return one != nullptr && one->terms().products_of_speeds &&
-           sweep::LaneSweep<Space>::refusal(one->sweep()).empty() && one->layout().positions == positions_ &&
-           one->layout().speeds == speeds_ && sweep_.fits(one->sweep());
+    return one != nullptr && refusal_of(*one).empty() && one->layout().positions == positions_ &&
+           one->layout().speeds == speeds_ && one->size() == size_ && one->rates().copies() == copies_ &&
+           sweep_.fits(one->sweep());
   }
 
   void put(std::size_t lane, const EquationsOfMotion& equations) override {
-    equations_[lane] = &dynamic_cast<const One<Space>&>(equations);
-    sweep_.put(lane, equations_[lane]->sweep());
-    timed_.put(lane, equations_[lane]->loads().timed());
+    const auto& one = dynamic_cast<const One<Space>&>(equations);
+    sweep_.put(lane, one.sweep());
+    take_in(lane, one);
   }
 
   void derivatives(std::span<LaneCall* const> calls) noexcept override {
@@ -124,14 +99,12 @@ class LanesOfSpace final : public LaneEquations {
     std::array<double*, cases_at_once> applied, rates;
     std::array<const double*, cases_at_once> y;
     applied.fill(idle_.data()), rates.fill(idle_.data()), y.fill(idle_.data());
+    equations::LaneTimes times{{}, called(calls)};
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (calls[lane] == nullptr) continue;
       const LaneCall& call = *calls[lane];
-      const std::span<const double> timed = timed_.at(call.t, lane, calls);
-      const One<Space>& own = *equations_[lane];
-      applied[lane] = (timed.empty() ? own.applied(call.t, call.y, call.y_dot, *call.work)
-                                     : own.applied(call.t, call.y, call.y_dot, *call.work, timed))
-                          .data();
+      times.t[lane] = call.t;
+      applied[lane] = apply(lane, times, call.y, call.y_dot, *call.work).data();
       y[lane] = call.y.data();
       rates[lane] = call.y_dot.data() + n;
     }
@@ -152,21 +125,168 @@ class LanesOfSpace final : public LaneEquations {
     }
   }
 
+  void steps(std::span<LaneStep* const> calls) noexcept override {
+    [[maybe_unused]] const equations::DenormalsAreZero guard;
+    const LaneSet live = called(calls);
+    if (none(live)) return;
+    const StageTable* table = nullptr;
+    Lanes h(0);
+    std::array<const double*, cases_at_once> y, slope;
+    y.fill(idle_.data()), slope.fill(idle_.data());
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
+      if (!live.has(lane)) continue;
+      LaneStep& call = *calls[lane];
+      table = call.step.table;
+      h.set(lane, call.step.h);
+      y[lane] = call.step.y.data(), slope[lane] = call.step.slope.data();
+      call.outcome = {};
+    }
+    gather(y, size_, start_.data());
+    gather(slope, size_, slopes_.data());
+    LaneSet good = live;
+    for (std::size_t i = 1; i < table->stages && !none(good); ++i) good = stage(*table, i, h, calls, good);
+    std::array<double*, cases_at_once> to;
+    const auto tell = [&](const Lanes* from, std::size_t count, auto&& place) {
+      for (std::size_t lane = 0; lane < cases_at_once; ++lane) to[lane] = good.has(lane) ? place(lane) : nullptr;
+      scatter_to_some(from, count, to);
+    };
+    tell(stage_.data(), size_, [&](std::size_t lane) { return calls[lane]->step.end.data(); });
+    for (std::size_t i = 1; i < table->stages; ++i)
+      tell(slopes_.data() + i * size_, size_, [&](std::size_t lane) { return calls[lane]->step.slopes[i - 1].data(); });
+    tell(efforts_.data(), speeds_,
+         [&](std::size_t lane) { return equations_[lane]->efforts(*calls[lane]->step.work).data(); });
+  }
+
  private:
+  void take_in(std::size_t lane, const One<Space>& one) {
+    equations_[lane] = &one;
+    timed_.put(lane, one.loads().timed());
+    damping_.put(lane, one.elastic());
+    plain_.bits &= ~(1U << lane);
+    if (one.only_timed()) plain_.bits |= 1U << lane;
+  }
+
+  /// The efforts of a lane's case, in its own work memory.
+  std::span<double> apply(std::size_t lane, const equations::LaneTimes& times, std::span<const double> y,
+                          std::span<double> y_dot, Work& work) noexcept {
+    const std::span<const double> timed = timed_.at(lane, times);
+    const One<Space>& own = *equations_[lane];
+    return timed.empty() ? own.applied(times.t[lane], y, y_dot, work)
+                         : own.applied(times.t[lane], y, y_dot, work, timed);
+  }
+
+  /// Makes a stage of the steps of some lanes. \returns those of them where it is ok
+  LaneSet stage(const StageTable& table, std::size_t i, const Lanes& h, std::span<LaneStep* const> calls,
+                LaneSet live) noexcept {
+    go_to_stage(table, i, h);
+    Lanes* const y_dot = slopes_.data() + i * size_;
+    equations::LaneTimes times{{}, live};
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
+      if (!live.has(lane)) continue;
+      const StagedSteps::Step& step = calls[lane]->step;
+      times.t[lane] = std::min(step.t + table.c[i] * step.h, step.latest);
+    }
+    std::fill(efforts_.begin(), efforts_.end(), Lanes(0));
+    const LaneSet plain = live & plain_;
+    timed_.add(times, plain, efforts_.data());
+    const LaneSet others{live.bits & ~plain.bits};
+    if (!none(others)) apply_others(others, calls, times, y_dot);
+    std::array<Evaluation, cases_at_once> evaluations;
+    sweep_.accelerations(stage_.data(), stage_.data() + positions_, efforts_.data(), y_dot + positions_, work_.data(),
+                         evaluations.data());
+    // What is not finite is looked into case by case.
+    const LaneSet finite = finish_plain(y_dot), lost{plain.bits & ~finite.bits};
+    for (std::size_t lane = 0; lane < cases_at_once && !none(lost); ++lane)
+      if (lost.has(lane)) take_lane(stage_.data(), lane, stages_[lane]);
+    if (const LaneSet rest{others.bits | lost.bits}; !none(rest)) finish_rest(rest, calls, times, y_dot, evaluations);
+    LaneSet good;
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
+      if (!live.has(lane)) continue;
+      calls[lane]->outcome = {evaluations[lane], i};
+      if (evaluations[lane].ok()) good.bits |= 1U << lane;
+    }
+    return good;
+  }
+
+  /// The state of a stage: the sums go from the first slope to the last.
+  void go_to_stage(const StageTable& table, std::size_t i, const Lanes& h) noexcept {
+    std::array<std::pair<Lanes, const Lanes*>, StageTable::most> terms;
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < i; ++j)
+      if (table.a[i][j] != 0) terms[count++] = {h * Lanes(table.a[i][j]), slopes_.data() + j * size_};
+    for (std::size_t e = 0; e < size_; ++e) {
+      Lanes sum = start_[e];
+      for (std::size_t j = 0; j < count; ++j) sum += terms[j].first * terms[j].second[e];
+      stage_[e] = sum;
+    }
+  }
+
+  /// Rates of positions and the power of lanes whose loads are timed. \returns where all is finite
+  LaneSet finish_plain(Lanes* y_dot) noexcept {
+    const Lanes* const speeds = stage_.data() + positions_;
+    for (const equations::RateMap::Run& run : copies_)
+      for (std::size_t k = 0; k < run.count; ++k) y_dot[run.position + k] = speeds[run.speed + k];
+    Lanes power(0);
+    for (std::size_t k = 0; k < speeds_; ++k) power += efforts_[k] * speeds[k];
+    power += damping_.power(speeds);
+    for (std::size_t k = positions_ + speeds_; k + 1 < size_; ++k) y_dot[k] = Lanes(0);
+    y_dot[size_ - 1] = power;
+    Lanes nothing = power * Lanes(0);  // or NaN
+    for (std::size_t k = 0; k < speeds_; ++k) nothing += y_dot[positions_ + k] * Lanes(0);
+    return positive(nothing + Lanes(1));
+  }
+
+  /// Efforts and driven accelerations of lanes with loads of other kinds, case by case.
+  void apply_others(LaneSet others, std::span<LaneStep* const> calls, const equations::LaneTimes& times,
+                    Lanes* y_dot) noexcept {
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
+      if (!others.has(lane)) continue;
+      take_lane(stage_.data(), lane, stages_[lane]);
+      const std::span<const double> applied = apply(lane, times, stages_[lane], rates_[lane], *calls[lane]->step.work);
+      for (std::size_t k = 0; k < speeds_; ++k) efforts_[k].set(lane, applied[k]);
+      if (!sweep_.driven()) continue;
+      for (std::size_t k = 0; k < speeds_; ++k) y_dot[positions_ + k].set(lane, rates_[lane][positions_ + k]);
+    }
+  }
+
+  /// What some have beside their accelerations, case by case.
+  void finish_rest(LaneSet rest, std::span<LaneStep* const> calls, const equations::LaneTimes& times, Lanes* y_dot,
+                   std::array<Evaluation, cases_at_once>& evaluations) noexcept {
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
+      if (!rest.has(lane) || !evaluations[lane].ok()) continue;
+      const One<Space>& own = *equations_[lane];
+      Work& work = *calls[lane]->step.work;
+      const std::span<double> efforts = own.efforts(work);
+      for (std::size_t k = 0; k < speeds_; ++k) efforts[k] = efforts_[k][lane];
+      std::vector<double>& rates = rates_[lane];
+      for (std::size_t k = 0; k < speeds_; ++k) rates[positions_ + k] = y_dot[positions_ + k][lane];
+      const std::span<const double> y = stages_[lane];
+      evaluations[lane] =
+          own.finish(times.t[lane], y, y.subspan(positions_, speeds_), efforts, rates, evaluations[lane], work);
+      for (std::size_t k = 0; k < size_; ++k) y_dot[k].set(lane, rates[k]);
+    }
+  }
+
+  static void take_lane(const Lanes* from, std::size_t lane, std::vector<double>& to) noexcept {
+    for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k][lane];
+  }
+
   sweep::LaneSweep<Space> sweep_;
   Work work_;
-  TimedEfforts timed_;
-  std::size_t positions_, speeds_;
+  equations::TimedEfforts timed_;
+  equations::LaneDamping damping_;
+  std::vector<equations::RateMap::Run> copies_;
+  std::size_t positions_, speeds_, size_;
   std::vector<Lanes> numbers_;  ///< positions, speeds, efforts, accelerations
-  std::vector<double> idle_;    ///< state and results of lanes without a call; of no meaning
+  // Of whole steps.
+  std::vector<Lanes> efforts_, start_, stage_;
+  std::vector<Lanes> slopes_;                              ///< one after the other
+  std::array<std::vector<double>, cases_at_once> stages_;  ///< the stage's state where a case has it by itself
+  std::array<std::vector<double>, cases_at_once> rates_;   ///< and the rates there
+  std::vector<double> idle_;                               ///< state and results of lanes without a call; of no meaning
   std::array<const One<Space>*, cases_at_once> equations_{};  ///< those of a lane without a call may be gone
+  LaneSet plain_;                                             ///< lanes whose loads are functions of time alone
 };
-
-template <class Space>
-std::string refusal_of(const One<Space>& one) {
-  if (!one.terms().products_of_speeds) return "the formulation drops products of speeds";
-  return sweep::LaneSweep<Space>::refusal(one.sweep());
-}
 
 }  // namespace
 

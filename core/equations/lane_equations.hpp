@@ -8,6 +8,7 @@
 #include <string>
 
 #include "withy/core/plugin/equations.hpp"
+#include "withy/core/plugin/staged_steps.hpp"
 
 namespace withy {
 
@@ -18,6 +19,12 @@ struct LaneCall {
   std::span<double> y_dot;
   Work* work = nullptr;  ///< of the case's own equations; holds afterwards what their own evaluation would leave there
   Evaluation evaluation;
+};
+
+/// A whole step that a case asks for: StagedSteps::stages with its argument and its result.
+struct LaneStep {
+  StagedSteps::Step step;  ///< `work` is that of the case's own equations
+  StagedSteps::Outcome outcome;
 };
 
 /// Cases whose equations differ in numbers only, lane_count() of them. What a case gets does not depend, to the last
@@ -32,6 +39,9 @@ class LaneEquations {
   virtual void put(std::size_t lane, const EquationsOfMotion& equations) = 0;
   /// Evaluates the lanes that have a call; null: none. Allocates nothing. \param calls one a lane
   virtual void derivatives(std::span<LaneCall* const> calls) noexcept = 0;
+  /// Makes the stages of steps with one table, likewise. Between the stages nothing leaves the lanes but what loads
+  /// that are not functions of time alone ask for.
+  virtual void steps(std::span<LaneStep* const> calls) noexcept = 0;
 };
 
 /// The most lanes that any processor has.

@@ -221,6 +221,12 @@ class SweepEquations final : public EquationsOfMotion,
   [[nodiscard]] const Sweep& sweep() const { return sweep_; }
   [[nodiscard]] const Terms& terms() const { return terms_; }
   [[nodiscard]] const AppliedLoads& loads() const { return loads_; }
+  [[nodiscard]] const ElasticPart& elastic() const { return elastic_; }
+  [[nodiscard]] const RateMap& rates() const { return rates_; }
+  /// Whether efforts are those of loads that are functions of time alone, and nothing is driven.
+  [[nodiscard]] bool only_timed() const { return loads_.only_timed() && model_->motions().empty(); }
+  /// The efforts that the last evaluation with this memory has found.
+  std::span<double> efforts(Work& work) const noexcept { return efforts_.in(work); }
   /// The loads' efforts at (t, y), in the work memory; driven accelerations go into y_dot.
   std::span<double> applied(double t, std::span<const double> y, std::span<double> y_dot, Work& work) const noexcept {
     const std::span<double> efforts = efforts_.in(work);
