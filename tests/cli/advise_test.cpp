@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "withy/tests/cli/process.hpp"
 
@@ -22,8 +23,8 @@ Finished advise(const Folder& folder, std::vector<std::string> more, std::vector
   return withy(folder, first);
 }
 
-/// What a program writes to a terminal that its standard error is.
-std::string on_a_terminal(const Folder& folder, std::vector<std::string> words) {
+/// What `withy` writes to a terminal that its standard error is; nothing where there are no terminals.
+std::optional<std::string> on_a_terminal(const Folder& folder, std::vector<std::string> words) {
   const int ours = ::posix_openpt(O_RDWR | O_NOCTTY);
   if (ours < 0 || ::grantpt(ours) != 0 || ::unlockpt(ours) != 0) return {};
   const char* const terminal = ::ptsname(ours);
@@ -46,8 +47,9 @@ TEST(Advise, TellsWhatItHasFoundWhileItSearches) {
   const Folder folder;
   const std::vector<std::string> call = {
       "advise", "scenes/pendulum.yaml", "--formulations", "quadratic", "--integrators", "dopri5", "--accuracy", "1%"};
-  const std::string told = on_a_terminal(folder, call);
-  if (told.empty()) GTEST_SKIP() << "no terminals here";
+  const std::optional<std::string> on_terminal = on_a_terminal(folder, call);
+  if (!on_terminal) GTEST_SKIP() << "no terminals here";
+  const std::string& told = *on_terminal;
   EXPECT_THAT(told, HasSubstr(" s  the search takes 10 s of CPU time at most"));
   EXPECT_THAT(told, HasSubstr(" s  reference so far: "));
   EXPECT_THAT(told, HasSubstr(" s  so far: quadratic, dopri5 at "));
