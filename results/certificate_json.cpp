@@ -54,7 +54,10 @@ Json dropped_json(const Certificate& c) {
   for (const study::DroppedForces& d : c.dropped) {
     Json terms = Json::object();
     for (const study::DroppedTerm& t : d.terms) terms[t.term] = t.share;
-    groups[d.group] = {{"share", d.share}, {"terms", std::move(terms)}};
+    groups[d.group] = {{"share", d.share},
+                       {"spread", d.spread},
+                       {"moment", d.moment ? Json(*d.moment) : Json()},
+                       {"terms", std::move(terms)}};
   }
   return groups;
 }

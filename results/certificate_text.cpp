@@ -158,18 +158,25 @@ std::string energy_text(const study::Certificate& c) {
 /// What the formulation drops, in shares of the greatest term on the same coordinates.
 std::string dropped_text(const study::Certificate& c) {
   constexpr std::size_t named = 3;
-  constexpr double worth_naming = 1e-4;
+  constexpr double worth_naming = 1e-4, worth_a_spread = 0.1;
   std::string text;
   for (const study::DroppedForces& d : c.dropped) {
-    text += fmt::format("{}on {} {}", text.empty() ? "" : "; ", d.group, percent(d.share));
+    text += fmt::format("{}on {} ", text.empty() ? "" : "; ", d.group);
+    // The moment says more than a spread, which is great there.
+    if (!d.moment && d.spread > worth_a_spread * d.share) {
+      text += fmt::format("{:.2g} ± {}", 100 * d.share, percent(d.spread));
+    } else {
+      text += percent(d.share);
+    }
     std::string terms;
     for (std::size_t i = 0; i < std::min(named, d.terms.size()); ++i)
       if (d.terms[i].share > worth_naming)
         terms +=
             fmt::format("{}{} {}", terms.empty() ? "" : ", ", in_words(d.terms[i].term), percent(d.terms[i].share));
     if (!terms.empty()) text += fmt::format(" ({})", terms);
+    if (d.moment) text += fmt::format(", most of it at {:.4g} s alone", *d.moment);
   }
-  return text + " of the greatest force there";
+  return "of the greatest force there: " + text;
 }
 
 std::vector<std::string> plan_text(const study::Certificate& certificate) {

@@ -46,7 +46,7 @@ struct Certificate {
   double untruncated_drift = 0;        ///< RunSummary::untruncated_drift
   MomentumDrift momentum;              ///< RunSummary::momentum
   std::optional<DriftShares> shares;   ///< of these drifts; none where they cannot be told apart
-  std::vector<DroppedForces> dropped;  ///< along the coarse run of the estimate; empty where there is none
+  std::vector<DroppedForces> dropped;  ///< along the run; empty where there is no model up
   std::vector<BodyFamilies> families;  ///< of every body that has modes
   std::optional<double> rounding;      ///< relative error that rounding leaves the final accelerations; none: no digit
   std::size_t samples = 0;             ///< of validity

@@ -11,9 +11,6 @@
 namespace withy::study {
 namespace {
 
-/// The inertias that forces are weighed by are taken from an assembled M.
-constexpr std::size_t most_speeds = 300;
-
 /// Those of the ledger that a formulation of the whole tree drops; none where it keeps parts of groups.
 std::vector<Term> dropped_groups(const Prepared& prepared) {
   for (const BodyNode& body : prepared.model().bodies())
@@ -29,18 +26,24 @@ std::vector<Term> dropped_groups(const Prepared& prepared) {
   return {};
 }
 
-/// Squares of the sizes on each group of coordinates, summed over the states.
+/// Squares of the sizes of forces on a group of coordinates.
 struct Squares {
-  std::vector<double> all;
-  std::vector<std::array<double, terms_of_motion>> terms;
+  double all = 0;  ///< of all that is dropped
+  std::array<double, terms_of_motion> terms = {};
 };
 
-class Sizes {
+/// Those at one state.
+struct Look {
+  double time;
+  std::vector<Squares> groups;
+};
+
+class Looks {
  public:
-  Sizes(const Prepared& prepared, const Beyond& beyond, Registry& registry)
+  Looks(const Prepared& prepared, const Beyond& beyond, const std::vector<CoordinateGroup>& groups, Registry& registry)
       : prepared_(prepared),
         beyond_(beyond),
-        groups_(coordinate_groups(prepared.model().layout())),
+        groups_(groups),
         rates_(prepared.equations->size()),
         work_(prepared.equations->make_work()),
         beyond_work_(beyond.equations->make_work()) {
@@ -49,13 +52,11 @@ class Sizes {
     const State& start = prepared.scene.initial;
     const DenseSystem s = compiled_[0].equations->system(start.time, start.y);
     for (std::size_t i = 0; i < s.size; ++i) inertias_.push_back(s.mass[i * (s.size + 1)]);
-    squares_.all.resize(groups_.size());
-    squares_.terms.resize(groups_.size());
   }
-  /// \param weight the part of the time that the state stands for
-  void enter(const State& state, double weight) {
+  /// Nothing where the equations have no accelerations.
+  std::optional<Look> at(const State& state) {
     const Layout& layout = prepared_.model().layout();
-    if (!prepared_.equations->derivatives(state.time, state.y, rates_, work_).ok()) return;
+    if (!prepared_.equations->derivatives(state.time, state.y, rates_, work_).ok()) return {};
     const auto a = std::span<const double>(rates_).subspan(layout.positions, layout.speeds);
     std::vector<double> missing(layout.speeds), ours(layout.speeds);
     beyond_.equations->inverse_dynamics(state.y, a, missing, beyond_work_);
@@ -64,51 +65,87 @@ class Sizes {
     const TermLedger ledger(*compiled_[0].model, {compiled_[0].equations.get(), compiled_[1].equations.get(),
                                                   compiled_[2].equations.get(), compiled_[3].equations.get()});
     const TermForces forces = ledger.evaluate(state, a);
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      squares_.all[g] += weight * std::pow(size_of(missing, groups_[g], inertias_), 2);
+    Look look{state.time, {}};
+    for (const CoordinateGroup& group : groups_) {
+      Squares& squares = look.groups.emplace_back();
+      squares.all = std::pow(size_of(missing, group, inertias_), 2);
       for (std::size_t k = 0; k < terms_of_motion; ++k)
-        squares_.terms[g].at(k) += weight * std::pow(size_of(forces.at(k), groups_[g], inertias_), 2);
+        squares.terms.at(k) = std::pow(size_of(forces.at(k), group, inertias_), 2);
     }
-  }
-  [[nodiscard]] std::vector<DroppedForces> shares() const {
-    std::vector<DroppedForces> all;
-    const std::vector<Term> dropped = dropped_groups(prepared_);
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      const auto& terms = squares_.terms[g];
-      const double greatest = *std::max_element(terms.begin(), terms.end());
-      if (!(greatest > 0)) continue;
-      DroppedForces of{groups_[g].name, std::sqrt(squares_.all[g] / greatest), {}};
-      for (const Term term : dropped)
-        of.terms.push_back({std::string(name(term)), std::sqrt(terms.at(static_cast<std::size_t>(term)) / greatest)});
-      std::stable_sort(of.terms.begin(), of.terms.end(),
-                       [](const DroppedTerm& a, const DroppedTerm& b) { return a.share > b.share; });
-      all.push_back(std::move(of));
-    }
-    return all;
+    return look;
   }
 
  private:
   const Prepared& prepared_;
   const Beyond& beyond_;
-  std::vector<CoordinateGroup> groups_;
+  const std::vector<CoordinateGroup>& groups_;
   std::vector<Beyond> compiled_;  ///< what terms are the differences of
   std::vector<double> inertias_, rates_;
   Work work_, beyond_work_;
-  Squares squares_;
 };
+
+/// The integral over time by the trapezoidal rule, and which term is the greatest.
+struct Sum {
+  Squares squares;
+  std::size_t greatest = 0;  ///< index of the term
+  double most = 0;           ///< what one look has of it
+  double moment = 0;         ///< when [s]
+
+  [[nodiscard]] double of_greatest() const { return squares.terms.at(greatest); }
+  [[nodiscard]] double share(double square) const { return std::sqrt(square / of_greatest()); }
+};
+
+/// Over every `step`-th look.
+Sum sum_of(std::span<const Look> looks, std::size_t group, std::size_t step) {
+  const auto weight = [&](std::size_t i) {
+    const double before = looks[i >= step ? i - step : 0].time;
+    const double after = looks[i + step < looks.size() ? i + step : i].time;
+    return after > before ? after - before : 1;
+  };
+  Sum sum;
+  for (std::size_t i = 0; i < looks.size(); i += step) {
+    const Squares& s = looks[i].groups[group];
+    sum.squares.all += weight(i) * s.all;
+    for (std::size_t k = 0; k < terms_of_motion; ++k) sum.squares.terms.at(k) += weight(i) * s.terms.at(k);
+  }
+  const auto& terms = sum.squares.terms;
+  sum.greatest = static_cast<std::size_t>(std::max_element(terms.begin(), terms.end()) - terms.begin());
+  for (std::size_t i = 0; i < looks.size(); i += step) {
+    const double part = weight(i) * looks[i].groups[group].terms.at(sum.greatest);
+    if (part <= sum.most) continue;
+    sum.most = part;
+    sum.moment = looks[i].time;
+  }
+  return sum;
+}
+
+DroppedForces dropped_on(const std::string& group, const Sum& all, const Sum& half, const std::vector<Term>& dropped) {
+  DroppedForces of{.group = group, .share = all.share(all.squares.all)};
+  if (half.of_greatest() > 0) of.spread = std::abs(of.share - half.share(half.squares.all));
+  if (all.most > all.of_greatest() / 2) of.moment = all.moment;
+  for (const Term t : dropped)
+    of.terms.push_back({std::string(name(t)), all.share(all.squares.terms.at(static_cast<std::size_t>(t)))});
+  std::stable_sort(of.terms.begin(), of.terms.end(),
+                   [](const DroppedTerm& a, const DroppedTerm& b) { return a.share > b.share; });
+  return of;
+}
 
 }  // namespace
 
 std::vector<DroppedForces> dropped_terms(const Prepared& prepared, const Beyond& beyond, std::span<const State> along,
                                          Registry& registry) {
   const Model& model = prepared.model();
-  if (along.empty() || model.layout().speeds > most_speeds || !loops_of(model).empty()) return {};
-  Sizes sizes(prepared, beyond, registry);
-  // The trapezoidal rule: states are not equally far apart.
-  const std::size_t n = along.size();
-  for (std::size_t i = 0; i < n; ++i)
-    sizes.enter(along[i], n > 1 ? (along[std::min(i + 1, n - 1)].time - along[i > 0 ? i - 1 : 0].time) / 2 : 1);
-  return sizes.shares();
+  if (along.empty() || !loops_of(model).empty()) return {};
+  const std::vector<CoordinateGroup> groups = coordinate_groups(model.layout());
+  Looks looking(prepared, beyond, groups, registry);
+  std::vector<Look> looks;
+  for (const State& state : along)
+    if (std::optional<Look> look = looking.at(state)) looks.push_back(std::move(*look));
+  std::vector<DroppedForces> all;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    if (const Sum sum = sum_of(looks, g, 1); sum.of_greatest() > 0)
+      all.push_back(dropped_on(groups[g].name, sum, sum_of(looks, g, 2), dropped_groups(prepared)));
+  return all;
 }
 
 }  // namespace withy::study

@@ -16,7 +16,8 @@ constexpr std::size_t comparison_cost = 20;
 constexpr std::size_t samples_per_cost = 50;  ///< 2 %
 // Short runs are sampled more often, at intervals that grow with the run: a dozen samples by 1000 evaluations.
 constexpr std::size_t growth = 4, least_interval = 20;
-constexpr std::size_t most_kept = 16;
+/// States are kept for what is found by assembled mass matrices.
+constexpr std::size_t most_speeds_along = 300;
 
 }  // namespace
 
@@ -36,7 +37,7 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       product_(model.layout().speeds),
       cost_(motion_cost + (beyond != nullptr ? comparison_cost : 0)),
       held_{0, std::vector<double>(equations.size())},
-      kept_(most_kept * (1 + equations.size())) {
+      along_(beyond != nullptr && model.layout().speeds <= most_speeds_along ? equations.size() : 0) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
     const ModalShape& shape = node.body->shape();
@@ -102,24 +103,6 @@ void ValidityWatch::sample(const State& state) {
     look_at_energies(state, w);
   }
   if (beyond_ != nullptr) compare_accelerations(state);
-  keep(state);
-}
-
-/// Where there is no room, the state between whose neighbours the time is shortest makes it.
-void ValidityWatch::keep(const State& state) {
-  const std::size_t row = 1 + state.y.size();
-  if (kept_states_ == most_kept) {
-    std::size_t crowded = 1;
-    const auto between = [&](std::size_t i) { return kept_[(i + 1) * row] - kept_[(i - 1) * row]; };
-    for (std::size_t i = 2; i + 1 < most_kept; ++i)
-      if (between(i) < between(crowded)) crowded = i;
-    const auto at = [&](std::size_t i) { return kept_.begin() + static_cast<std::ptrdiff_t>(i * row); };
-    std::copy(at(crowded + 1), kept_.end(), at(crowded));
-    --kept_states_;
-  }
-  double* const to = kept_.data() + kept_states_++ * row;
-  *to = state.time;
-  std::copy(state.y.begin(), state.y.end(), to + 1);
 }
 
 void ValidityWatch::look_at_energies(const State& state, Watched& w) const {
@@ -189,8 +172,7 @@ void ValidityWatch::remember(Memory& memory) {
   memory(held_.time);
   memory(held_.y);
   memory(due_);
-  memory(kept_);
-  memory(kept_states_);
+  along_.remember(memory);
 }
 
 void ValidityWatch::finish(const State& trusted, bool sampled) {
@@ -206,11 +188,7 @@ void ValidityWatch::finish(const State& trusted, bool sampled) {
   const auto ratio = [](double a, double b) { return b > 0 ? std::sqrt(a / b) : 0; };
   validity_.neglected.rms = ratio(neglected_squares_, squares_);
   validity_.neglected.peak = ratio(neglected_greatest_, greatest_);
-  const std::size_t row = 1 + trusted.y.size();
-  for (std::size_t i = 0; i < kept_states_; ++i) {
-    const double* const from = kept_.data() + i * row;
-    validity_.along.push_back({*from, std::vector<double>(from + 1, from + row)});
-  }
+  validity_.along = along_.until(trusted, sampled);
 }
 
 }  // namespace withy

@@ -10,6 +10,7 @@
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/simulation/carried_frequency.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
+#include "withy/core/simulation/states_along.hpp"
 
 namespace withy {
 
@@ -47,7 +48,7 @@ struct Validity {
   std::vector<BodyValidity> bodies;  ///< the flexible ones
   std::size_t samples = 0;
   NeglectedAcceleration neglected;  ///< no samples where there was nothing to compare with
-  std::vector<State> along;         ///< at most sixteen of the samples, spread over the time of the run
+  std::vector<State> along;         ///< states of the run for looks at it afterwards, by `StatesAlong`
 };
 
 /// Samples one run. The interval is counted in evaluations of the equations of motion that steps make, which makes the
@@ -62,6 +63,7 @@ class ValidityWatch {
   /// known to be right up to there, for what lies behind the last state `trusted` [s] is no motion of the model.
   void observe(const State& state, std::size_t evaluations, double trusted) {
     if (bodies_.empty()) return;
+    along_.observe(state);
     if (due_ && held_.time <= trusted) settle();
     if (!due_ && evaluations >= next_) hold(state, evaluations);
   }
@@ -90,7 +92,6 @@ class ValidityWatch {
   void hold(const State& state, std::size_t evaluations);
   void sample(const State& state);
   void look_at_energies(const State& state, Watched& w) const;
-  void keep(const State& state);
   void compare_accelerations(const State& state);
 
   const Model& model_;
@@ -107,8 +108,7 @@ class ValidityWatch {
   std::size_t next_ = 0;  ///< evaluations at which the next sample is due
   State held_;            ///< to be sampled
   bool due_ = false;
-  std::vector<double> kept_;     ///< rows of time and y
-  std::size_t kept_states_ = 0;  ///< rows in use
+  StatesAlong along_;
 };
 
 }  // namespace withy

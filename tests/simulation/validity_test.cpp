@@ -206,6 +206,32 @@ TEST(Validity, watching_allocates_nothing_after_construction) {
   EXPECT_EQ(validity.samples, 21U);
 }
 
+// Steps of 1 ms: 10,000 of them need a stride of 256, so that 40 states are kept, and the end.
+TEST(Validity, states_along_a_run_are_evenly_spread_over_its_steps_and_survive_a_checkpoint) {
+  StatesAlong whole(1), resumed(1);
+  for (int i = 0; i < 10'000; ++i) {
+    const State state{1e-3 * i, {1.0 * i}};
+    whole.observe(state);
+    if (i == 5'000) {
+      Memory written;
+      whole.remember(written);
+      Memory read(written.numbers());
+      resumed.remember(read);
+    } else if (i > 5'000) {
+      resumed.observe(state);
+    }
+  }
+  const State end{10, {10'000}};
+  const std::vector<State> states = whole.until(end, true), again = resumed.until(end, true);
+  ASSERT_EQ(states.size(), 41U);
+  for (std::size_t i = 0; i + 1 < states.size(); ++i) EXPECT_EQ(states[i].y[0], 256.0 * static_cast<double>(i));
+  EXPECT_EQ(states.back().time, 10);
+  ASSERT_EQ(again.size(), states.size());
+  for (std::size_t i = 0; i < states.size(); ++i) EXPECT_EQ(again[i].y, states[i].y);
+  EXPECT_EQ(whole.until({5, {5'000}}, false).back().y[0], 4'864);
+  EXPECT_TRUE(StatesAlong(0).until(end, false).empty());
+}
+
 // At one state: rate over the lowest frequency of the loaded arm, energies of modes with K = omega^2 G, and what the
 // accelerations lack from the dense systems of both formulations.
 TEST(Validity, indicators_of_one_state_are_its_closed_forms) {

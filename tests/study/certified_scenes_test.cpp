@@ -259,7 +259,7 @@ void expect_error(const Certified& c, const Certified& tight, const Certified& u
 /// Sizes of what is dropped wherever there is a model up, by the dense reference of both at the same states.
 void expect_dropped(const Certified& c) {
   const std::vector<State>& along = c.run.summary.validity.along;
-  EXPECT_LE(along.size(), 16U);
+  EXPECT_LE(along.size(), StatesAlong::most + 1);
   if (!c.certificate().estimate) {
     EXPECT_FALSE(c.certificate().without_estimate.empty()) << "why there is no estimate";
   }
@@ -285,6 +285,7 @@ void expect_dropped(const Certified& c) {
   double share = 0;
   for (const DroppedForces& d : c.certificate().dropped) {
     EXPECT_TRUE(std::isfinite(d.share) && d.share >= 0) << d.group;
+    EXPECT_TRUE(std::isfinite(d.spread) && d.spread >= 0) << d.group;
     share = std::max(share, d.share);
     for (const DroppedTerm& t : d.terms) EXPECT_TRUE(std::isfinite(t.share) && t.share >= 0) << t.term;
   }
