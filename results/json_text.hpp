@@ -1,22 +1,19 @@
 /// \file
-/// JSON: as text, and of scene values and plugin specifications.
+/// JSON: as text, and of plugin specifications.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "withy/core/plugin/parameters.hpp"
-#include "withy/core/plugin/value.hpp"
+#include "withy/scene/value_json.hpp"
 
 namespace withy {
 
 /// The text of a result, indented, ending its line. Numbers that are not finite become null.
 std::string json_text(const nlohmann::ordered_json& json);
-/// Appends a member to an object that has none of that name, in constant time.
-void append_member(nlohmann::ordered_json& object, std::string key, nlohmann::ordered_json value);
 /// A value for people: a text without its quotes, a whole number without its fraction.
 std::string plain_text(const nlohmann::ordered_json& value);
-nlohmann::ordered_json value_json(const Value& value);
 /// A plugin's option: key, kind, unit, meaning, whether required, default, limits, choices, members.
 nlohmann::ordered_json parameter_json(const ParameterSpec& parameter);
 

@@ -18,16 +18,14 @@
 
 namespace withy {
 namespace {
-
 constexpr double most_exact_integer = 9007199254740992.0;  // 2^53
+}  // namespace
 
-bool in_range(double x, const ParameterSpec& spec) {
+bool Checker::in_range(double x, const ParameterSpec& spec) {
   if (!std::isfinite(x)) return false;
   if (spec.minimum && (spec.exclusive_minimum ? x <= *spec.minimum : x < *spec.minimum)) return false;
   return !spec.maximum || x <= *spec.maximum;
 }
-
-}  // namespace
 
 void Checker::key_error(const std::string& path, std::string message) const {
   diagnostics_.error(document_.key_place(path), std::move(message));
@@ -171,132 +169,6 @@ std::optional<Value> Checker::text(const Value& value, const ParameterSpec& spec
   }
   if (!refers(value.place(), value.text(), spec.refers)) return {};
   return value;
-}
-
-std::optional<Value> Checker::row(const Value& value, const ParameterSpec& spec) const {
-  if (value.kind() != Value::Kind::list || (spec.count != 0 && value.items().size() != spec.count)) {
-    got(value, spec);
-    return {};
-  }
-  Value result = Value::list({}, value.place());
-  bool good = true;
-  const bool alike = spec.kind != ParameterSpec::Kind::table;  // the items of a table have units of their own
-  for (std::size_t i = 0; i < value.items().size(); ++i) {
-    if (const Value& given = value.items()[i];
-        alike && given.kind() == Value::Kind::number && in_range(given.number(), spec)) {
-      result.items().push_back(given);
-      continue;
-    }
-    ParameterSpec item = spec;
-    item.kind = ParameterSpec::Kind::number;
-    if (spec.kind == ParameterSpec::Kind::table) {
-      item.unit = spec.columns[i];
-      item.columns.clear();
-      if (i == 0) item.minimum = item.maximum = {};
-    }
-    if (auto x = number(value.items()[i], item, item.unit)) {
-      result.items().push_back(std::move(*x));
-    } else {
-      good = false;
-    }
-  }
-  if (!good) return {};
-  return result;
-}
-
-std::optional<Value> Checker::table(const Value& value, const ParameterSpec& spec) const {
-  if (value.kind() != Value::Kind::list || value.items().empty()) {
-    got(value, spec);
-    return {};
-  }
-  Value result = Value::list({}, value.place());
-  bool good = true;
-  for (const Value& item : value.items()) {
-    auto r = row(item, spec);
-    if (!r) {
-      good = false;
-      continue;
-    }
-    if (good && !result.items().empty()) {
-      const double before = result.items().back().items()[0].number();
-      const double now = r->items()[0].number();
-      if (now <= before) {
-        diagnostics_.error(item.items()[0].place(),
-                           fmt::format("got {} after {}; the first column must increase", now, before));
-        good = false;
-      }
-    }
-    result.items().push_back(std::move(*r));
-  }
-  if (!good) return {};
-  return result;
-}
-
-std::optional<Value> Checker::matrix(const Value& value, const ParameterSpec& spec) const {
-  const auto is_row = [](const Value& item) { return item.kind() == Value::Kind::list && !item.items().empty(); };
-  if (value.kind() != Value::Kind::list || value.items().empty() || !is_row(value.items()[0])) {
-    got(value, spec);
-    return {};
-  }
-  ParameterSpec line = spec;
-  line.kind = ParameterSpec::Kind::vector;
-  line.count = value.items()[0].items().size();
-  Value result = Value::list({}, value.place());
-  bool good = true;
-  for (const Value& item : value.items()) {
-    auto r = row(item, line);
-    good = good && r.has_value();
-    if (good) result.items().push_back(std::move(*r));
-  }
-  if (!good) return {};
-  return result;
-}
-
-std::optional<Value> Checker::texts(const Value& value, const ParameterSpec& spec) const {
-  ParameterSpec one = spec;
-  one.kind = ParameterSpec::Kind::text;
-  if (value.kind() != Value::Kind::list) {
-    auto single = text(value, one);
-    if (!single) return {};
-    return Value::list({std::move(*single)}, value.place());
-  }
-  if (value.items().empty()) {
-    got(value, spec);
-    return {};
-  }
-  Value result = Value::list({}, value.place());
-  bool good = true;
-  for (const Value& item : value.items()) {
-    auto checked = text(item, one);
-    good = good && checked.has_value();
-    if (good) result.items().push_back(std::move(*checked));
-  }
-  if (!good) return {};
-  return result;
-}
-
-std::optional<Value> Checker::named(const Value& value, const ParameterSpec& spec) const {
-  if (!is_map(value, [&] { return expectation(spec); })) return {};
-  Value result = Value::map({}, value.place());
-  bool good = true;
-  for (const auto& [name, member] : value.members()) {
-    const std::string& path = member.place().path;
-    if (spec.refers == ParameterSpec::Refers::nothing) {
-      if (const std::string problem = name_problem(name); !problem.empty()) {
-        key_error(path, fmt::format("got name {}; {}", in_quotes(name), problem));
-        good = false;
-      }
-    } else if (!refers(document_.key_place(path), name, spec.refers)) {
-      good = false;
-    }
-    if (auto checked = check_members(member, spec.members)) {
-      result.members().emplace_back(name, std::move(*checked));
-    } else {
-      good = false;
-    }
-  }
-  if (!good) return {};
-  return result;
 }
 
 std::optional<Value> Checker::check_members(const Value& value, const std::vector<ParameterSpec>& members) const {

@@ -119,6 +119,7 @@ class Checker {
   std::optional<Value> named(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> matrix(const Value& value, const ParameterSpec& spec) const;
   std::optional<Value> texts(const Value& value, const ParameterSpec& spec) const;
+  static bool in_range(double x, const ParameterSpec& spec);
   bool refers(const Place& place, const std::string& name, ParameterSpec::Refers what) const;
   void unknown_plugin(const Value& id, const std::string& kind, const std::vector<std::string>& ids) const;
   void got(const Value& value, const ParameterSpec& spec, const std::string& why = {}) const;

@@ -6,6 +6,7 @@
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/orientation.hpp"
 #include "withy/scene/scene.hpp"
+#include "withy/scene/value_json.hpp"
 
 namespace withy {
 namespace {
@@ -21,30 +22,6 @@ constexpr const char* name_pattern = "^(?!world$)[A-Za-z_][A-Za-z0-9_-]{0,63}$";
 constexpr const char* output_pattern = "^(?!world$)[A-Za-z_][A-Za-z0-9_.@-]*$";  // those that say what they are, too
 
 Json reference(const char* definition) { return {{"$ref", std::string("#/$defs/") + definition}}; }
-
-Json from_value(const Value& value) {
-  switch (value.kind()) {
-    case Value::Kind::boolean:
-      return value.boolean();
-    case Value::Kind::number:
-      return value.number();
-    case Value::Kind::text:
-      return value.text();
-    case Value::Kind::null:
-      break;
-    case Value::Kind::list: {
-      Json list = Json::array();
-      for (const Value& item : value.items()) list.push_back(from_value(item));
-      return list;
-    }
-    case Value::Kind::map: {
-      Json map = Json::object();
-      for (const auto& [key, member] : value.members()) map[key] = from_value(member);
-      return map;
-    }
-  }
-  return nullptr;
-}
 
 /// Makes the schema of everything one registry can read.
 class SchemaWriter {
@@ -171,7 +148,7 @@ class SchemaWriter {
     Json json = kind(spec);
     const bool has_unit = !spec.unit.empty() && spec.unit != "1";
     json["description"] = spec.meaning + (has_unit ? fmt::format(" [{}]", spec.unit) : "");
-    if (spec.fallback) json["default"] = from_value(*spec.fallback);
+    if (spec.fallback) json["default"] = value_json(*spec.fallback);
     return json;
   }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <unordered_map>
 
 #include "withy/core/model/hinge_rates.hpp"
@@ -250,32 +249,6 @@ class StateReader {
   bool good_ = true;
 };
 
-/// Names of the continuous states of loads with their values, load after load.
-using NamedStates = std::vector<std::pair<std::string, double>>;
-std::vector<std::pair<std::string, NamedStates>> continuous_of(const Model& model, const State& state) {
-  std::vector<std::pair<std::string, NamedStates>> all;
-  for (const LoadSlot& slot : model.layout().continuous_slots) {
-    if (slot.count == 0) continue;
-    const LoadNode& load = model.loads()[slot.load];
-    all.emplace_back(load.name, NamedStates{});
-    for (std::size_t i = 0; i < slot.count; ++i)
-      all.back().second.emplace_back(load.continuous->name(i), state.y[slot.first + i]);
-  }
-  return all;
-}
-
-/// The inputs that a host has set, with their values at the state.
-std::vector<std::pair<std::string, double>> inputs_of(const Model& model, const State& state) {
-  std::vector<std::pair<std::string, double>> inputs;
-  for (const LoadNode& load : model.loads()) {
-    const InputPort* input = load.load->input();
-    const auto discrete = load.discrete(std::span(state.y));
-    if (const HostedMotion* motion = hosted_motion(*load.load); motion != nullptr && !motion->jumps()) continue;
-    if (input != nullptr && input->is_set(discrete)) inputs.emplace_back(load.name, input->value(state.time, discrete));
-  }
-  return inputs;
-}
-
 }  // namespace
 
 bool accept_quaternion(std::span<double> q, const Place& place, Diagnostics& diagnostics) {
@@ -308,86 +281,6 @@ State parse_state(std::string_view text, const std::string& file, const Model& m
 
 State read_state(const std::string& file, const Model& model, const State& start) {
   return parse_state(read_bytes(file), file, model, start);
-}
-
-Value state_value(const Model& model, const State& state) {
-  const Layout& layout = model.layout();
-  const auto part = [&](std::size_t first, std::size_t count) {
-    Value list = Value::list({});
-    for (std::size_t i = first; i < first + count; ++i) list.items().emplace_back(state.y[i]);
-    return list;
-  };
-  Value hinges = Value::map({}), bodies = Value::map({});
-  for (const Slot& s : layout.hinges) {
-    if (s.positions == 0) continue;
-    hinges.members().emplace_back(s.name, Value::map({{"position", part(s.position, s.positions)},
-                                                      {"rate", part(layout.positions + s.speed, s.speeds)}}));
-  }
-  for (const Slot& s : layout.bodies) {
-    bodies.members().emplace_back(s.name, Value::map({{"modes", part(s.position, s.positions)},
-                                                      {"rates", part(layout.positions + s.speed, s.speeds)}}));
-  }
-  Value all = Value::map({{"time", Value(state.time)},
-                          {"hinges", std::move(hinges)},
-                          {"bodies", std::move(bodies)},
-                          {"work", Value(state.y.back())}});
-  Value loads = Value::map({});
-  for (const auto& [load, states] : continuous_of(model, state)) {
-    Value own = Value::map({});
-    for (const auto& [name, value] : states) own.members().emplace_back(name, Value(value));
-    loads.members().emplace_back(load, std::move(own));
-  }
-  if (!loads.members().empty()) all.set("loads", std::move(loads));
-  Value inputs = Value::map({});
-  for (const auto& [name, value] : inputs_of(model, state)) inputs.members().emplace_back(name, Value(value));
-  if (!inputs.members().empty()) all.set("inputs", std::move(inputs));
-  if (const auto done = events_done(model, state)) {
-    Value locked = Value::list({}), settings = Value::map({}), events = Value::map({});
-    for (const std::string& name : done->locked) locked.items().emplace_back(name);
-    for (const auto& [name, setting] : done->settings) settings.members().emplace_back(name, Value(setting));
-    for (const auto& [name, numbers] : done->events) {
-      Value own = Value::map({});
-      for (const auto& [key, value] : numbers) own.members().emplace_back(key, Value(value));
-      events.members().emplace_back(name, std::move(own));
-    }
-    all.set("locked", std::move(locked));
-    all.set("settings", std::move(settings));
-    all.set("events", std::move(events));
-  }
-  return all;
-}
-
-std::string write_state(const Model& model, const State& state) {
-  const Layout& layout = model.layout();
-  const auto part = [&](std::size_t first, std::size_t count) {
-    const auto begin = state.y.begin() + static_cast<std::ptrdiff_t>(first);
-    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(count));
-  };
-  nlohmann::ordered_json json = {{"time", state.time},
-                                 {"hinges", nlohmann::ordered_json::object()},
-                                 {"bodies", nlohmann::ordered_json::object()},
-                                 {"work", state.y.back()}};
-  for (const Slot& s : layout.hinges) {
-    if (s.positions == 0) continue;
-    json["hinges"][s.name] = {{"position", part(s.position, s.positions)},
-                              {"rate", part(layout.positions + s.speed, s.speeds)}};
-  }
-  for (const Slot& s : layout.bodies) {
-    json["bodies"][s.name] = {{"modes", part(s.position, s.positions)},
-                              {"rates", part(layout.positions + s.speed, s.speeds)}};
-  }
-  for (const auto& [load, states] : continuous_of(model, state)) {
-    for (const auto& [name, value] : states) json["loads"][load][name] = value;
-  }
-  for (const auto& [name, value] : inputs_of(model, state)) json["inputs"][name] = value;
-  if (const auto done = events_done(model, state)) {
-    json["locked"] = done->locked;
-    json["settings"] = nlohmann::ordered_json::object();
-    for (const auto& [name, setting] : done->settings) json["settings"][name] = setting;
-    for (const auto& [name, numbers] : done->events)
-      for (const auto& [key, value] : numbers) json["events"][name][key] = value;
-  }
-  return json.dump();
 }
 
 }  // namespace withy
