@@ -1,5 +1,7 @@
 #include "withy/program/allocations.hpp"
 
+#include <malloc.h>
+
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
@@ -66,5 +68,13 @@ __attribute__((visibility("default"))) int posix_memalign(void** out, std::size_
 namespace withy::program {
 
 std::size_t allocations() { return count.load(std::memory_order_relaxed); }
+
+void keep_freed_memory() {
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+  constexpr int megabyte = 1 << 20;
+  ::mallopt(M_TRIM_THRESHOLD, 8 * megabyte);
+  ::mallopt(M_MMAP_THRESHOLD, megabyte);  // larger ones come and go by themselves
+#endif
+}
 
 }  // namespace withy::program

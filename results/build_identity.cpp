@@ -45,16 +45,12 @@ std::string build_id(const dl_phdr_info& object) {
   return {};
 }
 
-struct LoadedObject {
-  std::string file;
-  std::string id;
-};
-
-std::vector<LoadedObject> loaded_objects() {
-  std::vector<LoadedObject> all;
+/// Those of the moment: their names and headers stay as long as they are loaded.
+std::vector<dl_phdr_info> loaded_objects() {
+  std::vector<dl_phdr_info> all;
   ::dl_iterate_phdr(
       [](dl_phdr_info* object, std::size_t, void* to) {
-        static_cast<std::vector<LoadedObject>*>(to)->push_back({object->dlpi_name, build_id(*object)});
+        static_cast<std::vector<dl_phdr_info>*>(to)->push_back(*object);
         return 0;
       },
       &all);
@@ -75,13 +71,14 @@ BuildIdentity identify() {
   if (::dladdr(reinterpret_cast<const void*>(&build_identity), &here) != 0 && here.dli_fname != nullptr)
     self = here.dli_fname;
   std::vector<std::string> ids;
-  for (const LoadedObject& object : loaded_objects()) {
-    // The program itself has no name there.
-    const std::string file = object.file.empty() ? "/proc/self/exe" : object.file;
-    const std::string name = std::filesystem::path(file).filename().string();
+  for (const dl_phdr_info& object : loaded_objects()) {
+    const std::string file = object.dlpi_name;
+    const std::string name = file.substr(file.rfind('/') + 1);
     const bool computes = name.starts_with("libwithy-") && !name.starts_with("libwithy-hdf5");
-    const bool ours = computes || object.file == self || object.file.empty();
-    if (ours) ids.push_back(object.id.empty() ? hash_of(file) : object.id);
+    // The program itself has no name there.
+    if (!computes && file != self && !file.empty()) continue;
+    const std::string id = build_id(object);
+    ids.push_back(id.empty() ? hash_of(file.empty() ? "/proc/self/exe" : file) : id);
   }
   std::sort(ids.begin(), ids.end());
   std::string text;
@@ -97,12 +94,18 @@ const BuildIdentity& build_identity() {
 }
 
 std::string library_identity(const std::string& file) {
+  const std::vector<dl_phdr_info> objects = loaded_objects();
+  const auto id = [&](const std::string& path) {
+    const auto object = std::find_if(objects.begin(), objects.end(), [&](auto& o) { return o.dlpi_name == path; });
+    return object == objects.end() ? std::string() : build_id(*object);
+  };
+  std::string found = id(file);
+  if (!found.empty()) return found;
   std::error_code none;
-  const std::filesystem::path path = std::filesystem::canonical(file, none);
+  const std::string path = std::filesystem::canonical(file, none).string();
   if (none) return {};
-  for (const LoadedObject& object : loaded_objects())
-    if (object.file == path.string() && !object.id.empty()) return object.id;
-  return hash_of(path.string());
+  found = id(path);
+  return found.empty() ? hash_of(path) : found;
 }
 
 }  // namespace withy

@@ -16,6 +16,12 @@ OutputFile::OutputFile(std::filesystem::path path, bool append)
 
 void OutputFile::write(std::string_view text) {
   constexpr std::size_t many = 1 << 16;
+  if (text.size() >= many) {  // not copied
+    flush();
+    if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() || std::fflush(file_.get()) != 0) fail();
+    return;
+  }
+  if (waiting_.capacity() == 0) waiting_.reserve(many + (many >> 2));
   waiting_ += text;
   if (waiting_.size() >= many) flush();
 }
@@ -46,13 +52,17 @@ void OutputFile::close() {
 
 void OutputFile::fail() const { throw std::system_error(errno, std::generic_category(), path_.string()); }
 
-void write_file(const std::filesystem::path& path, std::string_view text) {
+void write_file(const std::filesystem::path& path, const std::function<void(OutputFile&)>& write) {
   std::filesystem::path part = path;
   part += ".part";
   OutputFile file(part);
-  file.write(text);
+  write(file);
   file.close();
   std::filesystem::rename(part, path);
+}
+
+void write_file(const std::filesystem::path& path, std::string_view text) {
+  write_file(path, [&](OutputFile& file) { file.write(text); });
 }
 
 void write_lasting_file(const std::filesystem::path& path, std::string_view text) {

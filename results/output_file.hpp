@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -42,7 +43,9 @@ class OutputFile {
 
 /// Writes a file whole or not at all: under another name first, then renamed. \throws std::system_error
 void write_file(const std::filesystem::path& path, std::string_view text);
-/// The same, made to last through a loss of power.
+/// The same of what is written part by part, and need not be in memory as a whole.
+void write_file(const std::filesystem::path& path, const std::function<void(OutputFile&)>& write);
+/// The same of a text, made to last through a loss of power.
 void write_lasting_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace withy

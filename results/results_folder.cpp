@@ -150,10 +150,11 @@ void ResultsFolder::lock() {
                                process.is_number() ? "process " + process.dump() : "another process"));
 }
 
-// In place, since the lock is the file's.
+// In place, since the lock is the file's. It is never cut to nothing: ext4 has a file that was written to the disk at
+// once, and the next run's cut would wait for that.
 void ResultsFolder::write(const std::string& text) const {
   const auto fail = [&] { throw std::system_error(errno, std::generic_category(), (path_ / name_of_record).string()); };
-  if (::ftruncate(file_, 0) != 0) fail();
+  if (::ftruncate(file_, static_cast<off_t>(text.size())) != 0) fail();
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t count = ::pwrite(file_, text.data() + done, text.size() - done, static_cast<off_t>(done));
     if (count < 0 && errno != EINTR) fail();

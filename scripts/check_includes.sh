@@ -21,7 +21,7 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
       may["core/" core[i]] = engine "|withy/core/(" seen ")/[^/]*"
     }
     may["core/sweep/symmetric"] = engine "|withy/core/(spatial|shape|plugin|model|deformation|tree|sweep|sweep/rod|sweep/symmetric)/[^/]*"
-    may["scene"] = inner "|withy/scene/.*|yaml-cpp/.*|nlohmann/.*|fmt/.*|spdlog/.*|(sys/)?[a-z]+[.]h"
+    may["scene"] = inner "|withy/scene/.*|yaml-cpp/.*|nlohmann/.*|fmt/.*|(sys/)?[a-z]+[.]h"
     may["study"] = inner "|withy/(scene|study|plugins/host)/.*|fmt/.*|boost/math/.*"
     may["results"] = inner "|withy/(scene|study|results)/.*|nlohmann/.*|fmt/.*|boost/crc.hpp|hdf5[.]h|(sys/)?[a-z]+[.]h"
     may["campaign"] = inner "|withy/(scene|study|results|campaign)/.*|nlohmann/.*|fmt/.*|boost/(crc[.]hpp|(math|random|context)/.*)|(sys/)?[a-z]+[.]h"

@@ -1,12 +1,11 @@
 #include "withy/apps/withy/engine.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <filesystem>
 #include <system_error>
 
+#include "withy/program/log.hpp"
 #include "withy/program/progress.hpp"
 #include "withy/scene/asked_outputs.hpp"
 
@@ -23,12 +22,16 @@ auto as_input(Function&& function) {
   }
 }
 
-/// Standard output carries results alone, so the log goes to standard error.
-void start_log(bool verbose) {
-  spdlog::set_default_logger(
-      std::make_shared<spdlog::logger>("withy", std::make_shared<spdlog::sinks::stderr_color_sink_mt>()));
-  spdlog::set_pattern("%T.%e %v");
-  spdlog::set_level(verbose ? spdlog::level::debug : spdlog::level::off);
+void log_what_there_is(const Engine& engine, const PluginHost& host) {
+  const auto& bodies = engine.model().bodies();
+  program::log(fmt::format("{}: {} bodies, {} generalized speeds", engine.scene().file, bodies.size(),
+                           engine.model().layout().speeds));
+  for (const PluginRecord& p : host.plugins()) {
+    const std::string file = p.file.string();
+    if (p.state == PluginRecord::State::loaded) program::log(fmt::format("plugin {}/{} from {}", p.kind, p.id, file));
+    if (p.state == PluginRecord::State::refused) program::log(fmt::format("refused {}: {}", file, p.reason));
+  }
+  for (const std::string& saving : engine.equations().savings()) program::log("compiled: " + saving);
 }
 
 std::vector<std::filesystem::path> plugin_folders(const CommonArguments& arguments) {
@@ -45,7 +48,6 @@ std::vector<std::filesystem::path> plugin_folders(const CommonArguments& argumen
 
 Plugins::Plugins(const CommonArguments& arguments)
     : host_(plugin_folders(arguments)), registry_(std::make_unique<Registry>()) {
-  start_log(arguments.verbose);
   host_.attach(*registry_);
 }
 
@@ -64,12 +66,7 @@ SceneValues read_values(const SceneArguments& arguments) {
 
 Engine::Engine(const SceneArguments& arguments, std::size_t threads)
     : plugins_(arguments), prepared_(study::prepare(read_values(arguments), registry())) {
-  spdlog::debug("{}: {} bodies, {} generalized speeds", scene().file, model().bodies().size(), model().layout().speeds);
-  for (const PluginRecord& p : plugins_.host().plugins()) {
-    if (p.state == PluginRecord::State::loaded) spdlog::debug("plugin {}/{} from {}", p.kind, p.id, p.file.string());
-    if (p.state == PluginRecord::State::refused) spdlog::debug("refused {}: {}", p.file.string(), p.reason);
-  }
-  for (const std::string& saving : equations().savings()) spdlog::debug("compiled: {}", saving);
+  if (arguments.verbose) log_what_there_is(*this, plugins_.host());
   const std::string refusal = threads > 1 ? study::use_threads(prepared_, threads) : "";
   if (!refusal.empty()) complain("--threads: one evaluates all: " + refusal);
 }

@@ -6,6 +6,7 @@
 #include "withy/apps/withy/commands.hpp"
 #include "withy/apps/withy/engine.hpp"
 #include "withy/core/plugin/floating_point.hpp"
+#include "withy/program/allocations.hpp"
 #include "withy/program/output.hpp"
 #include "withy/program/sudden_end.hpp"
 #include "withy/results/results_error.hpp"
@@ -31,6 +32,7 @@ ExitStatus fail(ExitStatus status, const std::string& why) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  withy::program::keep_freed_memory();
   withy::program::watch_for_sudden_ends();
   ExitStatus status = ExitStatus::environment;
   try {

@@ -12,9 +12,7 @@ std::unique_ptr<ResultsFolder> take_folder(const OutputArguments& arguments, con
 }
 
 Provenance provenance_of(const Scene& scene, const Plugins& plugins) {
-  std::map<std::string, std::string> versions;
-  for (const PluginRecord& record : plugins.host().plugins()) versions[record.file.string()] = record.version;
-  return withy::provenance_of(scene, std::move(versions));
+  return withy::provenance_of(scene, plugins.host().versions());
 }
 
 std::string default_folder(const SceneArguments& arguments, const std::string& what) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/dll/runtime_symbol_info.hpp>
-#include <map>
 #include <mutex>
 
 #include "withy/plugins/host/library.hpp"
@@ -23,6 +22,7 @@ class PluginHost::Catalogue {
   bool load(Registry& registry, std::string_view kind, std::string_view id);
   std::vector<std::string> ids(std::string_view kind) const;
   std::vector<PluginRecord> records() const;
+  std::map<std::string, std::string> versions() const;
 
  private:
   struct Library {
@@ -184,6 +184,13 @@ std::vector<PluginRecord> PluginHost::Catalogue::records() const {
   return records;
 }
 
+std::map<std::string, std::string> PluginHost::Catalogue::versions() const {
+  std::map<std::string, std::string> versions;
+  for (const Library& library : libraries_)
+    if (!library.manifest.provides.empty()) versions[library.library().string()] = library.manifest.version;
+  return versions;
+}
+
 PluginHost::PluginHost(const std::vector<fs::path>& directories)
     : catalogue_(std::make_shared<Catalogue>(directories)) {}
 
@@ -200,5 +207,7 @@ void PluginHost::attach(Registry& registry) const {
 }
 
 std::vector<PluginRecord> PluginHost::plugins() const { return catalogue_->records(); }
+
+std::map<std::string, std::string> PluginHost::versions() const { return catalogue_->versions(); }
 
 }  // namespace withy

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -48,6 +49,8 @@ class __attribute__((visibility("default"))) PluginHost {
 
   /// Everything found so far, sorted by kind and id, with what cannot be told apart from its file first.
   [[nodiscard]] std::vector<PluginRecord> plugins() const;
+  /// The version of each library that is found, by its file.
+  [[nodiscard]] std::map<std::string, std::string> versions() const;
 
  private:
   class Catalogue;

@@ -15,6 +15,9 @@ constexpr hsize_t chunk = 512;  ///< rows that are compressed together
 /// Up to so many columns others may read a file while it is written: the library goes over all of them again and again
 /// for that. 2,000 took six times as long as they take without, and the time grows with the square.
 constexpr std::size_t most_shared = 256;
+/// Up to so many numbers a table that is there whole is kept as it is, within what describes its datasets, which has
+/// checksums too. Compressed in parts it would be a third smaller, and a short run takes a sixth longer for it.
+constexpr hsize_t few = 1 << 16;
 using Clock = std::chrono::steady_clock;
 
 class Hdf5Writer final : public Hdf5Recorder {
@@ -28,39 +31,22 @@ class Hdf5Writer final : public Hdf5Recorder {
   }
 
   void begin(const std::vector<Column>& columns) override {
-    if (!names_.empty()) return;  // the table goes on
-    const Hdf5Handle how = part_by_part(), cache = one_part();
+    if (!columns_.empty()) return;  // the table goes on
+    for (const Column& column : columns) columns_.push_back({column_name(column.name), column.unit, {}});
     wide_ = columns.size() > most_shared;
-    const hsize_t none = 0, most = H5S_UNLIMITED;
-    const Hdf5Handle space(need(H5Screate_simple(1, &none, &most)), &H5Sclose);
-    for (const Column& column : columns) {
-      names_.push_back(column_name(column.name));
-      Hdf5Handle dataset(need(H5Dcreate2(file_, names_.back().c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, how, cache)),
-                         &H5Dclose);
-      write_text(dataset, "unit", column.unit.empty() ? "1" : column.unit);
-      if (wide_)
-        need(dataset.close());
-      else
-        columns_.push_back(std::move(dataset));
-    }
-    write_order();
     waiting_.assign(columns.size(), {});
-    if (!wide_) need(H5Fflush(file_, H5F_SCOPE_LOCAL));
   }
 
   void describe_frames(const std::vector<std::string>& frames) override {
-    for (std::size_t c = 0; c < frames.size(); ++c)
-      if (!frames[c].empty()) with_column(c, [&](hid_t column) { write_text(column, "frame", frames[c]); });
-    share();  // before the run, not with its first row: it writes all there is
+    for (std::size_t c = 0; c < frames.size(); ++c) columns_[c].frame = frames[c];
   }
 
   void row(std::span<const double> numbers) override {
-    share();
     for (std::size_t c = 0; c < waiting_.size(); ++c) waiting_[c].push_back(numbers[c]);
     // A part that is written before it is full is written again later: the longer a run, the more seldom.
-    const auto now = Clock::now();
     if ((rows_ + waiting_.front().size()) % chunk == 0) write_waiting();
-    if (shared_ && now - flushed_ > std::chrono::seconds(1) + (now - began_) / 20) flush();
+    const auto now = Clock::now();
+    if (!wide_ && now - flushed_ > std::chrono::seconds(1) + (now - began_) / 20) flush();
   }
 
   RecordMark mark() override {
@@ -70,8 +56,10 @@ class Hdf5Writer final : public Hdf5Recorder {
 
   void end() override {
     if (ended_) return;
+    // A run that is over before others could read it needs no room to grow, nor what lets them read meanwhile.
+    if (!begun_) begin_datasets(waiting_rows());
     write_waiting();
-    columns_.clear();
+    datasets_.clear();
     need(file_.close());
     // Attributes cannot be added while others may read. A file that is killed in this moment is refused by those that
     // open it, until h5clear; its rows are in it.
@@ -92,6 +80,10 @@ class Hdf5Writer final : public Hdf5Recorder {
   }
 
  private:
+  struct Described {
+    std::string name, unit, frame;
+  };
+
   /// Checks what a call gave.
   template <class Result>
   Result need(Result result) const {
@@ -109,9 +101,15 @@ class Hdf5Writer final : public Hdf5Recorder {
     return access;
   }
 
-  [[nodiscard]] Hdf5Handle part_by_part() const {
+  /// How datasets are kept, which have so many rows, or with 0 grow.
+  [[nodiscard]] Hdf5Handle part_by_part(hsize_t rows) const {
     Hdf5Handle how(need(H5Pcreate(H5P_DATASET_CREATE)), &H5Pclose);
-    need(H5Pset_chunk(how, 1, &chunk));
+    if (rows > 0 && rows * columns_.size() <= few) {
+      need(H5Pset_layout(how, H5D_COMPACT));
+      return how;
+    }
+    const hsize_t part = rows > 0 ? std::min(rows, chunk) : chunk;
+    need(H5Pset_chunk(how, 1, &part));
     need(H5Pset_shuffle(how));
     need(H5Pset_deflate(how, 1));
     need(H5Pset_fletcher32(how));
@@ -119,6 +117,26 @@ class Hdf5Writer final : public Hdf5Recorder {
     const double nothing = std::numeric_limits<double>::quiet_NaN();
     need(H5Pset_fill_value(how, H5T_NATIVE_DOUBLE, &nothing));
     return how;
+  }
+
+  /// The datasets, which have so many rows, or with 0 grow.
+  void begin_datasets(hsize_t rows) {
+    const Hdf5Handle how = part_by_part(rows), cache = one_part();
+    const hsize_t most = rows > 0 ? rows : H5S_UNLIMITED;
+    const Hdf5Handle space(need(H5Screate_simple(1, &rows, &most)), &H5Sclose);
+    for (const Described& column : columns_) {
+      Hdf5Handle dataset(need(H5Dcreate2(file_, column.name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, how, cache)),
+                         &H5Dclose);
+      write_text(dataset, "unit", column.unit.empty() ? "1" : column.unit);
+      if (!column.frame.empty()) write_text(dataset, "frame", column.frame);
+      if (wide_)
+        need(dataset.close());
+      else
+        datasets_.push_back(std::move(dataset));
+    }
+    write_order();
+    grows_ = rows == 0;
+    begun_ = true;
   }
 
   /// Columns are written from end to end: room for the part that is not full.
@@ -131,16 +149,16 @@ class Hdf5Writer final : public Hdf5Recorder {
   /// The names of the datasets in the order of the table, since a file lists them by the alphabet.
   void write_order() const {
     std::string names;
-    for (const std::string& name : names_) names += (names.empty() ? "" : "\n") + name;
+    for (const Described& column : columns_) names += (names.empty() ? "" : "\n") + column.name;
     write_text(file_, "columns", names);
   }
 
   /// A dataset that is open holds some 16 kB: of a wide table one is open at a time.
   template <class Use>
   void with_column(std::size_t c, Use&& use) const {
-    if (!wide_) return use(columns_[c]);
+    if (!wide_) return use(datasets_[c]);
     const Hdf5Handle cache = one_part();
-    Hdf5Handle column(need(H5Dopen2(file_, names_[c].c_str(), cache)), &H5Dclose);
+    Hdf5Handle column(need(H5Dopen2(file_, columns_[c].name.c_str(), cache)), &H5Dclose);
     use(column);
     need(column.close());
   }
@@ -156,13 +174,16 @@ class Hdf5Writer final : public Hdf5Recorder {
     need(H5Awrite(attribute, type, text.c_str()));
   }
 
+  [[nodiscard]] hsize_t waiting_rows() const { return waiting_.empty() ? 0 : waiting_.front().size(); }
+
   void write_waiting() {
-    const hsize_t count = waiting_.empty() ? 0 : waiting_.front().size(), first = rows_, size = rows_ + count;
+    share();
+    const hsize_t count = waiting_rows(), first = rows_, size = rows_ + count;
     if (count == 0) return;
     const Hdf5Handle memory(need(H5Screate_simple(1, &count, nullptr)), &H5Sclose);
     for (std::size_t c = 0; c < waiting_.size(); ++c) {
       with_column(c, [&](hid_t column) {
-        need(H5Dset_extent(column, &size));
+        if (grows_) need(H5Dset_extent(column, &size));
         const Hdf5Handle place(need(H5Dget_space(column)), &H5Sclose);
         need(H5Sselect_hyperslab(place, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
         need(H5Dwrite(column, H5T_NATIVE_DOUBLE, memory, place, H5P_DEFAULT, waiting_[c].data()));
@@ -172,9 +193,13 @@ class Hdf5Writer final : public Hdf5Recorder {
     rows_ = size;
   }
 
-  /// From here on datasets grow and nothing else changes: others may read.
+  /// From here on datasets grow and nothing else changes: others may read. Before the first rows: it writes all there
+  /// is.
   void share() {
-    if (shared_ || wide_) return;
+    if (begun_) return;
+    begin_datasets(0);
+    if (wide_) return;
+    need(H5Fflush(file_, H5F_SCOPE_LOCAL));
     need(H5Fstart_swmr_write(file_));
     shared_ = true;
   }
@@ -187,12 +212,14 @@ class Hdf5Writer final : public Hdf5Recorder {
 
   std::string name_;
   Hdf5Handle file_;
-  std::vector<std::string> names_;            ///< of the columns
-  std::vector<Hdf5Handle> columns_;           ///< none of a wide table
+  std::vector<Described> columns_;
+  std::vector<Hdf5Handle> datasets_;  ///< of the columns; none of a wide table, nor before the first are written
   std::vector<std::vector<double>> waiting_;  ///< of each column the numbers of the next rows
   std::map<std::string, std::string> descriptions_;
-  hsize_t rows_ = 0;   ///< that the library has been given
-  bool wide_ = false;  ///< too many columns for others to read while they are written
+  hsize_t rows_ = 0;    ///< that the library has been given
+  bool wide_ = false;   ///< too many columns for others to read while they are written
+  bool begun_ = false;  ///< there are datasets
+  bool grows_ = false;  ///< they get longer
   bool shared_ = false, ended_ = false;
   Clock::time_point began_ = Clock::now(), flushed_ = began_;
 };

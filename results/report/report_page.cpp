@@ -29,30 +29,28 @@ constexpr std::string_view study_before =
     R"(<script type="application/json" id="withy-data">{"format":"withy-study/1",)";
 constexpr std::string_view first_run = ",\"runs\":[\n", between = ",\n", after = "\n]}</script>";
 
-/// Adds JSON so that it cannot end the element it stands in.
-void add_guarded(std::string_view json, std::string& text) {
+/// Writes JSON so that it cannot end the element it stands in.
+void write_guarded(std::string_view json, OutputFile& page) {
   for (std::size_t at = 0; at < json.size();) {
     const std::size_t stop = std::min(json.find('<', at), json.size());
-    text += json.substr(at, stop - at);
-    if (stop < json.size()) text += "\\u003c";
+    page.write(json.substr(at, stop - at));
+    if (stop < json.size()) page.write("\\u003c");
     at = stop + 1;
   }
 }
 
 std::string dumped(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
 
-/// The page with what `add` puts in the place of its data.
-template <class Add>
-void write_page(const std::filesystem::path& file, std::size_t size, const Add& add) {
+/// The page with what `write_data` puts in the place of its data.
+void write_page(const std::filesystem::path& file, const std::function<void(OutputFile&)>& write_data) {
   const std::string_view empty = page();
   const std::size_t at = empty.find(place);
   if (at == std::string_view::npos) throw std::logic_error("this build holds no page for reports");
-  std::string text;
-  text.reserve(empty.size() + size);
-  text += empty.substr(0, at);
-  add(text);
-  text += empty.substr(at + place.size());
-  write_file(file, text);
+  write_file(file, [&](OutputFile& page) {
+    page.write(empty.substr(0, at));
+    write_data(page);
+    page.write(empty.substr(at + place.size()));
+  });
 }
 
 }  // namespace
@@ -64,28 +62,26 @@ std::string folder_text(const std::string& folder, const std::string& what) {
 }
 
 void write_report(const std::filesystem::path& file, const ReportContent& content) {
-  std::size_t size = 1000;
-  for (const std::string& run : content.runs) size += run.size() + run.size() / 16;
-  write_page(file, size, [&](std::string& text) {
-    text += before;
-    add_guarded(",\"title\":" + dumped(content.title), text);
-    text += ",\"reference\":" + std::to_string(content.reference);
-    text += first_run;
+  write_page(file, [&](OutputFile& page) {
+    page.write(before);
+    write_guarded(",\"title\":" + dumped(content.title), page);
+    page.write(",\"reference\":" + std::to_string(content.reference));
+    page.write(first_run);
     for (std::size_t i = 0; i < content.runs.size(); ++i) {
-      if (i > 0) text += between;
-      add_guarded(content.runs[i], text);
+      if (i > 0) page.write(between);
+      write_guarded(content.runs[i], page);
     }
-    text += after;
+    page.write(after);
   });
 }
 
 void write_study_page(const std::filesystem::path& file, const std::string& kind, const std::string& title,
                       const Json& data) {
   const std::string study = dumped({{"kind", kind}, {"title", title}, {"data", data}});
-  write_page(file, study.size() + study.size() / 16 + 1000, [&](std::string& text) {
-    text += study_before;
-    add_guarded(std::string_view(study).substr(1, study.size() - 2), text);
-    text += "}</script>";
+  write_page(file, [&](OutputFile& page) {
+    page.write(study_before);
+    write_guarded(std::string_view(study).substr(1, study.size() - 2), page);
+    page.write("}</script>");
   });
 }
 

@@ -18,7 +18,7 @@ endif()
 
 # What runs needs no package of headers, and headers bring nothing that runs.
 foreach(file ${libraries})
-  if(NOT file MATCHES "\\.so\\.[0-9.]+$|/plugins/[a-z]+\\.(so|plugin)$|libwithy-hdf5\\.so$")
+  if(NOT file MATCHES "\\.so\\.[0-9.]+$|/plugins/[a-z]+\\.(so|plugin)$|libwithy-hdf5\\.so$|lib/withy/licenses/[a-z0-9-]+\\.txt$")
     message(FATAL_ERROR "libwithy0 would have ${file}")
   endif()
 endforeach()
