@@ -83,21 +83,18 @@ PYTHON
 table_branches() {
   {
     printf 'links on each of two branches\tkind\tone thread [µs]\ttwo threads [µs]\tratio\thanding over [µs]\tpays from [µs]\n'
-    local kind n
-    for kind in rigid ruthless quadratic; do
-      for n in 10 100 1000; do
-        branches "$n" "$kind" >"$kept/branches.yaml"
-        "$bin/withy" bench "$kept/branches.yaml" --formulation "${kind/rigid/ruthless}" --threads 2 >"$kept/bench.json"
-        python3 - "$kept/bench.json" "$n" "$kind" <<'PYTHON'
+    each_kind_of_links branches branches_row 10 100 1000
+  } | record_table branches "scripts/benchmarks.sh branches"
+}
+branches_row() {
+  bench_links "$1" --threads 2
+  python3 - "$kept/bench.json" "$1" "$2" <<'PYTHON'
 import json, sys
 t = json.load(open(sys.argv[1]))["threads"]
-kind = sys.argv[3] if sys.argv[3] == "rigid" else f"`{sys.argv[3]}` beams, 2+2 modes"
-print(sys.argv[2], kind, *(f"{t[k] / 1e3:.1f}" for k in ("ns_one_thread", "ns_all_threads")), f"{t['ratio']:.2f}",
+kind = sys.argv[2] if sys.argv[2] == "rigid" else f"`{sys.argv[2]}` beams, 2+2 modes"
+print(sys.argv[3], kind, *(f"{t[k] / 1e3:.1f}" for k in ("ns_one_thread", "ns_all_threads")), f"{t['ratio']:.2f}",
       *(f"{t[k] / 1e3:.2g}" for k in ("ns_hand_over", "pays_from_ns")), sep="\t")
 PYTHON
-      done
-    done
-  } | record_table branches "scripts/benchmarks.sh branches"
 }
 
 # "TITLE INTEGRATOR rtol T  error E  S steps N evaluations C ms  R x"
@@ -140,22 +137,26 @@ PYTHON
 }
 chain() { chains "$1" "$2" world; }
 branches() { chains "$1" "$2" hub.left hub.right; }
+# each_kind_of_links CHAINS ACTION NUMBER...: ACTION KIND NUMBER for each kind of links and each number of them, with
+# their CHAINS in links.yaml.
+each_kind_of_links() {
+  local made_by=$1 action=$2 kind n
+  shift 2
+  for kind in rigid ruthless quadratic; do
+    for n in "$@"; do
+      "$made_by" "$n" "$kind" >"$kept/links.yaml"
+      "$action" "$kind" "$n"
+    done
+  done
+}
+# bench_links KIND OPTION...: bench.json of those of this kind.
+bench_links() { "$bin/withy" bench "$kept/links.yaml" --formulation "${1/rigid/ruthless}" "${@:2}" >"$kept/bench.json"; }
 
 # ns a link, least of three, and the exponents of growth of the whole.
 table_equal_links() {
   {
     printf 'chain\t10 links\t1000 links\t10,000 links\texponent from 10 to 1000\tto 10,000\n'
-    local kind n
-    for kind in rigid ruthless quadratic; do
-      for n in 10 1000 10000; do
-        chain "$n" "$kind" >"$kept/chain.yaml"
-        for _ in 1 2 3; do
-          "$bin/withy" bench "$kept/chain.yaml" --formulation "${kind/rigid/ruthless}" >"$kept/bench.json"
-          printf '%s\t%s\t' "$kind" "$n"
-          python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["ns_fastest_batch"])' "$kept/bench.json"
-        done
-      done
-    done | awk -F'\t' '
+    each_kind_of_links chain three_batches 10 1000 10000 | awk -F'\t' '
       { if (!(($1, $2) in ns) || $3 < ns[$1, $2]) ns[$1, $2] = $3 }
       END {
         split("rigid ruthless quadratic", kinds, " ")
@@ -165,6 +166,14 @@ table_equal_links() {
                  ns[k, 1000] / 1000, ns[k, 10000] / 10000, log(ns[k, 1000] / ns[k, 10]) / log(100),
                  log(ns[k, 10000] / ns[k, 10]) / log(1000) } }'
   } | record_table equal-links "scripts/benchmarks.sh equal-links"
+}
+
+three_batches() {
+  for _ in 1 2 3; do
+    bench_links "$1"
+    printf '%s\t%s\t' "$1" "$2"
+    python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["ns_fastest_batch"])' "$kept/bench.json"
+  done
 }
 
 # CPU time of a sweep, least of three, beside the same with one case at a time.
