@@ -105,8 +105,14 @@ class Asked {
 /// A case in a lane, with equations that leave its stack for each evaluation.
 class Lane final : public AskingEquations, public StagedSteps {
  public:
-  Lane(std::unique_ptr<CaseRun> run, const study::Control& control, std::size_t lane, Asked& asked)
-      : AskingEquations(*run->equations()), run_(std::move(run)), control_(control), lane_(lane), asked_(asked) {}
+  /// \param energies whether those of observations can be asked for
+  Lane(std::unique_ptr<CaseRun> run, const study::Control& control, std::size_t lane, bool energies, Asked& asked)
+      : AskingEquations(*run->equations()),
+        run_(std::move(run)),
+        control_(control),
+        lane_(lane),
+        energies_(energies),
+        asked_(asked) {}
 
   /// To the end.
   void run() noexcept {
@@ -118,9 +124,10 @@ class Lane final : public AskingEquations, public StagedSteps {
   }
   /// From now on it is told that it cannot go on.
   void abandon() { abandoned_ = true; }
-  /// What it has asked for, one of the two: an evaluation, or a whole step.
-  [[nodiscard]] LaneCall* call() { return asks_step_ ? nullptr : &call_; }
-  [[nodiscard]] LaneStep* step() { return asks_step_ ? &step_ : nullptr; }
+  /// What it has asked for, one of the three: an evaluation, energies, or a whole step.
+  [[nodiscard]] LaneCall* call() { return asks_ == Asks::evaluation ? &call_ : nullptr; }
+  [[nodiscard]] LaneEnergy* energy() { return asks_ == Asks::energies ? &energy_ : nullptr; }
+  [[nodiscard]] LaneStep* step() { return asks_ == Asks::step ? &step_ : nullptr; }
   /// Of a run that has ended. \throws what the run has thrown.
   CaseResult& result() {
     if (error_) std::rethrow_exception(error_);
@@ -134,7 +141,7 @@ class Lane final : public AskingEquations, public StagedSteps {
                          Work& work) const noexcept override {
     if (!abandoned_) {
       call_ = {t, y, y_dot, &work, {}};
-      asks_step_ = false;
+      asks_ = Asks::evaluation;
       asked_.answer(lane_);
     }
     return abandoned_ ? Evaluation{Evaluation::Outcome::nonfinite} : call_.evaluation;
@@ -142,22 +149,65 @@ class Lane final : public AskingEquations, public StagedSteps {
   Outcome stages(const Step& step) const noexcept override {
     if (!abandoned_) {
       step_.step = step;
-      asks_step_ = true;
+      asks_ = Asks::step;
       asked_.answer(lane_);
     }
     return abandoned_ ? Outcome{{Evaluation::Outcome::nonfinite}, 0} : step_.outcome;
   }
+  /// Of a run that is abandoned they do not matter.
+  [[nodiscard]] Energies ask_energies(std::span<const double> y) const noexcept {
+    if (!abandoned_) {
+      energy_.y = y;
+      asks_ = Asks::energies;
+      asked_.answer(lane_);
+    }
+    return energy_.energies;
+  }
+  [[nodiscard]] std::unique_ptr<Observation> make_observation() const override {
+    std::unique_ptr<Observation> own = AskingEquations::make_observation();
+    if (!energies_) return own;
+    return std::make_unique<SeenInLanes>(*this, std::move(own), size());
+  }
 
  private:
+  /// The case's own observation, but that energies are asked for.
+  class SeenInLanes final : public Observation {
+   public:
+    SeenInLanes(const Lane& lane, std::unique_ptr<Observation> own, std::size_t size)
+        : lane_(lane), own_(std::move(own)), y_(size) {}
+    void observe(std::span<const double> y) noexcept override {
+      std::copy(y.begin(), y.end(), y_.begin());
+      own_->observe(y);
+    }
+    [[nodiscard]] Energies energies() const noexcept override { return lane_.ask_energies(y_); }
+    [[nodiscard]] WorldPose frame_pose(int body, int frame) const noexcept override {
+      return own_->frame_pose(body, frame);
+    }
+    [[nodiscard]] WorldVelocity frame_velocity(int body, int frame) const noexcept override {
+      return own_->frame_velocity(body, frame);
+    }
+    [[nodiscard]] std::array<double, 3> deflection(int body, int frame) const noexcept override {
+      return own_->deflection(body, frame);
+    }
+
+   private:
+    const Lane& lane_;
+    std::unique_ptr<Observation> own_;
+    std::vector<double> y_;
+  };
+  enum class Asks { evaluation, energies, step };
+
   std::unique_ptr<CaseRun> run_;
   const study::Control& control_;
   std::size_t lane_;
+  bool energies_;
   Asked& asked_;
   std::exception_ptr error_;
   bool abandoned_ = false;
   mutable LaneCall call_;
+  mutable LaneEnergy energy_;
   mutable LaneStep step_;
-  mutable bool asks_step_ = false;
+  mutable Asks asks_ = Asks::evaluation;
 };
 
 class CaseLanes final : public Asked {
@@ -241,7 +291,7 @@ class CaseLanes final : public Asked {
 
   void begin(std::size_t lane, std::unique_ptr<CaseRun> run) {
     together_->put(lane, *run->equations());
-    lanes_[lane] = std::make_unique<Lane>(std::move(run), control_, lane, *this);
+    lanes_[lane] = std::make_unique<Lane>(std::move(run), control_, lane, together_->has_energies(), *this);
     stacks_.begin(lane, [this, lane] { lanes_[lane]->run(); });
     stacks_.go_to(Stacks::thread, lane);
     if (stacks_.ended(lane)) end(lane);
@@ -268,28 +318,41 @@ class CaseLanes final : public Asked {
     return i;
   }
 
-  /// Answers the lanes that have asked for an evaluation; where all ask for steps, those of one method.
-  void evaluate() noexcept {
-    std::array<LaneCall*, most_lanes> calls{};
-    std::array<LaneStep*, most_lanes> steps{};
-    const StageTable* table = nullptr;
+  /// What the lanes ask of one kind; null: a lane does not.
+  template <class Call>
+  using Calls = std::array<Call*, most_lanes>;
+  /// Answers those, and says whether there were any.
+  template <class Call>
+  bool answer_all(const Calls<Call>& calls, void (LaneEquations::*by)(std::span<Call* const>) noexcept) noexcept {
     bool any = false;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (calls[i] == nullptr) continue;
+      any = true;
+      lanes_[i]->waiting = false;
+    }
+    if (any) (*together_.*by)(std::span(calls).first(count_));
+    return any;
+  }
+
+  /// Answers the lanes that have asked for an evaluation, or else for energies; where all ask for steps, those of one
+  /// method.
+  void evaluate() noexcept {
+    Calls<LaneCall> calls{};
+    Calls<LaneEnergy> energies{};
+    Calls<LaneStep> steps{};
+    const StageTable* table = nullptr;
     for (std::size_t i = 0; i < count_; ++i) {
       if (lanes_[i] == nullptr) continue;
       calls[i] = lanes_[i]->call();
-      any = any || calls[i] != nullptr;
+      energies[i] = lanes_[i]->energy();
       LaneStep* const step = lanes_[i]->step();
       if (step == nullptr) continue;
       if (table == nullptr) table = step->step.table;
       if (step->step.table == table) steps[i] = step;
     }
-    for (std::size_t i = 0; i < count_; ++i)
-      if (any ? calls[i] != nullptr : steps[i] != nullptr) lanes_[i]->waiting = false;
-    if (any) {
-      together_->derivatives(std::span(calls).first(count_));
-    } else {
-      together_->steps(std::span(steps).first(count_));
-    }
+    if (answer_all(calls, &LaneEquations::derivatives)) return;
+    if (answer_all(energies, &LaneEquations::energies)) return;
+    answer_all(steps, &LaneEquations::steps);
   }
 
   void end(std::size_t lane) {

@@ -62,6 +62,7 @@ class LanesOfSpace final : public LaneEquations {
  public:
   explicit LanesOfSpace(const One<Space>& first)
       : sweep_(first.sweep()),
+        energies_(lane_energies(first.observed())),
         work_(sweep_.work_size()),
         copies_(first.rates().copies()),
         positions_(first.layout().positions),
@@ -82,12 +83,14 @@ class LanesOfSpace final : public LaneEquations {
     const auto* one = dynamic_cast<const One<Space>*>(&equations);
     return one != nullptr && refusal_of(*one).empty() && one->layout().positions == positions_ &&
            one->layout().speeds == speeds_ && one->size() == size_ && one->rates().copies() == copies_ &&
-           sweep_.fits(one->sweep());
+           sweep_.fits(one->sweep()) &&
+           (energies_ != nullptr ? energies_->fits(one->observed()) : lane_energies(one->observed()) == nullptr);
   }
 
   void put(std::size_t lane, const EquationsOfMotion& equations) override {
     const auto& one = dynamic_cast<const One<Space>&>(equations);
     sweep_.put(lane, one.sweep());
+    if (energies_ != nullptr) energies_->put(lane, one.observed());
     take_in(lane, one);
   }
 
@@ -156,6 +159,9 @@ class LanesOfSpace final : public LaneEquations {
     tell(efforts_.data(), speeds_,
          [&](std::size_t lane) { return equations_[lane]->efforts(*calls[lane]->step.work).data(); });
   }
+
+  [[nodiscard]] bool has_energies() const override { return energies_ != nullptr; }
+  void energies(std::span<LaneEnergy* const> calls) noexcept override { energies_->find(calls); }
 
  private:
   void take_in(std::size_t lane, const One<Space>& one) {
@@ -272,6 +278,7 @@ class LanesOfSpace final : public LaneEquations {
   }
 
   sweep::LaneSweep<Space> sweep_;
+  std::unique_ptr<LaneEnergies> energies_;  ///< null: there are none
   Work work_;
   equations::TimedEfforts timed_;
   equations::LaneDamping damping_;

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "withy/core/kinematics/lane_energies.hpp"
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/staged_steps.hpp"
 
@@ -42,6 +43,10 @@ class LaneEquations {
   /// Makes the stages of steps with one table, likewise. Between the stages nothing leaves the lanes but what loads
   /// that are not functions of time alone ask for.
   virtual void steps(std::span<LaneStep* const> calls) noexcept = 0;
+  /// Whether these have energies in lanes, which is a matter of each case alone.
+  [[nodiscard]] virtual bool has_energies() const = 0;
+  /// Finds what Observation::energies tells of a state, likewise.
+  virtual void energies(std::span<LaneEnergy* const> calls) noexcept = 0;
 };
 
 /// The most lanes that any processor has.

@@ -201,8 +201,10 @@ class SweepEquations final : public EquationsOfMotion,
   }
   void normalize(std::span<double> y) const noexcept override { rates_.normalize(y); }
 
-  std::unique_ptr<Observation> make_observation() const override {
-    return observed_([this] { return observed_model(*model_, terms_); }).make_observation();
+  std::unique_ptr<Observation> make_observation() const override { return observed().make_observation(); }
+  /// What its observations are made of.
+  [[nodiscard]] const ObservedModel& observed() const {
+    return observed_([this] { return observed_model(*model_, terms_); });
   }
   std::unique_ptr<SensedState> make_sensed_state(std::span<const SectionPlace> sections) const override {
     return make_sensing(std::make_unique<const sensed::Plan>(*model_, terms_, sections), *this, loads_);

@@ -13,43 +13,56 @@ template <class Space>
 struct PartMomentum {
   typename Space::Twist h = Space::Twist::zero();             ///< (∫ r × v; ∫ v)
   typename Space::Position moment = Space::Position::zero();  ///< ∫ r
-  double mass = 0, kinetic = 0;
+  typename Space::Scalar mass = 0, kinetic = 0;
 };
 
-/// Adds four particles: r, their velocities v beside those that V.v gives; both times the weights of the mass. `m`:
-/// the weights of the constant function.
-inline void add_particles(const Planar::Twist& V, const Pack& m, const Pack* r, const Pack* v,
-                          PartMomentum<Planar>& part) {
-  const Pack w = spread(V.w);
-  const Pack x = v[0] + m * spread(V.x) - w * r[1], y = v[1] + m * spread(V.y) + w * r[0];
+/// Adds a group of particles: r, their velocities v beside those that V.v gives; both times the weights of the mass.
+/// `m`: the weights of the constant function.
+template <class Space>
+requires(Space::angular == 1) inline void add_particles(const typename Space::Twist& V, const typename Space::Group& m,
+                                                        const typename Space::Group* r, const typename Space::Group* v,
+                                                        PartMomentum<Space>& part) {
+  const auto w = spread(V.w);
+  const auto x = v[0] + m * spread(V.x) - w * r[1], y = v[1] + m * spread(V.y) + w * r[0];
   part.kinetic += 0.5 * sum(x * x + y * y);
-  part.h += Planar::Twist{sum(r[0] * y - r[1] * x), sum(m * x), sum(m * y)};
-  part.moment += Planar::Position{sum(m * r[0]), sum(m * r[1])};
+  part.h += typename Space::Twist{sum(r[0] * y - r[1] * x), sum(m * x), sum(m * y)};
+  part.moment += typename Space::Position{sum(m * r[0]), sum(m * r[1])};
 }
 
-inline void add_particles(const Spatial::Twist& V, const Pack& m, const Pack* r, const Pack* v,
-                          PartMomentum<Spatial>& part) {
-  const double wx = V.w[0], wy = V.w[1], wz = V.w[2];
-  const Pack x = v[0] + m * spread(V.v[0]) + wy * r[2] - wz * r[1];
-  const Pack y = v[1] + m * spread(V.v[1]) + wz * r[0] - wx * r[2];
-  const Pack z = v[2] + m * spread(V.v[2]) + wx * r[1] - wy * r[0];
+template <class Space>
+requires(Space::angular == 3) inline void add_particles(const typename Space::Twist& V, const typename Space::Group& m,
+                                                        const typename Space::Group* r, const typename Space::Group* v,
+                                                        PartMomentum<Space>& part) {
+  using Triple = typename Space::Triple;
+  const auto wx = V.w[0], wy = V.w[1], wz = V.w[2];
+  const auto x = v[0] + m * spread(V.v[0]) + wy * r[2] - wz * r[1];
+  const auto y = v[1] + m * spread(V.v[1]) + wz * r[0] - wx * r[2];
+  const auto z = v[2] + m * spread(V.v[2]) + wx * r[1] - wy * r[0];
   part.kinetic += 0.5 * sum(x * x + y * y + z * z);
-  part.h += Spatial::Twist{Triple(sum(r[1] * z - r[2] * y), sum(r[2] * x - r[0] * z), sum(r[0] * y - r[1] * x)),
-                           Triple(sum(m * x), sum(m * y), sum(m * z))};
+  part.h += typename Space::Twist{Triple(sum(r[1] * z - r[2] * y), sum(r[2] * x - r[0] * z), sum(r[0] * y - r[1] * x)),
+                                  Triple(sum(m * x), sum(m * y), sum(m * z))};
   part.moment += Triple(sum(m * r[0]), sum(m * r[1]), sum(m * r[2]));
 }
 
-/// Generalized particles: the constant function is the first lane of the first pack.
-template <class Space>
-inline void add_mass(const sweep::MassTable<Space>& table, int modes, const double* q, const double* q_dot,
-                     const typename Space::Twist& V, Pack* P, PartMomentum<Space>& part) {
+/// The constant function, whose only weight is that of the first particle.
+inline Pack constant_function(double root_mass) {
   Pack m = spread(0.0);
-  set_lane(m, 0, table.root_mass);
+  set_lane(m, 0, root_mass);
+  return m;
+}
+inline Lanes constant_function(const Lanes& root_mass) { return root_mass; }
+
+/// Generalized particles.
+template <class Space>
+inline void add_mass(const sweep::MassTable<Space>& table, int modes, const typename Space::Scalar* q,
+                     const typename Space::Scalar* q_dot, const typename Space::Twist& V, typename Space::Group* P,
+                     PartMomentum<Space>& part) {
+  typename Space::Group m = constant_function(table.root_mass);
   for (std::size_t k = 0; k < table.packs; ++k) {
     const sweep::ParticleMotion<Space, any_count> x(table.data.data() + k * table.stride, table.second_order, modes, q,
                                                     q_dot, P);
-    add_particles(V, m, x.r, x.v, part);
-    m = spread(0.0);
+    add_particles<Space>(V, m, x.r, x.v, part);
+    m = spread(typename Space::Scalar(0));
   }
   part.mass += table.root_mass * table.root_mass;
 }
@@ -64,11 +77,11 @@ inline void add_turning(const Pack& J, const sweep::PackVector& t, const sweep::
   part.h.w += Triple(sum(roll * t[0]), sum(roll * t[1]), sum(roll * t[2]));
 }
 
-/// θ = Ψq + ½qᵀΘq and θ̇ of four sections, `A` components each.
-template <int A>
-inline void section_angles(const Pack* psi, bool second_order, int n, const double* q, const double* q_dot, Pack* theta,
-                           Pack* rate) {
-  for (int c = 0; c < A; ++c) theta[c] = rate[c] = spread(0.0);
+/// θ = Ψq + ½qᵀΘq and θ̇ of a group of sections, `A` components each.
+template <int A, class Group, class S>
+inline void section_angles(const Group* psi, bool second_order, int n, const S* q, const S* q_dot, Group* theta,
+                           Group* rate) {
+  for (int c = 0; c < A; ++c) theta[c] = rate[c] = spread(S(0));
   for (int i = 0; i < n; ++i) {
     for (int c = 0; c < A; ++c) {
       theta[c] += psi[A * i + c] * spread(q[i]);
@@ -76,11 +89,11 @@ inline void section_angles(const Pack* psi, bool second_order, int n, const doub
     }
   }
   if (!second_order) return;
-  const Pack* second = psi + A * n;
+  const Group* second = psi + A * n;
   for (int i = 0; i < n; ++i) {
     for (int j = i; j < n; ++j, second += A) {
-      const Pack product = spread((i == j ? 0.5 : 1.0) * q[i] * q[j]);
-      const Pack change = spread(i == j ? q[i] * q_dot[i] : q_dot[i] * q[j] + q[i] * q_dot[j]);
+      const Group product = spread((i == j ? 0.5 : 1.0) * q[i] * q[j]);
+      const Group change = spread(i == j ? q[i] * q_dot[i] : q_dot[i] * q[j] + q[i] * q_dot[j]);
       for (int c = 0; c < A; ++c) {
         theta[c] += second[c] * product;
         rate[c] += second[c] * change;
@@ -89,13 +102,14 @@ inline void section_angles(const Pack* psi, bool second_order, int n, const doub
   }
 }
 
-inline void add_sections(const sweep::RotaryTable<Planar>& table, int modes, const double* q, const double* q_dot,
-                         const Planar::Twist& V, PartMomentum<Planar>& part) {
+template <class S>
+inline void add_sections(const sweep::RotaryTable<PlanarOf<S>>& table, int modes, const S* q, const S* q_dot,
+                         const typename PlanarOf<S>::Twist& V, PartMomentum<PlanarOf<S>>& part) {
   for (std::size_t k = 0; k < table.packs; ++k) {
-    Pack theta, rate;
+    GroupOf<S> theta, rate;
     section_angles<1>(table.fields.data() + k * table.stride, table.second_order, modes, q, q_dot, &theta, &rate);
     rate += spread(V.w);
-    const Pack roll = table.axes[k].J * rate;
+    const GroupOf<S> roll = table.axes[k].J * rate;
     part.kinetic += 0.5 * sum(roll * rate);
     part.h.w += sum(roll);
   }
@@ -134,7 +148,7 @@ inline void add_rod(const sweep::RodKinematics<Planar>& rod, const sweep::RodWor
       for (int i = 0; i < n; ++i) v[c] += y[(Rod::P + 2 * i + c) * packs] * spread(q_dot[i]);
       v[c] = m * v[c];
     }
-    add_particles(V, m, r, v, part);
+    add_particles<Planar>(V, m, r, v, part);
   }
   part.mass += rod.integrals.mass;
 }
@@ -157,7 +171,7 @@ inline void add_rod(const sweep::RodKinematics<Spatial>& rod, const sweep::RodWo
       }
       v[c] = m * v[c];
     }
-    add_particles(V, m, r, v, part);
+    add_particles<Spatial>(V, m, r, v, part);
     if (rod.inertia.empty()) continue;
     const Pack* t = work.slope + Rod::axis(n) * packs + k;
     add_turning(rod.inertia[static_cast<std::size_t>(k)], {t[0], t[packs], t[2 * packs]}, omega, V, part);

@@ -147,7 +147,6 @@ void Tree<Space>::add_node(const NodeSpec& spec, StrainOrder order, std::size_t 
   node.rod_work = rod_packs;
   stations += node.stations.size();
   rod_packs += sweep::rod_work(node.rod, node.modes);
-  most_modes = std::max(most_modes, static_cast<std::size_t>(node.modes));
   const auto add = [&](const Fixed<Space>& fixed) {
     height_moment += fixed.part.mass * fixed.height.frame + fixed.height.moment;
   };

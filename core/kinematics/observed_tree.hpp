@@ -41,13 +41,13 @@ class Tree final : public ObservedModel, public std::enable_shared_from_this<Tre
 
   std::vector<Node<Space>> nodes;
   std::vector<BodyAxes> bodies;
-  Pose plane;                  ///< its axes in the world; the world's own where the tree is not planar
-  Vector3 gravity;             ///< in these axes
-  double height_moment = 0;    ///< Σ m z [kg m]; in a plane alone
-  double fixed_potential = 0;  ///< of the weight of bodies fixed to the world [J]
-  std::size_t size = 0;        ///< of State::y
-  std::size_t positions = 0;   ///< of these
-  std::size_t stations = 0, rod_packs = 0, most_modes = 0;
+  Pose plane;                               ///< its axes in the world; the world's own where the tree is not planar
+  Vector3 gravity;                          ///< in these axes
+  double height_moment = 0;                 ///< Σ m z [kg m]; in a plane alone
+  double fixed_potential = 0;               ///< of the weight of bodies fixed to the world [J]
+  std::size_t size = 0;                     ///< of State::y
+  std::size_t positions = 0;                ///< of these
+  std::size_t stations = 0, rod_packs = 0;  ///< of all nodes
 
  private:
   void add_node(const NodeSpec& spec, StrainOrder order, std::size_t carrying, Twins& twins);

@@ -1,8 +1,7 @@
 #include "withy/core/kinematics/tree_observation.hpp"
 
 #include <algorithm>
-
-#include "withy/core/kinematics/observed_mass.hpp"
+#include <utility>
 
 namespace withy::observed {
 namespace {
@@ -35,121 +34,37 @@ Spatial::Position difference(const Spatial::Position& a, const Spatial::Position
 }  // namespace
 
 template <class Space>
+Energies energies_of(const Tree<Space>& tree, const Sums<Space>& sums, double strain) noexcept {
+  const Matrix3& R = tree.plane.R;
+  Energies e;
+  e.kinetic = sums.kinetic;
+  e.potential = tree.fixed_potential + strain - tree.gravity.dot(lifted(sums.moment, tree.height_moment));
+  e.linear_momentum = array(R * lifted(linear(sums.momentum), 0));
+  e.angular_momentum = array(R * lifted_angular(sums.momentum, sums.across));
+  return e;
+}
+template Energies energies_of(const Tree<Planar>& tree, const Sums<Planar>& sums, double strain) noexcept;
+template Energies energies_of(const Tree<Spatial>& tree, const Sums<Spatial>& sums, double strain) noexcept;
+
+template <class Space>
 TreeObservation<Space>::TreeObservation(std::shared_ptr<const Tree<Space>> tree)
-    : tree_(std::move(tree)),
-      y_(tree_->size),
-      nodes_(tree_->nodes.size()),
-      stations_(tree_->stations),
-      rods_(tree_->rod_packs),
-      particles_(tree_->most_modes * Space::linear),
-      partials_(tree_->most_modes) {}
+    : tree_(std::move(tree)), pass_(tree_->nodes, tree_->size, tree_->positions) {}
 
 template <class Space>
 void TreeObservation<Space>::observe(std::span<const double> y) noexcept {
-  std::copy(y.begin(), y.end(), y_.begin());
-  for (std::size_t i = 0; i < nodes_.size(); ++i) move(i);
+  std::copy(y.begin(), y.end(), pass_.y().begin());
+  behind_ = true;
 }
 
 template <class Space>
-void TreeObservation<Space>::move(std::size_t index) noexcept {
-  const Node<Space>& node = tree_->nodes[index];
-  if (node.is_rod()) sweep::rod_motion<any_count>(node.rod, node.modes, q(node), q_dot(node), rod(node));
-  sweep::JointMotion<Space> joint{};  // a planar tree has hinges that set all of it; the compiler does not know that
-  sweep::joint_motion<Space>(node.joint, y_.data() + node.joint.position,
-                             y_.data() + tree_->positions + node.joint.speed, joint);
-  Motion& B = nodes_[index];
-  B = {joint.SM, joint.rate};
-  if (node.parent >= 0) {
-    const Node<Space>& parent = tree_->nodes[static_cast<std::size_t>(node.parent)];
-    const Motion& outer = node.parent_station < 0
-                              ? nodes_[static_cast<std::size_t>(node.parent)]
-                              : stations_[parent.first_station + static_cast<std::size_t>(node.parent_station)];
-    B.X = Space::compose(outer.X, joint.SM);
-    B.V += Space::to_child(joint.SM, outer.V);
-  }
-  if (node.root_station >= 0) {
-    const sweep::StationMotion<Space> root = section(node, node.root_station);
-    const typename Space::Frame BM = Space::compose(root.frame, node.M);
-    B.V = Space::from_child(BM, B.V - Space::to_child(node.M, root.rate));
-    B.X = Space::compose(B.X, Space::inverse(BM));
-  }
-  for (std::size_t k = 0; k < node.stations.size() && node.stations[k].needed; ++k) {
-    const sweep::StationMotion<Space> m = section(node, static_cast<int>(k));
-    stations_[node.first_station + k] = {Space::compose(B.X, m.frame), Space::to_child(m.frame, B.V) + m.rate};
-  }
-}
-
-template <class Space>
-sweep::StationMotion<Space> TreeObservation<Space>::section(const Node<Space>& node, int station) const noexcept {
-  sweep::StationMotion<Space> m;
-  const auto k = static_cast<std::size_t>(station);
-  if (node.is_rod()) {
-    sweep::rod_station_motion<any_count>(node.rod, k, rod(node), node.modes, q(node), q_dot(node), m, partials_.data());
-  } else {
-    sweep::station_motion<Space, any_count>(node.stations[k].fields, node.modes, q(node), q_dot(node), m,
-                                            partials_.data());
-  }
-  return m;
-}
-
-template <class Space>
-Moving<Space> TreeObservation<Space>::motion_at(int index, int station) const noexcept {
-  const Motion& B = nodes_[static_cast<std::size_t>(index)];
-  if (station < 0) return B;
-  const Node<Space>& node = tree_->nodes[static_cast<std::size_t>(index)];
-  const auto k = static_cast<std::size_t>(station);
-  if (node.stations[k].needed) return stations_[node.first_station + k];
-  const sweep::StationMotion<Space> m = section(node, station);
-  return {Space::compose(B.X, m.frame), Space::to_child(m.frame, B.V) + m.rate};
-}
-
-template <class Space>
-void TreeObservation<Space>::add_flexible(std::size_t index, Sums<Space>& sums) const noexcept {
-  const Node<Space>& node = tree_->nodes[index];
-  const Motion& B = nodes_[index];
-  PartMomentum<Space> part;
-  if (node.is_rod()) {
-    add_rod(node.rod, rod(node), node.modes, q_dot(node), B.V, part);
-  } else {
-    add_mass<Space>(node.mass, node.modes, q(node), q_dot(node), B.V, particles_.data(), part);
-    add_sections(node.rotary, node.modes, q(node), q_dot(node), B.V, part);
-  }
-  add_part<Space>(B.X, part.h, part.moment, part.mass, part.kinetic, node.flexible_height, sums);
-}
-
-template <class Space>
-double TreeObservation<Space>::strain_energy() const noexcept {
-  double energy = 0;
-  for (const Node<Space>& node : tree_->nodes) {
-    const double* x = q(node);
-    const double* K = node.stiffness.data();
-    for (int i = 0; i < node.modes; ++i) {
-      double force = 0;
-      for (int j = 0; j < node.modes; ++j) force += *K++ * x[j];
-      energy += 0.5 * x[i] * force;
-    }
-  }
-  return energy;
+const TreePass<Space>& TreeObservation<Space>::moved() const noexcept {
+  if (std::exchange(behind_, false)) pass_.move();
+  return pass_;
 }
 
 template <class Space>
 Energies TreeObservation<Space>::energies() const noexcept {
-  Sums<Space> sums;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const Node<Space>& node = tree_->nodes[i];
-    add_fixed(node.base, nodes_[i], sums);
-    for (std::size_t k = 0; k < node.stations.size() && node.stations[k].needed; ++k)
-      add_fixed(node.stations[k].carried, stations_[node.first_station + k], sums);
-    if (node.modes > 0) add_flexible(i, sums);
-  }
-  const Matrix3& R = tree_->plane.R;
-  Energies e;
-  e.kinetic = sums.kinetic;
-  e.potential =
-      tree_->fixed_potential + strain_energy() - tree_->gravity.dot(lifted(sums.moment, tree_->height_moment));
-  e.linear_momentum = array(R * lifted(linear(sums.momentum), 0));
-  e.angular_momentum = array(R * lifted_angular(sums.momentum, sums.across));
-  return e;
+  return energies_of(*tree_, moved().sums(), pass_.strain_energy());
 }
 
 template <class Space>
@@ -157,7 +72,7 @@ WorldPose TreeObservation<Space>::frame_pose(int body, int frame) const noexcept
   const FramePlace& at = tree_->frame(body, frame);
   Pose X = at.pose;
   if (at.node >= 0) {
-    const Motion A = motion_at(at.node, at.station);
+    const Moving<Space> A = moved().motion_at(at.node, at.station);
     const Matrix3& R = tree_->plane.R;
     X.R = R * (matrix(A.X.R) * at.pose.R);
     X.p = R * lifted(A.X.p + Space::rotate(A.X.R, Space::position(at.pose.p)), at.height);
@@ -172,8 +87,8 @@ template <class Space>
 WorldVelocity TreeObservation<Space>::frame_velocity(int body, int frame) const noexcept {
   const FramePlace& at = tree_->frame(body, frame);
   if (at.node < 0) return {};
-  const Motion A = motion_at(at.node, at.station);
-  const Twist V = Space::shift_to_child(Space::position(at.pose.p), A.V);
+  const Moving<Space> A = moved().motion_at(at.node, at.station);
+  const typename Space::Twist V = Space::shift_to_child(Space::position(at.pose.p), A.V);
   const Matrix3 R = tree_->plane.R * matrix(A.X.R);
   const typename Space::Position none = Space::Position::zero();
   return {array(R * lifted_angular(V, none)), array(R * lifted(linear(V), 0))};
@@ -187,7 +102,8 @@ std::array<double, 3> TreeObservation<Space>::deflection(int body, int frame) co
   const Node<Space>& node = tree_->nodes[static_cast<std::size_t>(at.node)];
   const auto k = static_cast<std::size_t>(at.station);
   const typename Space::Position& X = node.is_rod() ? node.rod.stations[k].X : node.stations[k].fields.X;
-  const typename Space::Position d = difference(section(node, at.station).frame.p, X);
+  if (behind_) pass_.bend(node);
+  const typename Space::Position d = difference(pass_.section(node, at.station).frame.p, X);
   return array(axes.R.transpose() * lifted(d, 0));
 }
 

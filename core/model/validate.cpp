@@ -1,6 +1,7 @@
 #include "withy/core/model/validate.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -66,6 +67,32 @@ std::string names_fault(const std::vector<std::string>& names) {
   return {};
 }
 
+bool all_finite(const ConstMatrix& m) {
+  double nothing = 0;  // or NaN
+  for (Eigen::Index j = 0; j < m.cols(); ++j)
+    for (Eigen::Index i = 0; i < m.rows(); ++i) nothing += 0.0 * m(i, j);
+  return nothing == 0;
+}
+
+/// Symmetric to the last bit, as matrices mostly are.
+bool plainly_symmetric(const ConstMatrix& m) {
+  for (Eigen::Index j = 1; j < m.cols(); ++j)
+    for (Eigen::Index i = 0; i < j; ++i)
+      if (m(i, j) != m(j, i)) return false;
+  return true;
+}
+
+/// Whether nothing is to be found: scenes have thousands of points, and cases of a sweep are checked one by one.
+bool plainly_sound(const PointExpansion& point, Eigen::Index modes) {
+  const auto field = [&](const ConstMatrix& m) { return m.rows() == 3 && m.cols() == modes && all_finite(m); };
+  const auto square = [&](const ConstMatrix& m) {
+    return m.rows() == modes && m.cols() == modes && all_finite(m) && plainly_symmetric(m);
+  };
+  return all_finite(point.X) && field(point.phi) && field(point.psi) &&
+         std::all_of(point.gamma.begin(), point.gamma.end(), square) &&
+         std::all_of(point.theta.begin(), point.theta.end(), square);
+}
+
 std::string particle_fault(const Particle& particle, Eigen::Index modes) {
   if (!std::isfinite(particle.mass) || particle.mass < 0) {
     std::ostringstream text;
@@ -84,6 +111,7 @@ std::string section_fault(const Section& section, Eigen::Index modes) {
 }  // namespace
 
 std::string find_fault(const PointExpansion& point, Eigen::Index modes) {
+  if (plainly_sound(point, modes)) return {};
   if (std::string fault = finite_fault("X", point.X); !fault.empty()) return fault;
   if (std::string fault = field_fault("Phi", point.phi, modes); !fault.empty()) return fault;
   if (std::string fault = field_fault("Psi", point.psi, modes); !fault.empty()) return fault;
