@@ -1,0 +1,247 @@
+#include "withy/scene/tree_bodies.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "withy/core/model/validate.hpp"
+#include "withy/core/plugin/formulation.hpp"
+#include "withy/scene/grammar.hpp"
+#include "withy/scene/names.hpp"
+#include "withy/scene/state.hpp"
+#include "withy/scene/visual.hpp"
+
+namespace withy {
+namespace {
+
+constexpr double most_bytes = 4.0 * 1024 * 1024 * 1024;
+
+Vector3 vector_of(const Value& list) {
+  const std::vector<double> x = list.numbers();
+  return {x[0], x[1], x[2]};
+}
+
+}  // namespace
+
+void TreeProblems::error(const Value& value, std::string message) {
+  checker.diagnostics().error(value.place(), std::move(message));
+  good = false;
+}
+
+void TreeProblems::key_error(const std::string& path, std::string message) {
+  checker.key_error(path, std::move(message));
+  good = false;
+}
+
+void TreeProblems::check_name(const std::string& name, const Value& value) {
+  const std::string problem = name_problem(name);
+  if (!problem.empty()) key_error(value.place().path, fmt::format("got name {}; {}", in_quotes(name), problem));
+}
+
+Pose pose_of(const Value& value, TreeProblems& problems) {
+  std::vector<double> q = value.at("orientation").numbers();
+  if (!accept_quaternion(q, value.at("orientation").place(), problems.checker.diagnostics())) problems.good = false;
+  return {rotation_from_quaternion(q[0], q[1], q[2], q[3]), vector_of(value.at("position"))};
+}
+
+void TreeBodies::add(const std::string& name, const Value& given) {
+  problems_.check_name(name, given);
+  index_.emplace(name, static_cast<int>(entries_.size()));
+  entries_.push_back({name, static_cast<int>(nodes_.size()), 1, -1, given.place()});
+  tree_.names.bodies.add(name);
+  BodyNode& node = nodes_.emplace_back();
+  node.name = name;
+  Made<Body> made;
+  const auto value = check_plugin_map(given, "type", grammar::body_members(), checker_, made);
+  if (const Value* formulation = made.value.find("formulation")) node.terms = terms_of(*formulation);
+  if (!value) {
+    problems_.good = false;
+    return;
+  }
+  const double before = bytes_;
+  bytes_ += predicted_bytes(*value, made.plugin->parameters);
+  if (bytes_ > most_bytes) {
+    if (before <= most_bytes) {
+      problems_.key_error(value->place().path,
+                          fmt::format("its modes bring the model to about {:.1f} GiB of memory; need at "
+                                      "most {:.0f}: use fewer modes",
+                                      bytes_ / (most_bytes / 4), most_bytes / (most_bytes / 4)));
+    }
+    problems_.good = false;
+    return;
+  }
+  const std::shared_ptr<const Body> body = made_.of(*made.plugin, *value, checker_);
+  if (body == nullptr) {
+    problems_.good = false;
+    return;
+  }
+  if (!check_shape(*body, made.plugin->id, *value)) return;
+  if (const Value* visual = value->find("visual"))
+    problems_.good =
+        check_visual(*visual, *body, checker_.make_context().directory, checker_.diagnostics()) && problems_.good;
+  node.body = body;
+  if (node.body->segments().size() > 1) {
+    add_segments(made.plugin->id, *value);
+  } else {
+    add_ends(node, *value);
+    if (node.body != nullptr) add_frames(value->at("frames"), *node.body);
+  }
+  if (auto counts = mode_counts(*value, made.plugin->parameters); !counts.empty())
+    tree_.modes.push_back({name, std::move(counts)});
+  values_.emplace_back(name, std::move(made.value));
+}
+
+bool TreeBodies::check_shape(const Body& body, const std::string& plugin, const Value& value) {
+  const std::string fault = find_fault(body.shape());
+  if (fault.empty()) return true;
+  problems_.key_error(value.place().path,
+                      fmt::format("body plugin '{}' made a shape that cannot be: {}", plugin, fault));
+  return false;
+}
+
+/// Replaces the last node, the whole body, by its segments.
+void TreeBodies::add_segments(const std::string& plugin, const Value& value) {
+  const BodyNode whole = std::move(nodes_.back());
+  const auto segments = whole.body->segments();
+  nodes_.pop_back();
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    BodyNode& node = nodes_.emplace_back();
+    node.name = fmt::format("{}.{}", whole.name, k + 1);
+    node.terms = whole.terms;
+    node.segment = Segment{whole.name, k, segments.size()};
+    if (segments[k] == nullptr || !check_shape(*segments[k], plugin, value)) {
+      problems_.good = false;
+      return;
+    }
+    node.body = segments[k];
+    add_ends(node, value);
+    if (node.body == nullptr) return;
+    if (node.frame("tip") < 0) {
+      problems_.key_error(value.place().path, fmt::format("body plugin '{}' made a segment without a tip", plugin));
+      return;
+    }
+  }
+  entries_.back().count = static_cast<int>(segments.size());
+  add_frames(value.at("frames"), *whole.body);
+}
+
+/// What a body's own formulation keeps: its name, or a map with its options.
+std::optional<Terms> TreeBodies::terms_of(const Value& given) {
+  const Value choice =
+      given.kind() == Value::Kind::text ? Value::map({{"name", given}}, given.place()) : given;  // it is checked
+  const Value& id = choice.at("name");
+  if (id.kind() == Value::Kind::text && id.text() == "auto") {
+    checker_.diagnostics().error(id.place(), "got 'auto', which is a choice for a whole scene; name a formulation");
+    problems_.good = false;
+    return {};
+  }
+  Made<Formulation> made;
+  const auto value = check_plugin_map(choice, "name", {grammar::formulation_name()}, checker_, made);
+  const auto formulation = value ? make_object(*made.plugin, *value, checker_) : nullptr;
+  if (formulation != nullptr && formulation->terms().products_of_speeds) return formulation->terms();
+  if (formulation != nullptr)
+    problems_.key_error(id.place().path,
+                        fmt::format("{} holds for whole scenes, not for single bodies", in_quotes(id.text())));
+  problems_.good = false;
+  return {};
+}
+
+/// The ends of a body are frames whether a hinge uses them or not: results speak of them.
+void TreeBodies::add_ends(BodyNode& node, const Value& value) {
+  for (const char* station : {"root", "tip"}) {
+    if (auto section = node.body->station(std::string(station))) node.frames.push_back({station, *section, {}});
+  }
+  if (!node.frames.empty() && node.frames[0].name == "root") return;
+  problems_.key_error(value.at("frames").place().path, fmt::format("body '{}' has no station 'root'", node.name));
+  node.body = nullptr;
+}
+
+/// The frames of the last body, `whole` in segments or not.
+void TreeBodies::add_frames(const Value& frames, const Body& whole) {
+  for (const auto& [name, frame] : frames.members()) {
+    if (whole.station(name)) {
+      problems_.key_error(frame.place().path,
+                          fmt::format("'{}' is a station of the body already; choose another name", name));
+      continue;
+    }
+    const Value& at = frame.at("at");
+    const Body::StationName station =
+        at.kind() == Value::Kind::number ? Body::StationName(at.number()) : Body::StationName(at.text());
+    BodyNode* node = nullptr;
+    std::optional<PointExpansion> section;
+    if (whole.station(station)) section = section_of(station, node);
+    if (!section) {
+      problems_.error(at, fmt::format("no station {}; need {}", shown(at), whole.stations()));
+      continue;
+    }
+    node->frames.push_back({name, *section, pose_of(frame, problems_)});
+  }
+}
+
+/// The section at a station of the last body, and the node that has it: of segments the one where x lies.
+std::optional<PointExpansion> TreeBodies::section_of(const Body::StationName& station, BodyNode*& node) {
+  const Entry& entry = entries_.back();
+  const auto piece = [&](int k) { return &nodes_[static_cast<std::size_t>(entry.first + k)]; };
+  node = piece(0);
+  if (entry.count == 1) return node->body->station(station);
+  const double length = node->body->shape().length;
+  if (const auto* name = std::get_if<std::string>(&station)) {
+    if (*name == "tip") node = piece(entry.count - 1);
+    return *name == "tip" || *name == "root" ? node->body->station(station) : std::nullopt;
+  }
+  const double x = std::get<double>(station);
+  const int k = std::clamp(static_cast<int>(x / length), 0, entry.count - 1);
+  node = piece(k);
+  return node->body->station(std::clamp(x - k * length, 0.0, length));
+}
+
+int TreeBodies::find(const Value& end, const std::string& name) {
+  const auto it = index_.find(name);
+  if (it != index_.end()) return it->second;
+  problems_.error(end,
+                  fmt::format("no body {}{}", in_quotes(name), checker_.suggest(name, tree_.names.bodies.names())));
+  return -2;
+}
+
+TreeBodies::NodeFrame TreeBodies::frame(const Value& end, int body, const std::string& name) {
+  if (body < 0) return {};
+  const Entry& entry = entries_[static_cast<std::size_t>(body)];
+  const auto node = [&](int i) -> BodyNode& { return nodes_[static_cast<std::size_t>(i)]; };
+  for (int i = entry.first; i < entry.first + entry.count; ++i) {
+    if (static_cast<std::size_t>(i) >= nodes_.size() || node(i).body == nullptr) return {};  // reported already
+  }
+  const int last = entry.first + entry.count - 1;
+  if (name == "tip" && node(last).frame(name) >= 0) return {last, node(last).frame(name)};
+  std::vector<std::string> known;
+  for (int i = entry.first; i <= last; ++i) {
+    if (const int index = node(i).frame(name); index >= 0) return {i, index};
+    for (const Frame& f : node(i).frames) {
+      if (std::find(known.begin(), known.end(), f.name) == known.end()) known.push_back(f.name);
+    }
+  }
+  if (const auto section = entry.count == 1 ? node(last).body->station(name) : std::nullopt) {
+    node(last).frames.push_back({name, *section, {}});
+    return {last, static_cast<int>(node(last).frames.size()) - 1};
+  }
+  problems_.error(end, fmt::format("body '{}' has no frame {}{}; its frames name other places of it", entry.name,
+                                   in_quotes(name), checker_.suggest(name, known)));
+  return {};
+}
+
+void TreeBodies::name_frames() {
+  for (const BodyNode& node : nodes_) {
+    tree_.names.frames.add(node.name);
+    for (const Frame& f : node.frames) tree_.names.frames.add(node.name + "." + f.name);
+  }
+  for (const Entry& entry : entries_) {
+    if (entry.count == 1) continue;
+    tree_.names.frames.add(entry.name);
+    for (int i = entry.first; i < entry.first + entry.count; ++i) {
+      for (const Frame& f : nodes_[static_cast<std::size_t>(i)].frames)
+        tree_.names.frames.add(entry.name + "." + f.name);
+    }
+  }
+}
+
+}  // namespace withy
