@@ -17,60 +17,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <mutex>
-#include <span>
 
-#include "beam_quadrature.hpp"
+#include "beam_fields.hpp"
 #include "withy/core/shape/modal_mass.hpp"
 
 namespace withy {
 namespace {
-
-/// Values of every coordinate's fields at one x.
-struct LinearFields {
-  Matrix3X phi, psi, psi_slope, gamma;  ///< Φ; ψ; curvature and twist rate κ = ψ′; elongation γ
-
-  [[nodiscard]] SectionField field(Eigen::Index i) const { return {psi.col(i), psi_slope.col(i), gamma.col(i)}; }
-};
-
-/// Θ′, Γ′, Θ and Γ at the nodes of quadrature, a row each: the upper triangles of their three components.
-struct SecondFields {
-  Eigen::MatrixXd theta_slope, gamma_slope, theta, gamma;
-};
-
-/// What a beam's nodes of quadrature have whatever its stiffness and mass are.
-struct NodeFields {
-  std::shared_ptr<const std::vector<LinearFields>> linear;
-  std::shared_ptr<const SecondFields> pairs;
-};
-
-/// Fields of the beams that were made last, of any thread, by all that they depend on: a beam that varies in stiffness
-/// or mass alone, from case to case of a sweep, is not integrated again.
-class LastFields {
- public:
-  template <class Make>
-  NodeFields of(std::vector<double> key, std::size_t pairs, Make&& make) {
-    constexpr std::size_t kept = 8, most_numbers = 1 << 15;
-    if (key.size() + pairs > most_numbers) return make();
-    const std::lock_guard lock(mutex_);
-    const auto same = [&](const std::vector<double>& other) {
-      return other.size() == key.size() && std::memcmp(other.data(), key.data(), key.size() * sizeof(double)) == 0;
-    };
-    auto found = std::find_if(last_.begin(), last_.end(), [&](const auto& entry) { return same(entry.first); });
-    if (found == last_.end()) {
-      if (last_.size() == kept) last_.pop_back();
-      last_.emplace_back(std::move(key), make());
-      found = last_.end() - 1;
-    }
-    std::rotate(last_.begin(), found, found + 1);
-    return last_.front().second;
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::pair<std::vector<double>, NodeFields>> last_;  ///< the youngest first
-};
 
 class Beam final : public Body, private Rod {
  public:
@@ -86,7 +38,7 @@ class Beam final : public Body, private Rod {
         shape_.mode_names.push_back(std::string(s.name) + "[" + std::to_string(i) + "]");
       }
     }
-    const NodeFields fields = fields_at_nodes(kinematics);
+    const NodeFields fields = fields_at_nodes(strains_, length_, quadrature_, kinematics);
     pairs_ = fields.pairs;
     const Eigen::Index n = shape_.modes();
     shape_.stiffness = shape_.damping = Eigen::MatrixXd::Zero(n, n);
@@ -128,7 +80,7 @@ class Beam final : public Body, private Rod {
       x = std::get<double>(name);
       if (!(x >= 0 && x <= length_)) return {};
     }
-    return expansion(x, linear_fields(x), quadrature_.integral_to(x, pairs_->gamma_slope),
+    return expansion(x, linear_fields(strains_, x), quadrature_.integral_to(x, pairs_->gamma_slope),
                      quadrature_.integral_to(x, pairs_->theta_slope));
   }
   std::string stations() const override {
@@ -147,7 +99,7 @@ class Beam final : public Body, private Rod {
     if (!at) return {};
     BodyCut cut;
     cut.at = *at;
-    cut.curvature = linear_fields(x).psi_slope;
+    cut.curvature = linear_fields(strains_, x).psi_slope;
     for (const BeamStrain& s : strains_) {
       if (s.kind != BeamData::Strain::elongation) cut.stiffness += s.stiffness(x) * s.direction.cwiseAbs();
     }
@@ -174,7 +126,7 @@ class Beam final : public Body, private Rod {
   const Rod* rod() const override {
     // The exact rod is inextensible, without rotary inertia in bending, and clamped at x = 0. Shape functions that
     // vanish there leave rounding, at most 1e-12 of a mode's size.
-    const LinearFields root = linear_fields(0);
+    const LinearFields root = linear_fields(strains_, 0);
     for (const BeamStrain& s : strains_) {
       if (s.kind == BeamData::Strain::elongation) return nullptr;
     }
@@ -195,7 +147,7 @@ class Beam final : public Body, private Rod {
     return x;
   }
   RodSection section(double x) const override {
-    LinearFields f = linear_fields(x);
+    LinearFields f = linear_fields(strains_, x);
     double inertia = 0;
     for (const auto& [axis, per_length] : material_.inertias) inertia += per_length(x);  // all about x
     return {std::move(f.psi_slope), std::move(f.psi), std::move(f.phi), material_.mass_per_length(x), inertia};
@@ -218,35 +170,6 @@ class Beam final : public Body, private Rod {
     return x;
   }
 
-  LinearFields linear_fields(double x) const {
-    const Eigen::Index n = shape_.modes();
-    LinearFields f{Matrix3X::Zero(3, n), Matrix3X::Zero(3, n), Matrix3X::Zero(3, n), Matrix3X::Zero(3, n)};
-    Eigen::Index at = 0;
-    for (const BeamStrain& s : strains_) {
-      const std::size_t count = s.functions->count();
-      std::vector<double> value(count), slope(count), curvature(count);
-      s.functions->evaluate(x, value, slope, curvature);
-      for (std::size_t i = 0; i < count; ++i, ++at) {
-        switch (s.kind) {
-          case BeamData::Strain::bending:
-            f.phi.col(at) = s.direction.cross(Vector3::UnitX()) * value[i];
-            f.psi.col(at) = s.direction * slope[i];
-            f.psi_slope.col(at) = s.direction * curvature[i];
-            break;
-          case BeamData::Strain::torsion:
-            f.psi.col(at) = s.direction * value[i];
-            f.psi_slope.col(at) = s.direction * slope[i];
-            break;
-          case BeamData::Strain::elongation:
-            f.phi.col(at) = s.direction * value[i];
-            f.gamma.col(at) = s.direction * slope[i];
-            break;
-        }
-      }
-    }
-    return f;
-  }
-
   /// The sections that have rotary inertia, and what they add to the modal mass.
   void add_sections(Eigen::MatrixXd& gram) {
     const SectionQuadrature along(length_, wave_number(strains_), kinks(material_, strains_));
@@ -257,7 +180,7 @@ class Beam final : public Body, private Rod {
         inertia += along.weights()[k] * per_length(at) * axis * axis.transpose();
       }
       if (inertia.isZero(0)) continue;
-      const LinearFields f = linear_fields(at);
+      const LinearFields f = linear_fields(strains_, at);
       shape_.sections.push_back({inertia, expansion(at, f, quadrature_.integral_to(at, pairs_->gamma_slope),
                                                     quadrature_.integral_to(at, pairs_->theta_slope))});
       add_products(inertia, f.psi, gram);
@@ -277,92 +200,6 @@ class Beam final : public Body, private Rod {
       }
       at += count;
     }
-  }
-
-  /// The fields at the nodes of the quadrature.
-  NodeFields fields_at_nodes(const StrainKinematics& kinematics) const {
-    const auto make = [&]() -> NodeFields {
-      std::vector<LinearFields> linear;
-      linear.reserve(quadrature_.nodes().size());
-      for (const double x : quadrature_.nodes()) linear.push_back(linear_fields(x));
-      auto pairs = std::make_shared<const SecondFields>(integrated(kinematics, linear));
-      return {std::make_shared<const std::vector<LinearFields>>(std::move(linear)), std::move(pairs)};
-    };
-    if (!kinematics.complete()) return make();
-    static LastFields last;
-    const auto modes = static_cast<std::size_t>(shape_.modes());
-    return last.of(key_of_fields(), quadrature_.nodes().size() * 6 * modes * (modes + 1), make);
-  }
-
-  /// All that they depend on: the panels, where their nodes are; of each strain its kind and axis, and its functions.
-  std::vector<double> key_of_fields() const {
-    std::vector<double> key = quadrature_.nodes();
-    key.push_back(length_);
-    key.push_back(static_cast<double>(quadrature_.panels()));
-    for (const BeamStrain& s : strains_) {
-      const std::size_t count = s.functions->count(), first = key.size() + 5;
-      key.insert(key.end(), {static_cast<double>(s.kind), s.direction.x(), s.direction.y(), s.direction.z(),
-                             static_cast<double>(count)});
-      key.resize(first + 3 * count * quadrature_.nodes().size());
-      std::span<double> rest = std::span(key).subspan(first);
-      for (const double x : quadrature_.nodes()) {
-        s.functions->evaluate(x, rest.first(count), rest.subspan(count, count), rest.subspan(2 * count, count));
-        rest = rest.subspan(3 * count);
-      }
-    }
-    return key;
-  }
-
-  /// Θ and Γ at the nodes by running integrals; a row holds the upper triangles of the three components.
-  SecondFields integrated(const StrainKinematics& kinematics, const std::vector<LinearFields>& linear) const {
-    SecondFields at;
-    const Eigen::Index n = shape_.modes();
-    const Eigen::Index pairs = n * (n + 1) / 2;
-    const auto nodes = static_cast<Eigen::Index>(quadrature_.nodes().size());
-    at.theta_slope.resize(nodes, 3 * pairs);
-    at.gamma_slope.resize(nodes, 3 * pairs);
-    const auto each_pair = [&](auto&& action) {
-      Eigen::Index column = 0;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        for (Eigen::Index j = i; j < n; ++j, column += 3) action(i, j, column);
-      }
-    };
-    for (Eigen::Index k = 0; k < nodes; ++k) {
-      const LinearFields& f = linear[static_cast<std::size_t>(k)];
-      each_pair([&](Eigen::Index i, Eigen::Index j, Eigen::Index column) {
-        at.theta_slope.block<1, 3>(k, column) = kinematics.rotation_slope(f.field(i), f.field(j)).transpose();
-      });
-    }
-    at.theta = quadrature_.running_integral(at.theta_slope);
-    for (Eigen::Index k = 0; k < nodes; ++k) {
-      const LinearFields& f = linear[static_cast<std::size_t>(k)];
-      each_pair([&](Eigen::Index i, Eigen::Index j, Eigen::Index column) {
-        const Vector3 theta = at.theta.block<1, 3>(k, column).transpose();
-        at.gamma_slope.block<1, 3>(k, column) =
-            kinematics.displacement_slope(f.field(i), f.field(j), theta).transpose();
-      });
-    }
-    at.gamma = quadrature_.running_integral(at.gamma_slope);
-    return at;
-  }
-
-  using PairFields = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
-
-  PointExpansion expansion(double x, const LinearFields& f, const PairFields& gamma, const PairFields& theta) const {
-    const Eigen::Index n = shape_.modes();
-    PointExpansion e = PointExpansion::rigid(Vector3(x, 0, 0), n);
-    e.phi = f.phi;
-    e.psi = f.psi;
-    Eigen::Index column = 0;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = i; j < n; ++j) {
-        for (std::size_t c = 0; c < 3; ++c, ++column) {
-          e.gamma[c](i, j) = e.gamma[c](j, i) = gamma[column];
-          e.theta[c](i, j) = e.theta[c](j, i) = theta[column];
-        }
-      }
-    }
-    return e;
   }
 
   BeamMaterial material_;

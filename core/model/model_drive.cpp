@@ -1,0 +1,120 @@
+// What moves a model from outside its tree: motions that prescribe hinges, and loads with their states.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "withy/core/model/model.hpp"
+
+namespace withy {
+
+bool Model::driven(std::size_t hinge) const { return driven_[hinge]; }
+
+void Model::prescribe(State& state) const {
+  for (const MotionNode& node : motions_) {
+    const Slot& slot = layout_.hinges[static_cast<std::size_t>(node.hinge)];
+    double* rates = state.y.data() + layout_.positions + slot.speed;
+    std::fill(rates, rates + slot.speeds, 0.0);
+    if (node.motion->locks()) continue;
+    const MotionPoint point = node.motion->at(state.time);
+    state.y[slot.position] = point.position;
+    rates[0] = point.rate;
+  }
+}
+
+void Model::prescribe_accelerations(double t, std::span<double> u_dot) const noexcept {
+  for (const MotionNode& node : motions_) {
+    const Slot& slot = layout_.hinges[static_cast<std::size_t>(node.hinge)];
+    for (std::size_t i = 0; i < slot.speeds; ++i) u_dot[slot.speed + i] = 0;
+    if (!node.motion->locks()) u_dot[slot.speed] = node.motion->at(t).acceleration;
+  }
+}
+
+void Model::add_motion(std::string name, const std::string& hinge_name, std::shared_ptr<const Motion> motion) {
+  const int index = hinge(hinge_name);
+  if (index < 0) throw std::invalid_argument("there is no hinge '" + hinge_name + "'");
+  const Slot& slot = layout_.hinges[static_cast<std::size_t>(index)];
+  if (slot.speeds == 0) throw std::invalid_argument("hinge '" + hinge_name + "' does not move: it needs no motion");
+  if (!motion->locks() && (slot.positions != 1 || slot.speeds != 1))
+    throw std::invalid_argument("hinge '" + hinge_name + "' has " + std::to_string(slot.speeds) +
+                                " rates; a motion moves hinges with one coordinate, and 'locked' holds any");
+  if (driven(static_cast<std::size_t>(index))) {
+    const auto other =
+        std::find_if(motions_.begin(), motions_.end(), [&](const MotionNode& m) { return m.hinge == index; });
+    throw std::invalid_argument("hinge '" + hinge_name + "' is driven by motion '" + other->name + "' already");
+  }
+  driven_[static_cast<std::size_t>(index)] = true;
+  motions_.push_back({std::move(name), index, std::move(motion)});
+}
+
+void LoadNode::wrenches(double t, std::span<const double> y, const Layout& layout, std::span<const FrameMotion> motions,
+                        std::span<Wrench> wrenches, std::span<double> scratch) const noexcept {
+  load->wrenches(t, motions, wrenches);
+  if (slot.count > 0) load->discrete()->add_wrenches(t, discrete(y), motions, wrenches);
+  if (continuous != nullptr) continuous->add_wrenches(view(t, y, layout, scratch), motions, wrenches);
+}
+
+void Model::add_state_efforts(double t, std::span<const double> y, std::span<double> efforts, std::span<double> scratch,
+                              int only) const noexcept {
+  const auto wanted = [only](const LoadSlot& slot) { return only < 0 || slot.load == static_cast<std::size_t>(only); };
+  for (const LoadSlot& slot : layout_.discrete_slots) {
+    if (wanted(slot)) loads_[slot.load].load->discrete()->add(t, y.subspan(slot.first, slot.count), efforts);
+  }
+  for (const LoadSlot& slot : layout_.continuous_slots) {
+    const LoadNode& node = loads_[slot.load];
+    if (wanted(slot)) node.continuous->add(node.view(t, y, layout_, scratch), efforts);
+  }
+}
+
+bool Model::continuous_rates(double t, std::span<const double> y, std::span<double> y_dot,
+                             std::span<double> scratch) const noexcept {
+  double sum = 0;
+  for (const LoadSlot& slot : layout_.continuous_slots) {
+    const LoadNode& node = loads_[slot.load];
+    const std::span<double> rates = y_dot.subspan(slot.first, slot.count);
+    LoadView view = node.view(t, y, layout_, scratch);
+    view.accelerations = y_dot.subspan(layout_.positions, layout_.speeds);
+    node.continuous->rates(view, rates);
+    for (const double rate : rates) sum += 0.0 * rate;
+  }
+  return sum == 0.0;
+}
+
+void Model::begin_continuous(State& state) const {
+  std::vector<double> scratch(load_scratch_), begun;
+  for (const LoadSlot& slot : layout_.continuous_slots) {
+    const LoadNode& node = loads_[slot.load];
+    begun.assign(slot.count, 0.0);
+    node.continuous->begin(node.view(state.time, state.y, layout_, scratch), begun);
+    std::copy(begun.begin(), begun.end(), state.y.begin() + static_cast<std::ptrdiff_t>(slot.first));
+  }
+}
+
+void Model::add_load(std::string name, const Load& load) {
+  std::shared_ptr<const BoundLoad> bound = load.bind(*this);
+  if (bound == nullptr) throw std::invalid_argument("load '" + name + "' cannot be bound and does not say why");
+  const std::vector<double> jumps = bound->discontinuities();
+  if (std::isnan(bound->end()) || std::any_of(jumps.begin(), jumps.end(), [](double t) { return std::isnan(t); }))
+    throw std::invalid_argument("load '" + name + "' jumps or ends at a time that is no number");
+  load_scratch_ = std::max(load_scratch_, bound->scratch());
+  const std::size_t index = loads_.size();
+  LoadNode node{std::move(name), bound};
+  if (const ContinuousPart* part = bound->continuous(); part != nullptr) {
+    const std::size_t count = part->states();
+    node.continuous = part;
+    node.continuous_slot = {index, layout_.moving(), count};
+    layout_.continuous_slots.push_back(node.continuous_slot);
+    for (std::size_t i = 0; i < count; ++i) layout_.continuous_names.push_back(node.name + "." + part->name(i));
+    layout_.continuous += count;
+    // Discrete states stand behind the continuous ones.
+    for (LoadSlot& slot : layout_.discrete_slots) loads_[slot.load].slot.first = slot.first += count;
+  }
+  if (const DiscretePart* part = bound->discrete(); part != nullptr && part->states() > 0) {
+    node.slot = {index, layout_.moving() + layout_.discrete, part->states()};
+    layout_.discrete_slots.push_back(node.slot);
+    layout_.discrete += part->states();
+  }
+  loads_.push_back(std::move(node));
+}
+
+}  // namespace withy
