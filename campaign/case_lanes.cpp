@@ -148,7 +148,7 @@ class Lane final : public AskingEquations, public StagedSteps {
   }
   Outcome stages(const Step& step) const noexcept override {
     if (!abandoned_) {
-      step_.step = step;
+      step_.step = &step;
       asks_ = Asks::step;
       asked_.answer(lane_);
     }
@@ -347,8 +347,8 @@ class CaseLanes final : public Asked {
       energies[i] = lanes_[i]->energy();
       LaneStep* const step = lanes_[i]->step();
       if (step == nullptr) continue;
-      if (table == nullptr) table = step->step.table;
-      if (step->step.table == table) steps[i] = step;
+      if (table == nullptr) table = step->step->table;
+      if (step->step->table == table) steps[i] = step;
     }
     if (answer_all(calls, &LaneEquations::derivatives)) return;
     if (answer_all(energies, &LaneEquations::energies)) return;

@@ -7,6 +7,7 @@
 
 #include "withy/core/equations/lane_efforts.hpp"
 #include "withy/core/equations/sweep_equations.hpp"
+#include "withy/core/spatial/lane_transfer.hpp"
 #include "withy/core/sweep/lanes/lane_sweep.hpp"
 #include "withy/core/sweep/symmetric/symmetric_sweep.hpp"
 
@@ -17,31 +18,6 @@ static_assert(cases_at_once <= most_lanes);
 
 template <class Space>
 using One = equations::SweepEquations<sweep::SymmetricSweep<Space>>;
-
-/// The first numbers of an array a lane. In registers: a load waits for stores of its parts.
-template <class Number>
-void gather(const std::array<Number*, cases_at_once>& from, std::size_t count, Lanes* to) {
-  for (std::size_t i = 0; i < count; ++i) {
-    if constexpr (cases_at_once == 8) {
-      to[i] = Lanes::of(
-          LaneNumbers{from[0][i], from[1][i], from[2][i], from[3][i], from[4][i], from[5][i], from[6][i], from[7][i]});
-    } else {
-      to[i] = Lanes::of(LaneNumbers{from[0][i], from[1][i], from[2][i], from[3][i]});
-    }
-  }
-}
-void scatter(const Lanes* from, std::size_t count, const std::array<double*, cases_at_once>& to) {
-  for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
-    for (std::size_t i = 0; i < count; ++i) to[lane][i] = from[i][lane];
-  }
-}
-/// Where there is a place for them.
-void scatter_to_some(const Lanes* from, std::size_t count, const std::array<double*, cases_at_once>& to) {
-  for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
-    if (to[lane] == nullptr) continue;
-    for (std::size_t i = 0; i < count; ++i) to[lane][i] = from[i][lane];
-  }
-}
 
 template <class Space>
 std::string refusal_of(const One<Space>& one) {
@@ -139,9 +115,9 @@ class LanesOfSpace final : public LaneEquations {
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (!live.has(lane)) continue;
       LaneStep& call = *calls[lane];
-      table = call.step.table;
-      h.set(lane, call.step.h);
-      y[lane] = call.step.y.data(), slope[lane] = call.step.slope.data();
+      table = call.step->table;
+      h.set(lane, call.step->h);
+      y[lane] = call.step->y.data(), slope[lane] = call.step->slope.data();
       call.outcome = {};
     }
     gather(y, size_, start_.data());
@@ -151,13 +127,14 @@ class LanesOfSpace final : public LaneEquations {
     std::array<double*, cases_at_once> to;
     const auto tell = [&](const Lanes* from, std::size_t count, auto&& place) {
       for (std::size_t lane = 0; lane < cases_at_once; ++lane) to[lane] = good.has(lane) ? place(lane) : nullptr;
-      scatter_to_some(from, count, to);
+      scatter(from, count, to);
     };
-    tell(stage_.data(), size_, [&](std::size_t lane) { return calls[lane]->step.end.data(); });
+    tell(stage_.data(), size_, [&](std::size_t lane) { return calls[lane]->step->end.data(); });
     for (std::size_t i = 1; i < table->stages; ++i)
-      tell(slopes_.data() + i * size_, size_, [&](std::size_t lane) { return calls[lane]->step.slopes[i - 1].data(); });
+      tell(slopes_.data() + i * size_, size_,
+           [&](std::size_t lane) { return calls[lane]->step->slopes[i - 1].data(); });
     tell(efforts_.data(), speeds_,
-         [&](std::size_t lane) { return equations_[lane]->efforts(*calls[lane]->step.work).data(); });
+         [&](std::size_t lane) { return equations_[lane]->efforts(*calls[lane]->step->work).data(); });
   }
 
   [[nodiscard]] bool has_energies() const override { return energies_ != nullptr; }
@@ -189,7 +166,7 @@ class LanesOfSpace final : public LaneEquations {
     equations::LaneTimes times{{}, live};
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (!live.has(lane)) continue;
-      const StagedSteps::Step& step = calls[lane]->step;
+      const StagedSteps::Step& step = *calls[lane]->step;
       times.t[lane] = std::min(step.t + table.c[i] * step.h, step.latest);
     }
     std::fill(efforts_.begin(), efforts_.end(), Lanes(0));
@@ -248,7 +225,7 @@ class LanesOfSpace final : public LaneEquations {
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (!others.has(lane)) continue;
       take_lane(stage_.data(), lane, stages_[lane]);
-      const std::span<const double> applied = apply(lane, times, stages_[lane], rates_[lane], *calls[lane]->step.work);
+      const std::span<const double> applied = apply(lane, times, stages_[lane], rates_[lane], *calls[lane]->step->work);
       for (std::size_t k = 0; k < speeds_; ++k) efforts_[k].set(lane, applied[k]);
       if (!sweep_.driven()) continue;
       for (std::size_t k = 0; k < speeds_; ++k) y_dot[positions_ + k].set(lane, rates_[lane][positions_ + k]);
@@ -261,7 +238,7 @@ class LanesOfSpace final : public LaneEquations {
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (!rest.has(lane) || !evaluations[lane].ok()) continue;
       const One<Space>& own = *equations_[lane];
-      Work& work = *calls[lane]->step.work;
+      Work& work = *calls[lane]->step->work;
       const std::span<double> efforts = own.efforts(work);
       for (std::size_t k = 0; k < speeds_; ++k) efforts[k] = efforts_[k][lane];
       std::vector<double>& rates = rates_[lane];

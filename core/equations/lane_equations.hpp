@@ -24,7 +24,7 @@ struct LaneCall {
 
 /// A whole step that a case asks for: StagedSteps::stages with its argument and its result.
 struct LaneStep {
-  StagedSteps::Step step;  ///< `work` is that of the case's own equations
+  const StagedSteps::Step* step = nullptr;  ///< `work` is that of the case's own equations
   StagedSteps::Outcome outcome;
 };
 

@@ -7,6 +7,7 @@
 
 #include "withy/core/kinematics/tree_observation.hpp"
 #include "withy/core/kinematics/tree_pass.hpp"
+#include "withy/core/spatial/lane_transfer.hpp"
 #include "withy/core/sweep/lanes/lane_nodes.hpp"
 #include "withy/core/sweep/lanes/lane_sweep.hpp"
 
@@ -116,11 +117,10 @@ class EnergiesOfTrees final : public LaneEnergies {
   }
 
   void find(std::span<LaneEnergy* const> calls) noexcept override {
-    std::vector<Lanes>& y = pass_.y();
-    for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
-      const double* const from = calls[lane] != nullptr ? calls[lane]->y.data() : idle_.data();
-      for (std::size_t i = 0; i < y.size(); ++i) y[i].set(lane, from[i]);
-    }
+    std::array<const double*, cases_at_once> y;
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane)
+      y[lane] = calls[lane] != nullptr ? calls[lane]->y.data() : idle_.data();
+    gather(y, idle_.size(), pass_.y().data());
     pass_.move();
     const Sums<Many> all = pass_.sums();
     const Lanes strain = pass_.strain_energy();

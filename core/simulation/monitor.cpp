@@ -36,6 +36,26 @@ Vector3 Monitor::SectionExpansion::velocity(const double* q, const double* u) co
   return v;
 }
 
+namespace {
+
+/// Whether momenta may be conserved: nothing holds the tree in the world, and it has no weight.
+bool may_float(const Model& model) {
+  bool floats = model.gravity().isZero(0);
+  if (const EventBook events(model); events.any())
+    for (const std::vector<std::size_t>& locked : events.plan().configurations)
+      for (const std::size_t hinge : locked) floats = floats && model.hinges()[hinge].parent >= 0;
+  for (std::size_t h = 0; h < model.hinges().size() && floats; ++h) {
+    if (model.hinges()[h].parent >= 0) continue;
+    const auto kernel = model.hinges()[h].hinge->kernel();
+    floats = kernel && kernel->kind == HingeKernel::Kind::free && !model.driven(h);
+  }
+  // On the rates of a free hinge acts what comes from outside the tree; what its bodies do to each other cancels there.
+  for (const LoopClosure* loop : loops_of(model)) floats = floats && loop->a().body >= 0 && loop->b().body >= 0;
+  return floats;
+}
+
+}  // namespace
+
 Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
                  double span, Observation* seen, RunSummary& summary)
     : model_(model),
@@ -51,6 +71,7 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       efforts_(model.layout().speeds),
       rates_(equations.size()),
       work_(equations.make_work()),
+      floats_(may_float(model)),
       initial_work_(initial.y.back()),
       checked_(initial.time) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
@@ -232,6 +253,7 @@ void Monitor::pass_event(const State& before, const State& after) {
 }
 
 void Monitor::audit_momenta(const Energies& e) {
+  if (!floats_) return;
   const auto apart = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
   };
@@ -241,26 +263,16 @@ void Monitor::audit_momenta(const Energies& e) {
 
 void Monitor::finish_momenta() {
   double outside = 0, all = 0;
-  bool floats = model_.gravity().isZero(0);
-  if (const EventBook events(model_); events.any())
-    for (const std::vector<std::size_t>& locked : events.plan().configurations)
-      for (const std::size_t hinge : locked) floats = floats && model_.hinges()[hinge].parent >= 0;
   for (std::size_t h = 0; h < model_.hinges().size(); ++h) {
-    const HingeNode& hinge = model_.hinges()[h];
     const Slot& slot = model_.layout().hinges[h];
-    const auto kernel = hinge.hinge->kernel();
-    const bool root = hinge.parent < 0;
-    floats = floats && (!root || (kernel && kernel->kind == HingeKernel::Kind::free && !model_.driven(h)));
     for (std::size_t i = slot.speed; i < slot.speed + slot.speeds; ++i) {
       all = std::max(all, summary_.peak_effort[i]);
-      if (root) outside = std::max(outside, summary_.peak_effort[i]);
+      if (model_.hinges()[h].parent < 0) outside = std::max(outside, summary_.peak_effort[i]);
     }
   }
-  // On the rates of a free hinge acts what comes from outside the tree; what its bodies do to each other cancels there.
-  for (const LoopClosure* loop : loops_of(model_)) floats = floats && loop->a().body >= 0 && loop->b().body >= 0;
   constexpr double rounding = 1e-12;
   MomentumDrift& m = summary_.momentum;
-  m.conserved = floats && outside <= rounding * all;
+  m.conserved = floats_ && outside <= rounding * all;
   if (!m.conserved) return;
   // A tree at rest as a whole has no momenta to measure by, only what rounding and truncation make of them.
   double mass = 0, inertia = 0;

@@ -124,6 +124,7 @@ class Monitor {
   void audit_momenta(const Energies& energies);
 
   bool own_energy_ = false;
+  bool floats_;  ///< momenta may be conserved
   Energies initial_energies_;
   double linear_error_ = 0, angular_error_ = 0, untruncated_error_ = 0;
   double initial_energy_ = 0, initial_work_ = 0;

@@ -41,6 +41,7 @@ struct StepsOfCases : LaneCases {
   std::vector<std::vector<double>> slope{lane_count()}, end{lane_count()};
   std::vector<std::array<std::vector<double>, 3>> slopes{lane_count()};
   std::vector<std::array<std::span<double>, 3>> places{lane_count()};
+  std::vector<StagedSteps::Step> given_steps{lane_count()};
   std::vector<LaneStep> steps{lane_count()};
 
   explicit StepsOfCases(const LaneKind& kind)
@@ -63,8 +64,9 @@ struct StepsOfCases : LaneCases {
         slopes[k].at(i) = end[k];
         places[k].at(i) = slopes[k].at(i);
       }
-      steps[lane] = {{&three_stages(), t, length(k), latest, cases[k]->state.y, slope[k], places[k], end[k], &work[k]},
-                     {}};
+      given_steps[lane] = {&three_stages(), t,         length(k), latest,  cases[k]->state.y,
+                           slope[k],        places[k], end[k],    &work[k]};
+      steps[lane] = {&given_steps[lane], {}};
       asked[lane] = &steps[lane];
     }
     return asked;
