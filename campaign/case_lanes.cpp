@@ -1,98 +1,21 @@
 #include "withy/campaign/case_lanes.hpp"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <array>
-#include <boost/context/fiber.hpp>
-#include <boost/context/stack_context.hpp>
 #include <cstddef>
 #include <exception>
 #include <memory>
-#include <new>
 #include <utility>
 #include <vector>
 
 #include "withy/campaign/asking_equations.hpp"
+#include "withy/campaign/stacks.hpp"
 #include "withy/core/equations/lane_equations.hpp"
 #include "withy/core/plugin/sensor.hpp"
 #include "withy/core/simulation/run_times.hpp"
 
 namespace withy::campaign {
 namespace {
-
-namespace context = boost::context;
-
-/// Memory of stacks, with a page below that ends the process where one is too small. What a case has left the next one
-/// takes: its pages are there already.
-class StackPool {
- public:
-  StackPool() = default;
-  ~StackPool() {
-    for (const context::stack_context& stack : vacant_)
-      munmap(static_cast<std::byte*>(stack.sp) - stack.size, stack.size);
-  }
-  StackPool(const StackPool&) = delete;
-  StackPool& operator=(const StackPool&) = delete;
-
-  context::stack_context take() {
-    if (!vacant_.empty()) {
-      const context::stack_context stack = vacant_.back();
-      vacant_.pop_back();
-      return stack;
-    }
-    vacant_.reserve(most_lanes);  // so that giving back throws nothing
-    void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK, -1, 0);
-    if (memory == MAP_FAILED) throw std::bad_alloc();
-    mprotect(memory, guard, PROT_NONE);
-    context::stack_context stack;
-    stack.size = bytes;
-    stack.sp = static_cast<std::byte*>(memory) + bytes;
-    return stack;
-  }
-  /// At most as many as there are lanes.
-  void give_back(const context::stack_context& stack) noexcept { vacant_.push_back(stack); }
-
- private:
-  /// A run uses some kilobytes; pages that are not touched cost nothing.
-  static constexpr std::size_t guard = 1 << 14, bytes = 1 << 20;
-  std::vector<context::stack_context> vacant_;
-};
-
-/// The pool as Boost asks for memory.
-struct StackMemory {
-  StackPool* pool;
-  context::stack_context allocate() const { return pool->take(); }
-  void deallocate(const context::stack_context& stack) const noexcept { pool->give_back(stack); }
-};
-
-/// Stacks that hand the thread to each other: one of the thread's own and one of each lane.
-class Stacks {
- public:
-  static constexpr std::size_t thread = most_lanes;  ///< index of the thread's own
-  /// Begins a stack; its function returns to the thread's own.
-  void begin(std::size_t stack, std::function<void()> function) {
-    stacks_[stack] = context::fiber(std::allocator_arg, StackMemory{&pool_},
-                                    [this, stack, function = std::move(function)](context::fiber&& last) {
-                                      stacks_[from_] = std::move(last);
-                                      function();
-                                      from_ = stack;
-                                      return std::move(stacks_[thread]);
-                                    });
-  }
-  [[nodiscard]] bool ended(std::size_t stack) const { return !stacks_[stack]; }
-  /// Leaves `own`, on which this runs, for another, until somebody switches back.
-  void go_to(std::size_t own, std::size_t other) {
-    from_ = own;
-    context::fiber last = std::move(stacks_[other]).resume();
-    stacks_[from_] = std::move(last);
-  }
-
- private:
-  StackPool pool_;  ///< outlives the stacks
-  std::array<context::fiber, thread + 1> stacks_;
-  std::size_t from_ = thread;  ///< the stack that has just been left
-};
 
 /// What a lane asks of those who evaluate.
 class Asked {
