@@ -77,7 +77,7 @@ std::vector<ComparisonAt> record_comparison(const std::filesystem::path& folder,
       settings.control = control(formulation);
       settings.output = [&](const State& state, std::size_t) { output(state); };
       RecordedRun recorded = record_run(own / formulation, prepared, registry, provenance(prepared.scene), settings);
-      reports.push_back(std::move(recorded.report));
+      if (has_report_page()) reports.push_back(std::move(read_report(own / formulation / report_name).front()));
       return recorded.run.summary;
     };
     groups.push_back({value, study::compare(varied, registry, question.formulations, question.reference, simulator,

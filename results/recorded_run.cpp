@@ -52,17 +52,17 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
   const auto hdf5 = files.hdf5 ? begun_hdf5(folder, prepared, provenance) : nullptr;
   if (hdf5 != nullptr) all.push_back(hdf5.get());
   SharedRecorder recorders(all);
-  RunTable table(prepared, recorders);
-  if (hdf5 != nullptr) hdf5->describe_frames(table.frames());
+  std::optional<RunTable> table(std::in_place, prepared, recorders);
+  if (hdf5 != nullptr) hdf5->describe_frames(table->frames());
   // An HDF5 file cannot be cut off at a mark: it is written anew.
   if (hdf5 != nullptr && settings.resume != nullptr) read_csv(folder / table_name, *hdf5);
   const bool seen = !prepared.escalates();
-  if (seen) settings.seen = &table.seen();
+  if (seen) settings.seen = &table->seen();
   settings.output = [&table, seen, also = settings.output](const State& state, std::size_t rung) {
     if (seen) {
-      table.add_seen(state);
+      table->add_seen(state);
     } else {
-      table.add(state, rung);
+      table->add(state, rung);
     }
     if (also) also(state, rung);
   };
@@ -70,6 +70,7 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
   std::vector<OutputStatistics> statistics;
   settings.statistics = &statistics;
   recorded.run = study::run(prepared, registry, settings);
+  table.reset();  // of a large model what comes is as large
   recorded.json = run_json(prepared.scene, recorded.run.summary, recorded.run.certificate);
   if (!statistics.empty()) recorded.json["outputs"] = statistics_json(statistics);
   recorded.json.update(provenance_json(provenance));
@@ -77,11 +78,8 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
   recorders.end();
   write_file(folder / summary_name, json_text(recorded.json));
   if (has_report_page()) {
-    recorded.report = report.text(recorded.run, recorded.json);
-    ReportContent page{prepared.title(), {}};
-    page.runs.push_back(std::move(recorded.report));
-    write_report(folder / report_name, page);
-    recorded.report = std::move(page.runs.front());
+    write_report(folder / report_name, prepared.title(),
+                 [&](const TextSink& write) { report.write(recorded.run, recorded.json, write); });
   } else {
     write_file(folder / picture_name, report.picture());
   }

@@ -40,7 +40,6 @@ class RunTable {
 struct RecordedRun {
   study::CertifiedRun run;
   nlohmann::ordered_json json;  ///< the content of run.json
-  std::string report;           ///< its part of a page, RunReport::text; empty where this build holds no page
 };
 
 /// What a run writes beside what every run does.

@@ -6,17 +6,19 @@ namespace withy {
 
 /// By what comes after it. What is no number is passed over.
 void DecimatedTable::widen(Range& range, const Range& next) {
-  if (!(range.low <= range.high)) {
+  const double low = std::min(range.first, range.second), high = std::max(range.first, range.second);
+  if (!(low <= high)) {
     range = next;
     return;
   }
-  const bool lower = next.low<range.low, higher = next.high> range.high;
+  const double next_low = std::min(next.first, next.second), next_high = std::max(next.first, next.second);
+  const bool lower = next_low<low, higher = next_high> high;
   if (lower && higher) {
     range = next;
   } else if (lower) {
-    range = {next.low, range.high, true};
+    range = {high, next_low};
   } else if (higher) {
-    range = {range.low, next.high, false};
+    range = {low, next_high};
   }
 }
 
@@ -31,15 +33,14 @@ void DecimatedTable::begin(const std::vector<Column>& columns) {
 }
 
 void DecimatedTable::row(std::span<const double> numbers) {
-  const std::size_t n = columns_.size();
+  if (rows_ % stride_ == 0 && stretches_.size() == most_stretches_) halve();
   if (rows_ % stride_ == 0) {
-    if (ranges_.size() == most_stretches_ * n) halve();
-  }
-  if (rows_ % stride_ == 0) {
-    for (const double x : numbers) ranges_.push_back({x, x, false});
+    std::vector<Range>& stretch = stretches_.emplace_back();
+    stretch.reserve(numbers.size());
+    for (const double x : numbers) stretch.push_back({x, x});
   } else {
-    Range* range = ranges_.data() + ranges_.size() - n;
-    for (const double x : numbers) widen(*range++, {x, x, false});
+    Range* range = stretches_.back().data();
+    for (const double x : numbers) widen(*range++, {x, x});
   }
   last_.assign(numbers.begin(), numbers.end());
   if (rows_ % sample_stride_ == 0) {
@@ -55,25 +56,22 @@ void DecimatedTable::row(std::span<const double> numbers) {
 
 /// Two stretches become one.
 void DecimatedTable::halve() {
-  const std::size_t n = columns_.size(), count = ranges_.size() / n;
+  const std::size_t count = stretches_.size();
   for (std::size_t s = 0; 2 * s < count; ++s) {
-    for (std::size_t c = 0; c < n; ++c) {
-      Range merged = ranges_[2 * s * n + c];
-      if (2 * s + 1 < count) widen(merged, ranges_[(2 * s + 1) * n + c]);
-      ranges_[s * n + c] = merged;
-    }
+    if (2 * s + 1 < count)
+      for (std::size_t c = 0; c < stretches_[2 * s].size(); ++c) widen(stretches_[2 * s][c], stretches_[2 * s + 1][c]);
+    if (s > 0) stretches_[s] = std::move(stretches_[2 * s]);
   }
-  ranges_.resize((count + 1) / 2 * n);
+  stretches_.resize((count + 1) / 2);
   stride_ *= 2;
 }
 
 std::vector<double> DecimatedTable::column(std::size_t index) const {
-  const std::size_t n = columns_.size();
   std::vector<double> numbers;
-  for (std::size_t at = index; at < ranges_.size(); at += n) {
-    const Range& r = ranges_[at];
-    numbers.push_back(r.falls ? r.high : r.low);
-    if (stride_ > 1) numbers.push_back(r.falls ? r.low : r.high);
+  numbers.reserve(stretches_.size() * (stride_ > 1 ? 2 : 1));
+  for (const std::vector<Range>& stretch : stretches_) {
+    numbers.push_back(stretch[index].first);
+    if (stride_ > 1) numbers.push_back(stretch[index].second);
   }
   return numbers;
 }

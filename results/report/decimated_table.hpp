@@ -36,10 +36,9 @@ class DecimatedTable final : public Recorder {
   [[nodiscard]] std::vector<std::vector<double>> samples() const;
 
  private:
-  /// One column over one stretch.
+  /// One column over one stretch: its least and its greatest number, in the order in which they came.
   struct Range {
-    double low, high;
-    bool falls;  ///< the greatest number comes before the least
+    double first, second;
   };
   static void widen(Range& range, const Range& next);
   void halve();
@@ -47,7 +46,7 @@ class DecimatedTable final : public Recorder {
   std::size_t most_stretches_, most_samples_, most_numbers_;
   std::vector<Column> columns_;
   std::size_t rows_ = 0, stride_ = 1, sample_stride_ = 1;
-  std::vector<Range> ranges_;  ///< of every column, stretch by stretch
+  std::vector<std::vector<Range>> stretches_;  ///< of each, every column
   std::vector<std::vector<double>> samples_;
   std::vector<double> last_;
 };

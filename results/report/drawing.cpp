@@ -210,7 +210,7 @@ Vector3 Drawing::place(std::size_t body, std::size_t point, const Eigen::VectorX
   return X_WB.p + X_WB.R * (part.at_rest[point] + displacement);
 }
 
-Json Drawing::part_json(std::size_t body) const {
+Json Drawing::part(std::size_t body) const {
   const Part& part = parts_[body];
   const BodyNode& node = model_->bodies()[body];
   static constexpr const char* kinds[] = {"box", "line", "strip", "mesh", "points"};
@@ -239,12 +239,6 @@ Json Drawing::part_json(std::size_t body) const {
     j["tip"] = vector_json(frame.section.X + frame.pose.p);
   }
   return j;
-}
-
-Json Drawing::parts() const {
-  Json all = Json::array();
-  for (std::size_t b = 0; b < parts_.size(); ++b) all.push_back(part_json(b));
-  return all;
 }
 
 /// The drawn model has no loads, and so none of their discrete states.

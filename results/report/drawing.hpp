@@ -26,7 +26,8 @@ class Drawing {
 
   /// What stays: of each body its name, its parent, kind, points at rest [m, body axes]; of a rigid one the box that
   /// has its mass and inertia; where its children hang on it.
-  [[nodiscard]] nlohmann::ordered_json parts() const;
+  [[nodiscard]] nlohmann::ordered_json part(std::size_t body) const;
+  [[nodiscard]] std::size_t parts() const { return parts_.size(); }
   /// The surface that a body is given; null where there is none. The sections of a beam at its points; none of others.
   [[nodiscard]] const Surface* surface(std::size_t body) const;
   [[nodiscard]] const std::vector<Outline>& sections(std::size_t body) const { return parts_[body].sections; }
@@ -82,7 +83,6 @@ class Drawing {
   [[nodiscard]] Eigen::VectorXf weights(std::size_t body, std::span<const double> y) const;
   void add_sections(const BodyNode& node, Part& part) const;
   [[nodiscard]] bool add_line(BodyNode& node, Part& part) const;
-  [[nodiscard]] nlohmann::ordered_json part_json(std::size_t body) const;
 
   Looks looks_;
   std::shared_ptr<const Model> model_;  ///< with a frame at each point

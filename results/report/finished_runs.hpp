@@ -8,7 +8,7 @@
 
 namespace withy {
 
-/// The runs on the page of a folder, or on the page itself: RunReport::text of each.
+/// The runs on the page of a folder, or on the page itself: what RunReport::write wrote of each.
 /// \throws study::InputError where there is no such folder; ResultsError where it holds no page
 std::vector<std::string> runs_at(const std::filesystem::path& given);
 /// Their titles, each once.

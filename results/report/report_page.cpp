@@ -41,6 +41,13 @@ void write_guarded(std::string_view json, OutputFile& page) {
 
 std::string dumped(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
 
+void write_head(const std::string& title, int reference, OutputFile& page) {
+  page.write(before);
+  write_guarded(",\"title\":" + dumped(title), page);
+  page.write(",\"reference\":" + std::to_string(reference));
+  page.write(first_run);
+}
+
 /// The page with what `write_data` puts in the place of its data.
 void write_page(const std::filesystem::path& file, const std::function<void(OutputFile&)>& write_data) {
   const std::string_view empty = page();
@@ -63,14 +70,20 @@ std::string folder_text(const std::string& folder, const std::string& what) {
 
 void write_report(const std::filesystem::path& file, const ReportContent& content) {
   write_page(file, [&](OutputFile& page) {
-    page.write(before);
-    write_guarded(",\"title\":" + dumped(content.title), page);
-    page.write(",\"reference\":" + std::to_string(content.reference));
-    page.write(first_run);
+    write_head(content.title, content.reference, page);
     for (std::size_t i = 0; i < content.runs.size(); ++i) {
       if (i > 0) page.write(between);
       write_guarded(content.runs[i], page);
     }
+    page.write(after);
+  });
+}
+
+void write_report(const std::filesystem::path& file, const std::string& title,
+                  const std::function<void(const TextSink&)>& run) {
+  write_page(file, [&](OutputFile& page) {
+    write_head(title, -1, page);
+    run([&](std::string_view piece) { write_guarded(piece, page); });
     page.write(after);
   });
 }

@@ -14,6 +14,27 @@
 #include "withy/results/table_picture.hpp"
 
 namespace withy {
+
+/// Arrays of numbers, which stand as text at the end of what refers to them by their index.
+class ArrayTexts {
+ public:
+  template <class Number>
+  std::size_t add(const std::vector<Number>& numbers) {
+    // In blocks: a text that grows is copied.
+    constexpr std::size_t block = 1 << 18;
+    std::string text = base64_of(numbers);
+    if (blocks_.empty() || blocks_.back().size() + text.size() + 3 > blocks_.back().capacity())
+      blocks_.emplace_back().reserve(std::max(block, text.size() + 3));
+    ((blocks_.back() += count_ == 0 ? "\"" : ",\"") += text) += '"';
+    return count_++;
+  }
+  [[nodiscard]] const std::vector<std::string>& blocks() const { return blocks_; }
+
+ private:
+  std::size_t count_ = 0;
+  std::vector<std::string> blocks_;
+};
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -22,50 +43,41 @@ using Json = nlohmann::ordered_json;
 /// of its animation: 2 MB of data are soon opened.
 constexpr std::size_t most_stretches = 2000, most_numbers = 80'000, most_moments = 400;
 
-/// Arrays of numbers, which stand as text at the end of what refers to them by their index.
-class Arrays {
- public:
-  template <class Number>
-  std::size_t add(const std::vector<Number>& numbers) {
-    text_ += (count_ == 0 ? "\"" : ",\"") + base64_of(numbers) + '"';
-    return count_++;
-  }
-  /// An object's text with the run and the arrays as its last members.
-  [[nodiscard]] std::string behind(std::string object, const std::string& run) const {
-    object.pop_back();
-    object.reserve(object.size() + run.size() + text_.size() + 30);
-    object += ",\"run\":" + run;
-    object += ",\"arrays\":[";
-    object += text_;
-    object += "]}";
-    return object;
-  }
+std::string dumped_page(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
 
- private:
-  std::size_t count_ = 0;
-  std::string text_;
-};
+/// Writes `[…]` of what `item` makes, one at a time: a large model's list is larger than the model.
+template <class Item>
+void write_list(std::size_t count, const Item& item, const TextSink& write) {
+  write("[");
+  for (std::size_t i = 0; i < count; ++i) write((i > 0 ? "," : "") + dumped_page(item(i)));
+  write("]");
+}
 
 /// Where rows are drawn together each column also has its numbers at the moments of the animation: what is computed of
 /// several columns needs numbers of one time.
-Json table_json(const DecimatedTable& table, const std::vector<std::vector<double>>& samples, Arrays& data) {
-  Json columns = Json::array();
-  for (std::size_t c = 0; c < table.columns().size(); ++c) {
-    const Column& column = table.columns()[c];
-    Json j{{"name", column_name(column.name)}, {"unit", column.unit}, {"data", data.add(table.column(c))}};
-    if (table.stride() > 1) {
-      std::vector<double> own;
-      for (const std::vector<double>& row : samples) own.push_back(row[c]);
-      j["samples"] = data.add(own);
-    }
-    columns.push_back(std::move(j));
-  }
-  return {{"rows", table.rows()}, {"stride", table.stride()}, {"columns", std::move(columns)}};
+void write_table(const DecimatedTable& table, const std::vector<std::vector<double>>& samples, ArrayTexts& data,
+                 const TextSink& write) {
+  write("{\"rows\":" + std::to_string(table.rows()) + ",\"stride\":" + std::to_string(table.stride()) +
+        ",\"columns\":");
+  write_list(
+      table.columns().size(),
+      [&](std::size_t c) {
+        const Column& column = table.columns()[c];
+        Json j{{"name", column_name(column.name)}, {"unit", column.unit}, {"data", data.add(table.column(c))}};
+        if (table.stride() > 1) {
+          std::vector<double> own;
+          for (const std::vector<double>& row : samples) own.push_back(row[c]);
+          j["samples"] = data.add(own);
+        }
+        return j;
+      },
+      write);
+  write("}");
 }
 
 /// What was measured of one kind, moment by moment; each series has the limit of the indicator of its name.
 void add_validity(const std::vector<std::string>& bodies, const std::vector<double>& values, const char* before,
-                  const char* after, const study::Certificate& certificate, Json& series, Arrays& data) {
+                  const char* after, const study::Certificate& certificate, Json& series, ArrayTexts& data) {
   std::unordered_map<std::string_view, const study::Indicator*> indicators;
   for (const study::Indicator& i : certificate.indicators) indicators.try_emplace(i.text, &i);
   std::unordered_map<std::string_view, double> fundamentals;
@@ -84,10 +96,8 @@ void add_validity(const std::vector<std::string>& bodies, const std::vector<doub
   }
 }
 
-std::string dumped_page(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
-
 /// Places and vectors moment by moment, six numbers each.
-Json arrows_json(const Arrows& arrows, Arrays& data) {
+Json arrows_json(const Arrows& arrows, ArrayTexts& data) {
   Json list = Json::array();
   for (const Arrows::Arrow& a : arrows.all())
     list.push_back({{"name", a.name}, {"unit", a.unit}, {"greatest", a.greatest}, {"numbers", data.add(a.numbers)}});
@@ -100,28 +110,25 @@ std::vector<std::uint32_t> flat(const std::vector<std::array<std::uint32_t, 3>>&
   return corners;
 }
 
-/// Of what is drawn: what stays of each body, with its surface or its sections, if it has these.
-Json parts_json(const Drawing& drawing, Arrays& data) {
-  Json parts = drawing.parts();
-  for (std::size_t b = 0; b < parts.size(); ++b) {
-    if (const Surface* surface = drawing.surface(b)) {
-      std::vector<float> vertices;
-      for (const Vector3& v : surface->vertices)
-        for (const double x : v) vertices.push_back(static_cast<float>(x));
-      parts[b]["surface"] = {data.add(vertices), data.add(flat(surface->triangles))};
-    }
-    const Eigen::MatrixXf& shapes = drawing.shapes(b).shapes();
-    if (shapes.size() > 0)
-      parts[b]["shapes"] = data.add(std::vector<float>(shapes.data(), shapes.data() + shapes.size()));
-    if (!drawing.triangles(b).empty()) parts[b]["triangles"] = data.add(flat(drawing.triangles(b)));
-    const std::vector<Outline>& sections = drawing.sections(b);
-    if (sections.empty()) continue;
-    std::vector<float> widths;
-    for (const Outline& o : sections) widths.insert(widths.end(), {static_cast<float>(o.y), static_cast<float>(o.z)});
-    parts[b]["sections"] = {
-        {"rectangle", sections.front().rectangle}, {"turns", drawing.turns(b)}, {"widths", data.add(widths)}};
+/// Of what is drawn: what stays of a body, with its surface or its sections, if it has these.
+Json part_json(const Drawing& drawing, std::size_t b, ArrayTexts& data) {
+  Json part = drawing.part(b);
+  if (const Surface* surface = drawing.surface(b)) {
+    std::vector<float> vertices;
+    for (const Vector3& v : surface->vertices)
+      for (const double x : v) vertices.push_back(static_cast<float>(x));
+    part["surface"] = {data.add(vertices), data.add(flat(surface->triangles))};
   }
-  return parts;
+  const Eigen::MatrixXf& shapes = drawing.shapes(b).shapes();
+  if (shapes.size() > 0) part["shapes"] = data.add(std::vector<float>(shapes.data(), shapes.data() + shapes.size()));
+  if (!drawing.triangles(b).empty()) part["triangles"] = data.add(flat(drawing.triangles(b)));
+  const std::vector<Outline>& sections = drawing.sections(b);
+  if (sections.empty()) return part;
+  std::vector<float> widths;
+  for (const Outline& o : sections) widths.insert(widths.end(), {static_cast<float>(o.y), static_cast<float>(o.z)});
+  part["sections"] = {
+      {"rectangle", sections.front().rectangle}, {"turns", drawing.turns(b)}, {"widths", data.add(widths)}};
+  return part;
 }
 
 }  // namespace
@@ -134,44 +141,54 @@ std::string RunReport::picture() const {
   return svg_plot(prepared_.title(), {formulation}, table_panels({{formulation, &table_}}, {}));
 }
 
-std::string RunReport::text(const study::CertifiedRun& ended, const Json& run) const {
+void RunReport::write(const study::CertifiedRun& ended, const Json& run, const TextSink& write) const {
   const Model& model = prepared_.model();
+  const auto member = [&](const char* name, const Json& value) { write(std::string(name) + dumped_page(value)); };
+  member("{\"title\":", prepared_.title());
+  member(",\"outcome\":", study::outcome_text(ended.summary));
+  member(",\"scene\":", prepared_.values.text());
+  member(",\"certificate\":", certificate_text(model, ended.summary, ended.certificate));
+  ArrayTexts data;
+  {
+    const std::vector<std::vector<double>> samples = table_.samples();
+    write(",\"table\":");
+    write_table(table_, samples, data, write);
+    write_motion(samples, ended, data, write);
+  }
+  member(",\"run\":", run);
+  write(",\"arrays\":[");
+  for (const std::string& block : data.blocks()) write(block);
+  write("]}");
+}
+
+void RunReport::write_motion(const std::vector<std::vector<double>>& samples, const study::CertifiedRun& ended,
+                             ArrayTexts& data, const TextSink& write) const {
   Drawing drawing(prepared_.scene.model, prepared_.scene.formulation->terms(), looks_);
   Arrows arrows(prepared_.scene, prepared_.scene.formulation->terms(), table_.columns());
   std::vector<double> times, rates, deflections;
   std::vector<float> numbers;
-  const std::vector<std::vector<double>> samples = table_.samples();
   for (const std::vector<double>& row : samples) {
-    const State state = state_of_row(model.layout(), row);
+    const State state = state_of_row(prepared_.model().layout(), row);
     times.push_back(state.time);
     drawing.append(state.y, numbers);
     arrows.append(state.y, row);
     drawing.append_rates(rates);
     drawing.append_deflections(deflections);
   }
-  Arrays data;
+  const Vector3& g = prepared_.model().gravity();
+  write(",\"animation\":{\"gravity\":" + dumped_page({g.x(), g.y(), g.z()}) + ",\"parts\":");
+  write_list(
+      drawing.parts(), [&](std::size_t b) { return part_json(drawing, b, data); }, write);
+  write(",\"size\":" + std::to_string(drawing.size()) + ",\"times\":" + std::to_string(data.add(times)) +
+        ",\"numbers\":" + std::to_string(data.add(numbers)) + ",\"arrows\":" + dumped_page(arrows_json(arrows, data)));
   Json validity = Json::array();
   add_validity(drawing.rates(), rates, "rate of '", "' over its fundamental frequency", ended.certificate, validity,
                data);
   add_validity(drawing.deflections(), deflections, "tip deflection of '", "' over its length", ended.certificate,
                validity, data);
-  const Vector3& g = model.gravity();
-  Json part{{"title", prepared_.title()},
-            {"outcome", study::outcome_text(ended.summary)},
-            {"scene", prepared_.values.text()},
-            {"certificate", certificate_text(model, ended.summary, ended.certificate)},
-            {"table", table_json(table_, samples, data)},
-            {"animation",
-             {{"gravity", {g.x(), g.y(), g.z()}},
-              {"parts", parts_json(drawing, data)},
-              {"size", drawing.size()},
-              {"times", data.add(times)},
-              {"numbers", data.add(numbers)},
-              {"arrows", arrows_json(arrows, data)}}},
-            {"validity", std::move(validity)}};
-  std::string text = dumped_page(part);
-  part = nullptr;  // it is as large as the page
-  return data.behind(std::move(text), dumped_page(run));
+  write("},\"validity\":");
+  write_list(
+      validity.size(), [&](std::size_t i) { return std::move(validity[i]); }, write);
 }
 
 }  // namespace withy

@@ -4,12 +4,16 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "withy/results/report/decimated_table.hpp"
 #include "withy/results/report/looks.hpp"
+#include "withy/results/report/report_page.hpp"
 #include "withy/study/run.hpp"
 
 namespace withy {
+
+class ArrayTexts;
 
 /// Gathers a run's part of a report: its table as it goes, and at the end the moments of its animation.
 class RunReport {
@@ -18,13 +22,16 @@ class RunReport {
   explicit RunReport(const study::Prepared& prepared);
   /// Takes the table of the run.
   [[nodiscard]] Recorder& table() { return table_; }
-  /// The part, for report_page.
+  /// Writes the part, for report_page, a piece at a time.
   /// \param run content of run.json
-  [[nodiscard]] std::string text(const study::CertifiedRun& ended, const nlohmann::ordered_json& run) const;
+  void write(const study::CertifiedRun& ended, const nlohmann::ordered_json& run, const TextSink& write) const;
   /// The run as SVG: what a build without the page shows.
   [[nodiscard]] std::string picture() const;
 
  private:
+  void write_motion(const std::vector<std::vector<double>>& samples, const study::CertifiedRun& ended, ArrayTexts& data,
+                    const TextSink& write) const;
+
   const study::Prepared& prepared_;
   Looks looks_;  ///< as they are before the run: a mesh that changes while it runs spoils nothing
   DecimatedTable table_;

@@ -45,7 +45,7 @@ struct DrawnBody {
     const Matrix3 R = Eigen::Quaterniond(number(3), number(4), number(5), number(6)).toRotationMatrix();
     const Eigen::MatrixXf& shapes = drawing.shapes(last).shapes();
     const Eigen::VectorXf moved = shapes * Eigen::Map<const Eigen::VectorXf>(&numbers[7 * last + 7], shapes.cols());
-    const auto at_rest = drawing.parts()[last].at("points").get<std::vector<double>>();
+    const auto at_rest = drawing.part(last).at("points").get<std::vector<double>>();
     for (std::size_t i = 0; i < at_rest.size(); i += 3) {
       const Vector3 r =
           Eigen::Map<const Vector3>(&at_rest[i]) + moved.segment<3>(static_cast<Eigen::Index>(i)).cast<double>();
