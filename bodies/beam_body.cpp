@@ -52,20 +52,24 @@ class Beam final : public Body, private Rod {
       shape_.sections.push_back({Vector3(0, central, central).asDiagonal(), middle});
     }
     const auto& x = quadrature_.nodes();
-    if (!rigid) shape_.particles.reserve(x.size());
+    if (!rigid) begin_points(fields);
     for (std::size_t k = 0; k < x.size(); ++k) {
       const double w = quadrature_.weights()[k];
       const LinearFields& f = (*fields.linear)[k];
       const double mass = w * material.mass_per_length(x[k]);
-      if (!rigid)
-        shape_.particles.push_back({mass, expansion(x[k], f, pairs_->gamma.row(static_cast<Eigen::Index>(k)),
-                                                    pairs_->theta.row(static_cast<Eigen::Index>(k)))});
+      if (!rigid) shape_.particles[k].mass = mass;
       add_products(mass, f.phi, gram);
       add_stiffness(w, f, x[k]);
     }
     if (!material.inertias.empty()) add_sections(gram);
     shape_.damping = material.damping.matrix(shape_.stiffness, gram);
   }
+
+  ~Beam() override {
+    if (points_ != nullptr) points_->give_back(std::move(shape_.particles));
+  }
+  Beam(const Beam&) = delete;
+  Beam& operator=(const Beam&) = delete;
 
   const ModalShape& shape() const override { return shape_; }
   std::optional<PointExpansion> station(const StationName& name) const override {
@@ -202,6 +206,20 @@ class Beam final : public Body, private Rod {
     }
   }
 
+  /// A point at each node, whose masses are to be set.
+  void begin_points(const NodeFields& fields) {
+    points_ = fields.points;
+    if (points_ != nullptr) shape_.particles = points_->take();
+    if (!shape_.particles.empty()) return;
+    const auto& x = quadrature_.nodes();
+    shape_.particles.reserve(x.size());
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      shape_.particles.push_back(
+          {0, expansion(x[k], (*fields.linear)[k], pairs_->gamma.row(row), pairs_->theta.row(row))});
+    }
+  }
+
   BeamMaterial material_;
   double length_;
   bool bending_inertia_ = false;
@@ -209,6 +227,7 @@ class Beam final : public Body, private Rod {
   BeamQuadrature quadrature_;
   ModalShape shape_;
   std::shared_ptr<const SecondFields> pairs_;
+  std::shared_ptr<SparePoints> points_;  ///< takes the points at the end; null: nobody does
 };
 
 }  // namespace

@@ -26,6 +26,8 @@ class LastFields {
       if (last_.size() == kept) last_.pop_back();
       last_.emplace_back(std::move(key), make());
       found = last_.end() - 1;
+      constexpr std::size_t most_of_points = 1 << 12;  // at most some MB wait for their next use
+      if (pairs <= most_of_points) found->second.points = std::make_shared<SparePoints>();
     }
     std::rotate(last_.begin(), found, found + 1);
     return last_.front().second;
@@ -125,6 +127,19 @@ LinearFields linear_fields(const std::vector<BeamStrain>& strains, double x) {
     }
   }
   return f;
+}
+
+std::vector<Particle> SparePoints::take() {
+  const std::lock_guard lock(mutex_);
+  if (spare_.empty()) return {};
+  std::vector<Particle> points = std::move(spare_.back());
+  spare_.pop_back();
+  return points;
+}
+
+void SparePoints::give_back(std::vector<Particle>&& points) noexcept {
+  const std::lock_guard lock(mutex_);
+  if (spare_.size() < most) spare_.push_back(std::move(points));
 }
 
 NodeFields fields_at_nodes(const std::vector<BeamStrain>& strains, double length, const BeamQuadrature& quadrature,

@@ -3,7 +3,9 @@
 /// relations are in beam_body.cpp.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "beam_body.hpp"
@@ -24,10 +26,27 @@ struct SecondFields {
   Eigen::MatrixXd theta_slope, gamma_slope, theta, gamma;
 };
 
+/// Points of beams that are no more, for the next with the same fields: from case to case of a sweep they differ in
+/// their masses alone. Of any thread.
+class SparePoints {
+ public:
+  SparePoints() { spare_.reserve(most); }
+  /// One for each node, with masses of another beam; none: there are no spare ones.
+  [[nodiscard]] std::vector<Particle> take();
+  /// Of a beam with these fields.
+  void give_back(std::vector<Particle>&& points) noexcept;
+
+ private:
+  static constexpr std::size_t most = 9;  ///< as many cases as a thread has at once, and one
+  std::mutex mutex_;
+  std::vector<std::vector<Particle>> spare_;
+};
+
 /// What a beam's nodes of quadrature have whatever its stiffness and mass are.
 struct NodeFields {
   std::shared_ptr<const std::vector<LinearFields>> linear;
   std::shared_ptr<const SecondFields> pairs;
+  std::shared_ptr<SparePoints> points = nullptr;  ///< null: none are kept
 };
 
 LinearFields linear_fields(const std::vector<BeamStrain>& strains, double x);

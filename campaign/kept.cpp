@@ -18,7 +18,7 @@ namespace {
 
 /// Whether the table shows a column by this name; most names are shown as they are.
 bool shown_as(const std::string& column, const std::string& name) {
-  return column.find_first_of("[]") == std::string::npos ? column == name : column_name(column) == name;
+  return column.find('[') == std::string::npos ? column == name : column_name(column) == name;
 }
 
 std::vector<std::size_t> where(const std::vector<Column>& columns, const std::vector<std::string>& names) {

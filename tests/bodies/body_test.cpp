@@ -60,6 +60,42 @@ TEST(Body, beam_conforms) {
 
 /// Each mode has the asked for part of its critical damping 2 √(K G), G with the rotary inertia that is all a torsion
 /// mode has.
+/// A beam takes what those before it with its fields have left.
+TEST(Beam, is_the_same_to_the_last_bit_whatever_beams_have_been_before) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  const auto make = [&](double mass, double stiffness) {
+    return make_plugin<Body>(registry, "beam",
+                             {{"length", Value(0.8317)},
+                              {"mass_per_length", Value(mass)},
+                              {"bending_y", strain(stiffness, 3)},
+                              {"bending_z", strain(25, 1)},
+                              {"damping_ratio", Value(0.01)}});
+  };
+  const auto first = make(0.7, 40);  // there were none with these fields
+  for (const double mass : {2.1, 3.3}) {
+    const auto one = make(mass, 55), other = make(mass, 60);  // and are no more
+    ASSERT_EQ(first->shape().particles.size(), one->shape().particles.size());
+    EXPECT_NE(first->shape().particles[1].mass, one->shape().particles[1].mass);
+  }
+  const auto again = make(0.7, 40), beside = make(0.9, 40);
+  const ModalShape &a = first->shape(), &b = again->shape();
+  EXPECT_EQ(a.mode_names, b.mode_names);
+  EXPECT_EQ(a.stiffness, b.stiffness);
+  EXPECT_EQ(a.damping, b.damping);
+  ASSERT_EQ(a.particles.size(), b.particles.size());
+  for (std::size_t k = 0; k < a.particles.size(); ++k) {
+    const Particle &p = a.particles[k], &q = b.particles[k];
+    EXPECT_EQ(p.mass, q.mass) << "point " << k;
+    EXPECT_EQ(p.at.X, q.at.X) << "point " << k;
+    EXPECT_EQ(p.at.phi, q.at.phi) << "point " << k;
+    EXPECT_EQ(p.at.psi, q.at.psi) << "point " << k;
+    EXPECT_EQ(p.at.gamma, q.at.gamma) << "point " << k;
+    EXPECT_EQ(p.at.theta, q.at.theta) << "point " << k;
+    EXPECT_NE(p.mass, beside->shape().particles[k].mass) << "point " << k;
+  }
+}
+
 TEST(Beam, damping_is_the_asked_for_ratio_of_each_mode) {
   Registry registry;
   enroll_static_plugins(registry);
