@@ -14,8 +14,8 @@ namespace withy {
 /// Writes each column as a dataset of its name (column_name) with the attribute `unit`; rows are compressed in parts of
 /// up to 512, each with a checksum. From the first flush on the file is written for single-writer/multiple-reader
 /// access: of a run that is killed the rows up to the last flush can be read, never others, and the attribute `status`
-/// is "running". A flush comes at 512 rows, and as soon as a second and 5 % of the time since the beginning have passed
-/// since the last. A table that has ended before is written at once, and not compressed where it is small.
+/// is "running". A flush comes as soon as a second and 5 % of the time since the beginning have passed since the last.
+/// A table that has ended before is written at once, and not compressed where it is small.
 /// Its functions throw std::system_error.
 class Hdf5Recorder : public Recorder {
  public:

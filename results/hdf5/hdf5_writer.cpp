@@ -18,6 +18,7 @@ constexpr std::size_t most_shared = 256;
 /// Up to so many numbers a table that is there whole is kept as it is, within what describes its datasets, which has
 /// checksums too. Compressed in parts it would be a third smaller, and a short run takes a sixth longer for it.
 constexpr hsize_t few = 1 << 16;
+constexpr hsize_t most_compact = 7500;  ///< rows: a description has 64 kB
 using Clock = std::chrono::steady_clock;
 
 class Hdf5Writer final : public Hdf5Recorder {
@@ -44,7 +45,8 @@ class Hdf5Writer final : public Hdf5Recorder {
   void row(std::span<const double> numbers) override {
     for (std::size_t c = 0; c < waiting_.size(); ++c) waiting_[c].push_back(numbers[c]);
     // A part that is written before it is full is written again later: the longer a run, the more seldom.
-    if ((rows_ + waiting_.front().size()) % chunk == 0) write_waiting();
+    const bool many = waiting_rows() >= chunk && waiting_rows() * columns_.size() >= few;
+    if (begun_ ? (rows_ + waiting_rows()) % chunk == 0 : many) write_waiting();
     const auto now = Clock::now();
     if (!wide_ && now - flushed_ > std::chrono::seconds(1) + (now - began_) / 20) flush();
   }
@@ -104,7 +106,7 @@ class Hdf5Writer final : public Hdf5Recorder {
   /// How datasets are kept, which have so many rows, or with 0 grow.
   [[nodiscard]] Hdf5Handle part_by_part(hsize_t rows) const {
     Hdf5Handle how(need(H5Pcreate(H5P_DATASET_CREATE)), &H5Pclose);
-    if (rows > 0 && rows * columns_.size() <= few) {
+    if (rows > 0 && rows * columns_.size() <= few && rows <= most_compact) {
       need(H5Pset_layout(how, H5D_COMPACT));
       return how;
     }

@@ -68,7 +68,8 @@ class Hdf5 : public testing::Test {
 };
 
 TEST_F(Hdf5, WhatIsReadIsWhatWasWritten) {
-  for (const std::size_t rows : {0U, 1U, 511U, 512U, 513U, 5000U}) {
+  // Whole, more than a description holds, and growing.
+  for (const std::size_t rows : {0U, 1U, 511U, 512U, 513U, 5000U, 8000U, 16'384U, 20'000U}) {
     write(rows);
     MemoryRecorder table;
     read_hdf5(path_, table);
@@ -181,8 +182,8 @@ int Hdf5::refusals(std::size_t first, std::size_t last) const {
 }
 
 TEST_F(Hdf5, DamageIsNoticed) {
-  write(3000);
-  EXPECT_GE(refusals(0, std::string::npos), 5) << "half of the file are texts";
+  write(20'000);
+  EXPECT_GE(refusals(0, std::string::npos), 5) << "a part of the file are texts";
 }
 
 TEST_F(Hdf5, DamageToNumbersThatAreNotCompressedIsNoticed) {
