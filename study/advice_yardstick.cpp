@@ -25,6 +25,9 @@ constexpr double most_poor_reference_use = 0.25 * most_reference_use;
 constexpr double last_reference_use = 0.7;
 /// Of the time allowed: what the search for a reference may take.
 constexpr double reference_time = 0.6;
+/// Of the accuracy: the tolerance of the coarsest level. Modes of it are few, so that integration is the less of its
+/// errors by far; each level shows what the tolerance of the one before had added.
+constexpr double first_tolerance = 1e-2;
 /// Levels of a reference, the tolerance of each over that of the one before, and the tightest.
 constexpr int reference_levels = 9;
 constexpr double finer_level = 0.3;
@@ -68,9 +71,11 @@ void YardstickSearch::find() {
                 reference_family(candidates_),
                 modal ? 2 : 0,
                 "dop853",
-                std::clamp(1e-3 * accuracy_.share.value_or(1e-3), 1e-8, 1e-5),
+                std::clamp(policy::first_tolerance * accuracy_.share.value_or(1e-3), 1e-8, 1e-4),
                 {},
                 {}};
+  // Eigenfunctions of the bare beam begin well and go on badly where the tip is loaded.
+  if (tips_are_bare(evaluator_.base().model())) goal.families = candidates_.families;
   goal.levels = policy::reference_levels;
   goal.finer = modal ? policy::finer_level : policy::finer_integration;
   goal.tightest = modal ? policy::tightest : policy::tightest_integration;

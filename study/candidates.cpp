@@ -118,6 +118,12 @@ std::string reference_family(const Candidates& candidates) {
   return std::find(all.begin(), all.end(), polynomials) != all.end() ? polynomials : "";
 }
 
+bool tips_are_bare(const Model& model) {
+  return std::none_of(model.hinges().begin(), model.hinges().end(), [&](const HingeNode& hinge) {
+    return hinge.parent >= 0 && model.bodies()[static_cast<std::size_t>(hinge.parent)].body->shape().modes() > 0;
+  });
+}
+
 std::vector<std::string> flexible_bodies(const Scene& scene) {
   std::unordered_set<std::string> flexible;
   for (const BodyNode& b : scene.model->bodies())

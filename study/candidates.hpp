@@ -27,8 +27,11 @@ Axes usual_axes();
 /// \throws InputError where a value cannot be, or is `inconsistent`.
 Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes asked);
 
-/// The family of a candidate that references are best made of: empty for the scene's own.
+/// The family of a candidate that references are best made of where tips are loaded: empty for the scene's own.
 std::string reference_family(const Candidates& candidates);
+
+/// Whether no flexible body carries another one.
+bool tips_are_bare(const Model& model);
 
 /// Names of the scene's bodies that have modes, in its order; a beam in segments is one.
 std::vector<std::string> flexible_bodies(const Scene& scene);

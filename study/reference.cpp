@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/accuracy.hpp"
@@ -14,6 +15,8 @@ namespace {
 
 /// Share of an evaluation's cost below which more modes are looked at in a lower rung at once.
 constexpr double much_cheaper = 0.25;
+/// Times the change by the first family's: less is another one's merit, more may be chance.
+constexpr double clearly_less = 0.5;
 /// Modes beyond the last level of the higher rung that are looked at in the lower one.
 constexpr int most_modes_beyond = 8;
 
@@ -51,6 +54,21 @@ class ReferenceSearch {
                   const Outputs& outputs, const ReferenceGoal& goal, const Control& control)
       : model_at_(model_at), registry_(registry), outputs_(outputs), goal_(goal), control_(control) {}
 
+  /// The family whose series of modes begins best.
+  std::string best_family() {
+    std::string best = goal_.first.family;
+    if (goal_.families.empty() || goal_.first.modes == 0) return best;
+    std::optional<double> least = first_change(best);
+    for (const std::string& family : goal_.families) {
+      if (family == best) continue;
+      const std::optional<double> change = first_change(family);
+      if (!change || (least && *change > clearly_less * *least)) continue;
+      least = change;
+      best = family;
+    }
+    return best;
+  }
+
   /// The coarsest level, in the richest formulation that comes to the end.
   std::optional<Reference> begin(Point point) {
     for (const std::string& formulation : reference_formulations(registry_)) {
@@ -61,35 +79,13 @@ class ReferenceSearch {
     return {};
   }
 
+  /// A run, made once; nothing where it does not come to its end.
   std::optional<Reference> at(const Point& point) {
-    const ModelAt& model = model_at_(point);
-    if (model.refused()) {
-      found.trouble = model.refusal;
-      return {};
-    }
-    Reference r{.point = point, .readings = {}, .ranges = outputs_.none(), .scales = {}, .own = {}, .walk = {}};
-    OutputReader reader(outputs_, model.prepared->model(), *model.prepared->equations, model.prepared->scene.outputs);
-    const auto keep = [&](const State& s) {
-      r.readings.times.push_back(s.time);
-      r.readings.values.push_back(reader.read(s));
-      r.energy = std::max(r.energy, reader.kinetic_energy());
-      outputs_.raise_ranges(r.readings.values.back(), r.readings.values.front(), r.ranges);
-      return true;
-    };
-    r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
-                  {keep, goal_.afford, control_.interrupted});
-    r.scales = scales(outputs_, r.ranges, r.energy);
-    found.cpu_seconds += r.walk.seconds;
-    found.interrupted = r.walk.end == Walk::End::interrupted;
-    if (r.walk.end == Walk::End::reached) return r;
-    found.unaffordable = r.walk.end == Walk::End::cut;
-    if (found.unaffordable) {
-      found.trouble = fmt::format("{}: at {:.4g} s of the run after {:.2g} s of CPU time, when the time for it ended",
-                                  point.text(), r.walk.time, r.walk.seconds);
-      return {};
-    }
-    found.trouble = fmt::format("{}: ends at {:.4g} s: {}", point.text(), r.walk.time, r.walk.reason);
-    return {};
+    const auto made = runs_.find(point.key());
+    if (made != runs_.end()) return made->second;
+    std::optional<Reference> reference = run(point);
+    if (reference) runs_.emplace(point.key(), *reference);
+    return reference;
   }
 
   [[nodiscard]] bool enough(const Reference& r) const { return !goal_.enough || goal_.enough(r); }
@@ -149,6 +145,46 @@ class ReferenceSearch {
   ReferenceFound found;
 
  private:
+  std::optional<Reference> run(const Point& point) {
+    const ModelAt& model = model_at_(point);
+    if (model.refused()) {
+      found.trouble = model.refusal;
+      return {};
+    }
+    Reference r{.point = point, .readings = {}, .ranges = outputs_.none(), .scales = {}, .own = {}, .walk = {}};
+    OutputReader reader(outputs_, model.prepared->model(), *model.prepared->equations, model.prepared->scene.outputs);
+    const auto keep = [&](const State& s) {
+      r.readings.times.push_back(s.time);
+      r.readings.values.push_back(reader.read(s));
+      r.energy = std::max(r.energy, reader.kinetic_energy());
+      outputs_.raise_ranges(r.readings.values.back(), r.readings.values.front(), r.ranges);
+      return true;
+    };
+    r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
+                  {keep, goal_.afford, control_.interrupted});
+    r.scales = scales(outputs_, r.ranges, r.energy);
+    found.cpu_seconds += r.walk.seconds;
+    found.interrupted = r.walk.end == Walk::End::interrupted;
+    if (r.walk.end == Walk::End::reached) return r;
+    found.unaffordable = r.walk.end == Walk::End::cut;
+    if (found.unaffordable) {
+      found.trouble = fmt::format("{}: at {:.4g} s of the run after {:.2g} s of CPU time, when the time for it ended",
+                                  point.text(), r.walk.time, r.walk.seconds);
+      return {};
+    }
+    found.trouble = fmt::format("{}: ends at {:.4g} s: {}", point.text(), r.walk.time, r.walk.reason);
+    return {};
+  }
+
+  /// By what part of the outputs' scales a mode more changes them in the lowest rung; nothing where a run does not end.
+  [[nodiscard]] std::optional<double> first_change(const std::string& family) {
+    Point point = goal_.first;
+    point.family = family;
+    point.formulation = reference_formulations(registry_).back();
+    const std::optional<Reference> few = at(point), more = few ? at(finer(point)) : few;
+    if (!more) return {};
+    return relative_error(distances(outputs_, more->readings, few->readings).first, more->scales);
+  }
   /// The same in the next rung that truncates nothing.
   [[nodiscard]] std::optional<Point> below(Point point) const {
     const std::vector<std::string> all = reference_formulations(registry_);
@@ -163,6 +199,7 @@ class ReferenceSearch {
   const Outputs& outputs_;
   const ReferenceGoal& goal_;
   const Control& control_;
+  std::map<std::string, Reference> runs_;  ///< that came to their end, by the point's key
 };
 
 }  // namespace
@@ -193,7 +230,9 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
                               const Outputs& outputs, const ReferenceGoal& goal, const Control& control) {
   ReferenceSearch search(model_at, registry, outputs, goal, control);
   ReferenceFound& found = search.found;
-  std::optional<Reference> before, coarse = search.begin(goal.first);
+  Point first = goal.first;
+  first.family = search.best_family();
+  std::optional<Reference> before, coarse = found.interrupted ? std::nullopt : search.begin(first);
   Distances apart;  // the two levels before
   if (coarse) {
     found.trouble.clear();

@@ -35,6 +35,9 @@ struct Reference {
 /// Where a search begins and when it ends.
 struct ReferenceGoal {
   Point first;  ///< the coarsest; its formulation means nothing
+  /// Families beside that of `first`: the one is taken whose first added mode changes clearly less, in the lowest rung
+  /// that truncates nothing.
+  std::vector<std::string> families;
   /// Finer ones that are looked at: a mode more where the first has any, the tolerance times `finer` down to
   /// `tightest`.
   int levels = 1;

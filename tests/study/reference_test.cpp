@@ -128,6 +128,33 @@ TEST(FindReference, ASlowSeriesIsNotTakenForItsLastDifference) {
   EXPECT_GT(slow.own[worst], 1.5 * last[worst]);
 }
 
+/// The beam that spins carries nothing; polynomials leave what its first eigenfunction has at the start to fast modes.
+TEST(FindReference, EigenfunctionsAreTakenForABareBeamWhereTheyConvergeFaster) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/spinning-beam.yaml");
+  const Prepared beam = prepare(values.set("time.end", Value(0.5), "the test"), plugins());
+  EXPECT_TRUE(tips_are_bare(beam.model()));
+  const Outputs outputs = Outputs::all(beam.model());
+  Evaluator evaluator(beam, plugins(), outputs, {});
+  const auto family = [&](std::vector<std::string> families) {
+    ReferenceGoal goal;
+    goal.first = {"", "orthogonal-polynomials", 2, "dop853", 1e-5, {}, {}};
+    goal.families = std::move(families);
+    const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+    goal.levels = 1;
+    goal.enough = [](const Reference&) { return true; };
+    return find_reference(at, plugins(), outputs, goal, {}).reference->point.family;
+  };
+  EXPECT_EQ(family({"", "orthogonal-polynomials"}), "");
+  EXPECT_EQ(family({"craig-bampton"}), "orthogonal-polynomials") << "not clearly better";
+  EXPECT_EQ(family({}), "orthogonal-polynomials");
+}
+
+/// The slew's links carry an elbow and a payload.
+TEST(FindReference, ATipThatCarriesABodyIsNotBare) {
+  const Prepared arm = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml"), plugins());
+  EXPECT_FALSE(tips_are_bare(arm.model()));
+}
+
 TEST(CorrectedReadings, PutADifferenceOnTopOfNumbersVectorsAndOrientations) {
   const Prepared scene = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spacecraft.yaml"), plugins());
   const Outputs outputs = Outputs::all(scene.model());
