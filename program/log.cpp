@@ -1,21 +1,24 @@
 #include "withy/program/log.hpp"
 
-#include <fmt/format.h>
+#include <spdlog/logger.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
 
-#include <chrono>
-#include <cstdio>
-#include <ctime>
+#include <memory>
 
 namespace withy::program {
+namespace {
+
+spdlog::logger standard_error() {
+  spdlog::logger logger("withy", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+  logger.set_pattern("%T.%e %v");
+  return logger;
+}
+
+}  // namespace
 
 void log(std::string_view line) {
-  using Clock = std::chrono::system_clock;
-  const Clock::time_point now = Clock::now();
-  const std::time_t second = Clock::to_time_t(now);
-  const auto since = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count();
-  std::tm day{};
-  ::localtime_r(&second, &day);
-  fmt::print(stderr, "{:02}:{:02}:{:02}.{:03} {}\n", day.tm_hour, day.tm_min, day.tm_sec, since % 1000, line);
+  static spdlog::logger logger = standard_error();
+  logger.info(line);
 }
 
 }  // namespace withy::program

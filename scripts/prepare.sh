@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-build_packages=(g++ cmake ninja-build libeigen3-dev libspectra-dev libboost-dev libboost-context-dev libfmt-dev libyaml-cpp-dev libminizip-dev zlib1g-dev libexpat1-dev
+build_packages=(g++ cmake ninja-build libeigen3-dev libspectra-dev libboost-dev libboost-context-dev libfmt-dev libspdlog-dev libyaml-cpp-dev libminizip-dev zlib1g-dev libexpat1-dev
   nlohmann-json3-dev libcli11-dev libsundials-dev libhdf5-dev libgtest-dev libgmock-dev libbenchmark-dev
   python3-dev python3-numpy python3-pytest python3-mypy pybind11-dev pkg-config)
 
