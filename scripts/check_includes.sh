@@ -43,13 +43,14 @@ find . \( -path ./build -o -path ./.git \) -prune -o -type f \( -name '*.hpp' -o
     may["exchange"] = inner "|withy/(scene|exchange)/.*|fmt/.*|expat[.]h"
     may["cmake"] = inner "|withy/(scene|plugins/host)/.*|fmt/.*|nlohmann/.*|gmock/.*|gtest/.*"
     may["withy.hpp"] = inner "|withy/(scene|study|results|plugins/host|host)/.*"
-    may["program"] = inner "|withy/(scene|program)/.*|fmt/.*|CLI/.*|sanitizer/.*|(sys/)?[a-z]+[.]h"
+    may["program"] = inner "|withy/(scene|program)/.*|fmt/.*|spdlog/.*|CLI/.*|sanitizer/.*|(sys/)?[a-z]+[.]h"
     may["apps"] = ".*"
     may["tests"] = ".*"
 
     # Libraries that stay in one room, tests included; but a test of FMUs has CVODE as a host of its own.
     only["yaml-cpp/"] = "scene"
     only["CLI/"] = "program"
+    only["spdlog/"] = "program"
     only["hdf5.h"] = "results"
     only["boost/dll"] = "plugins/host"
     only["Spectra/"] = "fem"
