@@ -1,5 +1,9 @@
 #!/usr/bin/env bash
 # Builds withy and shows the two-link arm of Padilla and von Flotow in four formulations at three speeds.
+[ $# = 0 ] || {
+  echo "usage: scripts/demo.sh" >&2
+  exit 2
+}
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 need_packages "${build_packages[@]}"
 echo "Building (some minutes the first time) ..."

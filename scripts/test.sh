@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds the release preset and runs every test; installs what is missing first.
+# test.sh [OPTION...]: builds the release preset and runs every test, by ctest with these options; installs what is
+# missing first.
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 # Three tests ask other programs to read, to draw and to run what withy writes; without them they are left out.
 need_packages "${build_packages[@]}" hdf5-tools librsvg2-bin zsh
