@@ -50,7 +50,7 @@ def pictures():
         exact = places.pop("exact")
         return {f: 1000 * max(map(math.dist, p, exact)) for f, p in places.items()}
 
-    slew = tips("scenes/two-link-slew.yaml", "link2.tip", ["ruthless", "quadratic"], "loads.slew.time_scale=1.2", "time.output=0.01")
+    slew = tips("scenes/two-link-slew.yaml", "payload.tip", ["ruthless", "quadratic"], "loads.slew.time_scale=1.2", "time.output=0.01")
     swing = tips("scenes/gallery/flexible-pendulum.yaml", "strip.tip", ["ruthless", "quadratic"], "time.output=0.02", "time.end=4")
     rows = [["picture", "`ruthless`, tip off by [mm]", "`quadratic`, tip off by [mm]"]]
     for name, off in (("slew, 1.2 times as fast", slew), ("strip on a pin, 4 s", swing)):
