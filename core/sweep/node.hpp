@@ -154,24 +154,25 @@ constexpr bool has_general_hinges = Space::angular == 3 && !in_lanes<Space>;
 /// Hinge of a node.
 template <class Space>
 struct JointData {
+  // What all passes read stands together.
   Joint kind = Joint::fixed;
-  double direction = 1;
-  typename Space::Frame F;  ///< in the parent station's section, the parent node's frame, or the world
-  const Hinge* hinge = nullptr;
   bool driven = false;       ///< its rates' accelerations are given, and the efforts on them are found
   bool pose_matters = true;  ///< false on a world without weight, whose accelerations are zero in any axes
+  double direction = 1;
   std::size_t position = 0, positions = 0, speed = 0, speeds = 0;
+  const Hinge* hinge = nullptr;
+  typename Space::Frame F;  ///< in the parent station's section, the parent node's frame, or the world
 
   JointData() = default;
   explicit JointData(const NodeSpec& node)
-      : direction(node.direction),
-        F(Space::make(node.F)),
-        hinge(node.hinge.get()),
-        driven(node.driven),
+      : driven(node.driven),
+        direction(node.direction),
         position(node.slot.position),
         positions(node.slot.positions),
         speed(node.slot.speed),
-        speeds(node.slot.speeds) {
+        speeds(node.slot.speeds),
+        hinge(node.hinge.get()),
+        F(Space::make(node.F)) {
     using enum HingeKernel::Kind;
     kind = Joint::custom;
     if (!node.kernel) return;

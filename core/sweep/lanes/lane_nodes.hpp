@@ -131,11 +131,7 @@ void put(std::size_t lane, const SymmetricStation<Space>& from, SymmetricStation
 }
 
 template <class Space, class Many>
-void put(std::size_t lane, const SymmetricNode<Space>& from, SymmetricNode<Many>& to) {
-  to.body = from.body, to.parent = from.parent, to.parent_station = from.parent_station;
-  to.root_station = from.root_station, to.modes = from.modes, to.flavor = from.flavor, to.leaf = from.leaf;
-  to.has_children = from.has_children, to.mode_position = from.mode_position, to.mode_speed = from.mode_speed;
-  put(lane, from.joint, to.joint);
+void put(std::size_t lane, const SymmetricBody<Space>& from, SymmetricBody<Many>& to) {
   put(lane, from.M, to.M);
   put(lane, from.stiffness, to.stiffness), put(lane, from.damping, to.damping);
   put(lane, from.base, to.base);
@@ -147,14 +143,23 @@ void put(std::size_t lane, const SymmetricNode<Space>& from, SymmetricNode<Many>
   put(lane, from.reduced, to.reduced);
 }
 
+template <class Space, class Many>
+void put(std::size_t lane, const SymmetricNode<Space>& from, SymmetricNode<Many>& to) {
+  to.body = from.body, to.parent = from.parent, to.parent_station = from.parent_station;
+  to.root_station = from.root_station, to.modes = from.modes, to.flavor = from.flavor, to.leaf = from.leaf;
+  to.has_children = from.has_children, to.mode_position = from.mode_position, to.mode_speed = from.mode_speed;
+  put(lane, from.joint, to.joint);
+  put(lane, from.own, to.own);
+}
+
 /// All of a node that its numbers do not tell.
 template <class Space>
 auto structure(const SymmetricNode<Space>& n) {
   const JointData<Space>& j = n.joint;
   return std::tuple(n.body, n.parent, n.parent_station, n.root_station, n.modes, n.flavor, n.leaf, n.has_children,
                     n.mode_position, n.mode_speed, j.kind, j.direction, j.driven, j.pose_matters, j.position,
-                    j.positions, j.speed, j.speeds, n.mass.rank, n.mass.second_order, n.rotary.sections,
-                    n.rotary.second_order, n.factor.size());
+                    j.positions, j.speed, j.speeds, n.own->mass.rank, n.own->mass.second_order, n.own->rotary.sections,
+                    n.own->rotary.second_order, n.own->factor.size());
 }
 template <class Space>
 auto structure(const SymmetricStation<Space>& s) {
@@ -165,7 +170,7 @@ auto structure(const SymmetricStation<Space>& s) {
 template <class Space, class Many>
 bool alike(const SymmetricNode<Space>& a, const SymmetricNode<Many>& b) {
   return structure(a) == structure(b) &&
-         std::equal(a.stations.begin(), a.stations.end(), b.stations.begin(), b.stations.end(),
+         std::equal(a.own->stations.begin(), a.own->stations.end(), b.own->stations.begin(), b.own->stations.end(),
                     [](const auto& s, const auto& t) { return structure(s) == structure(t); });
 }
 

@@ -29,7 +29,7 @@ std::string LaneSweep<Space>::refusal(const SymmetricSweep<Space>& sweep) {
   for (const SymmetricNode<Space>& node : sweep.nodes()) {
     if (node.flavor == Flavor::exact) return "a beam moves by exact kinematics";
     if (!single(node.joint.kind) && node.joint.kind != Joint::fixed) return "a hinge has several rates";
-    if (!has_sections<Many> && node.rotary.packs > 0) return "sections of a beam in space have rotary inertia";
+    if (!has_sections<Many> && node.own->rotary.packs > 0) return "sections of a beam in space have rotary inertia";
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <span>
 
+#include "withy/core/sweep/symmetric/shared_bodies.hpp"
 #include "withy/core/sweep/symmetric/symmetric_layout.hpp"
 
 namespace withy::sweep {
@@ -34,7 +35,9 @@ BranchedSweep<Space>::BranchedSweep(const SymmetricSweep<Space>& sweep, std::siz
     : nodes_(sweep.nodes()),
       world_acceleration_(sweep.world_acceleration()),
       branches_(branches_of(nodes_, threads)),
-      work_size_(lay_out(nodes_, branches_.groups(nodes_.size()))) {}
+      work_size_(lay_out(nodes_, branches_.groups(nodes_.size()))) {
+  share_bodies(nodes_);
+}
 
 template <class Space>
 Evaluation BranchedSweep<Space>::accelerations(const double* positions, const double* speeds, double* efforts,

@@ -35,8 +35,8 @@ inline void integrate_mass(const SymmetricNode<Space>& node, const SymmetricStat
     using Group = typename Space::Group;
     Group P_here[N > 0 ? N * Space::linear : 1];
     Group* P = N > 0 ? P_here : at<Group>(s.work, node.work_P);
-    integrate<Space, N>(node.mass, n, q, q_dot, V, P, I, C, G, p, h);
-    if constexpr (has_sections<Space>) collect_sections<Space, N>(node.rotary, n, q, q_dot, V, P, I, C, G, p, h);
+    integrate<Space, N>(node.own->mass, n, q, q_dot, V, P, I, C, G, p, h);
+    if constexpr (has_sections<Space>) collect_sections<Space, N>(node.own->rotary, n, q, q_dot, V, P, I, C, G, p, h);
   }
 }
 
@@ -50,6 +50,7 @@ inline auto eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
   const auto* q = s.positions + node.mode_position;
   const auto* q_dot = s.speeds + node.mode_speed;
   const auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+  const auto* frames = at<typename Space::Frame>(s.work, node.work_frames);
   // On the stack where the compiler knows their size: it then keeps them in registers.
   constexpr int size = N > 0 ? N : 1;
   Twist C_here[size];
@@ -60,13 +61,13 @@ inline auto eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
   bool constant = false;
   if constexpr (flavor == Flavor::frozen) {
     const auto square = Variation<Space>::bilinear(V, V);
-    for (int i = 0; i < n; ++i) y[i] = -0.5 * dot(node.I1[static_cast<std::size_t>(i)], square);
+    for (int i = 0; i < n; ++i) y[i] = -0.5 * dot(node.own->I1[static_cast<std::size_t>(i)], square);
     constant = is_constant(node, s);
     if (!constant) {
-      for (int i = 0; i < n; ++i) C[i] = node.C0[static_cast<std::size_t>(i)];
-      for (int i = 0; i < n * n; ++i) G[i] = node.G0[static_cast<std::size_t>(i)];
-      for (std::size_t k = 0; k < node.stations.size(); ++k) {
-        const auto& station = node.stations[k];
+      for (int i = 0; i < n; ++i) C[i] = node.own->C0[static_cast<std::size_t>(i)];
+      for (int i = 0; i < n * n; ++i) G[i] = node.own->G0[static_cast<std::size_t>(i)];
+      for (std::size_t k = 0; k < node.own->stations.size(); ++k) {
+        const auto& station = node.own->stations[k];
         if (!station.has_children) continue;
         const auto& IS = *at<typename Space::Inertia>(s.work, station.work_I);
         collect_frozen_station<Space, N>(stations[k], IS, station, n, I, p, C, G, y);
@@ -75,32 +76,33 @@ inline auto eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
   } else {
     integrate_mass<Space, N, flavor>(node, s, V, I, p, C, G, y);
     Twist* J = at<Twist>(s.work, node.work_J);
-    for (std::size_t k = 0; k < node.stations.size(); ++k) {
-      const auto& station = node.stations[k];
+    for (std::size_t k = 0; k < node.own->stations.size(); ++k) {
+      const auto& station = node.own->stations[k];
       if (!station.loaded) continue;
       typename Space::Inertia IS = station.carried->inertia;
       if (station.has_children) IS += *at<typename Space::Inertia>(s.work, station.work_I);
-      collect_station<Space, N>(stations[k], IS, J + static_cast<int>(k) * n, n, I, p, C, G, y);
+      collect_station<Space, N>(stations[k], frames[k], IS, J + static_cast<int>(k) * n, n, I, p, C, G, y);
     }
     if (node.root_station >= 0) {
       const auto& root = *at<RootWork<Space>>(s.work, node.work_root);
-      move_to_root<Space>(root.frame, root.sigma, n, J + n * static_cast<int>(node.stations.size()), I, p, C, G, y);
+      move_to_root<Space>(root.frame, root.sigma, n, J + n * static_cast<int>(node.own->stations.size()), I, p, C, G,
+                          y);
     }
   }
   // q̈ = G⁻¹ (−K q − D q̇ − h − Cᵀ A), with G = L Δ Lᵀ, Y = L⁻¹ Cᵀ, y = L⁻¹ (…).
   for (int i = 0; i < n; ++i) {
     Scalar e = s.efforts[node.mode_speed + static_cast<std::size_t>(i)] - y[i];
     for (int j = 0; j < n; ++j) {
-      e -= node.stiffness[static_cast<std::size_t>(i * n + j)] * q[j] +
-           node.damping[static_cast<std::size_t>(i * n + j)] * q_dot[j];
+      e -= node.own->stiffness[static_cast<std::size_t>(i * n + j)] * q[j] +
+           node.own->damping[static_cast<std::size_t>(i * n + j)] * q_dot[j];
     }
     y[i] = e;
   }
   Scalar* y_kept = at<Scalar>(s.work, node.work_y);
   if (constant) {
-    const Scalar* L = node.factor.data();
+    const Scalar* L = node.own->factor.data();
     solve_lower<N>(L, n, y);
-    for (int i = 0; i < n; ++i) p += node.Y0[static_cast<std::size_t>(i)] * (L[i * n + i] * y[i]);
+    for (int i = 0; i < n; ++i) p += node.own->Y0[static_cast<std::size_t>(i)] * (L[i * n + i] * y[i]);
     for (int i = 0; i < n; ++i) y_kept[i] = y[i];
     return everywhere<Scalar>();
   }
@@ -108,7 +110,7 @@ inline auto eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j <= i; ++j) {
         const auto ij = static_cast<std::size_t>(i * n + j);
-        G[ij] += s.delta * (node.damping[ij] + s.delta * node.stiffness[ij]);
+        G[ij] += s.delta * (node.own->damping[ij] + s.delta * node.own->stiffness[ij]);
       }
     }
   }
@@ -165,7 +167,7 @@ inline auto pass_inward(const SymmetricNode<Space>& node, const SymmetricState<S
   if (joint.driven) [[unlikely]] {  // passes on everything
     *at<DrivenWork<Space>>(s.work, node.work_driven) = {I, p};
     if (node.parent < 0) return good;
-    p += I * w.sigma;
+    p += I * w.A;
   } else if (single(joint.kind)) {
     const bool turns = joint.kind == Joint::rotate;
     const Twist U = turns ? I.turn_column() : I.slide_column();
@@ -174,20 +176,20 @@ inline auto pass_inward(const SymmetricNode<Space>& node, const SymmetricState<S
     if (none(good)) return good;
     const Scalar inverse = 1 / inertia;
     const Scalar u = joint.direction * s.efforts[joint.speed] - (turns ? p.turn() : p.slide());
-    w.U = U;
+    w.p_or_U = U;
     w.inverse = inverse;
     w.u = u;
     if (node.parent < 0) return good;
     I.subtract_square(U, inverse);
-    p += I * w.sigma + U * (inverse * u);
+    p += I * w.A + U * (inverse * u);
   } else if (joint.kind == Joint::fixed) {
     if (node.parent < 0) return good;
-    p += I * w.sigma;
+    p += I * w.A;
   } else if constexpr (has_general_hinges<Space>) {
     good = eliminate_joint(joint, s, *at<JointElimination<Space>>(s.work, node.work_elimination), I, p);
     if (!good) return good;
     if (node.parent < 0) return good;
-    p += I * w.sigma;
+    p += I * w.A;
   }
   auto& outer_I = *at<typename Space::Inertia>(s.work, node.work_outer_I);
   if (node.begins) {
@@ -217,9 +219,9 @@ template <class Space, int N, Flavor flavor>
   using Twist = typename Space::Twist;
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
   const bool constant = flavor == Flavor::frozen && is_constant(node, s);
-  typename Space::Inertia I = constant ? *node.reduced : node.base->inertia;
+  typename Space::Inertia I = constant ? *node.own->reduced : node.own->base->inertia;
   if (node.has_children) I += *at<typename Space::Inertia>(s.work, node.work_I);
-  Twist p = constant ? node.base->velocity_wrench(w.V) : w.p;
+  Twist p = constant ? node.own->base->velocity_wrench(w.V) : w.p_or_U;
   auto good = everywhere<typename Space::Scalar>();
   if constexpr (flavor != Flavor::rigid) {
     good = eliminate_modes<Space, N, flavor>(node, s, w.V, I, p);
@@ -234,36 +236,37 @@ template <class Space, int N, Flavor flavor>
 }
 
 /// What the inward pass has left for `forces` at rest: generalized forces alone, one for each speed, against the
-/// factors already in the work memory. Stations and nodes begin with p = 0.
+/// factors already in the work memory. What gathers at stations and nodes begins with 0.
 template <class Space, int N, Flavor flavor>
 inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
   using Twist = typename Space::Twist;
   const int n = count<N>(node.modes);
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
-  Twist p = w.p;
+  Twist p = w.V;
   if constexpr (flavor != Flavor::rigid) {
     const auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+    const auto* frames = at<typename Space::Frame>(s.work, node.work_frames);
     const Twist* J = at<Twist>(s.work, node.work_J);
     double* y = at<double>(s.work, node.work_y);
     const double* force = s.efforts + node.mode_speed;
     for (int i = 0; i < n; ++i) y[i] = force[i];
-    for (std::size_t k = 0; k < node.stations.size(); ++k) {
-      const auto& station = node.stations[k];
+    for (std::size_t k = 0; k < node.own->stations.size(); ++k) {
+      const auto& station = node.own->stations[k];
       if (!station.has_children) continue;
-      const Twist& carried = stations[k].p;
+      const Twist& carried = stations[k].V;
       const Twist* partial = flavor == Flavor::frozen ? station.J.data() : J + static_cast<int>(k) * n;
       p += flavor == Flavor::frozen ? Space::shift_to_parent(station.fields.X, carried)
-                                    : Space::to_parent(stations[k].frame, carried);
+                                    : Space::to_parent(frames[k], carried);
       for (int i = 0; i < n; ++i) y[i] -= Space::dot(partial[i], carried);
     }
     if (flavor != Flavor::frozen && node.root_station >= 0) {
       p = Space::to_parent(Space::inverse(at<RootWork<Space>>(s.work, node.work_root)->frame), p);
-      const Twist* JM = J + n * static_cast<int>(node.stations.size());
+      const Twist* JM = J + n * static_cast<int>(node.own->stations.size());
       for (int i = 0; i < n; ++i) y[i] += Space::dot(JM[i], p);
     }
     const bool constant = flavor == Flavor::frozen && is_constant(node, s);
-    const double* L = constant ? node.factor.data() : at<double>(s.work, node.work_G);
-    const Twist* Y = constant ? node.Y0.data() : at<Twist>(s.work, node.work_C);
+    const double* L = constant ? node.own->factor.data() : at<double>(s.work, node.work_G);
+    const Twist* Y = constant ? node.own->Y0.data() : at<Twist>(s.work, node.work_C);
     solve_lower<N>(L, n, y);
     for (int i = 0; i < n; ++i) p += Y[i] * (L[i * n + i] * y[i]);
   }
@@ -272,7 +275,7 @@ inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<
     // The force passes on whole.
   } else if (single(joint.kind)) {
     w.u = joint.direction * s.efforts[joint.speed] - component<Space>(joint.kind, p);
-    p += w.U * (w.inverse * w.u);
+    p += w.p_or_U * (w.inverse * w.u);
   } else if constexpr (Space::angular == 3) {
     if (joint.kind != Joint::fixed) {
       auto& e = *at<JointElimination<Space>>(s.work, node.work_elimination);
@@ -283,7 +286,7 @@ inline void inward_force(const SymmetricNode<Space>& node, const SymmetricState<
     }
   }
   if (node.parent < 0) return;
-  *Outer(node, s).p += Space::to_parent(w.SM, p);
+  *Outer(node, s).V += Space::to_parent(w.SM, p);
 }
 
 }  // namespace withy::sweep

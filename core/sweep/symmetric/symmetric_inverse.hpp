@@ -14,7 +14,7 @@ inline void given_acceleration(const SymmetricNode<Space>& node, const Symmetric
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
   const JointData<Space>& joint = node.joint;
   const Twist& outer = node.parent < 0 ? *s.world : *Outer(node, s).A;
-  Twist A = Space::to_child(w.SM, outer) + w.sigma;
+  Twist A = Space::to_child(w.SM, outer) + w.A;
   if (single(joint.kind)) {
     A += along<Space>(joint.kind, joint.direction * s.efforts[joint.speed]);
   } else if constexpr (Space::angular == 3) {
@@ -34,7 +34,7 @@ inline void given_acceleration(const SymmetricNode<Space>& node, const Symmetric
     const double* a = s.efforts + node.mode_speed;
     const Twist* J = at<Twist>(s.work, node.work_J);
     if (flavor != Flavor::frozen && node.root_station >= 0) {
-      const Twist* JM = J + n * static_cast<int>(node.stations.size());
+      const Twist* JM = J + n * static_cast<int>(node.own->stations.size());
       const auto& root = *at<RootWork<Space>>(s.work, node.work_root);
       A -= root.sigma;
       for (int i = 0; i < n; ++i) A -= JM[i] * a[i];
@@ -42,19 +42,20 @@ inline void given_acceleration(const SymmetricNode<Space>& node, const Symmetric
     }
     w.A = A;
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
-    for (std::size_t k = 0; k < node.stations.size(); ++k) {
-      const auto& station = node.stations[k];
+    const auto* frames = at<typename Space::Frame>(s.work, node.work_frames);
+    for (std::size_t k = 0; k < node.own->stations.size(); ++k) {
+      const auto& station = node.own->stations[k];
       if (!station.loaded) continue;
       StationWork<Space>& sw = stations[k];
       const Twist* partial = flavor == Flavor::frozen ? station.J.data() : J + static_cast<int>(k) * n;
-      sw.A = flavor == Flavor::frozen ? Space::shift_to_child(station.fields.X, A)
-                                      : Space::to_child(sw.frame, A) + sw.sigma;
+      sw.A =
+          flavor == Flavor::frozen ? Space::shift_to_child(station.fields.X, A) : Space::to_child(frames[k], A) + sw.A;
       for (int i = 0; i < n; ++i) sw.A += partial[i] * a[i];
       // From here on p is the wrench that holds what the station carries.
       sw.p = flavor == Flavor::frozen ? Twist::zero() : sw.p + station.carried->inertia * sw.A;
     }
   }
-  w.p = node.base->inertia * A + node.base->velocity_wrench(w.V);
+  w.p_or_U = node.own->base->inertia * A + node.own->base->velocity_wrench(w.V);
 }
 
 /// Efforts of a node's rates, and the wrench of its hinge on the parent. `elastic`: factor of K q + D q̇.
@@ -63,7 +64,7 @@ template <class Space, int N, Flavor flavor>
                                            double elastic) {
   using Twist = typename Space::Twist;
   const auto& w = *at<NodeWork<Space>>(s.work, node.work);
-  Twist F = w.p;
+  Twist F = w.p_or_U;
   if constexpr (flavor != Flavor::rigid) {
     const int n = count<N>(node.modes);
     const double* q = s.positions + node.mode_position;
@@ -78,10 +79,10 @@ template <class Space, int N, Flavor flavor>
     if constexpr (flavor == Flavor::frozen) {
       const auto square = Variation<Space>::bilinear(w.V, w.V);
       for (int i = 0; i < n; ++i) {
-        C[i] = node.C0[static_cast<std::size_t>(i)];
-        h[i] = -0.5 * dot(node.I1[static_cast<std::size_t>(i)], square);
+        C[i] = node.own->C0[static_cast<std::size_t>(i)];
+        h[i] = -0.5 * dot(node.own->I1[static_cast<std::size_t>(i)], square);
       }
-      for (int i = 0; i < n * n; ++i) G[i] = node.G0[static_cast<std::size_t>(i)];
+      for (int i = 0; i < n * n; ++i) G[i] = node.own->G0[static_cast<std::size_t>(i)];
     } else {
       integrate_mass<Space, N, flavor>(node, s, w.V, I, p, C, G, h);
     }
@@ -92,24 +93,25 @@ template <class Space, int N, Flavor flavor>
       for (int j = 0; j < n; ++j) {
         e += G[i >= j ? i * n + j : j * n + i] * a[j];
         const auto ij = static_cast<std::size_t>(i * n + j);
-        e += elastic * (node.stiffness[ij] * q[j] + node.damping[ij] * q_dot[j]);
+        e += elastic * (node.own->stiffness[ij] * q[j] + node.own->damping[ij] * q_dot[j]);
       }
       h[i] = e;
     }
     const auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
-    for (std::size_t k = 0; k < node.stations.size(); ++k) {
-      const auto& station = node.stations[k];
+    const auto* frames = at<typename Space::Frame>(s.work, node.work_frames);
+    for (std::size_t k = 0; k < node.own->stations.size(); ++k) {
+      const auto& station = node.own->stations[k];
       if (!station.loaded) continue;
       const Twist& carried = stations[k].p;
       const Twist* partial = flavor == Flavor::frozen ? station.J.data() : J + static_cast<int>(k) * n;
       F += flavor == Flavor::frozen ? Space::shift_to_parent(station.fields.X, carried)
-                                    : Space::to_parent(stations[k].frame, carried);
+                                    : Space::to_parent(frames[k], carried);
       for (int i = 0; i < n; ++i) h[i] += Space::dot(partial[i], carried);
     }
     if (flavor != Flavor::frozen && node.root_station >= 0) {
       // The hinge's wrench acts at M, which the modes move.
       F = Space::to_parent(Space::inverse(at<RootWork<Space>>(s.work, node.work_root)->frame), F);
-      const Twist* JM = J + n * static_cast<int>(node.stations.size());
+      const Twist* JM = J + n * static_cast<int>(node.own->stations.size());
       for (int i = 0; i < n; ++i) h[i] -= Space::dot(JM[i], F);
     }
     for (int i = 0; i < n; ++i) s.result[node.mode_speed + static_cast<std::size_t>(i)] = h[i];

@@ -21,7 +21,7 @@ template <class Space, int N, Flavor flavor>
   auto& w = *at<NodeWork<Space>>(s.work, node.work);
   const JointData<Space>& joint = node.joint;
   const Twist& outer = node.parent < 0 ? *s.world : *Outer(node, s).A;
-  Twist A = w.sigma;
+  Twist A = w.A;
   if (joint.pose_matters) A += Space::to_child(w.SM, outer);
   if (joint.driven) [[unlikely]] {
     if (s.driven != nullptr) {
@@ -32,7 +32,7 @@ template <class Space, int N, Flavor flavor>
       for (std::size_t i = 0; i < joint.speeds; ++i) s.result[joint.speed + i] = 0;
     }
   } else if (single(joint.kind)) {
-    const auto x = (w.u - Space::dot(w.U, A)) * w.inverse;
+    const auto x = (w.u - Space::dot(w.p_or_U, A)) * w.inverse;
     A += along<Space>(joint.kind, x);
     s.result[joint.speed] = joint.direction * x;
   } else if constexpr (has_general_hinges<Space>) {
@@ -48,15 +48,16 @@ template <class Space, int N, Flavor flavor>
     return;
   } else {
     const bool constant = flavor == Flavor::frozen && is_constant(node, s);
-    const Scalar* L = constant ? node.factor.data() : at<Scalar>(s.work, node.work_G);
-    const Twist* Y = constant ? node.Y0.data() : at<Twist>(s.work, node.work_C);
+    const Scalar* L = constant ? node.own->factor.data() : at<Scalar>(s.work, node.work_G);
+    const Twist* Y = constant ? node.own->Y0.data() : at<Twist>(s.work, node.work_C);
     Scalar* a = s.result + node.mode_speed;
     back_substitute<N, Space>(L, Y, at<Scalar>(s.work, node.work_y), n, A, a);
     auto* stations = at<StationWork<Space>>(s.work, node.work_stations);
+    const auto* frames = at<typename Space::Frame>(s.work, node.work_frames);
     if constexpr (flavor == Flavor::frozen) {
       w.A = A;
-      for (std::size_t k = 0; k < node.stations.size(); ++k) {
-        const auto& station = node.stations[k];
+      for (std::size_t k = 0; k < node.own->stations.size(); ++k) {
+        const auto& station = node.own->stations[k];
         if (!station.has_children) continue;
         Twist AS = Space::shift_to_child(station.fields.X, A);
         for (int i = 0; i < n; ++i) AS += station.J[static_cast<std::size_t>(i)] * a[i];
@@ -65,16 +66,16 @@ template <class Space, int N, Flavor flavor>
     } else {
       const Twist* J = at<Twist>(s.work, node.work_J);
       if (node.root_station >= 0) {
-        const Twist* JM = J + n * static_cast<int>(node.stations.size());
+        const Twist* JM = J + n * static_cast<int>(node.own->stations.size());
         const auto& root = *at<RootWork<Space>>(s.work, node.work_root);
         A -= root.sigma;
         for (int i = 0; i < n; ++i) A -= JM[i] * a[i];
         A = Space::from_child(root.frame, A);
       }
       w.A = A;
-      for (std::size_t k = 0; k < node.stations.size(); ++k) {
-        if (!node.stations[k].has_children) continue;
-        Twist AS = Space::to_child(stations[k].frame, A) + stations[k].sigma;
+      for (std::size_t k = 0; k < node.own->stations.size(); ++k) {
+        if (!node.own->stations[k].has_children) continue;
+        Twist AS = Space::to_child(frames[k], A) + stations[k].A;
         for (int i = 0; i < n; ++i) AS += J[static_cast<int>(k) * n + i] * a[i];
         stations[k].A = AS;
       }

@@ -62,10 +62,14 @@ void place_sums(std::vector<SymmetricNode<Space>>& nodes, std::span<const std::s
     SymmetricNode<Space>& node = nodes[i];
     std::vector<std::size_t>& vacant = vacancies[group(i)];
     // Its own have been read when it writes to the next.
-    for (int k = -1; k < static_cast<int>(node.stations.size()); ++k) {
+    for (int k = -1; k < static_cast<int>(node.own->stations.size()); ++k) {
       const auto own = sums.find({static_cast<int>(i), k});
       if (own == sums.end()) continue;
-      (k < 0 ? node.work_I : node.stations[static_cast<std::size_t>(k)].work_I) = own->second;
+      if (k < 0) {
+        node.work_I = own->second;
+      } else if (const auto station = static_cast<std::size_t>(k); node.own->stations[station].work_I != own->second) {
+        node.own.edit([&](SymmetricBody<Space>& body) { body.stations[station].work_I = own->second; });
+      }
       vacant.push_back(own->second);
       sums.erase(own);
     }
@@ -98,7 +102,7 @@ std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes, std::span<const st
   for (const SymmetricNode<Space>& node : nodes) {
     most = std::max(most, static_cast<std::size_t>(node.modes));
     if constexpr (has_rods<Space>) {
-      if (!node.rod.empty()) most_rod = std::max(most_rod, rod_work(*node.rod, node.modes));
+      if (!node.own->rod.empty()) most_rod = std::max(most_rod, rod_work(*node.own->rod, node.modes));
     }
   }
   std::vector<std::size_t> shared_h, shared_P, shared_rod;
@@ -114,12 +118,15 @@ std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes, std::span<const st
     using Twist = typename Space::Twist;
     const auto n = static_cast<std::size_t>(node.modes);
     node.work = memory.template take<NodeWork<Space>>(1);
-    node.work_stations = memory.template take<StationWork<Space>>(node.stations.size());
-    if (node.flavor != Flavor::frozen) node.work_J = memory.template take<Twist>(n * (node.stations.size() + 1));
+    node.work_stations = memory.template take<StationWork<Space>>(node.own->stations.size());
+    if (node.flavor != Flavor::frozen) {
+      node.work_frames = memory.template take<typename Space::Frame>(node.own->stations.size());
+      node.work_J = memory.template take<Twist>(n * (node.own->stations.size() + (node.root_station >= 0 ? 1 : 0)));
+    }
     node.work_C = memory.template take<Twist>(n);
     node.work_G = memory.template take<Scalar>(n * n);
     node.work_y = memory.template take<Scalar>(n);
-    if (!node.rod.empty()) node.work_rod_mass = memory.template take<RodMass<Space>>(1);
+    if (!node.own->rod.empty()) node.work_rod_mass = memory.template take<RodMass<Space>>(1);
     node.work_h = shared_h[group];
     node.work_P = shared_P[group];
     node.work_rod = shared_rod[group];

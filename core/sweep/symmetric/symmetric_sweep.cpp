@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
+#include "withy/core/sweep/symmetric/shared_bodies.hpp"
 #include "withy/core/sweep/symmetric/symmetric_inverse.hpp"
 #include "withy/core/sweep/symmetric/symmetric_kernel.hpp"
 #include "withy/core/sweep/symmetric/symmetric_layout.hpp"
@@ -22,26 +22,48 @@ std::vector<double> row_major(const Eigen::MatrixXd& m) {
   return a;
 }
 
-/// Rigid parts of the nodes, equal ones once.
+/// The mass of a node that is not frozen.
 template <class Space>
-class RigidParts {
- public:
-  void share(SharedValue<RigidPart<Space>>& part) {
-    if (part.empty()) return;
-    std::string key;  // member by member: between them there may be bytes of no meaning
-    append(key, part->inertia);
-    append(key, part->mass);
-    append(key, part->moment);
-    part = parts_.try_emplace(std::move(key), part).first->second;
+void take_mass(const NodeSpec& spec, Terms terms, const SymmetricBody<Space>* twin, SymmetricNode<Space>& node,
+               SymmetricBody<Space>& body) {
+  if (terms.strain == StrainOrder::exact && node.modes > 0) {
+    body.rod = twin != nullptr && !twin->rod.empty() && twin->rod->fits(spec) ? twin->rod : RodKinematics<Space>(spec);
+    node.flavor = body.rod->integrals.packs > 0 ? Flavor::exact : Flavor::full;
+    return;
   }
+  node.flavor = node.modes > 0 ? Flavor::full : Flavor::rigid;
+  body.mass = twin != nullptr ? twin->mass : MassTable<Space>(spec);
+  body.rotary = twin != nullptr ? twin->rotary : RotaryTable<Space>(spec);
+}
 
- private:
-  template <class T>
-  static void append(std::string& key, const T& value) {
-    key.append(reinterpret_cast<const char*>(&value), sizeof(T));
+/// The mass of a frozen node.
+template <class Space>
+void freeze(const Invariants& invariants, SymmetricBody<Space>& body) {
+  body.base = RigidPart<Space>(invariants.I0);
+  body.G0 = row_major(invariants.G0);
+  std::vector<typename Space::Twist> coupling;
+  std::vector<Variation<Space>> inertias;
+  for (Eigen::Index i = 0; i < invariants.C0.cols(); ++i) {
+    coupling.push_back(Space::Twist::of(invariants.C0.col(i)));
+    inertias.push_back(Variation<Space>::of(invariants.I1[static_cast<std::size_t>(i)]));
   }
-  std::unordered_map<std::string, SharedValue<RigidPart<Space>>> parts_;
-};
+  body.C0 = std::move(coupling);
+  body.I1 = std::move(inertias);
+}
+
+/// Takes from a twin what is equal.
+template <class Space>
+void share(const SymmetricBody<Space>& twin, SymmetricBody<Space>& body) {
+  body.stiffness.share(twin.stiffness);
+  body.damping.share(twin.damping);
+  body.C0.share(twin.C0);
+  body.G0.share(twin.G0);
+  body.I1.share(twin.I1);
+  for (std::size_t k = 0; k < std::min(body.stations.size(), twin.stations.size()); ++k) {
+    body.stations[k].fields.share(twin.stations[k].fields);
+    body.stations[k].J.share(twin.stations[k].J);
+  }
+}
 
 }  // namespace
 
@@ -53,15 +75,16 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms, const Sy
       modes(static_cast<int>(given.modes)),
       mode_position(given.mode_position),
       mode_speed(given.mode_speed),
-      joint(given),
-      stiffness(row_major(given.stiffness)),
-      damping(row_major(given.damping)) {
+      joint(given) {
   const bool frozen = terms.truncation == Truncation::ruthless && given.modes > 0;
   NodeSpec spec = in_strain_order(given, terms.strain);
   if (frozen) spec = rooted(std::move(spec));
   root_station = spec.root_station;
-  if (root_station >= 0) M = Space::make(spec.M);
-  base = RigidPart<Space>(spec.base);
+  SymmetricBody<Space> made;
+  made.stiffness = row_major(given.stiffness);
+  made.damping = row_major(given.damping);
+  if (root_station >= 0) made.M = Space::make(spec.M);
+  made.base = RigidPart<Space>(spec.base);
   for (const StationSpec& s : spec.stations) {
     SymmetricStation<Space> station;
     station.fields = Fields<Space>(s.at);
@@ -70,50 +93,16 @@ SymmetricNode<Space>::SymmetricNode(const NodeSpec& given, Terms terms, const Sy
       station.carried = RigidPart<Space>(s.carried);
       station.loaded = !s.carried.empty();
     }
-    stations.push_back(std::move(station));
+    made.stations.push_back(std::move(station));
   }
   if (frozen) {
     flavor = Flavor::frozen;
-    const Invariants invariants(given, terms.strain);
-    base = RigidPart<Space>(invariants.I0);
-    G0 = row_major(invariants.G0);
-    std::vector<Twist> coupling;
-    std::vector<Variation<Space>> inertias;
-    for (int i = 0; i < modes; ++i) {
-      coupling.push_back(Space::Twist::of(invariants.C0.col(i)));
-      inertias.push_back(Variation<Space>::of(invariants.I1[static_cast<std::size_t>(i)]));
-    }
-    C0 = std::move(coupling);
-    I1 = std::move(inertias);
+    freeze(Invariants(given, terms.strain), made);
   } else {
-    take_mass(spec, terms, twin);
+    take_mass(spec, terms, twin != nullptr ? &*twin->own : nullptr, *this, made);
   }
-  if (twin != nullptr) share(*twin);
-}
-
-template <class Space>
-void SymmetricNode<Space>::take_mass(const NodeSpec& spec, Terms terms, const SymmetricNode* twin) {
-  if (terms.strain == StrainOrder::exact && modes > 0) {
-    rod = twin != nullptr && !twin->rod.empty() && twin->rod->fits(spec) ? twin->rod : RodKinematics<Space>(spec);
-    flavor = rod->integrals.packs > 0 ? Flavor::exact : Flavor::full;
-    return;
-  }
-  flavor = modes > 0 ? Flavor::full : Flavor::rigid;
-  mass = twin != nullptr ? twin->mass : MassTable<Space>(spec);
-  rotary = twin != nullptr ? twin->rotary : RotaryTable<Space>(spec);
-}
-
-template <class Space>
-void SymmetricNode<Space>::share(const SymmetricNode& twin) {
-  stiffness.share(twin.stiffness);
-  damping.share(twin.damping);
-  C0.share(twin.C0);
-  G0.share(twin.G0);
-  I1.share(twin.I1);
-  for (std::size_t k = 0; k < std::min(stations.size(), twin.stations.size()); ++k) {
-    stations[k].fields.share(twin.stations[k].fields);
-    stations[k].J.share(twin.stations[k].J);
-  }
+  if (twin != nullptr) share(*twin->own, made);
+  own = std::move(made);
 }
 
 template <class Space>
@@ -124,8 +113,10 @@ SymmetricSweep<Space>::SymmetricSweep(const NodeTree& tree, const std::vector<Te
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const std::optional<std::size_t> twin = twins.of(tree.nodes[i], terms[i].strain, terms[i].truncation);
     SymmetricNode<Space>& node = nodes_.emplace_back(tree.nodes[i], terms[i], twin ? &nodes_[*twin] : nullptr);
-    parts.share(node.base);
-    for (SymmetricStation<Space>& station : node.stations) parts.share(station.carried);
+    node.own.edit([&](SymmetricBody<Space>& body) {
+      parts.share(body.base);
+      for (SymmetricStation<Space>& station : body.stations) parts.share(station.carried);
+    });
   }
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     SymmetricNode<Space>& node = nodes_[i];
@@ -137,8 +128,10 @@ SymmetricSweep<Space>::SymmetricSweep(const NodeTree& tree, const std::vector<Te
     if (spec.parent_station < 0) {
       parent.has_children = true;
     } else {
-      SymmetricStation<Space>& station = parent.stations[static_cast<std::size_t>(spec.parent_station)];
-      station.loaded = station.has_children = true;
+      parent.own.edit([&](SymmetricBody<Space>& body) {
+        SymmetricStation<Space>& station = body.stations[static_cast<std::size_t>(spec.parent_station)];
+        station.loaded = station.has_children = true;
+      });
       // Rooting turned the section's axes with the frame.
       if (parent.flavor == Flavor::frozen && parent_spec.root_station >= 0) {
         node.joint.F = Space::make(Pose{parent_spec.M.R.transpose(), Vector3::Zero()} * spec.F);
@@ -148,6 +141,7 @@ SymmetricSweep<Space>::SymmetricSweep(const NodeTree& tree, const std::vector<Te
   for (SymmetricNode<Space>& node : nodes_)
     if (node.flavor == Flavor::frozen && node.leaf) precompute(node);
   work_size_ = lay_out(nodes_);
+  share_bodies(nodes_);
   const Vector3 g = tree.planar ? Vector3(tree.plane.R.transpose() * gravity) : gravity;
   world_acceleration_ = Space::Twist::of(Space::angle(Vector3::Zero()), Space::position(-g));
   for (SymmetricNode<Space>& node : nodes_) node.joint.pose_matters = node.parent >= 0 || !g.isZero(0);
@@ -159,16 +153,16 @@ std::vector<std::string> SymmetricSweep<Space>::savings(const NodeTree& tree) co
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const SymmetricNode<Space>& node = nodes_[i];
     const std::string name = "'" + tree.nodes[i].name + "': ";
-    if (!node.factor.empty()) {
+    if (!node.own->factor.empty()) {
       lines.push_back(name + "its modes are eliminated once for all evaluations: nothing hangs on it");
     } else if (node.flavor == Flavor::frozen) {
       lines.push_back(name + "mass integrals are those of the undeformed body, computed once");
-    } else if (node.mass.packs > 0) {
+    } else if (node.own->mass.packs > 0) {
       lines.push_back(name + std::to_string(tree.nodes[i].mass.size()) + " mass points became " +
-                      std::to_string(node.mass.rank) + " generalized particles");
+                      std::to_string(node.own->mass.rank) + " generalized particles");
     }
-    if (node.rotary.packs > 0)
-      lines.push_back(name + std::to_string(node.rotary.sections) +
+    if (node.own->rotary.packs > 0)
+      lines.push_back(name + std::to_string(node.own->rotary.sections) +
                       " sections with rotary inertia are evaluated four at a time");
   }
   return lines;
@@ -234,9 +228,10 @@ void SymmetricSweep<Space>::solve(const double* forces, double delta, double* re
   const typename Space::Twist still = Space::Twist::zero();
   const SymmetricState<Space> state{nullptr, nullptr, forces, result, work, nodes_.data(), &still, delta};
   for (const SymmetricNode<Space>& node : nodes_) {
-    at<NodeWork<Space>>(work, node.work)->p = still;
+    auto& w = *at<NodeWork<Space>>(work, node.work);
+    w.V = w.A = still;
     auto* stations = at<StationWork<Space>>(work, node.work_stations);
-    for (std::size_t k = 0; k < node.stations.size(); ++k) stations[k].p = still;
+    for (std::size_t k = 0; k < node.own->stations.size(); ++k) stations[k].V = stations[k].A = still;
   }
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     with_flavor_alone(nodes_[i],

@@ -33,12 +33,33 @@ struct SymmetricStation {
   SharedValue<RigidPart<Space>> carried;   ///< rigid bodies it carries; nothing in a frozen node
 };
 
-/// Constants of a node. What all passes read stands first and together: long chains are limited by the memory that goes
-/// through the caches, and large values are shared with equal nodes.
+/// What a node's body is, wherever it stands: equal bodies in equal company share it.
 template <class Space>
-struct SymmetricNode {
+struct SymmetricBody {
   using Twist = typename Space::Twist;
 
+  SharedValue<RigidPart<Space>> base;  ///< the rigid part; everything in a frozen node
+  std::vector<SymmetricStation<Space>> stations;
+  SharedNumbers<typename Space::Scalar> stiffness, damping;  ///< n×n
+  // Frozen nodes: theory (3) at order zero.
+  SharedNumbers<Twist> C0;
+  SharedNumbers<typename Space::Scalar> G0;
+  SharedNumbers<Variation<Space>> I1;  ///< h_k = −½ Vᵀ I1_k V
+  // The others.
+  MassTable<Space> mass;
+  RotaryTable<Space> rotary;
+  // Frozen leaves: the eliminated modal block, once for ever.
+  std::vector<typename Space::Scalar> factor;    ///< of G0, see factorize
+  std::vector<Twist> Y0;                         ///< L⁻¹ C0ᵀ, n twists
+  SharedValue<typename Space::Inertia> reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
+  SharedValue<typename Space::Frame> M;          ///< hinge frame in the root station's section, where there is one
+  SharedValue<RodKinematics<Space>> rod;         ///< in place of mass and rotary inertia where kinematics is exact
+};
+
+/// Constants of a node. What all passes read stands first and together: long chains are limited by the memory that goes
+/// through the caches, so what equal nodes have in common stands elsewhere, once.
+template <class Space>
+struct SymmetricNode {
   int body = 0, parent = -1, parent_station = -1, root_station = -1, modes = 0;
   /// Frozen is ruthless: integrals at q = 0, velocity terms at q̇ = 0; sections parallel to the node's frame.
   Flavor flavor = Flavor::rigid;
@@ -46,37 +67,20 @@ struct SymmetricNode {
   bool has_children = false;   ///< on its frame, not on a station
   bool begins = false;         ///< it is the first to write the sum of inertias of what it hangs on
   bool begins_frozen = false;  ///< and of the velocity wrench, of a station that carries nothing else
+  SharedValue<SymmetricBody<Space>> own;
   std::size_t mode_position = 0, mode_speed = 0;
   // Work memory.
   std::size_t work = 0, work_stations = 0, work_C = 0, work_G = 0, work_y = 0, work_J = 0;
-  std::size_t work_I = 0;              ///< where its children sum their articulated inertia
-  std::size_t work_outer_I = 0;        ///< the same of what it hangs on
-  SharedValue<RigidPart<Space>> base;  ///< the rigid part; everything in a frozen node
+  std::size_t work_I = 0;        ///< where its children sum their articulated inertia
+  std::size_t work_outer_I = 0;  ///< the same of what it hangs on
   JointData<Space> joint;
-  std::vector<SymmetricStation<Space>> stations;
-  SharedNumbers<typename Space::Scalar> stiffness, damping;  ///< n×n
-  MassTable<Space> mass;
-  RotaryTable<Space> rotary;
-  // Frozen nodes: theory (3) at order zero.
-  SharedNumbers<Twist> C0;
-  SharedNumbers<typename Space::Scalar> G0;
-  SharedNumbers<Variation<Space>> I1;  ///< h_k = −½ Vᵀ I1_k V
-  // Frozen leaves: the eliminated modal block, once for ever.
-  std::vector<typename Space::Scalar> factor;    ///< of G0, see factorize
-  std::vector<Twist> Y0;                         ///< L⁻¹ C0ᵀ, n twists
-  SharedValue<typename Space::Inertia> reduced;  ///< base − Y0ᵀ Δ⁻¹ Y0
-  SharedValue<typename Space::Frame> M;          ///< hinge frame in the root station's section, where there is one
-  SharedValue<RodKinematics<Space>> rod;         ///< in place of mass and rotary inertia where kinematics is exact
+  std::size_t work_frames = 0;  ///< of the stations in the node's frame; a frozen node has none
   std::size_t work_h = 0, work_P = 0, work_rod = 0, work_rod_mass = 0, work_root = 0, work_elimination = 0,
               work_driven = 0;
 
   SymmetricNode() = default;
   /// \param twin a node whose body's mass is the same, in the same place and terms; null: there is none
   SymmetricNode(const NodeSpec& spec, Terms terms, const SymmetricNode* twin = nullptr);
-
- private:
-  void take_mass(const NodeSpec& spec, Terms terms, const SymmetricNode* twin);
-  void share(const SymmetricNode& twin);
 };
 
 template <class Space>

@@ -7,14 +7,13 @@
 
 namespace withy::sweep {
 
-/// Work of a station: written outward, completed inward.
+/// Work of a station: written outward, completed inward. Long chains are limited by the memory that goes through the
+/// caches, so what is read no more gives its place to what is written later, here and in NodeWork.
 template <class Space>
 struct StationWork {
-  typename Space::Frame frame;  ///< of S in the node's frame
-  typename Space::Twist V;      ///< twist of S
-  typename Space::Twist sigma;  ///< σ_S of (2)
-  typename Space::Twist p;      ///< velocity wrench of what it carries
-  typename Space::Twist A;      ///< acceleration of S
+  typename Space::Twist V;  ///< twist of S; in a solve, the force that gathers on its way inward
+  typename Space::Twist p;  ///< velocity wrench of what it carries
+  typename Space::Twist A;  ///< σ_S of (2), until the last pass makes it the acceleration of S
 };
 
 /// Elimination of the rates of a hinge with several: Δ, L of Hᵀ I H, and Y = L⁻¹ Hᵀ I, y = L⁻¹ (τ − Hᵀ p).
@@ -47,15 +46,13 @@ struct RodMass {
   typename Space::Twist p;
 };
 
-/// Work of a node.
+/// Work of a node; see StationWork.
 template <class Space>
 struct NodeWork {
-  typename Space::Frame SM;     ///< of JointMotion
-  typename Space::Twist V;      ///< twist of the node's frame
-  typename Space::Twist sigma;  ///< σ of (1)
-  typename Space::Twist p;      ///< velocity wrench
-  typename Space::Twist A;
-  typename Space::Twist U;         ///< one rate: column of the articulated inertia
+  typename Space::Frame SM;        ///< of JointMotion
+  typename Space::Twist V;         ///< twist of the node's frame; in a solve, the force that gathers
+  typename Space::Twist A;         ///< σ of (1), until the last pass makes it the acceleration of the node's frame
+  typename Space::Twist p_or_U;    ///< velocity wrench; from the inward pass on, of one rate, its column of inertia
   typename Space::Scalar inverse;  ///< one rate: 1 / its articulated inertia
   typename Space::Scalar u;        ///< one rate: effort left
 };
@@ -85,7 +82,7 @@ struct Outer {
     const SymmetricNode<Space>& parent = s.nodes[node.parent];
     if (node.parent_station < 0) {
       auto& w = *at<NodeWork<Space>>(s.work, parent.work);
-      V = &w.V, A = &w.A, p = &w.p;
+      V = &w.V, A = &w.A, p = &w.p_or_U;
     } else {
       auto& w = at<StationWork<Space>>(s.work, parent.work_stations)[node.parent_station];
       V = &w.V, A = &w.A, p = &w.p;
@@ -96,7 +93,7 @@ struct Outer {
 /// Whether the elimination of a node's modes is known before the sweep begins.
 template <class Space>
 inline bool is_constant(const SymmetricNode<Space>& node, const SymmetricState<Space>& s) {
-  return !node.factor.empty() && s.delta == 0;
+  return !node.own->factor.empty() && s.delta == 0;
 }
 
 /// Factors of the lower triangle of G = L Δ Lᵀ, in place: L below the diagonal, the inverse of Δ on it; whether G is
@@ -146,17 +143,17 @@ inline void back_substitute(const typename Space::Scalar* L, const typename Spac
 
 /// Adds what a station carries, of articulated inertia IS, to its body: equations (2) into (3).
 template <class Space, int N>
-inline void collect_station(const StationWork<Space>& sw, const typename Space::Inertia& IS,
-                            const typename Space::Twist* J, int modes, typename Space::Inertia& I,
-                            typename Space::Twist& p, typename Space::Twist* C, typename Space::Scalar* G,
-                            typename Space::Scalar* h) {
+inline void collect_station(const StationWork<Space>& sw, const typename Space::Frame& frame,
+                            const typename Space::Inertia& IS, const typename Space::Twist* J, int modes,
+                            typename Space::Inertia& I, typename Space::Twist& p, typename Space::Twist* C,
+                            typename Space::Scalar* G, typename Space::Scalar* h) {
   const int n = count<N>(modes);
-  const typename Space::Twist force = sw.p + IS * sw.sigma;
-  I += Space::to_parent(sw.frame, IS);
-  p += Space::to_parent(sw.frame, force);
+  const typename Space::Twist force = sw.p + IS * sw.A;
+  I += Space::to_parent(frame, IS);
+  p += Space::to_parent(frame, force);
   for (int i = 0; i < n; ++i) {
     const typename Space::Twist IJ = IS * J[i];
-    C[i] += Space::to_parent(sw.frame, IJ);
+    C[i] += Space::to_parent(frame, IJ);
     h[i] += Space::dot(J[i], force);
     for (int j = 0; j <= i; ++j) G[i * n + j] += Space::dot(IJ, J[j]);
   }
