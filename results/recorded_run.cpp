@@ -56,6 +56,13 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
   if (hdf5 != nullptr) hdf5->describe_frames(table->frames());
   // An HDF5 file cannot be cut off at a mark: it is written anew.
   if (hdf5 != nullptr && settings.resume != nullptr) read_csv(folder / table_name, *hdf5);
+  // What a checkpoint says is done can be read from every file.
+  if (hdf5 != nullptr && settings.checkpoint) {
+    settings.checkpoint = [&hdf5, keep = settings.checkpoint](const Checkpoint& checkpoint) {
+      static_cast<void>(hdf5->mark());
+      keep(checkpoint);
+    };
+  }
   const bool seen = !prepared.escalates();
   if (seen) settings.seen = &table->seen();
   settings.output = [&table, seen, also = settings.output](const State& state, std::size_t rung) {

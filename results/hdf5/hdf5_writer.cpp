@@ -52,8 +52,8 @@ class Hdf5Writer final : public Hdf5Recorder {
   }
 
   RecordMark mark() override {
-    flush();
-    return {rows_, 0, {}};
+    if (!wide_) flush();  // a wide table is for nobody until it ends
+    return {rows_ + waiting_rows(), 0, {}};
   }
 
   void end() override {
