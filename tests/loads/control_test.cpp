@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <ostream>
 
 #include "withy/core/analysis/modes.hpp"
 #include "withy/core/plugin/central_difference.hpp"
@@ -46,6 +47,9 @@ struct Method {
   double tolerance;
 };
 
+/// For the name of a test.
+void PrintTo(const Method& method, std::ostream* out) { *out << method.name; }
+
 class EveryIntegrator : public testing::TestWithParam<Method> {};
 
 TEST_P(EveryIntegrator, SolvesALinearLoopToItsTolerance) {
@@ -84,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Method{"generalized_alpha", "{name: generalized-alpha, step: 0.0005, jacobian: exact}", 1e-4}),
     [](const testing::TestParamInfo<Method>& tested) { return std::string(tested.param.name); });
 
-/// test::turntable_inertiaacobian of the scene at a state off its start, against differences of what moves.
+/// Jacobian of the scene at a state off its start, against differences of what moves.
 void expect_jacobian(const std::string& text, double tolerance) {
   LoadedScene s(text);
   const Layout& layout = s.scene.model->layout();
