@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # slurm.sh [PROGRAM]: a sweep as an array job on a Slurm of one node that is started here and ended after. Tasks run out of
 # time, one is requeued by hand, the node is lost: the table must be that of a run without Slurm, byte by byte. As root,
-# with the packages slurm-wlm, munge and bc; some minutes.
+# with the packages slurm-wlm, munge and bc; some minutes. CASES=N: N cases, 100,000 unless it is given. TABLE=1 writes
+# docs/measured/slurm.txt.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 withy=$(realpath "${1:-build/release/bin/withy}")
@@ -63,16 +64,19 @@ start_node
 for _ in $(seq 60); do [ "$(sinfo -h -o %T 2>/dev/null)" = idle ] && break; sleep 0.5; done
 [ "$(sinfo -h -o %T)" = idle ] || { cat "$work"/log/*; echo "the node does not come up" >&2; exit 3; }
 
-# A minute of work in each task, of which Slurm lets it have half at a time.
+# A minute or more of work in each task, of which Slurm lets it have less than that at a time.
+cases=${CASES:-100000}
 cat >"$work/plan.yaml" <<PLAN
 format: withy-sweep/1
 scene: $PWD/scenes/driven-arm.yaml
-set: {integrator: {name: rk4, step: 0.0005}, time.end: 2}
+set: {integrator: {name: rk4, step: 0.009}}
 vary: {bodies.link1.mass_per_length: {normal: {mean: 1.33937, deviation: 0.02}}}
-cases: ${CASES:-6000}
+cases: $cases
+evaluation: in-lanes
 keep: {final: [shoulder, elbow], peak: [link1.tip.deflection_y]}
 PLAN
 "$withy" sweep run "$work/plan.yaml" --out "$work/whole"
+began=$(date +%s)
 submitted=$("$withy" sweep submit "$work/plan.yaml" --out "$work/store" --slurm --tasks 2 --time 00:01:00 \
   --sbatch=--signal=B:USR1@10 --json)
 echo "$submitted"
@@ -92,17 +96,28 @@ start_node
 sleep 1
 scontrol update nodename="$node" state=resume 2>/dev/null || true  # it may have come back by itself
 restarts() { scontrol show job "$array" | sed -n 's/.*Restarts=\([0-9]*\).*/\1/p' | paste -sd+ | bc; }
-most=0
-for _ in $(seq "${PATIENCE:-400}"); do
+most=0 state=
+for _ in $(seq "${PATIENCE:-1500}"); do
   now=$(restarts 2>/dev/null || echo 0)
   [ "${now:-0}" -le "$most" ] || most=$now
-  case $(scontrol show job "$collect" | sed -n 's/.*JobState=\([A-Z_]*\).*/\1/p') in
+  state=$(scontrol show job "$collect" | sed -n 's/.*JobState=\([A-Z_]*\).*/\1/p')
+  case $state in
     COMPLETED) break ;;
     FAILED | CANCELLED | TIMEOUT) cat "$work"/store/slurm/*.log; exit 1 ;;
   esac
   sleep 1
 done
+wall=$(($(date +%s) - began))
 cat "$work"/store/slurm/*.log
+[ "$state" = COMPLETED ] || { squeue; echo "the job that collects is $state after $wall s" >&2; exit 1; }
 cmp "$work/whole/table.csv" "$work/store/table.csv"
 [ "$most" -ge 3 ] || { echo "tasks were queued again $most times, not as often as they were ended" >&2; exit 1; }
 echo "tasks were queued again $most times; the table is the same, byte by byte"
+[ -n "${TABLE:-}" ] || exit 0
+# shellcheck source=scripts/measured.sh
+. scripts/measured.sh
+{
+  printf '\t\n'
+  printf '%s\t%s\n' cases "$cases" 'tasks, each with a core' 2 'times that tasks were queued again' "$most" 'nodes lost' 1 \
+    "wall time, with Slurm's own delays" "$wall s" 'tables the same, byte by byte' yes
+} | record_table slurm "scripts/slurm.sh"
