@@ -1,5 +1,7 @@
 #include "withy/results/recorded_run.hpp"
 
+#include <malloc.h>
+
 #include <optional>
 
 #include "withy/results/certificate_json.hpp"
@@ -34,12 +36,32 @@ std::unique_ptr<Hdf5Recorder> begun_hdf5(const std::filesystem::path& folder, co
   return file;
 }
 
+/// Between the parts of a run, each of which needs memory of its own, gives back to the system what the last has freed.
+void give_back_memory(const Model& model) {
+#if defined(__GLIBC__)
+  constexpr std::size_t large = 1000;  // below there is nothing worth the call
+  if (model.layout().speeds > large) ::malloc_trim(0);
+#else
+  static_cast<void>(model);
+#endif
+}
+
+/// Writes the content of run.json. \returns it in one line: of a large model that is smaller than the JSON.
+std::string write_summary(const study::Prepared& prepared, const Provenance& provenance, const RecordedRun& ended,
+                          OutputFile& file) {
+  nlohmann::ordered_json json = run_json(prepared.scene, ended.run.summary, ended.run.certificate);
+  if (!ended.outputs.is_null()) json["outputs"] = ended.outputs;
+  json.update(provenance_json(provenance));
+  file.write(json_text(json));
+  return page_json(json);
+}
+
 /// What is known when it has ended.
-void describe_end(const study::Prepared& prepared, const RecordedRun& ended, Hdf5Recorder& file) {
-  const RunSummary& summary = ended.run.summary;
-  file.describe("run", json_text(ended.json));
-  file.describe("certificate", certificate_text(prepared.model(), summary, ended.run.certificate));
-  file.describe("status", std::string(name(summary.status)));
+void describe_end(const study::Prepared& prepared, const study::CertifiedRun& ended, const std::string& run,
+                  Hdf5Recorder& file) {
+  file.describe("certificate", certificate_text(prepared.model(), ended.summary, ended.certificate));
+  file.describe("status", std::string(name(ended.summary.status)));
+  file.describe("run", run);
 }
 
 RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder, const study::Prepared& prepared,
@@ -49,7 +71,7 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
   RunReport report(prepared);
   if (settings.resume != nullptr) read_csv(folder / table_name, report.table());
   std::vector<Recorder*> all = {&csv, &report.table()};
-  const auto hdf5 = files.hdf5 ? begun_hdf5(folder, prepared, provenance) : nullptr;
+  auto hdf5 = files.hdf5 ? begun_hdf5(folder, prepared, provenance) : nullptr;
   if (hdf5 != nullptr) all.push_back(hdf5.get());
   SharedRecorder recorders(all);
   std::optional<RunTable> table(std::in_place, prepared, recorders);
@@ -78,15 +100,20 @@ RecordedRun simulate_into(CsvRecorder& csv, const std::filesystem::path& folder,
   settings.statistics = &statistics;
   recorded.run = study::run(prepared, registry, settings);
   table.reset();  // of a large model what comes is as large
-  recorded.json = run_json(prepared.scene, recorded.run.summary, recorded.run.certificate);
-  if (!statistics.empty()) recorded.json["outputs"] = statistics_json(statistics);
-  recorded.json.update(provenance_json(provenance));
-  if (hdf5 != nullptr) describe_end(prepared, recorded, *hdf5);
-  recorders.end();
-  write_file(folder / summary_name, json_text(recorded.json));
+  give_back_memory(prepared.model());
+  if (!statistics.empty()) recorded.outputs = statistics_json(statistics);
+  std::string summary;
+  // The file has its name once all tables are written.
+  write_file(folder / summary_name, [&](OutputFile& file) {
+    summary = write_summary(prepared, provenance, recorded, file);
+    if (hdf5 != nullptr) describe_end(prepared, recorded.run, summary, *hdf5);
+    recorders.end();
+    hdf5.reset();
+  });
+  give_back_memory(prepared.model());
   if (has_report_page()) {
     write_report(folder / report_name, prepared.title(),
-                 [&](const TextSink& write) { report.write(recorded.run, recorded.json, write); });
+                 [&](const TextSink& write) { report.write(recorded.run, summary, write); });
   } else {
     write_file(folder / picture_name, report.picture());
   }

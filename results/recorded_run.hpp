@@ -39,7 +39,7 @@ class RunTable {
 
 struct RecordedRun {
   study::CertifiedRun run;
-  nlohmann::ordered_json json;  ///< the content of run.json
+  nlohmann::ordered_json outputs;  ///< the statistics in run.json; null where the scene asks for none
 };
 
 /// What a run writes beside what every run does.

@@ -81,6 +81,8 @@ ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equati
   in("world, about its origin");
   append(sensors_.columns());
   in("as the scene's outputs say");
+  columns_.shrink_to_fit();
+  frames_.shrink_to_fit();
 }
 
 const std::vector<double>& ResultColumns::row(const State& state) {

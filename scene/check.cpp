@@ -200,6 +200,7 @@ bool Checker::read_members(const Value& value, std::initializer_list<const std::
   }
   for (const auto* members : lists)
     for (const ParameterSpec& spec : *members) good = read_member(value, spec, result) && good;
+  result.members().shrink_to_fit();  // it stays as long as the scene
   return good;
 }
 

@@ -14,6 +14,7 @@ std::optional<Value> Checker::row(const Value& value, const ParameterSpec& spec)
     return {};
   }
   Value result = Value::list({}, value.place());
+  result.items().reserve(value.items().size());
   bool good = true;
   const bool alike = spec.kind != ParameterSpec::Kind::table;  // the items of a table have units of their own
   for (std::size_t i = 0; i < value.items().size(); ++i) {

@@ -165,7 +165,7 @@ class Builder final : public YAML::EventHandler {
           first.line > 0 ? fmt::format("; it stands at {}:{} already", first.line, first.column) : "";
       diagnostics_.error(where, fmt::format("duplicate key '{}'{}", text, other));
     } else {
-      document_.keys.emplace(where.path, where);
+      document_.keys.emplace(where.path, Place{where.line, where.column, {}});  // its path is the key here
     }
     level.key = text;
   }
@@ -179,7 +179,8 @@ class Builder final : public YAML::EventHandler {
   void add(const YAML::Mark& mark, Value value) {
     // The mark of a value that is not there is that of what follows: its key says more.
     const auto key = value.kind() == Value::Kind::null ? document_.keys.find(path()) : document_.keys.end();
-    value.set_place(key != document_.keys.end() ? key->second : place(mark, path()));
+    value.set_place(key != document_.keys.end() ? Place{key->second.line, key->second.column, key->first}
+                                                : place(mark, path()));
     count(value.place());
     put(std::move(value));
   }
@@ -217,6 +218,8 @@ class Builder final : public YAML::EventHandler {
   void close() {
     Value value = std::move(levels_.back().value);
     levels_.pop_back();
+    value.items().shrink_to_fit();  // it stays as long as the scene
+    value.members().shrink_to_fit();
     put(std::move(value));
   }
 

@@ -131,7 +131,7 @@ Value* SceneValues::target(const std::vector<std::string>& keys, int line) {
         return nullptr;
       }
       at->set(key, Value());
-      document_.keys[path + "/" + key] = {line, 0, path + "/" + key};
+      document_.keys[path + "/" + key] = {line, 0, {}};
     }
     path += "/" + key;
     at = &std::find_if(at->members().begin(), at->members().end(), [&](const auto& m) {
@@ -166,7 +166,7 @@ void SceneValues::put(const std::vector<std::string>& keys, Document read, int l
   *at = std::move(read.root);
   if (holds_keys) std::erase_if(document_.keys, [&](const auto& entry) { return entry.first.starts_with(path + "/"); });
   document_.keys.merge(read.keys);
-  document_.keys[path] = {line, 0, path};
+  document_.keys[path] = {line, 0, {}};
   lengthen_choices(document_.root);  // the short form may have been given again
 }
 

@@ -5,10 +5,10 @@
 #include "withy/results/certificate_text.hpp"
 #include "withy/results/check_columns.hpp"
 #include "withy/results/hdf5_recorder.hpp"
-#include "withy/results/json_text.hpp"
 #include "withy/results/recorded_run.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/run_text.hpp"
+#include "withy/scene/document.hpp"
 #include "withy/scene/units.hpp"
 
 namespace withy::app {
@@ -54,12 +54,11 @@ ExitStatus run(const RunArguments& given) {
   if (arguments.out.empty()) arguments.out = default_folder(arguments, engine.scene().formulation_name);
   const RecordedRun result = recorded(engine, arguments);
   const RunSummary& summary = result.run.summary;
-  print(arguments.json
-            ? json_text(result.json)
-            : run_table(engine.prepared(), summary) + extremes_text(result.json.value("outputs", Json::object())) +
-                  certificate_text(engine.model(), summary, result.run.certificate) +
-                  (has_report_page() ? folder_text(arguments.out)
-                                     : "\nresults in " + arguments.out + ", drawn in its results.svg\n"));
+  print(arguments.json ? read_bytes(arguments.out + "/run.json")
+                       : run_table(engine.prepared(), summary) + extremes_text(result.outputs) +
+                             certificate_text(engine.model(), summary, result.run.certificate) +
+                             (has_report_page() ? folder_text(arguments.out)
+                                                : "\nresults in " + arguments.out + ", drawn in its results.svg\n"));
   const ExitStatus status = ended(summary);
   if (status == ExitStatus::interrupted) complain("the same command with --resume goes on from there");
   return status;

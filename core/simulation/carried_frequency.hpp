@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,8 @@ namespace withy {
 class CarriedFrequency {
  public:
   CarriedFrequency(const Model& model, const EquationsOfMotion& equations);
-  /// Goes to a state, y as in State; the strict formulations stay at the first.
-  void update(std::span<const double> y);
+  /// Goes to a state, y as in State; the strict formulations stay at the first. \param work of the equations
+  void update(std::span<const double> y, Work& work);
   void remember(Memory& memory) {
     memory(shape_);
     memory(begun_);
@@ -32,21 +33,27 @@ class CarriedFrequency {
   }
 
  private:
-  struct Part {
-    std::size_t speed;  ///< first of the body's modes among the speeds
+  struct Stiffness {
     Eigen::MatrixXd stiffness, flexibility;
+    Eigen::VectorXd first_mode;
+    double frequency = 0;  ///< of that [rad/s]; 0: it has none
+    bool stiff = false;    ///< there is an inverse
+  };
+  struct Part {
+    std::size_t speed;                       ///< first of the body's modes among the speeds
+    std::shared_ptr<const Stiffness> modal;  ///< equal bodies share it
   };
   struct Group {
     std::vector<Part> parts;
     double frequency = 0;
     bool stiff = true;  ///< every part has an inverse
   };
-  void iterate(std::span<const double> y);
+  static Stiffness stiffness_of(const ModalShape& shape);
+  void iterate(std::span<const double> y, Work& work);
 
   const EquationsOfMotion& equations_;
   std::vector<int> group_of_;  ///< of each body; −1 where it is rigid
   std::vector<Group> groups_;
-  Work work_;
   std::vector<double> shape_, product_;  ///< over all speeds; zero on those of hinges
   Eigen::VectorXd q_;
   bool begun_ = false;

@@ -40,8 +40,7 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       trusted_(initial),
       effort_watch_(model, equations, span, summary),
       efforts_(model.layout().speeds),
-      rates_(equations.size()),
-      work_(equations.make_work()),
+      work_(0),
       floats_(may_float(model)),
       initial_work_(initial.y.back()),
       checked_(initial.time) {
@@ -110,6 +109,7 @@ double Monitor::kinetic(const State& state, const Energies& energies) {
 }
 
 void Monitor::use_own_energy(const State& initial) {
+  work_ = equations_.make_work();
   own_energy_ = true;
   initial_energy_ = kinetic(initial, initial_energies_) + initial_energies_.potential;
 }
@@ -215,7 +215,9 @@ void Monitor::audit_energy(const State& state) {
 }
 
 int Monitor::mass_matrix_sign(const State& state) {
-  const Evaluation evaluation = equations_.derivatives(state.time, state.y, rates_, work_);
+  Work work = equations_.make_work();
+  std::vector<double> rates(equations_.size());
+  const Evaluation evaluation = equations_.derivatives(state.time, state.y, rates, work);
   return evaluation.ok() ? evaluation.determinant_sign : 0;
 }
 

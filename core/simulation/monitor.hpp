@@ -86,15 +86,19 @@ class Monitor {
     double length;                ///< [m]
     std::array<double, 3>* peak;  ///< null: a segment's
     double* ratio;
-    std::array<double, 3> rough{};                              ///< greatest |deflection| by the expansion
-    Vector3 now = Vector3::Zero(), velocity = Vector3::Zero();  ///< at the last accepted state, by the expansion
+    std::array<double, 3> rough{};                                    ///< greatest |deflection| by the expansion
+    Vector3 now = Vector3::Zero(), velocity = Vector3::Zero();        ///< at the last accepted state, by the expansion
+    Vector3 next = Vector3::Zero(), next_velocity = Vector3::Zero();  ///< the same at the one that is looked at
+    double within = 0;  ///< share of the last step at which a component may be greatest; 0: at none
   };
   void look(const State& state);
   /// Brings the observation to a state, where it is not there yet.
   void see(const State& state);
-  void observe_end(End& end, const State& state, const Vector3& rough);
-  void observe_within(End& end, const State& state, const Vector3& now, const Vector3& velocity);
-  void note(const std::string& name, double length, const std::array<double, 3>& d, std::array<double, 3>* peak);
+  void observe_end(std::size_t index, const State& state, const Vector3& rough, bool& seen);
+  void look_within(const State& state);
+  [[nodiscard]] double greatest_within(const End& end, Eigen::Index component, double h) const;
+  void note(std::size_t order, const std::string& name, double length, const std::array<double, 3>& d,
+            std::array<double, 3>* peak);
   /// `visit` is given each peak of the summary, always in the same order.
   template <class Visit>
   void each_peak(const Visit& visit);
@@ -112,14 +116,15 @@ class Monitor {
   std::vector<Tip> wholes_;  ///< of bodies in segments
   double deflection_limit_;
   std::string excess_;
-  State last_;     ///< the accepted state before
-  State between_;  ///< a state within the last step
+  std::size_t excess_order_ = 0;  ///< of several at one state the first body's is told
+  State last_;                    ///< the accepted state before
+  State between_;                 ///< a state within the last step
   State trusted_;
   std::vector<double> trusted_peaks_;
   double trust_limit_ = 0.5, greatest_speed_ = 0;
   EffortWatch effort_watch_;
-  std::vector<double> efforts_, rates_;
-  Work work_;
+  std::vector<double> efforts_;
+  Work work_;  ///< for the equations' own energy
   [[nodiscard]] double kinetic(const State& state, const Energies& energies);
   void audit_momenta(const Energies& energies);
 

@@ -1,6 +1,8 @@
 // How far the tips of flexible bodies are deflected, also between the states that a run accepts.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "withy/core/simulation/cubic.hpp"
 #include "withy/core/simulation/monitor.hpp"
@@ -35,18 +37,21 @@ Vector3 Monitor::SectionExpansion::velocity(const double* q, const double* u) co
   return v;
 }
 
-void Monitor::note(const std::string& name, double length, const std::array<double, 3>& d,
+void Monitor::note(std::size_t order, const std::string& name, double length, const std::array<double, 3>& d,
                    std::array<double, 3>* peak) {
   for (std::size_t k = 0; peak != nullptr && k < 3; ++k) (*peak)[k] = std::max((*peak)[k], std::abs(d[k]));
   const double size = std::hypot(d[0], d[1], d[2]);
-  if (!excess_.empty() || size <= deflection_limit_ * length) return;
+  if (order >= excess_order_ || size <= deflection_limit_ * length) return;
+  excess_order_ = order;
   excess_ = "the tip of '" + name + "' is deflected by " + brief(size) + " m, " + brief(size / length) +
             " times its length (limit " + brief(deflection_limit_) + ")";
 }
 
 /// Exact kinematics integrates along the body, at the cost of an evaluation: only where the expansion says that the
 /// deflection has not been so great before.
-void Monitor::observe_end(End& end, const State& state, const Vector3& rough) {
+/// \param seen whether the observation is at the state
+void Monitor::observe_end(std::size_t index, const State& state, const Vector3& rough, bool& seen) {
+  End& end = ends_[index];
   bool greater = false;
   for (std::size_t k = 0; k < 3; ++k) {
     const double size = std::abs(rough[static_cast<Eigen::Index>(k)]);
@@ -56,35 +61,49 @@ void Monitor::observe_end(End& end, const State& state, const Vector3& rough) {
   if (!greater) return;
   std::array<double, 3> d{rough.x(), rough.y(), rough.z()};
   if (end.frame >= 0) {
-    see(state);
+    if (!std::exchange(seen, true)) see(state);
     d = seen_.deflection(end.body, end.frame);
   }
   *end.ratio = std::max(*end.ratio, std::hypot(d[0], d[1], d[2]) / end.length);
-  note(end.slot->name, end.length, d, end.peak);
+  note(index, end.slot->name, end.length, d, end.peak);
 }
 
 /// Where a component of the deflection grows at the start of the last step and shrinks at its end, its greatest size
-/// lies between: along the cubic through the coordinates and rates at the ends. It is sought where the cubic through
-/// the component itself says that it has not been so great before.
-void Monitor::observe_within(End& end, const State& state, const Vector3& now, const Vector3& velocity) {
+/// lies between, by the cubic through the component. 0 where it does not, or has been as great before.
+double Monitor::greatest_within(const End& end, Eigen::Index k, double h) const {
+  if (end.now[k] * end.velocity[k] <= 0 || end.next[k] * end.next_velocity[k] >= 0) return 0;
+  double greatest = 0, where = 0;
+  constexpr int parts = 16;
+  for (int i = 1; i < parts; ++i) {
+    const double s = static_cast<double>(i) / parts;
+    const double size = std::abs(cubic(s, end.now[k], h * end.velocity[k], end.next[k], h * end.next_velocity[k]));
+    if (size <= greatest) continue;
+    greatest = size;
+    where = s;
+  }
+  return greatest > end.rough[static_cast<std::size_t>(k)] ? where : 0;
+}
+
+/// Greatest deflections between the last state and this, along the cubic through the coordinates and rates at both. A
+/// body's deflection is its own coordinates' alone: one state has each body where it is deflected most.
+void Monitor::look_within(const State& state) {
   const double h = state.time - last_.time;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    if (end.now[k] * end.velocity[k] <= 0 || now[k] * velocity[k] >= 0) continue;
-    double greatest = 0, where = 0;
-    constexpr int parts = 16;
-    for (int i = 1; i < parts; ++i) {
-      const double s = static_cast<double>(i) / parts;
-      const double size = std::abs(cubic(s, end.now[k], h * end.velocity[k], now[k], h * velocity[k]));
-      if (size <= greatest) continue;
-      greatest = size;
-      where = s;
+  bool begun = false;
+  for (Eigen::Index component = 0; component < 3; ++component) {
+    for (End& end : ends_) {
+      end.within = greatest_within(end, component, h);
+      if (end.within == 0) continue;
+      if (!std::exchange(begun, true)) between_.y = state.y;
+      const std::size_t q = end.slot->position, u = model_.layout().positions + end.slot->speed;
+      for (std::size_t i = 0; i < end.slot->positions; ++i)
+        between_.y[q + i] = cubic(end.within, last_.y[q + i], h * last_.y[u + i], state.y[q + i], h * state.y[u + i]);
     }
-    if (greatest <= end.rough[static_cast<std::size_t>(k)]) continue;
-    const std::size_t q = end.slot->position, u = model_.layout().positions + end.slot->speed;
-    between_.y = state.y;
-    for (std::size_t i = 0; i < end.slot->positions; ++i)
-      between_.y[q + i] = cubic(where, last_.y[q + i], h * last_.y[u + i], state.y[q + i], h * state.y[u + i]);
-    observe_end(end, between_, end.section.displacement(between_.y.data() + q));
+    bool seen = false;
+    for (std::size_t e = 0; begun && e < ends_.size(); ++e) {
+      const End& end = ends_[e];
+      if (end.within > 0)
+        observe_end(e, between_, end.section.displacement(between_.y.data() + end.slot->position), seen);
+    }
   }
 }
 
@@ -96,19 +115,27 @@ void Monitor::see(const State& state) {
 
 void Monitor::look(const State& state) {
   if (own_ == nullptr) seen_y_.clear();
+  excess_order_ = excess_.empty() ? std::numeric_limits<std::size_t>::max() : 0;
   for (End& end : ends_) {
     const double* const q = state.y.data() + end.slot->position;
     const double* const u = state.y.data() + model_.layout().positions + end.slot->speed;
-    const Vector3 now = end.section.displacement(q), velocity = end.section.velocity(q, u);
-    if (state.time > last_.time) observe_within(end, state, now, velocity);
-    end.now = now;
-    end.velocity = velocity;
-    observe_end(end, state, now);
+    end.next = end.section.displacement(q);
+    end.next_velocity = end.section.velocity(q, u);
+  }
+  if (state.time > last_.time) look_within(state);
+  bool seen = false;
+  for (std::size_t e = 0; e < ends_.size(); ++e) {
+    End& end = ends_[e];
+    end.now = end.next;
+    end.velocity = end.next_velocity;
+    observe_end(e, state, end.now, seen);
   }
   if (!wholes_.empty()) {
     see(state);
-    for (const Tip& tip : wholes_)
-      note(tip.body, tip.length, deflection(seen_, tip), &summary_.peak_deflection[tip.body]);
+    for (std::size_t w = 0; w < wholes_.size(); ++w) {
+      const Tip& tip = wholes_[w];
+      note(ends_.size() + w, tip.body, tip.length, deflection(seen_, tip), &summary_.peak_deflection[tip.body]);
+    }
   }
   last_ = state;
 }

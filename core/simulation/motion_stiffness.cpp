@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "withy/core/shape/section_fields.hpp"
 #include "withy/core/simulation/elastic_modes.hpp"
 
 namespace withy {
@@ -60,6 +61,8 @@ Eigen::MatrixXd along(const std::array<Eigen::MatrixXd, 3>& gamma, const Vector3
   return force.x() * gamma[0] + force.y() * gamma[1] + force.z() * gamma[2];
 }
 
+Eigen::MatrixXd reduced(const Eigen::MatrixXd& K, const Eigen::MatrixXd& S) { return S.transpose() * K * S; }
+
 }  // namespace
 
 std::string motion_term_name(std::size_t term) {
@@ -79,46 +82,58 @@ std::string motion_term_name(std::size_t term) {
   return names.at(term);
 }
 
-MotionStiffness::MotionStiffness(const Model& model, std::size_t body) : body_(body) {
-  const ModalShape& shape = model.bodies()[body].body->shape();
+MotionStiffness::Own::Own(const ModalShape& shape) {
   const ElasticModes modes = elastic_modes(shape);
   if (modes.frequencies.size() == 0) return;
-  const Eigen::MatrixXd S = modes.vectors * modes.frequencies.cwiseInverse().asDiagonal();
-  const auto reduced = [&S](const Eigen::MatrixXd& K) { return Eigen::MatrixXd(S.transpose() * K * S); };
-  for (std::size_t term = 0; term < own_.size(); ++term) {
+  S = modes.vectors * modes.frequencies.cwiseInverse().asDiagonal();
+  for (std::size_t term = 0; term < motion.size(); ++term) {
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(shape.modes(), shape.modes());
     for (const Particle& p : shape.particles) K += along(p.at.gamma, unit_force(term, p.mass, p.mass * p.at.X));
-    own_[term] = reduced(K);
+    motion[term] = reduced(K, S);
   }
-  const auto add_station = [&](std::size_t carried, int frame, double sign) {
-    const auto& gamma = model.bodies()[body].frames[static_cast<std::size_t>(frame)].section.gamma;
-    stations_.push_back({carried, sign, {reduced(gamma[0]), reduced(gamma[1]), reduced(gamma[2])}});
-  };
+  total.setZero(S.cols(), S.cols());
+  solver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S.cols());
+}
+
+MotionStiffness::MotionStiffness(const Model& model, std::size_t body, const MotionStiffness* twin)
+    : body_(body), own_(twin != nullptr ? twin->own_ : std::make_shared<Own>(model.bodies()[body].body->shape())) {
+  if (own_->S.size() == 0) return;
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
     const HingeNode& hinge = model.hinges()[h];
-    if (hinge.parent == static_cast<int>(body)) add_station(h, hinge.parent_frame, 1);
-    if (h == body) add_station(h, hinge.child_frame, -1);
+    if (hinge.parent == static_cast<int>(body)) add_station(model, h, hinge.parent_frame, 1, twin);
+    if (h == body) add_station(model, h, hinge.child_frame, -1, twin);
   }
-  total_.setZero(S.cols(), S.cols());
-  solver_ = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S.cols());
+}
+
+void MotionStiffness::add_station(const Model& model, std::size_t carried, int frame, double sign,
+                                  const MotionStiffness* twin) {
+  const PointExpansion& at = model.bodies()[body_].frames[static_cast<std::size_t>(frame)].section;
+  if (twin != nullptr)
+    for (const Station& station : twin->stations_)
+      if (same_section(station.section->at, at)) return stations_.push_back({carried, sign, station.section});
+  const auto stiffness = [&](std::size_t axis) { return reduced(at.gamma[axis], own_->S); };
+  stations_.push_back(
+      {carried, sign, std::make_shared<const Section>(Section{at, {stiffness(0), stiffness(1), stiffness(2)}})});
 }
 
 LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies) {
   LoadRatio ratio;
-  if (total_.size() == 0) return ratio;
+  Eigen::MatrixXd& total = own_->total;
+  if (total.size() == 0) return ratio;
+  const std::array<Eigen::MatrixXd, 12>& own = own_->motion;
   const BodyMotion& B = bodies[body_];
   const auto values = term_values(B);
-  total_.setZero();
-  for (std::size_t k = 0; k < own_.size(); ++k) total_ += values[k] * own_[k];
+  total.setZero();
+  for (std::size_t k = 0; k < own.size(); ++k) total += values[k] * own[k];
   for (const Station& s : stations_) {
     const Vector3 force = s.sign * (B.R.transpose() * bodies[s.carried].force);
-    for (Eigen::Index c = 0; c < 3; ++c) total_ += force[c] * s.stiffness[static_cast<std::size_t>(c)];
+    for (Eigen::Index c = 0; c < 3; ++c) total += force[c] * s.section->stiffness[static_cast<std::size_t>(c)];
   }
-  solver_.compute(total_);
-  const Eigen::Index last = total_.rows() - 1;
-  ratio.least = solver_.eigenvalues()[0];
-  ratio.greatest = solver_.eigenvalues()[last];
-  const auto v = solver_.eigenvectors().col(ratio.greatest > -ratio.least ? last : 0);
+  own_->solver.compute(total);
+  const Eigen::Index last = total.rows() - 1;
+  ratio.least = own_->solver.eigenvalues()[0];
+  ratio.greatest = own_->solver.eigenvalues()[last];
+  const auto v = own_->solver.eigenvectors().col(ratio.greatest > -ratio.least ? last : 0);
   // vᵀ K v without a temporary.
   const auto work = [&v](const Eigen::MatrixXd& K) {
     double sum = 0;
@@ -127,14 +142,14 @@ LoadRatio MotionStiffness::evaluate(const std::vector<BodyMotion>& bodies) {
     }
     return sum;
   };
-  for (std::size_t k = 0; k < own_.size(); ++k) ratio.shares[k] = values[k] * work(own_[k]);
+  for (std::size_t k = 0; k < own.size(); ++k) ratio.shares[k] = values[k] * work(own[k]);
   for (const Station& s : stations_) {
     const BodyMotion& carried = bodies[s.carried];
     const Vector3 force = s.sign * (B.R.transpose() * carried.force);
     const Vector3 moment = B.R.transpose() * (carried.mass_moment - carried.mass * B.p);
-    const Vector3 works(work(s.stiffness[0]), work(s.stiffness[1]), work(s.stiffness[2]));
+    const Vector3 works(work(s.section->stiffness[0]), work(s.section->stiffness[1]), work(s.section->stiffness[2]));
     ratio.shares[relative_motion] += force.dot(works);
-    for (std::size_t k = 0; k < own_.size(); ++k) {
+    for (std::size_t k = 0; k < own.size(); ++k) {
       const double share = s.sign * values[k] * unit_force(k, carried.mass, moment).dot(works);
       ratio.shares[k] += share;
       ratio.shares[relative_motion] -= share;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,23 +36,37 @@ struct LoadRatio {
 class MotionStiffness {
  public:
   /// For a flexible body of the model, which must outlive the object.
-  MotionStiffness(const Model& model, std::size_t body);
+  /// \param twin of an equal body of the model, to share what they have in common; of one thread together with it.
+  ///   Null: there is none
+  MotionStiffness(const Model& model, std::size_t body, const MotionStiffness* twin = nullptr);
   /// At the motions of the tree. Allocates nothing.
   LoadRatio evaluate(const std::vector<BodyMotion>& bodies);
 
  private:
+  /// Of a section under unit force on it along body axes.
+  struct Section {
+    PointExpansion at;
+    std::array<Eigen::MatrixXd, 3> stiffness;
+  };
   /// A hinge that loads the body: an outboard body's (sign +1), or the inboard one where it holds a moving section.
   struct Station {
     std::size_t carried;  ///< body whose subtree's force passes here
     double sign;
-    std::array<Eigen::MatrixXd, 3> stiffness;  ///< of unit force on the subtree along body axes
+    std::shared_ptr<const Section> section;
   };
+  /// What equal bodies share, in coordinates in which K is 1.
+  struct Own {
+    explicit Own(const ModalShape& shape);
+    Eigen::MatrixXd S;                       ///< of these coordinates
+    std::array<Eigen::MatrixXd, 12> motion;  ///< of unit terms
+    Eigen::MatrixXd total;
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  };
+  void add_station(const Model& model, std::size_t carried, int frame, double sign, const MotionStiffness* twin);
 
   std::size_t body_;
-  std::array<Eigen::MatrixXd, 12> own_;  ///< of unit terms, in coordinates in which K is 1
+  std::shared_ptr<Own> own_;
   std::vector<Station> stations_;
-  Eigen::MatrixXd total_;
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver_;
 };
 
 }  // namespace withy

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/simulation/elastic_modes.hpp"
@@ -19,6 +20,10 @@ constexpr std::size_t growth = 4, least_interval = 20;
 /// States are kept for what is found by assembled mass matrices.
 constexpr std::size_t most_speeds_along = 300;
 
+std::size_t work_size(const EquationsOfMotion* equations) {
+  return equations == nullptr ? 0 : equations->make_work().size();
+}
+
 }  // namespace
 
 ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equations, const EquationsOfMotion* beyond,
@@ -29,8 +34,7 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       validity_(validity),
       motion_(model),
       frequency_(model, equations),
-      work_(equations.make_work()),
-      beyond_work_(beyond != nullptr ? beyond->make_work() : Work(0)),
+      work_(std::max(work_size(&equations), work_size(beyond))),
       rates_(equations.size()),
       beyond_rates_(equations.size()),
       difference_(model.layout().speeds),
@@ -38,28 +42,44 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       cost_(motion_cost + (beyond != nullptr ? comparison_cost : 0)),
       held_{0, std::vector<double>(equations.size())},
       along_(beyond != nullptr && model.layout().speeds <= most_speeds_along ? equations.size() : 0) {
+  std::unordered_map<const Body*, std::size_t> twins;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
     const ModalShape& shape = node.body->shape();
     if (shape.modes() == 0) continue;
+    const auto [known, fresh] = twins.try_emplace(node.body.get(), bodies_.size());
+    const Watched* twin = fresh ? nullptr : &bodies_[known->second];
+    Watched w{b,
+              model.layout().modes(b),
+              MotionStiffness(model, b, fresh ? nullptr : &twin->stiffness),
+              fresh ? std::make_shared<std::vector<Family>>(families_of(shape)) : twin->families,
+              {}};
     BodyValidity v{.name = node.name, .load = {}, .highest = {}};
-    Watched w{b, model.layout().modes(b), MotionStiffness(model, b), {}};
-    for (const ModeGroup& group : mode_groups(shape)) {
-      const ElasticModes own = elastic_modes(shape, group.coordinates);
-      const Eigen::Index highest = own.frequencies.size() - 1;
-      if (highest < 0) continue;
-      const auto n = static_cast<Eigen::Index>(group.coordinates.size());
-      w.families.push_back({.coordinates = group.coordinates,
-                            .projection = own.mass * own.vectors.col(highest),
-                            .stiffness = shape.stiffness(group.coordinates, group.coordinates),
-                            .mass = own.mass,
-                            .q = Eigen::VectorXd(n),
-                            .rate = Eigen::VectorXd(n)});
-      v.highest.push_back({group.name, own.frequencies[highest], 0, group.coordinates.size()});
-    }
+    for (const Family& family : *w.families)
+      v.highest.push_back({family.name, family.highest, 0, family.coordinates.size()});
+    w.energies.resize(w.families->size());
     bodies_.push_back(std::move(w));
     validity_.bodies.push_back(std::move(v));
   }
+}
+
+std::vector<ValidityWatch::Family> ValidityWatch::families_of(const ModalShape& shape) {
+  std::vector<Family> families;
+  for (const ModeGroup& group : mode_groups(shape)) {
+    const ElasticModes own = elastic_modes(shape, group.coordinates);
+    const Eigen::Index highest = own.frequencies.size() - 1;
+    if (highest < 0) continue;
+    const auto n = static_cast<Eigen::Index>(group.coordinates.size());
+    families.push_back({.name = group.name,
+                        .highest = own.frequencies[highest],
+                        .coordinates = group.coordinates,
+                        .projection = own.mass * own.vectors.col(highest),
+                        .stiffness = shape.stiffness(group.coordinates, group.coordinates),
+                        .mass = own.mass,
+                        .q = Eigen::VectorXd(n),
+                        .rate = Eigen::VectorXd(n)});
+  }
+  return families;
 }
 
 void ValidityWatch::hold(const State& state, std::size_t evaluations) {
@@ -82,7 +102,7 @@ void ValidityWatch::sample(const State& state) {
   std::vector<BodyMotion> felt;
   if (field_of(model_) != nullptr) felt = felt_motions(model_, equations_, state, motion_.bodies());
   const std::vector<BodyMotion>& motions = felt.empty() ? motion_.bodies() : felt;
-  if (!bodies_.empty()) frequency_.update(state.y);
+  if (!bodies_.empty()) frequency_.update(state.y, work_);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Watched& w = bodies_[i];
     BodyValidity& v = validity_.bodies[i];
@@ -106,19 +126,19 @@ void ValidityWatch::sample(const State& state) {
 }
 
 void ValidityWatch::look_at_energies(const State& state, Watched& w) const {
-  for (std::size_t f = 0; f < w.families.size(); ++f) {
-    Family& family = w.families[f];
+  for (std::size_t f = 0; f < w.energies.size(); ++f) {
+    Family& family = (*w.families)[f];
+    Energy& energy = w.energies[f];
     for (std::size_t k = 0; k < family.coordinates.size(); ++k) {
       const auto c = static_cast<std::size_t>(family.coordinates[k]);
       family.q[static_cast<Eigen::Index>(k)] = state.y[w.slot->position + c];
       family.rate[static_cast<Eigen::Index>(k)] = state.y[model_.layout().positions + w.slot->speed + c];
     }
-    const double frequency = validity_.bodies[static_cast<std::size_t>(&w - bodies_.data())].highest[f].frequency;
-    const double q = frequency * family.projection.dot(family.q), rate = family.projection.dot(family.rate);
-    family.highest_energy += q * q + rate * rate;
+    const double q = family.highest * family.projection.dot(family.q), rate = family.projection.dot(family.rate);
+    energy.highest += q * q + rate * rate;
     for (Eigen::Index i = 0; i < family.q.size(); ++i) {
       for (Eigen::Index j = 0; j < family.q.size(); ++j) {
-        family.energy +=
+        energy.whole +=
             family.q[i] * family.stiffness(i, j) * family.q[j] + family.rate[i] * family.mass(i, j) * family.rate[j];
       }
     }
@@ -126,10 +146,10 @@ void ValidityWatch::look_at_energies(const State& state, Watched& w) const {
 }
 
 void ValidityWatch::compare_accelerations(const State& state) {
-  if (!beyond_->derivatives(state.time, state.y, beyond_rates_, beyond_work_).ok()) return;
+  if (!beyond_->derivatives(state.time, state.y, beyond_rates_, work_).ok()) return;
   const Layout& layout = model_.layout();
   const auto square = [&](std::span<const double> a) {
-    beyond_->mass_times(state.y, a, product_, beyond_work_);
+    beyond_->mass_times(state.y, a, product_, work_);
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * product_[i];
     return std::max(sum, 0.0);
@@ -156,9 +176,9 @@ void ValidityWatch::remember(Memory& memory) {
     memory(v.buckling);
   }
   for (Watched& w : bodies_) {
-    for (Family& family : w.families) {
-      memory(family.highest_energy);
-      memory(family.energy);
+    for (Energy& energy : w.energies) {
+      memory(energy.highest);
+      memory(energy.whole);
     }
   }
   frequency_.remember(memory);
@@ -180,9 +200,9 @@ void ValidityWatch::finish(const State& trusted, bool sampled) {
   if (held_.time <= trusted.time) settle();
   if (sampled) sample(trusted);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    for (std::size_t f = 0; f < bodies_[i].families.size(); ++f) {
-      const Family& family = bodies_[i].families[f];
-      validity_.bodies[i].highest[f].share = family.energy > 0 ? family.highest_energy / family.energy : 0;
+    for (std::size_t f = 0; f < bodies_[i].energies.size(); ++f) {
+      const Energy& energy = bodies_[i].energies[f];
+      validity_.bodies[i].highest[f].share = energy.whole > 0 ? energy.highest / energy.whole : 0;
     }
   }
   const auto ratio = [](double a, double b) { return b > 0 ? std::sqrt(a / b) : 0; };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -77,18 +78,24 @@ class ValidityWatch {
 
  private:
   struct Family {
+    std::string name;
+    double highest = 0;  ///< frequency [rad/s]
     std::vector<Eigen::Index> coordinates;
     Eigen::VectorXd projection;  ///< row of G times the highest vibration
     Eigen::MatrixXd stiffness, mass;
     Eigen::VectorXd q, rate;
-    double highest_energy = 0, energy = 0;
+  };
+  struct Energy {
+    double highest = 0, whole = 0;
   };
   struct Watched {
     std::size_t body;
     const Slot* slot;
     MotionStiffness stiffness;
-    std::vector<Family> families;
+    std::shared_ptr<std::vector<Family>> families;  ///< equal bodies share them
+    std::vector<Energy> energies;                   ///< of each family
   };
+  static std::vector<Family> families_of(const ModalShape& shape);
   void hold(const State& state, std::size_t evaluations);
   void sample(const State& state);
   void look_at_energies(const State& state, Watched& w) const;
@@ -101,7 +108,7 @@ class ValidityWatch {
   TreeMotion motion_;
   std::vector<Watched> bodies_;
   CarriedFrequency frequency_;
-  Work work_, beyond_work_;
+  Work work_;  ///< of whichever equations are evaluated
   std::vector<double> rates_, beyond_rates_, difference_, product_;
   double squares_ = 0, neglected_squares_ = 0, greatest_ = 0, neglected_greatest_ = 0;
   std::size_t cost_;      ///< of a sample in evaluations, roughly

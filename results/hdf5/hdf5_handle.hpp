@@ -37,6 +37,9 @@ class Hdf5Handle {
 /// which crashes where one could not be written (1.10). All that is open here closes itself.
 inline void begin_hdf5() {
   H5dont_atexit();
+  // What the library has freed waits for its next use, by itself up to 16 MB of each kind.
+  constexpr int all = 1 << 20, of_one_size = 1 << 16;
+  H5set_free_list_limits(all, of_one_size, all, of_one_size, all, of_one_size);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 

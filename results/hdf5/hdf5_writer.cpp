@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <limits>
@@ -21,6 +22,27 @@ constexpr hsize_t few = 1 << 16;
 constexpr hsize_t most_compact = 7500;  ///< rows: a description has 64 kB
 using Clock = std::chrono::steady_clock;
 
+/// Texts of many columns, which are often those of their neighbours.
+class ColumnTexts {
+ public:
+  void push_back(const std::string& text) {
+    if (ends_.empty() || texts_.back() != text) {
+      texts_.push_back(text);
+      ends_.push_back(size_);
+    }
+    ends_.back() = ++size_;
+  }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] const std::string& operator[](std::size_t i) const {
+    return texts_[static_cast<std::size_t>(std::upper_bound(ends_.begin(), ends_.end(), i) - ends_.begin())];
+  }
+
+ private:
+  std::vector<std::string> texts_;
+  std::vector<std::size_t> ends_;
+  std::size_t size_ = 0;
+};
+
 class Hdf5Writer final : public Hdf5Recorder {
  public:
   explicit Hdf5Writer(const std::filesystem::path& path) : name_(path.string()) {
@@ -32,20 +54,24 @@ class Hdf5Writer final : public Hdf5Recorder {
   }
 
   void begin(const std::vector<Column>& columns) override {
-    if (!columns_.empty()) return;  // the table goes on
-    for (const Column& column : columns) columns_.push_back({column_name(column.name), column.unit, {}});
+    if (units_.size() > 0) return;  // the table goes on
+    for (const Column& column : columns) {
+      names_ += (names_.empty() ? "" : "\n") + column_name(column.name);
+      name_ends_.push_back(names_.size());
+      units_.push_back(column.unit);
+    }
     wide_ = columns.size() > most_shared;
-    waiting_.assign(columns.size(), {});
+    if (wide_) describe_less_at_once();
   }
 
   void describe_frames(const std::vector<std::string>& frames) override {
-    for (std::size_t c = 0; c < frames.size(); ++c) columns_[c].frame = frames[c];
+    for (const std::string& frame : frames) frames_.push_back(frame);
   }
 
   void row(std::span<const double> numbers) override {
-    for (std::size_t c = 0; c < waiting_.size(); ++c) waiting_[c].push_back(numbers[c]);
+    waiting_.emplace_back(numbers.begin(), numbers.end());
     // A part that is written before it is full is written again later: the longer a run, the more seldom.
-    const bool many = waiting_rows() >= chunk && waiting_rows() * columns_.size() >= few;
+    const bool many = waiting_rows() >= chunk && waiting_rows() * units_.size() >= few;
     if (begun_ ? (rows_ + waiting_rows()) % chunk == 0 : many) write_waiting();
     const auto now = Clock::now();
     if (!wide_ && now - flushed_ > std::chrono::seconds(1) + (now - began_) / 20) flush();
@@ -72,6 +98,7 @@ class Hdf5Writer final : public Hdf5Recorder {
       need(file_.close());
     }
     ended_ = true;
+    H5garbage_collect();
   }
 
   void describe(const std::string& name, const std::string& text) override {
@@ -82,9 +109,10 @@ class Hdf5Writer final : public Hdf5Recorder {
   }
 
  private:
-  struct Described {
-    std::string name, unit, frame;
-  };
+  [[nodiscard]] std::string column(std::size_t c) const {
+    const std::size_t begin = c > 0 ? name_ends_[c - 1] + 1 : 0;
+    return names_.substr(begin, name_ends_[c] - begin);
+  }
 
   /// Checks what a call gave.
   template <class Result>
@@ -103,10 +131,25 @@ class Hdf5Writer final : public Hdf5Recorder {
     return access;
   }
 
+  /// Descriptions of datasets stay in memory until they are written, by themselves up to 32 MB of them: of a wide table
+  /// fewer, as each is touched a few times in a row and then no more. In memory they take several times what they are
+  /// counted as.
+  void describe_less_at_once() const {
+    H5AC_cache_config_t cache{};
+    cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+    need(H5Fget_mdc_config(file_, &cache));
+    cache.set_initial_size = true;
+    cache.initial_size = cache.max_size = cache.min_size = std::size_t{1} << 18;
+    cache.incr_mode = H5C_incr__off;
+    cache.flash_incr_mode = H5C_flash_incr__off;
+    cache.decr_mode = H5C_decr__off;
+    need(H5Fset_mdc_config(file_, &cache));
+  }
+
   /// How datasets are kept, which have so many rows, or with 0 grow.
   [[nodiscard]] Hdf5Handle part_by_part(hsize_t rows) const {
     Hdf5Handle how(need(H5Pcreate(H5P_DATASET_CREATE)), &H5Pclose);
-    if (rows > 0 && rows * columns_.size() <= few && rows <= most_compact) {
+    if (rows > 0 && rows * units_.size() <= few && rows <= most_compact) {
       need(H5Pset_layout(how, H5D_COMPACT));
       return how;
     }
@@ -126,17 +169,17 @@ class Hdf5Writer final : public Hdf5Recorder {
     const Hdf5Handle how = part_by_part(rows), cache = one_part();
     const hsize_t most = rows > 0 ? rows : H5S_UNLIMITED;
     const Hdf5Handle space(need(H5Screate_simple(1, &rows, &most)), &H5Sclose);
-    for (const Described& column : columns_) {
-      Hdf5Handle dataset(need(H5Dcreate2(file_, column.name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, how, cache)),
+    for (std::size_t c = 0; c < units_.size(); ++c) {
+      Hdf5Handle dataset(need(H5Dcreate2(file_, column(c).c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, how, cache)),
                          &H5Dclose);
-      write_text(dataset, "unit", column.unit.empty() ? "1" : column.unit);
-      if (!column.frame.empty()) write_text(dataset, "frame", column.frame);
+      write_text(dataset, "unit", units_[c].empty() ? "1" : units_[c]);
+      if (c < frames_.size() && !frames_[c].empty()) write_text(dataset, "frame", frames_[c]);
       if (wide_)
         need(dataset.close());
       else
         datasets_.push_back(std::move(dataset));
     }
-    write_order();
+    write_text(file_, "columns", names_);  // in the order of the table, since a file lists them by the alphabet
     grows_ = rows == 0;
     begun_ = true;
   }
@@ -148,21 +191,14 @@ class Hdf5Writer final : public Hdf5Recorder {
     return access;
   }
 
-  /// The names of the datasets in the order of the table, since a file lists them by the alphabet.
-  void write_order() const {
-    std::string names;
-    for (const Described& column : columns_) names += (names.empty() ? "" : "\n") + column.name;
-    write_text(file_, "columns", names);
-  }
-
   /// A dataset that is open holds some 16 kB: of a wide table one is open at a time.
   template <class Use>
   void with_column(std::size_t c, Use&& use) const {
     if (!wide_) return use(datasets_[c]);
     const Hdf5Handle cache = one_part();
-    Hdf5Handle column(need(H5Dopen2(file_, columns_[c].name.c_str(), cache)), &H5Dclose);
-    use(column);
-    need(column.close());
+    Hdf5Handle open(need(H5Dopen2(file_, column(c).c_str(), cache)), &H5Dclose);
+    use(open);
+    need(open.close());
   }
 
   void write_text(hid_t object, const std::string& name, const std::string& text) const {
@@ -176,22 +212,24 @@ class Hdf5Writer final : public Hdf5Recorder {
     need(H5Awrite(attribute, type, text.c_str()));
   }
 
-  [[nodiscard]] hsize_t waiting_rows() const { return waiting_.empty() ? 0 : waiting_.front().size(); }
+  [[nodiscard]] hsize_t waiting_rows() const { return waiting_.size(); }
 
   void write_waiting() {
     share();
     const hsize_t count = waiting_rows(), first = rows_, size = rows_ + count;
     if (count == 0) return;
     const Hdf5Handle memory(need(H5Screate_simple(1, &count, nullptr)), &H5Sclose);
-    for (std::size_t c = 0; c < waiting_.size(); ++c) {
+    std::vector<double> part(count);
+    for (std::size_t c = 0; c < units_.size(); ++c) {
+      for (std::size_t i = 0; i < count; ++i) part[i] = waiting_[i][c];
       with_column(c, [&](hid_t column) {
         if (grows_) need(H5Dset_extent(column, &size));
         const Hdf5Handle place(need(H5Dget_space(column)), &H5Sclose);
         need(H5Sselect_hyperslab(place, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
-        need(H5Dwrite(column, H5T_NATIVE_DOUBLE, memory, place, H5P_DEFAULT, waiting_[c].data()));
+        need(H5Dwrite(column, H5T_NATIVE_DOUBLE, memory, place, H5P_DEFAULT, part.data()));
       });
-      waiting_[c].clear();
     }
+    waiting_.clear();
     rows_ = size;
   }
 
@@ -214,9 +252,11 @@ class Hdf5Writer final : public Hdf5Recorder {
 
   std::string name_;
   Hdf5Handle file_;
-  std::vector<Described> columns_;
+  std::string names_;  ///< of the columns, a line each
+  std::vector<std::size_t> name_ends_;
+  ColumnTexts units_, frames_;
   std::vector<Hdf5Handle> datasets_;  ///< of the columns; none of a wide table, nor before the first are written
-  std::vector<std::vector<double>> waiting_;  ///< of each column the numbers of the next rows
+  std::vector<std::vector<double>> waiting_;  ///< the next rows
   std::map<std::string, std::string> descriptions_;
   hsize_t rows_ = 0;    ///< that the library has been given
   bool wide_ = false;   ///< too many columns for others to read while they are written

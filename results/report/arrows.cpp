@@ -27,7 +27,7 @@ std::pair<int, double> piece_at(const Model& model, const std::string& body, dou
 
 Arrows::Arrows(const Scene& scene, const Terms& terms, const std::vector<Column>& columns) : columns_(columns) {
   const Value* outputs = scene.source.find("outputs");
-  if (outputs == nullptr) return;
+  if (outputs == nullptr || outputs->members().empty()) return;
   const std::shared_ptr<const Model> own = Model::in_kinematics(scene.model, terms);
   std::vector<BodyNode> bodies = own->bodies();
   for (const auto& [name, value] : outputs->members()) add(name, value, *own, bodies);

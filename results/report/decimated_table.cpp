@@ -32,17 +32,28 @@ void DecimatedTable::begin(const std::vector<Column>& columns) {
   most_stretches_ = std::clamp(most_numbers_ / columns.size() / 2 * 2, least, most_stretches_);
 }
 
+DecimatedTable::Range DecimatedTable::Stretch::at(std::size_t column) const {
+  return row != nullptr ? Range{(*row)[column], (*row)[column]} : ranges[column];
+}
+
+/// Two stretches that adjoin become one.
+void DecimatedTable::join(Stretch& stretch, const Stretch& next) {
+  if (stretch.row != nullptr) {
+    stretch.ranges.reserve(stretch.row->size());
+    for (const double x : *stretch.row) stretch.ranges.push_back({x, x});
+    stretch.row = nullptr;
+  }
+  for (std::size_t c = 0; c < stretch.ranges.size(); ++c) widen(stretch.ranges[c], next.at(c));
+}
+
 void DecimatedTable::row(std::span<const double> numbers) {
   if (rows_ % stride_ == 0 && stretches_.size() == most_stretches_) halve();
+  last_ = std::make_shared<const std::vector<double>>(numbers.begin(), numbers.end());
   if (rows_ % stride_ == 0) {
-    std::vector<Range>& stretch = stretches_.emplace_back();
-    stretch.reserve(numbers.size());
-    for (const double x : numbers) stretch.push_back({x, x});
+    stretches_.push_back({last_, {}});
   } else {
-    Range* range = stretches_.back().data();
-    for (const double x : numbers) widen(*range++, {x, x});
+    join(stretches_.back(), {last_, {}});
   }
-  last_.assign(numbers.begin(), numbers.end());
   if (rows_ % sample_stride_ == 0) {
     samples_.push_back(last_);
     if (samples_.size() > most_samples_) {
@@ -54,12 +65,10 @@ void DecimatedTable::row(std::span<const double> numbers) {
   ++rows_;
 }
 
-/// Two stretches become one.
 void DecimatedTable::halve() {
   const std::size_t count = stretches_.size();
   for (std::size_t s = 0; 2 * s < count; ++s) {
-    if (2 * s + 1 < count)
-      for (std::size_t c = 0; c < stretches_[2 * s].size(); ++c) widen(stretches_[2 * s][c], stretches_[2 * s + 1][c]);
+    if (2 * s + 1 < count) join(stretches_[2 * s], stretches_[2 * s + 1]);
     if (s > 0) stretches_[s] = std::move(stretches_[2 * s]);
   }
   stretches_.resize((count + 1) / 2);
@@ -69,15 +78,16 @@ void DecimatedTable::halve() {
 std::vector<double> DecimatedTable::column(std::size_t index) const {
   std::vector<double> numbers;
   numbers.reserve(stretches_.size() * (stride_ > 1 ? 2 : 1));
-  for (const std::vector<Range>& stretch : stretches_) {
-    numbers.push_back(stretch[index].first);
-    if (stride_ > 1) numbers.push_back(stretch[index].second);
+  for (const Stretch& stretch : stretches_) {
+    const Range range = stretch.at(index);
+    numbers.push_back(range.first);
+    if (stride_ > 1) numbers.push_back(range.second);
   }
   return numbers;
 }
 
-std::vector<std::vector<double>> DecimatedTable::samples() const {
-  std::vector<std::vector<double>> all = samples_;
+std::vector<DecimatedTable::Row> DecimatedTable::samples() const {
+  std::vector<Row> all = samples_;
   if (rows_ > 0 && (rows_ - 1) % sample_stride_ != 0) all.push_back(last_);
   return all;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "withy/results/recorder.hpp"
@@ -32,23 +33,31 @@ class DecimatedTable final : public Recorder {
   /// A column: of each stretch one number where it is one row, or else the least and the greatest in their order. The
   /// first column, the time, has the stretch's first and last.
   [[nodiscard]] std::vector<double> column(std::size_t index) const;
+  using Row = std::shared_ptr<const std::vector<double>>;
   /// Whole rows, the first and the last among them.
-  [[nodiscard]] std::vector<std::vector<double>> samples() const;
+  [[nodiscard]] std::vector<Row> samples() const;
 
  private:
   /// One column over one stretch: its least and its greatest number, in the order in which they came.
   struct Range {
     double first, second;
   };
+  /// Every column over one stretch. Short tables have each row twice, as a stretch and a sample, which share it.
+  struct Stretch {
+    Row row;                    ///< the only one so far
+    std::vector<Range> ranges;  ///< of several
+    [[nodiscard]] Range at(std::size_t column) const;
+  };
   static void widen(Range& range, const Range& next);
+  static void join(Stretch& stretch, const Stretch& next);
   void halve();
 
   std::size_t most_stretches_, most_samples_, most_numbers_;
   std::vector<Column> columns_;
   std::size_t rows_ = 0, stride_ = 1, sample_stride_ = 1;
-  std::vector<std::vector<Range>> stretches_;  ///< of each, every column
-  std::vector<std::vector<double>> samples_;
-  std::vector<double> last_;
+  std::vector<Stretch> stretches_;
+  std::vector<Row> samples_;
+  Row last_;
 };
 
 }  // namespace withy

@@ -7,14 +7,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <unordered_map>
 
 #include "withy/core/kinematics/observation.hpp"
+#include "withy/core/shape/section_fields.hpp"
+#include "withy/results/report/seen_pose.hpp"
 
 namespace withy {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 /// Points along a line: enough for the highest mode that models of a body have.
 constexpr int most_sections = 24;
@@ -25,10 +27,6 @@ constexpr std::size_t most_points = 1500;
 constexpr std::size_t most_nodes = 200;
 /// Points of a plate: along it, and across.
 constexpr int strip_rows = 16, strip_columns = 8;
-
-Pose pose_of(const WorldPose& p) {
-  return {Eigen::Map<const RowMajor>(p.rotation.data()), Eigen::Map<const Vector3>(p.position.data())};
-}
 
 void append_vector(const Vector3& v, std::vector<float>& numbers) {
   for (int i = 0; i < 3; ++i) numbers.push_back(static_cast<float>(v[i]));
@@ -47,9 +45,11 @@ Json pose_json(const Pose& X) {
   return {X.p.x(), X.p.y(), X.p.z(), q.w(), q.x(), q.y(), q.z()};
 }
 
-int add_frame(BodyNode& node, PointExpansion section, const Vector3& offset) {
-  node.frames.push_back({"", std::move(section), {Matrix3::Identity(), offset}});
-  return static_cast<int>(node.frames.size()) - 1;
+/// Whether a body's root is where the body is, whatever its modes.
+bool root_is_body(const BodyNode& node) {
+  const Frame& root = node.frames.front();
+  return root.section.X.isZero(0) && root.pose.p.isZero(0) && root.pose.R.isIdentity(0) &&
+         !moved_by_modes(root.section);
 }
 
 /// The homogeneous box with a body's mass and inertia about its centre of mass: edges [m] and pose.
@@ -77,69 +77,97 @@ Json box_json(const ModalShape& shape) {
 
 }  // namespace
 
-Drawing::Drawing(const std::shared_ptr<const Model>& model, const Terms& terms, Looks looks)
-    : looks_(std::move(looks)), tips_(tips(*model)) {
-  const std::shared_ptr<const Model> own = Model::in_kinematics(model, terms);
-  std::vector<BodyNode> bodies = own->bodies();
-  parts_.resize(bodies.size());
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+Drawing::Drawing(const std::shared_ptr<const Model>& model, const Terms& terms, Looks looks,
+                 const EquationsOfMotion* equations)
+    : looks_(std::move(looks)), model_(Model::in_kinematics(model, terms)), tips_(tips(*model)) {
+  parts_.resize(model_->bodies().size());
+  std::unordered_map<const Body*, std::size_t> first;  // equal bodies are one object
+  std::vector<BodyNode> framed;
+  for (std::size_t b = 0; b < parts_.size(); ++b) {
+    const BodyNode& node = model_->bodies()[b];
     Part& part = parts_[b];
-    const Eigen::Index modes = bodies[b].body->shape().modes();
-    part.flexible = modes > 0;
-    part.frame = add_frame(bodies[b], PointExpansion::rigid(Vector3::Zero(), modes), Vector3::Zero());
-    const Terms& own_terms = bodies[b].terms ? *bodies[b].terms : terms;
-    add_points(bodies[b], part, own_terms.strain != StrainOrder::linear);
-    if (part.kind == Kind::line) add_sections(bodies[b], part);
+    part.flexible = node.body->shape().modes() > 0;
+    const Terms& own = node.terms ? *node.terms : terms;
+    if (add_strip(node, part, own.strain != StrainOrder::linear) ||
+        add_mesh(node, part, own.strain != StrainOrder::linear))
+      continue;
+    const auto [twin, fresh] =
+        node.terms || !part.flexible ? std::pair(first.end(), true) : first.try_emplace(node.body.get(), b);
+    if (fresh) {
+      add_points(node, model_->hinges()[b].hinge, terms, part);
+    } else {
+      const Part& same = parts_[twin->second];
+      part.kind = same.kind;
+      part.at_rest = same.at_rest;
+      part.bent = same.bent;
+    }
+    if (part.kind == Kind::line) add_sections(node, part);
   }
-  for (const HingeNode& hinge : own->hinges()) {
+  hang(model_->hinges());
+  see(terms, equations);
+}
+
+/// What hangs on each part, and how many numbers a moment has with it.
+void Drawing::hang(const std::vector<HingeNode>& hinges) {
+  for (const HingeNode& hinge : hinges) {
     if (hinge.parent < 0) continue;
     Part& part = parts_[static_cast<std::size_t>(hinge.parent)];
     part.children.push_back(hinge.child);
     part.hung.push_back(hinge.parent_frame);
     part.offsets.push_back(hinge.offset);
   }
-  for (const Part& part : parts_)
-    size_ += 7 + (part.flexible ? (part.turns ? 6 : 3) * part.points.size() +
-                                      static_cast<std::size_t>(part.shapes.shapes().cols()) + 7 * part.hung.size()
-                                : 0);
-  model_ = std::make_shared<const Model>(std::move(bodies), own->hinges(), own->gravity());
-  seen_ = observed_model(*model_, terms)->make_observation();
+  for (const Part& part : parts_) {
+    const std::size_t points = part.bent == nullptr ? 0 : part.at_rest.size();
+    const auto shapes = static_cast<std::size_t>(part.shapes.shapes().cols());
+    size_ += 7 + (part.flexible ? (part.turns ? 6 : 3) * points + shapes + 7 * part.hung.size() : 0);
+  }
 }
 
-void Drawing::add_points(BodyNode& node, Part& part, bool second_order) const {
-  if (add_strip(node, part, second_order) || add_mesh(node, part, second_order)) return;
-  const auto drawn = [&] {
-    if (add_line(node, part)) return true;
+/// Makes the observation, of a model with a frame more where a body's root is not where the body is.
+void Drawing::see(const Terms& terms, const EquationsOfMotion* equations) {
+  const std::vector<BodyNode>& given = model_->bodies();
+  if (!std::all_of(given.begin(), given.end(), root_is_body)) {
+    equations = nullptr;
+    std::vector<BodyNode> bodies = given;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (root_is_body(bodies[b])) continue;
+      parts_[b].frame = static_cast<int>(bodies[b].frames.size());
+      bodies[b].frames.push_back({"", PointExpansion::rigid(Vector3::Zero(), bodies[b].body->shape().modes()), {}});
+    }
+    model_ = std::make_shared<const Model>(std::move(bodies), model_->hinges(), model_->gravity());
+  }
+  seen_ = equations != nullptr ? equations->make_observation() : observed_model(*model_, terms)->make_observation();
+}
+
+void Drawing::add_points(const BodyNode& node, const std::shared_ptr<const Hinge>& hinge, const Terms& terms,
+                         Part& part) const {
+  std::vector<PointExpansion> points = along(node);
+  part.kind = !points.empty() ? Kind::line : part.flexible ? Kind::points : Kind::box;
+  if (part.kind == Kind::points) {
     std::istringstream names(node.body->stations());
     std::string name;
-    while (std::getline(names >> std::ws, name, ',') && part.points.size() < most_nodes) {
-      if (auto section = node.body->station(name)) part.points.push_back(add_frame(node, *section, Vector3::Zero()));
-    }
-    part.kind = part.flexible ? Kind::points : Kind::box;
-    return part.flexible;
-  };
-  if (!drawn()) {
-    // A rigid body's points are its frames.
-    part.points.clear();
-    for (int f = 0; f < part.frame; ++f) part.points.push_back(f);
+    while (std::getline(names >> std::ws, name, ',') && points.size() < most_nodes)
+      if (auto section = node.body->station(name)) points.push_back(std::move(*section));
   }
-  for (const int f : part.points) {
-    const Frame& frame = node.frames[static_cast<std::size_t>(f)];
-    part.at_rest.push_back(frame.section.X + frame.pose.p);
-  }
+  for (const PointExpansion& point : points) part.at_rest.push_back(point.X);
+  if (part.flexible) part.bent = std::make_shared<BentBody>(node, hinge, terms, points);
+  // The points of a rigid body that is no line are its frames.
+  if (part.kind == Kind::box)
+    for (const Frame& frame : node.frames) part.at_rest.push_back(frame.section.X + frame.pose.p);
 }
 
-bool Drawing::add_line(BodyNode& node, Part& part) const {
+/// Sections at even distances along a slender body; of another none.
+std::vector<PointExpansion> Drawing::along(const BodyNode& node) const {
   const double length = node.body->shape().length;
-  if (!(length > 0) || !node.body->station(0.0) || !node.body->station(length)) return false;
+  std::vector<PointExpansion> points;
+  if (!(length > 0) || !node.body->station(0.0) || !node.body->station(length)) return points;
   const int sections = std::clamp(static_cast<int>(most_points / parts_.size()), least_sections, most_sections);
   for (int i = 0; i <= sections; ++i) {
     auto section = node.body->station(length * i / sections);
-    if (!section || section->X.tail<2>().norm() > 1e-9 * length) return false;
-    part.points.push_back(add_frame(node, std::move(*section), Vector3::Zero()));
+    if (!section || section->X.tail<2>().norm() > 1e-9 * length) return {};
+    points.push_back(std::move(*section));
   }
-  part.kind = Kind::line;
-  return true;
+  return points;
 }
 
 void Drawing::add_sections(const BodyNode& node, Part& part) const {
@@ -149,9 +177,7 @@ void Drawing::add_sections(const BodyNode& node, Part& part) const {
   const bool round = std::all_of(part.sections.begin(), part.sections.end(), [](const Outline& o) {
     return !o.rectangle && std::abs(o.y - o.z) <= 1e-3 * std::max(o.y, o.z);
   });
-  const bool twists =
-      part.flexible && node.frames[static_cast<std::size_t>(part.points.back())].section.psi.row(0).any();
-  part.turns = twists && !round;
+  part.turns = part.flexible && !round && node.body->station(part.at_rest.back().x())->psi.row(0).any();
 }
 
 const Surface* Drawing::surface(std::size_t body) const {
@@ -206,7 +232,7 @@ Vector3 Drawing::place(std::size_t body, std::size_t point, const Eigen::VectorX
   Vector3 displacement = Vector3::Zero();
   if (weights.size() > 0)
     displacement = (part.shapes.shapes().middleRows<3>(3 * static_cast<Eigen::Index>(point)) * weights).cast<double>();
-  const Pose X_WB = pose_of(seen_->frame_pose(static_cast<int>(body), part.frame));
+  const Pose X_WB = seen_pose(*seen_, static_cast<int>(body), part.frame);
   return X_WB.p + X_WB.R * (part.at_rest[point] + displacement);
 }
 
@@ -241,7 +267,16 @@ Json Drawing::part(std::size_t body) const {
   return j;
 }
 
-/// The drawn model has no loads, and so none of their discrete states.
+/// Bends the body to its modal coordinates at a state. False where it is rigid, or shapes displace its points.
+bool Drawing::bend(std::size_t body, std::span<const double> y) {
+  const Part& part = parts_[body];
+  if (part.bent == nullptr) return false;
+  const Slot& modes = *model_->layout().modes(body);
+  part.bent->bend(y.subspan(modes.position, modes.positions));
+  return true;
+}
+
+/// A drawn model with frames of its own has no loads, and so none of their discrete states.
 std::span<const double> Drawing::without_discrete(std::span<const double> y) const {
   return y.first(model_->layout().size());
 }
@@ -252,21 +287,17 @@ void Drawing::append(std::span<const double> y, std::vector<float>& numbers) {
   for (std::size_t b = 0; b < parts_.size(); ++b) {
     const Part& part = parts_[b];
     const auto body = static_cast<int>(b);
-    const Pose X_WB = pose_of(seen_->frame_pose(body, part.frame));
+    const Pose X_WB = seen_pose(*seen_, body, part.frame);
     append_pose(X_WB, numbers);
     if (!part.flexible) continue;
     const Eigen::VectorXf w = weights(b, state);
     numbers.insert(numbers.end(), w.begin(), w.end());
+    const std::size_t points = bend(b, state) ? part.at_rest.size() : 0;
+    for (std::size_t i = 0; i < points; ++i) append_vector(part.bent->section(i).p - part.at_rest[i], numbers);
+    for (std::size_t i = 0; part.turns && i < points; ++i) append_vector(part.bent->section(i).R.col(1), numbers);
     const Pose X_BW = X_WB.inverse();
-    for (std::size_t i = 0; i < part.points.size(); ++i) {
-      const WorldPose point = seen_->frame_pose(body, part.points[i]);
-      const Vector3 r = X_BW.p + X_BW.R * Eigen::Map<const Vector3>(point.position.data());
-      append_vector(r - part.at_rest[i], numbers);
-    }
-    for (std::size_t i = 0; part.turns && i < part.points.size(); ++i)
-      append_vector((X_BW * pose_of(seen_->frame_pose(body, part.points[i]))).R.col(1), numbers);
     for (std::size_t i = 0; i < part.hung.size(); ++i)
-      append_pose(X_BW * pose_of(seen_->frame_pose(body, part.hung[i])) * part.offsets[i], numbers);
+      append_pose(X_BW * seen_pose(*seen_, body, part.hung[i]) * part.offsets[i], numbers);
   }
 }
 
@@ -276,7 +307,7 @@ std::vector<std::vector<Vector3>> Drawing::lines(std::span<const double> y) {
   std::vector<std::vector<Vector3>> all;
   for (std::size_t b = 0; b < parts_.size(); ++b) {
     const Part& part = parts_[b];
-    const auto pose_at = [&](int frame) { return pose_of(seen_->frame_pose(static_cast<int>(b), frame)); };
+    const auto pose_at = [&](int frame) { return seen_pose(*seen_, static_cast<int>(b), frame); };
     if (part.kind == Kind::strip) {
       const Eigen::VectorXf w = weights(b, state);
       all.emplace_back();
@@ -285,8 +316,11 @@ std::vector<std::vector<Vector3>> Drawing::lines(std::span<const double> y) {
       continue;
     }
     if (part.kind == Kind::line) {
+      const bool bent = bend(b, state);
+      const Pose X_WB = pose_at(part.frame);
       all.emplace_back();
-      for (const int point : part.points) all.back().push_back(pose_at(point).p);
+      for (std::size_t i = 0; i < part.at_rest.size(); ++i)
+        all.back().push_back(X_WB.p + X_WB.R * (bent ? part.bent->section(i).p : part.at_rest[i]));
       continue;
     }
     for (std::size_t i = 0; i < part.hung.size(); ++i)

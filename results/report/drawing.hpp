@@ -12,6 +12,7 @@
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/results/report/bent_body.hpp"
 #include "withy/results/report/looks.hpp"
 #include "withy/results/report/mode_shapes.hpp"
 
@@ -22,7 +23,10 @@ namespace withy {
 class Drawing {
  public:
   /// \param terms of the formulation, for bodies that have none of their own
-  Drawing(const std::shared_ptr<const Model>& model, const Terms& terms, Looks looks = {});
+  /// \param equations of that model in that formulation, whose observations serve the drawing too; null: it makes its
+  ///   own
+  Drawing(const std::shared_ptr<const Model>& model, const Terms& terms, Looks looks = {},
+          const EquationsOfMotion* equations = nullptr);
 
   /// What stays: of each body its name, its parent, kind, points at rest [m, body axes]; of a rigid one the box that
   /// has its mass and inertia; where its children hang on it.
@@ -62,30 +66,34 @@ class Drawing {
   struct Part {
     Kind kind = Kind::box;
     bool flexible = false;
-    int frame = 0;                 ///< of the body
-    std::vector<int> points;       ///< frames
-    std::vector<Vector3> at_rest;  ///< of the points, or of the vertices that shapes displace
-    std::vector<int> children;     ///< bodies that hang on a flexible body
-    std::vector<int> hung;         ///< frames of these, one a child
-    std::vector<Pose> offsets;     ///< of the hinges in them
-    std::size_t columns = 1;       ///< points across a strip
-    double thickness = 0;          ///< of a strip [m]
-    ModeShapes shapes = {};        ///< of a strip and a mesh, which have no frames as points
+    int frame = 0;                             ///< that has the pose of the body's
+    std::vector<Vector3> at_rest;              ///< of the points, or of the vertices that shapes displace
+    std::shared_ptr<BentBody> bent = nullptr;  ///< of a flexible body its points; null where shapes displace them
+    std::vector<int> children;                 ///< bodies that hang on a flexible body
+    std::vector<int> hung;                     ///< frames of these, one a child
+    std::vector<Pose> offsets;                 ///< of the hinges in them
+    std::size_t columns = 1;                   ///< points across a strip
+    double thickness = 0;                      ///< of a strip [m]
+    ModeShapes shapes = {};                    ///< of a strip and a mesh, which have no frames as points
     std::vector<std::array<std::uint32_t, 3>> triangles = {};
     std::vector<Outline> sections = {};  ///< of a beam, at its points
-    bool turns = false;
+    bool turns = false;                  ///< of a line, whether its sections' turns are told
   };
   [[nodiscard]] std::span<const double> without_discrete(std::span<const double> y) const;
-  void add_points(BodyNode& node, Part& part, bool second_order) const;
+  void hang(const std::vector<HingeNode>& hinges);
+  void see(const Terms& terms, const EquationsOfMotion* equations);
+  void add_points(const BodyNode& node, const std::shared_ptr<const Hinge>& hinge, const Terms& terms,
+                  Part& part) const;
   bool add_strip(const BodyNode& node, Part& part, bool second_order) const;
   bool add_mesh(const BodyNode& node, Part& part, bool second_order) const;
   [[nodiscard]] Vector3 place(std::size_t body, std::size_t point, const Eigen::VectorXf& weights) const;
   [[nodiscard]] Eigen::VectorXf weights(std::size_t body, std::span<const double> y) const;
+  [[nodiscard]] bool bend(std::size_t body, std::span<const double> y);
   void add_sections(const BodyNode& node, Part& part) const;
-  [[nodiscard]] bool add_line(BodyNode& node, Part& part) const;
+  [[nodiscard]] std::vector<PointExpansion> along(const BodyNode& node) const;
 
   Looks looks_;
-  std::shared_ptr<const Model> model_;  ///< with a frame at each point
+  std::shared_ptr<const Model> model_;  ///< every body has a frame with the pose of its own
   std::vector<Part> parts_;
   std::vector<Tip> tips_;
   std::unique_ptr<Observation> seen_;

@@ -113,47 +113,54 @@ double equivalent_thickness(const Value& plate) {
 
 Looks::Looks(const Scene& scene) {
   const std::filesystem::path folder = std::filesystem::path(scene.file).parent_path();
+  auto known = std::make_shared<Known>();
   for (const auto& [name, value] : scene.source.at("bodies").members()) {
-    bodies_.emplace(name, value);
+    known->bodies.emplace(name, &value);
     const Value* visual = value.find("visual");
     if (visual == nullptr) continue;
     if (visual->has("mesh") && bends(scene, name)) {
-      mode_surfaces_.emplace(name, read_mode_surface(folder / visual->text_at("mesh")));
+      known->mode_surfaces.emplace(name, read_mode_surface(folder / visual->text_at("mesh")));
       continue;
     }
     if (Surface surface = surface_of(*visual, folder); !surface.triangles.empty())
-      surfaces_.emplace(name, std::move(surface));
+      known->surfaces.emplace(name, std::move(surface));
   }
+  known_ = std::move(known);
+}
+
+const Value* Looks::body(const std::string& name) const {
+  const auto found = known_->bodies.find(name);
+  return found == known_->bodies.end() ? nullptr : found->second;
 }
 
 const Surface* Looks::surface(const std::string& body) const {
-  const auto found = surfaces_.find(body);
-  return found == surfaces_.end() ? nullptr : &found->second;
+  const auto found = known_->surfaces.find(body);
+  return found == known_->surfaces.end() ? nullptr : &found->second;
 }
 
 const ModeSurface* Looks::mode_surface(const std::string& body) const {
-  const auto found = mode_surfaces_.find(body);
-  return found == mode_surfaces_.end() ? nullptr : &found->second;
+  const auto found = known_->mode_surfaces.find(body);
+  return found == known_->mode_surfaces.end() ? nullptr : &found->second;
 }
 
-double Looks::thickness(const std::string& body) const {
-  const auto found = bodies_.find(body);
-  if (found == bodies_.end()) return 0;
-  const Value* visual = found->second.find("visual");
+double Looks::thickness(const std::string& name) const {
+  const Value* plate = body(name);
+  if (plate == nullptr) return 0;
+  const Value* visual = plate->find("visual");
   if (visual != nullptr && visual->has("thickness")) return visual->number_at("thickness");
-  return found->second.text_at("type") == "plate" ? equivalent_thickness(found->second) : 0;
+  return plate->text_at("type") == "plate" ? equivalent_thickness(*plate) : 0;
 }
 
 std::vector<Outline> Looks::sections(const BodyNode& node, const std::vector<double>& x) const {
   std::vector<Outline> sections;
-  const auto found = bodies_.find(node.segment ? node.segment->whole : node.name);
-  if (found == bodies_.end()) return sections;
-  const Value& body = found->second;
-  const Value* visual = body.find("visual");
-  if (visual == nullptr && body.text_at("type") != "beam") return sections;
+  const Value* beam = body(node.segment ? node.segment->whole : node.name);
+  if (beam == nullptr) return sections;
+  const Value* visual = beam->find("visual");
+  if (visual == nullptr && beam->text_at("type") != "beam") return sections;
   const double before = node.segment ? static_cast<double>(node.segment->index) * node.body->shape().length : 0;
   for (const double at : x)
-    sections.push_back(visual != nullptr ? given_section(*visual, before + at) : equivalent_section(body, before + at));
+    sections.push_back(visual != nullptr ? given_section(*visual, before + at)
+                                         : equivalent_section(*beam, before + at));
   return sections;
 }
 

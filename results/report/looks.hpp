@@ -3,8 +3,10 @@
 #pragma once
 
 #include <map>
-#include <optional>
+#include <memory>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "withy/core/model/model.hpp"
@@ -14,11 +16,12 @@
 
 namespace withy {
 
-/// Of the bodies of a scene; one made of nothing knows none.
+/// Of the bodies of a scene; one made of nothing knows none. Copies share what they know.
 class Looks {
  public:
   Looks() = default;
-  /// Reads the meshes that the scene names. \throws std::domain_error where one has changed since the scene was checked
+  /// Reads the meshes that the scene names; the scene must outlive it. \throws std::domain_error where one has changed
+  /// since the scene was checked
   explicit Looks(const Scene& scene);
 
   /// The surface that a rigid body is given [m, body axes]; null where it is given none.
@@ -29,12 +32,17 @@ class Looks {
   /// of gyration, see equivalent_section. Empty for what is no beam.
   [[nodiscard]] std::vector<Outline> sections(const BodyNode& node, const std::vector<double>& x) const;
   /// Of a plate [m]: as `visual` says, else see equivalent_thickness. 0 for what is no plate.
-  [[nodiscard]] double thickness(const std::string& body) const;
+  [[nodiscard]] double thickness(const std::string& name) const;
 
  private:
-  std::map<std::string, Value> bodies_;  ///< as checked
-  std::map<std::string, Surface> surfaces_;
-  std::map<std::string, ModeSurface> mode_surfaces_;
+  struct Known {
+    std::unordered_map<std::string_view, const Value*> bodies;  ///< as checked
+    std::map<std::string, Surface> surfaces;
+    std::map<std::string, ModeSurface> mode_surfaces;
+  };
+  [[nodiscard]] const Value* body(const std::string& name) const;
+
+  std::shared_ptr<const Known> known_ = std::make_shared<const Known>();
 };
 
 /// The solid ellipse that stands for a beam's section at x [m]: its half axes are twice the radii of gyration i_z, i_y.

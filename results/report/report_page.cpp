@@ -39,11 +39,9 @@ void write_guarded(std::string_view json, OutputFile& page) {
   }
 }
 
-std::string dumped(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
-
 void write_head(const std::string& title, int reference, OutputFile& page) {
   page.write(before);
-  write_guarded(",\"title\":" + dumped(title), page);
+  write_guarded(",\"title\":" + page_json(title), page);
   page.write(",\"reference\":" + std::to_string(reference));
   page.write(first_run);
 }
@@ -61,6 +59,8 @@ void write_page(const std::filesystem::path& file, const std::function<void(Outp
 }
 
 }  // namespace
+
+std::string page_json(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
 
 bool has_report_page() { return !page().empty(); }
 
@@ -90,7 +90,7 @@ void write_report(const std::filesystem::path& file, const std::string& title,
 
 void write_study_page(const std::filesystem::path& file, const std::string& kind, const std::string& title,
                       const Json& data) {
-  const std::string study = dumped({{"kind", kind}, {"title", title}, {"data", data}});
+  const std::string study = page_json({{"kind", kind}, {"title", title}, {"data", data}});
   write_page(file, [&](OutputFile& page) {
     page.write(study_before);
     write_guarded(std::string_view(study).substr(1, study.size() - 2), page);

@@ -20,6 +20,9 @@ inline constexpr const char* report_name = "report.html";
 /// report.html" where this build has pages.
 std::string folder_text(const std::string& folder, const std::string& what = "results");
 
+/// JSON as it stands in a page: one line of ASCII.
+std::string page_json(const nlohmann::ordered_json& json);
+
 /// Takes a text piece by piece.
 using TextSink = std::function<void(std::string_view)>;
 

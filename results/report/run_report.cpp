@@ -15,24 +15,19 @@
 
 namespace withy {
 
-/// Arrays of numbers, which stand as text at the end of what refers to them by their index.
+/// Arrays of numbers, written as text as they come; what else there is refers to them by their index.
 class ArrayTexts {
  public:
+  explicit ArrayTexts(const TextSink& write) : write_(write) {}
   template <class Number>
   std::size_t add(const std::vector<Number>& numbers) {
-    // In blocks: a text that grows is copied.
-    constexpr std::size_t block = 1 << 18;
-    std::string text = base64_of(numbers);
-    if (blocks_.empty() || blocks_.back().size() + text.size() + 3 > blocks_.back().capacity())
-      blocks_.emplace_back().reserve(std::max(block, text.size() + 3));
-    ((blocks_.back() += count_ == 0 ? "\"" : ",\"") += text) += '"';
+    write_((count_ == 0 ? "\"" : ",\"") + base64_of(numbers) + '"');
     return count_++;
   }
-  [[nodiscard]] const std::vector<std::string>& blocks() const { return blocks_; }
 
  private:
+  const TextSink& write_;
   std::size_t count_ = 0;
-  std::vector<std::string> blocks_;
 };
 
 namespace {
@@ -43,19 +38,17 @@ using Json = nlohmann::ordered_json;
 /// of its animation: 2 MB of data are soon opened.
 constexpr std::size_t most_stretches = 2000, most_numbers = 80'000, most_moments = 400;
 
-std::string dumped_page(const Json& json) { return json.dump(-1, ' ', true, Json::error_handler_t::replace); }
-
 /// Writes `[…]` of what `item` makes, one at a time: a large model's list is larger than the model.
 template <class Item>
 void write_list(std::size_t count, const Item& item, const TextSink& write) {
   write("[");
-  for (std::size_t i = 0; i < count; ++i) write((i > 0 ? "," : "") + dumped_page(item(i)));
+  for (std::size_t i = 0; i < count; ++i) write((i > 0 ? "," : "") + page_json(item(i)));
   write("]");
 }
 
 /// Where rows are drawn together each column also has its numbers at the moments of the animation: what is computed of
 /// several columns needs numbers of one time.
-void write_table(const DecimatedTable& table, const std::vector<std::vector<double>>& samples, ArrayTexts& data,
+void write_table(const DecimatedTable& table, const std::vector<DecimatedTable::Row>& samples, ArrayTexts& data,
                  const TextSink& write) {
   write("{\"rows\":" + std::to_string(table.rows()) + ",\"stride\":" + std::to_string(table.stride()) +
         ",\"columns\":");
@@ -66,7 +59,7 @@ void write_table(const DecimatedTable& table, const std::vector<std::vector<doub
         Json j{{"name", column_name(column.name)}, {"unit", column.unit}, {"data", data.add(table.column(c))}};
         if (table.stride() > 1) {
           std::vector<double> own;
-          for (const std::vector<double>& row : samples) own.push_back(row[c]);
+          for (const DecimatedTable::Row& row : samples) own.push_back((*row)[c]);
           j["samples"] = data.add(own);
         }
         return j;
@@ -141,46 +134,55 @@ std::string RunReport::picture() const {
   return svg_plot(prepared_.title(), {formulation}, table_panels({{formulation, &table_}}, {}));
 }
 
-void RunReport::write(const study::CertifiedRun& ended, const Json& run, const TextSink& write) const {
+void RunReport::write(const study::CertifiedRun& ended, std::string_view run, const TextSink& write) const {
   const Model& model = prepared_.model();
-  const auto member = [&](const char* name, const Json& value) { write(std::string(name) + dumped_page(value)); };
+  const auto member = [&](const char* name, const Json& value) { write(std::string(name) + page_json(value)); };
   member("{\"title\":", prepared_.title());
   member(",\"outcome\":", study::outcome_text(ended.summary));
   member(",\"scene\":", prepared_.values.text());
   member(",\"certificate\":", certificate_text(model, ended.summary, ended.certificate));
-  ArrayTexts data;
-  {
-    const std::vector<std::vector<double>> samples = table_.samples();
-    write(",\"table\":");
-    write_table(table_, samples, data, write);
-    write_motion(samples, ended, data, write);
-  }
-  member(",\"run\":", run);
+  // The arrays first: they are most of a page, and what refers to them can wait in memory until they are written.
   write(",\"arrays\":[");
-  for (const std::string& block : data.blocks()) write(block);
-  write("]}");
+  ArrayTexts data(write);
+  std::vector<std::string> waiting;
+  const TextSink later = [&](std::string_view text) {
+    constexpr std::size_t block = 1 << 16;
+    if (waiting.empty() || waiting.back().size() + text.size() > waiting.back().capacity())
+      waiting.emplace_back().reserve(std::max(block, text.size()));
+    waiting.back() += text;
+  };
+  {
+    const std::vector<DecimatedTable::Row> samples = table_.samples();
+    later("],\"table\":");
+    write_table(table_, samples, data, later);
+    write_motion(samples, ended, data, later);
+  }
+  for (const std::string& text : waiting) write(text);
+  write(",\"run\":");
+  write(run);
+  write("}");
 }
 
-void RunReport::write_motion(const std::vector<std::vector<double>>& samples, const study::CertifiedRun& ended,
+void RunReport::write_motion(const std::vector<DecimatedTable::Row>& samples, const study::CertifiedRun& ended,
                              ArrayTexts& data, const TextSink& write) const {
-  Drawing drawing(prepared_.scene.model, prepared_.scene.formulation->terms(), looks_);
+  Drawing drawing(prepared_.scene.model, prepared_.scene.formulation->terms(), looks_, prepared_.equations.get());
   Arrows arrows(prepared_.scene, prepared_.scene.formulation->terms(), table_.columns());
   std::vector<double> times, rates, deflections;
   std::vector<float> numbers;
-  for (const std::vector<double>& row : samples) {
-    const State state = state_of_row(prepared_.model().layout(), row);
+  for (const DecimatedTable::Row& row : samples) {
+    const State state = state_of_row(prepared_.model().layout(), *row);
     times.push_back(state.time);
     drawing.append(state.y, numbers);
-    arrows.append(state.y, row);
+    arrows.append(state.y, *row);
     drawing.append_rates(rates);
     drawing.append_deflections(deflections);
   }
   const Vector3& g = prepared_.model().gravity();
-  write(",\"animation\":{\"gravity\":" + dumped_page({g.x(), g.y(), g.z()}) + ",\"parts\":");
+  write(",\"animation\":{\"gravity\":" + page_json({g.x(), g.y(), g.z()}) + ",\"parts\":");
   write_list(
       drawing.parts(), [&](std::size_t b) { return part_json(drawing, b, data); }, write);
   write(",\"size\":" + std::to_string(drawing.size()) + ",\"times\":" + std::to_string(data.add(times)) +
-        ",\"numbers\":" + std::to_string(data.add(numbers)) + ",\"arrows\":" + dumped_page(arrows_json(arrows, data)));
+        ",\"numbers\":" + std::to_string(data.add(numbers)) + ",\"arrows\":" + page_json(arrows_json(arrows, data)));
   Json validity = Json::array();
   add_validity(drawing.rates(), rates, "rate of '", "' over its fundamental frequency", ended.certificate, validity,
                data);

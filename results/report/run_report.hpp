@@ -2,8 +2,8 @@
 /// What a report shows of one run.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "withy/results/report/decimated_table.hpp"
@@ -23,13 +23,13 @@ class RunReport {
   /// Takes the table of the run.
   [[nodiscard]] Recorder& table() { return table_; }
   /// Writes the part, for report_page, a piece at a time.
-  /// \param run content of run.json
-  void write(const study::CertifiedRun& ended, const nlohmann::ordered_json& run, const TextSink& write) const;
+  /// \param run content of run.json, as page_json
+  void write(const study::CertifiedRun& ended, std::string_view run, const TextSink& write) const;
   /// The run as SVG: what a build without the page shows.
   [[nodiscard]] std::string picture() const;
 
  private:
-  void write_motion(const std::vector<std::vector<double>>& samples, const study::CertifiedRun& ended, ArrayTexts& data,
+  void write_motion(const std::vector<DecimatedTable::Row>& samples, const study::CertifiedRun& ended, ArrayTexts& data,
                     const TextSink& write) const;
 
   const study::Prepared& prepared_;

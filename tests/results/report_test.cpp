@@ -57,8 +57,8 @@ TEST(DecimatedTable, KeepsEveryExtremeAtItsPlaceAndOrderWhateverTheLength) {
     }
     const auto samples = table.samples();
     EXPECT_LE(samples.size(), 11U);
-    EXPECT_EQ(samples.back(), (std::vector<double>{rows - 1.0, walk.back()}));
-    for (const auto& row : samples) EXPECT_EQ(row[1], walk[static_cast<std::size_t>(row[0])]);
+    EXPECT_EQ(*samples.back(), (std::vector<double>{rows - 1.0, walk.back()}));
+    for (const auto& row : samples) EXPECT_EQ((*row)[1], walk[static_cast<std::size_t>((*row)[0])]);
   }
 }
 

@@ -91,8 +91,9 @@ TEST(CarriedFrequency, is_that_of_the_loaded_structure_with_its_hinges_held) {
     Made m(text, formulation);
     std::vector<double>& y = m.scene.initial.y;
     CarriedFrequency frequency(*m.scene.model, *m.equations);
+    Work work = m.equations->make_work();
     const auto index = [&](const char* name) { return static_cast<std::size_t>(m.scene.model->body(name)); };
-    frequency.update(y);
+    frequency.update(y, work);
     EXPECT_NEAR(frequency.of(index("aside")), 3.51602 * std::sqrt(20.0), 1e-3);
     EXPECT_NEAR(frequency.of(index("two")), held_frequency(m), 1e-6) << formulation;
     EXPECT_EQ(frequency.of(index("one")), frequency.of(index("two")));
@@ -100,7 +101,7 @@ TEST(CarriedFrequency, is_that_of_the_loaded_structure_with_its_hinges_held) {
     const double stretched = frequency.of(index("two"));
     for (int i = 0; i < 50; ++i) {  // the elbow bends, a little each time
       y[m.scene.model->layout().hinges[index("two")].position] += 0.04;
-      frequency.update(y);
+      frequency.update(y, work);
     }
     EXPECT_GT(frequency.of(index("two")), 1.2 * stretched) << "the mass has come nearer";
     EXPECT_NEAR(frequency.of(index("two")), held_frequency(m), 1e-3 * stretched) << formulation;
