@@ -48,10 +48,18 @@ Json trade_result_json(const study::TradeResult& r) {
 }
 
 Json trade_reference_json(const study::TradeReference& r) {
-  return {{"formulation", r.point.formulation}, {"modes", r.point.modes},          {"integrator", r.point.integrator},
-          {"tolerance", r.point.tolerance},     {"hinge_way", r.hinge_way},        {"tip_way", r.tip_way},
-          {"hinge_error", r.hinge_error},       {"tip_error", r.tip_error},        {"relative_error", r.relative_error},
-          {"sensor_ways", r.sensor_ways},       {"sensor_errors", r.sensor_errors}};
+  return {{"formulation", r.point.formulation},
+          {"family", r.point.family},
+          {"modes", r.point.modes},
+          {"integrator", r.point.integrator},
+          {"tolerance", r.point.tolerance},
+          {"hinge_way", r.hinge_way},
+          {"tip_way", r.tip_way},
+          {"hinge_error", r.hinge_error},
+          {"tip_error", r.tip_error},
+          {"relative_error", r.relative_error},
+          {"sensor_ways", r.sensor_ways},
+          {"sensor_errors", r.sensor_errors}};
 }
 
 Json trade_json(const Scene& scene, const study::TradeStudy& study, const std::vector<study::TradeResult>& results,
@@ -154,14 +162,15 @@ namespace {
 study::PointStore::Kept kept_of(const Json& j, const study::Point& point) {
   const Json& r = j.at("reference");
   study::PointStore::Kept kept;
-  kept.reference = {{r.at("formulation"), "", r.at("modes"), r.at("integrator"), r.at("tolerance"), point.over},
-                    r.at("hinge_way"),
-                    r.at("tip_way"),
-                    r.at("hinge_error"),
-                    r.at("tip_error"),
-                    r.at("relative_error"),
-                    r.at("sensor_ways"),
-                    r.at("sensor_errors")};
+  kept.reference = {
+      {r.at("formulation"), r.at("family"), r.at("modes"), r.at("integrator"), r.at("tolerance"), point.over},
+      r.at("hinge_way"),
+      r.at("tip_way"),
+      r.at("hinge_error"),
+      r.at("tip_error"),
+      r.at("relative_error"),
+      r.at("sensor_ways"),
+      r.at("sensor_errors")};
   kept.result = {point,
                  j.at("status"),
                  j.at("message"),

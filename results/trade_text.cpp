@@ -95,11 +95,12 @@ std::vector<std::string> formulations_of(const std::vector<study::TradeResult>& 
 std::string references_text(const study::TradeStudy& study) {
   std::string out;
   for (const auto& [over, r] : study.references()) {
+    study::Point point = r.point;
+    point.over.clear();
     out += fmt::format(
-        "Reference{}: {}, {} modes, {} at {:g}; its own error, against one mode less and ten times the tolerance: "
+        "Reference{}: {}; its own error, against one mode less and ten times the tolerance: "
         "hinges {:.2g}, tips {:.2g} mm, {:.2g} %.\n",
-        over.empty() ? "" : " at " + over, r.point.formulation, r.point.modes, r.point.integrator, r.point.tolerance,
-        r.hinge_error, 1e3 * r.tip_error, 100 * r.relative_error);
+        over.empty() ? "" : " at " + over, point.text(), r.hinge_error, 1e3 * r.tip_error, 100 * r.relative_error);
   }
   return out;
 }

@@ -67,15 +67,15 @@ class YardstickSearch {
 void YardstickSearch::find() {
   const bool modal = candidates_.modes.back() > 0;
   ReferenceGoal goal;
+  ReferenceFamilies families = reference_families(candidates_, evaluator_.base().model());
+  goal.families = std::move(families.others);
   goal.first = {"",
-                reference_family(candidates_),
+                std::move(families.first),
                 modal ? 2 : 0,
                 "dop853",
                 std::clamp(policy::first_tolerance * accuracy_.share.value_or(1e-3), 1e-8, 1e-4),
                 {},
                 {}};
-  // Eigenfunctions of the bare beam begin well and go on badly where the tip is loaded.
-  if (tips_are_bare(evaluator_.base().model())) goal.families = candidates_.families;
   goal.levels = policy::reference_levels;
   goal.finer = modal ? policy::finer_level : policy::finer_integration;
   goal.tightest = modal ? policy::tightest : policy::tightest_integration;

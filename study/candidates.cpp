@@ -113,15 +113,13 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes ask
   return c;
 }
 
-std::string reference_family(const Candidates& candidates) {
+ReferenceFamilies reference_families(const Candidates& candidates, const Model& model) {
   const auto& all = candidates.families;
-  return std::find(all.begin(), all.end(), polynomials) != all.end() ? polynomials : "";
-}
-
-bool tips_are_bare(const Model& model) {
-  return std::none_of(model.hinges().begin(), model.hinges().end(), [&](const HingeNode& hinge) {
+  const bool loaded = std::any_of(model.hinges().begin(), model.hinges().end(), [&](const HingeNode& hinge) {
     return hinge.parent >= 0 && model.bodies()[static_cast<std::size_t>(hinge.parent)].body->shape().modes() > 0;
   });
+  return {std::find(all.begin(), all.end(), polynomials) != all.end() ? polynomials : "",
+          loaded ? std::vector<std::string>{} : all};
 }
 
 std::vector<std::string> flexible_bodies(const Scene& scene) {

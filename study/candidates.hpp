@@ -27,11 +27,15 @@ Axes usual_axes();
 /// \throws InputError where a value cannot be, or is `inconsistent`.
 Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes asked);
 
-/// The family of a candidate that references are best made of where tips are loaded: empty for the scene's own.
-std::string reference_family(const Candidates& candidates);
+/// Families of modes that a reference is made of; see ReferenceGoal. Empty names are the scene's own.
+struct ReferenceFamilies {
+  std::string first;
+  std::vector<std::string> others;  ///< that may do better
+};
 
-/// Whether no flexible body carries another one.
-bool tips_are_bare(const Model& model);
+/// Polynomials where they mean the same beams: eigenfunctions of the bare beam begin well and go on badly where the tip
+/// is loaded. Where no flexible body carries another one, the others may do better.
+ReferenceFamilies reference_families(const Candidates& candidates, const Model& model);
 
 /// Names of the scene's bodies that have modes, in its order; a beam in segments is one.
 std::vector<std::string> flexible_bodies(const Scene& scene);

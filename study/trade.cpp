@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "withy/study/accuracy.hpp"
+#include "withy/study/candidates.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/output_reader.hpp"
 #include "withy/study/step_limit.hpp"
@@ -101,11 +102,16 @@ void TradeStudy::find_reference_for(const Point& point) {
   const std::string key = joined(point.over);
   if (known_.contains(key)) return;
   ReferenceGoal goal;
-  goal.first = {"", "", 0, "dop853", 1e-6, point.over};
+  // Of all that mean the same, whatever families are compared.
+  ReferenceFamilies families = reference_families(candidates_for(base_, registry_, usual_axes()), base_.model());
+  goal.families = std::move(families.others);
+  goal.first = {"", std::move(families.first), 0, "dop853", 1e-6, point.over};
   for (const Point& p : points_) {
     goal.first.modes = std::max(goal.first.modes, p.modes);
     goal.first.tolerance = std::min(goal.first.tolerance, p.tolerance);
   }
+  // Of polynomials the first two tell little of what more will change.
+  if (goal.first.modes > 0 && !goal.first.family.empty()) goal.first.modes = std::max(goal.first.modes, 3);
   goal.tightest = 0.1 * goal.first.tolerance;
   std::vector<std::unique_ptr<ModelAt>> models;
   const auto model = [&](const Point& p) -> const ModelAt& {

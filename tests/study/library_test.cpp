@@ -152,6 +152,26 @@ TEST(StudyTrade, RunsInThreadsGiveWhatOneGivesAndAreRunOnce) {
   EXPECT_EQ(again.results().size(), 4U) << "all are found";
 }
 
+/// Links that carry others: eigenfunctions of the bare beam converge so slowly that one more changes less than all
+/// others together would.
+TEST(StudyTrade, WhatAReferenceSaysOfItsOwnErrorHoldsAgainstAFinerOne) {
+  const Prepared prepared = prepare(short_slew(), plugins());
+  const Point point{"exact", "", 4, "dop853", 1e-6, {}, {}};
+  const auto measured = [&](int most_modes) {
+    Point finest = point;
+    finest.modes = most_modes;
+    TradeStudy study(prepared, plugins(), {point, finest}, {1, nullptr, {}});
+    EXPECT_TRUE(study.run());
+    return std::pair(study.result(point)->relative_error, study.references().begin()->second);
+  };
+  const auto [error, reference] = measured(5);
+  const auto [finer_error, finer] = measured(8);
+  EXPECT_EQ(reference.point.family, "orthogonal-polynomials");
+  EXPECT_EQ(finer.point.modes, 9);
+  EXPECT_LE(std::abs(error - finer_error), reference.relative_error);
+  EXPECT_LT(reference.relative_error, 0.1 * error) << "it tells models apart";
+}
+
 TEST(StudyTrade, AnInterruptedStudyKeepsWhatIsFinished) {
   const Prepared prepared = prepare(short_slew(), plugins());
   int done = 0;
