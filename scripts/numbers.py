@@ -2,7 +2,7 @@
 """numbers.py [--self-test]: finds measured numbers that somebody typed by hand into README.md and the pages of docs/.
 
 A number counts as measured where one of these stands behind it, or behind the list or range that it begins ("14 to
-15 mm"): a unit of time (ns to h), a small length (nm, µm, mm), memory (kB to GB), %, times, ×; a count of cases ("22 of
+15 mm"): a unit of time (ns to h), a length (nm to m), rad/s, Hz, rpm, N, an angle (°, deg), memory (kB to GB), %, times, ×; a count of cases ("22 of
 24"); and where it fills a cell of a table and has a decimal point or an exponent. Looked at is what a person writes:
 not blocks that commands write (<!-- measured, source, table … -->), not code, nor words in `backquotes`.
 
@@ -26,9 +26,10 @@ top = pathlib.Path(__file__).resolve().parents[1]
 
 of_unit = {"ns": ("s", 1e-9), "µs": ("s", 1e-6), "ms": ("s", 1e-3), "s": ("s", 1.0), "min": ("s", 60.0), "h": ("s", 3600.0),
            "nm": ("m", 1e-9), "µm": ("m", 1e-6), "mm": ("m", 1e-3), "m": ("m", 1.0),
+           "rad/s": ("rad/s", 1.0), "Hz": ("Hz", 1.0), "rpm": ("rpm", 1.0), "N": ("N", 1.0), "°": ("°", 1.0), "deg": ("°", 1.0),
            "kB": ("B", 1e3), "MB": ("B", 1e6), "GB": ("B", 1e9), "%": ("%", 1.0), "times": ("", 1.0), "×": ("", 1.0), "": ("", 1.0)}
 figure = r"(?<![\w.,^/])[-−]?\d[\d,]*(?:\.\d+)?(?:[eE][-−+]?\d{1,2})?(?![\d.]*\d)"
-units = r"(?:ns|µs|ms|s|min|h|nm|µm|mm|kB|MB|GB|times)(?![\w/²³^·])|%|×(?! ?\d)"
+units = r"(?:ns|µs|ms|s|min|h|nm|µm|mm|m|rad/s|Hz|rpm|N|deg|kB|MB|GB|times)(?![\w/²³^·])|°|%|×(?! ?\d)"
 between = r"(?:,? (?:to|and|or|over) |, |–|; )"
 claim = re.compile(rf"({figure}(?:{between}{figure})*)(?: |\u00a0)?({units})")
 count = re.compile(r"(?<![\w.])(\d+) of (?:the |all )?(\d+)(?![\w.]\d)")
@@ -166,7 +167,7 @@ def check(pages, facts):
 def self_test():
     block = "<!-- measured: x -->\n| scene | tip error [mm] | CPU [ms] |\n|---|---|---|\n| arm | 14.3 | 0.785 |\n\n7 of 9 held.\n<!-- end -->\n"
     planted = {"The arm is 14.4 mm off.": 1, "It takes 2 to 3 times as long.": 2, "Held in 8 of 9.": 1, "| a | 0.125 |": 1, "Off by 1.5 %.": 1,
-               "The arm is 14.3 mm off, or 14 mm.": 0, "It takes 0.79 ms.": 0, "Held in 7 of 9.": 0, "`sleep 3 s`": 0, "At 3 rad/s.": 0,
+               "The arm is 14.3 mm off, or 14 mm.": 0, "It takes 0.79 ms.": 0, "Held in 7 of 9.": 0, "`sleep 3 s`": 0, "At 3 rad/s.": 1, "At 3 rad/s².": 0,
                "| a | 0.785 |": 1, "It is 14.3 ms off.": 1}
     for sentence, wanted in planted.items():
         found = check({"page.md": block + sentence}, [])

@@ -145,7 +145,33 @@ def tree_estimates():
            f"than 1e-5 are left out: the claim was within a factor of three in {found[1]}, the worst factor was {found[2]}.")
 
 
-everything = {f.__name__: f for f in (advice, pictures, mounted_damping, boom_families, chain_memory, sweep_cost, tree_estimates)}
+def figures():
+    """Frequencies and deflections that running text of trade.md and integrators.md compares with."""
+    def frequencies(scene, *words):
+        modes = program.told("modes", scene, *words)["runs"][0]["points"][0]["modes"]
+        return [abs(m["eigenvalue"][1]) for m in modes]
+
+    blade = "scenes/gallery/wind-turbine-blade.yaml"
+    polynomials = ["--set", "bodies.blade.bending_y.modes=6", "--set", "bodies.blade.bending_z.modes=6"]
+    def most_deflected(formulation):
+        program.run("run", blade, "--formulation", formulation, *polynomials, "--out", work / "blade", "--force")
+        rows = list(csv.DictReader(open(work / "blade" / "results.csv")))
+        return max(abs(float(r["blade.tip.deflection_z[m]"])) for r in rows)
+
+    hertz = [f / math.tau for f in frequencies(blade, "--as-is", *polynomials, "--set", "gravity=[0, 0, 0]", "--set", "motions.turn.rate=0", "--set", "loads={}")]
+    spinning = "scenes/gallery/spinning-beam.yaml"
+    frozen, full = (frequencies(spinning, "--formulations", f) for f in ("ruthless", "quadratic"))
+    record("figures", [
+        ["what", "how much"],
+        *([f"blade of the wind turbine, six polynomials, mode {i + 1}", f"{hertz[i]:.3f} Hz"] for i in range(3)),
+        *([f"its tip out of the plane at most, `{f}`", f"{most_deflected(f):.2f} m"] for f in ("linear", "quadratic")),
+        ["spinning beam, `ruthless`", f"{frozen[0]:.2f} rad/s"],
+        *([f"spinning beam, `quadratic`, mode {i + 1}", f"{full[i]:.2f} rad/s"] for i in range(2)),
+        ["long chain", f"{frequencies('scenes/gallery/long-chain.yaml', '--as-is')[0]:.1f} rad/s"],
+        ["blade of `spin-up`, greatest", f"{max(frequencies('scenes/spin-up.yaml', '--as-is')):.0f} rad/s"]])
+
+
+everything = {f.__name__: f for f in (advice, pictures, mounted_damping, boom_families, chain_memory, sweep_cost, tree_estimates, figures)}
 if unknown := [n for n in sys.argv[2:] if n not in everything]:
     sys.exit(f"texts.py knows {', '.join(everything)}, not {', '.join(unknown)}")
 for measure_it in [everything[n] for n in sys.argv[2:]] or everything.values():
