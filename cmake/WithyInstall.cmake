@@ -16,7 +16,8 @@ set(CMAKE_INSTALL_RPATH "$ORIGIN/${to_libraries}")
 function(withy_install_library target)
   cmake_parse_arguments(ARG "" "EXPORT_NAME" "" ${ARGN})
   # A library's uses of its own functions, virtual tables and constants are bound as it is linked: a short run spends a
-  # quarter of its time in the look-up of symbols otherwise. None of the libraries shows data that change.
+  # quarter of its time in the look-up of symbols otherwise. None of the libraries shows data that change, which
+  # scripts/check_symbolic.py checks.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_link_options(${target} PRIVATE -Wl,-Bsymbolic)
   endif()

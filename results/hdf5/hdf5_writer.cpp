@@ -164,7 +164,7 @@ class Hdf5Writer final : public Hdf5Recorder {
     return how;
   }
 
-  /// The datasets, which have so many rows, or with 0 grow.
+  /// The datasets: with `rows` those of the rows that wait, all there will be; with 0 they grow.
   void begin_datasets(hsize_t rows) {
     const Hdf5Handle how = part_by_part(rows), cache = one_part();
     const hsize_t most = rows > 0 ? rows : H5S_UNLIMITED;
@@ -172,8 +172,9 @@ class Hdf5Writer final : public Hdf5Recorder {
     for (std::size_t c = 0; c < units_.size(); ++c) {
       Hdf5Handle dataset(need(H5Dcreate2(file_, column(c).c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, how, cache)),
                          &H5Dclose);
-      write_text(dataset, "unit", units_[c].empty() ? "1" : units_[c]);
-      if (c < frames_.size() && !frames_[c].empty()) write_text(dataset, "frame", frames_[c]);
+      write_new_text(dataset, "unit", units_[c].empty() ? "1" : units_[c]);
+      if (c < frames_.size() && !frames_[c].empty()) write_new_text(dataset, "frame", frames_[c]);
+      if (rows > 0) write_column(dataset, c, H5S_ALL, H5S_ALL);
       if (wide_)
         need(dataset.close());
       else
@@ -182,6 +183,16 @@ class Hdf5Writer final : public Hdf5Recorder {
     write_text(file_, "columns", names_);  // in the order of the table, since a file lists them by the alphabet
     grows_ = rows == 0;
     begun_ = true;
+    if (rows > 0) waiting_.clear();
+    rows_ = rows;
+  }
+
+  /// A column of the rows that wait.
+  void write_column(hid_t dataset, std::size_t c, hid_t memory, hid_t place) const {
+    std::vector<double> numbers;
+    numbers.reserve(waiting_.size());
+    for (const std::vector<double>& row : waiting_) numbers.push_back(row[c]);
+    need(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory, place, H5P_DEFAULT, numbers.data()));
   }
 
   /// Columns are written from end to end: room for the part that is not full.
@@ -193,22 +204,28 @@ class Hdf5Writer final : public Hdf5Recorder {
 
   /// A dataset that is open holds some 16 kB: of a wide table one is open at a time.
   template <class Use>
-  void with_column(std::size_t c, Use&& use) const {
+  void with_column(std::size_t c, hid_t cache, Use&& use) const {
     if (!wide_) return use(datasets_[c]);
-    const Hdf5Handle cache = one_part();
     Hdf5Handle open(need(H5Dopen2(file_, column(c).c_str(), cache)), &H5Dclose);
     use(open);
     need(open.close());
   }
 
   void write_text(hid_t object, const std::string& name, const std::string& text) const {
-    const Hdf5Handle type(need(H5Tcopy(H5T_C_S1)), &H5Tclose);
-    need(H5Tset_size(type, text.size() + 1));
-    need(H5Tset_cset(type, H5T_CSET_UTF8));
-    const Hdf5Handle space(need(H5Screate(H5S_SCALAR)), &H5Sclose);
     if (need(H5Aexists(object, name.c_str())) > 0) need(H5Adelete(object, name.c_str()));
-    const Hdf5Handle attribute(need(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT)),
-                               &H5Aclose);
+    write_new_text(object, name, text);
+  }
+
+  void write_new_text(hid_t object, const std::string& name, const std::string& text) const {
+    // Names and units are of few lengths: what describes them is made once.
+    Hdf5Handle& type = text_types_[text.size()];
+    if (!type.valid()) {
+      type = {need(H5Tcopy(H5T_C_S1)), &H5Tclose};
+      need(H5Tset_size(type, text.size() + 1));
+      need(H5Tset_cset(type, H5T_CSET_UTF8));
+    }
+    if (!one_.valid()) one_ = {need(H5Screate(H5S_SCALAR)), &H5Sclose};
+    const Hdf5Handle attribute(need(H5Acreate2(object, name.c_str(), type, one_, H5P_DEFAULT, H5P_DEFAULT)), &H5Aclose);
     need(H5Awrite(attribute, type, text.c_str()));
   }
 
@@ -218,15 +235,13 @@ class Hdf5Writer final : public Hdf5Recorder {
     share();
     const hsize_t count = waiting_rows(), first = rows_, size = rows_ + count;
     if (count == 0) return;
-    const Hdf5Handle memory(need(H5Screate_simple(1, &count, nullptr)), &H5Sclose);
-    std::vector<double> part(count);
+    const Hdf5Handle memory(need(H5Screate_simple(1, &count, nullptr)), &H5Sclose), cache = one_part();
     for (std::size_t c = 0; c < units_.size(); ++c) {
-      for (std::size_t i = 0; i < count; ++i) part[i] = waiting_[i][c];
-      with_column(c, [&](hid_t column) {
+      with_column(c, cache, [&](hid_t column) {
         if (grows_) need(H5Dset_extent(column, &size));
         const Hdf5Handle place(need(H5Dget_space(column)), &H5Sclose);
         need(H5Sselect_hyperslab(place, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
-        need(H5Dwrite(column, H5T_NATIVE_DOUBLE, memory, place, H5P_DEFAULT, part.data()));
+        write_column(column, c, memory, place);
       });
     }
     waiting_.clear();
@@ -258,7 +273,9 @@ class Hdf5Writer final : public Hdf5Recorder {
   std::vector<Hdf5Handle> datasets_;  ///< of the columns; none of a wide table, nor before the first are written
   std::vector<std::vector<double>> waiting_;  ///< the next rows
   std::map<std::string, std::string> descriptions_;
-  hsize_t rows_ = 0;    ///< that the library has been given
+  mutable std::map<std::size_t, Hdf5Handle> text_types_;  ///< by length
+  mutable Hdf5Handle one_;                                ///< the space of one text
+  hsize_t rows_ = 0;                                      ///< that the library has been given
   bool wide_ = false;   ///< too many columns for others to read while they are written
   bool begun_ = false;  ///< there are datasets
   bool grows_ = false;  ///< they get longer
