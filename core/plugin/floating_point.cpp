@@ -71,9 +71,14 @@ thread_local unsigned changed_arithmetic = 0;
 
 FloatingPointGuard::FloatingPointGuard() : saved_(read()) {}
 
-std::string FloatingPointGuard::restore() {
+bool FloatingPointGuard::changed() const {
   const FloatingPointControl now = read();
-  if (now.main == saved_.main && now.x87 == saved_.x87) return {};
+  return now.main != saved_.main || now.x87 != saved_.x87;
+}
+
+std::string FloatingPointGuard::restore() {
+  if (!changed()) return {};
+  const FloatingPointControl now = read();
   write(saved_);
   std::string text = meaning_of(now.main ^ saved_.main);
   if (now.x87 != saved_.x87) text += (text.empty() ? "" : ", ") + std::string("the x87 control word");
@@ -81,14 +86,14 @@ std::string FloatingPointGuard::restore() {
 }
 
 void FloatingPointGuard::check(std::string_view who) {
-  if (const std::string changed = restore(); !changed.empty())
-    throw PluginError(std::string(who) + " changes " + changed + " for the whole program: no result can be trusted");
+  if (changed())
+    throw PluginError(std::string(who) + " changes " + restore() + " for the whole program: no result can be trusted");
 }
 
 void note_changed_arithmetic(unsigned changed) noexcept { changed_arithmetic |= changed; }
 
-std::string take_changed_arithmetic() {
-  return changed_arithmetic == 0 ? std::string() : meaning_of(std::exchange(changed_arithmetic, 0));
-}
+bool has_changed_arithmetic() noexcept { return changed_arithmetic != 0; }
+
+std::string take_changed_arithmetic() { return meaning_of(std::exchange(changed_arithmetic, 0)); }
 
 }  // namespace withy

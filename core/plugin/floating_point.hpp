@@ -25,7 +25,10 @@ class FloatingPointGuard {
 
   /// Restores the state and says what had become of it since, as "flush-to-zero"; empty where nothing had.
   std::string restore();
-  /// The same, where a change is an error. \throws PluginError "`who` changes the rounding mode for the whole program"
+  /// Whether another state is there now.
+  [[nodiscard]] bool changed() const;
+  /// As `restore`, where a change is an error. \throws PluginError "`who` changes the rounding mode for the whole
+  /// program"
   void check(std::string_view who);
 
  private:
@@ -35,7 +38,9 @@ class FloatingPointGuard {
 /// Remembers that the calling thread's arithmetic was another than it should be during an evaluation, which has
 /// restored it since. `changed`: bits of MXCSR.
 void note_changed_arithmetic(unsigned changed) noexcept;
-/// What was noted since the last call, as "the rounding mode"; mostly empty.
+/// Whether that was noted since the last call of take_changed_arithmetic; mostly not.
+bool has_changed_arithmetic() noexcept;
+/// What was noted since the last call, as "the rounding mode"; empty where nothing was.
 std::string take_changed_arithmetic();
 
 }  // namespace withy

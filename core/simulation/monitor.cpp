@@ -28,7 +28,7 @@ bool may_float(const Model& model) {
 }  // namespace
 
 Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
-                 double span, Observation* seen, RunSummary& summary)
+                 double span, Observation* seen, RunSummary& summary, Attention attention)
     : model_(model),
       equations_(equations),
       summary_(summary),
@@ -38,12 +38,12 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
       last_(initial),
       between_(initial),
       trusted_(initial),
-      effort_watch_(model, equations, span, summary),
       efforts_(model.layout().speeds),
       work_(0),
-      floats_(may_float(model)),
+      floats_(attention == Attention::whole && may_float(model)),
       initial_work_(initial.y.back()),
       checked_(initial.time) {
+  if (attention == Attention::whole) effort_watch_.emplace(model, equations, span, summary);
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
     const double length = node.body->shape().length;
@@ -96,7 +96,7 @@ void Monitor::forget_untrusted_peaks() {
 
 void Monitor::observe(const Stepper& stepper) {
   look(stepper.state());
-  effort_watch_.observe(stepper);
+  if (effort_watch_) effort_watch_->observe(stepper);
 }
 
 double Monitor::kinetic(const State& state, const Energies& energies) {
@@ -155,6 +155,7 @@ void Monitor::audit_momenta(const Energies& e) {
 }
 
 void Monitor::finish_momenta() {
+  if (!floats_) return;
   double outside = 0, all = 0;
   for (std::size_t h = 0; h < model_.hinges().size(); ++h) {
     const Slot& slot = model_.layout().hinges[h];
@@ -165,7 +166,7 @@ void Monitor::finish_momenta() {
   }
   constexpr double rounding = 1e-12;
   MomentumDrift& m = summary_.momentum;
-  m.conserved = floats_ && outside <= rounding * all;
+  m.conserved = outside <= rounding * all;
   if (!m.conserved) return;
   // A tree at rest as a whole has no momenta to measure by, only what rounding and truncation make of them.
   double mass = 0, inertia = 0;
@@ -239,7 +240,7 @@ void Monitor::remember(Memory& memory) {
     for (double& d : end.now) memory(d);
     for (double& d : end.velocity) memory(d);
   }
-  effort_watch_.remember(memory);
+  if (effort_watch_) effort_watch_->remember(memory);
   memory(summary_.energy_drift);
   memory(summary_.suspected_jumps);
   memory(last_.time);

@@ -11,6 +11,7 @@
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/effort_watch.hpp"
 #include "withy/core/simulation/simulate.hpp"
+#include "withy/core/simulation/step_watch.hpp"
 #include "withy/core/simulation/tips.hpp"
 
 namespace withy {
@@ -20,13 +21,16 @@ class Monitor {
  public:
   /// \param span of the run [s]
   /// \param seen an observation of these equations; null: the monitor makes its own
+  /// \param attention with that to the outcome alone efforts and momenta are not looked at
   Monitor(const Model& model, const EquationsOfMotion& equations, const State& initial, double deflection_limit,
-          double span, Observation* seen, RunSummary& summary);
+          double span, Observation* seen, RunSummary& summary, Attention attention = Attention::whole);
 
   /// Peaks of deflections and efforts: for every accepted step, and what lies between it and the one before.
   void observe(const Stepper& stepper);
   /// Loads and motions begin here, or what they do may have jumped.
-  void begin_efforts(const State& state) { effort_watch_.begin_at(state); }
+  void begin_efforts(const State& state) {
+    if (effort_watch_) effort_watch_->begin_at(state);
+  }
   /// Brings the observation to an output.
   void show(const State& state) {
     seen_.observe(state.y);
@@ -71,8 +75,12 @@ class Monitor {
  private:
   /// Displacement of a section, to second order.
   struct SectionExpansion {
-    std::vector<Vector3> first;   ///< Φ_i
-    std::vector<Vector3> second;  ///< Γ_ij for i ≤ j, halved where i = j
+    /// factor · q_i, or factor · q_i q_j where j ≥ 0.
+    struct Term {
+      double factor;  ///< of Φ_i, Γ_ij or ½ Γ_ii
+      int i, j;
+    };
+    std::array<std::vector<Term>, 3> components;  ///< without those that are zero
     explicit SectionExpansion(const PointExpansion& e);
     [[nodiscard]] Vector3 displacement(const double* q) const;
     [[nodiscard]] Vector3 velocity(const double* q, const double* u) const;
@@ -122,14 +130,14 @@ class Monitor {
   State trusted_;
   std::vector<double> trusted_peaks_;
   double trust_limit_ = 0.5, greatest_speed_ = 0;
-  EffortWatch effort_watch_;
+  std::optional<EffortWatch> effort_watch_;
   std::vector<double> efforts_;
   Work work_;  ///< for the equations' own energy
   [[nodiscard]] double kinetic(const State& state, const Energies& energies);
   void audit_momenta(const Energies& energies);
 
   bool own_energy_ = false;
-  bool floats_;  ///< momenta may be conserved
+  bool floats_;  ///< momenta are looked at, since they may be conserved
   Energies initial_energies_;
   double linear_error_ = 0, angular_error_ = 0, untruncated_error_ = 0;
   double initial_energy_ = 0, initial_work_ = 0;

@@ -10,30 +10,31 @@
 namespace withy {
 
 Monitor::SectionExpansion::SectionExpansion(const PointExpansion& e) {
-  for (Eigen::Index i = 0; i < e.phi.cols(); ++i) {
-    first.emplace_back(e.phi.col(i));
-    for (Eigen::Index j = i; j < e.phi.cols(); ++j)
-      second.emplace_back(Vector3(e.gamma[0](i, j), e.gamma[1](i, j), e.gamma[2](i, j)) * (i == j ? 0.5 : 1.0));
+  const auto modes = static_cast<int>(e.phi.cols());
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto add = [&terms = components[k]](double factor, int i, int j) {
+      if (factor != 0) terms.push_back({factor, i, j});
+    };
+    for (int i = 0; i < modes; ++i) {
+      add(e.phi(static_cast<Eigen::Index>(k), i), i, -1);
+      for (int j = i; j < modes; ++j) add(e.gamma[k](i, j) * (i == j ? 0.5 : 1.0), i, j);
+    }
   }
 }
 
 Vector3 Monitor::SectionExpansion::displacement(const double* q) const {
   Vector3 d = Vector3::Zero();
-  const Vector3* gamma = second.data();
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    d += first[i] * q[i];
-    for (std::size_t j = i; j < first.size(); ++j) d += *gamma++ * (q[i] * q[j]);
-  }
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const Term& t : components[k])
+      d[static_cast<Eigen::Index>(k)] += t.j < 0 ? t.factor * q[t.i] : t.factor * (q[t.i] * q[t.j]);
   return d;
 }
 
 Vector3 Monitor::SectionExpansion::velocity(const double* q, const double* u) const {
   Vector3 v = Vector3::Zero();
-  const Vector3* gamma = second.data();
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    v += first[i] * u[i];
-    for (std::size_t j = i; j < first.size(); ++j) v += *gamma++ * (u[i] * q[j] + q[i] * u[j]);
-  }
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const Term& t : components[k])
+      v[static_cast<Eigen::Index>(k)] += t.j < 0 ? t.factor * u[t.i] : t.factor * (u[t.i] * q[t.j] + q[t.i] * u[t.j]);
   return v;
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "withy/core/simulation/changing_equations.hpp"
+#include "withy/core/simulation/end_notes.hpp"
 #include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/loop_watch.hpp"
@@ -38,7 +39,7 @@ class Run final : public SteppingObserver {
         loop_(model, equations, integrator.start(equations, begun(model, equations, initial)),
               {options.end, options.output, actions_.watched(), hand_overs_, &actions_}),
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
-                 summary),
+                 summary, attention),
         loops_(equations, loop_.state()) {
     if (attention == Attention::whole) validity_.emplace(model, equations, options.beyond, summary.validity);
     if (options.own_energy) monitor_.use_own_energy(loop_.state());
@@ -223,12 +224,6 @@ class Run final : public SteppingObserver {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-std::string note_on_jumps(const std::vector<double>& times) {
-  std::string text = "Steps were rejected again and again near t =";
-  for (const double t : times) text.append(" ").append(brief(t));
-  return text + " s: does a load jump there without declaring it?";
-}
-
 /// The last state that can be trusted takes the place of the last one.
 void go_back(Monitor& monitor, RunSummary& summary) {
   if (monitor.trusted().time >= summary.final.time) return;
@@ -259,33 +254,6 @@ MassMatrixHistory look_at_mass_matrix(const Run& run, const Model& model, const 
   return history;
 }
 
-/// The events that were to do something and have not, in a sentence; empty where there are none.
-std::string note_on_missed_events(const Model& model, const State& end) {
-  const EventBook book(model);
-  if (!book.any()) return {};
-  std::string names;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < book.plan().events.size(); ++i) {
-    const ActingEvent& event = book.plan().events[i];
-    if (book.numbers(end.y, i).happened > 0 || (event.actions.empty() && !event.stops)) continue;
-    names += (++count > 1 ? ", '" : "'") + event.name + "'";
-  }
-  if (count == 0) return {};
-  return (count > 1 ? "The events " : "The event ") + names + " did not happen.";
-}
-
-/// The event whose impulses have taken most energy, in a sentence: of a latch at high speed. Empty where none has.
-std::string note_on_impulses(const Model& model, const State& end) {
-  const EventBook book(model);
-  std::size_t most = 0;
-  for (std::size_t i = 0; book.any() && i < book.plan().events.size(); ++i)
-    if (book.numbers(end.y, i).loss > book.numbers(end.y, most).loss) most = i;
-  if (!book.any() || !(book.numbers(end.y, most).loss > 0)) return {};
-  const EventNumbers n = book.numbers(end.y, most);
-  return " Before that, at t = " + brief(n.last) + " s, event '" + book.plan().events[most].name +
-         "' locked hinges that moved: its impulses took " + brief(n.loss) + " J and set the bodies' modes in motion.";
-}
-
 std::string message_of_completed(const Run& run, const RunSummary& summary, const std::string& missed) {
   std::string text;
   const auto add = [&text](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
@@ -303,28 +271,6 @@ std::string message_of_completed(const Run& run, const RunSummary& summary, cons
 }
 
 }  // namespace
-
-std::string_view name(RunStatus status) {
-  switch (status) {
-    case RunStatus::completed:
-      return "completed";
-    case RunStatus::inaccurate:
-      return "inaccurate";
-    case RunStatus::diverged:
-      return "diverged";
-    case RunStatus::singular:
-      return "singular";
-    case RunStatus::step_underflow:
-      return "step-underflow";
-    case RunStatus::interrupted:
-      return "interrupted";
-    case RunStatus::load_failed:
-      return "load-failed";
-    case RunStatus::too_stiff:
-      return "too-stiff";
-  }
-  return "unknown";
-}
 
 RunSummary simulate(const Model& model, const EquationsOfMotion& equations, const Integrator& integrator,
                     const State& initial, const RunOptions& options, const std::function<void(const State&)>& output) {

@@ -24,8 +24,9 @@ class StepWatch {
 /// How much of a run is looked at.
 enum class Attention {
   whole,
-  /// How it ends, its peaks and its balances. Of a run that ends well RunSummary::validity and `conditioning` stay
-  /// empty and `fastest_mode` 0, which take a fifth of a short run's time.
+  /// How it ends, how far its bodies are deflected, and its energy. RunSummary::momentum and the peaks of efforts stay
+  /// empty, and of a run that ends well `validity` and `conditioning` as well, and `fastest_mode` 0: all of that takes
+  /// more than a fifth of a short run's time.
   outcome
 };
 

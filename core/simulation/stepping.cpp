@@ -175,8 +175,8 @@ bool Stepping::to(double limit, bool watching) {
 /// A load, motion, formulation or integrator may round otherwise from its first call on: what it and all others have
 /// computed since is not what the same input gives elsewhere.
 void Stepping::check_arithmetic() {
+  if (!has_changed_arithmetic()) return arithmetic_->check("a plugin of this scene");
   const std::string changed = take_changed_arithmetic();
-  if (changed.empty()) return arithmetic_->check("a plugin of this scene");
   arithmetic_->restore();
   throw PluginError("a plugin of this scene changes " + changed + " for the whole program: no result can be trusted");
 }

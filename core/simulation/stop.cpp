@@ -105,4 +105,26 @@ std::string explain(Stop& stop, double time, const MassMatrixHistory* history, c
   return text + " " + (sound ? describe_sound(*history) : describe(*history, layout));
 }
 
+std::string_view name(RunStatus status) {
+  switch (status) {
+    case RunStatus::completed:
+      return "completed";
+    case RunStatus::inaccurate:
+      return "inaccurate";
+    case RunStatus::diverged:
+      return "diverged";
+    case RunStatus::singular:
+      return "singular";
+    case RunStatus::step_underflow:
+      return "step-underflow";
+    case RunStatus::interrupted:
+      return "interrupted";
+    case RunStatus::load_failed:
+      return "load-failed";
+    case RunStatus::too_stiff:
+      return "too-stiff";
+  }
+  return "unknown";
+}
+
 }  // namespace withy

@@ -1,0 +1,39 @@
+#include "withy/core/simulation/end_notes.hpp"
+
+#include "withy/core/model/event_plan.hpp"
+#include "withy/core/simulation/diagnosis.hpp"
+
+namespace withy {
+
+std::string note_on_jumps(const std::vector<double>& times) {
+  std::string text = "Steps were rejected again and again near t =";
+  for (const double t : times) text.append(" ").append(brief(t));
+  return text + " s: does a load jump there without declaring it?";
+}
+
+std::string note_on_missed_events(const Model& model, const State& end) {
+  const EventBook book(model);
+  if (!book.any()) return {};
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < book.plan().events.size(); ++i) {
+    const ActingEvent& event = book.plan().events[i];
+    if (book.numbers(end.y, i).happened > 0 || (event.actions.empty() && !event.stops)) continue;
+    names += (++count > 1 ? ", '" : "'") + event.name + "'";
+  }
+  if (count == 0) return {};
+  return (count > 1 ? "The events " : "The event ") + names + " did not happen.";
+}
+
+std::string note_on_impulses(const Model& model, const State& end) {
+  const EventBook book(model);
+  std::size_t most = 0;
+  for (std::size_t i = 0; book.any() && i < book.plan().events.size(); ++i)
+    if (book.numbers(end.y, i).loss > book.numbers(end.y, most).loss) most = i;
+  if (!book.any() || !(book.numbers(end.y, most).loss > 0)) return {};
+  const EventNumbers n = book.numbers(end.y, most);
+  return " Before that, at t = " + brief(n.last) + " s, event '" + book.plan().events[most].name +
+         "' locked hinges that moved: its impulses took " + brief(n.loss) + " J and set the bodies' modes in motion.";
+}
+
+}  // namespace withy
