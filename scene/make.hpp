@@ -124,7 +124,7 @@ const Value* check_plugin_map(const Value& given, const std::string& key, const 
   checker.note(all);
   for (const PluginUsed& plugin : sources.plugins) all->add(plugin);
   if (value != nullptr && checker.diagnostics().errors().size() == before)
-    parts->remember(kind_name<Interface>(), given, {made.plugin, *value, std::move(sources)});
+    parts->remember(kind_name<Interface>(), given, made.plugin, *value, std::move(sources));
   return value;
 }
 

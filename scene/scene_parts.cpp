@@ -58,26 +58,44 @@ void SceneParts::know(std::size_t stage, const SceneNames& names) {
   names_now_ = names_of_[stage];
 }
 
-const SceneParts::Checked* SceneParts::checked(std::string_view kind, const Value& given) const {
+/// Fills the part of a key where that pays.
+template <class Part>
+void SceneParts::put(std::unordered_map<std::string, Part>& parts, std::string key, const auto& fill) {
+  const auto [at, first] = parts.try_emplace(std::move(key));
+  if (first || at->second.worth_another()) fill(at->second);
+}
+
+const SceneParts::Checked* SceneParts::checked(std::string_view kind, const Value& given) {
   const auto found = maps_.find(key_of(kind, given));
   if (found == maps_.end() || found->second.names != names_now_ || !identical(found->second.given, given))
     return nullptr;
+  found->second.changes = 0;
   return &found->second.checked;
 }
 
-void SceneParts::remember(std::string_view kind, const Value& given, Checked checked) {
-  maps_.insert_or_assign(key_of(kind, given), Map{given, names_now_, std::move(checked)});
+void SceneParts::remember(std::string_view kind, const Value& given, const void* plugin, const Value& value,
+                          SceneSources sources) {
+  put(maps_, key_of(kind, given), [&](Map& map) {
+    map.given = given;
+    map.names = names_now_;
+    map.checked = {plugin, value, std::move(sources)};
+  });
 }
 
-std::shared_ptr<const void> SceneParts::made(std::string_view kind, const void* plugin, const Value& value) const {
+std::shared_ptr<const void> SceneParts::made(std::string_view kind, const void* plugin, const Value& value) {
   const auto found = objects_.find(key_of(kind, value));
   if (found == objects_.end() || found->second.plugin != plugin || !same_content(found->second.value, value)) return {};
+  found->second.changes = 0;
   return found->second.object;
 }
 
 void SceneParts::remember(std::string_view kind, const void* plugin, const Value& value,
                           std::shared_ptr<const void> object) {
-  objects_.insert_or_assign(key_of(kind, value), Object{plugin, value, std::move(object)});
+  put(objects_, key_of(kind, value), [&](Object& known) {
+    known.plugin = plugin;
+    known.value = value;
+    known.object = std::move(object);
+  });
 }
 
 }  // namespace withy
