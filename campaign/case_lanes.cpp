@@ -166,9 +166,12 @@ class CaseLanes final : public Asked {
   /// The lane that asks last evaluates for all; the others leave the thread to one that has its answer, or to the
   /// thread's own stack while lanes are filled.
   void answer(std::size_t lane) noexcept override {
-    lanes_[lane]->waiting = true;
+    Lane& asking = *lanes_[lane];
+    if (LaneStep* const step = asking.step(); step != nullptr && together_->made_ahead(lane, *step)) return;
+    if (LaneEnergy* const energy = asking.energy(); energy != nullptr && together_->made_ahead(lane, *energy)) return;
+    asking.waiting = true;
     if (filling_) return stacks_.go_to(lane, Stacks::thread);
-    while (lanes_[lane]->waiting) {
+    while (asking.waiting) {
       if (const std::size_t next = not_waiting(); next < count_) return stacks_.go_to(lane, next);
       evaluate();
     }

@@ -17,10 +17,8 @@ class EqualSteps : public OneStep {
     const double t = state_.time;
     if (!(t_limit > t)) return {};
     if (const StepResult r = begin(t_limit); r.outcome != StepResult::Outcome::ok) return r;
-    // What remains is divided equally, so that the last step is no shorter than the others; the allowance keeps the
-    // rounding of earlier steps from adding one.
-    const double steps = std::ceil((t_limit - t) / step_ * (1 - 1e-9));
-    double t_new = steps > 1 ? t + (t_limit - t) / steps : t_limit;
+    if (next_end_ == known_ends_ || known_from_ != t || known_limit_ != t_limit) look_ahead(t, t_limit);
+    double t_new = ends_[next_end_];
     if (!(t_new > t)) return {StepResult::Outcome::step_underflow, -1};
     for (int halvings = 0;; ++halvings) {
       const Attempt a = attempt(t_new - t);
@@ -34,6 +32,8 @@ class EqualSteps : public OneStep {
       t_new = half;
     }
     const double h = t_new - t;
+    known_from_ = t_new;
+    next_end_ = t_new == ends_[next_end_] ? next_end_ + 1 : known_ends_;
     accept(t_new);
     accepted(h);
     return {};
@@ -54,11 +54,35 @@ class EqualSteps : public OneStep {
     if (!evaluate(state_.time + h, next_, next_slope_).ok() || !finite(next_slope_)) next_slope_.setZero();
     return next_slope_;
   }
+  /// The ends of the step that `attempt` is to try and of those after it; empty where it is a part of a step.
+  [[nodiscard]] std::span<const double> ends_of(double h) const {
+    if (h != ends_[next_end_] - state_.time) return {};
+    return std::span(ends_).first(known_ends_).subspan(next_end_);
+  }
   /// How often a step that fails is halved.
   [[nodiscard]] virtual int most_halvings() const { return 0; }
 
  private:
+  /// What remains is divided equally, so that the last step is no shorter than the others; the allowance keeps the
+  /// rounding of earlier steps from adding one.
+  [[nodiscard]] double end_of_step(double t, double t_limit) const {
+    const double steps = std::ceil((t_limit - t) / step_ * (1 - 1e-9));
+    return steps > 1 ? t + (t_limit - t) / steps : t_limit;
+  }
+  /// Finds the ends of the next steps, of one where nobody makes several.
+  void look_ahead(double t, double t_limit) {
+    known_from_ = t;
+    known_limit_ = t_limit;
+    next_end_ = known_ends_ = 0;
+    do {
+      t = ends_[known_ends_++] = end_of_step(t, t_limit);
+    } while (staged() && known_ends_ < ends_.size() && t < t_limit);
+  }
+
   double step_;
+  std::array<double, 8> ends_{};  ///< [s], of the next steps to the limit where each is accepted
+  std::size_t known_ends_ = 0, next_end_ = 0;
+  double known_from_ = 0, known_limit_ = 0;  ///< what they were found for
 };
 
 inline ParameterSpec step_parameter() {

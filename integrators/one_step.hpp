@@ -130,6 +130,7 @@ class OneStep : public Stepper, public ClosingStepper {
   Evaluation evaluate(double t, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) const {
     ++statistics_.evaluations;
     last_ = Last::elsewhere;
+    follows_ = whole_ = false;
     if (std::exchange(open_, false)) return {Evaluation::Outcome::singular};
     const auto n = static_cast<std::size_t>(size_);
     const Evaluation e = equations_.derivatives(std::min(t, latest_), {values.data(), n}, {slope.data(), n}, work_);
@@ -140,9 +141,10 @@ class OneStep : public Stepper, public ClosingStepper {
   /// Whether the equations make all stages of a step at once.
   [[nodiscard]] bool staged() const { return staged_ != nullptr; }
   /// Has them made for a step h from state_ with slope_: fills next_ and next_slope_. \param slopes those of the stages
-  /// between the first and the last; empty: not wanted
+  /// between the first and the last; empty: not wanted \param ends as StagedSteps::Step
   template <std::size_t count>
-  Evaluation whole_step(const StageTable& table, double h, const std::array<std::span<double>, count>& slopes) {
+  Evaluation whole_step(const StageTable& table, double h, const std::array<std::span<double>, count>& slopes,
+                        std::span<const double> ends = {}) {
     const auto n = static_cast<std::size_t>(size_);
     std::array<std::span<double>, count + 1> all;
     std::copy(slopes.begin(), slopes.end(), all.begin());
@@ -156,7 +158,11 @@ class OneStep : public Stepper, public ClosingStepper {
                                                           .slope = {slope_.data(), n},
                                                           .slopes = all,
                                                           .end = {next_.data(), n},
-                                                          .work = &work_});
+                                                          .work = &work_,
+                                                          .ends = ends,
+                                                          .follows = follows_});
+    follows_ = false;
+    whole_ = true;
     statistics_.evaluations += outcome.evaluations;
     sign_ = outcome.evaluation.determinant_sign;
     return outcome.evaluation;
@@ -189,6 +195,7 @@ class OneStep : public Stepper, public ClosingStepper {
   void accept(double t_new) {
     const double h = t_new - state_.time;
     if (last_ == Last::elsewhere) last_ = Last::at_state;
+    follows_ = std::exchange(whole_, false);
     previous_time_ = state_.time;
     previous_ = y();
     state_.time = t_new;
@@ -251,6 +258,7 @@ class OneStep : public Stepper, public ClosingStepper {
     check_size(state);
     state_ = state;
     last_ = Last::elsewhere;
+    follows_ = false;
     previous_time_ = state.time;
     previous_ = y();
   }
@@ -273,6 +281,8 @@ class OneStep : public Stepper, public ClosingStepper {
   mutable int sign_ = 1;                                     ///< of det M in the last evaluation
   mutable Last last_ = Last::elsewhere;
   bool slope_known_ = false;
+  mutable bool follows_ = false;  ///< state_ and slope_ are what the last whole step has given
+  mutable bool whole_ = false;    ///< so are next_ and next_slope_
 };
 
 }  // namespace withy

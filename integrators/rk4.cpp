@@ -25,7 +25,7 @@ class Rk4Stepper final : public EqualSteps {
 
  private:
   Attempt attempt(double h) override {
-    if (staged()) return {whole_step(whole_rk4, h, std::array<std::span<double>, 3>())};
+    if (staged()) return {whole_step(whole_rk4, h, std::array<std::span<double>, 3>(), ends_of(h))};
     const double t = state_.time;
     const Eigen::ArrayXd& k1 = slope_;
     if (const Evaluation e = evaluate(t + h / 2, stage_ = y() + h / 2 * k1, k2_); !e.ok()) return {e};

@@ -3,6 +3,7 @@
 #include <array>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 #include "withy/core/equations/closed_equations.hpp"
 #include "withy/core/equations/configured_equations.hpp"
@@ -19,7 +20,7 @@ namespace {
 std::unique_ptr<EquationsOfMotion> compile_configuration(std::shared_ptr<const Model> model, Terms terms) {
   model = Model::in_kinematics(std::move(model), terms);
   ReferenceDynamics::check(*model, terms);
-  const NodeTree tree = compile_tree(*model);
+  PlacedTree tree = compile_placed_tree(*model);
   std::vector<Terms> node_terms;
   // A body of each truncation, none where there is none.
   std::array<const std::string*, 4> of{};
@@ -43,7 +44,7 @@ std::unique_ptr<EquationsOfMotion> compile_configuration(std::shared_ptr<const M
   refuse(symmetric, "truncated to first order of the kinetic energy", strict, "truncated to strict first order");
   const bool planar = tree.planar;
   const auto build = [&]<class Sweep>(std::type_identity<Sweep>) -> std::unique_ptr<EquationsOfMotion> {
-    auto of_tree = std::make_unique<equations::SweepEquations<Sweep>>(model, terms, tree, node_terms);
+    auto of_tree = std::make_unique<equations::SweepEquations<Sweep>>(model, terms, std::move(tree), node_terms);
     if (loops_of(*model).empty()) return of_tree;
     return std::make_unique<equations::ClosedEquations>(model, terms, std::move(of_tree));
   };

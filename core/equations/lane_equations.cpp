@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "withy/core/equations/lane_efforts.hpp"
+#include "withy/core/equations/steps_ahead.hpp"
 #include "withy/core/equations/sweep_equations.hpp"
 #include "withy/core/spatial/lane_transfer.hpp"
 #include "withy/core/sweep/lanes/lane_sweep.hpp"
@@ -48,6 +49,7 @@ class LanesOfSpace final : public LaneEquations {
         efforts_(speeds_, Lanes(0)),
         start_(size_, Lanes(0)),
         stage_(size_, Lanes(0)),
+        ahead_(size_, speeds_),
         slopes_(StageTable::most * size_, Lanes(0)),
         idle_(size_, 0.0) {
     for (std::vector<double>& y : stages_) y.resize(size_);
@@ -105,37 +107,39 @@ class LanesOfSpace final : public LaneEquations {
   }
 
   void steps(std::span<LaneStep* const> calls) noexcept override {
-    [[maybe_unused]] const equations::DenormalsAreZero guard;
     const LaneSet live = called(calls);
-    if (none(live)) return;
     const StageTable* table = nullptr;
-    Lanes h(0);
     std::array<const double*, cases_at_once> y, slope;
     y.fill(idle_.data()), slope.fill(idle_.data());
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
-      if (!live.has(lane)) continue;
-      LaneStep& call = *calls[lane];
-      table = call.step->table;
-      h.set(lane, call.step->h);
-      y[lane] = call.step->y.data(), slope[lane] = call.step->slope.data();
-      call.outcome = {};
+      if (!live.has(lane)) {
+        ahead_.drop(lane);
+        continue;
+      }
+      const StagedSteps::Step& step = *calls[lane]->step;
+      table = step.table;
+      y[lane] = step.y.data(), slope[lane] = step.slope.data();
+      ahead_.begin(lane, step, !plain_.has(lane));
     }
     gather(y, size_, start_.data());
     gather(slope, size_, slopes_.data());
     LaneSet good = live;
-    for (std::size_t i = 1; i < table->stages && !none(good); ++i) good = stage(*table, i, h, calls, good);
-    std::array<double*, cases_at_once> to;
-    const auto tell = [&](const Lanes* from, std::size_t count, auto&& place) {
-      for (std::size_t lane = 0; lane < cases_at_once; ++lane) to[lane] = good.has(lane) ? place(lane) : nullptr;
-      scatter(from, count, to);
-    };
-    tell(stage_.data(), size_, [&](std::size_t lane) { return calls[lane]->step->end.data(); });
-    for (std::size_t i = 1; i < table->stages; ++i)
-      tell(slopes_.data() + i * size_, size_,
-           [&](std::size_t lane) { return calls[lane]->step->slopes[i - 1].data(); });
-    tell(efforts_.data(), speeds_,
-         [&](std::size_t lane) { return equations_[lane]->efforts(*calls[lane]->step->work).data(); });
+    for (std::size_t k = 0; !none(good = ahead_.wanting(k, good)); ++k) {
+      good = whole_step(*table, k, calls, good);
+      if (k == 0) tell_slopes(*table, calls, good);
+      if (energies_ != nullptr && ahead_.expects_energies(k)) find_energies(k, good);
+      std::copy_n(ahead_.y(k), size_, start_.data());
+      std::copy_n(ahead_.slope(k), size_, slopes_.data());
+    }
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane)
+      if (live.has(lane)) give(lane, *calls[lane]);
   }
+  bool made_ahead(std::size_t lane, LaneStep& call) noexcept override {
+    if (!ahead_.has_next(lane, *call.step)) return false;
+    give(lane, call);
+    return true;
+  }
+  bool made_ahead(std::size_t lane, LaneEnergy& call) noexcept override { return ahead_.find(lane, call); }
 
   [[nodiscard]] bool has_energies() const override { return energies_ != nullptr; }
   void energies(std::span<LaneEnergy* const> calls) noexcept override { energies_->find(calls); }
@@ -143,6 +147,7 @@ class LanesOfSpace final : public LaneEquations {
  private:
   void take_in(std::size_t lane, const One<Space>& one) {
     equations_[lane] = &one;
+    ahead_.forget(lane);
     timed_.put(lane, one.loads().timed());
     damping_.put(lane, one.elastic());
     plain_.bits &= ~(1U << lane);
@@ -158,16 +163,51 @@ class LanesOfSpace final : public LaneEquations {
                          : own.applied(times.t[lane], y, y_dot, work, timed);
   }
 
-  /// Makes a stage of the steps of some lanes. \returns those of them where it is ok
-  LaneSet stage(const StageTable& table, std::size_t i, const Lanes& h, std::span<LaneStep* const> calls,
+  /// Makes step k of some lanes from `start_` and the first slope, and leaves what it gives in `ahead_`.
+  /// \returns the lanes where it is ok
+  LaneSet whole_step(const StageTable& table, std::size_t k, std::span<LaneStep* const> calls, LaneSet live) noexcept {
+    [[maybe_unused]] const equations::DenormalsAreZero guard;  // not of the energies, which are found without as well
+    Lanes h(0);
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane)
+      if (live.has(lane)) h.set(lane, ahead_.length(lane, k));
+    LaneSet good = live;
+    for (std::size_t i = 1; i < table.stages && !none(good); ++i) good = stage(table, i, k, h, calls, good);
+    std::copy_n(stage_.data(), size_, ahead_.y(k));
+    std::copy_n(slopes_.data() + (table.stages - 1) * size_, size_, ahead_.slope(k));
+    std::copy_n(efforts_.data(), speeds_, ahead_.efforts(k));
+    return good;
+  }
+
+  /// The slopes between the first and the last, to the lanes that want them.
+  void tell_slopes(const StageTable& table, std::span<LaneStep* const> calls, LaneSet good) noexcept {
+    std::array<double*, cases_at_once> to;
+    for (std::size_t i = 1; i + 1 < table.stages; ++i) {
+      for (std::size_t lane = 0; lane < cases_at_once; ++lane)
+        to[lane] = good.has(lane) ? calls[lane]->step->slopes[i - 1].data() : nullptr;
+      scatter(slopes_.data() + i * size_, size_, to);
+    }
+  }
+
+  void find_energies(std::size_t k, LaneSet good) noexcept {
+    std::array<Energies*, cases_at_once> to{};
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane)
+      if (good.has(lane)) to[lane] = &ahead_.energies(lane, k);
+    energies_->find(ahead_.y(k), to);
+  }
+
+  void give(std::size_t lane, LaneStep& call) noexcept {
+    ahead_.give(lane, *call.step, equations_[lane]->efforts(*call.step->work), call.outcome);
+  }
+
+  /// Makes a stage of step k of some lanes. \returns those of them where it is ok
+  LaneSet stage(const StageTable& table, std::size_t i, std::size_t k, const Lanes& h, std::span<LaneStep* const> calls,
                 LaneSet live) noexcept {
     go_to_stage(table, i, h);
     Lanes* const y_dot = slopes_.data() + i * size_;
     equations::LaneTimes times{{}, live};
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (!live.has(lane)) continue;
-      const StagedSteps::Step& step = *calls[lane]->step;
-      times.t[lane] = std::min(step.t + table.c[i] * step.h, step.latest);
+      times.t[lane] = std::min(ahead_.start(lane, k) + table.c[i] * ahead_.length(lane, k), ahead_.latest(lane));
     }
     std::fill(efforts_.begin(), efforts_.end(), Lanes(0));
     const LaneSet plain = live & plain_;
@@ -185,7 +225,7 @@ class LanesOfSpace final : public LaneEquations {
     LaneSet good;
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (!live.has(lane)) continue;
-      calls[lane]->outcome = {evaluations[lane], i};
+      ahead_.made(lane, k, {evaluations[lane], i});
       if (evaluations[lane].ok()) good.bits |= 1U << lane;
     }
     return good;
@@ -264,6 +304,7 @@ class LanesOfSpace final : public LaneEquations {
   std::vector<Lanes> numbers_;  ///< positions, speeds, efforts, accelerations
   // Of whole steps.
   std::vector<Lanes> efforts_, start_, stage_;
+  equations::StepsAhead ahead_;
   std::vector<Lanes> slopes_;                              ///< one after the other
   std::array<std::vector<double>, cases_at_once> stages_;  ///< the stage's state where a case has it by itself
   std::array<std::vector<double>, cases_at_once> rates_;   ///< and the rates there

@@ -41,8 +41,14 @@ class LaneEquations {
   /// Evaluates the lanes that have a call; null: none. Allocates nothing. \param calls one a lane
   virtual void derivatives(std::span<LaneCall* const> calls) noexcept = 0;
   /// Makes the stages of steps with one table, likewise. Between the stages nothing leaves the lanes but what loads
-  /// that are not functions of time alone ask for.
+  /// that are not functions of time alone ask for. What was made ahead is forgotten.
   virtual void steps(std::span<LaneStep* const> calls) noexcept = 0;
+  /// Answers a step that follows the last one where `steps` has made it already, with no evaluation; whether it has.
+  /// Which steps are made ahead of their call changes no result.
+  virtual bool made_ahead(std::size_t lane, LaneStep& call) noexcept = 0;
+  /// The same of the energies at the end of the step that the lane was given last. Where it has none yet, they are
+  /// found ahead at the same place among the next steps.
+  virtual bool made_ahead(std::size_t lane, LaneEnergy& call) noexcept = 0;
   /// Whether these have energies in lanes, which is a matter of each case alone.
   [[nodiscard]] virtual bool has_energies() const = 0;
   /// Finds what Observation::energies tells of a state, likewise.

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "withy/core/equations/applied_loads.hpp"
@@ -21,7 +22,7 @@
 #include "withy/core/plugin/forward_dynamics.hpp"
 #include "withy/core/reference/reference.hpp"
 #include "withy/core/tangents/state_jacobian.hpp"
-#include "withy/core/tree/tree.hpp"
+#include "withy/core/tree/placed_tree.hpp"
 
 namespace withy::equations {
 
@@ -59,15 +60,15 @@ class SweepEquations final : public EquationsOfMotion,
                              public ForwardDynamics,
                              public MassSolver {
  public:
-  SweepEquations(std::shared_ptr<const Model> model, Terms terms, const NodeTree& tree,
-                 const std::vector<Terms>& node_terms)
+  SweepEquations(std::shared_ptr<const Model> model, Terms terms, PlacedTree tree, const std::vector<Terms>& node_terms)
       : model_(std::move(model)),
         terms_(terms),
         loads_(*model_, terms),
         sweep_(tree, node_terms, model_->gravity()),
         elastic_(*model_),
         rates_(*model_),
-        savings_(savings_of(tree, sweep_.savings(tree))) {
+        savings_(savings_of(tree, sweep_.savings(tree))),
+        tree_(std::make_unique<PlacedTree>(std::move(tree))) {
     for (std::size_t h = 0; h < layout().hinges.size(); ++h) {
       if (model_->driven(h)) driven_.push_back(layout().hinges[h]);
     }
@@ -204,7 +205,7 @@ class SweepEquations final : public EquationsOfMotion,
   std::unique_ptr<Observation> make_observation() const override { return observed().make_observation(); }
   /// What its observations are made of.
   [[nodiscard]] const ObservedModel& observed() const {
-    return observed_([this] { return observed_model(*model_, terms_); });
+    return observed_([this] { return observed_model(*model_, terms_, std::move(*std::exchange(tree_, nullptr))); });
   }
   std::unique_ptr<SensedState> make_sensed_state(std::span<const SectionPlace> sections) const override {
     return make_sensing(std::make_unique<const sensed::Plan>(*model_, terms_, sections), *this, loads_);
@@ -348,6 +349,7 @@ class SweepEquations final : public EquationsOfMotion,
   ElasticPart elastic_;
   RateMap rates_;
   std::vector<std::string> savings_;
+  mutable std::unique_ptr<PlacedTree> tree_;  ///< until somebody observes
   HostedMotions hosted_{*model_};
   std::vector<Slot> driven_;  ///< hinges that motions drive, in State's order
   Lazy<ReferenceDynamics> reference_;

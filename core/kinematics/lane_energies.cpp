@@ -59,8 +59,8 @@ template <class Space>
 auto structure(const Node<Space>& n) {
   const sweep::JointData<Space>& j = n.joint;
   return std::tuple(n.parent, n.parent_station, n.root_station, n.modes, n.mode_position, n.mode_speed, n.first_station,
-                    j.kind, j.direction, j.position, j.speed, n.base.empty, n.mass.rank, n.mass.second_order,
-                    n.rotary.sections, n.rotary.second_order, n.stations.size());
+                    j.kind, j.direction, j.position, j.speed, n.base.empty, n.mass.straight, n.mass.rank,
+                    n.mass.second_order, n.rotary.sections, n.rotary.second_order, n.stations.size());
 }
 template <class Space>
 auto structure(const Station<Space>& s) {
@@ -121,22 +121,34 @@ class EnergiesOfTrees final : public LaneEnergies {
     for (std::size_t lane = 0; lane < cases_at_once; ++lane)
       y[lane] = calls[lane] != nullptr ? calls[lane]->y.data() : idle_.data();
     gather(y, idle_.size(), pass_.y().data());
+    find_here([&](std::size_t lane) { return calls[lane] != nullptr ? &calls[lane]->energies : nullptr; });
+  }
+
+  void find(const Lanes* y, std::span<Energies* const> energies) noexcept override {
+    std::copy_n(y, idle_.size(), pass_.y().data());
+    find_here([&](std::size_t lane) { return energies[lane]; });
+  }
+
+ private:
+  using Many = typename sweep::LanesOf<Space>::Type;
+
+  /// At the pass's states. \param place of a lane's energies; null: nobody asks for them
+  template <class PlaceOf>
+  void find_here(const PlaceOf& place) noexcept {
     pass_.move();
     const Sums<Many> all = pass_.sums();
     const Lanes strain = pass_.strain_energy();
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
-      if (calls[lane] == nullptr) continue;
+      Energies* const to = place(lane);
+      if (to == nullptr) continue;
       Sums<Space> own;
       own.kinetic = all.kinetic[lane];
       extract(lane, all.momentum, own.momentum);
       extract(lane, all.moment, own.moment);
       extract(lane, all.across, own.across);
-      calls[lane]->energies = energies_of(*trees_[lane], own, strain[lane]);
+      *to = energies_of(*trees_[lane], own, strain[lane]);
     }
   }
-
- private:
-  using Many = typename sweep::LanesOf<Space>::Type;
 
   static std::vector<Node<Many>> filled(const Tree<Space>& tree) {
     std::vector<Node<Many>> nodes(tree.nodes.size());

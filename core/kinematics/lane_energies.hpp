@@ -10,6 +10,8 @@
 
 namespace withy {
 
+struct Lanes;
+
 /// A state whose energies a case asks for: Observation::energies with the state and the result.
 struct LaneEnergy {
   std::span<const double> y;
@@ -27,6 +29,8 @@ class LaneEnergies {
   virtual void put(std::size_t lane, const ObservedModel& model) = 0;
   /// Of the lanes that have a call; null: none. Allocates nothing.
   virtual void find(std::span<LaneEnergy* const> calls) noexcept = 0;
+  /// Of states that are in lanes already. \param energies takes those of the lanes that have a place; null: none
+  virtual void find(const Lanes* y, std::span<Energies* const> energies) noexcept = 0;
 };
 
 /// Lanes that all begin with these constants; null where bodies move by exact kinematics, sections in space have rotary

@@ -10,6 +10,8 @@
 
 namespace withy {
 
+struct PlacedTree;
+
 /// The constants of observations of a model: made once, shared by threads.
 class ObservedModel {
  public:
@@ -21,5 +23,7 @@ class ObservedModel {
 /// `terms` hold for every body that has none of its own; of them only the strain kinematics matters, since reports are
 /// of what it says without truncation. The constants take memory in proportion to the bodies and their frames.
 [[gnu::visibility("default")]] std::shared_ptr<const ObservedModel> observed_model(const Model& model, Terms terms);
+/// The same for who has compile_placed_tree(model).
+std::shared_ptr<const ObservedModel> observed_model(const Model& model, Terms terms, PlacedTree tree);
 
 }  // namespace withy

@@ -5,6 +5,7 @@
 
 #include "withy/core/kinematics/observed_node.hpp"
 #include "withy/core/sweep/rod/rotary_terms.hpp"
+#include "withy/core/sweep/symmetric/straight_mass.hpp"
 
 namespace withy::observed {
 
@@ -65,6 +66,31 @@ inline void add_mass(const sweep::MassTable<Space>& table, int modes, const type
     m = spread(typename Space::Scalar(0));
   }
   part.mass += table.root_mass * table.root_mass;
+}
+
+/// The same of a straight body of several cases, by its products.
+template <class Space, int N>
+inline void add_straight_mass(const typename Space::Scalar* products, const typename Space::Scalar* q,
+                              const typename Space::Scalar* q_dot, const typename Space::Twist& V,
+                              PartMomentum<Space>& part) {
+  using Twist = typename Space::Twist;
+  using Scalar = typename Space::Scalar;
+  auto I = Space::Inertia::zero();
+  Twist C[N], p = Twist::zero();
+  Scalar G[N * N], h[N];
+  sweep::integrate_straight<Space, N>(products, q, q_dot, V, I, C, G, p, h);
+  Twist of_modes = C[0] * q_dot[0];
+  for (int i = 1; i < N; ++i) of_modes += C[i] * q_dot[i];
+  const Twist of_frame = I * V;
+  part.h += of_frame + of_modes;
+  part.kinetic += 0.5 * Space::dot(V, of_frame) + Space::dot(V, of_modes);
+  for (int i = 0; i < N; ++i) {
+    Scalar row = 0.5 * G[i * N + i] * q_dot[i];
+    for (int j = 0; j < i; ++j) row += G[i * N + j] * q_dot[j];
+    part.kinetic += row * q_dot[i];
+  }
+  part.moment += typename Space::Position{I.wy, -I.wx};
+  part.mass += products[sweep::StraightMass<N>::m];
 }
 
 /// Rotary inertia J t tᵀ of four sections with angular velocity V.w + ω.

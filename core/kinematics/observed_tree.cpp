@@ -167,20 +167,21 @@ template class Tree<Spatial>;
 }  // namespace observed
 
 std::shared_ptr<const ObservedModel> observed_model(const Model& model, Terms terms) {
-  for (const bool planar : {true, false}) {
-    PlacedTree tree = compile_placed_tree(model, planar);
-    std::vector<std::size_t> carrying;
-    for (const NodeSpec& node : tree.nodes) carrying.push_back(node.stations.size());
-    std::vector<observed::FramePlace> frames;
-    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-      for (const Frame& frame : model.bodies()[b].frames)
-        frames.push_back(observed::place_frame(tree, tree.places[b], frame));
-    }
-    if (!tree.planar) return std::make_shared<observed::Tree<Spatial>>(model, terms, tree, carrying, frames);
-    if (std::all_of(tree.nodes.begin(), tree.nodes.end(), observed::is_flat))
-      return std::make_shared<observed::Tree<Planar>>(model, terms, tree, carrying, frames);
+  return observed_model(model, terms, compile_placed_tree(model));
+}
+
+std::shared_ptr<const ObservedModel> observed_model(const Model& model, Terms terms, PlacedTree tree) {
+  std::vector<std::size_t> carrying;
+  for (const NodeSpec& node : tree.nodes) carrying.push_back(node.stations.size());
+  std::vector<observed::FramePlace> frames;
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    for (const Frame& frame : model.bodies()[b].frames)
+      frames.push_back(observed::place_frame(tree, tree.places[b], frame));
   }
-  return nullptr;
+  if (!tree.planar) return std::make_shared<observed::Tree<Spatial>>(model, terms, tree, carrying, frames);
+  if (std::all_of(tree.nodes.begin(), tree.nodes.end(), observed::is_flat))
+    return std::make_shared<observed::Tree<Planar>>(model, terms, tree, carrying, frames);
+  return observed_model(model, terms, compile_placed_tree(model, false));
 }
 
 }  // namespace withy

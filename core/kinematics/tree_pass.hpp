@@ -137,10 +137,20 @@ class TreePass {
     if (node.is_rod()) {
       if constexpr (sweep::has_rods<Space>) add_rod(node.rod, rod(node), node.modes, q_dot(node), B.V, part);
     } else {
-      add_mass<Space>(node.mass, node.modes, q(node), q_dot(node), B.V, particles_.data(), part);
+      add_own_mass(node, B.V, part);
       if constexpr (sweep::has_sections<Space>) add_sections(node.rotary, node.modes, q(node), q_dot(node), B.V, part);
     }
     add_part<Space>(B.X, part.h, part.moment, part.mass, part.kinetic, node.flexible_height, sums);
+  }
+
+  void add_own_mass(const Node<Space>& node, const Twist& V, PartMomentum<Space>& part) const noexcept {
+    if constexpr (sweep::has_straight_mass<Space, 2>) {
+      const Scalar* const products = node.mass.products.data();
+      if (products != nullptr && node.modes == 2)
+        return add_straight_mass<Space, 2>(products, q(node), q_dot(node), V, part);
+      if (products != nullptr) return add_straight_mass<Space, 4>(products, q(node), q_dot(node), V, part);
+    }
+    add_mass<Space>(node.mass, node.modes, q(node), q_dot(node), V, particles_.data(), part);
   }
 
   const std::vector<Node<Space>>& nodes_;

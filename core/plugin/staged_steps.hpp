@@ -32,6 +32,11 @@ class StagedSteps {
     std::span<const std::span<double>> slopes;  ///< takes those of the stages after the first; empty: not wanted
     std::span<double> end;                      ///< takes the state at the end
     Work* work = nullptr;  ///< holds afterwards what `derivatives` would leave there of the last stage
+    /// Ends [s] of this step, t + h but for rounding, and of those that are asked for after it where each is accepted:
+    /// they may be made at once. Empty: nobody knows.
+    std::span<const double> ends = {};
+    /// y and slope are what the last step asked for has given, and it ended at t.
+    bool follows = false;
   };
   struct Outcome {
     Evaluation evaluation;  ///< of the last stage, or of the first that was not ok

@@ -1,7 +1,11 @@
 #include "withy/core/sweep/mass_table.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <mutex>
+#include <utility>
 
 namespace withy::sweep {
 namespace {
@@ -31,12 +35,55 @@ Eigen::MatrixXd orthonormal_coefficients(const Eigen::MatrixXd& fields) {
   return R;
 }
 
+/// Whether X and Γ have a first component only and Φ a second one only; columns are those of MassTable::data.
+template <class Space>
+bool lies_straight(const Eigen::Ref<const Eigen::MatrixXd>& fields, Eigen::Index n) {
+  if (Space::angular != 1) return false;
+  for (Eigen::Index vector = 0; 2 * vector < fields.cols(); ++vector) {
+    const bool across = vector > 0 && vector <= n;
+    if (!fields.col(2 * vector + (across ? 0 : 1)).isZero(0)) return false;
+  }
+  return true;
+}
+
+/// Coefficients of the last bodies: the sweep and the observations of one model want them of the same fields, and so do
+/// cases of a sweep that differ in other numbers. For all threads.
+class LastCoefficients {
+ public:
+  Eigen::MatrixXd of(Eigen::MatrixXd fields) {
+    constexpr Eigen::Index most_numbers = 1 << 13;
+    if (fields.size() > most_numbers) return orthonormal_coefficients(fields);
+    {
+      const std::lock_guard lock(mutex_);
+      const auto found = std::find_if(last_.begin(), last_.end(), [&](const auto& e) { return same(e.first, fields); });
+      if (found != last_.end()) {
+        std::rotate(last_.begin(), found, found + 1);
+        return last_.front().second;
+      }
+    }
+    Eigen::MatrixXd coefficients = orthonormal_coefficients(fields);
+    const std::lock_guard lock(mutex_);
+    constexpr std::size_t kept = 8;
+    if (last_.size() == kept) last_.pop_back();
+    return last_.emplace(last_.begin(), std::move(fields), std::move(coefficients))->second;
+  }
+
+ private:
+  static bool same(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+    return a.rows() == b.rows() && a.cols() == b.cols() &&
+           std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+  }
+  std::mutex mutex_;
+  std::vector<std::pair<Eigen::MatrixXd, Eigen::MatrixXd>> last_;  ///< fields and coefficients, the youngest first
+};
+
 }  // namespace
 
 template <class Space>
 MassTable<Space>::MassTable(const NodeSpec& node) {
   constexpr Eigen::Index L = Space::linear;
   const auto n = static_cast<Eigen::Index>(node.modes);
+  modes = static_cast<int>(n);
   if (node.mass.size() == 0) return;
   const auto rows = static_cast<Eigen::Index>(node.mass.size());
   const Eigen::Index columns = 1 + L * (1 + n + n * (n + 1) / 2);
@@ -59,7 +106,8 @@ MassTable<Space>::MassTable(const NodeSpec& node) {
       }
     }
   }
-  const Eigen::MatrixXd R = orthonormal_coefficients(fields);
+  static LastCoefficients last;
+  const Eigen::MatrixXd R = last.of(std::move(fields));
   root_mass = R(0, 0);
   rank = static_cast<std::size_t>(R.rows());
   packs = (rank + lanes - 1) / lanes;
@@ -72,6 +120,7 @@ MassTable<Space>::MassTable(const NodeSpec& node) {
     }
   }
   data = std::move(numbers);
+  straight = second_order && lies_straight<Space>(R.rightCols(columns - 1), n);
 }
 
 template struct MassTable<Spatial>;

@@ -15,6 +15,7 @@ namespace withy::sweep {
 /// The first basis function is the constant, so that ∫ f dm = √mass · (first coefficient of f).
 template <class Space>
 struct MassTable {
+  int modes = 0;                         ///< of the body
   std::size_t rank = 0;                  ///< generalized particles
   std::size_t packs = 0;                 ///< groups of them: rank / 4, rounded up; of several cases at once one each
   bool second_order = false;             ///< some Γ is there
@@ -22,6 +23,10 @@ struct MassTable {
   /// For each pack: X (linear), then Φ_i (n·linear), then Γ_ij for i ≤ j (pairs·linear), components innermost.
   SharedNumbers<typename Space::Group> data;
   std::size_t stride = 0;  ///< packs of `data` for each pack of particles
+  /// In a plane, with some Γ: X and Γ lie along the first axis, Φ along the second. An unbent beam along that axis.
+  bool straight = false;
+  /// Of several cases, straight ones of few modes, in the place of `data`: StraightMass.
+  SharedNumbers<typename Space::Scalar> products;
 
   MassTable() = default;
   explicit MassTable(const NodeSpec& node);

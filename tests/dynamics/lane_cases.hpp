@@ -120,9 +120,10 @@ struct LaneKind {
 inline std::vector<LaneKind> lane_kinds() {
   std::vector<LaneKind> all;
   for (const std::string formulation : {"ruthless", "quadratic"}) {
-    for (const std::string beam : {"", "modes: 1", "modes: 2", "modes: 3", "modes: 2, family: free-free", "modes: 5"}) {
+    for (const std::string beam :
+         {"", "modes: 1", "modes: 2", "modes: 3", "modes: 2, family: free-free", "modes: 4", "modes: 5"}) {
       for (const bool planar : {true, false}) {
-        if (beam.ends_with('5') && !planar) continue;
+        if ((beam.ends_with('4') || beam.ends_with('5')) && !planar) continue;
         all.push_back({formulation, beam, planar, beam.ends_with("2")});
       }
     }

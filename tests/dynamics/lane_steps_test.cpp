@@ -44,8 +44,10 @@ struct StepsOfCases : LaneCases {
   std::vector<StagedSteps::Step> given_steps{lane_count()};
   std::vector<LaneStep> steps{lane_count()};
 
-  explicit StepsOfCases(const LaneKind& kind)
-      : LaneCases(kind.formulation, [&](unsigned k) { return lane_chain_of_kind(k, kind); }) {
+  /// \param seed of each case
+  explicit StepsOfCases(
+      const LaneKind& kind, unsigned (*seed)(unsigned) = [](unsigned k) { return k; })
+      : LaneCases(kind.formulation, [&](unsigned k) { return lane_chain_of_kind(seed(k), kind); }) {
     for (std::size_t k = 0; k < lane_count(); ++k) {
       slope[k].resize(rates[k].size());
       EXPECT_TRUE(equations(k).derivatives(t, cases[k]->state.y, slope[k], work[k]).ok());
@@ -75,7 +77,7 @@ struct StepsOfCases : LaneCases {
   /// All that a case gets, with what its loads did in the last stage.
   [[nodiscard]] std::vector<double> given(std::size_t k) {
     std::vector<double> all = end[k], loads(equations(k).layout().speeds), motions(loads.size());
-    for (const std::vector<double>& s : slopes[k]) all.insert(all.end(), s.begin(), s.end());
+    for (const std::span<double> s : places[k]) all.insert(all.end(), s.begin(), s.end());
     EXPECT_TRUE(equations(k).found_efforts(work[k], loads, motions));
     all.insert(all.end(), loads.begin(), loads.end());
     all.insert(all.end(), motions.begin(), motions.end());
@@ -154,6 +156,92 @@ TEST(LaneSteps, a_whole_step_depends_on_no_other_case_to_the_last_bit) {
     EXPECT_EQ(several.steps[0].outcome.evaluation.outcome, alone.outcome) << kind.text();
     EXPECT_EQ(several.steps[0].outcome.evaluation.body, alone.body) << kind.text();
     EXPECT_EQ(several.steps[0].outcome.evaluations, 1U) << kind.text();
+  }
+}
+
+/// Five steps of each case one after the other, from its state at 0.3 s, as a run asks for them: each case goes on
+/// where its own last step ended, and tells the ends of those to come where `ahead`.
+class StepsOneAfterTheOther : public StepsOfCases {
+ public:
+  static constexpr std::size_t count = 5;
+  /// All loads are functions of time alone.
+  explicit StepsOneAfterTheOther(const LaneKind& kind) : StepsOfCases(kind, [](unsigned k) { return 2 * k + 1; }) {
+    for (std::size_t k = 0; k < lane_count(); ++k)
+      for (std::size_t i = 0; i <= count; ++i)
+        times[k].push_back(t + 0.01 * length(k) * static_cast<double>(i));  // stable
+  }
+
+  /// What each case is given, step by step, with the energies there. \param first steps before all cases begin anew
+  std::vector<std::vector<double>> run(bool ahead, std::size_t first = count) {
+    for (std::size_t k = 0; k < lane_count(); ++k) lanes->put(k, equations(k));
+    std::vector<std::vector<double>> all(lane_count());
+    std::vector<std::vector<double>> y, own_slope = slope;
+    for (std::size_t k = 0; k < lane_count(); ++k) y.push_back(cases[k]->state.y);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::vector<LaneStep*> asked(lane_count());
+      for (std::size_t k = 0; k < lane_count(); ++k) {
+        const std::size_t n = y[k].size();
+        end[k].resize(n), slopes[k][2].resize(n);
+        places[k] = {std::span<double>(), std::span<double>(), slopes[k][2]};
+        given_steps[k] = {.table = &three_stages(),
+                          .t = times[k][i],
+                          .h = times[k][i + 1] - times[k][i],
+                          .latest = 1,
+                          .y = y[k],
+                          .slope = own_slope[k],
+                          .slopes = places[k],
+                          .end = end[k],
+                          .work = &work[k],
+                          .ends = ahead ? std::span<const double>(times[k]).subspan(i + 1) : std::span<const double>(),
+                          .follows = i != 0 && i != first};
+        steps[k] = {&given_steps[k], {}};
+        if (lanes->made_ahead(k, steps[k]))
+          ++made_ahead;
+        else
+          asked[k] = &steps[k];
+      }
+      if (std::any_of(asked.begin(), asked.end(), [](const LaneStep* s) { return s != nullptr; })) lanes->steps(asked);
+      for (std::size_t k = 0; k < lane_count(); ++k) {
+        y[k] = end[k], own_slope[k] = slopes[k][2];
+        const std::vector<double> now = given(k);
+        all[k].insert(all[k].end(), now.begin(), now.end());
+        append_energies(k, y[k], all[k]);
+      }
+    }
+    return all;
+  }
+  std::size_t made_ahead = 0, energies_ahead = 0;
+
+ private:
+  void append_energies(std::size_t k, const std::vector<double>& at, std::vector<double>& to) {
+    LaneEnergy call{at, {}};
+    std::vector<LaneEnergy*> asked(lane_count());
+    asked[k] = &call;
+    if (lanes->made_ahead(k, call))
+      ++energies_ahead;
+    else
+      lanes->energies(asked);
+    to.insert(to.end(), {call.energies.kinetic, call.energies.potential});
+  }
+  std::vector<std::vector<double>> times{lane_count()};
+};
+
+TEST(LaneSteps, made_before_they_are_asked_for_are_the_same_to_the_last_bit) {
+  for (const LaneKind& kind : lane_kinds()) {
+    if (kind.driven) continue;  // such steps are made one by one
+    StepsOneAfterTheOther one_by_one(kind), at_once(kind), interrupted(kind);
+    const std::vector<std::vector<double>> expected = one_by_one.run(false);
+    EXPECT_EQ(one_by_one.made_ahead, 0U) << kind.text();
+    const auto expect_those = [&](const std::vector<std::vector<double>>& found, const std::string& how) {
+      for (std::size_t k = 0; k < lane_count(); ++k)
+        expect_bits(found[k], expected[k], kind.text() + how + ", case " + std::to_string(k));
+    };
+    expect_those(at_once.run(true), ", at once");
+    EXPECT_EQ(at_once.made_ahead, 4 * lane_count()) << kind.text();
+    EXPECT_EQ(at_once.energies_ahead, 0U) << kind.text() << ": nobody knew that they would be asked for";
+    expect_those(interrupted.run(true, 3), ", where a step that nobody expects comes between");
+    EXPECT_EQ(interrupted.made_ahead, 3 * lane_count()) << kind.text();
+    EXPECT_EQ(interrupted.energies_ahead, 2 * lane_count()) << kind.text();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "withy/core/sweep/symmetric/straight_mass.hpp"
 #include "withy/core/sweep/symmetric/symmetric_sweep.hpp"
 
 namespace withy::sweep {
@@ -93,12 +94,24 @@ inline void put(std::size_t lane, const SharedNumbers<Pack>& from, std::size_t s
   });
 }
 
+/// Straight beams of few modes have products in the place of particles.
 template <class Space, class Many>
 void put(std::size_t lane, const MassTable<Space>& from, MassTable<Many>& to) {
+  to.modes = from.modes;
   to.rank = to.packs = from.rank;
-  to.second_order = from.second_order;
+  to.second_order = from.second_order, to.straight = from.straight;
   to.stride = from.stride;
   put(lane, from.root_mass, to.root_mass);
+  if constexpr (has_straight_mass<Many, 2>) {
+    const auto put_products = [&](const auto& all) {
+      to.products.edit([&](std::vector<Lanes>& numbers) {
+        numbers.resize(all.size());
+        for (std::size_t i = 0; i < all.size(); ++i) numbers[i].set(lane, all[i]);
+      });
+    };
+    if (from.straight && from.modes == 2) return put_products(straight_mass<2>(from));
+    if (from.straight && from.modes == 4) return put_products(straight_mass<4>(from));
+  }
   put(lane, from.data, from.stride, from.rank, to.data);
 }
 
@@ -158,8 +171,8 @@ auto structure(const SymmetricNode<Space>& n) {
   const JointData<Space>& j = n.joint;
   return std::tuple(n.body, n.parent, n.parent_station, n.root_station, n.modes, n.flavor, n.leaf, n.has_children,
                     n.mode_position, n.mode_speed, j.kind, j.direction, j.driven, j.pose_matters, j.position,
-                    j.positions, j.speed, j.speeds, n.own->mass.rank, n.own->mass.second_order, n.own->rotary.sections,
-                    n.own->rotary.second_order, n.own->factor.size());
+                    j.positions, j.speed, j.speeds, n.own->mass.straight, n.own->mass.rank, n.own->mass.second_order,
+                    n.own->rotary.sections, n.own->rotary.second_order, n.own->factor.size());
 }
 template <class Space>
 auto structure(const SymmetricStation<Space>& s) {

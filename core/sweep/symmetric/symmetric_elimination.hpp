@@ -2,6 +2,7 @@
 /// The inward passes of a symmetric sweep over one node: (3) of symmetric_kernel.hpp, with q̈ and ẍ eliminated.
 #pragma once
 
+#include "withy/core/sweep/symmetric/straight_mass.hpp"
 #include "withy/core/sweep/symmetric/symmetric_motion.hpp"
 
 namespace withy::sweep {
@@ -25,17 +26,28 @@ inline void integrate_mass(const SymmetricNode<Space>& node, const SymmetricStat
     }
     for (int i = 0; i < n * n; ++i) G[i] = G_rod[i];
   } else {
-    for (int i = 0; i < n; ++i) {
-      C[i] = Space::Twist::zero();
-      h[i] = 0;
-    }
-    for (int i = 0; i < n * n; ++i) G[i] = 0;
     const auto* q = s.positions + node.mode_position;
     const auto* q_dot = s.speeds + node.mode_speed;
     using Group = typename Space::Group;
     Group P_here[N > 0 ? N * Space::linear : 1];
     Group* P = N > 0 ? P_here : at<Group>(s.work, node.work_P);
-    integrate<Space, N>(node.own->mass, n, q, q_dot, V, P, I, C, G, p, h);
+    const auto sum_particles = [&] {
+      for (int i = 0; i < n; ++i) {
+        C[i] = Space::Twist::zero();
+        h[i] = 0;
+      }
+      for (int i = 0; i < n * n; ++i) G[i] = 0;
+      integrate<Space, N>(node.own->mass, n, q, q_dot, V, P, I, C, G, p, h);
+    };
+    if constexpr (has_straight_mass<Space, N>) {
+      if (node.own->mass.straight) {
+        integrate_straight<Space, N>(node.own->mass.products.data(), q, q_dot, V, I, C, G, p, h);
+      } else {
+        sum_particles();
+      }
+    } else {
+      sum_particles();
+    }
     if constexpr (has_sections<Space>) collect_sections<Space, N>(node.own->rotary, n, q, q_dot, V, P, I, C, G, p, h);
   }
 }
