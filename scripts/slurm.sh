@@ -16,6 +16,7 @@ started=()
 finish() {
   local id
   for id in "${started[@]}"; do kill "$id" 2>/dev/null || true; done
+  wait  # they write where is to be cleared
   [ -n "${KEEP:-}" ] || rm -rf "$work"
 }
 trap finish EXIT
