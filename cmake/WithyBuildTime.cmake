@@ -7,6 +7,7 @@
 #   plugins    bodies, loads, integrators, modes, formulations, fem       precompiled/engine.hpp
 #   programs   scene, study, results, campaign, program, apps                     precompiled/programs.hpp
 #   tests      tests but for benchmarks and the zoo of bad plugins        precompiled/tests.hpp
+#   computing-tests  those of them that compute much themselves           the same
 #
 # They all also declare Eigen's decompositions and products as compiled elsewhere (eigen_instances.cpp), for a source
 # with one eigenvalue problem instantiates all that this calls: core/simulation/diagnosis.cpp takes 10 s instead of 24 s.
@@ -21,8 +22,10 @@
 # as one.
 # Names in unnamed namespaces must then differ within a room.
 #
-# Programs and tests hold no loop that time is spent in: a release build compiles them at -O1. Precompiled headers keep
-# the level that they were compiled at and impose it on all who use them, whatever their own flags say: a group has one.
+# Programs hold no loop that time is spent in: a release build compiles them at -O1. Most tests ask libraries and other
+# programs: at -O0 they take 0.6 to 0.7 of the time to compile. Those of mode families spend 0.7 of their own running time
+# in themselves, those of dynamics 0.1: they are at -O1. Precompiled headers keep the level that they were compiled at and
+# impose it on all who use them, whatever their own flags say: a group has one.
 #
 # The sweeps are compiled without precompiled headers, which two sets of flags would need twice; benchmarks and the zoo
 # file by file. A build with a cache of objects (ccache, which passes by sources with precompiled headers) goes without:
@@ -80,6 +83,10 @@ function(withy_unite_rooms target)
   endif()
 endfunction()
 
+# Of a group, in a release build.
+set(optimization_programs -O1)
+set(optimization_computing-tests -O1)
+set(optimization_tests -O0)
 set(optimized_little $<$<CONFIG:Release>:-O1>)
 
 # withy_precompile(GROUP TARGET...): these targets use the headers of the group. The core makes them for
@@ -104,8 +111,8 @@ function(withy_precompile group)
     elseif(NOT group STREQUAL "core")
       withy_unite(${target})
     endif()
-    if(group MATCHES "programs|tests")
-      target_compile_options(${target} PRIVATE ${optimized_little})
+    if(optimization_${group})
+      target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${optimization_${group}}>)
     endif()
     target_link_libraries(${target} PRIVATE withy-eigen-instances)
   endforeach()
@@ -121,20 +128,24 @@ function(withy_precompiled_group group header)
   add_library(withy-precompiled-${group} OBJECT ${empty})
   target_link_libraries(withy-precompiled-${group} PRIVATE withy-core withy-options withy-precompiled ${ARGN})
   target_precompile_headers(withy-precompiled-${group} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled/${header})
+  if(optimization_${group})
+    target_compile_options(withy-precompiled-${group} PRIVATE $<$<CONFIG:Release>:${optimization_${group}}>)
+  endif()
 endfunction()
 
 withy_precompiled_group(plugins engine.hpp)
 withy_precompiled_group(programs programs.hpp fmt::fmt nlohmann_json::nlohmann_json)
 if(TARGET withy-precompiled-programs)
-  target_compile_options(withy-precompiled-programs PRIVATE ${optimized_little})
   # Libraries of hosts show their names: types of precompiled headers must not hide theirs.
   set_target_properties(withy-precompiled-programs PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
 endif()
 if(WITHY_TESTS)
-  withy_precompiled_group(tests tests.hpp GTest::gmock)
-endif()
-if(TARGET withy-precompiled-tests)
-  # As programs are, not libraries: the headers are those of one kind of code.
-  set_target_properties(withy-precompiled-tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-  target_compile_options(withy-precompiled-tests PRIVATE -fPIE ${optimized_little})
+  foreach(group tests computing-tests)
+    withy_precompiled_group(${group} tests.hpp GTest::gmock)
+    if(TARGET withy-precompiled-${group})
+      # As programs are, not libraries: the headers are those of one kind of code.
+      set_target_properties(withy-precompiled-${group} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+      target_compile_options(withy-precompiled-${group} PRIVATE -fPIE)
+    endif()
+  endforeach()
 endif()

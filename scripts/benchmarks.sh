@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # benchmarks.sh [TABLE...]: times evaluations and integrators, and writes the tables of docs/performance.md and
 # docs/integrators.md. TABLE: bench-arm, bench-chain, equal-links, lanes, lane-sweeps, branches, stiff-cost; without one all of
-# them, about ten minutes of a machine that does nothing else. The programs are those of build/release.
+# them, about ten minutes of a machine that does nothing else. The programs are those of build/release, where the target
+# measurements builds them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/measured.sh

@@ -6,7 +6,14 @@
 
 namespace withy::sweep {
 
-/// Calls action(std::integral_constant<int, n>) for 0 to 4 modes, and with −1 beyond.
+/// The most modes that are known to the compiler, 2 to 4: fewer take less time to compile (core/CMakeLists.txt).
+#ifdef WITHY_MODES_KNOWN
+constexpr int modes_known = WITHY_MODES_KNOWN;
+#else
+constexpr int modes_known = 4;
+#endif
+
+/// Calls action(std::integral_constant<int, n>) for 0 to `modes_known` modes, and with −1 beyond.
 template <class Action>
 inline void with_modes(int modes, Action&& action) {
   switch (modes) {
@@ -17,12 +24,15 @@ inline void with_modes(int modes, Action&& action) {
     case 2:
       return action(std::integral_constant<int, 2>{});
     case 3:
-      return action(std::integral_constant<int, 3>{});
+      if constexpr (modes_known >= 3) return action(std::integral_constant<int, 3>{});
+      break;
     case 4:
-      return action(std::integral_constant<int, 4>{});
+      if constexpr (modes_known >= 4) return action(std::integral_constant<int, 4>{});
+      break;
     default:
-      return action(std::integral_constant<int, -1>{});
+      break;
   }
+  action(std::integral_constant<int, -1>{});
 }
 
 }  // namespace withy::sweep

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "withy/tests/cli/process.hpp"
@@ -48,13 +49,41 @@ std::vector<std::string> pages() {
   return all;
 }
 
-/// Runs the lines of a block as a user would type them, `withy` being the program and ~ the folder. A line that says
-/// so in its comment ends with another status than 0. \returns what the last one prints
-std::string run_lines(const Folder& folder, std::string block) {
-  std::string out;
+/// The lines of a block, those that a backslash continues as one.
+std::vector<std::string> command_lines(std::string block) {
   for (std::size_t at; (at = block.find("\\\n")) != std::string::npos;) block.replace(at, 2, "");
-  for (const std::string& line : lines(block)) {
-    if (line.empty() || line.starts_with('#')) continue;
+  return lines(block);
+}
+
+/// A study of a shipped scene without its comment and the program's folder, which takes seconds; empty where a line is
+/// anything else.
+std::string study_in(const std::string& line) {
+  const std::string command = line.substr(0, line.find(" #")),
+                    study = command.substr(std::min(command.find("withy "), command.size()));
+  const std::vector<std::string> w = words(study);
+  if (w.size() < 3 || (w[1] != "trade" && w[1] != "advise") || !w[2].starts_with("scenes/")) return "";
+  return study.substr(0, study.find_last_not_of(' ') + 1);
+}
+
+/// The studies that pages before this one run, which are the same there.
+std::set<std::string> studies_before(const std::string& page) {
+  std::set<std::string> all;
+  for (const std::string& other : pages()) {
+    if (other >= page) continue;
+    for (const auto& [language, text] : blocks(text_of(WITHY_SOURCES "/" + other + ".md")))
+      for (const std::string& line : command_lines(language == "sh" ? text : ""))
+        if (std::string study = study_in(line); !study.empty()) all.insert(std::move(study));
+  }
+  return all;
+}
+
+/// Runs the lines of a block as a user would type them, `withy` being the program and ~ the folder, but for studies
+/// that run elsewhere. A line that says so in its comment ends with another status than 0. \returns what the last one
+/// prints
+std::string run_lines(const Folder& folder, const std::string& block, const std::set<std::string>& elsewhere) {
+  std::string out;
+  for (const std::string& line : command_lines(block)) {
+    if (line.empty() || line.starts_with('#') || elsewhere.contains(study_in(line))) continue;
     const std::vector<std::string> w = words(line);
     if (w[0].starts_with("scripts/")) {
       EXPECT_TRUE(std::filesystem::exists(WITHY_SOURCES "/" + w[0])) << line;
@@ -86,6 +115,7 @@ class Pages : public testing::TestWithParam<std::string> {};
 
 TEST_P(Pages, EveryCommandRunsOnTheScenesThatItHasWritten) {
   const Folder folder;
+  const std::set<std::string> elsewhere = studies_before(GetParam());
   std::string out;
   for (const auto& [language, text] : blocks(text_of(WITHY_SOURCES "/" + GetParam() + ".md"))) {
     const std::string first = text.substr(0, text.find('\n'));
@@ -93,7 +123,7 @@ TEST_P(Pages, EveryCommandRunsOnTheScenesThatItHasWritten) {
     if (language == "yaml" && first.starts_with("# ") && first.ends_with(".yaml")) {
       folder.write(first.substr(2), text);
     } else if (language == "sh") {
-      out = run_lines(folder, text);
+      out = run_lines(folder, text, elsewhere);
     } else if (language == "text output") {
       for (const std::string& line : lines(text))
         EXPECT_THAT(out, HasSubstr(line)) << "the last command says otherwise";
