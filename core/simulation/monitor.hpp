@@ -98,6 +98,10 @@ class Monitor {
     Vector3 now = Vector3::Zero(), velocity = Vector3::Zero();        ///< at the last accepted state, by the expansion
     Vector3 next = Vector3::Zero(), next_velocity = Vector3::Zero();  ///< the same at the one that is looked at
     double within = 0;  ///< share of the last step at which a component may be greatest; 0: at none
+    /// Whether a component grows at the last state and shrinks at the one that is looked at.
+    [[nodiscard]] bool turns(Eigen::Index k) const {
+      return !(now[k] * velocity[k] <= 0) && !(next[k] * next_velocity[k] >= 0);
+    }
   };
   void look(const State& state);
   /// Brings the observation to a state, where it is not there yet.

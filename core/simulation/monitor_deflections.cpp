@@ -72,7 +72,7 @@ void Monitor::observe_end(std::size_t index, const State& state, const Vector3& 
 /// Where a component of the deflection grows at the start of the last step and shrinks at its end, its greatest size
 /// lies between, by the cubic through the component. 0 where it does not, or has been as great before.
 double Monitor::greatest_within(const End& end, Eigen::Index k, double h) const {
-  if (end.now[k] * end.velocity[k] <= 0 || end.next[k] * end.next_velocity[k] >= 0) return 0;
+  if (!end.turns(k)) return 0;
   double greatest = 0, where = 0;
   constexpr int parts = 16;
   for (int i = 1; i < parts; ++i) {
@@ -117,13 +117,15 @@ void Monitor::see(const State& state) {
 void Monitor::look(const State& state) {
   if (own_ == nullptr) seen_y_.clear();
   excess_order_ = excess_.empty() ? std::numeric_limits<std::size_t>::max() : 0;
+  bool turns = false;
   for (End& end : ends_) {
     const double* const q = state.y.data() + end.slot->position;
     const double* const u = state.y.data() + model_.layout().positions + end.slot->speed;
     end.next = end.section.displacement(q);
     end.next_velocity = end.section.velocity(q, u);
+    for (Eigen::Index k = 0; k < 3; ++k) turns = turns || end.turns(k);
   }
-  if (state.time > last_.time) look_within(state);
+  if (turns && state.time > last_.time) look_within(state);
   bool seen = false;
   for (std::size_t e = 0; e < ends_.size(); ++e) {
     End& end = ends_[e];
