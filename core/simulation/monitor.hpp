@@ -80,7 +80,8 @@ class Monitor {
       double factor;  ///< of Φ_i, Γ_ij or ½ Γ_ii
       int i, j;
     };
-    std::array<std::vector<Term>, 3> components;  ///< without those that are zero
+    std::vector<Term> terms;            ///< of x, then of y, then of z, without those that are zero
+    std::array<std::size_t, 3> ends{};  ///< where those of a component end
     explicit SectionExpansion(const PointExpansion& e);
     [[nodiscard]] Vector3 displacement(const double* q) const;
     [[nodiscard]] Vector3 velocity(const double* q, const double* u) const;

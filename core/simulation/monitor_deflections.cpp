@@ -11,30 +11,39 @@ namespace withy {
 
 Monitor::SectionExpansion::SectionExpansion(const PointExpansion& e) {
   const auto modes = static_cast<int>(e.phi.cols());
+  const auto add = [this](double factor, int i, int j) {
+    if (factor != 0) terms.push_back({factor, i, j});
+  };
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto add = [&terms = components[k]](double factor, int i, int j) {
-      if (factor != 0) terms.push_back({factor, i, j});
-    };
     for (int i = 0; i < modes; ++i) {
       add(e.phi(static_cast<Eigen::Index>(k), i), i, -1);
       for (int j = i; j < modes; ++j) add(e.gamma[k](i, j) * (i == j ? 0.5 : 1.0), i, j);
     }
+    ends[k] = terms.size();
   }
 }
 
 Vector3 Monitor::SectionExpansion::displacement(const double* q) const {
-  Vector3 d = Vector3::Zero();
-  for (std::size_t k = 0; k < 3; ++k)
-    for (const Term& t : components[k])
-      d[static_cast<Eigen::Index>(k)] += t.j < 0 ? t.factor * q[t.i] : t.factor * (q[t.i] * q[t.j]);
+  Vector3 d;
+  const Term* t = terms.data();
+  for (std::size_t k = 0; k < 3; ++k) {
+    double sum = 0;
+    for (const Term* const end = terms.data() + ends[k]; t != end; ++t)
+      sum += t->j < 0 ? t->factor * q[t->i] : t->factor * (q[t->i] * q[t->j]);
+    d[static_cast<Eigen::Index>(k)] = sum;
+  }
   return d;
 }
 
 Vector3 Monitor::SectionExpansion::velocity(const double* q, const double* u) const {
-  Vector3 v = Vector3::Zero();
-  for (std::size_t k = 0; k < 3; ++k)
-    for (const Term& t : components[k])
-      v[static_cast<Eigen::Index>(k)] += t.j < 0 ? t.factor * u[t.i] : t.factor * (u[t.i] * q[t.j] + q[t.i] * u[t.j]);
+  Vector3 v;
+  const Term* t = terms.data();
+  for (std::size_t k = 0; k < 3; ++k) {
+    double sum = 0;
+    for (const Term* const end = terms.data() + ends[k]; t != end; ++t)
+      sum += t->j < 0 ? t->factor * u[t->i] : t->factor * (u[t->i] * q[t->j] + q[t->i] * u[t->j]);
+    v[static_cast<Eigen::Index>(k)] = sum;
+  }
   return v;
 }
 
