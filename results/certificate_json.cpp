@@ -90,6 +90,13 @@ Json estimate_json(const Certificate& c) {
           {"evaluations", c.estimate->evaluations},   {"cpu_seconds", c.estimate->cpu_seconds}};
 }
 
+Json more_modes_json(const study::MoreModes& more) {
+  return {{"hinges", more.distances.hinges},           {"tips", more.distances.tips},
+          {"deflections", more.distances.deflections}, {"moments", more.distances.moments},
+          {"forces", more.distances.forces},           {"until", more.distances.until},
+          {"evaluations", more.evaluations},           {"cpu_seconds", more.cpu_seconds}};
+}
+
 Json steps_json(const study::StepLimit& s) {
   Json j = {{"limited_by", s.cause()},
             {"mean", s.mean},
@@ -145,6 +152,8 @@ Json certificate_json(const Scene& scene, const RunSummary& summary, const Certi
           : Json();
   c["estimated_error"] = estimate_json(certificate);
   if (!certificate.estimate) c["without_estimate"] = certificate.without_estimate;
+  c["one_mode_more"] = certificate.more_modes.more ? more_modes_json(*certificate.more_modes.more) : Json();
+  if (!certificate.more_modes.why_not.empty()) c["without_one_mode_more"] = certificate.more_modes.why_not;
   c["steps"] = steps_json(certificate.steps);
   c["indicators"] = indicators_json(certificate.indicators);
   return c;

@@ -65,13 +65,13 @@ class ErrorList {
   std::vector<Error> all_;
 };
 
-/// \param reached time [s] at which the run ended
-std::string error_text(const study::ErrorEstimate& e, const Model& model, double reached) {
+/// "shoulder 0.12 deg, elbow 0.3 deg; link2.tip 3.1 mm"; empty where no hinge moves and no body has a tip.
+std::string distances_text(const study::NamedDistances& distances, const Model& model) {
   std::string out;
   ErrorList angles, positions;
   for (const HingeNode& hinge : model.hinges()) {
-    const auto found = e.distances.hinges.find(hinge.name);
-    if (found == e.distances.hinges.end()) continue;
+    const auto found = distances.hinges.find(hinge.name);
+    if (found == distances.hinges.end()) continue;
     const auto columns = coordinate_columns(hinge);
     const std::string unit = columns.size() == 1 ? columns[0].unit : "";
     const double d = found->second;
@@ -83,15 +83,21 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model, double
   }
   angles.append_to(out);
   positions.append_to(out);
-  const auto append = [&out](const std::map<std::string, double>& distances, double factor, const char* unit) {
+  const auto append = [&out](const std::map<std::string, double>& of, double factor, const char* unit) {
     ErrorList list;
-    for (const auto& [name, d] : distances) list.add(d, fmt::format("{} {:.2g} {}", name, factor * d, unit));
+    for (const auto& [name, d] : of) list.add(d, fmt::format("{} {:.2g} {}", name, factor * d, unit));
     list.append_to(out);
   };
-  append(e.distances.tips, 1e3, "mm");
-  append(e.distances.deflections, 1e3, "mm");
-  append(e.distances.moments, 1, "N m");
-  append(e.distances.forces, 1, "N");
+  append(distances.tips, 1e3, "mm");
+  append(distances.deflections, 1e3, "mm");
+  append(distances.moments, 1, "N m");
+  append(distances.forces, 1, "N");
+  return out;
+}
+
+/// \param reached time [s] at which the run ended
+std::string error_text(const study::ErrorEstimate& e, const Model& model, double reached) {
+  std::string out = distances_text(e.distances, model);
   if (out.empty()) return "no hinge moves and no body has a tip";
   out = fmt::format("against {}, estimated by coarse runs: {}", e.against, out);
   if (!e.at_most.empty())
@@ -101,6 +107,16 @@ std::string error_text(const study::ErrorEstimate& e, const Model& model, double
   else if (e.end < reached)
     out += fmt::format("; up to {:.4g} s, the last state that can be trusted", e.end);
   return out;
+}
+
+/// What the error does not contain; empty where no body has a number of modes.
+std::string more_modes_text(const study::MoreModesOutcome& outcome, const Model& model, double reached) {
+  if (!outcome.why_not.empty()) return "what too few modes add is not known: " + outcome.why_not;
+  const std::string out = outcome.more ? distances_text(outcome.more->distances, model) : "";
+  if (out.empty()) return "";
+  const double until = outcome.more->distances.until;
+  return fmt::format("too few modes: one more of each changes {}{}", out,
+                     until < reached ? fmt::format("; up to {:.4g} s", until) : "");
 }
 
 std::string body_text(const BodyValidity& b, const RunSummary& summary) {
@@ -254,6 +270,8 @@ std::string certificate_text(const Model& model, const RunSummary& summary, cons
   } else if (!certificate.without_estimate.empty()) {
     line("error", certificate.without_estimate);
   }
+  if (const std::string text = more_modes_text(certificate.more_modes, model, summary.reached); !text.empty())
+    line("", text);
   for (const BodyValidity& b : certificate.bodies) line(b.name, body_text(b, summary));
   if (const std::string limits = limits_text(certificate.indicators); !limits.empty()) line("limits", limits);
   if (certificate.steps.product > 0) line("steps", step_limit_text(certificate.steps));

@@ -127,6 +127,7 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.neglected = summary.validity.neglected;
   c.estimate = std::move(evidence.estimate);
   c.without_estimate = std::move(evidence.without_estimate);
+  c.more_modes = std::move(evidence.more_modes);
   c.steps = step_limit(prepared, summary, registry);
   c.indicators = indicators(scene, summary, last != nullptr ? std::optional(last->terms) : std::nullopt);
   add_rounding(c);

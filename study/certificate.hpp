@@ -9,6 +9,7 @@
 #include "withy/study/dropped_terms.hpp"
 #include "withy/study/error_estimate.hpp"
 #include "withy/study/indicators.hpp"
+#include "withy/study/more_modes.hpp"
 #include "withy/study/rung_plan.hpp"
 #include "withy/study/step_limit.hpp"
 
@@ -55,6 +56,7 @@ struct Certificate {
   NeglectedAcceleration neglected;     ///< no samples where there was nothing to compare with
   std::optional<ErrorEstimate> estimate;  ///< none where there is no model up, or it was not asked for
   std::string without_estimate;           ///< why there is none, and what is known without one
+  MoreModesOutcome more_modes;            ///< empty where no body has a number of modes
   StepLimit steps;
   std::vector<Indicator> indicators;  ///< the one that binds first
 };
@@ -67,6 +69,7 @@ struct Evidence {
   std::optional<ErrorEstimate> estimate;
   std::string without_estimate = {};  ///< why there is none
   std::vector<DroppedForces> dropped = {};
+  MoreModesOutcome more_modes = {};
 };
 Certificate certify(const Prepared& prepared, Evidence evidence, Registry& registry);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <functional>
 #include <numeric>
 #include <string_view>
 
@@ -16,37 +17,45 @@ namespace withy::study {
 namespace {
 
 /// What an initial state says of a body's modal coordinates or rates, for another number of modes.
-/// \param had modes of each strain up to now, in the order of the values.
-Value resized(std::span<const double> values, const std::vector<int>& had, int modes) {
+/// \param had modes of each strain up to now, in the order of the values, and \param becomes what these are to be.
+Value resized(std::span<const double> values, const std::vector<int>& had, const std::vector<int>& becomes) {
   std::vector<Value> items;
   std::size_t first = 0;
-  for (const int n : had) {
-    for (int i = 0; n > 0 && i < modes; ++i)
-      items.emplace_back(i < n ? values[first + static_cast<std::size_t>(i)] : 0.0);
-    first += static_cast<std::size_t>(n);
+  for (std::size_t strain = 0; strain < had.size(); ++strain) {
+    for (int i = 0; i < becomes[strain]; ++i)
+      items.emplace_back(i < had[strain] ? values[first + static_cast<std::size_t>(i)] : 0.0);
+    first += static_cast<std::size_t>(had[strain]);
   }
   return Value::list(std::move(items));
 }
 
+/// How many modes there are to be where there are so many now.
+using NumberOfModes = std::function<int(int)>;
+
 /// What another number of modes and another family change in a body.
 struct ModesChanged {
-  std::vector<int> had;  ///< modes of each strain up to now, in the order of the coordinates
+  std::vector<int> had;      ///< modes of each strain up to now, in the order of the coordinates
+  std::vector<int> becomes;  ///< the same from now on; none where there were none
   bool families = false;
   std::vector<std::pair<std::string, Value>> values;  ///< by paths below the body
 };
 
-/// Gives a body the point's modes and family. The family is of bending; other strains take it where both it and their
-/// own can be any strain of a clamped beam, so that no strain converges more slowly than the rest.
-ModesChanged change_modes(const Scene& scene, const BodyModes& body, const Point& point, Registry& registry) {
+/// Gives a body other modes, by what it has of each, and the family where one is named. The family is of bending; other
+/// strains take it where both it and their own can be any strain of a clamped beam, so that no strain converges more
+/// slowly than the rest.
+ModesChanged change_modes(const Scene& scene, const BodyModes& body, const NumberOfModes& number, const std::string& to,
+                          Registry& registry) {
   ModesChanged changed;
   for (const ModeCount& count : body.counts) {
-    changed.had.push_back(static_cast<int>(count.modes));
-    if (count.modes == 0) continue;
-    changed.values.emplace_back(count.path, Value(static_cast<double>(point.modes)));
-    const std::string path = point.family.empty() ? "" : family_path(scene, body.body, count, registry);
+    const auto had = static_cast<int>(count.modes), becomes = had == 0 ? 0 : number(had);
+    changed.had.push_back(had);
+    changed.becomes.push_back(becomes);
+    if (had == 0) continue;
+    changed.values.emplace_back(count.path, Value(static_cast<double>(becomes)));
+    const std::string path = to.empty() ? "" : family_path(scene, body.body, count, registry);
     const Value* own = family_at(scene, body.body, path);
-    if (path.empty() || (own != nullptr && own->kind() == Value::Kind::text && own->text() == point.family)) continue;
-    const Value family(point.family);
+    if (path.empty() || (own != nullptr && own->kind() == Value::Kind::text && own->text() == to)) continue;
+    const Value family(to);
     const bool bending = !count.family_path.empty();
     if (!bending && !(own != nullptr && spans_cantilevers(*own, registry) && spans_cantilevers(family, registry)))
       continue;
@@ -59,7 +68,7 @@ ModesChanged change_modes(const Scene& scene, const BodyModes& body, const Point
 /// Keeps what the initial state says of a body's modes: by the number of each where the family stays, else by the
 /// shape.
 void change_start(std::vector<Change>& changes, const Scene& scene, const std::string& name, const ModesChanged& modes,
-                  int number, Registry& registry) {
+                  Registry& registry) {
   const Value* initial = scene.source.find("initial");
   const Value* starts = initial != nullptr ? initial->find("bodies") : nullptr;
   const Value* start = starts != nullptr ? starts->find(name) : nullptr;
@@ -74,7 +83,7 @@ void change_start(std::vector<Change>& changes, const Scene& scene, const std::s
   const auto becomes = modes.families ? body_with(scene, name, modes.values, registry) : nullptr;
   const auto carried = [&](std::span<const double> values) {
     if (!modes.families || std::all_of(values.begin(), values.end(), [](double v) { return v == 0; }))
-      return resized(values, modes.had, number);
+      return resized(values, modes.had, modes.becomes);
     const auto shape = becomes != nullptr ? same_shape(*node->body, values, *becomes) : std::nullopt;
     if (!shape)
       throw InputError("body '" + name +
@@ -89,6 +98,16 @@ void change_start(std::vector<Change>& changes, const Scene& scene, const std::s
   if (start->has("rates"))
     changes.push_back(
         {path + ".rates", carried(y.subspan(scene.model->layout().positions + slot->speed, slot->speeds))});
+}
+
+/// What gives all bodies other modes, and keeps what the initial state says of them.
+void change_all_modes(std::vector<Change>& changes, const Scene& scene, const NumberOfModes& number,
+                      const std::string& family, Registry& registry) {
+  for (const BodyModes& body : scene.modes) {
+    const ModesChanged modes = change_modes(scene, body, number, family, registry);
+    for (const auto& [path, value] : modes.values) changes.push_back({"bodies." + body.body + '.' + path, value});
+    change_start(changes, scene, body.body, modes, registry);
+  }
 }
 
 }  // namespace
@@ -175,12 +194,9 @@ std::vector<Change> changes_at(const Scene& scene, const Point& point, Registry&
     changes.push_back({"integrator", Value::map({{"name", Value(point.integrator)},
                                                  {"rtol", Value(point.tolerance)},
                                                  {"atol", Value(absolute_tolerance(point.tolerance))}})});
-  for (const BodyModes& body : scene.modes) {
-    if (point.modes == 0) continue;
-    const ModesChanged modes = change_modes(scene, body, point, registry);
-    for (const auto& [path, value] : modes.values) changes.push_back({"bodies." + body.body + '.' + path, value});
-    change_start(changes, scene, body.body, modes, point.modes, registry);
-  }
+  if (point.modes > 0)
+    change_all_modes(
+        changes, scene, [&](int) { return point.modes; }, point.family, registry);
   for (const auto& [name, body] : scene.source.at("bodies").members()) {
     const std::string& of = name;
     const auto own =
@@ -199,6 +215,15 @@ SceneValues values_at(SceneValues values, const Scene& scene, const Point& point
   const std::string origin = "the study's point " + point.text();
   values.choose_formulation(point.formulation, origin);
   for (Change& change : changes_at(scene, point, registry)) values.set(change.path, std::move(change.value), origin);
+  return values;
+}
+
+SceneValues with_more_modes(SceneValues values, const Scene& scene, int more, Registry& registry) {
+  std::vector<Change> changes;
+  change_all_modes(
+      changes, scene, [more](int had) { return had + more; }, "", registry);
+  for (Change& change : changes)
+    values.set(change.path, std::move(change.value), fmt::format("{} more of each body's modes", more));
   return values;
 }
 

@@ -71,4 +71,8 @@ std::vector<Change> changes_at(const Scene& scene, const Point& point, Registry&
 /// \param scene made from these values
 SceneValues values_at(SceneValues values, const Scene& scene, const Point& point, Registry& registry);
 
+/// The values of the scene with `more` modes more of each that a body has; those that are new start at rest.
+/// \param scene made from these values
+SceneValues with_more_modes(SceneValues values, const Scene& scene, int more, Registry& registry);
+
 }  // namespace withy::study

@@ -180,6 +180,18 @@ std::string without_estimate(const Prepared& prepared, const RunSummary& summary
          (settings.estimate == Estimate::never ? "" : "; `--estimate always` compares with " + beyond->formulation);
 }
 
+/// What the error against another formulation does not contain, where it is asked for and can be told.
+MoreModesOutcome more_modes(const Prepared& prepared, Registry& registry, const RunSummary& summary,
+                            const RunSettings& settings, bool comparable) {
+  if (!settings.look_beyond || !can_be_refined(prepared.scene)) return {};
+  if (settings.estimate != Estimate::always)
+    return {{}, "it was not asked for; `--estimate always` compares with one more of each"};
+  if (has_switches(prepared.model()))
+    return {{}, "loads switch or events act at the zeros of functions, at times of their own in every model"};
+  if (!comparable) return {{}, "no motion of this run can be compared"};
+  return with_one_mode_more(prepared, registry, summary.final.time, settings.control.interrupted);
+}
+
 bool wanted(Estimate estimate, const Beyond& beyond) {
   return estimate == Estimate::always || (estimate == Estimate::automatic && !beyond.highest);
 }
@@ -217,9 +229,9 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
     result.summary.message += (result.summary.message.empty() ? "" : " ") + closing->text();
   result.summary.message += growth_text(prepared, result.summary) + remedy_text(prepared, result.summary);
   EstimateOutcome estimate;
-  if (beyond && wanted(settings.estimate, *beyond) && !has_switches(prepared.model()) &&
-      loops_of(prepared.model()).empty() && result.summary.status != RunStatus::interrupted &&
-      result.summary.final.time > prepared.scene.initial.time)
+  const bool comparable = !has_switches(prepared.model()) && result.summary.status != RunStatus::interrupted &&
+                          result.summary.final.time > prepared.scene.initial.time;
+  if (beyond && wanted(settings.estimate, *beyond) && comparable && loops_of(prepared.model()).empty())
     estimate =
         estimate_error(prepared.scene, *prepared.equations, *beyond, result.summary, registry,
                        settings.estimate == Estimate::always ? Price::any : Price::tenth, settings.control.interrupted);
@@ -237,7 +249,8 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
                                 {},
                                 std::move(estimate.estimate),
                                 std::move(why_not),
-                                std::move(dropped)},
+                                std::move(dropped),
+                                more_modes(prepared, registry, result.summary, settings, comparable)},
                                registry);
   return result;
 }

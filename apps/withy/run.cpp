@@ -70,8 +70,10 @@ void add_run(Options& o, RunArguments& a) {
   add_output(o, a, "Folder of the results; default: results/<scene>-<formulation>, with what is --set behind it");
   o.list("--outputs,--output", a.outputs, "NAME,...",
          "Outputs to add, by names as HINGE.effort, HINGE.reaction, FRAME.acceleration, BODY.section@X");
-  o.value("--estimate", a.estimate, "WHEN",
-          "Estimate the error against the next model up: auto (where that is quadratic), always, never")
+  o.value(
+       "--estimate", a.estimate, "WHEN",
+       "Estimate the error against the next model up: auto (where that is quadratic), always (and what one mode more "
+       "changes), never")
       .among({"auto", "always", "never"})
       .with_default();
 
