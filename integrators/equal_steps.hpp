@@ -17,8 +17,8 @@ class EqualSteps : public OneStep {
     const double t = state_.time;
     if (!(t_limit > t)) return {};
     if (const StepResult r = begin(t_limit); r.outcome != StepResult::Outcome::ok) return r;
-    if (next_end_ == known_ends_ || known_from_ != t || known_limit_ != t_limit) look_ahead(t, t_limit);
-    double t_new = ends_[next_end_];
+    if (next_end_ == ends_.count || ends_.from != t || ends_.limit != t_limit) look_ahead(t, t_limit);
+    double t_new = ends_.at[next_end_];
     if (!(t_new > t)) return {StepResult::Outcome::step_underflow, -1};
     for (int halvings = 0;; ++halvings) {
       const Attempt a = attempt(t_new - t);
@@ -32,8 +32,8 @@ class EqualSteps : public OneStep {
       t_new = half;
     }
     const double h = t_new - t;
-    known_from_ = t_new;
-    next_end_ = t_new == ends_[next_end_] ? next_end_ + 1 : known_ends_;
+    ends_.from = t_new;
+    next_end_ = t_new == ends_.at[next_end_] ? next_end_ + 1 : ends_.count;
     accept(t_new);
     accepted(h);
     return {};
@@ -56,8 +56,8 @@ class EqualSteps : public OneStep {
   }
   /// The ends of the step that `attempt` is to try and of those after it; empty where it is a part of a step.
   [[nodiscard]] std::span<const double> ends_of(double h) const {
-    if (h != ends_[next_end_] - state_.time) return {};
-    return std::span(ends_).first(known_ends_).subspan(next_end_);
+    if (h != ends_.at[next_end_] - state_.time) return {};
+    return std::span(ends_.at).first(ends_.count).subspan(next_end_);
   }
   /// How often a step that fails is halved.
   [[nodiscard]] virtual int most_halvings() const { return 0; }
@@ -69,20 +69,35 @@ class EqualSteps : public OneStep {
     const double steps = std::ceil((t_limit - t) / step_ * (1 - 1e-9));
     return steps > 1 ? t + (t_limit - t) / steps : t_limit;
   }
+  /// The ends of the steps that follow each other from a time on.
+  struct Ends {
+    double from = 0, limit = 0, step = 0;  ///< what they were found for [s]
+    std::size_t count = 0;
+    std::array<double, 8> at{};  ///< [s]
+  };
   /// Finds the ends of the next steps, of one where nobody makes several.
   void look_ahead(double t, double t_limit) {
-    known_from_ = t;
-    known_limit_ = t_limit;
-    next_end_ = known_ends_ = 0;
-    do {
-      t = ends_[known_ends_++] = end_of_step(t, t_limit);
-    } while (staged() && known_ends_ < ends_.size() && t < t_limit);
+    next_end_ = 0;
+    if (!staged()) {
+      ends_.from = t, ends_.limit = t_limit, ends_.count = 1;
+      ends_.at[0] = end_of_step(t, t_limit);
+      return;
+    }
+    // Cases in lanes mostly go through the same times.
+    thread_local Ends last;
+    if (last.count == 0 || last.from != t || last.limit != t_limit || last.step != step_) {
+      last = {t, t_limit, step_, 0, {}};
+      double end = t;
+      do {
+        end = last.at[last.count++] = end_of_step(end, t_limit);
+      } while (last.count < last.at.size() && end < t_limit);
+    }
+    ends_ = last;
   }
 
   double step_;
-  std::array<double, 8> ends_{};  ///< [s], of the next steps to the limit where each is accepted
-  std::size_t known_ends_ = 0, next_end_ = 0;
-  double known_from_ = 0, known_limit_ = 0;  ///< what they were found for
+  Ends ends_;                 ///< of the next steps to the limit where each is accepted; `from` goes with the steps
+  std::size_t next_end_ = 0;  ///< in ends_
 };
 
 inline ParameterSpec step_parameter() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <tuple>
 #include <vector>
@@ -16,7 +17,7 @@ namespace withy::equations {
 
 /// A time for each lane that takes part; of the others nobody knows whether their loads still are.
 struct LaneTimes {
-  std::array<double, cases_at_once> t{};  ///< [s]
+  Lanes t;  ///< [s]
   LaneSet live;
 };
 
@@ -38,6 +39,10 @@ class TimedEfforts {
       return &other != &own && other.loads != nullptr && other.laws == own.laws;
     });
     own.kind = same != of_.end() ? same->kind : ++last_kind_;
+    for (OfLane& a : of_) {
+      a.alike = {};
+      for (std::size_t i = 0; i < cases_at_once; ++i) a.alike.bits |= of_[i].kind == a.kind ? 1U << i : 0U;
+    }
   }
   /// One number a load of the lane's case, at its time; nothing where no load is timed.
   std::span<const double> at(std::size_t lane, const LaneTimes& times) noexcept {
@@ -81,17 +86,17 @@ class TimedEfforts {
     std::vector<double> values;
     std::vector<std::pair<std::size_t, const void*>> laws;  ///< with their speeds
     std::size_t kind = 0;                                   ///< the same for lanes with the same laws
+    LaneSet alike;                                          ///< those
     bool any = false;
   };
   /// The first lane of a set, where all of it have the same laws at the same time; else that behind the last.
   [[nodiscard]] std::size_t alike(const LaneTimes& times, LaneSet of) const noexcept {
-    std::size_t first = cases_at_once;
-    for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
-      if (!of.has(lane)) continue;
-      if (first == cases_at_once) first = lane;
-      if (of_[lane].kind != of_[first].kind || times.t[lane] != times.t[first]) return cases_at_once;
-    }
-    return first;
+    if (none(of)) return cases_at_once;
+    const auto first = static_cast<std::size_t>(std::countr_zero(of.bits));
+    const Lanes t = times.t[first];
+    const LaneSet others{of.bits &
+                         (~of_[first].alike.bits | (positive(times.t - t).bits | positive(t - times.t).bits))};
+    return none(others) ? first : cases_at_once;
   }
   /// What a lane before has found; null: none has.
   [[nodiscard]] const double* elsewhere(const void* law, double t, std::size_t lane, LaneSet live) const noexcept {

@@ -80,11 +80,11 @@ class LanesOfSpace final : public LaneEquations {
     std::array<double*, cases_at_once> applied, rates;
     std::array<const double*, cases_at_once> y;
     applied.fill(idle_.data()), rates.fill(idle_.data()), y.fill(idle_.data());
-    equations::LaneTimes times{{}, called(calls)};
+    equations::LaneTimes times{0, called(calls)};
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (calls[lane] == nullptr) continue;
       const LaneCall& call = *calls[lane];
-      times.t[lane] = call.t;
+      times.t.set(lane, call.t);
       applied[lane] = apply(lane, times, call.y, call.y_dot, *call.work).data();
       y[lane] = call.y.data();
       rates[lane] = call.y_dot.data() + n;
@@ -123,13 +123,13 @@ class LanesOfSpace final : public LaneEquations {
     }
     gather(y, size_, start_.data());
     gather(slope, size_, slopes_.data());
+    from_ = {start_.data(), slopes_.data()};
     LaneSet good = live;
     for (std::size_t k = 0; !none(good = ahead_.wanting(k, good)); ++k) {
       good = whole_step(*table, k, calls, good);
       if (k == 0) tell_slopes(*table, calls, good);
       if (energies_ != nullptr && ahead_.expects_energies(k)) find_energies(k, good);
-      std::copy_n(ahead_.y(k), size_, start_.data());
-      std::copy_n(ahead_.slope(k), size_, slopes_.data());
+      from_ = {ahead_.y(k), ahead_.slope(k)};
     }
     for (std::size_t lane = 0; lane < cases_at_once; ++lane)
       if (live.has(lane)) give(lane, *calls[lane]);
@@ -163,19 +163,26 @@ class LanesOfSpace final : public LaneEquations {
                          : own.applied(times.t[lane], y, y_dot, work, timed);
   }
 
-  /// Makes step k of some lanes from `start_` and the first slope, and leaves what it gives in `ahead_`.
-  /// \returns the lanes where it is ok
+  /// What a step begins with: the state, and the slope there.
+  struct From {
+    const Lanes *y, *slope;
+  };
+  /// Where a stage is made: its state, the slope there, the efforts.
+  struct Stage {
+    Lanes *y, *slope, *efforts;
+  };
+
+  /// Makes step k of some lanes from `from_`, and leaves what it gives in `ahead_`. \returns the lanes where it is ok
   LaneSet whole_step(const StageTable& table, std::size_t k, std::span<LaneStep* const> calls, LaneSet live) noexcept {
     [[maybe_unused]] const equations::DenormalsAreZero guard;  // not of the energies, which are found without as well
-    Lanes h(0);
+    h_ = ahead_.length(k);
     for (std::size_t lane = 0; lane < cases_at_once; ++lane)
-      if (live.has(lane)) h.set(lane, ahead_.length(lane, k));
+      if (!live.has(lane)) h_.set(lane, 0);
     LaneSet good = live;
-    for (std::size_t i = 1; i < table.stages && !none(good); ++i) good = stage(table, i, k, h, calls, good);
-    std::copy_n(stage_.data(), size_, ahead_.y(k));
-    std::copy_n(slopes_.data() + (table.stages - 1) * size_, size_, ahead_.slope(k));
-    std::copy_n(efforts_.data(), speeds_, ahead_.efforts(k));
-    return good;
+    for (std::size_t i = 1; i + 1 < table.stages && !none(good); ++i)
+      good = stage(table, i, k, {stage_.data(), slopes_.data() + i * size_, efforts_.data()}, calls, good);
+    if (none(good)) return good;
+    return stage(table, table.stages - 1, k, {ahead_.y(k), ahead_.slope(k), ahead_.efforts(k)}, calls, good);
   }
 
   /// The slopes between the first and the last, to the lanes that want them.
@@ -200,57 +207,78 @@ class LanesOfSpace final : public LaneEquations {
   }
 
   /// Makes a stage of step k of some lanes. \returns those of them where it is ok
-  LaneSet stage(const StageTable& table, std::size_t i, std::size_t k, const Lanes& h, std::span<LaneStep* const> calls,
-                LaneSet live) noexcept {
-    go_to_stage(table, i, h);
-    Lanes* const y_dot = slopes_.data() + i * size_;
-    equations::LaneTimes times{{}, live};
-    for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
-      if (!live.has(lane)) continue;
-      times.t[lane] = std::min(ahead_.start(lane, k) + table.c[i] * ahead_.length(lane, k), ahead_.latest(lane));
-    }
-    std::fill(efforts_.begin(), efforts_.end(), Lanes(0));
+  LaneSet stage(const StageTable& table, std::size_t i, std::size_t k, const Stage& at,
+                std::span<LaneStep* const> calls, LaneSet live) noexcept {
+    go_to_stage(table, i, at.y);
+    const equations::LaneTimes times{earlier(ahead_.start(k) + Lanes(table.c[i]) * h_, ahead_.latest()), live};
+    std::fill_n(at.efforts, speeds_, Lanes(0));
     const LaneSet plain = live & plain_;
-    timed_.add(times, plain, efforts_.data());
+    timed_.add(times, plain, at.efforts);
     const LaneSet others{live.bits & ~plain.bits};
-    if (!none(others)) apply_others(others, calls, times, y_dot);
+    if (!none(others)) apply_others(others, calls, times, at);
+    const LaneSet solved = sweep_.accelerations(at.y, at.y + positions_, at.efforts, at.slope + positions_,
+                                                work_.data(), failures_.data());
+    const LaneSet finite = finish_plain(at);
+    const bool last = i + 1 == table.stages;
+    if ((plain & finite & solved).bits == live.bits) {
+      for (std::size_t lane = 0; lane < cases_at_once && last; ++lane)
+        if (live.has(lane)) ahead_.made(lane, k, {{}, i});
+      return live;
+    }
     std::array<Evaluation, cases_at_once> evaluations;
-    sweep_.accelerations(stage_.data(), stage_.data() + positions_, efforts_.data(), y_dot + positions_, work_.data(),
-                         evaluations.data());
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane)
+      if (!solved.has(lane)) evaluations[lane] = failures_[lane];
     // What is not finite is looked into case by case.
-    const LaneSet finite = finish_plain(y_dot), lost{plain.bits & ~finite.bits};
+    const LaneSet lost{plain.bits & ~finite.bits};
     for (std::size_t lane = 0; lane < cases_at_once && !none(lost); ++lane)
-      if (lost.has(lane)) take_lane(stage_.data(), lane, stages_[lane]);
-    if (const LaneSet rest{others.bits | lost.bits}; !none(rest)) finish_rest(rest, calls, times, y_dot, evaluations);
+      if (lost.has(lane)) take_lane(at.y, lane, stages_[lane]);
+    if (const LaneSet rest{others.bits | lost.bits}; !none(rest)) finish_rest(rest, calls, times, at, evaluations);
     LaneSet good;
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (!live.has(lane)) continue;
-      ahead_.made(lane, k, {evaluations[lane], i});
       if (evaluations[lane].ok()) good.bits |= 1U << lane;
+      if (last || !good.has(lane)) ahead_.made(lane, k, {evaluations[lane], i});
     }
     return good;
   }
 
   /// The state of a stage: the sums go from the first slope to the last.
-  void go_to_stage(const StageTable& table, std::size_t i, const Lanes& h) noexcept {
-    std::array<std::pair<Lanes, const Lanes*>, StageTable::most> terms;
+  void go_to_stage(const StageTable& table, std::size_t i, Lanes* y) const noexcept {
+    std::array<Lanes, StageTable::most> factors;
+    std::array<const Lanes*, StageTable::most> slopes;
     std::size_t count = 0;
-    for (std::size_t j = 0; j < i; ++j)
-      if (table.a[i][j] != 0) terms[count++] = {h * Lanes(table.a[i][j]), slopes_.data() + j * size_};
-    for (std::size_t e = 0; e < size_; ++e) {
-      Lanes sum = start_[e];
-      for (std::size_t j = 0; j < count; ++j) sum += terms[j].first * terms[j].second[e];
-      stage_[e] = sum;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (table.a[i][j] == 0) continue;
+      factors[count] = h_ * Lanes(table.a[i][j]);
+      slopes[count++] = j == 0 ? from_.slope : slopes_.data() + j * size_;
     }
+    if (count == 1) {
+      const Lanes factor = factors[0];
+      for (std::size_t e = 0; e < size_; ++e) y[e] = from_.y[e] + factor * slopes[0][e];
+      return;
+    }
+    for (std::size_t e = 0; e < size_; ++e) {
+      Lanes sum = from_.y[e];
+      for (std::size_t j = 0; j < count; ++j) sum += factors[j] * slopes[j][e];
+      y[e] = sum;
+    }
+  }
+  /// a, or b where that is less.
+  static Lanes earlier(Lanes a, const Lanes& b) noexcept {
+    const LaneSet later = positive(a - b);
+    for (std::size_t lane = 0; lane < cases_at_once && !none(later); ++lane)
+      if (later.has(lane)) a.set(lane, b[lane]);
+    return a;
   }
 
   /// Rates of positions and the power of lanes whose loads are timed. \returns where all is finite
-  LaneSet finish_plain(Lanes* y_dot) noexcept {
-    const Lanes* const speeds = stage_.data() + positions_;
+  LaneSet finish_plain(const Stage& at) noexcept {
+    const Lanes* const speeds = at.y + positions_;
+    Lanes* const y_dot = at.slope;
     for (const equations::RateMap::Run& run : copies_)
       for (std::size_t k = 0; k < run.count; ++k) y_dot[run.position + k] = speeds[run.speed + k];
     Lanes power(0);
-    for (std::size_t k = 0; k < speeds_; ++k) power += efforts_[k] * speeds[k];
+    for (std::size_t k = 0; k < speeds_; ++k) power += at.efforts[k] * speeds[k];
     power += damping_.power(speeds);
     for (std::size_t k = positions_ + speeds_; k + 1 < size_; ++k) y_dot[k] = Lanes(0);
     y_dot[size_ - 1] = power;
@@ -261,32 +289,32 @@ class LanesOfSpace final : public LaneEquations {
 
   /// Efforts and driven accelerations of lanes with loads of other kinds, case by case.
   void apply_others(LaneSet others, std::span<LaneStep* const> calls, const equations::LaneTimes& times,
-                    Lanes* y_dot) noexcept {
+                    const Stage& at) noexcept {
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (!others.has(lane)) continue;
-      take_lane(stage_.data(), lane, stages_[lane]);
+      take_lane(at.y, lane, stages_[lane]);
       const std::span<const double> applied = apply(lane, times, stages_[lane], rates_[lane], *calls[lane]->step->work);
-      for (std::size_t k = 0; k < speeds_; ++k) efforts_[k].set(lane, applied[k]);
+      for (std::size_t k = 0; k < speeds_; ++k) at.efforts[k].set(lane, applied[k]);
       if (!sweep_.driven()) continue;
-      for (std::size_t k = 0; k < speeds_; ++k) y_dot[positions_ + k].set(lane, rates_[lane][positions_ + k]);
+      for (std::size_t k = positions_; k < positions_ + speeds_; ++k) at.slope[k].set(lane, rates_[lane][k]);
     }
   }
 
   /// What some have beside their accelerations, case by case.
-  void finish_rest(LaneSet rest, std::span<LaneStep* const> calls, const equations::LaneTimes& times, Lanes* y_dot,
+  void finish_rest(LaneSet rest, std::span<LaneStep* const> calls, const equations::LaneTimes& times, const Stage& at,
                    std::array<Evaluation, cases_at_once>& evaluations) noexcept {
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
       if (!rest.has(lane) || !evaluations[lane].ok()) continue;
       const One<Space>& own = *equations_[lane];
       Work& work = *calls[lane]->step->work;
       const std::span<double> efforts = own.efforts(work);
-      for (std::size_t k = 0; k < speeds_; ++k) efforts[k] = efforts_[k][lane];
+      for (std::size_t k = 0; k < speeds_; ++k) efforts[k] = at.efforts[k][lane];
       std::vector<double>& rates = rates_[lane];
-      for (std::size_t k = 0; k < speeds_; ++k) rates[positions_ + k] = y_dot[positions_ + k][lane];
+      for (std::size_t k = 0; k < speeds_; ++k) rates[positions_ + k] = at.slope[positions_ + k][lane];
       const std::span<const double> y = stages_[lane];
       evaluations[lane] =
           own.finish(times.t[lane], y, y.subspan(positions_, speeds_), efforts, rates, evaluations[lane], work);
-      for (std::size_t k = 0; k < size_; ++k) y_dot[k].set(lane, rates[k]);
+      for (std::size_t k = 0; k < size_; ++k) at.slope[k].set(lane, rates[k]);
     }
   }
 
@@ -304,6 +332,9 @@ class LanesOfSpace final : public LaneEquations {
   std::vector<Lanes> numbers_;  ///< positions, speeds, efforts, accelerations
   // Of whole steps.
   std::vector<Lanes> efforts_, start_, stage_;
+  From from_{};
+  Lanes h_ = 0;  ///< length of the step [s]
+  std::array<Evaluation, cases_at_once> failures_;
   equations::StepsAhead ahead_;
   std::vector<Lanes> slopes_;                              ///< one after the other
   std::array<std::vector<double>, cases_at_once> stages_;  ///< the stage's state where a case has it by itself

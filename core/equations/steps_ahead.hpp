@@ -37,21 +37,22 @@ class StepsAhead {
   void begin(std::size_t lane, const StagedSteps::Step& step, bool alone) {
     OfLane& of = lanes_[lane];
     of.table = step.table;
-    of.latest = step.latest;
-    of.begin[0] = step.t;
-    of.length[0] = step.h;
+    latest_.set(lane, step.latest);
+    begin_[0].set(lane, step.t);
+    length_[0].set(lane, step.h);
     of.wanted = alone || wants_slopes(step) ? 1 : std::clamp<std::size_t>(step.ends.size(), 1, at_once_);
     for (std::size_t k = 1; k < of.wanted; ++k) {
-      of.begin[k] = step.ends[k - 1];
-      of.length[k] = step.ends[k] - step.ends[k - 1];
+      begin_[k].set(lane, step.ends[k - 1]);
+      length_[k].set(lane, step.ends[k] - step.ends[k - 1]);
     }
     of.made = of.given = 0;
     of.energies_expected = of.wanted > 1 ? of.energies_asked : 0;
     of.energies_asked = of.energies_known = 0;
   }
-  [[nodiscard]] double start(std::size_t lane, std::size_t k) const { return lanes_[lane].begin[k]; }
-  [[nodiscard]] double length(std::size_t lane, std::size_t k) const { return lanes_[lane].length[k]; }
-  [[nodiscard]] double latest(std::size_t lane) const { return lanes_[lane].latest; }
+  /// Of step k, each lane its own [s]; of lanes that want none, of no meaning.
+  [[nodiscard]] const Lanes& start(std::size_t k) const { return begin_[k]; }
+  [[nodiscard]] const Lanes& length(std::size_t k) const { return length_[k]; }
+  [[nodiscard]] const Lanes& latest() const { return latest_; }
   /// Those of some lanes that want a step k.
   [[nodiscard]] LaneSet wanting(std::size_t k, LaneSet of) const {
     return of & lanes_where([k](const OfLane& lane) { return lane.wanted > k; });
@@ -89,8 +90,8 @@ class StepsAhead {
   /// Whether the next step that has been made for a lane is this one.
   [[nodiscard]] bool has_next(std::size_t lane, const StagedSteps::Step& step) const {
     const OfLane& of = lanes_[lane];
-    return step.follows && of.given < of.made && of.table == step.table && of.latest == step.latest &&
-           of.begin[of.given] == step.t && of.length[of.given] == step.h && !wants_slopes(step);
+    return step.follows && of.given < of.made && of.table == step.table && latest_[lane] == step.latest &&
+           begin_[of.given][lane] == step.t && length_[of.given][lane] == step.h && !wants_slopes(step);
   }
   /// The energies of a state, where it is that at the end of the step given last and they are known.
   bool find(std::size_t lane, LaneEnergy& call) {
@@ -114,8 +115,6 @@ class StepsAhead {
  private:
   struct OfLane {
     const StageTable* table = nullptr;
-    double latest = 0;
-    std::array<double, most> begin{}, length{};  ///< [s] of each step
     std::size_t wanted = 0, made = 0, given = 0;
     std::array<StagedSteps::Outcome, most> outcomes;
     std::array<Energies, most> energies;
@@ -136,6 +135,8 @@ class StepsAhead {
   static constexpr std::size_t in_cache = 1 << 12;  ///< numbers of a case that the nearer caches hold with all lanes'
   std::size_t size_, speeds_, at_once_;
   std::vector<Lanes> y_, slopes_, efforts_;  ///< of each step in turn
+  Lanes latest_ = 0;
+  std::array<Lanes, most> begin_{}, length_{};  ///< [s] of each step
   std::array<OfLane, cases_at_once> lanes_;
 };
 

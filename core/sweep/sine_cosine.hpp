@@ -57,22 +57,33 @@ inline void sine_cosine(double angle, double& sine, double& cosine) {
   sine = std::sin(angle);
   cosine = std::cos(angle);
 }
-/// Of an angle of each case, each on its own.
-inline void sine_cosine(const Lanes& angle, Lanes& sine, Lanes& cosine) {
-#ifdef __AVX512F__
-  sine_cosine_of<long __attribute__((vector_size(64)))>(angle.p, sine.p, cosine.p);
-#else
-  sine_cosine(angle.p, sine.p, cosine.p);
-#endif
-  const Lanes furthest = 1e5;
-  const LaneSet near = positive(furthest - angle) & positive(furthest + angle);
-  if (near.bits == LaneSet::all().bits) [[likely]]
-    return;
+/// Those of lanes that are not `near`, whose angles are too large for sine_cosine_of. Apart: what calls a function is
+/// not to be in the way of what hardly ever does.
+[[gnu::noinline, gnu::cold]] inline void sine_cosine_of_far(LaneSet near, const Lanes& angle, Lanes& sine,
+                                                            Lanes& cosine) {
   for (std::size_t i = 0; i < cases_at_once; ++i) {
     if (near.has(i)) continue;
     sine.set(i, std::sin(angle[i]));
     cosine.set(i, std::cos(angle[i]));
   }
+}
+/// Of an angle of each case, each on its own.
+inline void sine_cosine(const Lanes& angle, Lanes& sine, Lanes& cosine) {
+  Lanes s, c;
+#ifdef __AVX512F__
+  sine_cosine_of<long __attribute__((vector_size(64)))>(angle.p, s.p, c.p);
+#else
+  sine_cosine(angle.p, s.p, c.p);
+#endif
+  const Lanes furthest = 1e5;
+  const LaneSet near = positive(furthest - angle) & positive(furthest + angle);
+  if (near.bits != LaneSet::all().bits) [[unlikely]] {
+    const Lanes far = angle;
+    Lanes far_s = s, far_c = c;
+    sine_cosine_of_far(near, far, far_s, far_c);
+    s = far_s, c = far_c;
+  }
+  sine = s, cosine = c;
 }
 
 }  // namespace withy::sweep

@@ -54,11 +54,11 @@ void LaneSweep<Space>::put(std::size_t lane, const SymmetricSweep<Space>& sweep)
 }
 
 template <class Space>
-void LaneSweep<Space>::accelerations(const Lanes* positions, const Lanes* speeds, Lanes* efforts, Lanes* result,
-                                     std::byte* work, Evaluation* evaluations) const noexcept {
+LaneSet LaneSweep<Space>::accelerations(const Lanes* positions, const Lanes* speeds, Lanes* efforts, Lanes* result,
+                                        std::byte* work, Evaluation* failures) const noexcept {
   const SymmetricState<Many> state{positions, speeds, efforts, result, work, nodes_.data(), &world_acceleration_,
                                    0,         efforts};
-  for (std::size_t lane = 0; lane < cases_at_once; ++lane) evaluations[lane] = {};
+  LaneSet solved = LaneSet::all();
   for (const SymmetricNode<Many>& node : nodes_) {
     in_lanes_with_flavor(node, [&](auto n, auto flavor) { outward_motion<Many, n.value, flavor.value>(node, state); });
   }
@@ -69,13 +69,15 @@ void LaneSweep<Space>::accelerations(const Lanes* positions, const Lanes* speeds
                          [&](auto n, auto flavor) { good = inward_inertia<Many, n.value, flavor.value>(node, state); });
     if (good.bits == LaneSet::all().bits) continue;
     for (std::size_t lane = 0; lane < cases_at_once; ++lane)
-      if (!good.has(lane) && evaluations[lane].ok()) evaluations[lane] = {Evaluation::Outcome::singular, node.body};
-    if (none(good)) return;
+      if (!good.has(lane) && solved.has(lane)) failures[lane] = {Evaluation::Outcome::singular, node.body};
+    solved = solved & good;
+    if (none(good)) return solved;
   }
   for (const SymmetricNode<Many>& node : nodes_) {
     in_lanes_with_flavor(node,
                          [&](auto n, auto flavor) { outward_acceleration<Many, n.value, flavor.value>(node, state); });
   }
+  return solved;
 }
 
 template class LaneSweep<Planar>;

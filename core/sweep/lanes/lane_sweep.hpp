@@ -40,9 +40,10 @@ class LaneSweep {
   [[nodiscard]] std::size_t work_size() const { return work_size_; }
   /// Whether there are driven hinges: accelerations given in `result`, and efforts left on them.
   [[nodiscard]] bool driven() const { return driven_; }
-  /// SymmetricSweep::accelerations of each lane, with M itself; `evaluations` has one each.
-  void accelerations(const Lanes* positions, const Lanes* speeds, Lanes* efforts, Lanes* result, std::byte* work,
-                     Evaluation* evaluations) const noexcept;
+  /// SymmetricSweep::accelerations of each lane, with M itself. \param failures one a lane: set where it has none
+  /// \returns the lanes that have them
+  LaneSet accelerations(const Lanes* positions, const Lanes* speeds, Lanes* efforts, Lanes* result, std::byte* work,
+                        Evaluation* failures) const noexcept;
 
  private:
   using Many = typename LanesOf<Space>::Type;

@@ -2,6 +2,8 @@
 /// The inward passes of a symmetric sweep over one node: (3) of symmetric_kernel.hpp, with q̈ and ẍ eliminated.
 #pragma once
 
+#include <algorithm>
+
 #include "withy/core/sweep/symmetric/straight_mass.hpp"
 #include "withy/core/sweep/symmetric/symmetric_motion.hpp"
 
@@ -95,10 +97,24 @@ inline auto eliminate_modes(const SymmetricNode<Space>& node, const SymmetricSta
       if (station.has_children) IS += *at<typename Space::Inertia>(s.work, station.work_I);
       collect_station<Space, N>(stations[k], frames[k], IS, J + static_cast<int>(k) * n, n, I, p, C, G, y);
     }
-    if (node.root_station >= 0) {
+    if (node.root_station >= 0) [[unlikely]] {
       const auto& root = *at<RootWork<Space>>(s.work, node.work_root);
-      move_to_root<Space>(root.frame, root.sigma, n, J + n * static_cast<int>(node.own->stations.size()), I, p, C, G,
-                          y);
+      const Twist* JM = J + n * static_cast<int>(node.own->stations.size());
+      if constexpr (N > 0) {
+        // Copies: what a call that is not inlined takes the address of would be in memory all along.
+        struct {
+          typename Space::Inertia I;
+          Twist p, C[N];
+          Scalar G[N * N], y[N];
+        } moved;
+        moved.I = I, moved.p = p;
+        std::copy_n(C, N, moved.C), std::copy_n(G, N * N, moved.G), std::copy_n(y, N, moved.y);
+        move_to_root<Space>(root.frame, root.sigma, n, JM, moved.I, moved.p, moved.C, moved.G, moved.y);
+        I = moved.I, p = moved.p;
+        std::copy_n(moved.C, N, C), std::copy_n(moved.G, N * N, G), std::copy_n(moved.y, N, y);
+      } else {
+        move_to_root<Space>(root.frame, root.sigma, n, JM, I, p, C, G, y);
+      }
     }
   }
   // q̈ = G⁻¹ (−K q − D q̇ − h − Cᵀ A), with G = L Δ Lᵀ, Y = L⁻¹ Cᵀ, y = L⁻¹ (…).
