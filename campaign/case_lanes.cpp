@@ -100,23 +100,28 @@ class Lane final : public AskingEquations, public StagedSteps {
         : lane_(lane), own_(std::move(own)), y_(size) {}
     void observe(std::span<const double> y) noexcept override {
       std::copy(y.begin(), y.end(), y_.begin());
-      own_->observe(y);
+      behind_ = true;
     }
     [[nodiscard]] Energies energies() const noexcept override { return lane_.ask_energies(y_); }
     [[nodiscard]] WorldPose frame_pose(int body, int frame) const noexcept override {
-      return own_->frame_pose(body, frame);
+      return own().frame_pose(body, frame);
     }
     [[nodiscard]] WorldVelocity frame_velocity(int body, int frame) const noexcept override {
-      return own_->frame_velocity(body, frame);
+      return own().frame_velocity(body, frame);
     }
     [[nodiscard]] std::array<double, 3> deflection(int body, int frame) const noexcept override {
-      return own_->deflection(body, frame);
+      return own().deflection(body, frame);
     }
 
    private:
+    [[nodiscard]] const Observation& own() const noexcept {
+      if (std::exchange(behind_, false)) own_->observe(y_);
+      return *own_;
+    }
     const Lane& lane_;
     std::unique_ptr<Observation> own_;
     std::vector<double> y_;
+    mutable bool behind_ = true;  ///< its own is to go to the state
   };
   enum class Asks { evaluation, energies, step };
 
@@ -137,7 +142,7 @@ class CaseLanes final : public Asked {
  public:
   CaseLanes(const Plan& plan, const Cases& cases, Registry& registry, const study::Control& control,
             const CaseFlow& flow)
-      : plan_(plan), cases_(cases), registry_(registry), control_(control), flow_(flow) {}
+      : plan_(plan), cases_(cases), registry_(registry), control_(control), flow_(flow), parts_(plan) {}
   CaseLanes(const CaseLanes&) = delete;
   CaseLanes& operator=(const CaseLanes&) = delete;
   /// Runs that have not ended are told to end: a stack must be left in the way it was entered.
@@ -309,7 +314,7 @@ class CaseLanes final : public Asked {
   Registry& registry_;
   const study::Control& control_;
   const CaseFlow& flow_;
-  SceneParts parts_;
+  CaseParts parts_;
   std::unique_ptr<LaneEquations> together_;
   std::unique_ptr<CaseRun> waiting_;  ///< for all lanes to be free
   std::size_t count_ = lane_count();  ///< of the lanes, which are the first of these

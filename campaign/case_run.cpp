@@ -47,13 +47,14 @@ void CaseRun::refusing(Action&& action) {
   }
 }
 
-CaseRun::CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry, SceneParts& parts)
+CaseRun::CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry, CaseParts& parts)
     : plan_(plan), registry_(registry) {
   result_.index = index;
   result_.values = cases.values(index);
   refusing([&] {
-    prepared_.emplace(study::prepare(cases.scene(result_.values, fmt::format("case {}", index)), registry, parts));
-    kept_.emplace(plan, *prepared_);
+    prepared_.emplace(
+        study::prepare(cases.scene(result_.values, fmt::format("case {}", index)), registry, parts.scene));
+    kept_.emplace(plan, *prepared_, parts.kept);
   });
 }
 

@@ -25,13 +25,20 @@ struct CaseResult {
   [[nodiscard]] bool completed() const { return status == "completed"; }
 };
 
+/// What the cases of one thread have in common. The plan must outlive it.
+struct CaseParts {
+  explicit CaseParts(const Plan& plan) : kept(kept_places(plan)) {}
+  SceneParts scene;
+  KeptPlaces kept;  ///< of the plan
+};
+
 /// A case on its way.
 class CaseRun {
  public:
   /// Makes its scene and its equations; where they cannot be had, that is its result. The plan and the registry must
   /// outlive it. \throws PluginError; what a plugin throws, as does the other.
   /// \param parts what the cases before it have in common with it
-  CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry, SceneParts& parts);
+  CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry, CaseParts& parts);
   CaseRun(const CaseRun&) = delete;
   CaseRun& operator=(const CaseRun&) = delete;
 

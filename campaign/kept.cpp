@@ -135,36 +135,46 @@ std::vector<std::string> history_columns(const Plan& plan) {
   return names;
 }
 
-KeptNumbers::KeptNumbers(const Plan& plan, const study::Prepared& prepared) : histories_({}, plan.history.times) {
-  if (!prepared.escalates()) columns_.emplace_back(prepared.model(), *prepared.equations, prepared.scene.outputs);
-  for (const Rung& rung : prepared.rungs)
-    columns_.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
-  const std::vector<Column>& columns = columns_.front().columns();
+KeptPlaces kept_places(const Plan& plan, const study::Prepared& prepared, const std::vector<Column>& columns) {
+  KeptPlaces places;
   for (const std::string& name : plan.final) {
     const std::vector<OverRun> over = over_run(prepared, name);
     for (const OverRun& o : over) {
-      statistics_.push_back({numbers_.size(), o.number, o.what});
-      numbers_.push_back(0.0);
-      if (std::find(watched_.begin(), watched_.end(), o.output) == watched_.end()) watched_.push_back(o.output);
+      places.statistics.push_back({places.count++, o.number, o.what});
+      if (std::find(places.watched.begin(), places.watched.end(), o.output) == places.watched.end())
+        places.watched.push_back(o.output);
     }
     if (!over.empty()) continue;
-    for (const std::size_t i : selected(prepared, columns, name)) {
-      final_.push_back({numbers_.size(), i});
-      numbers_.push_back(0.0);
-    }
+    for (const std::size_t i : selected(prepared, columns, name)) places.final.push_back({places.count++, i});
   }
   for (const std::string& name : plan.peak)
     for (const std::size_t i : selected(prepared, columns, name)) {
       if (const auto d = deflection_of(columns[i].name))
-        deflections_.push_back({numbers_.size(), d->first, d->second});
+        places.deflections.push_back({places.count++, d->first, d->second});
       else
-        peaks_.push_back({numbers_.size(), i});
-      numbers_.push_back(0.0);
+        places.peaks.push_back({places.count++, i});
     }
-  std::vector<std::size_t> over_time;
   for (const std::string& name : plan.history.of)
-    for (const std::size_t i : selected(prepared, columns, name)) over_time.push_back(i);
-  histories_ = Histories(std::move(over_time), plan.history.times);
+    for (const std::size_t i : selected(prepared, columns, name)) places.histories.push_back(i);
+  return places;
+}
+
+KeptPlaces kept_places(const Plan& plan) {
+  const ResultColumns columns(plan.base->model(), *plan.base->equations, plan.base->scene.outputs);
+  return kept_places(plan, *plan.base, columns.columns());
+}
+
+KeptNumbers::KeptNumbers(const Plan& plan, const study::Prepared& prepared, const KeptPlaces& of_base)
+    : histories_({}, plan.history.times) {
+  columns_.reserve(prepared.rungs.size() + 1);
+  if (!prepared.escalates()) columns_.emplace_back(prepared.model(), *prepared.equations, prepared.scene.outputs);
+  for (const Rung& rung : prepared.rungs)
+    columns_.emplace_back(prepared.model(), *rung.equations, prepared.scene.outputs);
+  const bool as_base =
+      same_columns(plan.base->model(), plan.base->scene.outputs, prepared.model(), prepared.scene.outputs);
+  places_ = as_base ? of_base : kept_places(plan, prepared, columns_.front().columns());
+  histories_ = Histories(places_.histories, plan.history.times);
+  numbers_.resize(places_.count);
 }
 
 void KeptNumbers::see_output(const State& state, std::size_t rung) {
@@ -174,18 +184,20 @@ void KeptNumbers::see_output(const State& state, std::size_t rung) {
 
 void KeptNumbers::see(const State& state, std::size_t rung) {
   rung_ = rung;
-  if (peaks_.empty()) return;
+  if (places_.peaks.empty()) return;
   const std::vector<double>& row = columns_[rung].row(state);
-  for (const Peak& peak : peaks_) numbers_[peak.at] = std::max(numbers_[peak.at], std::abs(row[peak.column]));
+  for (const KeptPlaces::Number& peak : places_.peaks)
+    numbers_[peak.at] = std::max(numbers_[peak.at], std::abs(row[peak.column]));
 }
 
 std::vector<double> KeptNumbers::numbers(const RunSummary& summary, const std::vector<OutputStatistics>& statistics) {
   const std::vector<double>& last = columns_[rung_].row(summary.final);
-  for (const Final& f : final_) numbers_[f.at] = last[f.column];
-  for (const Statistic& asked : statistics_)
+  for (const KeptPlaces::Number& f : places_.final) numbers_[f.at] = last[f.column];
+  for (const KeptPlaces::Statistic& asked : places_.statistics)
     for (const OutputStatistics& s : statistics)
       if (s.name == asked.number) numbers_[asked.at] = value_of(s, asked.what);
-  for (const Deflection& d : deflections_) numbers_[d.at] = summary.peak_deflection.at(d.body).at(d.axis);
+  for (const KeptPlaces::Deflection& d : places_.deflections)
+    numbers_[d.at] = summary.peak_deflection.at(d.body).at(d.axis);
   return numbers_;
 }
 

@@ -25,7 +25,35 @@ std::string numbered(const std::string& name, std::size_t index, std::size_t cou
 
 std::string hinge_frame(const HingeNode& hinge) { return "F of hinge " + hinge.name; }
 
+bool same_columns(const HingeNode& a, const HingeNode& b) {
+  if (a.name != b.name) return false;
+  const auto kernel = a.hinge->kernel(), other = b.hinge->kernel();
+  return kernel && other && kernel->kind == other->kind;
+}
+bool same_columns(const BodyNode& a, const BodyNode& b) {
+  const auto whole = [](const BodyNode& n) { return n.segment ? n.segment->whole : std::string(); };
+  return a.name == b.name && a.segment.has_value() == b.segment.has_value() && whole(a) == whole(b) &&
+         (a.frame("tip") < 0) == (b.frame("tip") < 0) && a.body->shape().modes() == b.body->shape().modes();
+}
+bool same_columns(const SensorNode& a, const SensorNode& b) {
+  const auto same = [](const Column& m, const Column& n) { return m.name == n.name && m.unit == n.unit; };
+  const std::vector<Column> all = columns_of(a), others = columns_of(b);
+  return a.name == b.name && std::equal(all.begin(), all.end(), others.begin(), others.end(), same);
+}
+
 }  // namespace
+
+bool same_columns(const Model& a, const std::vector<SensorNode>& sensors_of_a, const Model& b,
+                  const std::vector<SensorNode>& sensors_of_b) {
+  const auto same = [](const auto& all, const auto& others) {
+    return std::equal(all.begin(), all.end(), others.begin(), others.end(),
+                      [](const auto& x, const auto& y) { return same_columns(x, y); });
+  };
+  const auto moved = [](const MotionNode& m, const MotionNode& n) { return m.hinge == n.hinge; };
+  return same(a.hinges(), b.hinges()) && same(a.bodies(), b.bodies()) && same(sensors_of_a, sensors_of_b) &&
+         a.layout().speed_names == b.layout().speed_names &&
+         std::equal(a.motions().begin(), a.motions().end(), b.motions().begin(), b.motions().end(), moved);
+}
 
 ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equations,
                              const std::vector<SensorNode>& sensors)
@@ -35,26 +63,30 @@ ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equati
       seen_(equations.make_observation()),
       sensors_(sensors, equations),
       work_(model.motions().empty() ? Work(0) : equations.make_work()),
-      efforts_(model.layout().speeds) {
-  const Layout& layout = model.layout();
-  columns_.push_back({"t", "s"});
-  const auto in = [&](const std::string& frame) { frames_.resize(columns_.size(), frame); };
+      efforts_(model.layout().speeds) {}
+
+const ResultColumns::Names& ResultColumns::named() const {
+  auto& [columns, frames] = names_;
+  if (!columns.empty()) return names_;
+  const Layout& layout = model_.layout();
+  columns.push_back({"t", "s"});
+  const auto in = [&](const std::string& frame) { names_.frames.resize(names_.columns.size(), frame); };
   const auto append = [&](const std::vector<Column>& more) {
-    columns_.insert(columns_.end(), more.begin(), more.end());
+    names_.columns.insert(names_.columns.end(), more.begin(), more.end());
   };
   in("");
-  for (const HingeNode& h : model.hinges()) {
+  for (const HingeNode& h : model_.hinges()) {
     append(coordinate_columns(h));
     in(hinge_frame(h));
   }
   const auto add_modes = [&](const char* suffix) {
     for (const Slot& body : layout.bodies)
       for (std::size_t i = 0; i < body.speeds; ++i)
-        columns_.push_back({layout.speed_names[body.speed + i] + suffix, ""});
+        names_.columns.push_back({layout.speed_names[body.speed + i] + suffix, ""});
   };
   add_modes("");
   in("");
-  for (const HingeNode& h : model.hinges()) {
+  for (const HingeNode& h : model_.hinges()) {
     append(rate_columns(h));
     in(hinge_frame(h));
   }
@@ -62,27 +94,29 @@ ResultColumns::ResultColumns(const Model& model, const EquationsOfMotion& equati
   in("");
   for (const Tip& tip : tips_) {
     if (!tip.flexible) continue;
-    add(columns_, tip.body, {".tip.deflection_x", ".tip.deflection_y", ".tip.deflection_z"}, "m");
+    add(columns, tip.body, {".tip.deflection_x", ".tip.deflection_y", ".tip.deflection_z"}, "m");
     in(tip.body);
   }
-  for (const Tip& tip : tips_) add(columns_, tip.body, {".tip.x", ".tip.y", ".tip.z"}, "m");
+  for (const Tip& tip : tips_) add(columns, tip.body, {".tip.x", ".tip.y", ".tip.z"}, "m");
   in("world");
-  for (const MotionNode& motion : model.motions()) {
-    const HingeNode& hinge = model.hinges()[static_cast<std::size_t>(motion.hinge)];
+  for (const MotionNode& motion : model_.motions()) {
+    const HingeNode& hinge = model_.hinges()[static_cast<std::size_t>(motion.hinge)];
     const std::vector<HingeRate> rates = hinge_rates(*hinge.hinge);
     for (std::size_t i = 0; i < rates.size(); ++i)
-      columns_.push_back({numbered(hinge.name + ".motion_effort", i, rates.size()), rates[i].angular ? "N m" : "N"});
+      names_.columns.push_back(
+          {numbered(hinge.name + ".motion_effort", i, rates.size()), rates[i].angular ? "N m" : "N"});
     in(hinge_frame(hinge));
   }
-  add(columns_, "", {"kinetic_energy", "potential_energy", "work"}, "J");
+  add(columns, "", {"kinetic_energy", "potential_energy", "work"}, "J");
   in("");
-  add(columns_, "linear_momentum", {".x", ".y", ".z"}, "kg m/s");
-  add(columns_, "angular_momentum", {".x", ".y", ".z"}, "kg m^2/s");
+  add(columns, "linear_momentum", {".x", ".y", ".z"}, "kg m/s");
+  add(columns, "angular_momentum", {".x", ".y", ".z"}, "kg m^2/s");
   in("world, about its origin");
   append(sensors_.columns());
   in("as the scene's outputs say");
-  columns_.shrink_to_fit();
-  frames_.shrink_to_fit();
+  columns.shrink_to_fit();
+  frames.shrink_to_fit();
+  return names_;
 }
 
 const std::vector<double>& ResultColumns::row(const State& state) {
@@ -136,7 +170,7 @@ void ResultColumns::append(const std::array<double, 3>& vector) {
 
 void ResultColumns::append_sensors(const State& state) {
   const std::size_t first = row_.size();
-  row_.resize(columns_.size());
+  row_.resize(first + sensors_.columns().size());
   const std::span<double> values = std::span(row_).subspan(first);
   if (!sensors_.read(state, values)) std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
 }

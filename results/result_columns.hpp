@@ -16,15 +16,19 @@
 
 namespace withy {
 
+/// Whether the results of two models have the same columns, in the same places. Where hinges have no kernel it says no.
+bool same_columns(const Model& a, const std::vector<SensorNode>& sensors_of_a, const Model& b,
+                  const std::vector<SensorNode>& sensors_of_b);
+
 /// What `results.csv` holds: time, hinge and modal coordinates and their rates, deflections and world positions of the
 /// tips, energies, work and momenta; then what the scene's sensors give.
 class ResultColumns {
  public:
   /// Model and equations must outlive the object. The sensors are bound to this model.
   ResultColumns(const Model& model, const EquationsOfMotion& equations, const std::vector<SensorNode>& sensors = {});
-  [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+  [[nodiscard]] const std::vector<Column>& columns() const { return named().columns; }
   /// The axes that each is told in, as `world`; empty where that has no meaning.
-  [[nodiscard]] const std::vector<std::string>& frames() const { return frames_; }
+  [[nodiscard]] const std::vector<std::string>& frames() const { return named().frames; }
   /// As many numbers as there are columns, until the next row. Those of sensors are NaN, as which tables have an empty
   /// cell, where the state has no finite accelerations. Allocates nothing.
   const std::vector<double>& row(const State& state);
@@ -34,6 +38,12 @@ class ResultColumns {
   [[nodiscard]] Observation& seen() { return *seen_; }
 
  private:
+  /// What the columns are called; found when it is asked for, since many ask for rows alone.
+  struct Names {
+    std::vector<Column> columns;
+    std::vector<std::string> frames;
+  };
+  const Names& named() const;
   void append(const State& state, std::size_t first, std::size_t count);
   void append(const std::array<double, 3>& vector);
   void append_motion_efforts(const State& state);
@@ -42,8 +52,7 @@ class ResultColumns {
   const Model& model_;
   const EquationsOfMotion& equations_;
   std::vector<Tip> tips_;
-  std::vector<Column> columns_;
-  std::vector<std::string> frames_;
+  mutable Names names_;
   std::unique_ptr<Observation> seen_;
   SensorReader sensors_;
   Work work_;  ///< for the efforts of motions
