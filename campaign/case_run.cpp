@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "withy/core/equations/lane_equations.hpp"
 #include "withy/core/simulation/step_watch.hpp"
@@ -48,14 +49,19 @@ void CaseRun::refusing(Action&& action) {
 }
 
 CaseRun::CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry, CaseParts& parts)
-    : plan_(plan), registry_(registry) {
+    : plan_(plan), cases_(cases), registry_(registry), parts_(parts) {
   result_.index = index;
   result_.values = cases.values(index);
   refusing([&] {
-    prepared_.emplace(
-        study::prepare(cases.scene(result_.values, fmt::format("case {}", index)), registry, parts.scene));
+    SceneValues scene = cases.scene(result_.values, fmt::format("case {}", index), parts.values);
+    prepared_.emplace(study::prepare(std::move(scene), registry, parts.scene));
     kept_.emplace(plan, *prepared_, parts.kept);
   });
+}
+
+CaseRun::~CaseRun() {
+  if (prepared_ && cases_.spares(result_.values) && parts_.values.size() < parts_.values.capacity())
+    parts_.values.push_back(std::move(prepared_->values));
 }
 
 std::string CaseRun::alone_because() const {

@@ -27,18 +27,21 @@ struct CaseResult {
 
 /// What the cases of one thread have in common. The plan must outlive it.
 struct CaseParts {
-  explicit CaseParts(const Plan& plan) : kept(kept_places(plan)) {}
+  explicit CaseParts(const Plan& plan) : kept(kept_places(plan)) { values.reserve(most_at_once); }
+  static constexpr std::size_t most_at_once = 16;  ///< cases
   SceneParts scene;
-  KeptPlaces kept;  ///< of the plan
+  KeptPlaces kept;                  ///< of the plan
+  std::vector<SceneValues> values;  ///< of cases that are over, for Cases::scene; no more than are reserved
 };
 
 /// A case on its way.
 class CaseRun {
  public:
-  /// Makes its scene and its equations; where they cannot be had, that is its result. The plan and the registry must
-  /// outlive it. \throws PluginError; what a plugin throws, as does the other.
+  /// Makes its scene and its equations; where they cannot be had, that is its result. All that it is given must outlive
+  /// it. \throws PluginError; what a plugin throws, as does the other.
   /// \param parts what the cases before it have in common with it
   CaseRun(const Plan& plan, const Cases& cases, std::uint64_t index, Registry& registry, CaseParts& parts);
+  ~CaseRun();
   CaseRun(const CaseRun&) = delete;
   CaseRun& operator=(const CaseRun&) = delete;
 
@@ -57,7 +60,9 @@ class CaseRun {
   RunSummary simulate(const EquationsOfMotion& equations, const study::Control& control);
 
   const Plan& plan_;
+  const Cases& cases_;
   Registry& registry_;
+  CaseParts& parts_;
   std::optional<study::Prepared> prepared_;
   std::optional<KeptNumbers> kept_;
   std::vector<OutputStatistics> statistics_;  ///< of what `kept_` watches

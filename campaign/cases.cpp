@@ -1,5 +1,8 @@
 #include "withy/campaign/cases.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "withy/campaign/derived.hpp"
 
 namespace withy::campaign {
@@ -8,11 +11,19 @@ namespace {
 // Shares of a distribution that one at a time takes where an axis has no levels: one deviation of a normal value.
 constexpr double low_share = 0.15865525393145705, high_share = 0.8413447460685429;
 
+/// Whether no path leads to a part of what another leads to.
+bool apart(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths)
+    for (const std::string& other : paths)
+      if (&path != &other && (other + '.').starts_with(path + '.')) return false;
+  return true;
+}
+
 std::size_t levels_alone(const Axis& axis) { return axis.drawn() ? 2 : axis.levels.size(); }
 
 }  // namespace
 
-Cases::Cases(const Plan& plan) : plan_(plan) {
+Cases::Cases(const Plan& plan) : plan_(plan), paths_(varied_paths(plan)), apart_(apart(paths_)) {
   for (std::size_t a = 0; a < plan.axes.size(); ++a)
     if (plan.axes[a].sampling == Sampling::sobol) sobol_.push_back(a);
   switch (plan.design) {
@@ -53,12 +64,30 @@ std::vector<Value> Cases::of_axes(std::uint64_t index) const {
   return of_product(index);
 }
 
+void Cases::set(SceneValues& scene, const std::vector<Value>& values, const std::string& origin) const {
+  for (std::size_t a = 0; a < values.size(); ++a)
+    if (values[a].kind() != Value::Kind::null) scene.set(paths_[a], values[a], origin);
+}
+
 SceneValues Cases::scene(const std::vector<Value>& values, const std::string& origin) const {
   SceneValues scene = plan_.base->values;
-  const std::vector<std::string> paths = varied_paths(plan_);
-  for (std::size_t a = 0; a < values.size(); ++a)
-    if (values[a].kind() != Value::Kind::null) scene.set(paths[a], values[a], origin);
+  set(scene, values, origin);
   return scene;
+}
+
+SceneValues Cases::scene(const std::vector<Value>& values, const std::string& origin,
+                         std::vector<SceneValues>& spare) const {
+  if (spare.empty() || !spares(values)) return scene(values, origin);
+  SceneValues scene = std::move(spare.back());
+  spare.pop_back();
+  scene.set_again(plan_.base->values);
+  set(scene, values, origin);
+  return scene;
+}
+
+bool Cases::spares(const std::vector<Value>& values) const {
+  return apart_ && std::all_of(values.begin(), values.end(),
+                               [](const Value& value) { return value.kind() == Value::Kind::number; });
 }
 
 std::vector<Value> Cases::of_product(std::uint64_t index) const {

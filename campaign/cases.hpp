@@ -21,6 +21,11 @@ class Cases {
   [[nodiscard]] std::vector<Value> values(std::uint64_t index) const;
   /// The scene with these values. \param origin of messages: "case 17"
   [[nodiscard]] SceneValues scene(const std::vector<Value>& values, const std::string& origin) const;
+  /// The same, made of one that another case is done with where there is one in `spare`: a copy costs more.
+  [[nodiscard]] SceneValues scene(const std::vector<Value>& values, const std::string& origin,
+                                  std::vector<SceneValues>& spare) const;
+  /// Whether the scene of a case with these values, which nobody has changed since, may be one of the spare.
+  [[nodiscard]] bool spares(const std::vector<Value>& values) const;
 
  private:
   [[nodiscard]] std::vector<Value> of_axes(std::uint64_t index) const;
@@ -30,7 +35,11 @@ class Cases {
   [[nodiscard]] std::vector<Value> of_samples(std::uint64_t index) const;
   [[nodiscard]] std::vector<double> drawn(const Key& key, std::uint64_t draw) const;
 
+  void set(SceneValues& scene, const std::vector<Value>& values, const std::string& origin) const;
+
   const Plan& plan_;
+  std::vector<std::string> paths_;  ///< of the values
+  bool apart_;                      ///< none of them is within another
   std::vector<std::size_t> sobol_;  ///< axes, in the order of the sequence's dimensions
   std::uint64_t size_ = 0;
 };

@@ -181,6 +181,11 @@ SceneValues& SceneValues::set(std::string_view path, Value value, const std::str
   return *this;
 }
 
+void SceneValues::set_again(const SceneValues& base) {
+  origins_.resize(base.origins_.size());
+  diagnostics_ = base.diagnostics_;
+}
+
 SceneValues& SceneValues::set_text(const std::string& text, std::string origin) {
   const int line = add_origin(origin.empty() ? fmt::format("--set '{}'", text) : std::move(origin));
   settings_.push_back(text);

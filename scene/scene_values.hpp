@@ -30,6 +30,10 @@ class SceneValues {
   /// Puts a value at a path of keys with dots between them, as "bodies.link1.length" or "gravity.1", and makes the maps
   /// on the way that are missing. Bodies, hinges, loads, motions and frames have to be there.
   SceneValues& set(std::string_view path, Value value, const std::string& origin);
+  /// For a copy of `base` on which nothing was done but to set some paths, none of them within another, to numbers: the
+  /// same paths are going to be set again, in the same order, to other numbers. What comes of that is as if `base` had
+  /// been copied anew.
+  void set_again(const SceneValues& base);
   /// The same from "path=value" with the value as in a file. \param origin empty: "--set '<text>'".
   SceneValues& set_text(const std::string& text, std::string origin = {});
 

@@ -1,11 +1,14 @@
 // Cases: random numbers have the distribution, the spread and the correlation that the plan asks for.
 #include "withy/campaign/cases.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 
 #include "withy/tests/campaign/plan_fixture.hpp"
@@ -227,6 +230,49 @@ TEST(Cases, DesignsChangeOneValueAtATime) {
   EXPECT_EQ(each.values(0)[0].kind(), Value::Kind::null) << "the scene itself";
   EXPECT_EQ(each.values(3)[0].number(), 3);
   EXPECT_NEAR(each.values(5)[1].number(), -8, 1e-12) << "one deviation up";
+}
+
+/// All of a value, with the places it stands at.
+std::string told(const Value& value) {
+  const auto of_place = [](const Place& p) { return fmt::format("{}:{}:{} ", p.line, p.column, p.path); };
+  std::string text = of_place(value.place()) + fmt::format("{} {} ", static_cast<int>(value.kind()), value.text());
+  if (value.kind() == Value::Kind::number) text += fmt::format("{} ", value.number());
+  for (const Value& item : value.items()) text += told(item);
+  for (const auto& [key, member] : value.members()) text += key + '=' + told(member);
+  return text + '\n';
+}
+std::string told(const SceneValues& scene) {
+  std::map<std::string, int> keys;
+  for (const auto& [path, place] : scene.document().keys) keys[path] = place.line;
+  return told(scene.root()) + fmt::format("{} {} {}", keys, scene.origins(), scene.settings());
+}
+
+TEST(Cases, MakeOfASceneThatIsDoneWithWhatACopyOfThePlansBecomes) {
+  const PlanFolder folder;
+  const Plan plan = folder.plan(R"(vary:
+  bodies.rod.mass: {normal: {mean: 1.2, deviation: 0.1}}
+  gravity.1: {uniform: {from: -10, to: -9}}
+  limits.deflection: {uniform: {from: 1, to: 2}}
+derived: {bodies.rod.center_of_mass.1: -0.4 * bodies.rod.mass}
+cases: 3
+)");
+  const Cases cases(plan);
+  std::vector<SceneValues> spare;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const std::vector<Value> values = cases.values(i);
+    const std::string origin = fmt::format("case {}", i);
+    ASSERT_TRUE(cases.spares(values));
+    SceneValues scene = cases.scene(values, origin, spare);
+    EXPECT_TRUE(spare.empty()) << "taken";
+    EXPECT_EQ(told(scene), told(cases.scene(values, origin)));
+    EXPECT_TRUE(scene.problems().ok());
+    spare.push_back(std::move(scene));
+  }
+  const auto sparing = [&](const std::string& vary) {
+    const Plan other = folder.plan("vary: " + vary + "\n");
+    return Cases(other).spares(Cases(other).values(0));
+  };
+  EXPECT_FALSE(sparing("{integrator.name: {grid: [dopri5]}}")) << "which may bring other members";
 }
 
 }  // namespace

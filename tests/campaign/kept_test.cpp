@@ -122,5 +122,25 @@ keep: {peak: [pivot.rate, pivot]}
   EXPECT_NEAR(coarse.numbers[1], fine.numbers[1], 1e-12) << "it starts at its peak";
 }
 
+/// A column stands elsewhere in the table of a case with other modes: its number is that of a plan whose own scene has
+/// these.
+TEST(KeptNumbers, AreFoundWhereTheColumnsOfACaseAreOthersThanThePlans) {
+  const PlanFolder folder;
+  const auto kept = [&](const std::string& set, const std::string& modes, std::uint64_t index) {
+    folder.write("modes.yaml", "format: withy-sweep/1\nscene: " WITHY_SOURCES
+                               "/scenes/driven-arm.yaml\nset: {time.end: 0.2" +
+                                   set + "}\nvary: {bodies.link1.bending_y.modes: {grid: " + modes +
+                                   "}}\nkeep: {final: [elbow.rate, link2.tip], peak: [link1.tip.deflection_y]}\n");
+    const Plan plan = read_plan((folder / "modes.yaml").string(), plugins());
+    const CaseResult result = run_case(plan, Cases(plan), index, plugins(), {});
+    EXPECT_TRUE(result.completed()) << result.message;
+    return result.numbers;
+  };
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const std::string modes = std::to_string(i + 1);
+    EXPECT_EQ(kept("", "[1, 2, 3]", i), kept(", bodies.link1.bending_y.modes: " + modes, "[" + modes + "]", 0));
+  }
+}
+
 }  // namespace
 }  // namespace withy::campaign
