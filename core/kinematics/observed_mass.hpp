@@ -68,11 +68,11 @@ inline void add_mass(const sweep::MassTable<Space>& table, int modes, const type
   part.mass += table.root_mass * table.root_mass;
 }
 
-/// The same of a straight body of several cases, by its products.
+/// The same of a straight body of several cases, by its products. Flat: half of the integrals are not looked at.
 template <class Space, int N>
-inline void add_straight_mass(const typename Space::Scalar* products, const typename Space::Scalar* q,
-                              const typename Space::Scalar* q_dot, const typename Space::Twist& V,
-                              PartMomentum<Space>& part) {
+[[gnu::flatten]] inline void add_straight_mass(const typename Space::Scalar* products, const typename Space::Scalar* q,
+                                               const typename Space::Scalar* q_dot, const typename Space::Twist& V,
+                                               PartMomentum<Space>& part) {
   using Twist = typename Space::Twist;
   using Scalar = typename Space::Scalar;
   auto I = Space::Inertia::zero();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "withy/core/kinematics/observed_mass.hpp"
@@ -61,8 +62,15 @@ class TreePass {
         return m;
       }
     }
-    sweep::station_motion<Space, any_count>(node.stations[k].fields, node.modes, q(node), q_dot(node), m,
-                                            partials_.data());
+    const auto find = [&](auto modes) {
+      sweep::station_motion<Space, modes.value>(node.stations[k].fields, node.modes, q(node), q_dot(node), m,
+                                                partials_.data());
+    };
+    if (sweep::in_lanes<Space> && node.modes == 2) {
+      find(std::integral_constant<int, 2>{});
+    } else {
+      find(std::integral_constant<int, any_count>{});
+    }
     return m;
   }
   /// Brings a rod alone to the state; nothing where the node is none.
