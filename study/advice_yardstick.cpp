@@ -141,7 +141,9 @@ void YardstickSearch::explain(const ReferenceFound& found) {
       evaluator_.outputs().list()[yardstick.worst(r.own)].label,
       askable ? fmt::format("for --accuracy {}, ", accuracy_.times(times).option()) : "",
       long_enough ? fmt::format("{:.3g}, up to which they agree", agree) : "...");
-  if (found.unaffordable) advice_.trouble += ". A finer one costs too much: " + found.trouble;
+  if (!found.trouble.empty())
+    advice_.trouble +=
+        (found.unaffordable ? ". A finer one costs too much: " : ". There is no finer one: ") + found.trouble;
 }
 
 /// How far the truth is known by now.

@@ -216,8 +216,8 @@ Score score(const std::vector<Verdict>& verdicts, const char* scenes_of) {
   return all;
 }
 
-/// A campaign asks all accuracies; the few scenes of a plain test what each machine draws, since 0.1 % is not yet
-/// advised on about half of the machines within the time allowed.
+/// A campaign asks all accuracies; the few scenes of a plain test what each machine draws, since 0.1 % is not
+/// advised on a quarter of the machines within the time allowed.
 Verdict judge_random(unsigned seed, const std::string& scene) {
   RandomMachine machine(seed);
   std::ofstream(scene) << machine.text();
