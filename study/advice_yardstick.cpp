@@ -77,6 +77,7 @@ void YardstickSearch::find() {
                 {},
                 {}};
   goal.levels = policy::reference_levels;
+  goal.kinds = kinds_of_modes(evaluator_.base().scene);
   goal.finer = modal ? policy::finer_level : policy::finer_integration;
   goal.tightest = modal ? policy::tightest : policy::tightest_integration;
   goal.enough = [&](const Reference& r) {

@@ -37,14 +37,19 @@ void correct(const Output& output, const std::vector<double>& b, const std::vect
 /// What the finer of two levels may be off by: their difference, or what is left of a series of differences that shrink
 /// as the last two did. Functions that cannot be what the beam is converge like 1/n: the rest is then several times the
 /// last difference.
-Distances rest_of_series(const Distances& last, const Distances& before) {
+/// Of several kinds of modes in turn the last change of each counts.
+Distances rest_of_series(const std::vector<Distances>& changes, int kinds) {
   constexpr double most = 4;
-  Distances rest = last;
-  for (std::size_t k = 0; k < rest.size() && k < before.size(); ++k)
-    if (before[k] > 0) {
-      const double ratio = std::min(last[k] / before[k], most / (1 + most));
-      rest[k] *= std::max(1.0, ratio / (1 - ratio));
-    }
+  const std::size_t levels = changes.size();
+  Distances rest = changes.back();
+  for (std::size_t k = 0; levels > 1 && k < rest.size(); ++k) {
+    const double before = changes[levels - 2][k];
+    if (!(before > 0)) continue;
+    const double ratio = std::min(rest[k] / before, most / (1 + most));
+    rest[k] *= std::max(1.0, ratio / (1 - ratio));
+  }
+  for (std::size_t kind = 1; kind < std::min<std::size_t>(static_cast<std::size_t>(kinds), levels); ++kind)
+    for (std::size_t k = 0; k < rest.size(); ++k) rest[k] = std::max(rest[k], changes[levels - 1 - kind][k]);
   return rest;
 }
 
@@ -226,6 +231,14 @@ Readings corrected(const Outputs& outputs, const Readings& a, const Readings& b,
   return sum;
 }
 
+int kinds_of_modes(const Scene& scene) {
+  constexpr int of_a_surface = 3;
+  for (const BodyModes& body : scene.modes)
+    for (const ModeCount& count : body.counts)
+      if (count.modes > 0 && count.strain.empty()) return of_a_surface;
+  return 1;
+}
+
 ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
                               const Outputs& outputs, const ReferenceGoal& goal, const Control& control) {
   ReferenceSearch search(model_at, registry, outputs, goal, control);
@@ -233,7 +246,7 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
   Point first = goal.first;
   first.family = search.best_family();
   std::optional<Reference> before, coarse = found.interrupted ? std::nullopt : search.begin(first);
-  Distances apart;  // the two levels before
+  std::vector<Distances> changes;  // from level to level
   if (coarse) {
     found.trouble.clear();
     found.unaffordable = false;
@@ -245,14 +258,14 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
     if (finer.key() == coarse->point.key()) break;
     std::optional<Reference> fine = search.at(finer);
     if (!fine) break;
-    const Distances last = distances(outputs, fine->readings, coarse->readings).first;
-    fine->own = rest_of_series(last, apart);
-    apart = last;
-    if (search.enough(*fine)) {
+    changes.push_back(distances(outputs, fine->readings, coarse->readings).first);
+    fine->own = rest_of_series(changes, goal.kinds);
+    const bool known = changes.size() >= static_cast<std::size_t>(goal.kinds);
+    if (known && search.enough(*fine)) {
       found.reference = std::move(fine);
       return std::move(found);
     }
-    search.keep_nearest(*fine, coarse->readings);
+    if (known) search.keep_nearest(*fine, coarse->readings);
     before = std::move(coarse), coarse = std::move(fine);
     tried = search.much_cheaper_below(coarse->point);
     if (tried) found.reference = search.add_to_lower(*coarse, *before);

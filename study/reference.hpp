@@ -32,6 +32,11 @@ struct Reference {
   [[nodiscard]] std::string text() const;
 };
 
+/// Of how many kinds modes that follow each other are. Those of a whole body, as a plate's, are in the order of their
+/// frequencies, bending, twist and bending across, and a motion may excite one kind alone: then the mode that was added
+/// last may change nothing, and the next one much.
+int kinds_of_modes(const Scene& scene);
+
 /// Where a search begins and when it ends.
 struct ReferenceGoal {
   Point first;  ///< the coarsest; its formulation means nothing
@@ -41,6 +46,7 @@ struct ReferenceGoal {
   /// Finer ones that are looked at: a mode more where the first has any, the tolerance times `finer` down to
   /// `tightest`.
   int levels = 1;
+  int kinds = 1;  ///< kinds_of_modes
   double finer = 0.1;
   double tightest = 1e-9;
   std::function<bool(const Reference&)> enough;  ///< empty: one level is

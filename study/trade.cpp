@@ -113,6 +113,7 @@ void TradeStudy::find_reference_for(const Point& point) {
   // Of polynomials the first two tell little of what more will change.
   if (goal.first.modes > 0 && !goal.first.family.empty()) goal.first.modes = std::max(goal.first.modes, 3);
   goal.tightest = 0.1 * goal.first.tolerance;
+  goal.levels = goal.kinds = kinds_of_modes(base_.scene);
   std::vector<std::unique_ptr<ModelAt>> models;
   const auto model = [&](const Point& p) -> const ModelAt& {
     models.push_back(std::make_unique<ModelAt>(model_at(base_, registry_, p)));

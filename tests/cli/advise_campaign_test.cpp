@@ -58,6 +58,8 @@ std::optional<Yardstick> truth_of(Evaluator& evaluator, const Yardstick& known) 
   Reference& r = truth.reference;
   if (r.added_by) r.point.formulation = r.added_by->formulation;
   if (r.point.modes > 0) r.point.modes += 2;
+  // A body may not have so many.
+  for (int i = 0; i < 2 && evaluator.model(r.point).refused(); ++i) --r.point.modes;
   r.point.tolerance = std::max(1e-2 * r.point.tolerance, 1e-12);
   r.own.clear();
   const std::size_t outputs = r.readings.values.size();

@@ -129,6 +129,33 @@ TEST(FindReference, ASlowSeriesIsNotTakenForItsLastDifference) {
   EXPECT_GT(slow.own[worst], 1.5 * last[worst]);
 }
 
+/// The fourth mode of the plate twists it and is not excited, the fifth bends it again.
+TEST(FindReference, AModeThatTheMotionDoesNotExciteIsNotTakenForTheEndOfTheSeries) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/spinning-plate.yaml");
+  const Prepared plate = prepare(values.set("time.end", Value(3.0), "the test"), plugins());
+  EXPECT_GT(kinds_of_modes(plate.scene), 1);
+  const Outputs outputs = Outputs::all(plate.model());
+  Evaluator evaluator(plate, plugins(), outputs, {});
+  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+  constexpr double asked = 1e-3;
+  const auto to = [&](int kinds, int least) {
+    ReferenceGoal goal;
+    goal.first = {"", "", 2, "dop853", 1e-6, {}, {}};
+    goal.levels = 8;
+    goal.kinds = kinds;
+    goal.enough = [&](const Reference& r) {
+      return r.point.modes >= least && relative_error(r.own, r.scales) <= asked;
+    };
+    return *find_reference(at, plugins(), outputs, goal, {}).reference;
+  };
+  const Reference truth = to(3, 9);
+  const auto wrong = [&](const Reference& r) {
+    return relative_error(distances(outputs, r.readings, truth.readings).first, truth.scales);
+  };
+  EXPECT_LE(wrong(to(kinds_of_modes(plate.scene), 2)), asked);
+  EXPECT_GT(wrong(to(1, 2)), asked) << "the last change alone says less than what is missing";
+}
+
 /// The beam that spins carries nothing; polynomials leave what its first eigenfunction has at the start to fast modes.
 TEST(FindReference, EigenfunctionsAreTakenForABareBeamWhereTheyConvergeFaster) {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/spinning-beam.yaml");
