@@ -25,7 +25,7 @@ struct Reference {
   Distances ranges;   ///< greatest distances of outputs from their start
   double energy = 0;  ///< greatest kinetic energy at an output [J]
   Distances scales;   ///< what relative errors are shares of
-  Distances own;      ///< from the run with one mode less and the tolerance before; empty: not known
+  Distances own;      ///< by what the last modes and tolerances changed; empty: not known
   Walk walk;
   Readings coarser = {};  ///< of the level before, of the nearest alone
   /// "exact, 5 modes, dop853 at 1e-07".
