@@ -12,6 +12,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
 #include "withy/campaign/cases.hpp"
 #include "withy/campaign/kept.hpp"
@@ -30,6 +31,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* format_of_store = "withy-store/2";
 constexpr const char* name_of_description = "store.json";
 constexpr const char* name_of_segments = "segments";
+constexpr std::uint64_t most_in_block = std::uint64_t{64} << 20;  // bytes of records that are read at once
 constexpr int place_bits = 44;  // of a place in a segment: 16 TiB; the rest counts segments, to a million
 
 Json json_of(const StoreDescription& d) {
@@ -116,12 +118,10 @@ bool is_of(const std::filesystem::path& segment, const std::string& fingerprint)
   return std::filesystem::file_size(segment) == 0 || reader.begins_well() || reader.next();
 }
 
-/// Several processes may begin a store at once: each writes the same, whole.
-void write_description(const std::filesystem::path& store, const StoreDescription& about) {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
-  const std::filesystem::path own = store / fmt::format("store.{}-{}", ::getpid(), now);
-  write_lasting_file(own, text_of(about));
-  std::filesystem::rename(own, store / name_of_description);
+/// Whether a segment is of another shard of as many, by its name.
+bool is_of_another(const std::filesystem::path& segment, Shard shard) {
+  const std::string name = segment.filename().string(), end = fmt::format("-of-{}.", shard.count);
+  return name.find(end) != std::string::npos && !name.starts_with(fmt::format("{}{}", shard.number, end));
 }
 
 /// Two runs of one case differ in their times alone.
@@ -151,6 +151,13 @@ StoreDescription description_of(const Plan& plan) {
   d.histories = history_columns(plan);
   d.times = plan.history.times;
   return d;
+}
+
+void write_description(const std::filesystem::path& store, const StoreDescription& about) {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+  const std::filesystem::path own = store / fmt::format("store.{}-{}", ::getpid(), now);
+  write_lasting_file(own, text_of(about));
+  std::filesystem::rename(own, store / name_of_description);
 }
 
 StoreDescription read_description(const std::filesystem::path& store) {
@@ -195,8 +202,10 @@ std::filesystem::path Store::segment(std::uint64_t shard, std::uint64_t shards, 
   return path_ / name_of_segments / fmt::format("{}-of-{}.{}.segment", shard, shards, worker);
 }
 
-StoreIndex::StoreIndex(const std::filesystem::path& store, const StoreDescription& about)
-    : where_(about.size), paths_(segments_of(store)), fingerprint_(about.fingerprint) {
+StoreIndex::StoreIndex(const std::filesystem::path& store, const StoreDescription& about, Shard shard)
+    : shard_(shard), where_(shard.size(about.size)), fingerprint_(about.fingerprint) {
+  for (const std::filesystem::path& path : segments_of(store))
+    if (!is_of_another(path, shard)) paths_.push_back(path);
   for (std::size_t s = 0; s < paths_.size(); ++s) add(s, about);
 }
 
@@ -205,14 +214,15 @@ void StoreIndex::add(std::size_t segment, const StoreDescription& about) {
   SegmentReader reader(paths_[segment], fingerprint_);
   while (const auto record = reader.next()) {
     const auto result = decode(*record);
-    if (!result || result->index >= about.size) continue;
+    if (!result || result->index >= about.size || !shard_.has(result->index)) continue;
     if (has(result->index)) {
       if (!same(*read(result->index), *result))
         throw ResultsError(fmt::format("{}: case {} has two results that differ: it is not reproducible",
                                        paths_[segment].string(), result->index));
       continue;
     }
-    where_[result->index] = (static_cast<std::uint64_t>(segment) << place_bits | reader.place()) + 1;
+    where_[result->index / shard_.count] = (static_cast<std::uint64_t>(segment) << place_bits | reader.place()) + 1;
+    bytes_ += record->size();
     ++done_;
     if (!result->completed()) ++failed_;
     seconds_ += result->seconds;
@@ -220,16 +230,40 @@ void StoreIndex::add(std::size_t segment, const StoreDescription& about) {
   lost_ += reader.lost();
 }
 
-std::optional<CaseResult> StoreIndex::read(std::uint64_t index) {
+/// The record at a segment and place, until the next call.
+std::string_view StoreIndex::record(std::uint64_t where) {
   constexpr std::size_t most_open = 64;
-  if (!has(index)) return {};
-  const std::uint64_t at = where_[index] - 1;
-  const auto segment = static_cast<std::size_t>(at >> place_bits);
+  const auto segment = static_cast<std::size_t>((where - 1) >> place_bits);
   if (open_.size() >= most_open && !open_.contains(segment)) open_.clear();
   const auto [reader, made] = open_.try_emplace(segment, paths_[segment], fingerprint_);
-  const auto record = reader->second.at(at & ((std::uint64_t{1} << place_bits) - 1));
+  const auto record = reader->second.at((where - 1) & ((std::uint64_t{1} << place_bits) - 1));
   if (!record) throw ResultsError(paths_[segment].string() + " has changed while it was read");
-  return decode(*record);
+  return *record;
+}
+
+/// Goes through the segments one after the other, and through each from its beginning to its end.
+void StoreIndex::read_block(std::uint64_t begin) {
+  const std::uint64_t slot = begin / shard_.count, mean = bytes_ / done_ + sizeof(std::string);
+  const std::uint64_t count = std::min(std::max<std::uint64_t>(1, most_in_block / mean), where_.size() - slot);
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> places;  // where, and which of the block
+  for (std::uint64_t k = 0; k < count; ++k)
+    if (where_[slot + k] != 0) places.emplace_back(where_[slot + k], k);
+  std::sort(places.begin(), places.end());
+  block_.begin = slot;
+  block_.records.assign(count, {});
+  for (const auto& [where, k] : places) block_.records[k] = record(where);
+}
+
+std::optional<CaseResult> StoreIndex::read(std::uint64_t index) {
+  if (!has(index)) return {};
+  const std::uint64_t slot = index / shard_.count;
+  const bool in_order = slot == next_;
+  next_ = slot + 1;
+  const auto in_block = [&] { return slot >= block_.begin && slot - block_.begin < block_.records.size(); };
+  if (!in_block() && in_order && slot > 0) read_block(index);
+  // What was found after the block was read is not in it.
+  if (in_block() && !block_.records[slot - block_.begin].empty()) return decode(block_.records[slot - block_.begin]);
+  return decode(record(where_[slot]));
 }
 
 }  // namespace withy::campaign

@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "withy/campaign/segment.hpp"
@@ -36,13 +37,22 @@ struct StoreDescription {
 };
 StoreDescription description_of(const Plan& plan);
 
-/// What the segments of a store hold, by case. Eight bytes a case.
+/// Every so many cases of a plan: those whose number is `number` − 1 modulo `count`.
+struct Shard {
+  std::uint64_t number = 1, count = 1;
+  [[nodiscard]] bool has(std::uint64_t index) const { return index % count == number - 1; }
+  /// How many of so many cases.
+  [[nodiscard]] std::uint64_t size(std::uint64_t cases) const { return (cases + count - number) / count; }
+};
+
+/// What the segments of a store hold of the cases of a shard. Eight bytes a case of it.
 class StoreIndex {
  public:
-  /// Reads every segment once. \throws ResultsError where two records of one case differ; std::system_error
-  StoreIndex(const std::filesystem::path& store, const StoreDescription& about);
-  [[nodiscard]] bool has(std::uint64_t index) const { return where_[index] != 0; }
-  /// The case's result; nothing where it is missing.
+  /// Reads every segment once, but for those of other shards of as many: a thousand nodes that go on would each read
+  /// the results of all. \throws ResultsError where two records of one case differ; std::system_error
+  StoreIndex(const std::filesystem::path& store, const StoreDescription& about, Shard shard = {});
+  [[nodiscard]] bool has(std::uint64_t index) const { return shard_.has(index) && where_[index / shard_.count] != 0; }
+  /// The case's result; nothing where it is missing. Cases that are read in their order are read many at a time.
   [[nodiscard]] std::optional<CaseResult> read(std::uint64_t index);
   [[nodiscard]] std::uint64_t done() const { return done_; }
   [[nodiscard]] std::uint64_t failed() const { return failed_; }
@@ -53,13 +63,24 @@ class StoreIndex {
   [[nodiscard]] std::size_t writers() const { return writers_; }
 
  private:
-  void add(std::size_t segment, const StoreDescription& about);
+  /// Records of cases that follow one another. Neighbours stand in different segments, which are more than can be open.
+  struct Block {
+    std::uint64_t begin = 0;           ///< the first, among the cases of the shard
+    std::vector<std::string> records;  ///< of this and the next ones; empty where there is none
+  };
 
-  std::vector<std::uint64_t> where_;  ///< segment and place; 0: nowhere
+  void add(std::size_t segment, const StoreDescription& about);
+  std::string_view record(std::uint64_t where);
+  void read_block(std::uint64_t begin);
+
+  Shard shard_;
+  std::vector<std::uint64_t> where_;  ///< segment and place of each case of the shard; 0: nowhere
   std::vector<std::filesystem::path> paths_;
   std::string fingerprint_;
   std::map<std::size_t, SegmentReader> open_;
-  std::uint64_t done_ = 0, failed_ = 0, lost_ = 0;
+  Block block_;
+  std::uint64_t next_ = 0;  ///< the case behind the one that was read last
+  std::uint64_t bytes_ = 0, done_ = 0, failed_ = 0, lost_ = 0;
   double seconds_ = 0;
   std::size_t writers_ = 0;
 };
@@ -80,6 +101,9 @@ class Store {
   std::filesystem::path path_;
   StoreDescription about_;
 };
+
+/// Writes store.json whole: several processes may begin a store at once. \throws std::system_error
+void write_description(const std::filesystem::path& store, const StoreDescription& about);
 
 /// \throws ResultsError where the folder is no store.
 StoreDescription read_description(const std::filesystem::path& store);

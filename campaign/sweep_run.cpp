@@ -45,7 +45,7 @@ class Workers {
 
  private:
   void look_up() {
-    const StoreIndex index(store_.path(), store_.about());
+    const StoreIndex index(store_.path(), store_.about(), {settings_.shard, settings_.shards});
     outcome_.lost = index.lost();
     done_.resize(cases_.size());
     for (std::uint64_t i = settings_.shard - 1; i < cases_.size(); i += settings_.shards) {

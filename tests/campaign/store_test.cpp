@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 
 #include "withy/results/results_error.hpp"
 #include "withy/tests/campaign/store_fixture.hpp"
@@ -61,6 +62,59 @@ TEST(Sweeps, AStoreOfAnotherPlanIsNotMixedWith) {
   EXPECT_THROW(Store(folder / "store", another, false), ResultsError);
   Store(folder / "store", another, true);
   EXPECT_EQ(run(folder, another, "store", {1, 1, 1, {}}).ran, 12U);
+}
+
+// Neighbours in different segments, more than are open at once, one case of them twice.
+TEST(Sweeps, CasesAreReadFromManySegmentsInAnyOrder) {
+  const PlanFolder folder;
+  const Plan plan =
+      folder.plan("vary: {bodies.rod.mass: {uniform: {from: 1, to: 2}}}\ncases: 1000\nkeep: {final: [pivot]}\n");
+  const Store store(folder / "store", plan, false);
+  constexpr std::uint64_t shards = 150;
+  for (std::uint64_t shard = 1; shard <= shards; ++shard) {
+    SegmentWriter writer(store.segment(shard, shards, 0), plan.fingerprint);
+    for (std::uint64_t i = shard - 1; i < 1000; i += shards)
+      if (i != 500) writer.append(made(i));
+  }
+  SegmentWriter(store.segment(1, 7, 0), plan.fingerprint).append(made(499));
+  StoreIndex index(store.path(), store.about());
+  EXPECT_EQ(index.done(), 999U);
+  const auto expect = [&](std::uint64_t i) {
+    const auto result = index.read(i);
+    ASSERT_EQ(result.has_value(), i != 500) << i;
+    if (result) {
+      EXPECT_EQ(encode(*result), encode(made(i)));
+    }
+  };
+  for (std::uint64_t i = 0; i < 1000; ++i) expect(i);
+  for (std::uint64_t i = 1000; i-- > 0;) expect(i);
+  for (std::uint64_t i = 0; i < 1000; ++i) expect(i * 37 % 1000);
+}
+
+TEST(Sweeps, AShardLooksForItsCasesWhereTheyCanBe) {
+  const PlanFolder folder;
+  const Plan plan =
+      folder.plan("vary: {bodies.rod.mass: {uniform: {from: 1, to: 2}}}\ncases: 11\nkeep: {final: [pivot]}\n");
+  const Store store(folder / "store", plan, false);
+  const auto write = [&](std::uint64_t shard, std::uint64_t shards, std::initializer_list<std::uint64_t> cases) {
+    SegmentWriter writer(store.segment(shard, shards, 0), plan.fingerprint);
+    for (const std::uint64_t i : cases) writer.append(made(i));
+  };
+  write(2, 3, {1, 4});
+  write(1, 1, {7, 8});                                         // of a run that had no shards
+  folder.write("store/segments/3-of-3.0.segment", "damaged");  // of no concern
+  StoreIndex index(store.path(), store.about(), {2, 3});
+  EXPECT_EQ(index.done(), 3U);
+  EXPECT_EQ(index.lost(), 0U);
+  for (std::uint64_t i = 0; i < 11; ++i) {
+    const bool is_there = i == 1 || i == 4 || i == 7;
+    EXPECT_EQ(index.has(i), is_there) << i;
+    const auto result = index.read(i);
+    ASSERT_EQ(result.has_value(), is_there) << i;
+    if (result) {
+      EXPECT_EQ(encode(*result), encode(made(i)));
+    }
+  }
 }
 
 TEST(Sweeps, TwoResultsOfOneCaseThatDifferAreAnError) {
