@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # benchmarks.sh [TABLE...]: times evaluations and integrators, and writes the tables of docs/performance.md and
-# docs/integrators.md. TABLE: bench-arm, bench-chain, equal-links, lanes, lane-sweeps, branches, stiff-cost; without one all of
+# docs/integrators.md. TABLE: bench-arm, bench-chain, rivals, equal-links, lanes, lane-sweeps, branches, stiff-cost; without one all of
 # them, about ten minutes of a machine that does nothing else. The programs are those of build/release, where the target
 # measurements builds them.
 set -euo pipefail
@@ -11,9 +11,9 @@ bin=build/release/bin
 kept=$(mktemp -d)
 trap 'rm -rf "$kept"' EXIT
 
-# Medians of CPU time of a program of Google Benchmark: name, tab, ns.
+# Medians of CPU time of a program of Google Benchmark with OPTION...: name, tab, ns.
 medians() {
-  "$bin/$1" --benchmark_out="$kept/out.json" --benchmark_out_format=json >&2
+  "$bin/$1" "${@:2}" --benchmark_out="$kept/out.json" --benchmark_out_format=json >&2
   python3 - "$kept/out.json" <<'PYTHON'
 import json, statistics, sys
 times = {}
@@ -57,6 +57,21 @@ table_bench_chain() {
                theirs == "" ? "" : sprintf("%.2f", ns["rigid chain " n] / ns["Simbody " n]),
                per_link("ruthless beams", n), per_link("quadratic beams", n), per_link("consistent beams", n) } }' |
     record_table bench-chain "scripts/benchmarks.sh bench-chain"
+}
+
+# Growth of rigid chains beside those programs that the build has found: ns a link and the exponent of the whole.
+table_rivals() {
+  medians bench-chain --benchmark_filter='^(rigid chain|Simbody|RBDL) 10*$' --benchmark_repetitions=25 | awk -F'\t' '
+    { ns[$1] = $2 }
+    END {
+      print "\t10 links\t100\t1000\texponent from 10 to 1000"
+      split("rigid chain,Simbody,RBDL", names, ",")
+      for (i = 1; i <= 3; ++i) {
+        k = names[i]
+        if (k " 1000" in ns)
+          printf "%s\t%.0f\t%.0f\t%.0f\t%.2f\n", i == 1 ? "Withy" : k, ns[k " 10"] / 10, ns[k " 100"] / 100, ns[k " 1000"] / 1000,
+                 log(ns[k " 1000"] / ns[k " 10"]) / log(100) } }' |
+    record_table rivals "scripts/benchmarks.sh rivals"
 }
 
 # Fastest batches.
@@ -213,10 +228,10 @@ PYTHON
 }
 
 tables=("$@")
-[ $# -gt 0 ] || tables=(bench-arm bench-chain equal-links lanes lane-sweeps branches stiff-cost)
+[ $# -gt 0 ] || tables=(bench-arm bench-chain rivals equal-links lanes lane-sweeps branches stiff-cost)
 for table in "${tables[@]}"; do
   case $table in
-    bench-arm | bench-chain | equal-links | lanes | lane-sweeps | branches | stiff-cost) "table_${table//-/_}" ;;
+    bench-arm | bench-chain | rivals | equal-links | lanes | lane-sweeps | branches | stiff-cost) "table_${table//-/_}" ;;
     *)
       echo "benchmarks.sh: no table '$table'" >&2
       exit 2

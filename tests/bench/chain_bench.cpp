@@ -1,7 +1,7 @@
 /// \file
-/// Chains: rigid ones beside Simbody's order-n recursion (measured in the same run, where it is installed), beams in
-/// each formulation, growth with the number of links, cost against the number of modes, and the price of an empty call.
-/// Before anything is timed, ours and the rival's accelerations must agree.
+/// Chains: rigid ones beside the order-n recursions of Simbody and RBDL (in the same run, where they are installed),
+/// beams in each formulation, growth with the number of links, cost against the number of modes, and the price of an
+/// empty call. Before anything is timed, ours and the rival's accelerations must agree.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -11,14 +11,25 @@
 
 #include "evaluation.hpp"
 #include "ratios.hpp"
-#include "simbody_chain.hpp"
+#include "rival_chains.hpp"
 
 namespace {
 
 using withy::bench::Joint;
+/// Those that the build has found.
+struct Rival {
+  const char* name;
+  std::unique_ptr<withy::bench::RivalChain> (*make)(const std::vector<Joint>&);
+  double most;  ///< of our time over theirs
+};
+const std::vector<Rival> rivals = {
 #ifdef WITHY_BENCH_SIMBODY
-using withy::bench::SimbodyChain;
+    {"Simbody", withy::bench::simbody_chain, 0.18},
 #endif
+#ifdef WITHY_BENCH_RBDL
+    {"RBDL", withy::bench::rbdl_chain, 0},
+#endif
+};
 
 using withy::bench::Evaluation;
 
@@ -92,34 +103,32 @@ std::string beam_chain(int n, int modes) {
   return scene(bodies, hinges, chain);
 }
 
-#ifdef WITHY_BENCH_SIMBODY
-void rival(benchmark::State& state, int n) {
-  SimbodyChain chain(joints(n));
+void time_rival(benchmark::State& state, const Rival& rival, int n) {
+  const auto chain = rival.make(joints(n));
   double s = 0;
   for (auto _ : state) {
-    chain.evaluate(1e-12 * s);
-    s = chain.acceleration(0);
+    chain->evaluate(1e-12 * s);
+    s = chain->acceleration(0);
   }
   benchmark::DoNotOptimize(s);
 }
 
 /// Conditioning grows with the fourth power of the number of links; 30 joints agree to 1e-9 of the largest element.
-void agree(int n) {
+void agree(const Rival& rival, int n) {
   Evaluation ours(rigid_chain(n), "quadratic");
   withy::Work work = ours.equations->make_work();
   ours.equations->derivatives(0, ours.y, ours.y_dot, work);
-  SimbodyChain chain(joints(n));
-  chain.evaluate(0);
+  const auto chain = rival.make(joints(n));
+  chain->evaluate(0);
   double difference = 0, size = 0;
   for (int i = 0; i < n; ++i) {
     const double a = ours.y_dot[ours.first_speed() + static_cast<std::size_t>(i)];
-    difference = std::max(difference, std::abs(a - chain.acceleration(i)));
+    difference = std::max(difference, std::abs(a - chain->acceleration(i)));
     size = std::max(size, std::abs(a));
   }
-  std::printf("rigid chain of %d against Simbody: largest relative difference %.1e\n", n, difference / size);
+  std::printf("rigid chain of %d against %s: largest relative difference %.1e\n", n, rival.name, difference / size);
   if (!(difference < 1e-9 * size)) std::exit(1);
 }
-#endif
 
 /// What a virtual call of this shape costs by itself.
 struct Nothing final : withy::EquationsOfMotion {
@@ -181,16 +190,21 @@ int main(int argc, char** argv) {
     const std::string ours = "rigid chain " + std::to_string(n);
     add(ours, rigid_chain(n), "quadratic");
     units.push_back({ours, static_cast<double>(n), n == 2 ? 125.0 : (n <= 1000 && n >= 30 ? 150.0 : 0.0)});
-#ifdef WITHY_BENCH_SIMBODY
     if (n > 1000) continue;
-    if (n == 30) agree(n);
-    const std::string theirs = "Simbody " + std::to_string(n);
-    benchmark::RegisterBenchmark(theirs.c_str(), rival, n);
-    units.push_back({theirs, static_cast<double>(n)});
-    ratios.push_back({ours, theirs, 0.18});
-#endif
+    for (const Rival& rival : rivals) {
+      if (n == 30) agree(rival, n);
+      const std::string theirs = std::string(rival.name) + " " + std::to_string(n);
+      benchmark::RegisterBenchmark(theirs.c_str(), time_rival, rival, n);
+      units.push_back({theirs, static_cast<double>(n)});
+      ratios.push_back({ours, theirs, rival.most});
+    }
   }
   growths.push_back({"rigid chain 10", "rigid chain 10000", 1000, 1.05});
+  growths.push_back({"rigid chain 10", "rigid chain 1000", 100});
+  for (const Rival& rival : rivals) {
+    const std::string name = std::string(rival.name) + " ";
+    growths.push_back({name + "10", name + "1000", 100});
+  }
   const std::pair<const char*, double> formulations[] = {{"ruthless", 600}, {"quadratic", 1200}, {"consistent", 0}};
   for (const auto& [formulation, most] : formulations) {
     const std::string name = std::string(formulation) + " beams ";

@@ -1,7 +1,8 @@
 /// \file
 /// The store of a sweep at the size of a cluster: bench-store FOLDER CASES SEGMENTS writes that many results of cases
 /// that no run has made, a record of a hundred bytes each, by the writer of sweeps, a segment a shard as if each were a
-/// node. Then it makes the index of the whole store, that of one shard that goes on, and the tables. A row a step.
+/// node. Then it makes the index of the whole store, that of one shard that goes on, and the tables. A row a step:
+/// name, wall time [s], memory at most so far [MB]; then bytes of the segments and of table.csv.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -83,6 +84,9 @@ void run(const std::filesystem::path& folder, std::uint64_t cases, std::uint64_t
   row("collect", [&] {
     if (collect(folder).done != cases) throw std::runtime_error("cases are missing");
   });
+  std::uintmax_t bytes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "segments")) bytes += entry.file_size();
+  std::printf("segments\t%ju\ntable\t%ju\n", bytes, std::filesystem::file_size(folder / "table.csv"));
 }
 
 }  // namespace

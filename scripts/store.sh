@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# store.sh [FILE]: writes, reads and collects the store of a sweep of a million cases and of a hundred million, in a thousand
+# segments, and reckons from it what 1,000 nodes would do, for docs/sweep.md. A quarter of an hour, and 25 GB of disk in $TMPDIR.
+# FILE: rows of a size that were measured before, `SIZE<tab>STEP<tab>SECONDS<tab>MB`; without it both are measured.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=scripts/measured.sh
+. scripts/measured.sh
+rows=${1:-}
+if [ -z "$rows" ]; then
+  rows=$(mktemp)
+  folder=$(mktemp -d)
+  trap 'rm -rf "$rows" "$folder"' EXIT
+  for size in 1000000 100000000; do
+    build/release/bin/bench-store "$folder/store" $size 1000 | sed "s/^/$size\t/" >>"$rows"
+    rm -rf "$folder/store"
+  done
+fi
+text='Results that no run has made, three values and three numbers a case, written by the writer of sweeps; `collect` makes the index, `table.csv` and `statistics.csv`. Memory is the most so far.'
+python3 - "$rows" store <<'PYTHON' | record_table store-size scripts/store.sh "$text"
+import sys
+by = {}
+for line in open(sys.argv[1]):
+    size, step, *cells = line.rstrip("\n").split("\t")
+    by.setdefault(int(size), {})[step] = cells
+print("", *(f"{size:,} cases in 1,000 segments" for size in by), sep="\t")
+for step in ("write", "index of a shard", "index", "collect"):
+    print(step, *(f"{float(r[step][0]):.1f} s, {r[step][1]} MB" for r in by.values()), sep="\t")
+print("segments", *(f"{float(r['segments'][0]) / 1e9:.3g} GB" for r in by.values()), sep="\t")
+print("`table.csv`", *(f"{float(r['table'][0]) / 1e9:.3g} GB" for r in by.values()), sep="\t")
+PYTHON
+python3 - "$rows" docs/measured/lane-sweeps.txt <<'PYTHON' | record_table store-cluster scripts/store.sh "The arm costs what the table of [lanes](performance.md#four-cases-at-once) says, on its machine: $(sed -n 's/^machine: //p' docs/measured/lane-sweeps.txt)."
+import sys
+size, nodes, cores, between = 100_000_000, 1000, 2, 10
+rows = [line.rstrip("\n").split("\t") for line in open(sys.argv[1])]
+of = {step: [float(x) for x in cells] for n, step, *cells in rows if int(n) == size}
+arm = [line.split("\t") for line in open(sys.argv[2]) if line.startswith("`driven-arm")][0]
+case = 1e-3 * float(arm[3])
+record = of["segments"][0] / size
+workers = nodes * cores
+
+def hours(seconds):
+    return f"{seconds:.3g} s" if seconds < 600 else f"{seconds / 3600:.3g} h"
+
+print("", f"cases of {1e3 * case:.3g} ms, the arm in lanes", "cases of 1 s", sep="\t")
+for what, figure in (
+        ("wall time of the sweep", lambda s: hours(size * s / workers)),
+        ("records a second, of all nodes", lambda s: f"{workers / s:,.0f}"),
+        ("written a second, of all nodes", lambda s: f"{workers / s * record / 1e6:.3g} MB"),
+        ("syncs a second, each worker one in ten seconds", lambda s: f"{workers / between:.0f}"),
+        ("segments made, opened and locked once", lambda s: f"{workers:,}"),
+        ("read by each node that goes on", lambda s: f"its own {cores} segments, {record * size / nodes / 1e6:.3g} MB at most"),
+        ("`collect` by one process", lambda s: hours(of["collect"][0])),
+        ("its share of the whole", lambda s: f"{100 * of['collect'][0] / (of['collect'][0] + size * s / workers):.2g} %")):
+    print(what, figure(case), figure(1.0), sep="\t")
+PYTHON
+scripts/docs.sh
