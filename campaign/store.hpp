@@ -37,7 +37,7 @@ struct StoreDescription {
 };
 StoreDescription description_of(const Plan& plan);
 
-/// Every so many cases of a plan: those whose number is `number` − 1 modulo `count`.
+/// Every so many cases of a plan: those whose number is `number` − 1 modulo `count`, `number` from 1 to `count`.
 struct Shard {
   std::uint64_t number = 1, count = 1;
   [[nodiscard]] bool has(std::uint64_t index) const { return index % count == number - 1; }
@@ -63,7 +63,7 @@ class StoreIndex {
   [[nodiscard]] std::size_t writers() const { return writers_; }
 
  private:
-  /// Records of cases that follow one another. Neighbours stand in different segments, which are more than can be open.
+  /// Records of cases that follow one another. Neighbours stand in different segments, more than are kept open.
   struct Block {
     std::uint64_t begin = 0;           ///< the first, among the cases of the shard
     std::vector<std::string> records;  ///< of this and the next ones; empty where there is none

@@ -1,11 +1,16 @@
 #!/usr/bin/env bash
-# store.sh [FILE]: writes, reads and collects the store of a sweep of a million cases and of a hundred million, in a thousand
+# store.sh [FILE REMARK]: writes, reads and collects the store of a sweep of a million cases and of a hundred million, in a thousand
 # segments, and reckons from it what 1,000 nodes would do, for docs/sweep.md. A quarter of an hour, and 25 GB of disk in $TMPDIR.
-# FILE: rows of a size that were measured before, `SIZE<tab>STEP<tab>SECONDS<tab>MB`; without it both are measured.
+# FILE: rows that were measured before, each of bench-store's behind its number of cases and a tab; REMARK says by what
+# and beside what, and stands below the table. Without them all is measured.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/measured.sh
 . scripts/measured.sh
+[ $# = 0 ] || [ $# = 2 ] || {
+  echo "usage: scripts/store.sh [FILE REMARK]" >&2
+  exit 2
+}
 rows=${1:-}
 if [ -z "$rows" ]; then
   rows=$(mktemp)
@@ -17,7 +22,8 @@ if [ -z "$rows" ]; then
   done
 fi
 text='Results that no run has made, three values and three numbers a case, written by the writer of sweeps; `collect` makes the index, `table.csv` and `statistics.csv`. Memory is the most so far.'
-python3 - "$rows" store <<'PYTHON' | record_table store-size scripts/store.sh "$text"
+[ $# = 0 ] || text+=" $2"
+python3 - "$rows" <<'PYTHON' | record_table store-size scripts/store.sh "$text"
 import sys
 by = {}
 for line in open(sys.argv[1]):
