@@ -109,8 +109,8 @@ class AdaptiveStepper : public OneStep {
     const auto ratio =
         error_.head(n).abs() / (control_.atol + control_.rtol * y().head(n).abs().max(next_.head(n).abs()));
     if (n == 0) return 0;
-    // A maximum may pass over NaN; a sum does not.
-    return std::isfinite(ratio.sum()) ? caution_ * ratio.maxCoeff() : std::numeric_limits<double>::quiet_NaN();
+    const double greatest = ratio.maxCoeff<Eigen::PropagateNaN>();
+    return std::isfinite(greatest) ? caution_ * greatest : std::numeric_limits<double>::quiet_NaN();
   }
 
   Eigen::ArrayXd error_;  ///< estimated error of next_
