@@ -237,8 +237,8 @@ void Monitor::remember(Memory& memory) {
   for (auto& [body, ratio] : summary_.peak_deflection_ratio) memory(ratio);
   for (End& end : ends_) {
     for (double& d : end.rough) memory(d);
-    for (double& d : end.now) memory(d);
-    for (double& d : end.velocity) memory(d);
+    for (double& d : end.now.displacement) memory(d);
+    for (double& d : end.now.velocity) memory(d);
   }
   if (effort_watch_) effort_watch_->remember(memory);
   memory(summary_.energy_drift);

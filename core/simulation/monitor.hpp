@@ -2,6 +2,8 @@
 /// What a run watches while it goes: peaks, deflections, energy, the sign of det M.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -83,8 +85,10 @@ class Monitor {
     std::vector<Term> terms;            ///< of x, then of y, then of z, without those that are zero
     std::array<std::size_t, 3> ends{};  ///< where those of a component end
     explicit SectionExpansion(const PointExpansion& e);
-    [[nodiscard]] Vector3 displacement(const double* q) const;
-    [[nodiscard]] Vector3 velocity(const double* q, const double* u) const;
+    struct Motion {
+      Vector3 displacement = Vector3::Zero(), velocity = Vector3::Zero();
+    };
+    [[nodiscard]] Motion at(const double* q, const double* u) const;
   };
   /// A flexible body's tip, or a segment's.
   struct End {
@@ -95,13 +99,17 @@ class Monitor {
     double length;                ///< [m]
     std::array<double, 3>* peak;  ///< null: a segment's
     double* ratio;
-    std::array<double, 3> rough{};                                    ///< greatest |deflection| by the expansion
-    Vector3 now = Vector3::Zero(), velocity = Vector3::Zero();        ///< at the last accepted state, by the expansion
-    Vector3 next = Vector3::Zero(), next_velocity = Vector3::Zero();  ///< the same at the one that is looked at
-    double within = 0;  ///< share of the last step at which a component may be greatest; 0: at none
+    std::array<double, 3> rough{};    ///< greatest |deflection| by the expansion
+    SectionExpansion::Motion now{};   ///< at the last accepted state, by the expansion
+    SectionExpansion::Motion next{};  ///< the same at the one that is looked at
+    double within = 0;                ///< share of the last step at which a component may be greatest; 0: at none
     /// Whether a component grows at the last state and shrinks at the one that is looked at.
     [[nodiscard]] bool turns(Eigen::Index k) const {
-      return !(now[k] * velocity[k] <= 0) && !(next[k] * next_velocity[k] >= 0);
+      return !(now.displacement[k] * now.velocity[k] <= 0) && !(next.displacement[k] * next.velocity[k] >= 0);
+    }
+    /// Whether a component of a deflection by the expansion is greater than it has been.
+    [[nodiscard]] bool exceeded_by(const Vector3& d) const {
+      return std::abs(d[0]) > rough[0] || std::abs(d[1]) > rough[1] || std::abs(d[2]) > rough[2];
     }
   };
   void look(const State& state);

@@ -23,28 +23,24 @@ Monitor::SectionExpansion::SectionExpansion(const PointExpansion& e) {
   }
 }
 
-Vector3 Monitor::SectionExpansion::displacement(const double* q) const {
-  Vector3 d;
+Monitor::SectionExpansion::Motion Monitor::SectionExpansion::at(const double* q, const double* u) const {
+  Motion motion;
   const Term* t = terms.data();
   for (std::size_t k = 0; k < 3; ++k) {
-    double sum = 0;
-    for (const Term* const end = terms.data() + ends[k]; t != end; ++t)
-      sum += t->j < 0 ? t->factor * q[t->i] : t->factor * (q[t->i] * q[t->j]);
-    d[static_cast<Eigen::Index>(k)] = sum;
+    double d = 0, v = 0;
+    for (const Term* const end = terms.data() + ends[k]; t != end; ++t) {
+      if (t->j < 0) {
+        d += t->factor * q[t->i];
+        v += t->factor * u[t->i];
+      } else {
+        d += t->factor * (q[t->i] * q[t->j]);
+        v += t->factor * (u[t->i] * q[t->j] + q[t->i] * u[t->j]);
+      }
+    }
+    motion.displacement[static_cast<Eigen::Index>(k)] = d;
+    motion.velocity[static_cast<Eigen::Index>(k)] = v;
   }
-  return d;
-}
-
-Vector3 Monitor::SectionExpansion::velocity(const double* q, const double* u) const {
-  Vector3 v;
-  const Term* t = terms.data();
-  for (std::size_t k = 0; k < 3; ++k) {
-    double sum = 0;
-    for (const Term* const end = terms.data() + ends[k]; t != end; ++t)
-      sum += t->j < 0 ? t->factor * u[t->i] : t->factor * (u[t->i] * q[t->j] + q[t->i] * u[t->j]);
-    v[static_cast<Eigen::Index>(k)] = sum;
-  }
-  return v;
+  return motion;
 }
 
 void Monitor::note(std::size_t order, const std::string& name, double length, const std::array<double, 3>& d,
@@ -57,18 +53,12 @@ void Monitor::note(std::size_t order, const std::string& name, double length, co
             " times its length (limit " + brief(deflection_limit_) + ")";
 }
 
-/// Exact kinematics integrates along the body, at the cost of an evaluation: only where the expansion says that the
-/// deflection has not been so great before.
-/// \param seen whether the observation is at the state
+/// Looks at a deflection that has not been so great before, as the expansion says: exact kinematics integrates along
+/// the body, at the cost of an evaluation. \param seen whether the observation is at the state
 void Monitor::observe_end(std::size_t index, const State& state, const Vector3& rough, bool& seen) {
   End& end = ends_[index];
-  bool greater = false;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double size = std::abs(rough[static_cast<Eigen::Index>(k)]);
-    greater = greater || size > end.rough[k];
-    end.rough[k] = std::max(end.rough[k], size);
-  }
-  if (!greater) return;
+  for (std::size_t k = 0; k < 3; ++k)
+    end.rough[k] = std::max(end.rough[k], std::abs(rough[static_cast<Eigen::Index>(k)]));
   std::array<double, 3> d{rough.x(), rough.y(), rough.z()};
   if (end.frame >= 0) {
     if (!std::exchange(seen, true)) see(state);
@@ -86,7 +76,8 @@ double Monitor::greatest_within(const End& end, Eigen::Index k, double h) const 
   constexpr int parts = 16;
   for (int i = 1; i < parts; ++i) {
     const double s = static_cast<double>(i) / parts;
-    const double size = std::abs(cubic(s, end.now[k], h * end.velocity[k], end.next[k], h * end.next_velocity[k]));
+    const double size = std::abs(
+        cubic(s, end.now.displacement[k], h * end.now.velocity[k], end.next.displacement[k], h * end.next.velocity[k]));
     if (size <= greatest) continue;
     greatest = size;
     where = s;
@@ -111,8 +102,12 @@ void Monitor::look_within(const State& state) {
     bool seen = false;
     for (std::size_t e = 0; begun && e < ends_.size(); ++e) {
       const End& end = ends_[e];
-      if (end.within > 0)
-        observe_end(e, between_, end.section.displacement(between_.y.data() + end.slot->position), seen);
+      if (!(end.within > 0)) continue;
+      const double *const q = between_.y.data() + end.slot->position, *const u = between_.y.data() +
+                                                                                 model_.layout().positions +
+                                                                                 end.slot->speed;
+      const Vector3 rough = end.section.at(q, u).displacement;
+      if (end.exceeded_by(rough)) observe_end(e, between_, rough, seen);
     }
   }
 }
@@ -130,17 +125,15 @@ void Monitor::look(const State& state) {
   for (End& end : ends_) {
     const double* const q = state.y.data() + end.slot->position;
     const double* const u = state.y.data() + model_.layout().positions + end.slot->speed;
-    end.next = end.section.displacement(q);
-    end.next_velocity = end.section.velocity(q, u);
-    for (Eigen::Index k = 0; k < 3; ++k) turns = turns || end.turns(k);
+    end.next = end.section.at(q, u);
+    turns = turns || end.turns(0) || end.turns(1) || end.turns(2);
   }
   if (turns && state.time > last_.time) look_within(state);
   bool seen = false;
   for (std::size_t e = 0; e < ends_.size(); ++e) {
     End& end = ends_[e];
     end.now = end.next;
-    end.velocity = end.next_velocity;
-    observe_end(e, state, end.now, seen);
+    if (end.exceeded_by(end.now.displacement)) observe_end(e, state, end.now.displacement, seen);
   }
   if (!wholes_.empty()) {
     see(state);
