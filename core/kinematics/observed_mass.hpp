@@ -53,15 +53,15 @@ inline Pack constant_function(double root_mass) {
 }
 inline Lanes constant_function(const Lanes& root_mass) { return root_mass; }
 
-/// Generalized particles.
-template <class Space>
+/// Generalized particles of a body of N modes, or of `modes`.
+template <class Space, int N>
 inline void add_mass(const sweep::MassTable<Space>& table, int modes, const typename Space::Scalar* q,
                      const typename Space::Scalar* q_dot, const typename Space::Twist& V, typename Space::Group* P,
                      PartMomentum<Space>& part) {
   typename Space::Group m = constant_function(table.root_mass);
   for (std::size_t k = 0; k < table.packs; ++k) {
-    const sweep::ParticleMotion<Space, any_count> x(table.data.data() + k * table.stride, table.second_order, modes, q,
-                                                    q_dot, P);
+    const sweep::ParticleMotion<Space, N> x(table.data.data() + k * table.stride, table.second_order, modes, q, q_dot,
+                                            P);
     add_particles<Space>(V, m, x.r, x.v, part);
     m = spread(typename Space::Scalar(0));
   }

@@ -66,7 +66,7 @@ class TreePass {
       sweep::station_motion<Space, modes.value>(node.stations[k].fields, node.modes, q(node), q_dot(node), m,
                                                 partials_.data());
     };
-    if (sweep::in_lanes<Space> && node.modes == 2) {
+    if (node.modes == 2) {
       find(std::integral_constant<int, 2>{});
     } else {
       find(std::integral_constant<int, any_count>{});
@@ -158,7 +158,10 @@ class TreePass {
         return add_straight_mass<Space, 2>(products, q(node), q_dot(node), V, part);
       if (products != nullptr) return add_straight_mass<Space, 4>(products, q(node), q_dot(node), V, part);
     }
-    add_mass<Space>(node.mass, node.modes, q(node), q_dot(node), V, particles_.data(), part);
+    if (node.modes == 2)
+      add_mass<Space, 2>(node.mass, 2, q(node), q_dot(node), V, particles_.data(), part);
+    else
+      add_mass<Space, any_count>(node.mass, node.modes, q(node), q_dot(node), V, particles_.data(), part);
   }
 
   const std::vector<Node<Space>>& nodes_;
