@@ -83,19 +83,22 @@ void EffortWatch::observe(const Stepper& stepper) {
 
 /// Whether the parabola through an effort's size at the last three states rises above what has been seen.
 bool EffortWatch::hides_a_peak() const {
-  const double h1 = back(1).state.time - back(2).state.time, h2 = back(0).state.time - back(1).state.time;
+  const Sample &first = back(2), &middle = back(1), &last = back(0);
+  const double h1 = middle.state.time - first.state.time, h2 = last.state.time - middle.state.time;
+  if (!(h1 > 0) || !(h2 > 0)) return false;
   constexpr double worthwhile = 1 + 1e-6;
-  const auto rises = [&](double first, double middle, double last, double peak) {
-    const double a = std::abs(first), b = std::abs(middle), c = std::abs(last);
-    if (b < a || b < c || (b == a && b == c) || !(h1 > 0) || !(h2 > 0)) return false;
+  const auto rises = [&](double at_first, double at_middle, double at_last, double peak) {
+    if (at_middle == 0) return false;  // most have no effort at all
+    const double a = std::abs(at_first), b = std::abs(at_middle), c = std::abs(at_last);
+    if (b < a || b < c || (b == a && b == c)) return false;
     const double up = (b - a) / h1, down = (b - c) / h2;
     const double bend = (up + down) / (h1 + h2), slope = (up * h2 - down * h1) / (h1 + h2);
     return bend > 0 && b + slope * slope / (4 * bend) > worthwhile * peak;
   };
   for (std::size_t i = 0; i < loads_.size(); ++i)
-    if (rises(back(2).loads[i], back(1).loads[i], back(0).loads[i], loads_[i])) return true;
+    if (rises(first.loads[i], middle.loads[i], last.loads[i], loads_[i])) return true;
   for (std::size_t i = 0; i < motions_.size(); ++i)
-    if (rises(back(2).motions[i], back(1).motions[i], back(0).motions[i], motions_[i])) return true;
+    if (rises(first.motions[i], middle.motions[i], last.motions[i], motions_[i])) return true;
   return false;
 }
 
