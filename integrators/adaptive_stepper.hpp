@@ -41,7 +41,7 @@ class AdaptiveStepper : public OneStep {
       const double t_new = fitted < remaining ? std::min(t + fitted, t_limit) : t_limit;
       const double h = t_new - t;
       const Trial trial = attempt(h);
-      if (!trial.evaluation.ok() || !std::isfinite(trial.error) || !finite(next_) || !finite(next_slope_)) {
+      if (!trial.evaluation.ok() || !std::isfinite(trial.error) || !finite(next_, next_slope_)) {
         // Where halving stops is a matter of the equations, not of the accuracy asked for.
         ++statistics_.rejected;
         wanted = h / 2;

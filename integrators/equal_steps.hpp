@@ -22,7 +22,7 @@ class EqualSteps : public OneStep {
     if (!(t_new > t)) return {StepResult::Outcome::step_underflow, -1};
     for (int halvings = 0;; ++halvings) {
       const Attempt a = attempt(t_new - t);
-      if (a.evaluation.ok() && a.solved && finite(next_) && finite(next_slope_)) break;
+      if (a.evaluation.ok() && a.solved && finite(next_, next_slope_)) break;
       ++statistics_.rejected;
       const double half = t + (t_new - t) / 2;
       if (halvings == most_halvings() || !(half > t && half < t_new)) {

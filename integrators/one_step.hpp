@@ -118,7 +118,7 @@ class OneStep : public Stepper, public ClosingStepper {
 
   /// To be called first in a step: sets the limit of stage times and finds the slope at the start where it is unknown.
   StepResult begin(double t_limit) {
-    latest_ = std::nextafter(t_limit, state_.time);
+    if (t_limit != limit_) latest_ = std::nextafter(limit_ = t_limit, state_.time);
     if (slope_known_) return {};
     const Evaluation e = evaluate(state_.time, next_ = y(), slope_);
     if (!e.ok() || !finite(slope_)) return failure(e);
@@ -212,6 +212,9 @@ class OneStep : public Stepper, public ClosingStepper {
 
   /// Whether all are finite; vectorizes, unlike a search for the first that is not.
   static bool finite(const Eigen::ArrayXd& values) { return (values * 0.0).sum() == 0.0; }
+  static bool finite(const Eigen::ArrayXd& values, const Eigen::ArrayXd& others) {
+    return (values * 0.0 + others * 0.0).sum() == 0.0;
+  }
 
   /// What linearly implicit methods need of the equations.
   /// \throws std::invalid_argument where they have none.
@@ -277,7 +280,8 @@ class OneStep : public Stepper, public ClosingStepper {
   ClosingRecord closing_, closed_;       ///< of the step being tried, and of all that were accepted
   mutable bool open_ = false;            ///< the end of the step being tried cannot be closed
   Eigen::Index size_;
-  double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which the step may evaluate
+  double limit_ = std::numeric_limits<double>::infinity();   ///< of the step
+  double latest_ = std::numeric_limits<double>::infinity();  ///< last time at which it may evaluate
   mutable int sign_ = 1;                                     ///< of det M in the last evaluation
   mutable Last last_ = Last::elsewhere;
   bool slope_known_ = false;
