@@ -159,13 +159,13 @@ State state_of_row(const Layout& layout, std::span<const double> row) {
   return state;
 }
 
+// Few numbers each: to copy a range of them takes longer.
 void ResultColumns::append(const State& state, std::size_t first, std::size_t count) {
-  const auto begin = state.y.begin() + static_cast<std::ptrdiff_t>(first);
-  row_.insert(row_.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+  for (std::size_t i = first; i < first + count; ++i) row_.push_back(state.y[i]);
 }
 
 void ResultColumns::append(const std::array<double, 3>& vector) {
-  row_.insert(row_.end(), vector.begin(), vector.end());
+  for (const double x : vector) row_.push_back(x);
 }
 
 void ResultColumns::append_sensors(const State& state) {
