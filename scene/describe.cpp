@@ -147,12 +147,13 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
 
 Value placed(Value value, const Place& place) {
   value.set_place(place);
-  for (std::size_t i = 0; i < value.items().size(); ++i) {
-    Value& item = value.items()[i];
-    item = placed(std::move(item), {place.line, place.column, fmt::format("{}/{}", place.path, i)});
-  }
-  for (auto& [key, member] : value.members()) {
-    member = placed(std::move(member), {place.line, place.column, place.path + "/" + key});
+  if (value.kind() == Value::Kind::list) {
+    std::vector<Value>& items = value.items();
+    for (std::size_t i = 0; i < items.size(); ++i)
+      items[i] = placed(std::move(items[i]), {place.line, place.column, fmt::format("{}/{}", place.path, i)});
+  } else if (value.kind() == Value::Kind::map) {
+    for (auto& [key, member] : value.members())
+      member = placed(std::move(member), {place.line, place.column, place.path + "/" + key});
   }
   return value;
 }

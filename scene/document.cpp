@@ -218,8 +218,11 @@ class Builder final : public YAML::EventHandler {
   void close() {
     Value value = std::move(levels_.back().value);
     levels_.pop_back();
-    value.items().shrink_to_fit();  // it stays as long as the scene
-    value.members().shrink_to_fit();
+    // It stays as long as the scene.
+    if (value.kind() == Value::Kind::list)
+      value.items().shrink_to_fit();
+    else
+      value.members().shrink_to_fit();
     put(std::move(value));
   }
 

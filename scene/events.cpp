@@ -68,6 +68,7 @@ void SceneEvents::loosen(Value& hinges) {
   std::set<std::string> released;
   for (const auto& [name, event] : events_.members())
     for (const Value& body : items_of(event.at("do"), "release")) released.insert(body.text());
+  if (released.empty()) return;
   for (auto& [name, hinge] : hinges.members()) {
     const Value *child = hinge.find("child"), *type = hinge.find("type");
     if (child == nullptr || type == nullptr || type->kind() != Value::Kind::text || type->text() != "weld") continue;
@@ -79,6 +80,7 @@ void SceneEvents::loosen(Value& hinges) {
 }
 
 void SceneEvents::fasten(Value& hinges) const {
+  if (held_.empty()) return;
   for (auto& [name, hinge] : hinges.members())
     if (std::find(held_.begin(), held_.end(), name) != held_.end()) hinge.set("type", Value(std::string("weld")));
 }

@@ -28,6 +28,7 @@ bool same_content(const Value& a, const Value& b) {
     return false;
   if (a.boolean() != b.boolean() || a.text() != b.text()) return false;
   if (std::bit_cast<std::uint64_t>(a.number()) != std::bit_cast<std::uint64_t>(b.number())) return false;
+  if (a.shares(b)) return true;
   for (std::size_t i = 0; i < a.items().size(); ++i)
     if (!same_content(a.items()[i], b.items()[i])) return false;
   return std::all_of(a.members().begin(), a.members().end(), [&](const Value::Member& member) {

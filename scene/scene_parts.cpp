@@ -28,14 +28,15 @@ bool identical(const Value& a, const Value& b) {
     case Value::Kind::text:
       return a.text() == b.text();
     case Value::Kind::list:
-      return std::equal(a.items().begin(), a.items().end(), b.items().begin(), b.items().end(), &identical);
+      return a.shares(b) ||
+             std::equal(a.items().begin(), a.items().end(), b.items().begin(), b.items().end(), &identical);
     case Value::Kind::map:
       break;
   }
-  return std::equal(a.members().begin(), a.members().end(), b.members().begin(), b.members().end(),
-                    [](const Value::Member& m, const Value::Member& n) {
-                      return m.first == n.first && identical(m.second, n.second);
-                    });
+  return a.shares(b) || std::equal(a.members().begin(), a.members().end(), b.members().begin(), b.members().end(),
+                                   [](const Value::Member& m, const Value::Member& n) {
+                                     return m.first == n.first && identical(m.second, n.second);
+                                   });
 }
 
 bool equal(const SceneNames& a, const SceneNames& b) {

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "withy/scene/asked_outputs.hpp"
 #include "withy/scene/describe.hpp"
@@ -162,7 +163,7 @@ void SceneValues::put(const std::vector<std::string>& keys, Document read, int l
   Value* at = target(keys, line);
   if (at == nullptr) return;
   const std::string path = joined(keys);
-  const bool holds_keys = !at->members().empty() || !at->items().empty();
+  const bool holds_keys = !std::as_const(*at).members().empty() || !std::as_const(*at).items().empty();
   *at = std::move(read.root);
   if (holds_keys) std::erase_if(document_.keys, [&](const auto& entry) { return entry.first.starts_with(path + "/"); });
   document_.keys.merge(read.keys);

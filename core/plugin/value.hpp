@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,7 +37,8 @@ class Diagnostics {
 };
 
 /// A value of a scene: null, boolean, number, text, list or map. Once checked against its ParameterSpec, numbers are
-/// in SI units (radians for angles) and optional members with a default are present.
+/// in SI units (radians for angles) and optional members with a default are present. Copies share their items and
+/// members until one of them is changed: the cases of a sweep are copies of one scene, and differ in a few numbers.
 class Value {
  public:
   enum class Kind { null, boolean, number, text, list, map };
@@ -54,8 +56,10 @@ class Value {
   [[nodiscard]] bool boolean() const { return boolean_; }
   [[nodiscard]] double number() const { return number_; }
   [[nodiscard]] const std::string& text() const { return text_; }
-  [[nodiscard]] const std::vector<Value>& items() const { return items_; }
-  [[nodiscard]] const std::vector<Member>& members() const { return members_; }
+  [[nodiscard]] const std::vector<Value>& items() const { return items_ == nullptr ? no_items() : *items_; }
+  [[nodiscard]] const std::vector<Member>& members() const { return members_ == nullptr ? no_members() : *members_; }
+  /// Whether items and members are those of another value, not only equal to them: it takes no time to find out.
+  [[nodiscard]] bool shares(const Value& other) const { return items_ == other.items_ && members_ == other.members_; }
 
   /// Member of a map; null where there is none.
   [[nodiscard]] const Value* find(std::string_view key) const;
@@ -69,19 +73,23 @@ class Value {
   /// The numbers of a list, in its order.
   [[nodiscard]] std::vector<double> numbers() const;
 
-  /// For those that build or edit a tree: the reader and `--set`.
-  [[nodiscard]] std::vector<Value>& items() { return items_; }
-  [[nodiscard]] std::vector<Member>& members() { return members_; }
+  /// For those that build or edit a tree: the reader and `--set`. The reference is to be used before the value is
+  /// copied: what is changed by it afterwards would change in the copy too.
+  [[nodiscard]] std::vector<Value>& items();
+  [[nodiscard]] std::vector<Member>& members();
   void set(std::string_view key, Value value);
   void set_place(Place where) { place_ = std::move(where); }
 
  private:
+  static const std::vector<Value>& no_items();
+  static const std::vector<Member>& no_members();
+
   Kind kind_ = Kind::null;
   bool boolean_ = false;
   double number_ = 0;
   std::string text_;
-  std::vector<Value> items_;
-  std::vector<Member> members_;
+  std::shared_ptr<std::vector<Value>> items_;     ///< null: none
+  std::shared_ptr<std::vector<Member>> members_;  ///< likewise
   Place place_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "scene_fixture.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
@@ -37,6 +38,24 @@ TEST_F(SceneValuesTest, CopiesVaryOnTheirOwn) {
   EXPECT_EQ(make_scene(values, registry).formulation_name, "quadratic");
   EXPECT_EQ(make_scene(other, registry).end, 2.5);
   EXPECT_EQ(make_scene(other, registry).formulation_name, "ruthless");
+}
+
+TEST_F(SceneValuesTest, CopiesOfAValueShareUntilOneIsChanged) {
+  Value inner = Value::map({{"x", Value(1.0)}, {"list", Value::list({Value(2.0), Value(3.0)})}});
+  Value first = Value::map({{"inner", inner}, {"other", inner}});
+  Value second = first;
+  EXPECT_TRUE(second.shares(first));
+  Value& changed = second.members()[0].second;
+  changed.set("x", Value(5.0));
+  changed.members()[1].second.items().pop_back();
+  EXPECT_FALSE(second.shares(first));
+  EXPECT_EQ(second.at("inner").number_at("x"), 5.0);
+  EXPECT_EQ(second.at("inner").at("list").numbers(), std::vector{2.0});
+  // What was not changed is still one, and what has shared it is as it was.
+  EXPECT_TRUE(second.at("other").shares(first.at("other")));
+  EXPECT_TRUE(first.at("inner").shares(inner));
+  EXPECT_EQ(inner.number_at("x"), 1.0);
+  EXPECT_EQ(inner.at("list").numbers(), (std::vector{2.0, 3.0}));
 }
 
 TEST_F(SceneValuesTest, TypedValuesAreThoseOfTheText) {
