@@ -61,12 +61,12 @@ table_bench_chain() {
 
 # Growth of rigid chains beside those programs that the build has found: ns a link and the exponent of the whole.
 table_rivals() {
-  medians bench-chain --benchmark_filter='^(rigid chain|Simbody|RBDL) 10*$' --benchmark_repetitions=25 | awk -F'\t' '
+  medians bench-chain --benchmark_filter='^(rigid chain|Simbody|RBDL|Pinocchio) 10*$' --benchmark_repetitions=25 | awk -F'\t' '
     { ns[$1] = $2 }
     END {
       print "\t10 links\t100\t1000\texponent from 10 to 1000"
-      split("rigid chain,Simbody,RBDL", names, ",")
-      for (i = 1; i <= 3; ++i) {
+      count = split("rigid chain,Simbody,RBDL,Pinocchio", names, ",")
+      for (i = 1; i <= count; ++i) {
         k = names[i]
         if (k " 1000" in ns)
           printf "%s\t%.0f\t%.0f\t%.0f\t%.2f\n", i == 1 ? "Withy" : k, ns[k " 10"] / 10, ns[k " 100"] / 100, ns[k " 1000"] / 1000,

@@ -1,7 +1,7 @@
 /// \file
-/// Chains: rigid ones beside the order-n recursions of Simbody and RBDL (in the same run, where they are installed),
-/// beams in each formulation, growth with the number of links, cost against the number of modes, and the price of an
-/// empty call. Before anything is timed, ours and the rival's accelerations must agree.
+/// Chains: rigid ones beside the order-n recursions of Simbody, RBDL and Pinocchio (in the same run, where they are
+/// installed), beams in each formulation, growth with the number of links, cost against the number of modes, and the
+/// price of an empty call. Before anything is timed, ours and the rival's accelerations must agree.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -28,6 +28,9 @@ const std::vector<Rival> rivals = {
 #endif
 #ifdef WITHY_BENCH_RBDL
     {"RBDL", withy::bench::rbdl_chain, 0},
+#endif
+#ifdef WITHY_BENCH_PINOCCHIO
+    {"Pinocchio", withy::bench::pinocchio_chain, 0},
 #endif
 };
 

@@ -1,5 +1,6 @@
 /// \file
-/// The rigid chain of chain_bench.cpp as Simbody's and RBDL's users build it; apart, since their headers are not C++20.
+/// The rigid chain of chain_bench.cpp as users of Simbody, RBDL and Pinocchio build it; apart, since their headers are
+/// not C++20.
 #pragma once
 
 #include <memory>
@@ -27,5 +28,7 @@ class RivalChain {
 std::unique_ptr<RivalChain> simbody_chain(const std::vector<Joint>& chain);
 /// By its articulated-body algorithm.
 std::unique_ptr<RivalChain> rbdl_chain(const std::vector<Joint>& chain);
+/// Likewise.
+std::unique_ptr<RivalChain> pinocchio_chain(const std::vector<Joint>& chain);
 
 }  // namespace withy::bench
