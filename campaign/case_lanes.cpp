@@ -200,7 +200,7 @@ class CaseLanes final : public Asked {
       return;
     }
     share_time();
-    const double began = thread_cpu_seconds();
+    const double began = shared_;
     auto run = std::make_unique<CaseRun>(plan_, cases_, *index, registry_, parts_);
     if (run->equations() != nullptr) {
       const std::string why = run->alone_because();

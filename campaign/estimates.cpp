@@ -5,7 +5,10 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace withy::campaign {
 namespace {
@@ -35,15 +38,38 @@ Estimate mean_of(std::span<const double> sample) {
   return {m.mean, m.mean - half, m.mean + half};
 }
 
-/// The number below which a share of a sorted sample lies, between its order statistics.
-double quantile_of(const std::vector<double>& sorted, double p) {
+/// A sample as if it were sorted: the few places that are asked for are found one by one, which takes a part of the
+/// time that sorting all of it does.
+class Sorted {
+ public:
+  explicit Sorted(std::vector<double> sample) : sample_(std::move(sample)) {}
+  [[nodiscard]] std::size_t size() const { return sample_.size(); }
+  /// The number that as many are below as the place says.
+  double operator[](std::size_t place) {
+    const auto above = found_.lower_bound(place);
+    if (above != found_.end() && *above == place) return sample_[place];
+    const auto at = [this](std::size_t i) { return sample_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(above == found_.begin() ? sample_.begin() : at(*std::prev(above) + 1), at(place),
+                     above == found_.end() ? sample_.end() : at(*above));
+    found_.insert(place);
+    return sample_[place];
+  }
+
+ private:
+  std::vector<double> sample_;
+  std::set<std::size_t>
+      found_;  ///< places that have their number: what is less stands before it, what is greater behind
+};
+
+/// The number below which a share of a sample lies, between its order statistics.
+double quantile_of(Sorted& sorted, double p) {
   const double place = p * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+  const double low = sorted[below], high = sorted[std::min(below + 1, sorted.size() - 1)];
+  return low + (place - static_cast<double>(below)) * (high - low);
 }
 
-Estimate quantile_estimate(const std::vector<double>& sorted, double p) {
+Estimate quantile_estimate(Sorted& sorted, double p) {
   const double n = static_cast<double>(sorted.size());
   using Up =
       boost::math::policies::policy<boost::math::policies::discrete_quantile<boost::math::policies::integer_round_up>>;
@@ -74,17 +100,17 @@ Statistics statistics(std::vector<double> sample) {
   s.mean = m.mean;
   s.deviation = m.deviation;
   if (sample.size() > 1) s.mean_interval = mean_of(sample);
-  std::sort(sample.begin(), sample.end());
-  s.least = sample.front();
-  s.greatest = sample.back();
-  for (const double p : shares_of_quantiles) s.quantiles.push_back(quantile_estimate(sample, p));
+  Sorted sorted(std::move(sample));
+  for (const double p : shares_of_quantiles) s.quantiles.push_back(quantile_estimate(sorted, p));
+  s.least = sorted[0];
+  s.greatest = sorted[s.count - 1];
   return s;
 }
 
 std::vector<double> percentiles(std::vector<double> sample, std::span<const double> shares) {
-  std::sort(sample.begin(), sample.end());
+  Sorted sorted(std::move(sample));
   std::vector<double> all;
-  for (const double p : shares) all.push_back(quantile_of(sample, p));
+  for (const double p : shares) all.push_back(quantile_of(sorted, p));
   return all;
 }
 

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "withy/campaign/random.hpp"
 
@@ -66,6 +69,27 @@ TEST(Morris, MeasuresOfEffects) {
   EXPECT_DOUBLE_EQ(m.mean, 1.0);
   EXPECT_DOUBLE_EQ(m.mean_size.value, 2.5);
   EXPECT_NEAR(m.deviation, std::sqrt(26.0 / 3), 1e-14);
+}
+
+TEST(Statistics, QuantilesAreThoseOfTheSortedSample) {
+  constexpr std::array<double, 7> shares = {0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0};
+  for (const std::size_t size : {1u, 2u, 3u, 10u, 97u, 1000u}) {
+    std::vector<double> sample;
+    const Key key = Key(11)[size];
+    for (std::size_t i = 0; i < size; ++i) sample.push_back(std::floor(30 * key[i].uniform()));  // many are equal
+    std::vector<double> sorted = sample;
+    std::sort(sorted.begin(), sorted.end());
+    const std::vector<double> found = percentiles(sample, shares);
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const double place = shares[k] * static_cast<double>(size - 1);
+      const auto below = static_cast<std::size_t>(place);
+      const double low = sorted[below], high = sorted[std::min(below + 1, size - 1)];
+      EXPECT_EQ(found[k], low + (place - static_cast<double>(below)) * (high - low)) << size << " " << shares[k];
+    }
+    const Statistics s = statistics(sample);
+    EXPECT_EQ(s.least, sorted.front());
+    EXPECT_EQ(s.greatest, sorted.back());
+  }
 }
 
 TEST(Statistics, IntervalsAreThoseOfTheTables) {
