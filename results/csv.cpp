@@ -1,21 +1,23 @@
 #include "withy/results/csv.hpp"
 
+#include <fmt/compile.h>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "withy/results/number_text.hpp"
-
 namespace withy {
 
 std::string csv_line(std::span<const double> numbers) {
-  std::string line(numbers.size() * (longest_number + 1) + room_of_number, '\0');
+  constexpr std::size_t longest = 26;  // "-1.2345678901234567e-308" and what separates it
+  std::string line(numbers.size() * longest + 1, '\0');
   char* end = line.data();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (i > 0) *end++ = ',';
-    if (std::isfinite(numbers[i])) end = write_number(end, numbers[i]);
+    if (std::isfinite(numbers[i])) end = fmt::format_to(end, FMT_COMPILE("{}"), numbers[i]);
   }
   *end++ = '\n';
   line.resize(static_cast<std::size_t>(end - line.data()));

@@ -3,16 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <random>
 
 #include "scratch.hpp"
 #include "withy/results/csv_recorder.hpp"
-#include "withy/results/number_text.hpp"
 #include "withy/results/results_error.hpp"
 
 namespace withy {
@@ -41,60 +37,6 @@ TEST(Recorder, CsvAndMemoryTakeTheSameTable) {
   EXPECT_THAT(memory.column("shoulder"), testing::ElementsAre(1.0, 0.5, 1.0 / 3));
   EXPECT_TRUE(std::isnan(memory.rows()[2][2]));
   EXPECT_THROW(static_cast<void>(memory.column("elbow")), std::out_of_range);
-}
-
-std::string written(double number) {
-  std::array<char, room_of_number> text{};
-  return {text.data(), write_number(text.data(), number)};
-}
-
-/// What the standard library writes, which takes three times as long.
-std::string standard(double number) {
-  const double size = std::abs(number);
-  const bool fixed = size == 0 || (size >= 1e-4 && size < 1e16);
-  std::array<char, 64> text{};
-  const auto format = fixed ? std::chars_format::fixed : std::chars_format::scientific;
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number, format).ptr};
-}
-
-TEST(NumberText, IsTheShortestThatReadsBack) {
-  for (const double number : {0.0,
-                              -0.0,
-                              1.0,
-                              -1.0,
-                              10.0,
-                              0.1,
-                              9.995,
-                              0.001,
-                              1e-4,
-                              9.999999999999999e-05,
-                              1e15,
-                              1e16,
-                              9999999999999998.0,
-                              123456789012345.0,
-                              1234567890123456.0,
-                              5e-324,
-                              1.7976931348623157e308,
-                              -2.2250738585072014e-308,
-                              1e100,
-                              1.5e-100,
-                              1e22,
-                              1e23}) {
-    EXPECT_EQ(written(number), standard(number));
-  }
-  EXPECT_EQ(written(-1.2345678901234567e-308).size(), longest_number);
-  std::mt19937_64 generator(1);
-  std::uniform_int_distribution<int> powers(-90, 10);
-  for (int i = 0; i < 200000; ++i) {
-    const double any = std::bit_cast<double>(generator());
-    if (std::isfinite(any)) {
-      ASSERT_EQ(written(any), standard(any));
-    }
-    const double usual = std::ldexp(static_cast<double>(static_cast<std::int64_t>(generator())), powers(generator));
-    ASSERT_EQ(written(usual), standard(usual));
-    const double short_one = static_cast<double>(i) / std::pow(10, i % 23);
-    ASSERT_EQ(written(short_one), standard(short_one));
-  }
 }
 
 TEST(Recorder, ATableThatGoesOnBehindAMarkIsTheWholeTable) {
