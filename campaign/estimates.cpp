@@ -57,8 +57,8 @@ class Sorted {
 
  private:
   std::vector<double> sample_;
-  std::set<std::size_t>
-      found_;  ///< places that have their number: what is less stands before it, what is greater behind
+  /// Places that have their number: what is less stands before it, what is greater behind.
+  std::set<std::size_t> found_;
 };
 
 /// The number below which a share of a sample lies, between its order statistics.
