@@ -8,18 +8,17 @@
 namespace withy::study {
 
 CorrectedEquations::CorrectedEquations(const std::vector<Rung>& rungs, std::size_t low, std::size_t high)
-    : low_(low),
+    : AddedRates(*rungs[low].equations, *rungs[high].equations),
+      low_(low),
       high_(high),
       cheap_(*rungs[low].equations),
       dear_(*rungs[high].equations),
-      implicit_(cheap_.linearly_implicit()),
       cheap_work_(cheap_.make_work()),
       dear_work_(dear_.make_work()),
       last_(cheap_.size() - 1, 0.0),
       change_(last_),
       f_(cheap_.size()),
-      g_(f_),
-      base_(f_) {
+      g_(f_) {
   require_trees(rungs);
 }
 
@@ -55,22 +54,9 @@ double CorrectedEquations::ahead(double t) const noexcept {
   return span_ > 0 ? std::clamp((t - time_) / span_, 0.0, 1.0) : 0;
 }
 
-Evaluation CorrectedEquations::derivatives(double t, std::span<const double> y, std::span<double> y_dot,
-                                           Work& work) const noexcept {
-  const Evaluation e = cheap_.derivatives(t, y, y_dot, work);
+void CorrectedEquations::add(double t, double factor, std::span<double> sum) const noexcept {
   const double a = ahead(t);
-  for (std::size_t i = 0; i < last_.size(); ++i) y_dot[i] += last_[i] + a * change_[i];
-  return e;
-}
-
-Evaluation CorrectedEquations::implicit_derivatives(double t, std::span<const double> y, std::span<const double> base,
-                                                    double delta, std::span<double> y_dot, Work& work) const noexcept {
-  const double a = ahead(t);
-  std::copy(base.begin(), base.end(), base_.begin());
-  for (std::size_t i = 0; i < last_.size(); ++i) base_[i] += delta * (last_[i] + a * change_[i]);
-  const Evaluation e = implicit_->implicit_derivatives(t, y, base_, delta, y_dot, work);
-  for (std::size_t i = 0; i < last_.size(); ++i) y_dot[i] += last_[i] + a * change_[i];
-  return e;
+  for (std::size_t i = 0; i < last_.size(); ++i) sum[i] += factor * (last_[i] + a * change_[i]);
 }
 
 }  // namespace withy::study

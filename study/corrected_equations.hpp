@@ -4,16 +4,16 @@
 
 #include <vector>
 
-#include "withy/core/plugin/forwarding_equations.hpp"
 #include "withy/core/simulation/rungs.hpp"
+#include "withy/study/added_rates.hpp"
 
 namespace withy::study {
 
 /// ẏ = f_low(t, y) + d(t): d is f_high − f_low at the ends of accepted steps, where `sample` takes it, and goes on
 /// beyond the last of them as it went between the last two, for as long as that took. A step so costs an evaluation of
 /// each more than one in `low`, where a step in `high` may be ten times as dear. What the extrapolation is off by is
-/// small against d where steps resolve what moves; so the run is a good reference where d does little. Of one thread.
-class CorrectedEquations final : public ForwardingEquations, private LinearlyImplicit {
+/// small against d where steps resolve what moves; so the run is a good reference where d does little.
+class CorrectedEquations final : public AddedRates {
  public:
   /// \param rungs of one model, a tree; they must outlive it. With low = high they are the equations of that rung.
   CorrectedEquations(const std::vector<Rung>& rungs, std::size_t low, std::size_t high);
@@ -32,46 +32,18 @@ class CorrectedEquations final : public ForwardingEquations, private LinearlyImp
   /// Evaluations made by samples, of each of the two.
   [[nodiscard]] std::size_t samples() const { return samples_; }
 
-  Evaluation derivatives(double t, std::span<const double> y, std::span<double> y_dot,
-                         Work& work) const noexcept override;
-  /// None: those on the way are of the lower formulation alone.
-  bool found_efforts(Work& /*work*/, std::span<double> /*loads*/,
-                     std::span<double> /*motions*/) const noexcept override {
-    return false;
-  }
-  [[nodiscard]] const LinearlyImplicit* linearly_implicit() const override {
-    return implicit_ != nullptr ? this : nullptr;
-  }
-  /// None: d is not known between samples.
-  [[nodiscard]] const Linearization* linearization() const override { return nullptr; }
-  Evaluation position_rates(double t, std::span<const double> y, std::span<double> y_dot,
-                            Work& work) const noexcept override {
-    return derivatives(t, y, y_dot, work);
-  }
-
  private:
-  [[nodiscard]] const EquationsOfMotion& own() const noexcept override { return cheap_; }
-  [[nodiscard]] const EquationsOfMotion& seen() const noexcept override { return dear_; }
-  [[nodiscard]] Work make_factors() const override { return implicit_->make_factors(); }
-  Evaluation factorize(std::span<const double> y, double delta, Work& factors) const noexcept override {
-    return implicit_->factorize(y, delta, factors);
-  }
-  void solve(std::span<double> r, Work& factors) const noexcept override { implicit_->solve(r, factors); }
-  /// ẏ = ẏ′ + d with z = (base + δ d) + δ ẏ′.
-  Evaluation implicit_derivatives(double t, std::span<const double> y, std::span<const double> base, double delta,
-                                  std::span<double> y_dot, Work& work) const noexcept override;
+  void add(double t, double factor, std::span<double> sum) const noexcept override;
   /// How far d goes on at a time, over what it changed by between the last two samples.
   [[nodiscard]] double ahead(double t) const noexcept;
 
   std::size_t low_, high_;
   const EquationsOfMotion& cheap_;
   const EquationsOfMotion& dear_;
-  const LinearlyImplicit* implicit_;  ///< of the cheap ones
   Work cheap_work_, dear_work_;
   double time_ = 0, span_ = 0;         ///< of the last sample [s]; from the one before to it, 0: there is none
   std::vector<double> last_, change_;  ///< d there, and since the one before; of all elements of y but the work
   std::vector<double> f_, g_;
-  mutable std::vector<double> base_;
   std::size_t samples_ = 0;
 };
 

@@ -8,7 +8,7 @@
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/paired_run.hpp"
 #include "withy/study/accuracy.hpp"
-#include "withy/study/corrected_equations.hpp"
+#include "withy/study/correction_along.hpp"
 #include "withy/study/output_reader.hpp"
 
 namespace withy::study {
@@ -59,17 +59,19 @@ class PairedRuns {
  public:
   PairedRuns(const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond, const RunSummary& summary,
              const std::function<bool()>& interrupted)
-      : scene_(scene), used_(used), beyond_(beyond), summary_(summary), outputs_(Outputs::all(*scene.model)) {
+      : scene_(scene),
+        used_(used),
+        beyond_(beyond),
+        summary_(summary),
+        outputs_(Outputs::all(*scene.model)),
+        first_(&used) {
     options_.end = summary.final.time;
     options_.output = scene.output;
     options_.interrupted = interrupted;
   }
   PairedRunOptions& options() { return options_; }
-  /// In the place of the equations used these, which make them of others as they go, sampled at every output.
-  void make_by(CorrectedEquations& corrected) {
-    corrected_ = &corrected;
-    corrected.begin(begun(*scene_.model, used_, scene_.initial));
-  }
+  /// In the place of the equations used these, whose solution is the run too.
+  void replace_used(const EquationsOfMotion& by) { first_ = &by; }
 
   ErrorEstimate with(const Integrator& integrator) {
     OutputReader ours(outputs_, *scene_.model, used_), theirs(outputs_, *beyond_.model, *beyond_.equations);
@@ -78,10 +80,8 @@ class PairedRuns {
     energy_ = 0;
     DriftWatch watch(summary_);
     std::vector<double> first;
-    const EquationsOfMotion& first_of_both = corrected_ != nullptr ? corrected_->faces() : used_;
-    const PairedRun run = run_paired(*scene_.model, first_of_both, *beyond_.equations, integrator, scene_.initial,
-                                     options_, [&](const State& a, const State& b) {
-                                       if (corrected_ != nullptr) corrected_->sample(a);
+    const PairedRun run = run_paired(*scene_.model, *first_, *beyond_.equations, integrator, scene_.initial, options_,
+                                     [&](const State& a, const State& b) {
                                        last_ = ours.read(a);
                                        outputs_.raise(last_, theirs.read(b), greatest);
                                        watch.look(ours.energies(), a.y.back());
@@ -127,7 +127,7 @@ class PairedRuns {
   const RunSummary& summary_;
   Outputs outputs_;
   PairedRunOptions options_;
-  CorrectedEquations* corrected_ = nullptr;
+  const EquationsOfMotion* first_;
   std::vector<double> last_;  ///< reading of our equations
   Distances ranges_, greatest_;
   double energy_ = 0;
@@ -142,25 +142,39 @@ double cost_of_a_pair(const Model& model) {
   return 2.2 + 1.1 * pairs / static_cast<double>(std::max<std::size_t>(model.layout().speeds, 1));
 }
 
-/// Strict formulations fold no stiffness into their mass matrix, so coarse steps are those of the model beyond, with
-/// what the accelerations of the strict one differ by, found once a step. Where that becomes stiff, as near a singular
-/// mass matrix, they come to another end. \returns nothing where that is so.
+/// At every so many of these states that they make no more than `most` steps; where there are fewer states, each
+/// stretch in equal parts.
+std::vector<double> step_ends(std::span<const State> states, double most) {
+  std::vector<double> ends;
+  const double stretches = static_cast<double>(states.size() - 1);
+  const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil(stretches / most)));
+  const auto parts = static_cast<std::size_t>(std::max(1.0, std::floor(most / stretches)));
+  for (std::size_t i = every; i < states.size(); i += every)
+    for (std::size_t part = 1; part <= parts; ++part)
+      ends.push_back(
+          std::lerp(states[i - every].time, states[i].time, static_cast<double>(part) / static_cast<double>(parts)));
+  return ends;
+}
+
+/// Strict formulations fold no stiffness into their mass matrix: coarse steps are those of the model beyond, with what
+/// the accelerations of the strict one were found to differ by along the run. \returns nothing where they come to
+/// another end.
 std::optional<ErrorEstimate> of_strict(const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond,
                                        const RunSummary& summary, const std::function<bool()>& interrupted) {
+  const std::vector<State>& states = summary.validity.closely;
+  if (states.size() < 2) return {};
   // Two evaluations of both, a sample and what is read there, in evaluations of the run: measured, 6 (arms) to 10 (a
   // blade of six modes).
   const double of_a_step = 3.2 + 0.85 * cost_of_a_pair(*scene.model);
-  const double span = summary.final.time - scene.initial.time;
   const double steps = std::max(share_of_run * static_cast<double>(summary.steps.evaluations) / of_a_step,
                                 static_cast<double>(least_evaluations) / 2);
-  const std::vector<Rung> rungs = {{beyond.formulation, {}, beyond.equations.get()}, {"strict", {}, &used}};
-  CorrectedEquations corrected(rungs, 0, 1);
+  const CorrectionAlong corrected(*beyond.equations, used, states);
   PairedRuns pair(scene, used, beyond, summary, interrupted);
-  pair.make_by(corrected);
+  pair.replace_used(corrected);
   pair.options().at_steps = true;
   pair.options().output = 0;
   pair.options().most_evaluations = static_cast<std::size_t>(2.5 * steps);  // steps land on discontinuities too
-  ErrorEstimate estimate = pair.with(CoarseSteps(span / steps));
+  ErrorEstimate estimate = pair.with(CoarseSteps(step_ends(states, steps)));
   if (!pair.comes_to_the_end(estimate)) return {};
   return estimate;
 }

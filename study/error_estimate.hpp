@@ -47,6 +47,7 @@ struct EstimateOutcome {
 /// stiffness and damping implicit (CoarseSteps), or where these do not come to the run's own end, those of radau at
 /// a low tolerance: what comes to another end tells nothing of the run.
 /// \param used the equations of the run, from its start to its end
+/// \param summary of a run that looked beyond: of strict equations the states that it kept closely are needed
 /// \throws InputError where there is no integrator dopri5; std::invalid_argument where a load has switching functions.
 EstimateOutcome estimate_error(const Scene& scene, const EquationsOfMotion& used, const Beyond& beyond,
                                const RunSummary& summary, Registry& registry, Price price,

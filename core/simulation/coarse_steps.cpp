@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace withy {
 namespace {
@@ -10,11 +12,12 @@ namespace {
 class SemiImplicitStepper final : public Stepper {
  public:
   SemiImplicitStepper(const EquationsOfMotion& equations, const LinearlyImplicit& linear, const State& start,
-                      double step)
+                      double step, const std::vector<double>& ends)
       : equations_(equations),
         linear_(linear),
         work_(equations.make_work()),
         step_(step),
+        ends_(ends),
         state_(start),
         before_(start),
         stage_(start.y),
@@ -27,6 +30,8 @@ class SemiImplicitStepper final : public Stepper {
   StepResult step(double t_limit) override {
     const double t = state_.time;
     if (!(t_limit > t)) return {};
+    if (const auto end = std::upper_bound(ends_.begin(), ends_.end(), t); end != ends_.end())
+      t_limit = std::min(t_limit, *end);
     const double left = std::ceil((t_limit - t) / step_ * (1 - 1e-9));  // the allowance: no step more by rounding
     const double t_new = left > 1 ? t + (t_limit - t) / left : t_limit;
     if (!(t_new > t)) return {StepResult::Outcome::step_underflow, -1};
@@ -94,6 +99,7 @@ class SemiImplicitStepper final : public Stepper {
   const LinearlyImplicit& linear_;
   Work work_;
   double step_;
+  std::vector<double> ends_;
   State state_, before_;
   std::vector<double> stage_, base_, first_, slope_;  ///< slope_: k₂ of the last step
   bool known_ = false;                                ///< slope_ is that at the state
@@ -102,10 +108,13 @@ class SemiImplicitStepper final : public Stepper {
 
 }  // namespace
 
+CoarseSteps::CoarseSteps(std::vector<double> ends)
+    : step_(std::numeric_limits<double>::infinity()), ends_(std::move(ends)) {}
+
 std::unique_ptr<Stepper> CoarseSteps::start(const EquationsOfMotion& equations, const State& state) const {
   const LinearlyImplicit* linear = equations.linearly_implicit();
   if (linear == nullptr) throw std::invalid_argument("coarse steps are for linearly implicit equations");
-  return std::make_unique<SemiImplicitStepper>(equations, *linear, state, step_);
+  return std::make_unique<SemiImplicitStepper>(equations, *linear, state, step_, ends_);
 }
 
 }  // namespace withy

@@ -7,9 +7,9 @@ namespace withy {
 void StatesAlong::observe(const State& state) {
   if (row_ == 0 || seen_++ % every_ != 0) return;
   const auto at = [&](std::size_t i) { return kept_.begin() + static_cast<std::ptrdiff_t>(i * row_); };
-  if (rows_ == most) {
+  if (rows_ == most_) {
     every_ *= 2;
-    rows_ = most / 2;
+    rows_ = most_ / 2;
     for (std::size_t i = 1; i < rows_; ++i) std::copy(at(2 * i), at(2 * i + 1), at(i));
   }
   *at(rows_) = state.time;

@@ -19,6 +19,7 @@ constexpr std::size_t samples_per_cost = 50;  ///< 2 %
 constexpr std::size_t growth = 4, least_interval = 20;
 /// States are kept for what is found by assembled mass matrices.
 constexpr std::size_t most_speeds_along = 300;
+constexpr std::size_t most_along = 64, most_closely = 512;
 
 std::size_t work_size(const EquationsOfMotion* equations) {
   return equations == nullptr ? 0 : equations->make_work().size();
@@ -41,7 +42,8 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       product_(model.layout().speeds),
       cost_(motion_cost + (beyond != nullptr ? comparison_cost : 0)),
       held_{0, std::vector<double>(equations.size())},
-      along_(beyond != nullptr && model.layout().speeds <= most_speeds_along ? equations.size() : 0) {
+      along_(beyond != nullptr && model.layout().speeds <= most_speeds_along ? equations.size() : 0, most_along),
+      closely_(beyond != nullptr && equations.linearly_implicit() == nullptr ? equations.size() : 0, most_closely) {
   std::unordered_map<const Body*, std::size_t> twins;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
@@ -193,6 +195,7 @@ void ValidityWatch::remember(Memory& memory) {
   memory(held_.y);
   memory(due_);
   along_.remember(memory);
+  closely_.remember(memory);
 }
 
 void ValidityWatch::finish(const State& trusted, bool sampled) {
@@ -209,6 +212,7 @@ void ValidityWatch::finish(const State& trusted, bool sampled) {
   validity_.neglected.rms = ratio(neglected_squares_, squares_);
   validity_.neglected.peak = ratio(neglected_greatest_, greatest_);
   validity_.along = along_.until(trusted, sampled);
+  validity_.closely = closely_.until(trusted, sampled);
 }
 
 }  // namespace withy

@@ -50,6 +50,7 @@ struct Validity {
   std::size_t samples = 0;
   NeglectedAcceleration neglected;  ///< no samples where there was nothing to compare with
   std::vector<State> along;         ///< states of the run for looks at it afterwards, by `StatesAlong`
+  std::vector<State> closely;       ///< more of them, where the equations have no linearly implicit steps
 };
 
 /// Samples one run. The interval is counted in evaluations of the equations of motion that steps make, which makes the
@@ -65,6 +66,7 @@ class ValidityWatch {
   void observe(const State& state, std::size_t evaluations, double trusted) {
     if (bodies_.empty()) return;
     along_.observe(state);
+    closely_.observe(state);
     if (due_ && held_.time <= trusted) settle();
     if (!due_ && evaluations >= next_) hold(state, evaluations);
   }
@@ -115,7 +117,7 @@ class ValidityWatch {
   std::size_t next_ = 0;  ///< evaluations at which the next sample is due
   State held_;            ///< to be sampled
   bool due_ = false;
-  StatesAlong along_;
+  StatesAlong along_, closely_;
 };
 
 }  // namespace withy
