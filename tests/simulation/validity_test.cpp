@@ -209,7 +209,7 @@ TEST(Validity, watching_allocates_nothing_after_construction) {
 
 // Steps of 1 ms: 10,000 of them need a stride of 256, so that 40 states are kept, and the end.
 TEST(Validity, states_along_a_run_are_evenly_spread_over_its_steps_and_survive_a_checkpoint) {
-  StatesAlong whole(1), resumed(1);
+  StatesAlong whole(1, 64), resumed(1, 64);
   for (int i = 0; i < 10'000; ++i) {
     const State state{1e-3 * i, {1.0 * i}};
     whole.observe(state);
@@ -230,7 +230,7 @@ TEST(Validity, states_along_a_run_are_evenly_spread_over_its_steps_and_survive_a
   ASSERT_EQ(again.size(), states.size());
   for (std::size_t i = 0; i < states.size(); ++i) EXPECT_EQ(again[i].y, states[i].y);
   EXPECT_EQ(whole.until({5, {5'000}}, false).back().y[0], 4'864);
-  EXPECT_TRUE(StatesAlong(0).until(end, false).empty());
+  EXPECT_TRUE(StatesAlong(0, 64).until(end, false).empty());
 }
 
 // At one state: rate over the lowest frequency of the loaded arm, energies of modes with K = omega^2 G, and what the
