@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A sweep through Dask whose workers are killed on the way: its table is that of the undisturbed one, byte by byte.
 
-dask_kills.py [--cases 20000] [--kills 5] [--table FILE]
+dask_kills.py [--cases 100000] [--kills 5] [--table FILE]
 
 Needs the Python module on PYTHONPATH, and Dask (Debian: python3-distributed). Status 1 where a table differs.
 """
@@ -51,7 +51,7 @@ def main():
     import withy
 
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--cases', type=int, default=20_000)
+    parser.add_argument('--cases', type=int, default=100_000)
     parser.add_argument('--kills', type=int, default=5)
     parser.add_argument('--table')
     given = parser.parse_args()
