@@ -109,6 +109,7 @@ class Lane final : public AskingEquations, public StagedSteps {
     [[nodiscard]] WorldVelocity frame_velocity(int body, int frame) const noexcept override {
       return own().frame_velocity(body, frame);
     }
+    [[nodiscard]] double turning(int body) const noexcept override { return own().turning(body); }
     [[nodiscard]] std::array<double, 3> deflection(int body, int frame) const noexcept override {
       return own().deflection(body, frame);
     }

@@ -113,7 +113,7 @@ Tree<Space>::Tree(const Model& model, Terms terms, const PlacedTree& tree, const
   std::size_t next = 0;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyPlace& place = tree.places[b];
-    bodies.push_back({place.pose.R, model.bodies()[b].body->shape().modes() > 0});
+    bodies.push_back({place.pose.R, model.bodies()[b].body->shape().modes() > 0, place.node, place.station});
     first_frame_.push_back(next);
     for (std::size_t f = 0; f < model.bodies()[b].frames.size(); ++f, ++next) {
       FramePlace& at = frames_[next];

@@ -20,10 +20,12 @@ struct FramePlace {
   double height = 0;  ///< of its origin above the plane [m]; in a plane alone
 };
 
-/// A body of the model, for its deflections.
+/// The frame of a body of the model.
 struct BodyAxes {
-  Matrix3 R;  ///< R_NB of its frame on its node
+  Matrix3 R;  ///< R_NB of it on its node
   bool flexible = false;
+  int node = -1;     ///< −1: the world
+  int station = -1;  ///< −1: the node's frame
 };
 
 /// A tree in a plane or in space.

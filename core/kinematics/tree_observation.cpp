@@ -1,6 +1,7 @@
 #include "withy/core/kinematics/tree_observation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace withy::observed {
@@ -14,6 +15,9 @@ Vector3 lifted_angular(const Spatial::Twist& V, const Spatial::Position& /*acros
 }
 Planar::Position linear(const Planar::Twist& V) { return {V.x, V.y}; }
 Spatial::Position linear(const Spatial::Twist& V) { return V.v; }
+
+double size_of(double w) { return std::abs(w); }
+double size_of(const Spatial::Position& w) { return std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]); }
 
 Matrix3 matrix(const Planar::Rotation& R) {
   Matrix3 m = Matrix3::Identity();
@@ -92,6 +96,12 @@ WorldVelocity TreeObservation<Space>::frame_velocity(int body, int frame) const 
   const Matrix3 R = tree_->plane.R * matrix(A.X.R);
   const typename Space::Position none = Space::Position::zero();
   return {array(R * lifted_angular(V, none)), array(R * lifted(linear(V), 0))};
+}
+
+template <class Space>
+double TreeObservation<Space>::turning(int body) const noexcept {
+  const BodyAxes& axes = tree_->bodies[static_cast<std::size_t>(body)];
+  return axes.node < 0 ? 0 : size_of(moved().motion_at(axes.node, axes.station).V.w);
 }
 
 template <class Space>

@@ -16,6 +16,7 @@ class TreeObservation final : public Observation {
   [[nodiscard]] Energies energies() const noexcept override;
   [[nodiscard]] WorldPose frame_pose(int body, int frame) const noexcept override;
   [[nodiscard]] WorldVelocity frame_velocity(int body, int frame) const noexcept override;
+  [[nodiscard]] double turning(int body) const noexcept override;
   [[nodiscard]] std::array<double, 3> deflection(int body, int frame) const noexcept override;
 
  private:

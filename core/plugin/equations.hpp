@@ -96,6 +96,8 @@ class Observation {
   [[nodiscard]] virtual Energies energies() const noexcept = 0;
   [[nodiscard]] virtual WorldPose frame_pose(int body, int frame) const noexcept = 0;
   [[nodiscard]] virtual WorldVelocity frame_velocity(int body, int frame) const noexcept = 0;
+  /// |ω| of the body frame [rad/s].
+  [[nodiscard]] virtual double turning(int body) const noexcept = 0;
   /// Displacement r − X of the section at a frame relative to the body frame, body axes [m].
   [[nodiscard]] virtual std::array<double, 3> deflection(int body, int frame) const noexcept = 0;
 };

@@ -25,6 +25,7 @@ class CarriedFrequency {
   void remember(Memory& memory) {
     memory(shape_);
     memory(begun_);
+    for (Group& group : groups_) memory(group.frequency);
   }
   /// Of the group of a body [rad/s], as at the last update; that of its own modes, its frame held, where a body of the
   /// group has motions without stiffness; 0 where it has no frequency.

@@ -23,6 +23,7 @@ class ChangingEquations::Seen final : public Observation {
   WorldVelocity frame_velocity(int body, int frame) const noexcept override {
     return seen_[rung_]->frame_velocity(body, frame);
   }
+  double turning(int body) const noexcept override { return seen_[rung_]->turning(body); }
   std::array<double, 3> deflection(int body, int frame) const noexcept override {
     return seen_[rung_]->deflection(body, frame);
   }

@@ -237,6 +237,7 @@ void Monitor::remember(Memory& memory) {
   for (auto& [body, ratio] : summary_.peak_deflection_ratio) memory(ratio);
   for (End& end : ends_) {
     for (double& d : end.rough) memory(d);
+    memory(end.rough_square);
     for (double& d : end.now.displacement) memory(d);
     for (double& d : end.now.velocity) memory(d);
   }

@@ -40,8 +40,9 @@ class Monitor {
   }
   /// The deflection past its limit in the states observed, in words; empty where there is none.
   [[nodiscard]] const std::string& excess() const { return excess_; }
-  /// Energy against the work done. A state where they balance is to be trusted.
+  /// Energy against the work done. A state where they balance is to be trusted. Brings the observation there.
   void audit_energy(const State& state);
+  [[nodiscard]] const Observation& seen() const { return seen_; }
   /// The equations change at a state, by `change`: what energy does there is no error of theirs.
   void rebase_energy(const State& state, const std::function<void()>& change);
   /// Events have changed the state: what they did is in its work, and nothing is smooth across.
@@ -90,6 +91,7 @@ class Monitor {
     };
     [[nodiscard]] Motion at(const double* q, const double* u) const;
   };
+  static constexpr Eigen::Index whole = 3;  ///< in the place of a component: the size of a deflection
   /// A flexible body's tip, or a segment's.
   struct End {
     const Slot* slot;  ///< of the body's modes
@@ -99,17 +101,21 @@ class Monitor {
     double length;                ///< [m]
     std::array<double, 3>* peak;  ///< null: a segment's
     double* ratio;
-    std::array<double, 3> rough{};    ///< greatest |deflection| by the expansion
+    std::array<double, 3> rough{};    ///< greatest |component| of the deflection by the expansion
+    double rough_square = 0;          ///< greatest squared size of the deflection by the expansion
     SectionExpansion::Motion now{};   ///< at the last accepted state, by the expansion
     SectionExpansion::Motion next{};  ///< the same at the one that is looked at
     double within = 0;                ///< share of the last step at which a component may be greatest; 0: at none
-    /// Whether a component grows at the last state and shrinks at the one that is looked at.
-    [[nodiscard]] bool turns(Eigen::Index k) const {
-      return !(now.displacement[k] * now.velocity[k] <= 0) && !(next.displacement[k] * next.velocity[k] >= 0);
+    /// Half the rate of the square of a component, or of the size of the whole.
+    [[nodiscard]] static double growth(const SectionExpansion::Motion& m, Eigen::Index k) {
+      return k == whole ? m.displacement.dot(m.velocity) : m.displacement[k] * m.velocity[k];
     }
-    /// Whether a component of a deflection by the expansion is greater than it has been.
+    /// Whether it grows at the last state and shrinks at the one that is looked at.
+    [[nodiscard]] bool turns(Eigen::Index k) const { return !(growth(now, k) <= 0) && !(growth(next, k) >= 0); }
+    /// Whether a deflection by the expansion is greater than it has been, in a component or as a whole.
     [[nodiscard]] bool exceeded_by(const Vector3& d) const {
-      return std::abs(d[0]) > rough[0] || std::abs(d[1]) > rough[1] || std::abs(d[2]) > rough[2];
+      return std::abs(d[0]) > rough[0] || std::abs(d[1]) > rough[1] || std::abs(d[2]) > rough[2] ||
+             d.squaredNorm() > rough_square;
     }
   };
   void look(const State& state);

@@ -59,6 +59,7 @@ void Monitor::observe_end(std::size_t index, const State& state, const Vector3& 
   End& end = ends_[index];
   for (std::size_t k = 0; k < 3; ++k)
     end.rough[k] = std::max(end.rough[k], std::abs(rough[static_cast<Eigen::Index>(k)]));
+  end.rough_square = std::max(end.rough_square, rough.squaredNorm());
   std::array<double, 3> d{rough.x(), rough.y(), rough.z()};
   if (end.frame >= 0) {
     if (!std::exchange(seen, true)) see(state);
@@ -68,21 +69,29 @@ void Monitor::observe_end(std::size_t index, const State& state, const Vector3& 
   note(index, end.slot->name, end.length, d, end.peak);
 }
 
-/// Where a component of the deflection grows at the start of the last step and shrinks at its end, its greatest size
-/// lies between, by the cubic through the component. 0 where it does not, or has been as great before.
+/// Where a component of the deflection, or its size, grows at the start of the last step and shrinks at its end, it is
+/// greatest between, by the cubics through the components. 0 where it does not, or has been as great before.
 double Monitor::greatest_within(const End& end, Eigen::Index k, double h) const {
   if (!end.turns(k)) return 0;
+  const auto component = [&](double s, Eigen::Index i) {
+    return cubic(s, end.now.displacement[i], h * end.now.velocity[i], end.next.displacement[i],
+                 h * end.next.velocity[i]);
+  };
+  const auto square = [&](double s) {
+    if (k < whole) return std::pow(component(s, k), 2);
+    return Vector3(component(s, 0), component(s, 1), component(s, 2)).squaredNorm();
+  };
   double greatest = 0, where = 0;
   constexpr int parts = 16;
   for (int i = 1; i < parts; ++i) {
     const double s = static_cast<double>(i) / parts;
-    const double size = std::abs(
-        cubic(s, end.now.displacement[k], h * end.now.velocity[k], end.next.displacement[k], h * end.next.velocity[k]));
+    const double size = square(s);
     if (size <= greatest) continue;
     greatest = size;
     where = s;
   }
-  return greatest > end.rough[static_cast<std::size_t>(k)] ? where : 0;
+  const double before = k < whole ? std::pow(end.rough[static_cast<std::size_t>(k)], 2) : end.rough_square;
+  return greatest > before ? where : 0;
 }
 
 /// Greatest deflections between the last state and this, along the cubic through the coordinates and rates at both. A
@@ -90,7 +99,7 @@ double Monitor::greatest_within(const End& end, Eigen::Index k, double h) const 
 void Monitor::look_within(const State& state) {
   const double h = state.time - last_.time;
   bool begun = false;
-  for (Eigen::Index component = 0; component < 3; ++component) {
+  for (Eigen::Index component = 0; component <= whole; ++component) {
     for (End& end : ends_) {
       end.within = greatest_within(end, component, h);
       if (end.within == 0) continue;
@@ -126,7 +135,7 @@ void Monitor::look(const State& state) {
     const double* const q = state.y.data() + end.slot->position;
     const double* const u = state.y.data() + model_.layout().positions + end.slot->speed;
     end.next = end.section.at(q, u);
-    turns = turns || end.turns(0) || end.turns(1) || end.turns(2);
+    turns = turns || end.turns(0) || end.turns(1) || end.turns(2) || end.turns(whole);
   }
   if (turns && state.time > last_.time) look_within(state);
   bool seen = false;

@@ -50,7 +50,7 @@ class Run final : public SteppingObserver {
     }
     begin_watches();
     output_at(loop_.state());
-    if (validity_) validity_->observe(loop_.state(), 0, loop_.state().time);
+    if (validity_) validity_->observe(loop_.state(), 0, loop_.state().time, nullptr);
   }
 
   Stop to_end() {
@@ -111,8 +111,10 @@ class Run final : public SteppingObserver {
     monitor_.observe(stepper);
     if (watch_ != nullptr) watch_->observe(stepper);
     monitor_.audit_mass_matrix(state, stepper.statistics().determinant_sign);
-    if (audited(stepper.statistics().accepted)) monitor_.audit_energy(state);
-    if (validity_) validity_->observe(state, loop_.step_evaluations(), monitor_.trusted().time);
+    const bool seen = audited(stepper.statistics().accepted);
+    if (seen) monitor_.audit_energy(state);
+    if (validity_)
+      validity_->observe(state, loop_.step_evaluations(), monitor_.trusted().time, seen ? &monitor_.seen() : nullptr);
     // Accelerations have a pole where det M vanishes: what lies behind it is no motion of the model.
     if (const std::string fault = loops_.fault(state); !fault.empty()) {
       stop_ = {RunStatus::singular, fault, false};

@@ -17,6 +17,9 @@ constexpr std::size_t comparison_cost = 20;
 constexpr std::size_t samples_per_cost = 50;  ///< 2 %
 // Short runs are sampled more often, at intervals that grow with the run: a dozen samples by 1000 evaluations.
 constexpr std::size_t growth = 4, least_interval = 20;
+/// A state between samples is one too where a body turns this much faster than in any of them; rates below this share
+/// of ω₁ matter to nobody.
+constexpr double worthwhile = 1.1, least_ratio = 1e-3;
 /// States are kept for what is found by assembled mass matrices.
 constexpr std::size_t most_speeds_along = 300;
 constexpr std::size_t most_along = 64, most_closely = 512;
@@ -42,6 +45,8 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       product_(model.layout().speeds),
       cost_(motion_cost + (beyond != nullptr ? comparison_cost : 0)),
       held_{0, std::vector<double>(equations.size())},
+      fastest_(held_),
+      excess_(worthwhile),
       along_(beyond != nullptr && model.layout().speeds <= most_speeds_along ? equations.size() : 0, most_along),
       closely_(beyond != nullptr && equations.linearly_implicit() == nullptr ? equations.size() : 0, most_closely) {
   std::unordered_map<const Body*, std::size_t> twins;
@@ -91,14 +96,47 @@ void ValidityWatch::hold(const State& state, std::size_t evaluations) {
 }
 
 void ValidityWatch::settle() {
+  if (excess_ > worthwhile) look_at_motion(fastest_);
+  excess_ = worthwhile;
   if (!due_) return;
   sample(held_);
   due_ = false;
 }
 
+/// A rate is known without an evaluation: all are taken, between samples with the frequency of the last.
+void ValidityWatch::follow(const State& state, const Observation& seen) {
+  double excess = 0;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const double rate = seen.turning(static_cast<int>(bodies_[i].body));
+    note_rate(i, rate, state.time);
+    const double least = least_ratio * frequency_.of(bodies_[i].body);
+    if (const double known = std::max(bodies_[i].sampled, least); known > 0) excess = std::max(excess, rate / known);
+  }
+  if (excess <= excess_) return;
+  excess_ = excess;
+  fastest_ = state;
+}
+
+void ValidityWatch::note_rate(std::size_t index, double rate, double time) {
+  BodyValidity& v = validity_.bodies[index];
+  const double fundamental = frequency_.of(bodies_[index].body);
+  if (!(fundamental > 0)) return;
+  const double ratio = rate / fundamental;
+  if (ratio <= v.rate_ratio && v.fundamental > 0) return;
+  v.fundamental = fundamental;
+  v.rate_ratio = ratio;
+  v.rate_time = time;
+}
+
 void ValidityWatch::sample(const State& state) {
-  if (!equations_.derivatives(state.time, state.y, rates_, work_).ok()) return;
+  if (!look_at_motion(state)) return;
   ++validity_.samples;
+  for (Watched& w : bodies_) look_at_energies(state, w);
+  if (beyond_ != nullptr) compare_accelerations(state);
+}
+
+bool ValidityWatch::look_at_motion(const State& state) {
+  if (!equations_.derivatives(state.time, state.y, rates_, work_).ok()) return false;
   const Layout& layout = model_.layout();
   motion_.update(state.y, std::span<const double>(rates_).subspan(layout.positions, layout.speeds));
   std::vector<BodyMotion> felt;
@@ -108,23 +146,17 @@ void ValidityWatch::sample(const State& state) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Watched& w = bodies_[i];
     BodyValidity& v = validity_.bodies[i];
-    if (const double fundamental = frequency_.of(w.body); fundamental > 0) {
-      const double ratio = motion_.bodies()[w.body].rate.norm() / fundamental;
-      if (ratio > v.rate_ratio || !(v.fundamental > 0)) {
-        v.fundamental = fundamental;
-        v.rate_ratio = ratio;
-        v.rate_time = state.time;
-      }
-    }
+    const double rate = motion_.bodies()[w.body].rate.norm();
+    w.sampled = std::max(w.sampled, rate);
+    note_rate(i, rate, state.time);
     const LoadRatio load = w.stiffness.evaluate(motions);
     v.buckling = std::max(v.buckling, -load.least);
     if (load.size() > v.load.size()) {
       v.load = load;
       v.load_time = state.time;
     }
-    look_at_energies(state, w);
   }
-  if (beyond_ != nullptr) compare_accelerations(state);
+  return true;
 }
 
 void ValidityWatch::look_at_energies(const State& state, Watched& w) const {
@@ -178,6 +210,7 @@ void ValidityWatch::remember(Memory& memory) {
     memory(v.buckling);
   }
   for (Watched& w : bodies_) {
+    memory(w.sampled);
     for (Energy& energy : w.energies) {
       memory(energy.highest);
       memory(energy.whole);
@@ -194,13 +227,17 @@ void ValidityWatch::remember(Memory& memory) {
   memory(held_.time);
   memory(held_.y);
   memory(due_);
+  memory(fastest_.time);
+  memory(fastest_.y);
+  memory(excess_);
   along_.remember(memory);
   closely_.remember(memory);
 }
 
 void ValidityWatch::finish(const State& trusted, bool sampled) {
   if (bodies_.empty()) return;
-  if (held_.time <= trusted.time) settle();
+  due_ = due_ && held_.time <= trusted.time;
+  settle();
   if (sampled) sample(trusted);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     for (std::size_t f = 0; f < bodies_[i].energies.size(); ++f) {

@@ -23,11 +23,12 @@ struct HighestMode {
   std::size_t modes = 0;
 };
 
-/// Extremes of one flexible body over the samples of a run.
+/// Extremes of one flexible body: of its rate over all steps whose energy is looked at, of the rest over the samples of
+/// a run, among them the steps at which bodies turned fastest.
 struct BodyValidity {
   std::string name;
   /// ω₁ of the structure that the body is part of, as it is carried and loaded: with what hangs on it, hinges held, at
-  /// rate_time [rad/s].
+  /// the last sample up to rate_time [rad/s].
   double fundamental = 0;
   double rate_ratio = 0;  ///< greatest |ω| of the body's frame over ω₁
   double rate_time = 0;   ///< when [s]
@@ -63,11 +64,13 @@ class ValidityWatch {
                 Validity& validity);
   /// At an accepted state, with the evaluations that steps have made so far. What is due is sampled once the run is
   /// known to be right up to there, for what lies behind the last state `trusted` [s] is no motion of the model.
-  void observe(const State& state, std::size_t evaluations, double trusted) {
+  /// \param seen an observation that has been brought to the state; null: there is none
+  void observe(const State& state, std::size_t evaluations, double trusted, const Observation* seen) {
     if (bodies_.empty()) return;
     along_.observe(state);
     closely_.observe(state);
     if (due_ && held_.time <= trusted) settle();
+    if (seen != nullptr && state.time <= trusted) follow(state, *seen);
     if (!due_ && evaluations >= next_) hold(state, evaluations);
   }
   /// Samples what is due: the equations are about to change.
@@ -96,9 +99,14 @@ class ValidityWatch {
     MotionStiffness stiffness;
     std::shared_ptr<std::vector<Family>> families;  ///< equal bodies share them
     std::vector<Energy> energies;                   ///< of each family
+    double sampled = 0;                             ///< greatest rate of the frame in the samples [rad/s]
   };
   static std::vector<Family> families_of(const ModalShape& shape);
   void hold(const State& state, std::size_t evaluations);
+  void follow(const State& state, const Observation& seen);
+  void note_rate(std::size_t index, double rate, double time);
+  /// \returns whether the equations could be evaluated there.
+  bool look_at_motion(const State& state);
   void sample(const State& state);
   void look_at_energies(const State& state, Watched& w) const;
   void compare_accelerations(const State& state);
@@ -117,6 +125,8 @@ class ValidityWatch {
   std::size_t next_ = 0;  ///< evaluations at which the next sample is due
   State held_;            ///< to be sampled
   bool due_ = false;
+  State fastest_;  ///< since the last sample, where a body turned faster than in any
+  double excess_;  ///< by this factor
   StatesAlong along_, closely_;
 };
 

@@ -100,6 +100,7 @@ class FunctionEquations : public EquationsOfMotion, public LinearlyImplicit {
     Energies energies() const noexcept override { return equations_.energies(y_); }
     WorldPose frame_pose(int, int) const noexcept override { return {}; }
     WorldVelocity frame_velocity(int, int) const noexcept override { return {}; }
+    double turning(int) const noexcept override { return 0; }
     std::array<double, 3> deflection(int, int) const noexcept override { return {}; }
 
    private:

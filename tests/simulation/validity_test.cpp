@@ -199,9 +199,11 @@ TEST(Validity, watching_allocates_nothing_after_construction) {
   const auto beyond = m.in("quadratic");
   Validity validity;
   ValidityWatch watch(*m.scene.model, *m.equations, beyond.get(), validity);
-  watch.observe(m.scene.initial, 0, m.scene.initial.time);
+  watch.observe(m.scene.initial, 0, m.scene.initial.time, nullptr);
+  const auto seen = m.equations->make_observation();
+  seen->observe(m.scene.initial.y);
   const std::size_t before = allocations();
-  for (std::size_t i = 1; i <= 20; ++i) watch.observe(m.scene.initial, i * 1'000'000, m.scene.initial.time);
+  for (std::size_t i = 1; i <= 20; ++i) watch.observe(m.scene.initial, i * 1'000'000, m.scene.initial.time, seen.get());
   watch.settle();
   EXPECT_EQ(allocations(), before);
   EXPECT_EQ(validity.samples, 21U);
@@ -282,6 +284,56 @@ TEST(Validity, a_run_repeated_gives_the_same_bits) {
   const RunSummary unwatched =
       simulate(*m.scene.model, *m.equations, *m.scene.integrator, m.scene.initial, options, {});
   EXPECT_EQ(unwatched.final.y, one.final.y) << "watching changes nothing";
+}
+
+// A cantilever without damping, at y = a cos w1 t and z = a sin w2 t: neither component is ever more than a, of which
+// each is seen in the first quarter of a turn; both together come to a sqrt(2) as they beat.
+TEST(Peaks, of_a_beam_that_bends_in_two_planes_are_those_of_the_whole) {
+  const std::string text =
+      cantilever("[0, 0, 0]", 1, 1e-9, "bending_y: {stiffness: 10, modes: 1}, bending_z: {stiffness: 14, modes: 1}") +
+      "formulation: linear\nintegrator: {name: dopri5, rtol: 1e-10, atol: 1e-13}\n"
+      "initial: {bodies: {beam: {modes: [0.01, 0], rates: [0, 0.01]}}}\n";
+  Made m(text);
+  const std::size_t q = m.scene.model->layout().modes(0)->position;
+  State& start = m.scene.initial;
+  const std::vector<double> rates = m.rates(start);
+  const double w1 = std::sqrt(-rates[2] / start.y[q]);
+  State other = start;
+  std::swap(other.y[q], other.y[q + 1]);
+  const double w2 = std::sqrt(-m.rates(other)[3] / start.y[q]);
+  start.y[q + 3] = start.y[q] * w2;
+  RunOptions options;
+  options.end = 30;
+  const RunSummary s = simulate(*m.scene.model, *m.equations, *m.scene.integrator, start, options, {});
+  const auto& components = s.peak_deflection.at("beam");
+  EXPECT_GT(std::abs(w1 - w2) * options.end, 6) << "a whole beat at least";
+  EXPECT_NEAR(components[1], components[2], 1e-3 * components[1]) << "between steps by cubics";
+  EXPECT_NEAR(s.peak_deflection_ratio.at("beam"), std::hypot(components[1], components[2]), 2e-3 * components[1]);
+}
+
+// A pendulum of one stiff beam is fastest when it hangs, once in a run of many samples between: the rate of the run is
+// that of energy, not that of the sample next to it.
+TEST(Validity, the_greatest_rate_is_that_of_all_steps_and_loads_are_looked_at_there) {
+  const std::string text =
+      "format: withy/1\ntime: {end: 1}\ngravity: [0, -9.81, 0]\nformulation: quadratic\n"
+      "integrator: {name: dopri5, rtol: 1e-9, atol: 1e-11}\nbodies:\n  rod: {type: beam, length: 1, "
+      "mass_per_length: 1, bending_y: {stiffness: 1e5, modes: 1}}\nhinges:\n  h: {type: revolute, axis: [0, 0, 1], "
+      "parent: world, child: rod}\ninitial: {hinges: {h: {position: [\"89.9 deg\"]}}}\n";
+  Made m(text);
+  RunOptions options;
+  options.end = 6;
+  const RunSummary s = simulate(*m.scene.model, *m.equations, *m.scene.integrator, m.scene.initial, options, {});
+  const BodyValidity& rod = s.validity.bodies[0];
+  // Half m g L (1 + sin) = m L^2 / 6 rate^2 from upright to hanging.
+  const double rate = std::sqrt(3 * 9.81 * (1 + std::sin(std::numbers::pi * 89.9 / 180)));
+  EXPECT_NEAR(rod.rate_ratio * rod.fundamental, rate, 2e-3 * rate);
+  // There it carries its weight and three times that, of which a share stiffens; at the sample before it was less.
+  Made hanging(text);
+  State& y = hanging.scene.initial;
+  y.y[0] = -std::numbers::pi / 2;
+  y.y[2] = rate;
+  const double load = load_of(hanging, "rod", {0, 0}).size();
+  EXPECT_NEAR(rod.load.size(), load, 0.05 * load);
 }
 
 TEST(Validity, the_fastest_mode_of_an_unloaded_beam_is_its_last) {

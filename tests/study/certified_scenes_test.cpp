@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <span>
@@ -13,6 +14,7 @@
 #include "withy/core/analysis/fastest_pole.hpp"
 #include "withy/core/model/closing.hpp"
 #include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/shape/section_fields.hpp"
 #include "withy/core/simulation/tips.hpp"
 #include "withy/scene/scene_error.hpp"
 #include "withy/study/input_error.hpp"
@@ -40,6 +42,9 @@ struct Certified {
 
 /// Before the name of a scene that is run to its own end.
 const std::string whole = "whole:";
+
+/// Where the environment has it, all scenes are run to their ends, in all formulations: the target `certificates`.
+const char* const everything = "WITHY_CERTIFY_WHOLE";
 
 SceneValues shortened(const std::string& file) {
   if (file.starts_with(whole)) return SceneValues::read(file.substr(whole.size()));
@@ -98,7 +103,10 @@ Drifts drifts_over(const Certified& c, std::span<const State> seen) {
     const Energies e = c.equations().energies(state.y);
     if (!first) first = e;
     const double gained = e.kinetic + e.potential - first->kinetic - first->potential;
-    EXPECT_LE(e.kinetic, s.energy_scale * 1.01) << "the scale is no less than the energies";
+    // Where a truncated mass matrix is nearly singular it makes much motion of little energy, its own.
+    if (!truncates(c)) {
+      EXPECT_LE(e.kinetic, s.energy_scale * 1.01) << "the scale is no less than the energies";
+    }
     const auto apart = [](const auto& a, const auto& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); };
     const auto raise = [](double& drift, double error, double scale) {
       if (scale > 0) drift = std::max(drift, error / scale);
@@ -187,6 +195,8 @@ void expect_rates(const Certified& c) {
   for (const BodyValidity& b : c.certificate().bodies) {
     const int body = c.model().body(b.name);
     if (body < 0 || !(b.fundamental > 0)) continue;
+    // A root that turns with the modes, as one that is pinned, is not the body's frame.
+    if (moved_by_modes(c.model().bodies()[static_cast<std::size_t>(body)].frames[0].section)) continue;
     double most = 0;
     for (std::size_t i = 1; i < c.seen.size(); ++i) {
       const double h = c.seen[i].time - c.seen[i - 1].time;
@@ -310,8 +320,9 @@ TEST_P(CertifiedScenes, AreAsTheirCertificatesSay) {
     return tight[formulation] = certified(GetParam(), formulation, "", true);
   };
   std::vector<std::pair<std::string, std::string>> cases;
+  const bool few = GetParam().starts_with(whole) && std::getenv(everything) == nullptr;
   for (const char* f : {"quadratic", "ruthless", "inconsistent", "consistent", "linear", "symmetric", "exact"})
-    if (cases.size() < 2 || !GetParam().starts_with(whole)) cases.emplace_back(f, "");
+    if (cases.size() < 2 || !few) cases.emplace_back(f, "");
   std::size_t looked_at = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const auto [formulation, mixed] = cases[i];  // a copy: the list grows
@@ -350,7 +361,11 @@ std::vector<std::string> all_scenes() {
 /// over many turns.
 std::vector<std::string> whole_scenes() {
   std::vector<std::string> all;
-  for (const char* scene : {"screw", "spin-up", "beam-on-base", "spinning-boom"})
+  if (std::getenv(everything) != nullptr) {
+    for (const std::string& scene : all_scenes()) all.push_back(whole + scene);
+    return all;
+  }
+  for (const char* scene : {"screw", "spin-up", "beam-on-base", "spinning-boom", "commanded-arm"})
     all.push_back(whole + WITHY_SOURCES + "/scenes/" + scene + ".yaml");
   return all;
 }
