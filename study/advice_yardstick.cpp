@@ -132,15 +132,20 @@ void YardstickSearch::explain(const ReferenceFound& found) {
   const double agree = agree_until(evaluator_.outputs(), r.readings, r.coarser, closely);
   const bool long_enough =
       agree - scene.initial.time > policy::worth_looking_at * (end_of_run(scene) - scene.initial.time);
+  const std::string& worst = evaluator_.outputs().list()[yardstick.worst(r.own)].label;
+  const char* const there_was_time = found.unaffordable ? " that there was time for" : "";
+  const std::string known =
+      r.point.modes > 0
+          ? fmt::format("the finest{} ({}) is known to {:.2g} times what is asked, least well in {}", there_was_time,
+                        r.text(), use, worst)
+          : fmt::format(
+                "the two finest runs{} (the finer one {}; the other has a digit of tolerance less) differ by "
+                "{:.2g} times what is asked, most in {}",
+                there_was_time, r.text(), use, worst);
   advice_.trouble = fmt::format(
-      "no reference is exact enough to measure against: the two finest runs{} (the finer one {}; the other has {} "
-      "less) "
-      "differ by {:.2g} times what is asked, most in {}. What to do: ask {}for a shorter time (--set time.end={}), or "
-      "for other outputs (--output)",
-      found.unaffordable ? " that there was time for" : "", r.text(),
-      r.point.modes > 0 ? "a mode and a digit" : "a digit of tolerance", use,
-      evaluator_.outputs().list()[yardstick.worst(r.own)].label,
-      askable ? fmt::format("for --accuracy {}, ", accuracy_.times(times).option()) : "",
+      "no reference is exact enough to measure against: {}. What to do: ask {}for a shorter time (--set time.end={}), "
+      "or for other outputs (--output)",
+      known, askable ? fmt::format("for --accuracy {}, ", accuracy_.times(times).option()) : "",
       long_enough ? fmt::format("{:.3g}, up to which they agree", agree) : "...");
   if (!found.trouble.empty())
     advice_.trouble +=

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 
@@ -20,37 +19,12 @@ constexpr double clearly_less = 0.5;
 /// Modes beyond the last level of the higher rung that are looked at in the lower one.
 constexpr int most_modes_beyond = 8;
 
-void correct(const Output& output, const std::vector<double>& b, const std::vector<double>& c, std::vector<double>& a) {
-  const std::size_t at = output.at;
-  if (output.shape == Output::Shape::orientation) {
-    const auto quaternion = [&](const std::vector<double>& v) {
-      return Eigen::Quaterniond(v[at], v[at + 1], v[at + 2], v[at + 3]).normalized();
-    };
-    const Eigen::Quaterniond q = quaternion(b) * quaternion(c).conjugate() * quaternion(a);
-    a[at] = q.w(), a[at + 1] = q.x(), a[at + 2] = q.y(), a[at + 3] = q.z();
-    return;
-  }
-  const std::size_t numbers = output.shape == Output::Shape::vector ? 3 : 1;
-  for (std::size_t i = at; i < at + numbers; ++i) a[i] += b[i] - c[i];
-}
-
-/// What the finer of two levels may be off by: their difference, or what is left of a series of differences that shrink
-/// as the last two did. Functions that cannot be what the beam is converge like 1/n: the rest is then several times the
-/// last difference.
-/// Of several kinds of modes in turn the last change of each counts.
-Distances rest_of_series(const std::vector<Distances>& changes, int kinds) {
-  constexpr double most = 4;
-  const std::size_t levels = changes.size();
-  Distances rest = changes.back();
-  for (std::size_t k = 0; levels > 1 && k < rest.size(); ++k) {
-    const double before = changes[levels - 2][k];
-    if (!(before > 0)) continue;
-    const double ratio = std::min(rest[k] / before, most / (1 + most));
-    rest[k] *= std::max(1.0, ratio / (1 - ratio));
-  }
-  for (std::size_t kind = 1; kind < std::min<std::size_t>(static_cast<std::size_t>(kinds), levels); ++kind)
-    for (std::size_t k = 0; k < rest.size(); ++k) rest[k] = std::max(rest[k], changes[levels - 1 - kind][k]);
-  return rest;
+/// The run that a series has come to, with the readings that it leads to.
+Reference lead(Reference run, const ModeSeries& series) {
+  run.readings = series.limit();
+  run.own = series.own();
+  run.extrapolated = series.extrapolated();
+  return run;
 }
 
 class ReferenceSearch {
@@ -122,19 +96,21 @@ class ReferenceSearch {
     Reference added = fine;
     added.own = changed;
     if (!goal_.steady(added)) return {};
+    ModeSeries series(outputs_, goal_.kinds);
+    series.add(coarse.point.modes, before->readings);
+    series.add(fine.point.modes, base->readings);
     Point point = *low;
-    Readings last = fine.readings;
     for (int i = 0; i < most_modes_beyond; ++i) {
       ++point.modes;  // integration added little to the finer level, which has this tolerance
-      std::optional<Reference> rich = at(point);
+      const std::optional<Reference> rich = at(point);
       if (!rich) return {};
-      rich->added_by = fine.point;
-      rich->readings = corrected(outputs_, rich->readings, fine.readings, base->readings);
-      rich->own = distances(outputs_, rich->readings, last).first;
-      for (std::size_t k = 0; k < changed.size(); ++k) rich->own[k] += changed[k];
-      last = rich->readings;
-      if (enough(*rich)) return rich;
-      keep_nearest(*rich, {});
+      series.add(point.modes, rich->readings);
+      Reference reached = lead(*rich, series);
+      reached.added_by = fine.point;
+      reached.readings = corrected(outputs_, series.limit(), fine.readings, base->readings);
+      for (std::size_t k = 0; k < changed.size(); ++k) reached.own[k] += changed[k];
+      if (enough(reached)) return reached;
+      keep_nearest(reached, {});
     }
     return {};
   }
@@ -217,18 +193,11 @@ std::vector<std::string> reference_formulations(Registry& registry) {
 }
 
 std::string Reference::text() const {
-  return added_by ? point.text() + ", with what " + added_by->formulation + " adds at " +
-                        std::to_string(added_by->modes) + " modes"
-                  : point.text();
-}
-
-Readings corrected(const Outputs& outputs, const Readings& a, const Readings& b, const Readings& c) {
-  Readings sum = a;
-  const std::size_t common = std::min({a.values.size(), b.values.size(), c.values.size()});
-  sum.times.resize(common), sum.values.resize(common);
-  for (std::size_t i = 0; i < common; ++i)
-    for (const Output& output : outputs.list()) correct(output, b.values[i], c.values[i], sum.values[i]);
-  return sum;
+  std::string text = point.text();
+  if (extrapolated) text += ", extrapolated";
+  if (added_by)
+    text += ", with what " + added_by->formulation + " adds at " + std::to_string(added_by->modes) + " modes";
+  return text;
 }
 
 int kinds_of_modes(const Scene& scene) {
@@ -246,8 +215,9 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
   Point first = goal.first;
   first.family = search.best_family();
   std::optional<Reference> before, coarse = found.interrupted ? std::nullopt : search.begin(first);
-  std::vector<Distances> changes;  // from level to level
+  ModeSeries series(outputs, goal.kinds);
   if (coarse) {
+    series.add(coarse->point.modes, coarse->readings);
     found.trouble.clear();
     found.unaffordable = false;
   }
@@ -258,14 +228,14 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
     if (finer.key() == coarse->point.key()) break;
     std::optional<Reference> fine = search.at(finer);
     if (!fine) break;
-    changes.push_back(distances(outputs, fine->readings, coarse->readings).first);
-    fine->own = rest_of_series(changes, goal.kinds);
-    const bool known = changes.size() >= static_cast<std::size_t>(goal.kinds);
-    if (known && search.enough(*fine)) {
-      found.reference = std::move(fine);
+    series.add(finer.modes, fine->readings);
+    Reference reached = lead(*fine, series);
+    const bool known = series.size() > static_cast<std::size_t>(goal.kinds);
+    if (known && search.enough(reached)) {
+      found.reference = std::move(reached);
       return std::move(found);
     }
-    if (known) search.keep_nearest(*fine, coarse->readings);
+    if (known) search.keep_nearest(reached, series.limit_before());
     before = std::move(coarse), coarse = std::move(fine);
     tried = search.much_cheaper_below(coarse->point);
     if (tried) found.reference = search.add_to_lower(*coarse, *before);

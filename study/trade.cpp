@@ -114,6 +114,13 @@ void TradeStudy::find_reference_for(const Point& point) {
   if (goal.first.modes > 0 && !goal.first.family.empty()) goal.first.modes = std::max(goal.first.modes, 3);
   goal.tightest = 0.1 * goal.first.tolerance;
   goal.levels = goal.kinds = kinds_of_modes(base_.scene);
+  if (goal.kinds == 1 && goal.first.modes > 2) {
+    // A level before tells where the series of modes leads to.
+    const int finest = goal.first.modes + 1;
+    --goal.first.modes;
+    goal.levels = 2;
+    goal.enough = [finest](const Reference& r) { return r.point.modes >= finest; };
+  }
   std::vector<std::unique_ptr<ModelAt>> models;
   const auto model = [&](const Point& p) -> const ModelAt& {
     models.push_back(std::make_unique<ModelAt>(model_at(base_, registry_, p)));
