@@ -25,12 +25,11 @@ constexpr double most_poor_reference_use = 0.25 * most_reference_use;
 constexpr double last_reference_use = 0.7;
 /// Of the time allowed: what the search for a reference may take.
 constexpr double reference_time = 0.6;
-/// Of the accuracy: the tolerance of the coarsest level. Modes of it are few, so that integration is the less of its
-/// errors by far; each level shows what the tolerance of the one before had added.
-constexpr double first_tolerance = 1e-2;
-/// Levels of a reference, the tolerance of each over that of the one before, and the tightest.
+/// Of the accuracy: what integration may add to each level, a fifth of what is aimed at; and the tolerance at which it
+/// is measured.
+constexpr double integration_use = 0.02, first_tolerance = 1e-2;
+/// Levels of a reference, and the tightest tolerance.
 constexpr int reference_levels = 9;
-constexpr double finer_level = 0.3;
 constexpr double tightest = 1e-9;
 /// The same where tolerance is all that can be finer.
 constexpr double finer_integration = 0.1, tightest_integration = 1e-12;
@@ -78,8 +77,9 @@ void YardstickSearch::find() {
                 {}};
   goal.levels = policy::reference_levels;
   goal.kinds = kinds_of_modes(evaluator_.base().scene);
-  goal.finer = modal ? policy::finer_level : policy::finer_integration;
+  goal.finer = modal ? 1 : policy::finer_integration;
   goal.tightest = modal ? policy::tightest : policy::tightest_integration;
+  goal.integration = [&](const Reference& r) { return own_use(r) / policy::integration_use; };
   goal.enough = [&](const Reference& r) {
     const double use = own_use(r);
     tell(r);

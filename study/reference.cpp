@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
@@ -13,18 +14,16 @@ namespace withy::study {
 namespace {
 
 /// Share of an evaluation's cost below which more modes are looked at in a lower rung at once.
-constexpr double much_cheaper = 0.25;
+constexpr double much_cheaper = 0.7;
 /// Times the change by the first family's: less is another one's merit, more may be chance.
 constexpr double clearly_less = 0.5;
 /// Modes beyond the last level of the higher rung that are looked at in the lower one.
 constexpr int most_modes_beyond = 8;
 
-/// The run that a series has come to, with the readings that it leads to.
-Reference lead(Reference run, const ModeSeries& series) {
-  run.readings = series.limit();
-  run.own = series.own();
-  run.extrapolated = series.extrapolated();
-  return run;
+/// To one digit, and no more.
+double rounded_down(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)));
+  return unit * std::floor(x / unit);
 }
 
 class ReferenceSearch {
@@ -46,6 +45,26 @@ class ReferenceSearch {
       best = family;
     }
     return best;
+  }
+
+  /// The tolerance at which integration adds as much as it may. Errors of `dop853` are as its tolerance.
+  double measured_tolerance(Point point) {
+    constexpr double ten_times = 10;
+    const double given = point.tolerance;
+    point.formulation = reference_formulations(registry_).back();
+    const std::optional<Reference> loose = at(point);
+    point.tolerance = given / ten_times;
+    const std::optional<Reference> tight = loose ? at(point) : loose;
+    if (!tight) return given;
+    Reference added = *tight;
+    added.own = distances(outputs_, tight->readings, loose->readings).first;
+    const double use = goal_.integration(added);
+    double tolerance = ten_times * given;
+    if (!(tolerance / given * use <= 1)) tolerance = rounded_down(std::max(given / use, goal_.tightest));
+    tolerance = std::max(tolerance, goal_.tightest);
+    integration_ = added.own;
+    for (double& d : integration_) d *= tolerance / given;
+    return tolerance;
   }
 
   /// The coarsest level, in the richest formulation that comes to the end.
@@ -115,6 +134,15 @@ class ReferenceSearch {
     return {};
   }
 
+  /// The run that a series has come to, with the readings that it leads to.
+  [[nodiscard]] Reference lead(Reference run, const ModeSeries& series) const {
+    run.readings = series.limit();
+    run.own = series.own();
+    for (std::size_t k = 0; k < std::min(run.own.size(), integration_.size()); ++k) run.own[k] += integration_[k];
+    run.extrapolated = series.extrapolated();
+    return run;
+  }
+
   void keep_nearest(const Reference& r, const Readings& coarser) {
     // Where runs part by all they go through the finer one agrees for longer.
     const auto off = [](const Reference& of) { return std::min(relative_error(of.own, of.scales), 1.0); };
@@ -180,6 +208,7 @@ class ReferenceSearch {
   const Outputs& outputs_;
   const ReferenceGoal& goal_;
   const Control& control_;
+  Distances integration_;                  ///< what integration adds to each level, as measured; empty: not known
   std::map<std::string, Reference> runs_;  ///< that came to their end, by the point's key
 };
 
@@ -214,6 +243,7 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
   ReferenceFound& found = search.found;
   Point first = goal.first;
   first.family = search.best_family();
+  if (goal.integration && first.modes > 0 && !found.interrupted) first.tolerance = search.measured_tolerance(first);
   std::optional<Reference> before, coarse = found.interrupted ? std::nullopt : search.begin(first);
   ModeSeries series(outputs, goal.kinds);
   if (coarse) {
@@ -229,7 +259,7 @@ ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>&
     std::optional<Reference> fine = search.at(finer);
     if (!fine) break;
     series.add(finer.modes, fine->readings);
-    Reference reached = lead(*fine, series);
+    Reference reached = search.lead(*fine, series);
     const bool known = series.size() > static_cast<std::size_t>(goal.kinds);
     if (known && search.enough(reached)) {
       found.reference = std::move(reached);

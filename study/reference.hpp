@@ -51,6 +51,10 @@ struct ReferenceGoal {
   int kinds = 1;  ///< kinds_of_modes
   double finer = 0.1;
   double tightest = 1e-9;
+  /// What integration adds to a level, where that is its `own`, over what it may add. The tolerance of all levels is
+  /// then the one at which it adds so much, at most ten times that of `first`: two runs of the coarsest level tell, in
+  /// the lowest rung that truncates nothing. Empty, or without modes: tolerances are that of `first` and by `finer`.
+  std::function<double(const Reference&)> integration;
   std::function<bool(const Reference&)> enough;  ///< empty: one level is
   /// Whether what a higher rung adds has changed little enough from the level before, as `own`; empty: never.
   std::function<bool(const Reference&)> steady;

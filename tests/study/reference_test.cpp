@@ -139,6 +139,30 @@ TEST(FindReference, ALevelIsNoFurtherFromAMuchFinerReferenceThanItSaysOrTwiceTha
   EXPECT_LT(held(waves.back(), 2), 0.5 * held(waves.front(), 2));
 }
 
+/// What integration may add is told in advance; the tolerance is found for it, whatever the first one was.
+TEST(FindReference, TheToleranceOfItsLevelsIsTheOneAtWhichIntegrationAddsWhatItMay) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml");
+  const Prepared scene = prepare(values.set("time.end", Value(0.5), "the test"), plugins());
+  const Outputs outputs = Outputs::all(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+  constexpr double allowed = 1e-5;
+  const auto found = [&](double first, bool measured) {
+    ReferenceGoal goal;
+    goal.first = {"", "orthogonal-polynomials", 2, "dop853", first, {}, {}};
+    goal.finer = 1;
+    if (measured) goal.integration = [](const Reference& r) { return relative_error(r.own, r.scales) / allowed; };
+    return *find_reference(at, plugins(), outputs, goal, {}).reference;
+  };
+  const Reference exact = found(1e-9, false);
+  for (const double first : {1e-4, 1e-6}) {
+    const Reference r = found(first, true);
+    EXPECT_GT(r.point.tolerance, exact.point.tolerance) << "no more than is needed";
+    const double added = relative_error(distances(outputs, r.readings, exact.readings).first, exact.scales);
+    EXPECT_LT(added, 10 * allowed) << r.text();
+  }
+}
+
 /// The fourth mode of the plate twists it and is not excited, the fifth bends it again.
 TEST(FindReference, AModeThatTheMotionDoesNotExciteIsNotTakenForTheEndOfTheSeries) {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/spinning-plate.yaml");
