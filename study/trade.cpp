@@ -12,6 +12,7 @@
 #include "withy/study/input_error.hpp"
 #include "withy/study/output_reader.hpp"
 #include "withy/study/step_limit.hpp"
+#include "withy/study/tip_load.hpp"
 
 namespace withy::study {
 namespace {
@@ -105,6 +106,8 @@ void TradeStudy::find_reference_for(const Point& point) {
   // Of all that mean the same, whatever families are compared.
   ReferenceFamilies families = reference_families(candidates_for(base_, registry_, usual_axes()), base_.model());
   goal.families = std::move(families.others);
+  // Polynomials do not depend on what the scene says of bodies at tips, which may be gone over.
+  std::erase(goal.families, loaded_modes);
   goal.first = {"", std::move(families.first), 0, "dop853", 1e-6, point.over};
   for (const Point& p : points_) {
     goal.first.modes = std::max(goal.first.modes, p.modes);

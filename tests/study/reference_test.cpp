@@ -212,9 +212,11 @@ TEST(FindReference, EigenfunctionsAreTakenForABareBeamWhereTheyConvergeFaster) {
 }
 
 /// The slew's links carry an elbow and a payload.
-TEST(FindReference, WhereATipCarriesABodyPolynomialsAloneWillDo) {
+TEST(FindReference, WhereATipCarriesABodyFunctionsThatKnowItMayTakeThePlaceOfPolynomials) {
   const Prepared arm = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml"), plugins());
-  EXPECT_TRUE(reference_families(candidates_for(arm, plugins(), usual_axes()), arm.model()).others.empty());
+  const ReferenceFamilies families = reference_families(candidates_for(arm, plugins(), usual_axes()), arm.model());
+  EXPECT_EQ(families.first, "orthogonal-polynomials");
+  EXPECT_EQ(families.others, std::vector<std::string>{"clamped-loaded"});
 }
 
 TEST(CorrectedReadings, PutADifferenceOnTopOfNumbersVectorsAndOrientations) {
