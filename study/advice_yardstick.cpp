@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "withy/scene/scene.hpp"
@@ -24,12 +25,12 @@ constexpr double most_poor_reference_use = 0.25 * most_reference_use;
 /// The same of the finest one there is where none of the levels is as good: less is left to what is chosen.
 constexpr double last_reference_use = 0.7;
 /// Of the time allowed: what the search for a reference may take.
-constexpr double reference_time = 0.6;
+constexpr double reference_time = 0.75;
 /// Of the accuracy: what integration may add to each level, a fifth of what is aimed at; and the tolerance at which it
 /// is measured.
 constexpr double integration_use = 0.02, first_tolerance = 1e-2;
 /// Levels of a reference, and the tightest tolerance.
-constexpr int reference_levels = 9;
+constexpr int reference_levels = 14;
 constexpr double tightest = 1e-9;
 /// The same where tolerance is all that can be finer.
 constexpr double finer_integration = 0.1, tightest_integration = 1e-12;
@@ -46,11 +47,11 @@ class YardstickSearch {
                   const Finding& finding)
       : evaluator_(evaluator), candidates_(candidates), accuracy_(accuracy), advice_(advice), finding_(finding) {}
 
-  void find();
+  std::vector<Reference> find();
 
  private:
   void explain(const ReferenceFound& found);
-  void tell(const Reference& r) const;
+  void tell(const Reference& r);
   [[nodiscard]] bool affordable(const Walk& so_far);
   [[nodiscard]] Yardstick of(const Reference& r) const { return {r, accuracy_.limits(evaluator_.outputs(), r.scales)}; }
   [[nodiscard]] double own_use(const Reference& r) const { return of(r).own_use(); }
@@ -60,10 +61,11 @@ class YardstickSearch {
   const Accuracy& accuracy_;
   Advice& advice_;
   const Finding& finding_;
-  Pace pace_;  ///< of the reference's run under way
+  Pace pace_;                                              ///< of the reference's run under way
+  double told_ = std::numeric_limits<double>::infinity();  ///< of the accuracy: the least told so far
 };
 
-void YardstickSearch::find() {
+std::vector<Reference> YardstickSearch::find() {
   const bool modal = candidates_.modes.back() > 0;
   ReferenceGoal goal;
   ReferenceFamilies families = reference_families(candidates_, evaluator_.base().model());
@@ -102,6 +104,7 @@ void YardstickSearch::find() {
     advice_.yardstick = of(*found.reference);
   else
     explain(found);
+  return std::move(found.runs);
 }
 
 /// Whether the reference's runs, this one gone on with at its pace, keep within their share of the time.
@@ -152,19 +155,20 @@ void YardstickSearch::explain(const ReferenceFound& found) {
         (found.unaffordable ? ". A finer one costs too much: " : ". There is no finer one: ") + found.trouble;
 }
 
-/// How far the truth is known by now.
-void YardstickSearch::tell(const Reference& r) const {
-  if (!finding_) return;
+/// How far the truth is known by now, where that is better than what was told before.
+void YardstickSearch::tell(const Reference& r) {
   const Yardstick yardstick = of(r);
+  if (!finding_ || !(yardstick.own_use() < told_)) return;
+  told_ = yardstick.own_use();
   finding_(fmt::format("reference so far: {}, known to {:.2g} times the accuracy asked, least well in {}", r.text(),
                        yardstick.own_use(), evaluator_.outputs().list()[yardstick.worst(r.own)].label));
 }
 
 }  // namespace
 
-void find_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice,
-                    const Finding& finding) {
-  YardstickSearch(evaluator, candidates, accuracy, advice, finding).find();
+std::vector<Reference> find_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
+                                      Advice& advice, const Finding& finding) {
+  return YardstickSearch(evaluator, candidates, accuracy, advice, finding).find();
 }
 
 }  // namespace withy::study

@@ -51,9 +51,10 @@ struct ReferenceGoal {
   int kinds = 1;  ///< kinds_of_modes
   double finer = 0.1;
   double tightest = 1e-9;
-  /// What integration adds to a level, where that is its `own`, over what it may add. The tolerance of all levels is
-  /// then the one at which it adds so much, at most ten times that of `first`: two runs of the coarsest level tell, in
-  /// the lowest rung that truncates nothing. Empty, or without modes: tolerances are that of `first` and by `finer`.
+  /// What integration adds to a level, where that is its `own`, over what it may add. Each level then has the
+  /// integrator that costs least there, of that of `first` and `imex`, at the tolerance at which it adds no more: runs
+  /// of the coarsest tell, in the lowest rung that truncates nothing, from ten times the tolerance of `first` on.
+  /// Empty, or without modes: levels have the integrator of `first`, and its tolerance by `finer`.
   std::function<double(const Reference&)> integration;
   std::function<bool(const Reference&)> enough;  ///< empty: one level is
   /// Whether what a higher rung adds has changed little enough from the level before, as `own`; empty: never.
@@ -64,6 +65,7 @@ struct ReferenceGoal {
 struct ReferenceFound {
   std::optional<Reference> reference;
   std::optional<Reference> nearest;  ///< where there is none: the finest, of which `enough` was not true
+  std::vector<Reference> runs;       ///< all that came to their end, the points in no order
   std::string trouble;               ///< why a run did not come to its end; may be empty
   double cpu_seconds = 0;            ///< of all runs
   bool interrupted = false;

@@ -104,7 +104,7 @@ std::optional<Value> loaded_family(const Matrix6& I, const std::string& strain) 
   return Value::map({{"name", Value(std::string(loaded_modes))},
                      {"tip_mass", Value(mass ? rounded(load->mass) : 0.0)},
                      {"tip_inertia", Value(inertia ? rounded(central) : 0.0)},
-                     {"tip_offset", Value(rounded(offset))}});
+                     {"tip_offset", Value(rounded(offset) + 0.0)}});  // no -0
 }
 
 }  // namespace withy::study
