@@ -98,7 +98,7 @@ std::string references_text(const study::TradeStudy& study) {
     study::Point point = r.point;
     point.over.clear();
     out += fmt::format(
-        "Reference{}: {}; its own error, by what the last modes and ten times the tolerance change: "
+        "Reference{}: {}; what it may be off by, from what the last modes and ten times the tolerance changed: "
         "hinges {:.2g}, tips {:.2g} mm, {:.2g} %.\n",
         over.empty() ? "" : " at " + over, point.text(), r.hinge_error, 1e3 * r.tip_error, 100 * r.relative_error);
   }

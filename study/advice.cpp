@@ -83,9 +83,10 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   if (finding)
     finding(fmt::format("the search takes {:.3g} s of CPU time at most, the longer of 10 s and 20 runs in quadratic",
                         advice.limit_seconds));
-  find_yardstick(evaluator, candidates, accuracy, advice, finding);
+  const std::vector<Reference> runs = find_yardstick(evaluator, candidates, accuracy, advice, finding);
   Search search(evaluator, candidates, advice, finding);
   if (advice.yardstick && !search.stopped()) {
+    search.take(runs);
     search.try_models();
     search.choose();
     search.simplify_bodies();

@@ -60,7 +60,13 @@ std::vector<Point> Search::models_by_cost(const std::vector<int>& all_modes) con
   for (const std::string& formulation : candidates_.formulations)
     for (const std::string& family : candidates_.families)
       for (const int modes : all_modes) {
-        const ModelAt& m = evaluator_.model({formulation, family, modes, "", 0, {}, {}});
+        const Point point{formulation, family, modes, "", 0, {}, {}};
+        // To make a model may take long, as where its motions are looked for.
+        if (over()) {
+          order.emplace_back(infinite, point);
+          continue;
+        }
+        const ModelAt& m = evaluator_.model(point);
         // Explicit steps are as many as the fastest mode makes them.
         order.emplace_back(m.seconds * std::max(m.fastest, 1.0), m.point);
       }
@@ -115,10 +121,7 @@ double Search::exact_enough_tolerance(double part) const {
 /// Whether explicit steps would be many for stability alone.
 bool Search::limited_by_stability(const Point& model) const {
   if (!contains<std::string>(candidates_.integrators, implicit_steps)) return false;
-  constexpr double stages = 12, stable = 5.96;  // of dop853
-  const Scene& scene = evaluator_.base().scene;
-  const double duration = end_of_run(scene) - scene.initial.time;
-  return stages / stable * evaluator_.model(model).fastest * duration > policy::many_evaluations;
+  return explicit_evaluations(evaluator_.model(model)) > policy::many_evaluations;
 }
 
 /// Whether the model itself may be good enough: an integration that adds next to nothing tells, cut when it is clear.
@@ -194,17 +197,38 @@ void Search::try_integrations(const Point& model, const std::string& integrator)
   }
 }
 
+void Search::take(const std::vector<Reference>& runs) {
+  const Candidates& c = candidates_;
+  for (const Reference& run : runs) {
+    const Point& p = run.point;
+    const bool candidate = contains(c.formulations, p.formulation) && contains(c.families, p.family) &&
+                           (contains(c.modes, p.modes) || contains(c.more_modes, p.modes)) &&
+                           contains(c.integrators, p.integrator) && contains(c.tolerances, p.tolerance);
+    if (!candidate || p.modes > yardstick().reference.point.modes) continue;
+    Probe probe = evaluator_.judge(run, yardstick());
+    if (!probe.passed()) continue;
+    const double best_before = best_cost();
+    advice_.probes.push_back(std::move(probe));
+    tell_probe(advice_.probes.back(), best_before);
+  }
+}
+
+/// Whether a model with so many modes holds the accuracy.
+bool Search::passed(const std::vector<int>& modes) const {
+  return std::any_of(advice_.probes.begin(), advice_.probes.end(),
+                     [&](const Probe& p) { return p.passed() && contains(modes, p.point.modes); });
+}
+
 void Search::try_models() {
   try_models(candidates_.modes);
-  const auto passed = [](const Probe& p) { return p.passed(); };
-  if (over() || std::any_of(advice_.probes.begin(), advice_.probes.end(), passed)) return;
+  if (over() || passed(candidates_.modes)) return;
   // More than the reference has would be measured against less. All at once: many modes of a formulation that costs
   // little come before few of one that costs much.
   std::vector<int> more;
   for (const int modes : candidates_.more_modes)
     if (modes <= yardstick().reference.point.modes) more.push_back(modes);
   if (!more.empty()) try_models(more);
-  if (over() || std::any_of(advice_.probes.begin(), advice_.probes.end(), passed)) return;
+  if (over() || best_cost() < infinite) return;
   // Where motions that begin alike part, as those of a chain that swings freely, an integration adds more than that.
   tightest_ = true;
   advice_.models = advice_.models_tried = 0;  // counted anew: they are the same

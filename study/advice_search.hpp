@@ -16,6 +16,8 @@ class Search {
   Search(Evaluator& evaluator, const Candidates& candidates, Advice& advice, const Finding& finding)
       : evaluator_(evaluator), candidates_(candidates), advice_(advice), finding_(finding) {}
 
+  /// Runs of the search for a reference that are candidates: they are paid for.
+  void take(const std::vector<Reference>& runs);
   void try_models();
   void choose();
   void simplify_bodies();
@@ -35,6 +37,7 @@ class Search {
   bool model_holds(const Point& model);
   [[nodiscard]] double exact_enough_tolerance(double part) const;
   [[nodiscard]] bool limited_by_stability(const Point& model) const;
+  [[nodiscard]] bool passed(const std::vector<int>& modes) const;
   [[nodiscard]] double best_cost() const;
   const Probe& run(const Point& point, const Allowance& allowance);
   void time_again(const Probe& probe);

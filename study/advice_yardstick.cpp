@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "withy/scene/scene.hpp"
@@ -24,13 +25,12 @@ constexpr double most_poor_reference_use = 0.25 * most_reference_use;
 /// The same of the finest one there is where none of the levels is as good: less is left to what is chosen.
 constexpr double last_reference_use = 0.7;
 /// Of the time allowed: what the search for a reference may take.
-constexpr double reference_time = 0.6;
-/// Of the accuracy: the tolerance of the coarsest level. Modes of it are few, so that integration is the less of its
-/// errors by far; each level shows what the tolerance of the one before had added.
-constexpr double first_tolerance = 1e-2;
-/// Levels of a reference, the tolerance of each over that of the one before, and the tightest.
-constexpr int reference_levels = 9;
-constexpr double finer_level = 0.3;
+constexpr double reference_time = 0.75;
+/// Of the accuracy: what integration may add to each level, a fifth of what is aimed at; and the tolerance at which it
+/// is measured.
+constexpr double integration_use = 0.02, first_tolerance = 1e-2;
+/// Levels of a reference, and the tightest tolerance.
+constexpr int reference_levels = 14;
 constexpr double tightest = 1e-9;
 /// The same where tolerance is all that can be finer.
 constexpr double finer_integration = 0.1, tightest_integration = 1e-12;
@@ -47,11 +47,11 @@ class YardstickSearch {
                   const Finding& finding)
       : evaluator_(evaluator), candidates_(candidates), accuracy_(accuracy), advice_(advice), finding_(finding) {}
 
-  void find();
+  std::vector<Reference> find();
 
  private:
   void explain(const ReferenceFound& found);
-  void tell(const Reference& r) const;
+  void tell(const Reference& r);
   [[nodiscard]] bool affordable(const Walk& so_far);
   [[nodiscard]] Yardstick of(const Reference& r) const { return {r, accuracy_.limits(evaluator_.outputs(), r.scales)}; }
   [[nodiscard]] double own_use(const Reference& r) const { return of(r).own_use(); }
@@ -61,10 +61,11 @@ class YardstickSearch {
   const Accuracy& accuracy_;
   Advice& advice_;
   const Finding& finding_;
-  Pace pace_;  ///< of the reference's run under way
+  Pace pace_;                                              ///< of the reference's run under way
+  double told_ = std::numeric_limits<double>::infinity();  ///< of the accuracy: the least told so far
 };
 
-void YardstickSearch::find() {
+std::vector<Reference> YardstickSearch::find() {
   const bool modal = candidates_.modes.back() > 0;
   ReferenceGoal goal;
   ReferenceFamilies families = reference_families(candidates_, evaluator_.base().model());
@@ -78,8 +79,9 @@ void YardstickSearch::find() {
                 {}};
   goal.levels = policy::reference_levels;
   goal.kinds = kinds_of_modes(evaluator_.base().scene);
-  goal.finer = modal ? policy::finer_level : policy::finer_integration;
+  goal.finer = modal ? 1 : policy::finer_integration;
   goal.tightest = modal ? policy::tightest : policy::tightest_integration;
+  goal.integration = [&](const Reference& r) { return own_use(r) / policy::integration_use; };
   goal.enough = [&](const Reference& r) {
     const double use = own_use(r);
     tell(r);
@@ -102,6 +104,7 @@ void YardstickSearch::find() {
     advice_.yardstick = of(*found.reference);
   else
     explain(found);
+  return std::move(found.runs);
 }
 
 /// Whether the reference's runs, this one gone on with at its pace, keep within their share of the time.
@@ -132,34 +135,40 @@ void YardstickSearch::explain(const ReferenceFound& found) {
   const double agree = agree_until(evaluator_.outputs(), r.readings, r.coarser, closely);
   const bool long_enough =
       agree - scene.initial.time > policy::worth_looking_at * (end_of_run(scene) - scene.initial.time);
+  const std::string& worst = evaluator_.outputs().list()[yardstick.worst(r.own)].label;
+  const char* const there_was_time = found.unaffordable ? " that there was time for" : "";
+  const std::string known =
+      r.point.modes > 0
+          ? fmt::format("the finest{} ({}) is known to {:.2g} times what is asked, least well in {}", there_was_time,
+                        r.text(), use, worst)
+          : fmt::format(
+                "the two finest runs{} (the finer one {}; the other has a digit of tolerance less) differ by "
+                "{:.2g} times what is asked, most in {}",
+                there_was_time, r.text(), use, worst);
   advice_.trouble = fmt::format(
-      "no reference is exact enough to measure against: the two finest runs{} (the finer one {}; the other has {} "
-      "less) "
-      "differ by {:.2g} times what is asked, most in {}. What to do: ask {}for a shorter time (--set time.end={}), or "
-      "for other outputs (--output)",
-      found.unaffordable ? " that there was time for" : "", r.text(),
-      r.point.modes > 0 ? "a mode and a digit" : "a digit of tolerance", use,
-      evaluator_.outputs().list()[yardstick.worst(r.own)].label,
-      askable ? fmt::format("for --accuracy {}, ", accuracy_.times(times).option()) : "",
+      "no reference is exact enough to measure against: {}. What to do: ask {}for a shorter time (--set time.end={}), "
+      "or for other outputs (--output)",
+      known, askable ? fmt::format("for --accuracy {}, ", accuracy_.times(times).option()) : "",
       long_enough ? fmt::format("{:.3g}, up to which they agree", agree) : "...");
   if (!found.trouble.empty())
     advice_.trouble +=
         (found.unaffordable ? ". A finer one costs too much: " : ". There is no finer one: ") + found.trouble;
 }
 
-/// How far the truth is known by now.
-void YardstickSearch::tell(const Reference& r) const {
-  if (!finding_) return;
+/// How far the truth is known by now, where that is better than what was told before.
+void YardstickSearch::tell(const Reference& r) {
   const Yardstick yardstick = of(r);
+  if (!finding_ || !(yardstick.own_use() < told_)) return;
+  told_ = yardstick.own_use();
   finding_(fmt::format("reference so far: {}, known to {:.2g} times the accuracy asked, least well in {}", r.text(),
                        yardstick.own_use(), evaluator_.outputs().list()[yardstick.worst(r.own)].label));
 }
 
 }  // namespace
 
-void find_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice,
-                    const Finding& finding) {
-  YardstickSearch(evaluator, candidates, accuracy, advice, finding).find();
+std::vector<Reference> find_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
+                                      Advice& advice, const Finding& finding) {
+  return YardstickSearch(evaluator, candidates, accuracy, advice, finding).find();
 }
 
 }  // namespace withy::study

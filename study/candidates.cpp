@@ -8,6 +8,7 @@
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/mode_basis.hpp"
+#include "withy/study/tip_load.hpp"
 #include "withy/study/unfit.hpp"
 
 namespace withy::study {
@@ -48,6 +49,20 @@ bool families_are_exchangeable(const Scene& scene, Registry& registry) {
     fit = fit && (rests || (!node.segment && same_shape(*node.body, none, *node.body)));
   }
   return fit;
+}
+
+/// Whether a beam that bends carries something at its tip.
+bool loaded_somewhere(const Scene& scene) {
+  const std::vector<Matrix6> loads = tip_loads(*scene.model, scene.initial);
+  const auto& bodies = scene.model->bodies();
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (bodies[b].body->shape().modes() > 0 && !bodies[b].segment && !loads[b].isZero(0)) return true;
+  return false;
+}
+
+/// The id that a family's value names.
+std::string id_of(const Value& family) {
+  return family.kind() == Value::Kind::text ? family.text() : family.text_at("name");
 }
 
 /// Those that there are: some come with libraries that need not be installed.
@@ -93,11 +108,12 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes ask
   check(c, registry);
   const Scene& scene = prepared.scene;
   if (!flexible(prepared.model())) c.formulations = {plain_formulation};  // without modes all are the same
-  bool any = false, polynomial_already = true;
+  bool any = false, polynomial_already = true, loaded_already = true;
   for_each_family(scene, registry, [&](const ModeCount& count, const Value& family) {
     if (count.family_path.empty() && !spans_cantilevers(family, registry)) return;
     any = true;
-    polynomial_already = polynomial_already && family.kind() == Value::Kind::text && family.text() == polynomials;
+    polynomial_already = polynomial_already && id_of(family) == polynomials;
+    loaded_already = loaded_already && id_of(family) == loaded_modes;
   });
   if (scene.modes.empty()) {
     c.modes = {0};
@@ -106,7 +122,10 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes ask
   if (!any) c.families = {""};
   if (c.families.empty()) {
     c.families = {""};
-    if (!polynomial_already && families_are_exchangeable(scene, registry)) c.families.emplace_back(polynomials);
+    if (families_are_exchangeable(scene, registry)) {
+      if (!polynomial_already) c.families.emplace_back(polynomials);
+      if (!loaded_already && loaded_somewhere(scene)) c.families.emplace_back(loaded_modes);
+    }
   }
   std::sort(c.tolerances.begin(), c.tolerances.end(), std::greater<>());
   std::sort(c.modes.begin(), c.modes.end());
@@ -115,11 +134,13 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes ask
 
 ReferenceFamilies reference_families(const Candidates& candidates, const Model& model) {
   const auto& all = candidates.families;
+  const auto among = [&](const char* family) { return std::find(all.begin(), all.end(), family) != all.end(); };
   const bool loaded = std::any_of(model.hinges().begin(), model.hinges().end(), [&](const HingeNode& hinge) {
     return hinge.parent >= 0 && model.bodies()[static_cast<std::size_t>(hinge.parent)].body->shape().modes() > 0;
   });
-  return {std::find(all.begin(), all.end(), polynomials) != all.end() ? polynomials : "",
-          loaded ? std::vector<std::string>{} : all};
+  std::vector<std::string> others = all;
+  if (loaded) std::erase_if(others, [](const std::string& family) { return family != loaded_modes; });
+  return {among(polynomials) ? polynomials : "", std::move(others)};
 }
 
 std::vector<std::string> flexible_bodies(const Scene& scene) {

@@ -34,7 +34,7 @@ struct ReferenceFamilies {
 };
 
 /// Polynomials where they mean the same beams: eigenfunctions of the bare beam begin well and go on badly where the tip
-/// is loaded. Where no flexible body carries another one, the others may do better.
+/// is loaded. There those that know the load may do better, elsewhere all others.
 ReferenceFamilies reference_families(const Candidates& candidates, const Model& model);
 
 /// Names of the scene's bodies that have modes, in its order; a beam in segments is one.

@@ -12,6 +12,7 @@
 #include "withy/scene/one_line.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/mode_basis.hpp"
+#include "withy/study/tip_load.hpp"
 
 namespace withy::study {
 namespace {
@@ -32,6 +33,23 @@ Value resized(std::span<const double> values, const std::vector<int>& had, const
 /// How many modes there are to be where there are so many now.
 using NumberOfModes = std::function<int(int)>;
 
+/// A family that bodies are to have in the place of their own; empty: none.
+struct NewFamily {
+  std::string name;
+  std::vector<Matrix6> loads;  ///< of each body of the model, where the family knows of them
+
+  NewFamily(std::string family, const Scene& scene) : name(std::move(family)) {
+    if (name == loaded_modes) loads = tip_loads(*scene.model, scene.initial);
+  }
+  /// What a body's value says; nothing where the family does not fit. Segments have none of their own names.
+  [[nodiscard]] std::optional<Value> of(const Scene& scene, const std::string& body, const std::string& strain) const {
+    if (name.empty()) return {};
+    if (name != loaded_modes) return Value(name);
+    const int index = scene.model->body(body);
+    return index < 0 ? std::nullopt : loaded_family(loads[static_cast<std::size_t>(index)], strain);
+  }
+};
+
 /// What another number of modes and another family change in a body.
 struct ModesChanged {
   std::vector<int> had;      ///< modes of each strain up to now, in the order of the coordinates
@@ -43,7 +61,7 @@ struct ModesChanged {
 /// Gives a body other modes, by what it has of each, and the family where one is named. The family is of bending; other
 /// strains take it where both it and their own can be any strain of a clamped beam, so that no strain converges more
 /// slowly than the rest.
-ModesChanged change_modes(const Scene& scene, const BodyModes& body, const NumberOfModes& number, const std::string& to,
+ModesChanged change_modes(const Scene& scene, const BodyModes& body, const NumberOfModes& number, const NewFamily& to,
                           Registry& registry) {
   ModesChanged changed;
   for (const ModeCount& count : body.counts) {
@@ -52,15 +70,17 @@ ModesChanged change_modes(const Scene& scene, const BodyModes& body, const Numbe
     changed.becomes.push_back(becomes);
     if (had == 0) continue;
     changed.values.emplace_back(count.path, Value(static_cast<double>(becomes)));
-    const std::string path = to.empty() ? "" : family_path(scene, body.body, count, registry);
+    const std::optional<Value> family = to.of(scene, body.body, count.strain);
+    const std::string path = family ? family_path(scene, body.body, count, registry) : "";
     const Value* own = family_at(scene, body.body, path);
-    if (path.empty() || (own != nullptr && own->kind() == Value::Kind::text && own->text() == to)) continue;
-    const Value family(to);
+    if (path.empty() || (own != nullptr && own->kind() == Value::Kind::text && family->kind() == Value::Kind::text &&
+                         own->text() == family->text()))
+      continue;
     const bool bending = !count.family_path.empty();
-    if (!bending && !(own != nullptr && spans_cantilevers(*own, registry) && spans_cantilevers(family, registry)))
+    if (!bending && !(own != nullptr && spans_cantilevers(*own, registry) && spans_cantilevers(*family, registry)))
       continue;
     changed.families = true;
-    changed.values.emplace_back(path, family);
+    changed.values.emplace_back(path, *family);
   }
   return changed;
 }
@@ -103,8 +123,9 @@ void change_start(std::vector<Change>& changes, const Scene& scene, const std::s
 /// What gives all bodies other modes, and keeps what the initial state says of them.
 void change_all_modes(std::vector<Change>& changes, const Scene& scene, const NumberOfModes& number,
                       const std::string& family, Registry& registry) {
+  const NewFamily to(family, scene);
   for (const BodyModes& body : scene.modes) {
-    const ModesChanged modes = change_modes(scene, body, number, family, registry);
+    const ModesChanged modes = change_modes(scene, body, number, to, registry);
     for (const auto& [path, value] : modes.values) changes.push_back({"bodies." + body.body + '.' + path, value});
     change_start(changes, scene, body.body, modes, registry);
   }

@@ -13,8 +13,10 @@ namespace withy::study {
 /// A model of a scene and how it is integrated.
 struct Point {
   std::string formulation;
-  std::string family;  ///< of bending modes, and of strains that it fits as well; empty: the scene's
-  int modes = 0;       ///< of each family of a body that has a number of them; 0: those of the scene
+  /// Of bending modes, and of strains that it fits as well; empty: the scene's. `clamped-loaded` knows what each beam
+  /// carries (tip_load.hpp), and is `clamped-free` where that is nothing.
+  std::string family;
+  int modes = 0;  ///< of each family of a body that has a number of them; 0: those of the scene
   std::string integrator;
   double tolerance = 0;           ///< relative; the absolute one is absolute_tolerance()
   std::vector<std::string> over;  ///< `path=value`

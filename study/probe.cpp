@@ -125,6 +125,17 @@ Probe Evaluator::run(const Point& point, const Yardstick& yardstick, const Allow
   return p;
 }
 
+Probe Evaluator::judge(const Reference& run, const Yardstick& yardstick) {
+  Probe p;
+  p.point = run.point;
+  p.walk = run.walk;
+  p.distances = study::distances(outputs_, run.readings, yardstick.reference.readings).first;
+  p.use = yardstick.use(p.distances);
+  p.outcome = outcome_of(p, yardstick, true);
+  note_cost(p);
+  return p;
+}
+
 void Evaluator::note_cost(const Probe& probe) {
   constexpr std::size_t least_evaluations = 50;  // the start is not like the rest
   if (probe.walk.evaluations < least_evaluations) return;

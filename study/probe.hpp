@@ -68,6 +68,8 @@ class Evaluator {
   /// Runs the point until its allowance is used up. It passes where error and the reference's own together keep within
   /// the accuracy.
   Probe run(const Point& point, const Yardstick& yardstick, const Allowance& allowance = {});
+  /// What a run that was made while a reference was looked for is as a probe.
+  Probe judge(const Reference& run, const Yardstick& yardstick);
   /// Evaluations times their least CPU time in this model and integrator [s]: what a run costs without the noise of
   /// other work on the machine.
   [[nodiscard]] double cost(const Probe& probe) const;

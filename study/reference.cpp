@@ -2,56 +2,26 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/accuracy.hpp"
+#include "withy/study/level_integration.hpp"
 #include "withy/study/output_reader.hpp"
 
 namespace withy::study {
 namespace {
 
 /// Share of an evaluation's cost below which more modes are looked at in a lower rung at once.
-constexpr double much_cheaper = 0.25;
+constexpr double much_cheaper = 0.7;
 /// Times the change by the first family's: less is another one's merit, more may be chance.
 constexpr double clearly_less = 0.5;
 /// Modes beyond the last level of the higher rung that are looked at in the lower one.
 constexpr int most_modes_beyond = 8;
 
-void correct(const Output& output, const std::vector<double>& b, const std::vector<double>& c, std::vector<double>& a) {
-  const std::size_t at = output.at;
-  if (output.shape == Output::Shape::orientation) {
-    const auto quaternion = [&](const std::vector<double>& v) {
-      return Eigen::Quaterniond(v[at], v[at + 1], v[at + 2], v[at + 3]).normalized();
-    };
-    const Eigen::Quaterniond q = quaternion(b) * quaternion(c).conjugate() * quaternion(a);
-    a[at] = q.w(), a[at + 1] = q.x(), a[at + 2] = q.y(), a[at + 3] = q.z();
-    return;
-  }
-  const std::size_t numbers = output.shape == Output::Shape::vector ? 3 : 1;
-  for (std::size_t i = at; i < at + numbers; ++i) a[i] += b[i] - c[i];
-}
-
-/// What the finer of two levels may be off by: their difference, or what is left of a series of differences that shrink
-/// as the last two did. Functions that cannot be what the beam is converge like 1/n: the rest is then several times the
-/// last difference.
-/// Of several kinds of modes in turn the last change of each counts.
-Distances rest_of_series(const std::vector<Distances>& changes, int kinds) {
-  constexpr double most = 4;
-  const std::size_t levels = changes.size();
-  Distances rest = changes.back();
-  for (std::size_t k = 0; levels > 1 && k < rest.size(); ++k) {
-    const double before = changes[levels - 2][k];
-    if (!(before > 0)) continue;
-    const double ratio = std::min(rest[k] / before, most / (1 + most));
-    rest[k] *= std::max(1.0, ratio / (1 - ratio));
-  }
-  for (std::size_t kind = 1; kind < std::min<std::size_t>(static_cast<std::size_t>(kinds), levels); ++kind)
-    for (std::size_t k = 0; k < rest.size(); ++k) rest[k] = std::max(rest[k], changes[levels - 1 - kind][k]);
-  return rest;
-}
+/// Times the tolerance of the coarsest level that is asked for: the loosest that is looked at.
+constexpr double looser_at_most = 10;
 
 class ReferenceSearch {
  public:
@@ -59,14 +29,63 @@ class ReferenceSearch {
                   const Outputs& outputs, const ReferenceGoal& goal, const Control& control)
       : model_at_(model_at), registry_(registry), outputs_(outputs), goal_(goal), control_(control) {}
 
+  /// Level after level, until one is known well enough or nothing more can be had.
+  void find() {
+    Point first = goal_.first;
+    if (goal_.integration && first.modes > 0) measure_integrations(first);
+    first = integrated(first);
+    if (!found_.interrupted) first.family = best_family(first);
+    std::optional<Reference> before, coarse = found_.interrupted ? std::nullopt : begin(first);
+    if (!coarse) return;
+    ModeSeries series(outputs_, goal_.kinds);
+    series.add(coarse->point.modes, coarse->readings);
+    found_.trouble.clear();
+    found_.unaffordable = false;
+    bool tried = false;  // this pair of levels with a lower rung
+    for (int level = 0; level < goal_.levels; ++level) {
+      const Point next = finer(coarse->point);
+      // The same run again would agree with itself.
+      if (next.key() == coarse->point.key()) break;
+      std::optional<Reference> fine = at(next);
+      if (!fine) break;
+      series.add(next.modes, fine->readings);
+      if (series.size() > static_cast<std::size_t>(goal_.kinds) && known_by(*fine, series)) return;
+      before = std::move(coarse), coarse = std::move(fine);
+      tried = much_cheaper_below(coarse->point);
+      if (tried) found_.reference = add_to_lower(*coarse, *before);
+      if (found_.reference || found_.interrupted) return;
+    }
+    if (!before || tried || found_.interrupted) return;
+    const std::string trouble = found_.trouble;
+    found_.reference = add_to_lower(*coarse, *before);
+    if (!found_.reference && found_.trouble.empty()) found_.trouble = trouble;
+  }
+
+  ReferenceFound take_found() {
+    for (auto& [key, run] : runs_) found_.runs.push_back(std::move(run));
+    return std::move(found_);
+  }
+
+ private:
+  /// Whether a level is known well enough, which is the end of the search; what comes near it is kept.
+  bool known_by(const Reference& level, const ModeSeries& series) {
+    Reference reached = lead(level, series);
+    if (!enough(reached)) {
+      keep_nearest(reached, series.limit_before());
+      return false;
+    }
+    found_.reference = std::move(reached);
+    return true;
+  }
+
   /// The family whose series of modes begins best.
-  std::string best_family() {
-    std::string best = goal_.first.family;
-    if (goal_.families.empty() || goal_.first.modes == 0) return best;
-    std::optional<double> least = first_change(best);
+  std::string best_family(const Point& first) {
+    std::string best = first.family;
+    if (goal_.families.empty() || first.modes == 0) return best;
+    std::optional<double> least = first_change(first, best);
     for (const std::string& family : goal_.families) {
       if (family == best) continue;
-      const std::optional<double> change = first_change(family);
+      const std::optional<double> change = first_change(first, family);
       if (!change || (least && *change > clearly_less * *least)) continue;
       least = change;
       best = family;
@@ -74,12 +93,46 @@ class ReferenceSearch {
     return best;
   }
 
+  /// At which tolerance each integrator adds as little to a level as it may: by the coarsest, in the lowest rung that
+  /// truncates nothing.
+  void measure_integrations(const Point& first) {
+    Point look = first;
+    look.formulation = reference_formulations(registry_).back();
+    const ModelAt& model = model_at_(look);
+    if (model.refused()) return;
+    std::vector<std::string> integrators{look.integrator};
+    if (model.prepared->equations->linearly_implicit() != nullptr) integrators.emplace_back("imex");
+    for (const std::string& integrator : integrators) {
+      const auto run_with = [&](double tolerance) {
+        look.integrator = integrator, look.tolerance = tolerance;
+        return at(look);
+      };
+      const auto little = [&](const Reference& r) { return goal_.integration(r) <= 1; };
+      const double loosest = std::max(looser_at_most * first.tolerance, goal_.tightest);
+      if (found_.interrupted) return;
+      if (auto measured = loosest_integration({outputs_, run_with, little, loosest, goal_.tightest}))
+        integrations_.push_back(std::move(*measured));
+    }
+  }
+
+  /// A level with the integration that costs least of those measured. Fast modes that limit explicit steps ring at a
+  /// loose tolerance, the more the more modes there are; implicit steps damp them.
+  [[nodiscard]] Point integrated(Point point) const {
+    if (integrations_.empty()) return point;
+    Point plain = point;
+    plain.formulation = reference_formulations(registry_).back();
+    const ModelAt& model = model_at_(plain);
+    const LevelIntegration& with = cheapest_with(integrations_, model.refused() ? 0 : explicit_evaluations(model));
+    point.integrator = with.integrator, point.tolerance = with.tolerance;
+    return point;
+  }
+
   /// The coarsest level, in the richest formulation that comes to the end.
   std::optional<Reference> begin(Point point) {
     for (const std::string& formulation : reference_formulations(registry_)) {
       point.formulation = formulation;
       if (auto reference = at(point)) return reference;
-      if (found.interrupted) break;
+      if (found_.interrupted) break;
     }
     return {};
   }
@@ -97,7 +150,7 @@ class ReferenceSearch {
   [[nodiscard]] Point finer(Point point) const {
     if (point.modes > 0) ++point.modes;
     point.tolerance = std::max(goal_.finer * point.tolerance, goal_.tightest);
-    return point;
+    return integrated(point);
   }
 
   /// Whether an evaluation costs a fraction in the rung below.
@@ -122,38 +175,60 @@ class ReferenceSearch {
     Reference added = fine;
     added.own = changed;
     if (!goal_.steady(added)) return {};
-    Point point = *low;
-    Readings last = fine.readings;
-    for (int i = 0; i < most_modes_beyond; ++i) {
-      ++point.modes;  // integration added little to the finer level, which has this tolerance
-      std::optional<Reference> rich = at(point);
-      if (!rich) return {};
-      rich->added_by = fine.point;
-      rich->readings = corrected(outputs_, rich->readings, fine.readings, base->readings);
-      rich->own = distances(outputs_, rich->readings, last).first;
-      for (std::size_t k = 0; k < changed.size(); ++k) rich->own[k] += changed[k];
-      last = rich->readings;
-      if (enough(*rich)) return rich;
-      keep_nearest(*rich, {});
+    extend_lower(*before, *base);
+    while (true) {
+      if (richest_->point.modes > fine.point.modes) {
+        Reference reached = lead(*richest_, *lower_);
+        reached.added_by = fine.point;
+        reached.readings = corrected(outputs_, lower_->limit(), fine.readings, base->readings);
+        for (std::size_t k = 0; k < changed.size(); ++k) reached.own[k] += changed[k];
+        if (enough(reached)) return reached;
+        keep_nearest(reached, {});
+      }
+      if (richest_->point.modes >= fine.point.modes + most_modes_beyond) return {};
+      Point point = richest_->point;
+      ++point.modes;
+      const std::optional<Reference> richer = at(integrated(point));
+      if (!richer) return {};
+      extend_lower(*richest_, *richer);
     }
-    return {};
+  }
+
+  /// Adds a run to the series of the lower rung, which goes on from level to level of the higher one and may be ahead
+  /// of it; where the run does not follow its last, it begins anew with the one before.
+  void extend_lower(const Reference& before, const Reference& run) {
+    if (lower_ && richest_->point.modes >= run.point.modes) return;
+    if (!lower_ || richest_->point.modes != before.point.modes) {
+      lower_.emplace(outputs_, goal_.kinds);
+      lower_->add(before.point.modes, before.readings);
+    }
+    lower_->add(run.point.modes, run.readings);
+    richest_ = run;
+  }
+
+  /// The run that a series has come to, with the readings that it leads to.
+  [[nodiscard]] Reference lead(Reference run, const ModeSeries& series) const {
+    run.readings = series.limit();
+    run.own = series.own();
+    for (const LevelIntegration& with : integrations_)
+      if (with.integrator == run.point.integrator)
+        for (std::size_t k = 0; k < run.own.size(); ++k) run.own[k] += with.added[k];
+    run.extrapolated = series.extrapolated();
+    return run;
   }
 
   void keep_nearest(const Reference& r, const Readings& coarser) {
     // Where runs part by all they go through the finer one agrees for longer.
     const auto off = [](const Reference& of) { return std::min(relative_error(of.own, of.scales), 1.0); };
-    if (found.nearest && off(r) > off(*found.nearest)) return;
-    found.nearest = r;
-    found.nearest->coarser = coarser;
+    if (found_.nearest && off(r) > off(*found_.nearest)) return;
+    found_.nearest = r;
+    found_.nearest->coarser = coarser;
   }
 
-  ReferenceFound found;
-
- private:
   std::optional<Reference> run(const Point& point) {
     const ModelAt& model = model_at_(point);
     if (model.refused()) {
-      found.trouble = model.refusal;
+      found_.trouble = model.refusal;
       return {};
     }
     Reference r{.point = point, .readings = {}, .ranges = outputs_.none(), .scales = {}, .own = {}, .walk = {}};
@@ -168,22 +243,21 @@ class ReferenceSearch {
     r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
                   {keep, goal_.afford, control_.interrupted});
     r.scales = scales(outputs_, r.ranges, r.energy);
-    found.cpu_seconds += r.walk.seconds;
-    found.interrupted = r.walk.end == Walk::End::interrupted;
+    found_.cpu_seconds += r.walk.seconds;
+    found_.interrupted = r.walk.end == Walk::End::interrupted;
     if (r.walk.end == Walk::End::reached) return r;
-    found.unaffordable = r.walk.end == Walk::End::cut;
-    if (found.unaffordable) {
-      found.trouble = fmt::format("{}: at {:.4g} s of the run after {:.2g} s of CPU time, when the time for it ended",
-                                  point.text(), r.walk.time, r.walk.seconds);
+    found_.unaffordable = r.walk.end == Walk::End::cut;
+    if (found_.unaffordable) {
+      found_.trouble = fmt::format("{}: at {:.4g} s of the run after {:.2g} s of CPU time, when the time for it ended",
+                                   point.text(), r.walk.time, r.walk.seconds);
       return {};
     }
-    found.trouble = fmt::format("{}: ends at {:.4g} s: {}", point.text(), r.walk.time, r.walk.reason);
+    found_.trouble = fmt::format("{}: ends at {:.4g} s: {}", point.text(), r.walk.time, r.walk.reason);
     return {};
   }
 
   /// By what part of the outputs' scales a mode more changes them in the lowest rung; nothing where a run does not end.
-  [[nodiscard]] std::optional<double> first_change(const std::string& family) {
-    Point point = goal_.first;
+  [[nodiscard]] std::optional<double> first_change(Point point, const std::string& family) {
     point.family = family;
     point.formulation = reference_formulations(registry_).back();
     const std::optional<Reference> few = at(point), more = few ? at(finer(point)) : few;
@@ -204,7 +278,11 @@ class ReferenceSearch {
   const Outputs& outputs_;
   const ReferenceGoal& goal_;
   const Control& control_;
-  std::map<std::string, Reference> runs_;  ///< that came to their end, by the point's key
+  ReferenceFound found_;
+  std::optional<ModeSeries> lower_;             ///< of the rung below, where more modes are looked at
+  std::optional<Reference> richest_;            ///< the last of its runs
+  std::vector<LevelIntegration> integrations_;  ///< as measured; empty: of the goal
+  std::map<std::string, Reference> runs_;       ///< that came to their end, by the point's key
 };
 
 }  // namespace
@@ -217,18 +295,11 @@ std::vector<std::string> reference_formulations(Registry& registry) {
 }
 
 std::string Reference::text() const {
-  return added_by ? point.text() + ", with what " + added_by->formulation + " adds at " +
-                        std::to_string(added_by->modes) + " modes"
-                  : point.text();
-}
-
-Readings corrected(const Outputs& outputs, const Readings& a, const Readings& b, const Readings& c) {
-  Readings sum = a;
-  const std::size_t common = std::min({a.values.size(), b.values.size(), c.values.size()});
-  sum.times.resize(common), sum.values.resize(common);
-  for (std::size_t i = 0; i < common; ++i)
-    for (const Output& output : outputs.list()) correct(output, b.values[i], c.values[i], sum.values[i]);
-  return sum;
+  std::string text = point.text();
+  if (extrapolated) text += ", extrapolated";
+  if (added_by)
+    text += ", with what " + added_by->formulation + " adds at " + std::to_string(added_by->modes) + " modes";
+  return text;
 }
 
 int kinds_of_modes(const Scene& scene) {
@@ -242,41 +313,8 @@ int kinds_of_modes(const Scene& scene) {
 ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
                               const Outputs& outputs, const ReferenceGoal& goal, const Control& control) {
   ReferenceSearch search(model_at, registry, outputs, goal, control);
-  ReferenceFound& found = search.found;
-  Point first = goal.first;
-  first.family = search.best_family();
-  std::optional<Reference> before, coarse = found.interrupted ? std::nullopt : search.begin(first);
-  std::vector<Distances> changes;  // from level to level
-  if (coarse) {
-    found.trouble.clear();
-    found.unaffordable = false;
-  }
-  bool tried = false;  // this pair of levels with a lower rung
-  for (int level = 0; coarse && level < goal.levels; ++level) {
-    const Point finer = search.finer(coarse->point);
-    // The same run again would agree with itself.
-    if (finer.key() == coarse->point.key()) break;
-    std::optional<Reference> fine = search.at(finer);
-    if (!fine) break;
-    changes.push_back(distances(outputs, fine->readings, coarse->readings).first);
-    fine->own = rest_of_series(changes, goal.kinds);
-    const bool known = changes.size() >= static_cast<std::size_t>(goal.kinds);
-    if (known && search.enough(*fine)) {
-      found.reference = std::move(fine);
-      return std::move(found);
-    }
-    if (known) search.keep_nearest(*fine, coarse->readings);
-    before = std::move(coarse), coarse = std::move(fine);
-    tried = search.much_cheaper_below(coarse->point);
-    if (tried) found.reference = search.add_to_lower(*coarse, *before);
-    if (found.reference || found.interrupted) return std::move(found);
-  }
-  if (before && !tried && !found.interrupted) {
-    const std::string trouble = found.trouble;
-    found.reference = search.add_to_lower(*coarse, *before);
-    if (!found.reference && found.trouble.empty()) found.trouble = trouble;
-  }
-  return std::move(found);
+  search.find();
+  return search.take_found();
 }
 
 }  // namespace withy::study

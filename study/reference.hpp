@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "withy/study/control.hpp"
+#include "withy/study/series.hpp"
 #include "withy/study/walk.hpp"
 
 namespace withy::study {
@@ -21,14 +22,15 @@ struct Reference {
   Point point;
   /// Where what a higher formulation adds was found at fewer modes and put on top: that run's.
   std::optional<Point> added_by = {};
-  Readings readings;
-  Distances ranges;   ///< greatest distances of outputs from their start
-  double energy = 0;  ///< greatest kinetic energy at an output [J]
-  Distances scales;   ///< what relative errors are shares of
-  Distances own;      ///< by what the last modes and tolerances changed; empty: not known
+  Readings readings;          ///< of the run; where it is one of a series of modes, where that leads to
+  bool extrapolated = false;  ///< it leads beyond the run
+  Distances ranges;           ///< greatest distances of outputs from their start
+  double energy = 0;          ///< greatest kinetic energy at an output [J]
+  Distances scales;           ///< what relative errors are shares of
+  Distances own;              ///< what the readings may be off by (ModeSeries); empty: not known
   Walk walk;
   Readings coarser = {};  ///< of the level before, of the nearest alone
-  /// "exact, 5 modes, dop853 at 1e-07".
+  /// "exact, 5 modes, dop853 at 1e-07", "exact, 5 modes, dop853 at 1e-07, extrapolated".
   [[nodiscard]] std::string text() const;
 };
 
@@ -49,6 +51,11 @@ struct ReferenceGoal {
   int kinds = 1;  ///< kinds_of_modes
   double finer = 0.1;
   double tightest = 1e-9;
+  /// What integration adds to a level, where that is its `own`, over what it may add. Each level then has the
+  /// integrator that costs least there, of that of `first` and `imex`, at the tolerance at which it adds no more: runs
+  /// of the coarsest tell, in the lowest rung that truncates nothing, from ten times the tolerance of `first` on.
+  /// Empty, or without modes: levels have the integrator of `first`, and its tolerance by `finer`.
+  std::function<double(const Reference&)> integration;
   std::function<bool(const Reference&)> enough;  ///< empty: one level is
   /// Whether what a higher rung adds has changed little enough from the level before, as `own`; empty: never.
   std::function<bool(const Reference&)> steady;
@@ -58,21 +65,18 @@ struct ReferenceGoal {
 struct ReferenceFound {
   std::optional<Reference> reference;
   std::optional<Reference> nearest;  ///< where there is none: the finest, of which `enough` was not true
+  std::vector<Reference> runs;       ///< all that came to their end, the points in no order
   std::string trouble;               ///< why a run did not come to its end; may be empty
   double cpu_seconds = 0;            ///< of all runs
   bool interrupted = false;
   bool unaffordable = false;  ///< `afford` ended the search
 };
 
-/// Outputs of a run, with the difference between two others on top: a + (b − c); of orientations b c⁻¹ a. Over the
-/// outputs that all have.
-Readings corrected(const Outputs& outputs, const Readings& a, const Readings& b, const Readings& c);
-
-/// Runs level after level until two in a row agree. Where an evaluation of a lower rung that truncates nothing costs a
-/// fraction, or another level cannot be afforded, more modes are looked at there, and what the higher one adds is that
-/// of the last level: u(low, many) + u(high, few) − u(low, few), the combination of Griebel, Schneider & Zenger (1992).
-/// How much that changed from the level before counts as error.
-/// \param model_at gives the model of a point, and keeps it until the search is over
+/// Runs level after level until where they lead to is known well enough (ModeSeries). Where an evaluation of a lower
+/// rung that truncates nothing costs a fraction, or another level cannot be afforded, more modes are looked at there,
+/// and what the higher one adds is that of the last level: u(low, many) + u(high, few) − u(low, few), the combination
+/// of Griebel, Schneider & Zenger (1992). How much that changed from the level before counts as error. \param model_at
+/// gives the model of a point, and keeps it until the search is over
 ReferenceFound find_reference(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
                               const Outputs& outputs, const ReferenceGoal& goal, const Control& control);
 

@@ -12,6 +12,7 @@
 #include "withy/study/input_error.hpp"
 #include "withy/study/output_reader.hpp"
 #include "withy/study/step_limit.hpp"
+#include "withy/study/tip_load.hpp"
 
 namespace withy::study {
 namespace {
@@ -105,6 +106,8 @@ void TradeStudy::find_reference_for(const Point& point) {
   // Of all that mean the same, whatever families are compared.
   ReferenceFamilies families = reference_families(candidates_for(base_, registry_, usual_axes()), base_.model());
   goal.families = std::move(families.others);
+  // Polynomials do not depend on what the scene says of bodies at tips, which may be gone over.
+  std::erase(goal.families, loaded_modes);
   goal.first = {"", std::move(families.first), 0, "dop853", 1e-6, point.over};
   for (const Point& p : points_) {
     goal.first.modes = std::max(goal.first.modes, p.modes);
@@ -114,6 +117,13 @@ void TradeStudy::find_reference_for(const Point& point) {
   if (goal.first.modes > 0 && !goal.first.family.empty()) goal.first.modes = std::max(goal.first.modes, 3);
   goal.tightest = 0.1 * goal.first.tolerance;
   goal.levels = goal.kinds = kinds_of_modes(base_.scene);
+  if (goal.kinds == 1 && goal.first.modes > 2) {
+    // A level before tells where the series of modes leads to.
+    const int finest = goal.first.modes + 1;
+    --goal.first.modes;
+    goal.levels = 2;
+    goal.enough = [finest](const Reference& r) { return r.point.modes >= finest; };
+  }
   std::vector<std::unique_ptr<ModelAt>> models;
   const auto model = [&](const Point& p) -> const ModelAt& {
     models.push_back(std::make_unique<ModelAt>(model_at(base_, registry_, p)));

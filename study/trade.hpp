@@ -31,7 +31,7 @@ struct TradeResult {
 struct TradeReference {
   Point point;
   double hinge_way = 0, tip_way = 0;      ///< greatest distances from the start [rad or m; m]
-  double hinge_error = 0, tip_error = 0;  ///< its own, by what the last modes and tolerances changed
+  double hinge_error = 0, tip_error = 0;  ///< its own, from what the last modes and tolerances changed
   double relative_error = 0;
   std::map<std::string, double> sensor_ways = {}, sensor_errors = {};  ///< of the numbers of sensors, in their units
 };

@@ -144,6 +144,12 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
   return m;
 }
 
+double explicit_evaluations(const ModelAt& model) {
+  constexpr double stages = 12, stable = 5.96;  // of dop853
+  const Scene& scene = model.prepared->scene;
+  return stages / stable * model.fastest * (end_of_run(scene) - scene.initial.time);
+}
+
 Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserver& observer) {
   const EquationsOfMotion& equations = *model.equations;
   const State start = begun(model.model(), equations, model.scene.initial);

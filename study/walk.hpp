@@ -27,6 +27,9 @@ struct ModelAt {
 /// \throws PluginError
 ModelAt model_at(const Prepared& base, Registry& registry, const Point& point);
 
+/// Evaluations over the whole run that `dop853` takes at its stability limit, whatever the tolerance.
+double explicit_evaluations(const ModelAt& model);
+
 /// What stepping through a scene gave.
 struct Walk {
   enum class End { reached, cut, stopped, interrupted };

@@ -79,8 +79,8 @@ void add_advise(Options& o, AdviseArguments& a) {
   axis("--formulations,--formulation", a.axes.formulations, "ID,...",
        "Formulations to choose from; default: all that take part in studies, plugins' too");
   axis("--families,--family", a.axes.families, "ID,...",
-       "Mode families of bending to choose from; default: the scene's, and orthogonal-polynomials where they are the "
-       "same beams");
+       "Mode families of bending to choose from; default: the scene's, and where they are the same beams "
+       "orthogonal-polynomials and, of those that carry something, clamped-loaded with that load");
   axis("--modes", a.axes.modes, "N,...",
        "Modes of each family of a beam to choose from; default: 1,2,3,4 and, where these will not do, to 8");
   axis("--integrators", a.axes.integrators, "ID,...",

@@ -51,17 +51,19 @@ double least_seconds(Evaluator& evaluator, const Point& point) {
   return least;
 }
 
-/// Two modes and two digits more than the advice's own reference, in the highest formulation; nothing where that takes
-/// too long.
+/// Four modes and two digits more than the advice's own reference, in the highest formulation, as it ran; nothing where
+/// that takes too long.
 std::optional<Yardstick> truth_of(Evaluator& evaluator, const Yardstick& known) {
   Yardstick truth = known;
   Reference& r = truth.reference;
   if (r.added_by) r.point.formulation = r.added_by->formulation;
-  if (r.point.modes > 0) r.point.modes += 2;
+  constexpr int more = 4;
+  if (r.point.modes > 0) r.point.modes += more;
   // A body may not have so many.
-  for (int i = 0; i < 2 && evaluator.model(r.point).refused(); ++i) --r.point.modes;
+  for (int i = 0; i < more && evaluator.model(r.point).refused(); ++i) --r.point.modes;
   r.point.tolerance = std::max(1e-2 * r.point.tolerance, 1e-12);
   r.own.clear();
+  r.extrapolated = false;
   const std::size_t outputs = r.readings.values.size();
   r.readings = {};
   const ModelAt& model = evaluator.model(r.point);

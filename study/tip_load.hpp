@@ -1,0 +1,33 @@
+/// \file
+/// What hangs at the tips of beams, as functions that carry it know it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "withy/core/model/model.hpp"
+#include "withy/core/plugin/value.hpp"
+
+namespace withy::study {
+
+/// The family of functions that loaded_family() gives, where a point names it.
+inline constexpr const char* loaded_modes = "clamped-loaded";
+
+/// The articulated inertia of what hangs at the tip of each body, in the order of the model's: a symmetric map of
+/// twists (angular first, [rad/s], [m/s]) of the tip's section, in its axes and about its origin, to momenta [kg m²/s],
+/// [kg m/s]. Hinges beyond give way as they are placed at the state, those that motions drive hold; bodies are rigid
+/// and undeformed; loads and what closes loops do not matter. Of a body I, seen through its hinge with the subspace H:
+///   I − I H (Hᵀ I H)⁻¹ Hᵀ I   (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 7.1)
+/// Zero for bodies without a station `tip`, and where nothing hangs there.
+/// \param state of the model
+std::vector<Matrix6> tip_loads(const Model& model, const State& state);
+
+/// The value of a beam's `family` for one of its strains: `clamped-loaded` with the load's mass, inertia and offset in
+/// the direction of that strain, to six digits; `clamped-free` where the load has none of them. Nothing where the
+/// strain is not one of a beam.
+/// \param load of the beam, as tip_loads() gives it
+/// \param strain "bending_y", "bending_z", "torsion", "extension", "shear_y", "shear_z"
+std::optional<Value> loaded_family(const Matrix6& load, const std::string& strain);
+
+}  // namespace withy::study
