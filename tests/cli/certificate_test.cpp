@@ -42,8 +42,8 @@ void PrintTo(const Claim& claim, std::ostream* out) { *out << claim.scene.at(0) 
 class ErrorClaimed : public testing::TestWithParam<Claim> {};
 
 // Coarse steps at a tenth of the run's cost resolve what they are after to some per cent, a pair at any cost to one: a
-// factor of 1.2 leaves room for outputs that fall between. Stiff loops say that they have an estimate at any cost alone;
-// strict formulations at a tenth have their own factor (EstimatedStrictScenes).
+// factor of 1.2 leaves room for outputs that fall between. Stiff loops say that they have an estimate at any cost
+// alone; strict formulations at a tenth have their own factor (EstimatedStrictScenes).
 TEST_P(ErrorClaimed, IsTheTrueOneForHingesAndTips) {
   const Claim& claim = GetParam();
   std::vector<std::string> arguments = claim.scene;
