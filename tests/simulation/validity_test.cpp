@@ -1,5 +1,5 @@
 /// \file
-/// What a run watches, against closed forms of rotating and buckling beams and against differences of poses.
+/// What a run watches, against closed forms and differences of poses.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -12,57 +12,10 @@
 #include "withy/core/simulation/tips.hpp"
 #include "withy/tests/conformance/allocations.hpp"
 #include "withy/tests/dynamics/random_scene.hpp"
-#include "withy/tests/simulation/made_scene.hpp"
+#include "withy/tests/simulation/cantilever.hpp"
 
 namespace withy::test {
 namespace {
-
-/// Load ratio of a body at the initial state with these accelerations.
-LoadRatio load_of(const Made& m, const std::string& body, const std::vector<double>& u_dot) {
-  TreeMotion motion(*m.scene.model);
-  motion.update(m.scene.initial.y, u_dot);
-  MotionStiffness stiffness(*m.scene.model, static_cast<std::size_t>(m.scene.model->body(body)));
-  return stiffness.evaluate(motion.bodies());
-}
-
-/// A cantilever along x of length 1, EI = 10, 1 kg, with a mass at its tip, welded to the world.
-std::string cantilever(const std::string& gravity, double mass_per_length, double tip_mass, const std::string& bending,
-                       const std::string& hinge = "weld") {
-  return "format: withy/1\ntime: {end: 1}\ngravity: " + gravity +
-         "\nbodies:\n  beam: {type: beam, length: 1, mass_per_length: " + std::to_string(mass_per_length) + ", " +
-         bending + "}\n  tip: {type: rigid, mass: " + std::to_string(tip_mass) +
-         ", inertia: [1, 1, 1, 0, 0, 0]}\nhinges:\n  h: {type: " + hinge +
-         ", parent: world, child: beam}\n  t: {type: weld, parent: beam.tip, child: tip}\n";
-}
-
-// A column that stands on its root buckles under its own weight at rho g L^3 / EI = 7.8529 in two modes.
-TEST(MotionStiffness, own_weight_buckles_a_column_where_two_modes_say) {
-  const Made m(cantilever("[-9.81, 0, 0]", 2, 1e-12, "bending_y: {stiffness: 10, modes: 2}"));
-  const LoadRatio load = load_of(m, "beam", std::vector<double>(2));
-  EXPECT_NEAR(load.least * 7.8529 / (2 * 9.81 / 10), -1, 1e-4);
-  EXPECT_NEAR(load.shares[9], load.least, 1e-12) << "all of it from v̇ − g along x";
-}
-
-// Under a load at the tip the limit is pi^2/4; four clamped-free modes are stiffer by 0.1 %.
-TEST(MotionStiffness, a_carried_mass_buckles_a_column_at_pi_squared_over_four) {
-  const Made m(cantilever("[-9.81, 0, 0]", 1e-6, 0.5, "bending_y: {stiffness: 10, modes: 8}"));
-  const LoadRatio load = load_of(m, "beam", std::vector<double>(8));
-  const double expected = -0.5 * 9.81 / (10 * std::numbers::pi * std::numbers::pi / 4);
-  EXPECT_NEAR(load.least / expected, 1, 1e-2);
-  EXPECT_LT(std::abs(load.least), std::abs(expected)) << "modes can only be stiffer";
-}
-
-// Bending and twist under a transverse load at the tip: P L^2 / sqrt(EI GJ) = 4.0154 in four modes of each kind
-// (theory, section 6), in either sense.
-TEST(MotionStiffness, a_transverse_load_buckles_laterally) {
-  const Made m(cantilever("[0, 0, -9.81]", 1e-6, 0.5,
-                          "bending_y: {stiffness: 10, modes: 4}, torsion: {stiffness: 3, inertia: 0.001, modes: 4}"));
-  const LoadRatio load = load_of(m, "beam", std::vector<double>(8));
-  const double expected = 0.5 * 9.81 / std::sqrt(30.0) / 4.0154;
-  EXPECT_NEAR(load.least, -expected, 2e-4 * expected);
-  EXPECT_NEAR(load.greatest, expected, 2e-4 * expected);
-  EXPECT_NEAR(load.shares[11], load.size() == load.greatest ? load.greatest : load.least, 1e-12);
-}
 
 /// By the dense mass matrix: the lowest vibration of all elastic coordinates with every hinge held.
 double held_frequency(const Made& m) {
@@ -106,19 +59,6 @@ TEST(CarriedFrequency, is_that_of_the_loaded_structure_with_its_hinges_held) {
     EXPECT_GT(frequency.of(index("two")), 1.2 * stretched) << "the mass has come nearer";
     EXPECT_NEAR(frequency.of(index("two")), held_frequency(m), 1e-3 * stretched) << formulation;
   }
-}
-
-// Centrifugal tension stiffens the first bending mode of a beam hinged at its axis by 1.193 Omega^2 (theory, section
-// 2).
-TEST(MotionStiffness, spin_stiffens_by_1_193_of_its_square) {
-  Made m(cantilever("[0, 0, 0]", 2, 1e-12, "bending_y: {stiffness: 10, modes: 1}", "revolute, axis: [0, 0, 1]"));
-  const double rate = 3;
-  m.scene.initial.y[m.scene.model->layout().positions] = rate;
-  const LoadRatio load = load_of(m, "beam", std::vector<double>(2));
-  const double fundamental = 3.51602 * std::sqrt(10.0 / 2.0);
-  EXPECT_NEAR(load.greatest, 1.193 * rate * rate / (fundamental * fundamental), 2e-4);
-  EXPECT_NEAR(load.shares[2], load.greatest, 1e-12);
-  EXPECT_NEAR(elastic_modes(m.scene.model->bodies()[0].body->shape()).frequencies[0], fundamental, 1e-4);
 }
 
 /// The state a time h later, by one Runge–Kutta step of order 4.

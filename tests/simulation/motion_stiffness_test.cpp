@@ -1,0 +1,57 @@
+/// \file
+/// Loads over buckling loads, against closed forms of rotating and buckling beams.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "withy/core/simulation/elastic_modes.hpp"
+#include "withy/tests/simulation/cantilever.hpp"
+
+namespace withy::test {
+namespace {
+
+// A column that stands on its root buckles under its own weight at rho g L^3 / EI = 7.8529 in two modes.
+TEST(MotionStiffness, own_weight_buckles_a_column_where_two_modes_say) {
+  const Made m(cantilever("[-9.81, 0, 0]", 2, 1e-12, "bending_y: {stiffness: 10, modes: 2}"));
+  const LoadRatio load = load_of(m, "beam", std::vector<double>(2));
+  EXPECT_NEAR(load.least * 7.8529 / (2 * 9.81 / 10), -1, 1e-4);
+  EXPECT_NEAR(load.shares[9], load.least, 1e-12) << "all of it from v̇ − g along x";
+}
+
+// Under a load at the tip the limit is pi^2/4; four clamped-free modes are stiffer by 0.1 %.
+TEST(MotionStiffness, a_carried_mass_buckles_a_column_at_pi_squared_over_four) {
+  const Made m(cantilever("[-9.81, 0, 0]", 1e-6, 0.5, "bending_y: {stiffness: 10, modes: 8}"));
+  const LoadRatio load = load_of(m, "beam", std::vector<double>(8));
+  const double expected = -0.5 * 9.81 / (10 * std::numbers::pi * std::numbers::pi / 4);
+  EXPECT_NEAR(load.least / expected, 1, 1e-2);
+  EXPECT_LT(std::abs(load.least), std::abs(expected)) << "modes can only be stiffer";
+}
+
+// Bending and twist under a transverse load at the tip: P L^2 / sqrt(EI GJ) = 4.0154 in four modes of each kind
+// (theory, section 6), in either sense.
+TEST(MotionStiffness, a_transverse_load_buckles_laterally) {
+  const Made m(cantilever("[0, 0, -9.81]", 1e-6, 0.5,
+                          "bending_y: {stiffness: 10, modes: 4}, torsion: {stiffness: 3, inertia: 0.001, modes: 4}"));
+  const LoadRatio load = load_of(m, "beam", std::vector<double>(8));
+  const double expected = 0.5 * 9.81 / std::sqrt(30.0) / 4.0154;
+  EXPECT_NEAR(load.least, -expected, 2e-4 * expected);
+  EXPECT_NEAR(load.greatest, expected, 2e-4 * expected);
+  EXPECT_NEAR(load.shares[11], load.size() == load.greatest ? load.greatest : load.least, 1e-12);
+}
+
+// Centrifugal tension stiffens the first bending mode of a beam hinged at its axis by 1.193 Omega^2 (theory, section
+// 2).
+TEST(MotionStiffness, spin_stiffens_by_1_193_of_its_square) {
+  Made m(cantilever("[0, 0, 0]", 2, 1e-12, "bending_y: {stiffness: 10, modes: 1}", "revolute, axis: [0, 0, 1]"));
+  const double rate = 3;
+  m.scene.initial.y[m.scene.model->layout().positions] = rate;
+  const LoadRatio load = load_of(m, "beam", std::vector<double>(2));
+  const double fundamental = 3.51602 * std::sqrt(10.0 / 2.0);
+  EXPECT_NEAR(load.greatest, 1.193 * rate * rate / (fundamental * fundamental), 2e-4);
+  EXPECT_NEAR(load.shares[2], load.greatest, 1e-12);
+  EXPECT_NEAR(elastic_modes(m.scene.model->bodies()[0].body->shape()).frequencies[0], fundamental, 1e-4);
+}
+
+}  // namespace
+}  // namespace withy::test
