@@ -89,7 +89,7 @@ class Monitor {
     struct Motion {
       Vector3 displacement = Vector3::Zero(), velocity = Vector3::Zero();
     };
-    [[nodiscard]] Motion at(const double* q, const double* u) const;
+    void at(const double* q, const double* u, Motion& motion) const;
   };
   static constexpr Eigen::Index whole = 3;  ///< in the place of a component: the size of a deflection
   /// A flexible body's tip, or a segment's.
@@ -110,6 +110,10 @@ class Monitor {
     [[nodiscard]] static double growth(const SectionExpansion::Motion& m, Eigen::Index k) {
       return k == whole ? m.displacement.dot(m.velocity) : m.displacement[k] * m.velocity[k];
     }
+    /// Whether a deflection by the expansion may have been greater than it has been before, in a component or as a
+    /// whole, since the last state: the cubic from there to the one that is looked at lies within its control points.
+    /// \param h time between the two [s]
+    [[nodiscard]] bool may_exceed(double h) const;
     /// Whether it grows at the last state and shrinks at the one that is looked at.
     [[nodiscard]] bool turns(Eigen::Index k) const { return !(growth(now, k) <= 0) && !(growth(next, k) >= 0); }
     /// Whether a deflection by the expansion is greater than it has been, in a component or as a whole.

@@ -23,8 +23,7 @@ Monitor::SectionExpansion::SectionExpansion(const PointExpansion& e) {
   }
 }
 
-Monitor::SectionExpansion::Motion Monitor::SectionExpansion::at(const double* q, const double* u) const {
-  Motion motion;
+void Monitor::SectionExpansion::at(const double* q, const double* u, Motion& motion) const {
   const Term* t = terms.data();
   for (std::size_t k = 0; k < 3; ++k) {
     double d = 0, v = 0;
@@ -40,7 +39,6 @@ Monitor::SectionExpansion::Motion Monitor::SectionExpansion::at(const double* q,
     motion.displacement[static_cast<Eigen::Index>(k)] = d;
     motion.velocity[static_cast<Eigen::Index>(k)] = v;
   }
-  return motion;
 }
 
 void Monitor::note(std::size_t order, const std::string& name, double length, const std::array<double, 3>& d,
@@ -67,6 +65,18 @@ void Monitor::observe_end(std::size_t index, const State& state, const Vector3& 
   }
   *end.ratio = std::max(*end.ratio, std::hypot(d[0], d[1], d[2]) / end.length);
   note(index, end.slot->name, end.length, d, end.peak);
+}
+
+bool Monitor::End::may_exceed(double h) const {
+  double square = 0;
+  for (Eigen::Index k = 0; k < whole; ++k) {
+    const double a = now.displacement[k], b = next.displacement[k];
+    const double bound = std::max({std::abs(a), std::abs(b), std::abs(a + h / 3 * now.velocity[k]),
+                                   std::abs(b - h / 3 * next.velocity[k])});
+    if (!(bound <= rough[static_cast<std::size_t>(k)])) return true;
+    square += bound * bound;
+  }
+  return !(square <= rough_square);
 }
 
 /// Where a component of the deflection, or its size, grows at the start of the last step and shrinks at its end, it is
@@ -115,8 +125,9 @@ void Monitor::look_within(const State& state) {
       const double *const q = between_.y.data() + end.slot->position, *const u = between_.y.data() +
                                                                                  model_.layout().positions +
                                                                                  end.slot->speed;
-      const Vector3 rough = end.section.at(q, u).displacement;
-      if (end.exceeded_by(rough)) observe_end(e, between_, rough, seen);
+      SectionExpansion::Motion rough;
+      end.section.at(q, u, rough);
+      if (end.exceeded_by(rough.displacement)) observe_end(e, between_, rough.displacement, seen);
     }
   }
 }
@@ -130,20 +141,23 @@ void Monitor::see(const State& state) {
 void Monitor::look(const State& state) {
   if (own_ == nullptr) seen_y_.clear();
   excess_order_ = excess_.empty() ? std::numeric_limits<std::size_t>::max() : 0;
-  bool turns = false;
+  const double h = state.time - last_.time;
+  bool more = false, turns = false;
   for (End& end : ends_) {
     const double* const q = state.y.data() + end.slot->position;
     const double* const u = state.y.data() + model_.layout().positions + end.slot->speed;
-    end.next = end.section.at(q, u);
+    end.section.at(q, u, end.next);
+    if (!end.may_exceed(h)) continue;
+    more = true;
     turns = turns || end.turns(0) || end.turns(1) || end.turns(2) || end.turns(whole);
   }
-  if (turns && state.time > last_.time) look_within(state);
+  if (turns && h > 0) look_within(state);
   bool seen = false;
-  for (std::size_t e = 0; e < ends_.size(); ++e) {
-    End& end = ends_[e];
-    end.now = end.next;
-    if (end.exceeded_by(end.now.displacement)) observe_end(e, state, end.now.displacement, seen);
+  for (std::size_t e = 0; more && e < ends_.size(); ++e) {
+    const End& end = ends_[e];
+    if (end.exceeded_by(end.next.displacement)) observe_end(e, state, end.next.displacement, seen);
   }
+  for (End& end : ends_) end.now = end.next;
   if (!wholes_.empty()) {
     see(state);
     for (std::size_t w = 0; w < wholes_.size(); ++w) {
