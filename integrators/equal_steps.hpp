@@ -21,13 +21,14 @@ class EqualSteps : public OneStep {
     double t_new = ends_.at[next_end_];
     if (!(t_new > t)) return {StepResult::Outcome::step_underflow, -1};
     for (int halvings = 0;; ++halvings) {
-      const Attempt a = attempt(t_new - t);
-      if (a.evaluation.ok() && a.solved && finite(next_, next_slope_)) break;
+      solved_ = true;
+      const Evaluation evaluation = attempt(t_new - t);
+      if (evaluation.ok() && solved_ && finite(next_, next_slope_)) break;
       ++statistics_.rejected;
       const double half = t + (t_new - t) / 2;
       if (halvings == most_halvings() || !(half > t && half < t_new)) {
-        if (a.evaluation.ok() && !a.solved) return {StepResult::Outcome::step_underflow, -1};
-        return failure(a.evaluation);
+        if (evaluation.ok() && !solved_) return {StepResult::Outcome::step_underflow, -1};
+        return failure(evaluation);
       }
       t_new = half;
     }
@@ -40,12 +41,13 @@ class EqualSteps : public OneStep {
   }
 
  protected:
-  struct Attempt {
-    Evaluation evaluation;
-    bool solved = true;  ///< the equations of an implicit step
-  };
   /// Tries a step h from state_ with slope_: fills next_ (normalized) and next_slope_.
-  virtual Attempt attempt(double h) = 0;
+  virtual Evaluation attempt(double h) = 0;
+  /// What an implicit method's attempt gives where it has not solved the equations of the step.
+  Evaluation unsolved(const Evaluation& last) {
+    solved_ = false;
+    return last;
+  }
   /// Called after state_, slope_ and their predecessors are those of an accepted step h.
   virtual void accepted(double /*h*/) {}
   /// The slope at the end of a step during which nothing moves; zero where it cannot be had.
@@ -96,6 +98,7 @@ class EqualSteps : public OneStep {
   }
 
   double step_;
+  bool solved_ = true;        ///< the equations of the implicit step being tried
   Ends ends_;                 ///< of the next steps to the limit where each is accepted; `from` goes with the steps
   std::size_t next_end_ = 0;  ///< in ends_
 };

@@ -33,12 +33,12 @@ class GaussStepper final : public EqualSteps {
   static constexpr int most_iterations = 50;
   static constexpr int slow = 12;  ///< iterations that make a new Jacobian worth while
 
-  Attempt attempt(double h) override {
+  Evaluation attempt(double h) override {
     const Eigen::Index m = jacobian_.size();
     const double t = state_.time;
     if (m == 0) {
       next_ = y() + h * slope_;
-      return {evaluate(t + h, next_, next_slope_)};
+      return evaluate(t + h, next_, next_slope_);
     }
     const auto rates = [this](double at, const Eigen::ArrayXd& values, Eigen::ArrayXd& slope) {
       return evaluate(at, values, slope);
@@ -48,7 +48,7 @@ class GaussStepper final : public EqualSteps {
     CollocationStages::Result r;
     for (bool fresh = false;;) {
       if (!known_) {
-        if (const Evaluation e = jacobian_.update(t, h, y(), slope_, rates); !e.ok()) return {e};
+        if (const Evaluation e = jacobian_.update(t, h, y(), slope_, rates); !e.ok()) return e;
         known_ = fresh = true;
         stages_.refactorize();
       }
@@ -57,14 +57,14 @@ class GaussStepper final : public EqualSteps {
       r = stages_.solve_to_rounding(t, h, y(), tolerance_, most_iterations, rates);
       if (r.end == CollocationStages::End::converged) break;
       stages_.accept(0);
-      if (fresh) return {r.evaluation, r.end != CollocationStages::End::slow};
+      if (fresh) return r.end == CollocationStages::End::slow ? unsolved(r.evaluation) : r.evaluation;
       known_ = false;
     }
     if (r.iterations > slow) known_ = false;
 
     stages_.end_of_step(h, state_.y, lost_, next_, lost_next_);
     normalize(next_);
-    return {evaluate(t + h, next_, next_slope_)};
+    return evaluate(t + h, next_, next_slope_);
   }
 
   void accepted(double h) override {

@@ -60,7 +60,7 @@ class AlphaStepper final : public EqualSteps {
   static constexpr int slow = 6;             ///< iterations that make a new Jacobian worth while
   static constexpr double accuracy = 1e-13;  ///< of the iteration, relative to the sizes of positions and speeds
 
-  Attempt attempt(double h) override {
+  Evaluation attempt(double h) override {
     const Eigen::Index np = jacobian_.positions(), n = jacobian_.rates();
     const double t = state_.time;
     if (!begun_) {
@@ -74,7 +74,7 @@ class AlphaStepper final : public EqualSteps {
     };
     for (bool fresh = false;;) {
       if (!known_) {
-        if (const Evaluation e = jacobian_.update(t, h, y(), slope_, rates); !e.ok()) return {e};
+        if (const Evaluation e = jacobian_.update(t, h, y(), slope_, rates); !e.ok()) return e;
         known_ = fresh = true;
         factored_ = 0;
       }
@@ -110,12 +110,12 @@ class AlphaStepper final : public EqualSteps {
         if (iterations > slow) known_ = false;
         break;
       }
-      if (fresh) return {evaluation, evaluation.ok() ? false : true};
+      if (fresh) return evaluation.ok() ? unsolved(evaluation) : evaluation;
       known_ = false;
     }
     // The last change of a is too small to need another evaluation for the slope, but the state has it.
-    if (const Evaluation e = move(h); !e.ok()) return {e};
-    return {evaluate(t + h, next_, next_slope_)};
+    if (const Evaluation e = move(h); !e.ok()) return e;
+    return evaluate(t + h, next_, next_slope_);
   }
 
   /// next_ for a1_. By the midpoint rule, then normalized: for quaternions of third order in h |Δ|, exact where ẋ = u.

@@ -24,16 +24,16 @@ class Rk4Stepper final : public EqualSteps {
       : EqualSteps(equations, start, step), stage_(size()), k2_(size()), k3_(size()), k4_(size()) {}
 
  private:
-  Attempt attempt(double h) override {
-    if (staged()) return {whole_step(whole_rk4, h, std::array<std::span<double>, 3>(), ends_of(h))};
+  Evaluation attempt(double h) override {
+    if (staged()) return whole_step(whole_rk4, h, std::array<std::span<double>, 3>(), ends_of(h));
     const double t = state_.time;
     const Eigen::ArrayXd& k1 = slope_;
-    if (const Evaluation e = evaluate(t + h / 2, stage_ = y() + h / 2 * k1, k2_); !e.ok()) return {e};
-    if (const Evaluation e = evaluate(t + h / 2, stage_ = y() + h / 2 * k2_, k3_); !e.ok()) return {e};
-    if (const Evaluation e = evaluate(t + h, stage_ = y() + h * k3_, k4_); !e.ok()) return {e};
+    if (const Evaluation e = evaluate(t + h / 2, stage_ = y() + h / 2 * k1, k2_); !e.ok()) return e;
+    if (const Evaluation e = evaluate(t + h / 2, stage_ = y() + h / 2 * k2_, k3_); !e.ok()) return e;
+    if (const Evaluation e = evaluate(t + h, stage_ = y() + h * k3_, k4_); !e.ok()) return e;
     next_ = y() + h / 6 * (k1 + 2 * k2_ + 2 * k3_ + k4_);
     normalize(next_);
-    return {evaluate(t + h, next_, next_slope_)};
+    return evaluate(t + h, next_, next_slope_);
   }
 
   void inside(double theta, Values values) const override { cubic(theta, values); }

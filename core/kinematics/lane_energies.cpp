@@ -138,16 +138,16 @@ class EnergiesOfTrees final : public LaneEnergies {
     pass_.move();
     const Sums<Many> all = pass_.sums();
     const Lanes strain = pass_.strain_energy();
+    // All of them before the first is read: a load of several numbers waits for those that were stored one by one.
+    std::array<Sums<Space>, cases_at_once> own;
     for (std::size_t lane = 0; lane < cases_at_once; ++lane) {
-      Energies* const to = place(lane);
-      if (to == nullptr) continue;
-      Sums<Space> own;
-      own.kinetic = all.kinetic[lane];
-      extract(lane, all.momentum, own.momentum);
-      extract(lane, all.moment, own.moment);
-      extract(lane, all.across, own.across);
-      *to = energies_of(*trees_[lane], own, strain[lane]);
+      own[lane].kinetic = all.kinetic[lane];
+      extract(lane, all.momentum, own[lane].momentum);
+      extract(lane, all.moment, own[lane].moment);
+      extract(lane, all.across, own[lane].across);
     }
+    for (std::size_t lane = 0; lane < cases_at_once; ++lane)
+      if (Energies* const to = place(lane)) *to = energies_of(*trees_[lane], own[lane], strain[lane]);
   }
 
   static std::vector<Node<Many>> filled(const Tree<Space>& tree) {

@@ -71,8 +71,8 @@ bool Monitor::End::may_exceed(double h) const {
   double square = 0;
   for (Eigen::Index k = 0; k < whole; ++k) {
     const double a = now.displacement[k], b = next.displacement[k];
-    const double bound = std::max({std::abs(a), std::abs(b), std::abs(a + h / 3 * now.velocity[k]),
-                                   std::abs(b - h / 3 * next.velocity[k])});
+    const double bound = std::max(
+        {std::abs(a), std::abs(b), std::abs(a + h / 3 * now.velocity[k]), std::abs(b - h / 3 * next.velocity[k])});
     if (!(bound <= rough[static_cast<std::size_t>(k)])) return true;
     square += bound * bound;
   }

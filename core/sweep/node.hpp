@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/hinge.hpp"
 #include "withy/core/spatial/space.hpp"
 #include "withy/core/sweep/shared_numbers.hpp"
@@ -15,6 +16,13 @@
 #include "withy/core/tree/tree.hpp"
 
 namespace withy::sweep {
+
+/// The end of an evaluation in which all blocks could be solved. It and the other lie elsewhere since the compiler puts
+/// an Evaluation together in memory, and who loads it then waits for its parts: 4 ns of the 233 of the slew in
+/// ruthless.
+extern const Evaluation all_solved;
+/// The end of one in which a body's block could not.
+[[gnu::cold]] Evaluation singular_at(int body) noexcept;
 
 /// Motions of a hinge that the sweeps inline. In the aligned hinge frame a rotation is about the third axis and a slide
 /// along the first; ball and free have local rates (axes of M) equal to the rotated rates of the State.

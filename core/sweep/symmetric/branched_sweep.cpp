@@ -66,11 +66,12 @@ Evaluation BranchedSweep<Space>::sweep_branches(const SymmetricState<Space>& sta
     const std::span<const NodeRange> ranges = own(member);
     for (const NodeRange& range : ranges) Sweep::outward_motions(state, range);
     for (std::size_t i = ranges.size(); i-- > 0;)
-      if (!Sweep::inward_inertias(state, ranges[i]).ok()) good = false;
+      if (Sweep::inward_inertias(state, ranges[i]) != nullptr) good = false;
   });
   if (!good) return {Evaluation::Outcome::singular};
   for (std::size_t i = branches_.trunk.size(); i-- > 0;)
-    if (const Evaluation e = Sweep::inward_inertias(state, branches_.trunk[i]); !e.ok()) return e;
+    if (const auto* const unsolved = Sweep::inward_inertias(state, branches_.trunk[i]))
+      return singular_at(unsolved->body);
   for (const NodeRange& range : branches_.trunk) Sweep::outward_accelerations(state, range);
   team.run([&](std::size_t member) {
     for (const NodeRange& range : own(member)) Sweep::outward_accelerations(state, range);

@@ -178,15 +178,15 @@ template <class Space>
 }
 
 template <class Space>
-[[gnu::noinline]] Evaluation SymmetricSweep<Space>::inward_inertias(const SymmetricState<Space>& state,
-                                                                    NodeRange nodes) noexcept {
+[[gnu::noinline]] const SymmetricNode<Space>* SymmetricSweep<Space>::inward_inertias(const SymmetricState<Space>& state,
+                                                                                     NodeRange nodes) noexcept {
   for (std::size_t i = nodes.end; i-- > nodes.first;) {
     const SymmetricNode<Space>& node = state.nodes[i];
     bool good = true;
     with_flavor(node, [&](auto n, auto flavor) { good = inward_inertia<Space, n.value, flavor.value>(node, state); });
-    if (!good) return {Evaluation::Outcome::singular, node.body};
+    if (!good) return &node;
   }
-  return {};
+  return nullptr;
 }
 
 template <class Space>
@@ -201,9 +201,9 @@ template <class Space>
 template <class Space>
 Evaluation SymmetricSweep<Space>::accelerations(const SymmetricState<Space>& state, NodeRange nodes) noexcept {
   outward_motions(state, nodes);
-  const Evaluation evaluation = inward_inertias(state, nodes);
-  if (evaluation.ok()) outward_accelerations(state, nodes);
-  return evaluation;
+  if (const SymmetricNode<Space>* const unsolved = inward_inertias(state, nodes)) return singular_at(unsolved->body);
+  outward_accelerations(state, nodes);
+  return all_solved;
 }
 
 template <class Space>
@@ -220,7 +220,8 @@ Evaluation SymmetricSweep<Space>::factorize(const double* positions, const doubl
   const SymmetricState<Space> state{positions, at_rest, at_rest, nullptr, work, nodes_.data(), &world_acceleration_,
                                     delta};
   outward_motions(state, all());
-  return inward_inertias(state, all());
+  const SymmetricNode<Space>* const unsolved = inward_inertias(state, all());
+  return unsolved == nullptr ? all_solved : singular_at(unsolved->body);
 }
 
 template <class Space>

@@ -116,7 +116,8 @@ class SymmetricSweep {
   // The passes over a part of the nodes of a state. A node's numbers come from one code whoever asks for it: the same
   // bits.
   static void outward_motions(const SymmetricState<Space>& state, NodeRange nodes) noexcept;
-  static Evaluation inward_inertias(const SymmetricState<Space>& state, NodeRange nodes) noexcept;
+  /// \returns the first node whose block cannot be solved; null: there is none
+  static const SymmetricNode<Space>* inward_inertias(const SymmetricState<Space>& state, NodeRange nodes) noexcept;
   static void outward_accelerations(const SymmetricState<Space>& state, NodeRange nodes) noexcept;
   /// The three, one after the other.
   static Evaluation accelerations(const SymmetricState<Space>& state, NodeRange nodes) noexcept;
