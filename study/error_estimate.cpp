@@ -57,7 +57,7 @@ constexpr double resolved = 0.005;
 /// alone said 3.3; on random scenes (seeds 21 to 80) as many are told as by twice what it is off at its end.
 constexpr double beyond_its_own = 1.5;
 /// Each so many of the states that the run has kept are looked at: two readings each, of the price of an estimate.
-constexpr std::size_t look_every = 4;
+constexpr std::size_t look_every = 8;
 
 /// Two models compared along one coarse run.
 class PairedRuns {
@@ -115,7 +115,7 @@ class PairedRuns {
     Distances apart = outputs_.none();
     outputs_.raise(last_, reader.read(summary_.final), apart);
     const Distances sizes = scales(outputs_, ranges_, energy_);
-    const Distances along = apart_along(apart);
+    const Distances along = apart_along(reader, apart);
     estimate.off = relative_error(along, sizes);
     estimate.cpu_seconds += thread_cpu_seconds() - began;
     note_bounds(estimate, sizes, apart, along);
@@ -143,12 +143,11 @@ class PairedRuns {
 
   /// How far the coarse run is from the run wherever it is looked at.
   /// \param at_end the same at the end
-  [[nodiscard]] Distances apart_along(Distances at_end) const {
-    OutputReader coarse(outputs_, *scene_.model, used_), run(outputs_, *scene_.model, used_);
+  [[nodiscard]] Distances apart_along(OutputReader& reader, Distances at_end) const {
     const std::vector<State>& states = summary_.validity.along;
     for (std::size_t i = look_every; i < states.size(); i += look_every)
       if (const std::optional<State> there = track_.at(states[i].time))
-        outputs_.raise(coarse.read(*there), run.read(states[i]), at_end);
+        outputs_.raise(reader.read(*there), reader.read(states[i]), at_end);
     return at_end;
   }
 
