@@ -57,7 +57,7 @@ constexpr double resolved = 0.005;
 /// alone said 3.3; on random scenes (seeds 21 to 80) as many are told as by twice what it is off at its end.
 constexpr double beyond_its_own = 1.5;
 /// Each so many of the states that the run has kept are looked at: two readings each, of the price of an estimate.
-constexpr std::size_t look_every = 8;
+constexpr std::size_t look_every = 4;
 
 /// Two models compared along one coarse run.
 class PairedRuns {
