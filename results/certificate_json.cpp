@@ -83,11 +83,17 @@ Json plan_json(const Certificate& c) {
 
 Json estimate_json(const Certificate& c) {
   if (!c.estimate) return {};
-  return {{"against", c.estimate->against},           {"hinges", c.estimate->distances.hinges},
-          {"tips", c.estimate->distances.tips},       {"deflections", c.estimate->distances.deflections},
-          {"moments", c.estimate->distances.moments}, {"forces", c.estimate->distances.forces},
-          {"at_most", c.estimate->at_most},           {"until", c.estimate->distances.until},
-          {"evaluations", c.estimate->evaluations},   {"cpu_seconds", c.estimate->cpu_seconds}};
+  return {{"against", c.estimate->against},
+          {"hinges", c.estimate->distances.hinges},
+          {"tips", c.estimate->distances.tips},
+          {"deflections", c.estimate->distances.deflections},
+          {"moments", c.estimate->distances.moments},
+          {"forces", c.estimate->distances.forces},
+          {"at_most", c.estimate->at_most},
+          {"until", c.estimate->distances.until},
+          {"off", c.estimate->off},
+          {"evaluations", c.estimate->evaluations},
+          {"cpu_seconds", c.estimate->cpu_seconds}};
 }
 
 Json more_modes_json(const study::MoreModes& more) {

@@ -99,7 +99,10 @@ std::string distances_text(const study::NamedDistances& distances, const Model& 
 std::string error_text(const study::ErrorEstimate& e, const Model& model, double reached) {
   std::string out = distances_text(e.distances, model);
   if (out.empty()) return "no hinge moves and no body has a tip";
-  out = fmt::format("against {}, estimated by coarse runs: {}", e.against, out);
+  constexpr double worth_saying = 0.1;
+  const std::string off =
+      e.off > worth_saying ? fmt::format(" that leave this one by up to {} of a range", percent(e.off)) : "";
+  out = fmt::format("against {}, estimated by coarse runs{}: {}", e.against, off, out);
   if (!e.at_most.empty())
     out += fmt::format("; roughly at most that of {}, too little for coarse runs to tell", fmt::join(e.at_most, ", "));
   if (e.distances.until < e.end)

@@ -75,6 +75,10 @@ bool conserves(const Scene& scene) {
          std::all_of(bodies.begin(), bodies.end(), [&](const BodyNode& b) { return !b.terms || whole(*b.terms); });
 }
 
+/// A coarse run that is off the run by more than this part of a range may drift by another amount too: a rest of more
+/// than a quarter of what it drifts by may be its own.
+constexpr double another_drift = 0.1, rest_of_its_own = 0.25;
+
 /// Where the equations conserve, drifts are the integration's. Elsewhere the coarse run of the estimate, in the same
 /// equations, drifts by what they leave out; what the run itself drifts by beside that is the integration's.
 std::optional<DriftShares> shares_of(const Prepared& prepared, const Evidence& evidence) {
@@ -92,6 +96,12 @@ std::optional<DriftShares> shares_of(const Prepared& prepared, const Evidence& e
   std::tie(shares.model.energy, shares.integration.energy) = split(s.untruncated_drift, coarse.energy);
   std::tie(shares.model.linear, shares.integration.linear) = split(all.linear, coarse.linear);
   std::tie(shares.model.angular, shares.integration.angular) = split(all.angular, coarse.angular);
+  const auto unclear = [&](double Drifts::*d) {
+    return shares.integration.*d > rest_of_its_own * shares.model.*d && shares.model.*d > 0;
+  };
+  if (evidence.estimate->off > another_drift &&
+      (unclear(&Drifts::energy) || unclear(&Drifts::linear) || unclear(&Drifts::angular)))
+    return {};
   if (prepared.scene.formulation->terms().truncation == Truncation::symmetric)
     shares.integration.energy = s.energy_drift;  // of its own energy, which it conserves
   return shares;

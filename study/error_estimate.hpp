@@ -29,6 +29,9 @@ struct ErrorEstimate {
   Drifts drifts = {};
   /// Names of outputs whose error is too small for the coarse runs to tell: it is no more than what they differ by.
   std::set<std::string> at_most = {};
+  /// The greatest part of an output's range that the coarse run is off the run itself; zero of an estimate at any
+  /// price, whose runs are as exact as it asks.
+  double off = 0;
 };
 
 /// What an estimate may cost.
@@ -45,7 +48,7 @@ struct EstimateOutcome {
 
 /// Estimates it for the time that the run went. At a tenth of its cost both models take the steps that it pays for,
 /// stiffness and damping implicit (CoarseSteps), or where these do not come to the run's own end, those of radau at
-/// a low tolerance: what comes to another end tells nothing of the run.
+/// a low tolerance: what comes to another end tells nothing of the run, and what leaves it on the way little.
 /// \param used the equations of the run, from its start to its end
 /// \param summary of a run that looked beyond: of strict equations the states that it kept closely are needed
 /// \throws InputError where there is no integrator dopri5; std::invalid_argument where a load has switching functions.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "withy/core/simulation/coarse_steps.hpp"
+#include "withy/study/coarse_track.hpp"
 #include "withy/study/run.hpp"
 #include "withy/tests/study/plugins.hpp"
 
@@ -102,6 +103,33 @@ INSTANTIATE_TEST_SUITE_P(Measured, EstimatedStrictScenes,
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+// Torques that jump again and again: coarse steps in `linear` leave the run by 15 % of a range, and their tip comes
+// back to it at the end. What they say of tips is 62 times the truth.
+TEST(Estimate, is_a_bound_where_its_run_leaves_the_run_on_the_way) {
+  const Estimated e("least-time-slew", "linear");
+  const EstimateOutcome cheap = e.at(Price::tenth), dear = e.at(Price::any);
+  ASSERT_TRUE(cheap.estimate && dear.estimate);
+  EXPECT_GT(cheap.estimate->off, 0.1);
+  EXPECT_THAT(cheap.estimate->at_most, testing::IsSupersetOf({"link1.tip", "link2.tip", "payload.tip"}));
+  expect_near(*cheap.estimate, *dear.estimate, 1.5);
+}
+
+// Cubics are met exactly, at both ends and between them; beyond there is nothing.
+TEST(CoarseTrack, goes_through_its_states_as_a_cubic) {
+  const Prepared p = Estimated::of("two-link-slew", "quadratic");
+  CoarseTrack track(*p.equations);
+  const auto cubic = [&](double t) {
+    return State{t, std::vector<double>(p.equations->size(), 1 + t * (2 - t * (3 + t)))};
+  };
+  for (const double t : {0.0, 0.1, 0.3, 0.4, 0.7, 1.0}) track.keep(cubic(t));
+  for (const double t : {0.0, 0.05, 0.1, 0.35, 0.5, 0.9, 1.0}) {
+    const std::optional<State> s = track.at(t);
+    ASSERT_TRUE(s) << t;
+    EXPECT_NEAR(s->y.front(), cubic(t).y.front(), 1e-14) << t;
+  }
+  EXPECT_FALSE(track.at(1.01) || track.at(-0.01));
+}
 
 // Coarse steps would lose the motion: no number is given, and how one is to be had is.
 TEST(Estimate, is_refused_where_its_share_does_not_follow_the_motion) {
