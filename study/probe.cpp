@@ -137,8 +137,7 @@ Probe Evaluator::judge(const Reference& run, const Yardstick& yardstick) {
 }
 
 void Evaluator::note_cost(const Probe& probe) {
-  constexpr std::size_t least_evaluations = 50;  // the start is not like the rest
-  if (probe.walk.evaluations < least_evaluations) return;
+  if (probe.walk.end != Walk::End::reached) return;  // the start is not like the rest
   const double seconds = probe.walk.seconds / static_cast<double>(probe.walk.evaluations);
   const auto [known, is_new] = unit_costs_.emplace(cost_key(probe.point), seconds);
   if (!is_new) known->second = std::min(known->second, seconds);

@@ -70,8 +70,9 @@ class Evaluator {
   Probe run(const Point& point, const Yardstick& yardstick, const Allowance& allowance = {});
   /// What a run that was made while a reference was looked for is as a probe.
   Probe judge(const Reference& run, const Yardstick& yardstick);
-  /// Evaluations times their least CPU time in this model and integrator [s]: what a run costs without the noise of
-  /// other work on the machine.
+  /// Evaluations times their least CPU time in whole runs of this model and integrator [s]: what a run costs without
+  /// the noise of other work on the machine. A run that was cut early was timed for too short a time.
+  /// \param probe that came to its end
   [[nodiscard]] double cost(const Probe& probe) const;
   /// CPU time since this was made [s], of the thread that made it.
   [[nodiscard]] double spent() const;
