@@ -13,7 +13,7 @@ namespace withy::study {
 namespace {
 
 std::string cost_key(const Point& p) {
-  return fmt::format("{} {} {} {}", p.formulation_text(), p.family, p.modes, p.integrator);
+  return fmt::format("{} {} {} {} {}", p.formulation_text(), p.family, p.modes, p.integrator, p.tolerance);
 }
 
 /// Without what outputs have been over the run, which says nothing before its end.

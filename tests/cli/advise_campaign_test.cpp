@@ -83,8 +83,8 @@ std::optional<Yardstick> truth_of(Evaluator& evaluator, const Yardstick& known) 
   return truth;
 }
 
-/// What each run costs: evaluations times the least time of one that was seen in whole runs of its model and integrator.
-/// What is cut early was timed for too short a time, and may have reached no output.
+/// What each run costs: evaluations times the least time of one that was seen in whole runs of its model and
+/// integrator. What is cut early was timed for too short a time, and may have reached no output.
 class Costs {
  public:
   void note(const Probe& p) {
