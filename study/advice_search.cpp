@@ -27,7 +27,7 @@ constexpr double model_allowance = 4;
 /// The same for a candidate: beyond it is costlier for sure.
 constexpr double candidate_allowance = 1.25;
 /// The same for what is timed again before one is chosen.
-constexpr double nearly_as_cheap = 1.3;
+constexpr double nearly_as_cheap = 1.5;
 /// Evaluations of `dop853` at its stability limit beyond which a model is looked at with implicit steps, and the
 /// tolerance of these over the accuracy: they are a tenth as many there.
 constexpr double many_evaluations = 5000, implicit_enough = 0.1;

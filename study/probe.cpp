@@ -13,7 +13,7 @@ namespace withy::study {
 namespace {
 
 std::string cost_key(const Point& p) {
-  return fmt::format("{} {} {} {}", p.formulation_text(), p.family, p.modes, p.integrator);
+  return fmt::format("{} {} {} {} {}", p.formulation_text(), p.family, p.modes, p.integrator, p.tolerance);
 }
 
 /// Without what outputs have been over the run, which says nothing before its end.
@@ -137,8 +137,7 @@ Probe Evaluator::judge(const Reference& run, const Yardstick& yardstick) {
 }
 
 void Evaluator::note_cost(const Probe& probe) {
-  constexpr std::size_t least_evaluations = 50;  // the start is not like the rest
-  if (probe.walk.evaluations < least_evaluations) return;
+  if (probe.walk.end != Walk::End::reached) return;  // the start is not like the rest
   const double seconds = probe.walk.seconds / static_cast<double>(probe.walk.evaluations);
   const auto [known, is_new] = unit_costs_.emplace(cost_key(probe.point), seconds);
   if (!is_new) known->second = std::min(known->second, seconds);

@@ -70,8 +70,9 @@ class Evaluator {
   Probe run(const Point& point, const Yardstick& yardstick, const Allowance& allowance = {});
   /// What a run that was made while a reference was looked for is as a probe.
   Probe judge(const Reference& run, const Yardstick& yardstick);
-  /// Evaluations times their least CPU time in this model and integrator [s]: what a run costs without the noise of
-  /// other work on the machine.
+  /// Evaluations times their least CPU time in runs of the same point that came to their end [s]: what a run costs
+  /// without the noise of other work on the machine. Runs that are cut early are timed too briefly, and at a tighter
+  /// tolerance an evaluation has less of the outputs to bear. \param probe that came to its end
   [[nodiscard]] double cost(const Probe& probe) const;
   /// CPU time since this was made [s], of the thread that made it.
   [[nodiscard]] double spent() const;
@@ -88,7 +89,7 @@ class Evaluator {
   const Outputs& outputs_;
   Control control_;
   std::vector<std::unique_ptr<ModelAt>> models_;
-  std::map<std::string, double> unit_costs_;  ///< by model and integrator [s an evaluation]
+  std::map<std::string, double> unit_costs_;  ///< by point [s an evaluation]
   double began_;
   double limit_ = std::numeric_limits<double>::infinity();
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
@@ -19,6 +20,9 @@ constexpr double much_cheaper = 0.7;
 constexpr double clearly_less = 0.5;
 /// Modes beyond the last level of the higher rung that are looked at in the lower one.
 constexpr int most_modes_beyond = 8;
+/// Times the cost of the last level of the higher rung: what more modes in the lower one may cost before the higher one
+/// has its next level, which costs about that.
+constexpr double next_level = 2;
 
 /// Times the tolerance of the coarsest level that is asked for: the loosest that is looked at.
 constexpr double looser_at_most = 10;
@@ -41,7 +45,6 @@ class ReferenceSearch {
     series.add(coarse->point.modes, coarse->readings);
     found_.trouble.clear();
     found_.unaffordable = false;
-    bool tried = false;  // this pair of levels with a lower rung
     for (int level = 0; level < goal_.levels; ++level) {
       const Point next = finer(coarse->point);
       // The same run again would agree with itself.
@@ -51,13 +54,13 @@ class ReferenceSearch {
       series.add(next.modes, fine->readings);
       if (series.size() > static_cast<std::size_t>(goal_.kinds) && known_by(*fine, series)) return;
       before = std::move(coarse), coarse = std::move(fine);
-      tried = much_cheaper_below(coarse->point);
-      if (tried) found_.reference = add_to_lower(*coarse, *before);
+      if (much_cheaper_below(coarse->point))
+        found_.reference = add_to_lower(*coarse, *before, next_level * coarse->walk.seconds);
       if (found_.reference || found_.interrupted) return;
     }
-    if (!before || tried || found_.interrupted) return;
+    if (!before || found_.interrupted) return;
     const std::string trouble = found_.trouble;
-    found_.reference = add_to_lower(*coarse, *before);
+    found_.reference = add_to_lower(*coarse, *before, std::numeric_limits<double>::infinity());
     if (!found_.reference && found_.trouble.empty()) found_.trouble = trouble;
   }
 
@@ -160,8 +163,10 @@ class ReferenceSearch {
   }
 
   /// More modes in the rung below, with what the higher one adds at the finer of two levels. Nothing where there is no
-  /// rung below, a run does not end or what is added changes too much; the richest is then kept as nearest.
-  std::optional<Reference> add_to_lower(const Reference& fine, const Reference& coarse) {
+  /// rung below, a run does not end, what is added changes too much or the modes cost more; the richest is then kept as
+  /// nearest.
+  /// \param seconds of CPU time that more modes may cost; the run under way is ended
+  std::optional<Reference> add_to_lower(const Reference& fine, const Reference& coarse, double seconds) {
     const std::optional<Point> low = below(fine.point);
     if (!low || fine.point.modes == 0 || !goal_.steady) return {};
     const auto before = at(*below(coarse.point));
@@ -176,6 +181,7 @@ class ReferenceSearch {
     added.own = changed;
     if (!goal_.steady(added)) return {};
     extend_lower(*before, *base);
+    const double began = found_.cpu_seconds;
     while (true) {
       if (richest_->point.modes > fine.point.modes) {
         Reference reached = lead(*richest_, *lower_);
@@ -185,7 +191,8 @@ class ReferenceSearch {
         if (enough(reached)) return reached;
         keep_nearest(reached, {});
       }
-      if (richest_->point.modes >= fine.point.modes + most_modes_beyond) return {};
+      if (richest_->point.modes >= fine.point.modes + most_modes_beyond || found_.cpu_seconds - began > seconds)
+        return {};
       Point point = richest_->point;
       ++point.modes;
       const std::optional<Reference> richer = at(integrated(point));

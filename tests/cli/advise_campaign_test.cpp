@@ -83,18 +83,24 @@ std::optional<Yardstick> truth_of(Evaluator& evaluator, const Yardstick& known) 
   return truth;
 }
 
-/// What each run costs: evaluations times the least time of one that was seen in its model and integrator.
+/// What each run costs: evaluations times the least time of one that was seen in whole runs of its model and
+/// integrator. What is cut early was timed for too short a time, and may have reached no output.
 class Costs {
  public:
-  double unit(const Probe& p) {
-    const std::string key = p.point.formulation + p.point.family + std::to_string(p.point.modes) + p.point.integrator;
+  void note(const Probe& p) {
+    if (p.walk.end != Walk::End::reached) return;
     const double seen = p.walk.seconds / static_cast<double>(p.walk.evaluations);
-    double& least = units_.try_emplace(key, seen).first->second;
-    return least = std::min(least, seen);
+    double& least = units_.try_emplace(key(p), seen).first->second;
+    least = std::min(least, seen);
   }
-  double of(const Probe& p) { return unit(p) * static_cast<double>(p.walk.evaluations); }
+  /// \param p came to its end
+  [[nodiscard]] double of(const Probe& p) const { return units_.at(key(p)) * static_cast<double>(p.walk.evaluations); }
 
  private:
+  static std::string key(const Probe& p) {
+    return p.point.formulation_text() + p.point.family + std::to_string(p.point.modes) + p.point.integrator;
+  }
+
   std::map<std::string, double> units_;
 };
 
@@ -103,10 +109,11 @@ class Costs {
 std::vector<Probe> search_all(Evaluator& evaluator, const Candidates& all, const Point& choice, const Yardstick& truth,
                               Costs& costs, double& best) {
   std::vector<Probe> passed{evaluator.run(choice, truth)};
+  costs.note(passed.front());
   best = passed.front().walk.seconds;
   for (const Point& point : points_of(all)) {
     const Probe p = evaluator.run(point, truth, {1, 1.5 * best});
-    if (p.walk.evaluations > 0) static_cast<void>(costs.unit(p));
+    costs.note(p);
     if (!p.passed()) continue;
     best = std::min(best, p.walk.seconds);
     passed.push_back(p);
@@ -147,9 +154,11 @@ Verdict judge(const std::string& scene, const std::string& accuracy_text) {
   double best = 0;
   const std::vector<Probe> passed = search_all(evaluator, all, choice.point, truth, costs, best);
   v.use = passed.front().use;
-  // Unit costs of what is near, once more: other work on the machine only adds.
-  for (const Probe& p : passed)
-    if (costs.of(p) < 2 * best) static_cast<void>(costs.unit(evaluator.run(p.point, truth)));
+  // Unit costs of what is near, by turns: other work on the machine only adds.
+  constexpr int rounds = 5;
+  for (int round = 0; round < rounds; ++round)
+    for (const Probe& p : passed)
+      if (costs.of(p) < 2 * best) costs.note(evaluator.run(p.point, truth));
   const Probe* cheapest = &passed.front();
   for (const Probe& p : passed)
     if (costs.of(p) < costs.of(*cheapest)) cheapest = &p;

@@ -218,6 +218,22 @@ TEST(Probe, IsCutWhereItsAllowanceIsUsedUp) {
   EXPECT_THROW(static_cast<void>(evaluator.run(point, yardstick)), std::runtime_error);
 }
 
+/// An evaluation has less of the outputs to bear where steps are shorter, and what is cut is timed too briefly.
+TEST(Probe, CostsWhatWholeRunsOfTheSamePointCost) {
+  const Prepared scene = pendulum();
+  const Outputs outputs(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const Yardstick yardstick = yardstick_of(evaluator);
+  const Point point{"quadratic", "", 0, "dopri5", 1e-3, {}, {}};
+  const Probe whole = evaluator.run(point, yardstick);
+  ASSERT_EQ(whole.walk.end, Walk::End::reached);
+  Point tighter = point;
+  for (tighter.tolerance = 1e-4; tighter.tolerance > 1e-9; tighter.tolerance *= 0.1)
+    static_cast<void>(evaluator.run(tighter, yardstick));
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(evaluator.run(point, yardstick, {-1}).walk.end, Walk::End::cut);
+  EXPECT_DOUBLE_EQ(evaluator.cost(whole), whole.walk.seconds);
+}
+
 TradeResult result(double error, double cost, double own = 0) {
   TradeResult r;
   r.status = "completed";

@@ -236,6 +236,36 @@ TEST(CorrectedReadings, PutADifferenceOnTopOfNumbersVectorsAndOrientations) {
   for (std::size_t i = 0; i < off.size(); ++i) EXPECT_LT(off[i], 1e-7) << outputs.list()[i].label;
 }
 
+/// Modes of the lower rung cost more and more, where a level of the higher one may end the search.
+TEST(FindReference, ModesOfALowerRungWaitForTheNextLevelWhereTheyCostMoreThanThat) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml");
+  const Prepared scene = prepare(values.set("time.end", Value(0.5), "the test"), plugins());
+  const Outputs outputs = Outputs::all(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+  ReferenceGoal goal;
+  goal.first = {"", "orthogonal-polynomials", 2, "dop853", 1e-6, {}, {}};
+  goal.levels = 6;
+  goal.finer = 1;
+  goal.steady = [](const Reference&) { return true; };
+  int lower_modes = 0;  // that were looked at
+  double level = 0, spent = 0;
+  goal.enough = [&](const Reference& r) {
+    if (!r.added_by) {
+      level = r.walk.seconds, spent = 0;
+    } else if (r.point.modes > lower_modes) {
+      EXPECT_LE(spent, 2 * level) << "before " << r.text();
+      spent += r.walk.seconds;
+      lower_modes = r.point.modes;
+    }
+    return !r.added_by && r.point.modes >= 6;
+  };
+  const ReferenceFound found = find_reference(at, plugins(), outputs, goal, {});
+  ASSERT_TRUE(found.reference);
+  EXPECT_EQ(found.reference->point.formulation, "exact");
+  EXPECT_GT(lower_modes, 3) << "nothing was looked at";
+}
+
 /// Were the highest formulation free, it would be run with as many modes as the other: what is put together is as far
 /// from that as it says.
 TEST(FindReference, WhatAHigherRungAddsAtFewModesStandsForWhatItAddsAtMany) {
