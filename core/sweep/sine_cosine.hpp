@@ -9,10 +9,7 @@
 
 namespace withy::sweep {
 
-/// Angles from here on in size [rad] are left to the library.
-constexpr double furthest_angle = 1e5;
-
-/// sine_cosine of a number or a vector of numbers, Bits one of as many integers of 64 bits.
+/// sine_cosine of a vector of doubles, Bits a vector of as many integers of 64 bits.
 template <class Bits, class Vector>
 inline void sine_cosine_of(const Vector& angle, Vector& sine, Vector& cosine) {
   constexpr double shift = 6755399441055744.0;  // 1.5·2⁵²: adding it rounds to an integer, which its last bits keep
@@ -44,7 +41,7 @@ inline void sine_cosine_of(const Vector& angle, Vector& sine, Vector& cosine) {
   cosine = std::bit_cast<Vector>(((c_bits & ~odd) | (s_bits & odd)) ^ cosine_sign);
 }
 
-/// Sine and cosine of four angles below furthest_angle, to 1e-16: reduction by multiples of π/2 in two parts (Cody &
+/// Sine and cosine of four angles below 1e5 in size, to 1e-16: reduction by multiples of π/2 in two parts (Cody &
 /// Waite) and the polynomials of FreeBSD's k_sin.c and k_cos.c on [−π/4, π/4].
 inline void sine_cosine(const Pack& angle, Pack& sine, Pack& cosine) {
 #ifdef __AVX__
@@ -56,10 +53,7 @@ inline void sine_cosine(const Pack& angle, Pack& sine, Pack& cosine) {
 #endif
 }
 
-/// Of one angle: the library's function looks at the rounding mode on each call, which takes it half of its time.
 inline void sine_cosine(double angle, double& sine, double& cosine) {
-  if (std::abs(angle) < furthest_angle) [[likely]]
-    return sine_cosine_of<long>(angle, sine, cosine);
   sine = std::sin(angle);
   cosine = std::cos(angle);
 }
@@ -81,7 +75,7 @@ inline void sine_cosine(const Lanes& angle, Lanes& sine, Lanes& cosine) {
 #else
   sine_cosine(angle.p, s.p, c.p);
 #endif
-  const Lanes furthest = furthest_angle;
+  const Lanes furthest = 1e5;
   const LaneSet near = positive(furthest - angle) & positive(furthest + angle);
   if (near.bits != LaneSet::all().bits) [[unlikely]] {
     const Lanes far = angle;
