@@ -3,8 +3,10 @@
 /// over generalized particles: all are polynomials of few products of its fields.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "withy/core/sweep/mass_table.hpp"
 
@@ -19,7 +21,10 @@ constexpr bool has_straight_mass = Space::angular == 1 && in_lanes<Space> && (N 
 template <int N>
 struct StraightMass {
   /// The pair (i, j) of `of`; of modes, or of pairs of these.
-  static constexpr int pair(int i, int j, int of) { return i <= j ? i * of - i * (i - 1) / 2 + j - i : pair(j, i, of); }
+  static constexpr int pair(int i, int j, int of) {
+    const int least = std::min(i, j);
+    return least * of - least * (least - 1) / 2 + std::max(i, j) - least;
+  }
   static constexpr int pairs = N * (N + 1) / 2;
   static constexpr int m = 0, X = 1, X_X = 2, phi = 3, X_phi = phi + N, phi_phi = X_phi + N, gamma = phi_phi + pairs,
                        X_gamma = gamma + pairs, gamma_phi = X_gamma + pairs, gamma_gamma = gamma_phi + pairs * N,
@@ -59,6 +64,14 @@ std::array<double, StraightMass<N>::count> straight_mass(const MassTable<Planar>
   return all;
 }
 
+/// Calls f with each number from `begin` up to `end` as a constant, so that places of integrals are known beforehand: a
+/// loop that the compiler leaves as one finds them anew each time, which takes longer than the sums.
+template <int begin, int end, class F>
+inline void each(const F& f) {
+  [&]<int... k>(std::integer_sequence<int, k...>) { (f(std::integral_constant<int, begin + k>{}), ...); }
+  (std::make_integer_sequence<int, std::max(end - begin, 0)>{});
+}
+
 /// As `integrate` of mass_table.hpp, but that C, G and h are set. With s = q̇ᵀΓq̇ and what moves along the first and
 /// across, r = (X + ½ P·q, Φ·q), ṙ = (P·q̇, Φ·q̇), P = Γq: what turning adds to the moment of the mass,
 /// ∫ r × (ω×(ω×r)), is zero.
@@ -69,68 +82,68 @@ inline void integrate_straight(const typename Space::Scalar* of, const typename 
                                typename Space::Twist& p, typename Space::Scalar* h) {
   using S = typename Space::Scalar;
   using At = StraightMass<N>;
-  const auto contracted = [&](const S* gamma, int i) {  // of integrals with each Γ_ij that with P_i
+  const auto contracted = [&](const S* gamma, auto i) {  // of integrals with each Γ_ij that with P_i
     S sum = gamma[At::of(i, 0)] * q[0];
-    for (int j = 1; j < N; ++j) sum += gamma[At::of(i, j)] * q[j];
+    each<1, N>([&](auto j) { sum += gamma[At::of(i, j)] * q[j]; });
     return sum;
   };
   const auto along = [&](const S* a, const S* b) {
     S sum = a[0] * b[0];
-    for (int j = 1; j < N; ++j) sum += a[j] * b[j];
+    each<1, N>([&](auto j) { sum += a[j] * b[j]; });
     return sum;
   };
   S half[N], rates[At::pairs];  // ½ q; s = Σ Γ rates
-  for (int i = 0; i < N; ++i) {
+  each<0, N>([&](auto i) {
     half[i] = 0.5 * q[i];
     const S twice = q_dot[i] + q_dot[i];
     rates[At::of(i, i)] = q_dot[i] * q_dot[i];
-    for (int j = i + 1; j < N; ++j) rates[At::of(i, j)] = twice * q_dot[j];
-  }
+    each<i + 1, N>([&](auto j) { rates[At::of(i, j)] = twice * q_dot[j]; });
+  });
   // ∫ P_i·P_j with ∫ P_i s.
   S PP[N * N], Ps[N];
-  for (int i = 0; i < N; ++i) {
+  each<0, N>([&](auto i) {
     S P_gamma[At::pairs];
-    for (int k = 0; k < At::pairs; ++k) {
+    each<0, At::pairs>([&](auto k) {
       P_gamma[k] = of[At::gamma_gamma + At::pair(At::of(i, 0), k, At::pairs)] * q[0];
-      for (int j = 1; j < N; ++j) P_gamma[k] += of[At::gamma_gamma + At::pair(At::of(i, j), k, At::pairs)] * q[j];
-    }
-    for (int j = 0; j <= i; ++j) PP[i * N + j] = PP[j * N + i] = contracted(P_gamma, j);
+      each<1, N>([&](auto j) { P_gamma[k] += of[At::gamma_gamma + At::pair(At::of(i, j), k, At::pairs)] * q[j]; });
+    });
+    each<0, i + 1>([&](auto j) { PP[i * N + j] = PP[j * N + i] = contracted(P_gamma, j); });
     Ps[i] = P_gamma[0] * rates[0];
-    for (int k = 1; k < At::pairs; ++k) Ps[i] += P_gamma[k] * rates[k];
-  }
+    each<1, At::pairs>([&](auto k) { Ps[i] += P_gamma[k] * rates[k]; });
+  });
   // Along the first axis: ∫ P_i, ∫ X·P_i and ∫ r·P_i; across it ∫ r·Φ_i; of both ∫ P_i Φ_j.
   S P[N], XP[N], rP[N], r_phi[N], P_phi[N * N];
-  for (int i = 0; i < N; ++i) {
+  each<0, N>([&](auto i) {
     P[i] = contracted(of + At::gamma, i);
     XP[i] = contracted(of + At::X_gamma, i);
     rP[i] = XP[i] + along(PP + i * N, half);
     r_phi[i] = of[At::phi_phi + At::of(i, 0)] * q[0];
-    for (int j = 1; j < N; ++j) r_phi[i] += of[At::phi_phi + At::of(i, j)] * q[j];
-    for (int j = 0; j < N; ++j) {
+    each<1, N>([&](auto j) { r_phi[i] += of[At::phi_phi + At::of(i, j)] * q[j]; });
+    each<0, N>([&](auto j) {
       P_phi[i * N + j] = of[At::gamma_phi + At::of(i, 0) * N + j] * q[0];
-      for (int k = 1; k < N; ++k) P_phi[i * N + j] += of[At::gamma_phi + At::of(i, k) * N + j] * q[k];
-    }
-  }
+      each<1, N>([&](auto k) { P_phi[i * N + j] += of[At::gamma_phi + At::of(i, k) * N + j] * q[k]; });
+    });
+  });
   const S r_x = of[At::X] + along(P, half), r_y = along(of + At::phi, q);
   const S XX = of[At::X_X] + along(XP, half);  // ∫ X·r
   I += typename Space::Inertia{XX + along(rP, half) + along(r_phi, q), -r_y, r_x, of[At::m], S(0), of[At::m]};
   S s = of[At::gamma] * rates[0], r_s(0);  // ∫ s along; ∫ r·s with r across
-  for (int k = 1; k < At::pairs; ++k) s += of[At::gamma + k] * rates[k];
-  for (int k = 0; k < At::pairs; ++k) r_s += along(of + At::gamma_phi + k * N, q) * rates[k];
+  each<1, At::pairs>([&](auto k) { s += of[At::gamma + k] * rates[k]; });
+  each<0, At::pairs>([&](auto k) { r_s += along(of + At::gamma_phi + k * N, q) * rates[k]; });
   const S w2 = V.w * V.w, w = V.w + V.w, a_x = -V.w * V.y, a_y = V.w * V.x;  // a: ω×v, everywhere the same
   S moved(0);                                                                // ∫ r·ṙ
-  for (int i = 0; i < N; ++i) {
+  each<0, N>([&](auto i) {
     const S turned = rP[i] + r_phi[i];  // ∫ r·P_i in both directions
     S X_phi = of[At::X_phi + i], v_phi(0);
-    for (int j = 0; j < N; ++j) {
+    each<0, N>([&](auto j) {
       X_phi += P_phi[j * N + i] * half[j];   // ∫ r Φ_i
       v_phi += P_phi[j * N + i] * q_dot[j];  // ∫ ṙ Φ_i
-    }
+    });
     moved += turned * q_dot[i];
     C[i] = {X_phi - along(P_phi + i * N, q), P[i], of[At::phi + i]};
     h[i] = Ps[i] - w2 * turned + w * (v_phi - along(P_phi + i * N, q_dot)) + a_x * P[i] + a_y * of[At::phi + i];
-    for (int j = 0; j <= i; ++j) G[i * N + j] = PP[i * N + j] + of[At::phi_phi + At::of(i, j)];
-  }
+    each<0, i + 1>([&](auto j) { G[i * N + j] = PP[i * N + j] + of[At::phi_phi + At::of(i, j)]; });
+  });
   p += typename Space::Twist{w * moved - r_s + a_y * r_x - a_x * r_y,
                              s - w2 * r_x - w * along(of + At::phi, q_dot) + of[At::m] * a_x,
                              w * along(P, q_dot) - w2 * r_y + of[At::m] * a_y};
