@@ -35,6 +35,7 @@ Json body_json(const BodyValidity& b, const Certificate& certificate, const RunS
       {"compressive", b.buckling}};
   const auto deflection = summary.peak_deflection_ratio.find(b.name);
   j["deflection_over_length"] = deflection != summary.peak_deflection_ratio.end() ? Json(deflection->second) : Json();
+  j["deflection_of"] = b.station.empty() ? Json() : Json(b.station);
   j["highest_mode"] = Json::object();
   for (const HighestMode& h : b.highest) {
     j["highest_mode"][h.family] = {

@@ -136,7 +136,7 @@ std::string body_text(const BodyValidity& b, const RunSummary& summary) {
                        motion_in_words(most));
   }
   if (const auto d = summary.peak_deflection_ratio.find(b.name); d != summary.peak_deflection_ratio.end())
-    out += fmt::format("; tip deflection {:.2g} of its length", d->second);
+    out += fmt::format("; {} {:.2g} of its length", study::deflection_name(b), d->second);
   for (const HighestMode& h : b.highest)
     if (h.modes > 1)
       out += fmt::format("; highest of {} {}modes has {} of their energy", h.modes, study::before_mode(h.family),

@@ -20,22 +20,23 @@
 namespace withy::study {
 namespace {
 
-/// What bends a body by its own length, at its tip: by its static stiffness there.
+/// What bends a body by its own length, at its measured station: by its static stiffness there.
 struct Strength {
   std::size_t body = 0;
   double force = std::numeric_limits<double>::infinity();   ///< [N]
   double moment = std::numeric_limits<double>::infinity();  ///< of that force over the length [N m]
 };
 
-/// Of the weakest body; infinite where none has a tip.
+/// Of the weakest body; infinite where none has such a station.
 Strength weakest_body(const Model& model) {
   Strength weakest;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    const ModalShape& shape = model.bodies()[b].body->shape();
-    const auto tip = model.bodies()[b].body->station("tip");
+    const Body& body = *model.bodies()[b].body;
+    const ModalShape& shape = body.shape();
+    const auto station = body.station(body.measured_station());
     const Eigen::LLT<Eigen::MatrixXd> factors(shape.stiffness);
-    if (shape.modes() == 0 || !tip || !(shape.length > 0) || factors.info() != Eigen::Success) continue;
-    const Eigen::Matrix3d give = tip->phi * factors.solve(tip->phi.transpose());
+    if (shape.modes() == 0 || !station || !(shape.length > 0) || factors.info() != Eigen::Success) continue;
+    const Eigen::Matrix3d give = station->phi * factors.solve(station->phi.transpose());
     const double most = give.diagonal().maxCoeff();
     if (!(most > 0) || shape.length * shape.length / most >= weakest.moment) continue;
     weakest = {b, shape.length / most, shape.length * shape.length / most};

@@ -23,7 +23,7 @@ void add_body(std::vector<Indicator>& all, const BodyValidity& b, const Terms& o
   }
   const auto d = summary.peak_deflection_ratio.find(b.name);
   if (d != summary.peak_deflection_ratio.end() && own.strain != StrainOrder::exact)
-    all.push_back({"tip deflection of '" + b.name + "' over its length", d->second, deflection_limit,
+    all.push_back({deflection_name(b) + " of '" + b.name + "' over its length", d->second, deflection_limit,
                    "deflections are not small"});
   for (const HighestMode& h : b.highest) {
     if (h.modes > 1)
@@ -33,6 +33,10 @@ void add_body(std::vector<Indicator>& all, const BodyValidity& b, const Terms& o
 }
 
 }  // namespace
+
+std::string deflection_name(const BodyValidity& body) {
+  return body.station == "tip" ? "tip deflection" : "deflection of station '" + body.station + "'";
+}
 
 std::string before_mode(const std::string& family) { return family == "mode" ? "" : family + ' '; }
 

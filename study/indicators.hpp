@@ -21,6 +21,9 @@ struct Indicator {
   [[nodiscard]] double use() const { return value / limit; }
 };
 
+/// "tip deflection", or of what stands for the tip: "deflection of station '21'".
+std::string deflection_name(const BodyValidity& body);
+
 /// What the modes of a family are called before the word "mode": "bending_y ", and nothing of modes without a family,
 /// whose name is "mode" itself.
 std::string before_mode(const std::string& family);

@@ -75,6 +75,9 @@ class PythonBody final : public Body {
     for (const auto& [name, at] : stations_) names += (names.empty() ? "" : ", ") + name;
     return names;
   }
+  std::string measured_station() const override {
+    return stations_.count("tip") > 0 ? "tip" : shape_.most_compliant(stations_);
+  }
 
  private:
   void check() const {

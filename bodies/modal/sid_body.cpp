@@ -63,6 +63,7 @@ class SidBody final : public Body {
     const MassIntegrals integrals = integrals_of(data, report);
     shape_.particles = particles_of(integrals, report.defect);
     shape_.stiffness = 0.5 * (data.Ke.m0 + data.Ke.m0.transpose());
+    measured_station_ = node("tip") ? "tip" : shape_.most_compliant(nodes_);
     shape_.damping = Eigen::MatrixXd::Zero(n, n);
     if (options.damping) {
       shape_.damping = options.damping->matrix(shape_.stiffness, 0.5 * (data.Me.m0 + data.Me.m0.transpose()));
@@ -92,6 +93,7 @@ class SidBody final : public Body {
     for (const auto& [id, at] : nodes_) all += fmt::format(", {}", id);
     return all;
   }
+  std::string measured_station() const override { return measured_station_; }
 
  private:
   std::optional<PointExpansion> node(const std::string& id) const {
@@ -102,6 +104,7 @@ class SidBody final : public Body {
   }
 
   ModalShape shape_;
+  std::string measured_station_;
   std::vector<std::string> remarks_;
   PointExpansion root_;
   std::vector<std::pair<std::string, PointExpansion>> nodes_;

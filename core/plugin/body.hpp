@@ -29,6 +29,9 @@ class Body {
   [[nodiscard]] virtual std::optional<PointExpansion> station(const StationName& name) const = 0;
   /// Names of the stations, for messages.
   [[nodiscard]] virtual std::string stations() const = 0;
+  /// Name of the station whose deflection is held against shape().length; empty: of none. A body that has no "tip"
+  /// names the one that gives most (ModalShape::compliance).
+  [[nodiscard]] virtual std::string measured_station() const { return station("tip") ? "tip" : ""; }
   /// The body as a rod of exact kinematics; null where it cannot be one. It lives as long as the body.
   [[nodiscard]] virtual const Rod* rod() const { return nullptr; }
   /// The same body with its second-order maps made by `kinematics` from its linear fields; it has a station at every

@@ -67,6 +67,7 @@ class DampedSegment final : public Body {
   const ModalShape& shape() const override { return shape_; }
   std::optional<PointExpansion> station(const StationName& name) const override { return segment_->station(name); }
   std::string stations() const override { return segment_->stations(); }
+  std::string measured_station() const override { return segment_->measured_station(); }
   const Rod* rod() const override { return segment_->rod(); }
   std::optional<BodyCut> cut(double x) const override { return segment_->cut(x); }
   std::vector<std::string> remarks() const override { return segment_->remarks(); }
@@ -84,6 +85,7 @@ class SegmentedBody final : public Body {
   const ModalShape& shape() const override { return whole_->shape(); }
   std::optional<PointExpansion> station(const StationName& name) const override { return whole_->station(name); }
   std::string stations() const override { return whole_->stations(); }
+  std::string measured_station() const override { return whole_->measured_station(); }
   const Rod* rod() const override { return whole_->rod(); }
   std::vector<std::string> remarks() const override { return whole_->remarks(); }
   std::span<const std::shared_ptr<const Body>> segments() const override { return segments_; }

@@ -2,6 +2,7 @@
 /// What any flexible body boils down to once its modes are chosen: values only, made once.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -47,6 +48,21 @@ struct ModalShape {
   double length = 0;          ///< characteristic length [m] that deflections are measured against; 0: none
 
   [[nodiscard]] Eigen::Index modes() const { return static_cast<Eigen::Index>(mode_names.size()); }
+  /// How far a unit force displaces a point, summed over the three axes: tr Φ K⁻¹ Φᵀ [m/N]. A singular K counts as one
+  /// that is stiffer by 10⁻¹² of its largest entry.
+  [[nodiscard]] double compliance(const PointExpansion& at) const;
+  /// Name of the most compliant of some points; of none that give, an empty one. \param points pairs of name and place
+  template <class Points>
+  [[nodiscard]] std::string most_compliant(const Points& points) const {
+    std::string most;
+    double greatest = 0;
+    for (const auto& [name, at] : points) {
+      const double c = compliance(at);
+      if (c > greatest) most = name;
+      greatest = std::max(greatest, c);
+    }
+    return most;
+  }
 };
 
 /// A slender body cut across at a section: what lies beyond it, and how the section is strained.

@@ -48,14 +48,17 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     const BodyNode& node = model.bodies()[b];
     const double length = node.body->shape().length;
     if (node.body->shape().modes() == 0 || !(length > 0)) continue;
-    const auto section = node.body->station("tip");
+    const std::string name = node.body->measured_station();
+    const auto section = node.body->station(name);
     if (!section) continue;
+    const bool tip = name == "tip";
     ends_.push_back({model.layout().modes(b),
                      static_cast<int>(b),
-                     node.frame("tip"),
+                     tip ? node.frame(name) : -1,
                      SectionExpansion(*section),
                      length,
-                     node.segment ? nullptr : &summary.peak_deflection[node.name],
+                     tip ? "the tip" : "station '" + name + "'",
+                     tip && !node.segment ? &summary.peak_deflection[node.name] : nullptr,
                      &summary.peak_deflection_ratio[node.name],
                      {}});
   }

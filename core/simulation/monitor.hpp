@@ -92,14 +92,15 @@ class Monitor {
     void at(const double* q, const double* u, Motion& motion) const;
   };
   static constexpr Eigen::Index whole = 3;  ///< in the place of a component: the size of a deflection
-  /// A flexible body's tip, or a segment's.
+  /// A flexible body's tip, or a segment's, or the station that a body without one has in its place.
   struct End {
     const Slot* slot;  ///< of the body's modes
     int body;
     int frame;  ///< −1: `section` stands for it
     SectionExpansion section;
     double length;                ///< [m]
-    std::array<double, 3>* peak;  ///< null: a segment's
+    std::string name;             ///< of the place, in words
+    std::array<double, 3>* peak;  ///< null: a segment's, or no tip's
     double* ratio;
     std::array<double, 3> rough{};    ///< greatest |component| of the deflection by the expansion
     double rough_square = 0;          ///< greatest squared size of the deflection by the expansion
@@ -128,8 +129,8 @@ class Monitor {
   void observe_end(std::size_t index, const State& state, const Vector3& rough, bool& seen);
   void look_within(const State& state);
   [[nodiscard]] double greatest_within(const End& end, Eigen::Index component, double h) const;
-  void note(std::size_t order, const std::string& name, double length, const std::array<double, 3>& d,
-            std::array<double, 3>* peak);
+  void note(std::size_t order, const std::string& place, const std::string& body, double length,
+            const std::array<double, 3>& d, std::array<double, 3>* peak);
   /// `visit` is given each peak of the summary, always in the same order.
   template <class Visit>
   void each_peak(const Visit& visit);

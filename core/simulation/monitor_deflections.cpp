@@ -1,4 +1,5 @@
-// How far the tips of flexible bodies are deflected, also between the states that a run accepts.
+// How far the tips of flexible bodies, or what stands for them, are deflected, also between the states that a run
+// accepts.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,13 +42,13 @@ void Monitor::SectionExpansion::at(const double* q, const double* u, Motion& mot
   }
 }
 
-void Monitor::note(std::size_t order, const std::string& name, double length, const std::array<double, 3>& d,
-                   std::array<double, 3>* peak) {
+void Monitor::note(std::size_t order, const std::string& place, const std::string& body, double length,
+                   const std::array<double, 3>& d, std::array<double, 3>* peak) {
   for (std::size_t k = 0; peak != nullptr && k < 3; ++k) (*peak)[k] = std::max((*peak)[k], std::abs(d[k]));
   const double size = std::hypot(d[0], d[1], d[2]);
   if (order >= excess_order_ || size <= deflection_limit_ * length) return;
   excess_order_ = order;
-  excess_ = "the tip of '" + name + "' is deflected by " + brief(size) + " m, " + brief(size / length) +
+  excess_ = place + " of '" + body + "' is deflected by " + brief(size) + " m, " + brief(size / length) +
             " times its length (limit " + brief(deflection_limit_) + ")";
 }
 
@@ -64,7 +65,7 @@ void Monitor::observe_end(std::size_t index, const State& state, const Vector3& 
     d = seen_.deflection(end.body, end.frame);
   }
   *end.ratio = std::max(*end.ratio, std::hypot(d[0], d[1], d[2]) / end.length);
-  note(index, end.slot->name, end.length, d, end.peak);
+  note(index, end.name, end.slot->name, end.length, d, end.peak);
 }
 
 bool Monitor::End::may_exceed(double h) const {
@@ -162,7 +163,8 @@ void Monitor::look(const State& state) {
     see(state);
     for (std::size_t w = 0; w < wholes_.size(); ++w) {
       const Tip& tip = wholes_[w];
-      note(ends_.size() + w, tip.body, tip.length, deflection(seen_, tip), &summary_.peak_deflection[tip.body]);
+      note(ends_.size() + w, "the tip", tip.body, tip.length, deflection(seen_, tip),
+           &summary_.peak_deflection[tip.body]);
     }
   }
   last_ = state;

@@ -97,7 +97,8 @@ struct RunSummary {
   /// them, along the cubic through their coordinates and rates; body axes x, y, z [m]. Of a body in segments under its
   /// own name, over the accepted steps. None of these depends on the output interval.
   std::map<std::string, std::array<double, 3>> peak_deflection;
-  /// Of each of them, the greatest distance of the tip from its undeformed place, over the body's length.
+  /// Of each body that has modes and a measured station (Body::measured_station), the greatest distance of that from
+  /// its undeformed place, over the body's length.
   std::map<std::string, double> peak_deflection_ratio;
   /// Greatest |effort| of the loads on each generalized speed over all accepted steps, their middles and the outputs.
   std::vector<double> peak_effort;

@@ -61,7 +61,7 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
               MotionStiffness(model, b, fresh ? nullptr : &twin->stiffness),
               fresh ? std::make_shared<std::vector<Family>>(families_of(shape)) : twin->families,
               {}};
-    BodyValidity v{.name = node.name, .load = {}, .highest = {}};
+    BodyValidity v{.name = node.name, .station = node.body->measured_station(), .load = {}, .highest = {}};
     for (const Family& family : *w.families)
       v.highest.push_back({family.name, family.highest, 0, family.coordinates.size()});
     w.energies.resize(w.families->size());

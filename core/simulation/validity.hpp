@@ -27,6 +27,7 @@ struct HighestMode {
 /// a run, among them the steps at which bodies turned fastest.
 struct BodyValidity {
   std::string name;
+  std::string station;  ///< whose deflection is held against the body's length (Body::measured_station)
   /// ω₁ of the structure that the body is part of, as it is carried and loaded: with what hangs on it, hinges held, at
   /// the last sample up to rate_time [rad/s].
   double fundamental = 0;

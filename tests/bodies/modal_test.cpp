@@ -115,6 +115,23 @@ TEST(Sid, nodes_are_stations) {
   EXPECT_NEAR(body->shape().damping(1, 1), 0.04 * std::sqrt(2.58144317827e2), 1e-10);
 }
 
+TEST(Sid, the_station_measured_is_the_node_that_gives_most_under_a_force) {
+  SidReport report;
+  const auto roof = body_of(car_roof(), {}, report);
+  const std::string measured = roof->measured_station();
+  const ModalShape& shape = roof->shape();
+  const auto gives = [&](const std::string& id) {
+    double sum = 0;  // by the modes of K: a unit force along each axis
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(shape.stiffness);
+    const Eigen::MatrixXd phi = roof->station(id)->phi * modes.eigenvectors();
+    for (Eigen::Index k = 0; k < phi.cols(); ++k) sum += phi.col(k).squaredNorm() / modes.eigenvalues()[k];
+    return sum;
+  };
+  ASSERT_TRUE(roof->station(measured));
+  EXPECT_NEAR(shape.compliance(*roof->station(measured)), gives(measured), 1e-9 * gives(measured));
+  for (const sid::Node& node : car_roof().nodes) EXPECT_LE(gives(node.id), gives(measured) * (1 + 1e-12)) << node.id;
+}
+
 class SidOfBeam : public testing::Test {
  protected:
   SidOfBeam() {

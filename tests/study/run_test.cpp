@@ -65,6 +65,19 @@ TEST(StudyRun, NamesWhatGrowsWhereABodySpinsPastItsFundamentalFrequency) {
   EXPECT_GT(r.summary.final.time, 0.5 * r.summary.reached);
 }
 
+/// A body of a file has no tip: the node that gives most stands for it.
+TEST(StudyRun, OfABodyWithoutATipEndsWhereItsMostCompliantStationPassesItsLength) {
+  const CertifiedRun r = run_of("spinning-boom", {}, "linear");
+  ASSERT_EQ(r.summary.status, RunStatus::diverged) << r.summary.message;
+  EXPECT_NE(r.summary.message.find("station 'TIP' of 'boom' is deflected by"), std::string::npos) << r.summary.message;
+  EXPECT_NE(r.summary.message.find("'boom' turns at 1.0"), std::string::npos) << r.summary.message;
+  EXPECT_LT(r.summary.reached, 2) << "before its spin-up is over";
+  EXPECT_EQ(r.summary.validity.bodies.at(0).station, "TIP");
+  const CertifiedRun sound = run_of("spinning-boom", {}, "quadratic");
+  EXPECT_EQ(sound.summary.status, RunStatus::completed) << sound.summary.message;
+  EXPECT_LT(sound.summary.peak_deflection_ratio.at("boom"), 0.03);
+}
+
 /// Behind the last state that can be trusted the arm turns ten million times as fast: no peak of the model's motion.
 TEST(StudyRun, OfARunThatEndsBadlyPeaksAndValidityAreOfTheMotionThatCanBeTrusted) {
   const CertifiedRun bad = run_of("extended-slew", {}, "inconsistent");
