@@ -47,8 +47,8 @@ class Hdf5Writer final : public Hdf5Recorder {
  public:
   explicit Hdf5Writer(const std::filesystem::path& path) : name_(path.string()) {
     begin_hdf5();
-    const Hdf5Handle access = latest();
-    file_ = {need(H5Fcreate(name_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)), &H5Fclose};
+    const Hdf5Handle access = latest(), how = plain_when_small();
+    file_ = {need(H5Fcreate(name_.c_str(), H5F_ACC_TRUNC, how, access)), &H5Fclose};
     write_text(file_, "format", "withy-results/1");
     write_text(file_, "status", "running");
   }
@@ -131,6 +131,16 @@ class Hdf5Writer final : public Hdf5Recorder {
     return access;
   }
 
+  /// How files are kept: names of up to so many columns in a plain list, and all that is said of the whole. By itself
+  /// the library makes trees of more than eight, which a short run waits for.
+  [[nodiscard]] Hdf5Handle plain_when_small() const {
+    constexpr unsigned most_listed = 64, least_in_trees = 48;
+    Hdf5Handle how(need(H5Pcreate(H5P_FILE_CREATE)), &H5Pclose);
+    need(H5Pset_link_phase_change(how, most_listed, least_in_trees));
+    need(H5Pset_attr_phase_change(how, most_listed, least_in_trees));
+    return how;
+  }
+
   /// Descriptions of datasets stay in memory until they are written, by themselves up to 32 MB of them: of a wide table
   /// fewer, as each is touched a few times in a row and then no more. In memory they take several times what they are
   /// counted as.
@@ -175,7 +185,7 @@ class Hdf5Writer final : public Hdf5Recorder {
       write_new_text(dataset, "unit", units_[c].empty() ? "1" : units_[c]);
       if (c < frames_.size() && !frames_[c].empty()) write_new_text(dataset, "frame", frames_[c]);
       if (rows > 0) write_column(dataset, c, H5S_ALL, H5S_ALL);
-      if (wide_)
+      if (wide_ || rows > 0)
         need(dataset.close());
       else
         datasets_.push_back(std::move(dataset));
