@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <sstream>
+#include <utility>
 
 namespace withy {
 namespace {
@@ -16,6 +16,28 @@ std::size_t width_of(const std::string& text) {
 constexpr std::size_t most_columns = 100;    ///< characters of a line
 constexpr std::size_t least_for_words = 24;  ///< characters that words go on below each other in
 constexpr std::size_t column_gap = 2;
+
+/// The words of a text in lines of so many characters, one line at least; a word that is longer has one of its own.
+std::vector<std::string> lines_of(const std::string& text, std::size_t width) {
+  constexpr const char* blank = " \t\n\v\f\r";
+  std::vector<std::string> lines(1);
+  std::size_t used = 0;
+  for (std::size_t begin = text.find_first_not_of(blank), end = 0; begin != std::string::npos;
+       begin = text.find_first_not_of(blank, end)) {
+    end = std::min(text.find_first_of(blank, begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    const std::size_t more = width_of(word);
+    if (!lines.back().empty() && used + 1 + more > width) lines.emplace_back();
+    if (lines.back().empty()) {
+      used = more;
+    } else {
+      lines.back() += ' ';
+      used += 1 + more;
+    }
+    lines.back() += word;
+  }
+  return lines;
+}
 
 }  // namespace
 
@@ -76,9 +98,11 @@ std::string TextTable::line(const std::vector<std::string>& cells, const std::ve
                             const std::vector<std::size_t>& widths) const {
   std::string line;
   for (const std::size_t c : columns) {
-    const std::string space(widths[c] - width_of(cells[c]), ' ');
-    if (c != columns.front()) line += std::string(column_gap, ' ');
-    line += flush_left_[c] ? cells[c] + space : space + cells[c];
+    const std::size_t space = widths[c] - width_of(cells[c]);
+    if (c != columns.front()) line.append(column_gap, ' ');
+    if (!flush_left_[c]) line.append(space, ' ');
+    line += cells[c];
+    if (flush_left_[c]) line.append(space, ' ');
   }
   line.erase(line.find_last_not_of(' ') + 1);
   return line + '\n';
@@ -98,23 +122,17 @@ std::string TextTable::folded(std::vector<std::size_t> widths) const {
   std::size_t before = 0;
   for (std::size_t c = 0; c < last; ++c) before += widths[c] + column_gap;
   widths[last] = most_columns - before;
-  TextTable narrow = *this;
-  narrow.rows_.clear();
+  TextTable narrow;
+  narrow.head_ = head_;
+  narrow.lower_ = lower_;
+  narrow.flush_left_ = flush_left_;
   for (const auto& row : rows_) {
-    std::vector<std::string> now = row;
-    std::istringstream words(row[last]);
-    std::string text, word;
-    while (words >> word) {
-      if (!text.empty() && width_of(text) + 1 + width_of(word) > widths[last]) {
-        now[last] = text;
-        narrow.rows_.push_back(now);
-        now.assign(row.size(), "");
-        text.clear();
-      }
-      text += (text.empty() ? "" : " ") + word;
+    std::vector<std::string> now(row.begin(), row.end() - 1);
+    for (std::string& text : lines_of(row[last], widths[last])) {
+      now.push_back(std::move(text));
+      narrow.rows_.push_back(std::move(now));
+      now.assign(last, "");
     }
-    now[last] = text;
-    narrow.rows_.push_back(now);
   }
   std::vector<std::size_t> columns(widths.size());
   std::iota(columns.begin(), columns.end(), std::size_t{0});

@@ -20,6 +20,7 @@ class TextTable {
   [[nodiscard]] std::string str() const;
 
  private:
+  TextTable() = default;
   [[nodiscard]] std::vector<std::size_t> widths() const;
   [[nodiscard]] std::size_t leading() const;
   [[nodiscard]] static std::size_t total(const std::vector<std::size_t>& columns,

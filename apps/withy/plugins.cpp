@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "withy/apps/withy/engine.hpp"
@@ -18,20 +19,25 @@ std::vector<PluginEntry> load_wanted(const Plugins& plugins, const std::string& 
   const auto wanted = [&](const PluginRecord& r) {
     return name.empty() || r.id == name || r.kind + '/' + r.id == name;
   };
-  for (const PluginRecord& r : plugins.host().plugins()) {
-    if (r.state != PluginRecord::State::available || !wanted(r)) continue;
+  const std::vector<PluginRecord> found = plugins.host().plugins();
+  std::vector<PluginDescription> about(found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].state == PluginRecord::State::refused || !wanted(found[i])) continue;
     try {
-      static_cast<void>(described(plugins.registry(), r.kind, r.id));
+      about[i] = described(plugins.registry(), found[i].kind, found[i].id);
     } catch (const PluginError&) {
       // The host has recorded why; it is shown with the others.
     }
   }
+  // The same in the same order, with what has become of them.
+  const std::vector<PluginRecord> now = plugins.host().plugins();
   std::vector<PluginEntry> entries;
-  for (const PluginRecord& r : plugins.host().plugins()) {
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const PluginRecord& r = now[i];
     if (!wanted(r)) continue;
     const bool refused = r.state == PluginRecord::State::refused;
     entries.push_back({r.kind, r.id, r.file, r.version, refused ? r.reason : "",
-                       refused ? PluginDescription() : described(plugins.registry(), r.kind, r.id)});
+                       refused ? PluginDescription() : std::move(about[i])});
   }
   return entries;
 }
