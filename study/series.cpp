@@ -161,11 +161,15 @@ void ModeSeries::add(int modes, Readings run) {
   }
 }
 
-/// No limit is known better than what is left of changes of limits that shrink on as those of runs do.
+/// No limit is known better than what is left of changes of limits that shrink on as the last two did, or as those of
+/// runs do.
 void ModeSeries::add_changes_of_limits(int modes) {
-  const Distances changed = distances(outputs_, limit_, limit_before_).first;
-  for (std::size_t k = 0; k < own_.size(); ++k)
-    own_[k] = std::max(own_[k], changed[k] * goes_on(modes, shrinking(changes_, k)));
+  const Distances before = std::exchange(limits_changed_, distances(outputs_, limit_, limit_before_).first);
+  for (std::size_t k = 0; k < own_.size(); ++k) {
+    double shrinks = shrinking(changes_, k);
+    if (!before.empty() && before[k] > 0) shrinks = std::min(shrinks, limits_changed_[k] / before[k]);
+    own_[k] = std::max(own_[k], limits_changed_[k] * goes_on(modes, shrinks));
+  }
 }
 
 /// Moves the limit of an output to where its last two steps lead, and sets what it may be off by.

@@ -72,6 +72,7 @@ class ModeSeries {
   std::vector<Steps> before_, now_;  ///< of each output
   std::vector<Distances> changes_;   ///< from run to run
   Readings limit_, limit_before_;
+  Distances limits_changed_;  ///< from the limit before; empty: one limit so far
   Distances own_;
   bool extrapolated_ = false;
 };
