@@ -230,14 +230,14 @@ bool Search::passed(const std::vector<int>& modes) const {
 }
 
 void Search::try_models() {
-  const auto found = [&] { return over() || passed(candidates_.modes) || passed(candidates_.more_modes); };
+  // Runs of the reference may hold with more modes than were tried so far: there may be cheaper ones.
   try_models(candidates_.modes);
-  if (found()) return;
+  if (over() || passed(candidates_.modes)) return;
   // All at once: many modes of a formulation that costs little come before few of one that costs much.
   try_known(candidates_.more_modes);
-  if (found()) return;
+  if (over() || passed(candidates_.more_modes)) return;
   if (best_cost() == infinite) try_tightest();
-  if (found()) return;
+  if (over() || passed(candidates_.modes)) return;
   try_known(candidates_.most_modes);
 }
 
