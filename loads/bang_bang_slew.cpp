@@ -1,6 +1,9 @@
 /// \file
 /// Open-loop efforts that take one or two hinges of the rigid tree from rest to rest in least time under limits.
 #include <algorithm>
+#include <map>
+#include <mutex>
+#include <random>
 
 #include "withy/core/plugin/registry.hpp"
 #include "withy/loads/hinge_rate.hpp"
@@ -53,6 +56,43 @@ class BoundBangBangSlew final : public BoundLoad {
   std::vector<double> holding_;  ///< efforts after the end
 };
 
+/// What a plan depends on: the axes, and the accelerations of the tree at more states than it has constants.
+std::vector<double> what_counts(const LimitedTree& tree) {
+  constexpr int states = 16;
+  std::vector<double> all = tree.holding();
+  for (const LimitedAxis& a : tree.axes()) all.insert(all.end(), {a.from, a.to, a.limit});
+  const auto n = static_cast<Eigen::Index>(tree.axes().size());
+  std::mt19937 random(1);
+  const auto number = [&] { return static_cast<double>(random()) / 2147483648.0 - 1; };
+  for (int i = 0; i < states; ++i) {
+    LimitedTree::Vector state(2 * n);
+    for (double& x : state) x = number();
+    const double efforts[2] = {number(), number()};
+    const LimitedTree::Vector rate = tree.derivative(state, efforts);
+    all.insert(all.end(), rate.begin() + n, rate.end());
+  }
+  return all;
+}
+
+/// The plan of a tree, sought once: scenes that differ in modes or formulation alone have the same tree of rigid
+/// bodies, to the last bit.
+std::optional<SwitchingPlan> plan_of(const LimitedTree& tree) {
+  constexpr std::size_t most = 64;
+  static std::mutex mutex;
+  static std::map<std::vector<double>, std::optional<SwitchingPlan>> known;
+  const std::vector<double> key = what_counts(tree);
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    const auto found = known.find(key);
+    if (found != known.end()) return found->second;
+  }
+  std::optional<SwitchingPlan> plan = least_time(tree);
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (known.size() >= most) known.clear();
+  known.emplace(key, plan);
+  return plan;
+}
+
 class BangBangSlew final : public Load {
  public:
   explicit BangBangSlew(std::vector<Target> targets) : targets_(std::move(targets)) {}
@@ -63,7 +103,7 @@ class BangBangSlew final : public Load {
       axes.push_back({slot.position, slot.speed, t.from, t.to, t.limit});
     }
     const LimitedTree tree(model, std::move(axes));
-    const auto plan = least_time(tree);
+    const auto plan = plan_of(tree);
     if (!plan)
       throw std::invalid_argument(
           "found no bang-bang efforts of least time; the limits must exceed the efforts that carry the weight, and one "

@@ -99,7 +99,10 @@ void Search::tell_probe(const Probe& probe, double best_before) {
 
 const Probe& Search::run(const Point& point, const Allowance& allowance) {
   const double best_before = best_cost();
-  advice_.probes.push_back(evaluator_.run(point, yardstick(), allowance));
+  const auto made =
+      std::find_if(made_.begin(), made_.end(), [&](const Reference* run) { return run->point.key() == point.key(); });
+  advice_.probes.push_back(made != made_.end() ? evaluator_.judge(**made, yardstick())
+                                               : evaluator_.run(point, yardstick(), allowance));
   advice_.interrupted = advice_.interrupted || advice_.probes.back().outcome == Probe::Outcome::interrupted;
   tell_probe(advice_.probes.back(), best_before);
   return advice_.probes.back();
@@ -142,8 +145,9 @@ bool Search::model_holds(const Point& model) {
   };
   if (limited_by_stability(model)) {
     const Probe& p = look(implicit_steps, policy::implicit_enough);
-    if (p.outcome != Probe::Outcome::refused && p.walk.end != Walk::End::reached)
-      return !wrong(p, policy::clearly_inaccurate);
+    // A run that the reference had made has not been cut.
+    if (wrong(p, policy::clearly_inaccurate)) return false;
+    if (p.outcome != Probe::Outcome::refused && p.walk.end != Walk::End::reached) return true;
     // Not as exact as the other: what a digit less of tolerance changes is what integration may have added.
     const double use = p.use, hardly = policy::hardly_inaccurate - yardstick().own_use();
     if (p.outcome == Probe::Outcome::inaccurate && use > hardly)
@@ -160,7 +164,11 @@ void Search::try_model(const Point& model) {
     run(model, {});
     return;
   }
-  if (!model_holds(model)) return;
+  // A run that holds the accuracy has told, and an integration that is more exact may be further off: implicit steps
+  // damp what a model has too much of.
+  const bool held = std::any_of(advice_.probes.begin(), advice_.probes.end(),
+                                [&](const Probe& p) { return p.passed() && p.point.same_model(model); });
+  if (!held && !model_holds(model)) return;
   for (const std::string& integrator : candidates_.integrators) {
     if (over()) return;
     if (worth_trying(integrator, model)) try_integrations(model, integrator);
@@ -200,10 +208,12 @@ void Search::try_integrations(const Point& model, const std::string& integrator)
 void Search::take(const std::vector<Reference>& runs) {
   const Candidates& c = candidates_;
   for (const Reference& run : runs) {
+    made_.push_back(&run);
     const Point& p = run.point;
-    const bool candidate = contains(c.formulations, p.formulation) && contains(c.families, p.family) &&
-                           (contains(c.modes, p.modes) || contains(c.more_modes, p.modes)) &&
-                           contains(c.integrators, p.integrator) && contains(c.tolerances, p.tolerance);
+    const bool candidate =
+        contains(c.formulations, p.formulation) && contains(c.families, p.family) &&
+        (contains(c.modes, p.modes) || contains(c.more_modes, p.modes) || contains(c.most_modes, p.modes)) &&
+        contains(c.integrators, p.integrator) && contains(c.tolerances, p.tolerance);
     if (!candidate || p.modes > yardstick().reference.point.modes) continue;
     Probe probe = evaluator_.judge(run, yardstick());
     if (!probe.passed()) continue;
@@ -220,19 +230,32 @@ bool Search::passed(const std::vector<int>& modes) const {
 }
 
 void Search::try_models() {
+  // Runs of the reference may hold with more modes than were tried so far: there may be cheaper ones.
   try_models(candidates_.modes);
   if (over() || passed(candidates_.modes)) return;
-  // More than the reference has would be measured against less. All at once: many modes of a formulation that costs
-  // little come before few of one that costs much.
-  std::vector<int> more;
-  for (const int modes : candidates_.more_modes)
-    if (modes <= yardstick().reference.point.modes) more.push_back(modes);
-  if (!more.empty()) try_models(more);
-  if (over() || best_cost() < infinite) return;
-  // Where motions that begin alike part, as those of a chain that swings freely, an integration adds more than that.
+  // All at once: many modes of a formulation that costs little come before few of one that costs much.
+  try_known(candidates_.more_modes);
+  if (over() || passed(candidates_.more_modes)) return;
+  if (best_cost() == infinite) try_tightest();
+  if (over() || passed(candidates_.modes)) return;
+  try_known(candidates_.most_modes);
+}
+
+/// Where motions that begin alike part, as those of a chain that swings freely, an integration adds more than a look at
+/// the model allows for.
+void Search::try_tightest() {
   tightest_ = true;
   advice_.models = advice_.models_tried = 0;  // counted anew: they are the same
   try_models(candidates_.modes);
+  tightest_ = false;
+}
+
+/// Those of these modes that the reference has: more would be measured against less.
+void Search::try_known(const std::vector<int>& modes) {
+  std::vector<int> known;
+  for (const int n : modes)
+    if (n <= yardstick().reference.point.modes) known.push_back(n);
+  if (!known.empty()) try_models(known);
 }
 
 void Search::try_models(const std::vector<int>& modes) {

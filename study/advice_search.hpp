@@ -16,7 +16,8 @@ class Search {
   Search(Evaluator& evaluator, const Candidates& candidates, Advice& advice, const Finding& finding)
       : evaluator_(evaluator), candidates_(candidates), advice_(advice), finding_(finding) {}
 
-  /// Runs of the search for a reference that are candidates: they are paid for.
+  /// Runs of the search for a reference: they are paid for, as candidates and as looks at models.
+  /// \param runs must outlive this
   void take(const std::vector<Reference>& runs);
   void try_models();
   void choose();
@@ -33,6 +34,8 @@ class Search {
   [[nodiscard]] bool hold(const Point& above);
   [[nodiscard]] std::vector<Point> models_by_cost(const std::vector<int>& modes) const;
   void try_models(const std::vector<int>& modes);
+  void try_known(const std::vector<int>& modes);
+  void try_tightest();
   void try_model(const Point& model);
   bool model_holds(const Point& model);
   [[nodiscard]] double exact_enough_tolerance(double part) const;
@@ -47,9 +50,10 @@ class Search {
   const Candidates& candidates_;
   Advice& advice_;
   const Finding& finding_;
-  std::set<std::string> told_;  ///< formulations of which it has been told that a model is not exact enough
-  std::string told_best_;       ///< the point that was last told to hold
-  bool tightest_ = false;       ///< models are looked at with the tightest tolerance of all candidates
+  std::vector<const Reference*> made_;  ///< runs that need not be made again
+  std::set<std::string> told_;          ///< formulations of which it has been told that a model is not exact enough
+  std::string told_best_;               ///< the point that was last told to hold
+  bool tightest_ = false;               ///< models are looked at with the tightest tolerance of all candidates
 };
 
 }  // namespace withy::study

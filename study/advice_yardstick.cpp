@@ -24,8 +24,9 @@ constexpr double late_reference_use = 0.5, last_patience = 0.35;
 constexpr double most_poor_reference_use = 0.25 * most_reference_use;
 /// The same of the finest one there is where none of the levels is as good: less is left to what is chosen.
 constexpr double last_reference_use = 0.7;
-/// Of the time allowed: what the search for a reference may take.
-constexpr double reference_time = 0.75;
+/// Of the time allowed: what the search for a reference may take; and where none is known well enough for any advice
+/// by then, without which the rest would be for nothing.
+constexpr double reference_time = 0.75, last_reference_time = 0.9;
 /// Of the accuracy: what integration may add to each level, a fifth of what is aimed at; and the tolerance at which it
 /// is measured.
 constexpr double integration_use = 0.02, first_tolerance = 1e-2;
@@ -61,8 +62,9 @@ class YardstickSearch {
   const Accuracy& accuracy_;
   Advice& advice_;
   const Finding& finding_;
-  Pace pace_;                                              ///< of the reference's run under way
-  double told_ = std::numeric_limits<double>::infinity();  ///< of the accuracy: the least told so far
+  Pace pace_;                                                   ///< of the reference's run under way
+  double least_use_ = std::numeric_limits<double>::infinity();  ///< of the accuracy: of the best reference so far
+  double told_ = std::numeric_limits<double>::infinity();       ///< of the accuracy: the least told so far
 };
 
 std::vector<Reference> YardstickSearch::find() {
@@ -84,17 +86,23 @@ std::vector<Reference> YardstickSearch::find() {
   goal.integration = [&](const Reference& r) { return own_use(r) / policy::integration_use; };
   goal.enough = [&](const Reference& r) {
     const double use = own_use(r);
+    least_use_ = std::min(least_use_, use);
     tell(r);
     // Candidates are not to have more modes than the truth.
     const bool rich = !modal || r.point.modes >= candidates_.modes.back() || use < policy::most_poor_reference_use;
     const double gone = evaluator_.spent() / evaluator_.limit();
-    return use <= (gone > policy::last_patience        ? policy::late_reference_use
+    return use <= (gone > policy::reference_time       ? policy::last_reference_use
+                   : gone > policy::last_patience      ? policy::late_reference_use
                    : gone > policy::reference_patience ? policy::most_reference_use
                                                        : policy::good_reference_use) &&
            rich;
   };
   goal.steady = [&](const Reference& r) { return own_use(r) <= policy::most_reference_use; };
   goal.afford = [&](const Walk& so_far) { return affordable(so_far); };
+  goal.ended = [&](const Walk& run) {
+    pace_.note(run.time - evaluator_.base().scene.initial.time, run.seconds);
+    pace_.end();
+  };
   ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); },
                                         evaluator_.registry(), evaluator_.outputs(), goal, evaluator_.control());
   advice_.interrupted = found.interrupted;
@@ -110,7 +118,9 @@ std::vector<Reference> YardstickSearch::find() {
 /// Whether the reference's runs, this one gone on with at its pace, keep within their share of the time.
 bool YardstickSearch::affordable(const Walk& so_far) {
   const Scene& scene = evaluator_.base().scene;
-  const double spent = evaluator_.spent(), all = policy::reference_time * evaluator_.limit();
+  const bool none_yet = least_use_ > policy::last_reference_use;
+  const double spent = evaluator_.spent(),
+               all = (none_yet ? policy::last_reference_time : policy::reference_time) * evaluator_.limit();
   evaluator_.control().tell(spent, evaluator_.limit());
   pace_.note(so_far.time - scene.initial.time, so_far.seconds);
   return may_go_on(so_far.seconds, pace_.rest(end_of_run(scene) - scene.initial.time), all - spent + so_far.seconds);

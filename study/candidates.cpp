@@ -94,10 +94,11 @@ void check(const Axes& axes, Registry& registry) {
 Axes usual_axes() { return {{}, {}, {}, {}, {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}, {}}; }
 
 Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes asked) {
-  Candidates c{std::move(asked), {}};
+  Candidates c{std::move(asked), {}, {}};
   if (c.modes.empty()) {
     c.modes = {1, 2, 3, 4};
     c.more_modes = {5, 6, 7, 8};
+    c.most_modes = {9, 10, 11, 12, 13, 14, 15, 16};
   }
   if (c.formulations.empty()) {
     c.formulations = studied_formulations(registry);
@@ -118,6 +119,7 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes ask
   if (scene.modes.empty()) {
     c.modes = {0};
     c.more_modes.clear();
+    c.most_modes.clear();
   }
   if (!any) c.families = {""};
   if (c.families.empty()) {

@@ -15,6 +15,7 @@ namespace withy::study {
 /// fewer before more (0 where no body has a number of them), tolerances loosest first.
 struct Candidates : Axes {
   std::vector<int> more_modes;  ///< tried where none of `modes` will do; empty where the user says which
+  std::vector<int> most_modes;  ///< tried where none of these will do either
 };
 
 /// What is chosen from where nothing else is asked; no modes: 1 to 4, and to 8 where these will not do; no

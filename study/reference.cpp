@@ -113,8 +113,10 @@ class ReferenceSearch {
       const auto little = [&](const Reference& r) { return goal_.integration(r) <= 1; };
       const double loosest = std::max(looser_at_most * first.tolerance, goal_.tightest);
       if (found_.interrupted) return;
-      if (auto measured = loosest_integration({outputs_, run_with, little, loosest, goal_.tightest}))
-        integrations_.push_back(std::move(*measured));
+      auto measured = loosest_integration({outputs_, run_with, little, loosest, goal_.tightest});
+      if (!measured) continue;
+      measured->at_stability = limited_by_stability(integrator, measured->evaluations, explicit_evaluations(model));
+      integrations_.push_back(std::move(*measured));
     }
   }
 
@@ -125,7 +127,8 @@ class ReferenceSearch {
     Point plain = point;
     plain.formulation = reference_formulations(registry_).back();
     const ModelAt& model = model_at_(plain);
-    const LevelIntegration& with = cheapest_with(integrations_, model.refused() ? 0 : explicit_evaluations(model));
+    const LevelIntegration& with =
+        cheapest_with(integrations_, model.refused() ? 0 : explicit_evaluations(model), growth_.expected(point.modes));
     point.integrator = with.integrator, point.tolerance = with.tolerance;
     return point;
   }
@@ -145,7 +148,12 @@ class ReferenceSearch {
     const auto made = runs_.find(point.key());
     if (made != runs_.end()) return made->second;
     std::optional<Reference> reference = run(point);
-    if (reference) runs_.emplace(point.key(), *reference);
+    if (!reference) return {};
+    runs_.emplace(point.key(), *reference);
+    for (const LevelIntegration& with : integrations_)
+      if (with.integrator == point.integrator && with.tolerance == point.tolerance)
+        growth_.note(point.modes, with, static_cast<double>(reference->walk.evaluations),
+                     explicit_evaluations(model_at_(point)));
     return reference;
   }
 
@@ -252,7 +260,10 @@ class ReferenceSearch {
     r.scales = scales(outputs_, r.ranges, r.energy);
     found_.cpu_seconds += r.walk.seconds;
     found_.interrupted = r.walk.end == Walk::End::interrupted;
-    if (r.walk.end == Walk::End::reached) return r;
+    if (r.walk.end == Walk::End::reached) {
+      if (goal_.ended) goal_.ended(r.walk);
+      return r;
+    }
     found_.unaffordable = r.walk.end == Walk::End::cut;
     if (found_.unaffordable) {
       found_.trouble = fmt::format("{}: at {:.4g} s of the run after {:.2g} s of CPU time, when the time for it ended",
@@ -289,6 +300,7 @@ class ReferenceSearch {
   std::optional<ModeSeries> lower_;             ///< of the rung below, where more modes are looked at
   std::optional<Reference> richest_;            ///< the last of its runs
   std::vector<LevelIntegration> integrations_;  ///< as measured; empty: of the goal
+  LevelGrowth growth_;                          ///< of the levels so far
   std::map<std::string, Reference> runs_;       ///< that came to their end, by the point's key
 };
 

@@ -60,6 +60,7 @@ struct ReferenceGoal {
   /// Whether what a higher rung adds has changed little enough from the level before, as `own`; empty: never.
   std::function<bool(const Reference&)> steady;
   std::function<bool(const Walk&)> afford;  ///< asked along each run; false ends the search; empty: always
+  std::function<void(const Walk&)> ended;   ///< told of each run that has come to its end; may be empty
 };
 
 struct ReferenceFound {

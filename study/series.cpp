@@ -58,6 +58,18 @@ double ratio_of(int n, double p) {
 /// What is left of sizes that shrink on by a ratio, over the last; that itself at least.
 double goes_on(int modes, double ratio) { return std::max(1.0, tail(modes, ratio).algebraic); }
 
+/// By what part an output's changes have shrunk from a run to the next, over the last two such steps where there are as
+/// many: those of even and odd modes may differ much, and one that happens to be small is not what the next is measured
+/// by. 1 where that is not known.
+double shrinking(const std::vector<Distances>& changes, std::size_t output) {
+  const std::size_t levels = changes.size();
+  if (levels < 2) return 1;
+  const std::size_t back = levels > 2 ? 2 : 1;
+  const double before = changes[levels - 1 - back][output], ratio = changes.back()[output] / before;
+  if (!(before > 0)) return 1;
+  return back == 2 ? std::sqrt(ratio) : ratio;
+}
+
 /// What the finest of runs may be off by where no law of its series is known: the last change, or what is left of
 /// changes that shrink on as the last two did; of several kinds of modes in turn the last change of each counts.
 Distances rest_of(const std::vector<Distances>& changes, int kinds) {
@@ -149,13 +161,15 @@ void ModeSeries::add(int modes, Readings run) {
   }
 }
 
-/// No limit is known better than what is left of changes of limits that shrink on as the last two did.
+/// No limit is known better than what is left of changes of limits that shrink on as the last two did, or as those of
+/// runs do.
 void ModeSeries::add_changes_of_limits(int modes) {
   const Distances before = std::exchange(limits_changed_, distances(outputs_, limit_, limit_before_).first);
-  const Distances &last = before.empty() ? changes_.back() : limits_changed_,
-                  &first = before.empty() ? changes_[changes_.size() - 2] : before;
-  for (std::size_t k = 0; k < own_.size(); ++k)
-    own_[k] = std::max(own_[k], limits_changed_[k] * goes_on(modes, first[k] > 0 ? last[k] / first[k] : 1));
+  for (std::size_t k = 0; k < own_.size(); ++k) {
+    double shrinks = shrinking(changes_, k);
+    if (!before.empty() && before[k] > 0) shrinks = std::min(shrinks, limits_changed_[k] / before[k]);
+    own_[k] = std::max(own_[k], limits_changed_[k] * goes_on(modes, shrinks));
+  }
 }
 
 /// Moves the limit of an output to where its last two steps lead, and sets what it may be off by.
@@ -174,8 +188,7 @@ void ModeSeries::extrapolate(int modes, std::size_t k) {
   const Tail lead = tail(modes, ratio);
   const double way = 0.5 * (lead.geometric + lead.algebraic);
   const double unlike = greatest_of(output, now - ratio * before);
-  const double shrinks = step_before > 0 ? step / step_before : 1;
-  own_[k] = (lead.algebraic - lead.geometric) * step + goes_on(modes, shrinks) * unlike;
+  own_[k] = (lead.algebraic - lead.geometric) * step + goes_on(modes, shrinking(changes_, k)) * unlike;
   if (!(way > 0)) return;
   extrapolated_ = true;
   for (Eigen::Index i = 0; i < common; ++i) move(output, way * now.col(i), limit_.values[static_cast<std::size_t>(i)]);

@@ -14,15 +14,18 @@
 namespace withy::study {
 namespace {
 
-/// CPU time of one evaluation at the initial state [s]: the least of some batches, since other work only adds.
+/// CPU time of one evaluation at the initial state [s]: the least of some batches, since other work only adds; of fewer
+/// evaluations each where these take long.
 double seconds_per_evaluation(const Prepared& model) {
   const EquationsOfMotion& equations = *model.equations;
   const State& initial = model.scene.initial;
   Work work = equations.make_work();
   std::vector<double> rates(equations.size());
   double least = std::numeric_limits<double>::max();
-  for (int batch = 0; batch < 5; ++batch) {
-    constexpr int count = 40;
+  constexpr int first = 4, most = 40;
+  constexpr double batch_seconds = 1e-3;
+  for (int batch = 0, count = first; batch < 5; ++batch) {
+    if (batch > 0) count = std::clamp(static_cast<int>(batch_seconds / least), 1, most);
     const double began = thread_cpu_seconds();
     for (int i = 0; i < count; ++i) static_cast<void>(equations.derivatives(initial.time, initial.y, rates, work));
     least = std::min(least, (thread_cpu_seconds() - began) / count);

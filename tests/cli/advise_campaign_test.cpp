@@ -142,7 +142,8 @@ Verdict judge(const std::string& scene, const std::string& accuracy_text) {
   v.choice = choice.point.text();
   v.own_use = advice.yardstick->own_use();
   v.probing = advice.cpu_seconds / choice.cost;
-  if (choice.point.modes > all.modes.back()) all.modes = all.more_modes;  // none of fewer would do
+  for (const std::vector<int>* more : {&all.more_modes, &all.most_modes})
+    if (choice.point.modes > all.modes.back()) all.modes = *more;  // none of fewer would do
   const std::optional<Yardstick> found = truth_of(evaluator, *advice.yardstick);
   if (!found) {
     v.trouble = "no truth to hold it against";

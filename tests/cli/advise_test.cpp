@@ -220,6 +220,17 @@ TEST(Advise, WhereNoCandidateHoldsTheAccuracyItSaysWhichIsNearest) {
   EXPECT_THAT(f.err, HasSubstr("none of the candidates holds 2 %"));
 }
 
+/// A strip that is let go: what few modes cannot carry shows at its tip at once.
+TEST(Advise, WhereEightModesWillNotDoMoreAreAdvised) {
+  const Folder folder;
+  const Finished f = advise(folder, {"--accuracy", "0.1%", "--formulations", "exact", "--json"},
+                            {"advise", "scenes/gallery/flexible-pendulum.yaml"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const json j = json::parse(f.out);
+  EXPECT_GT(j.at("advice").at("modes").get<int>(), 8);
+  EXPECT_LE(j.at("advice").at("modes").get<int>(), 16);
+}
+
 TEST(Advise, SaysInWordsWhyAndWhatIsLeftOut) {
   const Folder folder;
   const std::string out = advise(folder, {"--modes", "1,2", "--accuracy", "10%"}).out;

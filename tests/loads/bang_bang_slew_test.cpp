@@ -141,6 +141,20 @@ TEST(BangBangSlew, carries_the_rigid_arm_to_its_target_with_three_switches_or_fo
   }
 }
 
+// It is for the rigid tree: scenes that differ in their modes share a plan, to the last bit, and no other scene does.
+TEST(BangBangSlew, is_the_same_whatever_modes_the_tree_has_and_another_where_the_tree_is) {
+  const auto switches = [](const std::vector<std::string>& overrides) {
+    return test::LoadedScene(test::shipped("least-time-slew.yaml"), overrides)
+        .scene.model->loads()[0]
+        .load->discontinuities();
+  };
+  const std::vector<double> usual = switches({});
+  EXPECT_EQ(switches({"bodies.link1.bending_y.modes=4", "bodies.link2.bending_y.modes=1"}), usual);
+  EXPECT_NE(switches({"bodies.payload.mass=2.001"}), usual);
+  EXPECT_NE(switches({"loads.slew.hinges.elbow.to=1 deg"}), usual);
+  EXPECT_EQ(switches({}), usual) << "nor does it matter what was made between";
+}
+
 // Two slides that do not feel each other: the slower, 2 √(0.9 · 3 / 2) s, decides, and the other spends what it has
 // left.
 TEST(BangBangSlew, of_independent_axes_takes_the_time_of_the_slower) {

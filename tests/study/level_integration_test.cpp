@@ -64,11 +64,46 @@ TEST(LevelIntegration, WhereNoToleranceWillDoThereIsNone) {
   EXPECT_FALSE(stops.loosest(1e-4)) << "a run does not end";
 }
 
+TEST(LevelGrowth, IsThatOfTheRunWithTheMostModesUpToThese) {
+  const LevelIntegration with{"dop853", 1e-4, {}, 1000};
+  LevelGrowth growth;
+  EXPECT_EQ(growth.expected(5), 1) << "nothing was seen";
+  growth.note(3, with, 2000, 100);
+  growth.note(5, with, 6000, 300);
+  EXPECT_EQ(growth.expected(2), 1);
+  EXPECT_EQ(growth.expected(4), 2);
+  EXPECT_EQ(growth.expected(6), 6);
+  growth.note(6, with, 500, 0);
+  EXPECT_EQ(growth.expected(6), 1) << "no level is expected to take less than the coarsest";
+}
+
+TEST(LevelGrowth, StepsThatStabilityLimitsTellNoMoreThanThatItIsLess) {
+  const LevelIntegration explicitly{"dop853", 1e-4, {}, 1000}, implicitly{"imex", 1e-4, {}, 3000};
+  LevelGrowth growth;
+  growth.note(3, explicitly, 2000, 500);
+  growth.note(4, explicitly, 8000, 5000);
+  EXPECT_EQ(growth.expected(4), 4) << "between 2 and 8";
+  growth.note(4, implicitly, 9000, 5000);
+  EXPECT_EQ(growth.expected(4), 3) << "stability does not limit implicit steps: they tell";
+  growth.note(4, explicitly, 8000, 5000);
+  EXPECT_EQ(growth.expected(4), 3);
+}
+
+/// The motion goes in fast modes: implicit steps, which resolve it as well, would grow by as much.
+TEST(LevelIntegration, WhereLevelsGrowWithTheirModesExplicitStepsGoOn) {
+  const std::vector<LevelIntegration> both{{"dop853", 1e-4, {}, 1000}, {"imex", 1e-5, {}, 2000}};
+  EXPECT_EQ(cheapest_with(both, 3000, 1).integrator, "imex");
+  EXPECT_EQ(cheapest_with(both, 3000, 4).integrator, "dop853");
+  std::vector<LevelIntegration> loose = both;
+  loose.front().at_stability = true;
+  EXPECT_EQ(cheapest_with(loose, 3000, 4).integrator, "imex") << "its tolerance was never what limited its steps";
+}
+
 TEST(LevelIntegration, ExplicitStepsAreAsManyAsTheFastestModeAsks) {
   const std::vector<LevelIntegration> both{{"dop853", 1e-4, {}, 1000}, {"imex", 1e-5, {}, 2000}};
-  EXPECT_EQ(cheapest_with(both, 1500).integrator, "dop853");
-  EXPECT_EQ(cheapest_with(both, 2500).integrator, "imex");
-  EXPECT_EQ(cheapest_with({both.front()}, 2500).integrator, "dop853");
+  EXPECT_EQ(cheapest_with(both, 1000, 1).integrator, "dop853");
+  EXPECT_EQ(cheapest_with(both, 2500, 1).integrator, "imex");
+  EXPECT_EQ(cheapest_with({both.front()}, 2500, 1).integrator, "dop853");
 }
 
 /// The manipulator's booms vibrate fast in polynomials, and its motions are slow.

@@ -59,6 +59,29 @@ TEST(Pace, ANewRunBeginsAnew) {
   EXPECT_NEAR(pace.rest(1), 0.06, 1e-15);
 }
 
+/// As a run with more modes is, which costs three times as much all along.
+TEST(Pace, ARunIsTakenToBeLikeTheLastThatEnded) {
+  Pace pace;
+  for (double gone = 0; gone <= 10; gone += 0.01) pace.note(gone, cost_of_slow_start(gone));
+  pace.end();
+  double gone = 0;
+  for (; gone < 0.5; gone += 0.01) pace.note(gone, 3 * cost_of_slow_start(gone));
+  EXPECT_NEAR(pace.rest(10), 3 * (1.9 - 0.5), 0.2) << "though it has seen a slow start alone";
+  pace.note(0.1, 0.05);  // it was cut there, and another has begun
+  EXPECT_NEAR(pace.rest(10), 0.5 * 1.9 - 0.05, 0.01) << "one that did not end shows nothing";
+}
+
+TEST(Pace, WhereARunCostNothingSoFarThatEndedItsOwnPaceCounts) {
+  Pace pace;
+  pace.note(0, 0);
+  pace.note(5, 0);
+  pace.note(10, 1);
+  pace.end();
+  pace.note(0, 0);
+  pace.note(1, 0.1);
+  EXPECT_NEAR(pace.rest(10), 0.9, 1e-12);
+}
+
 Prepared soft_pendulum() {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/flexible-pendulum.yaml");
   return prepare(values.set("time.end", Value(0.4), "the test"), plugins());

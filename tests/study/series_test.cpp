@@ -138,6 +138,20 @@ TEST(ModeSeries, OneThatGoesToAndFroIsTakenAsItIs) {
   EXPECT_LE(made.over_told(series), 1);
 }
 
+/// Even modes of a motion that is nearly symmetric change little: the odd one that follows is no sign of a series that
+/// does not converge.
+TEST(ModeSeries, AStepThatIsSmallByItsKindDoesNotMakeTheNextCountAsTheFirstOfASlowSeries) {
+  const MadeUp made;
+  const Error by_turns = [](int n) { return 0.05 * std::pow(0.3, n / 2) * (n % 2 == 0 ? 1 : 0.95); };
+  for (int modes = 6; modes <= 9; ++modes) {
+    const ModeSeries series = made.series(modes, by_turns);
+    EXPECT_LE(made.over_told(series), 1) << modes;
+    const double told = *std::max_element(series.own().begin(), series.own().end()),
+                 before = made.off(made.run(by_turns(modes - 2)));
+    EXPECT_LT(told, 8 * before) << modes << ": by what the last step alone has shrunk, fourteen times and more";
+  }
+}
+
 /// One step has no ratio.
 TEST(ModeSeries, OfTwoRunsTheOneThatIsLikelyWorstIsToldOf) {
   const MadeUp made;
