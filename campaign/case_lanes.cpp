@@ -113,6 +113,7 @@ class Lane final : public AskingEquations, public StagedSteps {
     [[nodiscard]] std::array<double, 3> deflection(int body, int frame) const noexcept override {
       return own().deflection(body, frame);
     }
+    [[nodiscard]] bool expands(int body) const noexcept override { return own_->expands(body); }
 
    private:
     [[nodiscard]] const Observation& own() const noexcept {

@@ -57,6 +57,12 @@ std::vector<double> row_major(const Eigen::MatrixXd& m) {
   return a;
 }
 
+/// Exact kinematics is that of equations without truncation; else `exact` is the expansion.
+StrainOrder order_in(const Terms& terms) {
+  const bool expanded = terms.strain == StrainOrder::exact && terms.truncation != Truncation::none;
+  return expanded ? StrainOrder::quadratic : terms.strain;
+}
+
 }  // namespace
 
 template <class Space>
@@ -104,16 +110,14 @@ Tree<Space>::Tree(const Model& model, Terms terms, const PlacedTree& tree, const
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const NodeSpec& spec = tree.nodes[i];
     const Terms own = model.bodies()[static_cast<std::size_t>(spec.body)].terms.value_or(terms);
-    // Exact kinematics is that of equations without truncation; else `exact` is the expansion.
-    const bool rod = spec.modes > 0 && own.strain == StrainOrder::exact && own.truncation == Truncation::none;
-    const bool linear = own.strain == StrainOrder::linear;
-    add_node(spec, rod ? StrainOrder::exact : (linear ? StrainOrder::linear : StrainOrder::quadratic), carrying[i],
-             twins);
+    add_node(spec, spec.modes > 0 ? order_in(own) : StrainOrder::quadratic, carrying[i], twins);
   }
   std::size_t next = 0;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyPlace& place = tree.places[b];
-    bodies.push_back({place.pose.R, model.bodies()[b].body->shape().modes() > 0, place.node, place.station});
+    const Terms own = model.bodies()[b].terms.value_or(terms);
+    bodies.push_back({place.pose.R, model.bodies()[b].body->shape().modes() > 0, place.node, place.station,
+                      own.kinematics == nullptr && order_in(own) == StrainOrder::quadratic});
     first_frame_.push_back(next);
     for (std::size_t f = 0; f < model.bodies()[b].frames.size(); ++f, ++next) {
       FramePlace& at = frames_[next];

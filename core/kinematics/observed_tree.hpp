@@ -24,8 +24,9 @@ struct FramePlace {
 struct BodyAxes {
   Matrix3 R;  ///< R_NB of it on its node
   bool flexible = false;
-  int node = -1;     ///< −1: the world
-  int station = -1;  ///< −1: the node's frame
+  int node = -1;          ///< −1: the world
+  int station = -1;       ///< −1: the node's frame
+  bool expanded = false;  ///< Observation::expands
 };
 
 /// A tree in a plane or in space.

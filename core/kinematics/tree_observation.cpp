@@ -117,6 +117,11 @@ std::array<double, 3> TreeObservation<Space>::deflection(int body, int frame) co
   return array(axes.R.transpose() * lifted(d, 0));
 }
 
+template <class Space>
+bool TreeObservation<Space>::expands(int body) const noexcept {
+  return tree_->bodies[static_cast<std::size_t>(body)].expanded;
+}
+
 template class TreeObservation<Planar>;
 template class TreeObservation<Spatial>;
 

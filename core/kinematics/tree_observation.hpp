@@ -18,6 +18,7 @@ class TreeObservation final : public Observation {
   [[nodiscard]] WorldVelocity frame_velocity(int body, int frame) const noexcept override;
   [[nodiscard]] double turning(int body) const noexcept override;
   [[nodiscard]] std::array<double, 3> deflection(int body, int frame) const noexcept override;
+  [[nodiscard]] bool expands(int body) const noexcept override;
 
  private:
   [[nodiscard]] const TreePass<Space>& moved() const noexcept;

@@ -100,6 +100,9 @@ class Observation {
   [[nodiscard]] virtual double turning(int body) const noexcept = 0;
   /// Displacement r − X of the section at a frame relative to the body frame, body axes [m].
   [[nodiscard]] virtual std::array<double, 3> deflection(int body, int frame) const noexcept = 0;
+  /// Whether a body's deflections are those of its stations' expansion to the second order, Φq + ½qᵀΓq with maps of its
+  /// own: who has these need not ask.
+  [[nodiscard]] virtual bool expands(int /*body*/) const noexcept { return false; }
 };
 
 /// Linear systems with W = 1 − δ A, where A is what makes flexible trees stiff: the part of ∂ẏ/∂y that comes from modal

@@ -55,6 +55,7 @@ Monitor::Monitor(const Model& model, const EquationsOfMotion& equations, const S
     ends_.push_back({model.layout().modes(b),
                      static_cast<int>(b),
                      tip ? node.frame(name) : -1,
+                     seen_.expands(static_cast<int>(b)),
                      SectionExpansion(*section),
                      length,
                      tip ? "the tip" : "station '" + name + "'",

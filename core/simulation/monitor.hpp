@@ -96,7 +96,8 @@ class Monitor {
   struct End {
     const Slot* slot;  ///< of the body's modes
     int body;
-    int frame;  ///< −1: `section` stands for it
+    int frame;      ///< −1: `section` stands for it
+    bool expanded;  ///< what `section` says is the deflection
     SectionExpansion section;
     double length;                ///< [m]
     std::string name;             ///< of the place, in words

@@ -52,15 +52,16 @@ void Monitor::note(std::size_t order, const std::string& place, const std::strin
             " times its length (limit " + brief(deflection_limit_) + ")";
 }
 
-/// Looks at a deflection that has not been so great before, as the expansion says: exact kinematics integrates along
-/// the body, at the cost of an evaluation. \param seen whether the observation is at the state
+/// Looks at a deflection that has not been so great before, as the expansion says, and where that does not have the
+/// last word: exact kinematics integrates along the body, at the cost of an evaluation. \param seen whether the
+/// observation is at the state
 void Monitor::observe_end(std::size_t index, const State& state, const Vector3& rough, bool& seen) {
   End& end = ends_[index];
   for (std::size_t k = 0; k < 3; ++k)
     end.rough[k] = std::max(end.rough[k], std::abs(rough[static_cast<Eigen::Index>(k)]));
   end.rough_square = std::max(end.rough_square, rough.squaredNorm());
   std::array<double, 3> d{rough.x(), rough.y(), rough.z()};
-  if (end.frame >= 0) {
+  if (end.frame >= 0 && !end.expanded) {
     if (!std::exchange(seen, true)) see(state);
     d = seen_.deflection(end.body, end.frame);
   }
@@ -72,8 +73,9 @@ bool Monitor::End::may_exceed(double h) const {
   double square = 0;
   for (Eigen::Index k = 0; k < whole; ++k) {
     const double a = now.displacement[k], b = next.displacement[k];
-    const double bound = std::max(
-        {std::abs(a), std::abs(b), std::abs(a + h / 3 * now.velocity[k]), std::abs(b - h / 3 * next.velocity[k])});
+    // Two by two: a list of four would go through memory, at every step of every body.
+    const double bound = std::max(std::max(std::abs(a), std::abs(a + h / 3 * now.velocity[k])),
+                                  std::max(std::abs(b), std::abs(b - h / 3 * next.velocity[k])));
     if (!(bound <= rough[static_cast<std::size_t>(k)])) return true;
     square += bound * bound;
   }

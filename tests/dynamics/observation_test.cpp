@@ -171,6 +171,34 @@ TEST_P(Observations, allocate_nothing_and_do_not_remember_another_state) {
   }
 }
 
+/// Who watches a run does not ask for a deflection that the expansion of the body's own station gives.
+TEST_P(Observations, deflections_of_bodies_that_expand_are_those_of_their_stations) {
+  int asked = 0, expanded = 0, of_second_order = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const Case c(seed, {.bodies = 5, .planar = seed % 2 == 0}, GetParam());
+    const auto seen = c.equations->make_observation();
+    seen->observe(c.state.y);
+    const Model& model = *c.scene.model;
+    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+      if (model.bodies()[b].body->shape().modes() == 0) continue;
+      ++asked;
+      of_second_order += c.scene.formulation->terms().strain == StrainOrder::quadratic ? 1 : 0;
+      if (!seen->expands(static_cast<int>(b))) continue;
+      ++expanded;
+      for (std::size_t f = 0; f < model.bodies()[b].frames.size(); ++f) {
+        const PointExpansion& at = model.bodies()[b].frames[f].section;
+        const Eigen::Map<const Eigen::VectorXd> q(c.state.y.data() + model.layout().modes(b)->position, at.phi.cols());
+        Vector3 d = at.phi * q;
+        for (int k = 0; k < 3; ++k) d[k] += 0.5 * q.dot(at.gamma[static_cast<std::size_t>(k)] * q);
+        EXPECT_LT((vector(seen->deflection(static_cast<int>(b), static_cast<int>(f))) - d).norm(), 1e-12)
+            << "seed " << seed << ", " << model.bodies()[b].name;
+      }
+    }
+  }
+  EXPECT_GT(asked, 5);
+  EXPECT_EQ(expanded, of_second_order);
+}
+
 INSTANTIATE_TEST_SUITE_P(Formulations, Observations, testing::ValuesIn(formulations), formulation_name);
 
 }  // namespace
