@@ -84,8 +84,7 @@ class Beam final : public Body, private Rod {
       x = std::get<double>(name);
       if (!(x >= 0 && x <= length_)) return {};
     }
-    return expansion(x, linear_fields(strains_, x), quadrature_.integral_to(x, pairs_->gamma_slope),
-                     quadrature_.integral_to(x, pairs_->theta_slope));
+    return expansion_at(x, linear_fields(strains_, x));
   }
   std::string stations() const override {
     return "root, tip, or a coordinate x from 0 to " + std::to_string(length_) + " m";
@@ -140,6 +139,10 @@ class Beam final : public Body, private Rod {
   }
 
  private:
+  [[nodiscard]] PointExpansion expansion_at(double x, const LinearFields& f) const {
+    const auto weights = quadrature_.weights_to(x);
+    return expansion(x, f, weights * pairs_->gamma_slope, weights * pairs_->theta_slope);
+  }
   Eigen::Index modes() const override { return shape_.modes(); }
   double length() const override { return length_; }
   double wave_number() const override { return wave_number(strains_); }
@@ -185,8 +188,7 @@ class Beam final : public Body, private Rod {
       }
       if (inertia.isZero(0)) continue;
       const LinearFields f = linear_fields(strains_, at);
-      shape_.sections.push_back({inertia, expansion(at, f, quadrature_.integral_to(at, pairs_->gamma_slope),
-                                                    quadrature_.integral_to(at, pairs_->theta_slope))});
+      shape_.sections.push_back({inertia, expansion_at(at, f)});
       add_products(inertia, f.psi, gram);
     }
   }

@@ -30,7 +30,7 @@ class BoundHingeEffort final : public BoundLoad, public TimedEffort {
 
   std::size_t speed() const override { return speed_; }
   double effort(double t) const noexcept override { return (*effort_)(t); }
-  const void* law() const override { return effort_.get(); }
+  std::shared_ptr<const void> law() const override { return effort_; }
 
  private:
   Effort effort_;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # benchmarks.sh [TABLE...]: times evaluations and integrators, and writes the tables of docs/performance.md and
-# docs/integrators.md. TABLE: bench-arm, bench-chain, rivals, equal-links, lanes, lane-sweeps, branches, stiff-cost; without one all of
-# them, about ten minutes of a machine that does nothing else. The programs are those of build/release, where the target
+# docs/integrators.md. TABLE: bench-arm, bench-chain, rivals, equal-links, lanes, lane-sweeps, sweep-threads, branches,
+# stiff-cost; without one all of them, about ten minutes of a machine that does nothing else. The programs are those of build/release, where the target
 # measurements builds them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -193,10 +193,11 @@ three_batches() {
   done
 }
 
-# CPU time of a sweep, least of three, beside the same with one case at a time: PLAN CASES.
+# CPU time of a sweep, least of five, beside the same with one case at a time, and in four lanes where the machine has
+# more: PLAN CASES.
 table_lane_sweeps() {
   {
-    printf 'plan\tcases\tone at a time\tin lanes\tratio\n'
+    printf 'plan\tcases\tone at a time\tin lanes\tratio\tin four lanes\tratio\n'
     local plan
     for plan in "driven-arm-tolerances 400" "driven-arm-tolerances 2000" "rigid-chain-masses 40"; do
       # shellcheck disable=SC2086
@@ -208,29 +209,58 @@ text, cases = re.sub(r"^cases: \d+", f"cases: {cases}", open(plan).read(), flags
 folder = os.path.dirname(os.path.abspath(plan))
 text = re.sub(r"^scene: (\S+)", lambda m: "scene: " + os.path.normpath(os.path.join(folder, m.group(1))), text, flags=re.M)
 
-def milliseconds(text):
+def milliseconds(text, four=False):
+    tunables = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F"} if four else {}
     path, store = os.path.join(kept, "plan.yaml"), os.path.join(kept, "store")
     open(path, "w").write(text)
     shutil.rmtree(store, ignore_errors=True)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([withy, "sweep", "run", path, "--jobs", "1", "--out", store], check=True, capture_output=True)
+    subprocess.run([withy, "sweep", "run", path, "--jobs", "1", "--out", store], check=True, capture_output=True,
+                   env=os.environ | tunables)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return 1e3 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / cases
 
 # By turns, so that what slows the machine down for a while slows down both; of each the least.
-ways = (re.sub(r"^evaluation: in-lanes", "evaluation: one-at-a-time", text, flags=re.M), text)
-alone, lanes = map(min, zip(*([milliseconds(way) for way in ways] for _ in range(5))))
-print(f"`{name}.yaml`", f"{cases:,}", f"{alone:.3g}", f"{lanes:.3g}", f"{alone / lanes:.2f}", sep="\t")
+ways = ((re.sub(r"^evaluation: in-lanes", "evaluation: one-at-a-time", text, flags=re.M), False), (text, False), (text, True))
+alone, lanes, four = map(min, zip(*([milliseconds(*way) for way in ways] for _ in range(5))))
+print(f"`{name}.yaml`", f"{cases:,}", f"{alone:.3g}", f"{lanes:.3g}", f"{alone / lanes:.2f}", f"{four:.3g}", f"{alone / four:.2f}", sep="\t")
 PYTHON
     done
   } | record_table lane-sweeps "scripts/benchmarks.sh lane-sweeps"
 }
 
+# Wall time of a sweep with one thread and with two, least of five, on a machine that does nothing else, or it says little.
+table_sweep_threads() {
+  {
+    printf 'driven arm, cases\tevaluation\tone thread [s]\ttwo threads [s]\tratio\n'
+    python3 - "$bin/withy" "$kept" <<'PYTHON'
+import os, re, shutil, subprocess, sys, time
+withy, kept = sys.argv[1:]
+text = open("scenes/sweeps/driven-arm-tolerances.yaml").read()
+text = re.sub(r"^scene: .*", "scene: " + os.path.abspath("scenes/driven-arm.yaml"), text, flags=re.M)
+
+def seconds(threads):
+    store = os.path.join(kept, "store")
+    shutil.rmtree(store, ignore_errors=True)
+    before = time.monotonic()
+    subprocess.run([withy, "sweep", "run", path, "--jobs", str(threads), "--out", store], check=True, capture_output=True)
+    return time.monotonic() - before
+
+path = os.path.join(kept, "plan.yaml")
+for evaluation, cases in (("one-at-a-time", 2000), ("in-lanes", 2000), ("in-lanes", 10000)):
+    plan = re.sub(r"^cases: \d+", f"cases: {cases}", text, flags=re.M)
+    open(path, "w").write(re.sub(r"^evaluation: in-lanes", f"evaluation: {evaluation}", plan, flags=re.M))
+    one, two = map(min, zip(*((seconds(1), seconds(2)) for _ in range(5))))
+    print(f"{cases:,}", f"`{evaluation}`", f"{one:.3g}", f"{two:.3g}", f"{one / two:.2f}", sep="\t")
+PYTHON
+  } | record_table sweep-threads "scripts/benchmarks.sh sweep-threads"
+}
+
 tables=("$@")
-[ $# -gt 0 ] || tables=(bench-arm bench-chain rivals equal-links lanes lane-sweeps branches stiff-cost)
+[ $# -gt 0 ] || tables=(bench-arm bench-chain rivals equal-links lanes lane-sweeps sweep-threads branches stiff-cost)
 for table in "${tables[@]}"; do
   case $table in
-    bench-arm | bench-chain | rivals | equal-links | lanes | lane-sweeps | branches | stiff-cost) "table_${table//-/_}" ;;
+    bench-arm | bench-chain | rivals | equal-links | lanes | lane-sweeps | sweep-threads | branches | stiff-cost) "table_${table//-/_}" ;;
     *)
       echo "benchmarks.sh: no table '$table'" >&2
       exit 2

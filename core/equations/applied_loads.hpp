@@ -17,7 +17,7 @@ namespace withy {
 struct TimedLoad {
   const TimedEffort* effort = nullptr;  ///< null: it is none
   std::size_t speed = 0;
-  const void* law = nullptr;  ///< as TimedEffort::law
+  std::shared_ptr<const void> law = nullptr;  ///< as TimedEffort::law
 };
 
 /// All loads of a model: those on generalized speeds, and those at frames through the formulation's partial velocities.

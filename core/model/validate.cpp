@@ -67,15 +67,16 @@ std::string names_fault(const std::vector<std::string>& names) {
   return {};
 }
 
-bool all_finite(const ConstMatrix& m) {
+/// Of a matrix that is one piece of memory.
+template <class Matrix>
+bool all_finite(const Matrix& m) {
   double nothing = 0;  // or NaN
-  for (Eigen::Index j = 0; j < m.cols(); ++j)
-    for (Eigen::Index i = 0; i < m.rows(); ++i) nothing += 0.0 * m(i, j);
+  for (const double *at = m.data(), *const end = at + m.size(); at != end; ++at) nothing += 0.0 * *at;
   return nothing == 0;
 }
 
 /// Symmetric to the last bit, as matrices mostly are.
-bool plainly_symmetric(const ConstMatrix& m) {
+bool plainly_symmetric(const Eigen::MatrixXd& m) {
   for (Eigen::Index j = 1; j < m.cols(); ++j)
     for (Eigen::Index i = 0; i < j; ++i)
       if (m(i, j) != m(j, i)) return false;
@@ -84,8 +85,8 @@ bool plainly_symmetric(const ConstMatrix& m) {
 
 /// Whether nothing is to be found: scenes have thousands of points, and cases of a sweep are checked one by one.
 bool plainly_sound(const PointExpansion& point, Eigen::Index modes) {
-  const auto field = [&](const ConstMatrix& m) { return m.rows() == 3 && m.cols() == modes && all_finite(m); };
-  const auto square = [&](const ConstMatrix& m) {
+  const auto field = [&](const Matrix3X& m) { return m.cols() == modes && all_finite(m); };
+  const auto square = [&](const Eigen::MatrixXd& m) {
     return m.rows() == modes && m.cols() == modes && all_finite(m) && plainly_symmetric(m);
   };
   return all_finite(point.X) && field(point.phi) && field(point.psi) &&

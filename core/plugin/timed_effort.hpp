@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
 namespace withy {
 
@@ -16,8 +17,9 @@ class TimedEffort {
   [[nodiscard]] virtual std::size_t speed() const = 0;
   /// The effort [N m, N] at time t [s].
   [[nodiscard]] virtual double effort(double t) const noexcept = 0;
-  /// Equal for loads with one law: at each time their efforts are equal to the last bit. Of loads that live at once.
-  [[nodiscard]] virtual const void* law() const = 0;
+  /// Equal for loads with one law: at each time their efforts are equal to the last bit. Who holds it may outlive the
+  /// load, and what was found of it then holds for the next load that has it.
+  [[nodiscard]] virtual std::shared_ptr<const void> law() const = 0;
 };
 
 }  // namespace withy
