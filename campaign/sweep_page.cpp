@@ -8,9 +8,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 
+#include "withy/campaign/estimates.hpp"
 #include "withy/campaign/store.hpp"
 #include "withy/results/csv.hpp"
 #include "withy/results/report/report_page.hpp"
@@ -54,14 +56,6 @@ Json table_json(const std::filesystem::path& file) {
 
 double nothing() { return std::numeric_limits<double>::quiet_NaN(); }
 
-/// The quantile of sorted numbers, between its neighbours linearly.
-double quantile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const double rest = at - static_cast<double>(below);
-  return below + 1 < sorted.size() ? sorted[below] + rest * (sorted[below + 1] - sorted[below]) : sorted[below];
-}
-
 /// The numbers of a column case by case, NaN where there is none.
 struct Numbers {
   std::string name;
@@ -69,68 +63,81 @@ struct Numbers {
   bool numeric = true;
   std::vector<double> all;
 
-  [[nodiscard]] std::vector<double> sorted() const {
-    std::vector<double> known;
-    std::copy_if(all.begin(), all.end(), std::back_inserter(known), [](double x) { return std::isfinite(x); });
-    std::sort(known.begin(), known.end());
-    return known;
+  [[nodiscard]] std::vector<double> known() const {
+    std::vector<double> finite;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(finite), [](double x) { return std::isfinite(x); });
+    return finite;
   }
 };
 
+/// Of numbers of which there is one at least: their ends, and what lies between.
+void add_spread(std::vector<double> values, Json& j) {
+  constexpr double shares[] = {0, 0.05, 0.5, 0.95, 1};
+  const std::vector<double> at = percentiles(std::move(values), shares);
+  j.update({{"least", at[0]}, {"p05", at[1]}, {"median", at[2]}, {"p95", at[3]}, {"greatest", at[4]}});
+}
+
 Json column_json(const Numbers& column) {
-  const std::vector<double> sorted = column.sorted();
+  std::vector<double> known = column.known();
   Json j{{"name", column.name}, {"role", column.result ? "result" : "varied"}};
-  j["numeric"] = column.numeric && !sorted.empty() && (column.result || sorted.front() < sorted.back());
+  j["numeric"] = false;
+  if (!column.numeric || known.empty()) return j;
+  const auto [low, high] = std::minmax_element(known.begin(), known.end());
+  const double least = *low, width = (*high - least) / static_cast<double>(bins);
+  j["numeric"] = column.result || *low < *high;
   if (!j["numeric"]) return j;
-  const double least = sorted.front(), width = (sorted.back() - least) / static_cast<double>(bins);
   std::vector<std::size_t> counts(bins);
-  for (const double x : sorted)
+  for (const double x : known)
     ++counts[width > 0 ? std::min(static_cast<std::size_t>((x - least) / width), bins - 1) : bins / 2];
-  j.update({{"least", least},
-            {"greatest", sorted.back()},
-            {"p05", quantile(sorted, 0.05)},
-            {"median", quantile(sorted, 0.5)},
-            {"p95", quantile(sorted, 0.95)},
-            {"bins", counts}});
+  add_spread(std::move(known), j);
+  j["bins"] = counts;
   return j;
 }
 
-Json level_json(double at, std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return {{"at", at},
-          {"count", values.size()},
-          {"least", values.front()},
-          {"p05", quantile(values, 0.05)},
-          {"median", quantile(values, 0.5)},
-          {"p95", quantile(values, 0.95)},
-          {"greatest", values.back()}};
-}
-
-/// A result over what varies: at each of its values, or where these are many over equal stretches of it, told at their
-/// middles.
-Json envelope_json(const Numbers& axis, const Numbers& result) {
-  std::vector<double> places = axis.sorted();
-  if (places.empty()) return {};
-  const double least = places.front(), width = (places.back() - least) / static_cast<double>(most_levels_shown);
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  const bool few = places.size() <= most_levels_shown;
-  if (!few) {
-    places.resize(most_levels_shown);
-    for (std::size_t k = 0; k < most_levels_shown; ++k) places[k] = least + (static_cast<double>(k) + 0.5) * width;
+/// Where envelopes over a column are told: at each of its values, or where these are many at the middles of equal
+/// stretches of it.
+class Levels {
+ public:
+  explicit Levels(const Numbers& axis) {
+    const std::vector<double> known = axis.known();
+    std::set<double> some;
+    for (auto x = known.begin(); x != known.end() && some.size() <= most_levels_shown; ++x) some.insert(*x);
+    few_ = some.size() <= most_levels_shown;
+    places_.assign(some.begin(), some.end());
+    if (few_) return;
+    const auto [low, high] = std::minmax_element(known.begin(), known.end());
+    least_ = *low, width_ = (*high - least_) / static_cast<double>(most_levels_shown);
+    places_.resize(most_levels_shown);
+    for (std::size_t k = 0; k < places_.size(); ++k) places_[k] = least_ + (static_cast<double>(k) + 0.5) * width_;
   }
-  std::vector<std::vector<double>> values(places.size());
+  [[nodiscard]] const std::vector<double>& places() const { return places_; }
+  /// Index of that of a value of the column.
+  [[nodiscard]] std::size_t of(double x) const {
+    if (few_) return static_cast<std::size_t>(std::lower_bound(places_.begin(), places_.end(), x) - places_.begin());
+    return std::min(static_cast<std::size_t>((x - least_) / width_), most_levels_shown - 1);
+  }
+
+ private:
+  bool few_ = false;
+  std::vector<double> places_;
+  double least_ = 0, width_ = 0;
+};
+
+/// A result over what varies.
+Json envelope_json(const Numbers& axis, const Levels& levels, const Numbers& result) {
+  std::vector<std::vector<double>> values(levels.places().size());
   for (std::size_t i = 0; i < axis.all.size(); ++i) {
     const double x = axis.all[i], y = result.all[i];
-    if (!std::isfinite(x) || !std::isfinite(y)) continue;
-    const std::size_t k =
-        few ? static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), x) - places.begin())
-            : std::min(static_cast<std::size_t>((x - least) / width), most_levels_shown - 1);
-    values[k].push_back(y);
+    if (std::isfinite(x) && std::isfinite(y)) values[levels.of(x)].push_back(y);
   }
-  Json levels = Json::array();
-  for (std::size_t k = 0; k < places.size(); ++k)
-    if (!values[k].empty()) levels.push_back(level_json(places[k], std::move(values[k])));
-  return levels;
+  Json list = Json::array();
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (values[k].empty()) continue;
+    Json level{{"at", levels.places()[k]}, {"count", values[k].size()}};
+    add_spread(std::move(values[k]), level);
+    list.push_back(std::move(level));
+  }
+  return list;
 }
 
 class Page {
@@ -181,15 +188,16 @@ class Page {
         return;
       }
       if ((row - 2) % counted_every() != 0) return;
+      const bool shown = (row - 2) % shown_every() == 0 && cells[1] != "missing";
       Json values = Json::array();
       for (std::size_t c = 0; c < columns_.size(); ++c) {
         const std::optional<double> number = plain_number(cells[c + 2]);
         columns_[c].numeric = columns_[c].numeric && (number || cells[c + 2].empty());
         // What varies counts where the case has results.
         columns_[c].all.push_back(number && cells[1] == "completed" ? *number : nothing());
-        values.push_back(number ? Json(*number) : cells[c + 2].empty() ? Json() : Json(cells[c + 2]));
+        if (shown) values.push_back(number ? Json(*number) : cells[c + 2].empty() ? Json() : Json(cells[c + 2]));
       }
-      if ((row - 2) % shown_every() == 0 && cells[1] != "missing")
+      if (shown)
         sample_.push_back({{"case", plain_number(cells[0]).value_or(0)}, {"status", cells[1]}, {"values", values}});
     });
   }
@@ -199,8 +207,10 @@ class Page {
     std::size_t count = 0;
     for (const Numbers& axis : columns_) {
       if (axis.result || !axis.numeric) continue;
+      const Levels levels(axis);
       for (const Numbers& result : columns_)
-        if (result.result && count++ < most_envelopes) all[axis.name][result.name] = envelope_json(axis, result);
+        if (result.result && count++ < most_envelopes)
+          all[axis.name][result.name] = envelope_json(axis, levels, result);
     }
     return all;
   }
