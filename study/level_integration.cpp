@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace withy::study {
@@ -18,53 +19,40 @@ std::optional<LevelIntegration> loosest_integration(const IntegrationSearch& sea
     if (!tight) break;
     tight->own = distances(search.outputs, tight->readings, loose->readings).first;
     if (search.little(*tight))
-      return LevelIntegration{loose->point.integrator, loose->point.tolerance, tight->own,
-                              static_cast<double>(loose->walk.evaluations)};
+      return LevelIntegration{loose->point.integrator,
+                              loose->point.tolerance,
+                              tight->own,
+                              {{loose->point.modes, static_cast<double>(loose->walk.evaluations)}}};
     loose = std::move(tight);
   }
   return {};
 }
 
-namespace {
-
-constexpr const char* explicit_steps = "dop853";
-/// Times what its stability asks at least: what it takes there, with the steps that it tries again, and up to where
-/// stability counts as what limits its steps.
-constexpr double at_stability = 1.5, most_at_stability = 2;
-
-}  // namespace
-
-bool limited_by_stability(const std::string& integrator, double evaluations, double explicit_evaluations) {
-  return integrator == explicit_steps && evaluations < most_at_stability * explicit_evaluations;
-}
-
-void LevelGrowth::note(int modes, const LevelIntegration& with, double evaluations, double explicit_evaluations) {
-  const Seen seen{std::max(1.0, evaluations / with.evaluations),
-                  limited_by_stability(with.integrator, evaluations, explicit_evaluations)};
-  const auto [known, is_new] = seen_.emplace(modes, seen);
-  if (!is_new && known->second.at_most) known->second = seen;
-}
-
-double LevelGrowth::expected(int modes) const {
-  double least = 1, most = 1;
-  for (auto seen = seen_.begin(); seen != seen_.upper_bound(modes); ++seen) {
-    most = seen->second.at_most ? std::max(least, seen->second.times) : seen->second.times;
-    if (!seen->second.at_most) least = most;
-  }
-  return std::sqrt(least * most);
+double LevelIntegration::expected(int modes) const {
+  const auto beyond = evaluations.upper_bound(modes);
+  if (beyond == evaluations.begin()) return beyond == evaluations.end() ? 0 : beyond->second;
+  const auto [last_modes, last] = *std::prev(beyond);
+  if (std::prev(beyond) == evaluations.begin()) return last;
+  const auto [modes_before, before] = *std::prev(beyond, 2);
+  const double power =
+      std::max(0.0, std::log(last / before) / std::log(static_cast<double>(last_modes) / modes_before));
+  return last * std::pow(static_cast<double>(modes) / last_modes, power);
 }
 
 const LevelIntegration& cheapest_with(const std::vector<LevelIntegration>& integrations, double explicit_evaluations,
-                                      double growth) {
-  const bool all_tell =
-      std::none_of(integrations.begin(), integrations.end(), [](const auto& i) { return i.at_stability; });
-  const double known = all_tell ? growth : 1;
-  const auto evaluations = [&](const LevelIntegration& i) {
-    const double accurate = known * i.evaluations;
-    return i.integrator == explicit_steps ? std::max(accurate, at_stability * explicit_evaluations) : accurate;
+                                      int modes) {
+  constexpr const char* explicit_steps = "dop853";
+  constexpr const char* solves = "radau";
+  /// Times what stability asks at least: with the steps that it tries again.
+  constexpr double at_stability = 1.5;
+  constexpr double of_solving = 2;
+  const auto cost = [&](const LevelIntegration& i) {
+    const double evaluations = i.expected(modes);
+    if (i.integrator == explicit_steps) return std::max(evaluations, at_stability * explicit_evaluations);
+    return i.integrator == solves ? of_solving * evaluations : evaluations;
   };
   return *std::min_element(integrations.begin(), integrations.end(),
-                           [&](const auto& a, const auto& b) { return evaluations(a) < evaluations(b); });
+                           [&](const auto& a, const auto& b) { return cost(a) < cost(b); });
 }
 
 }  // namespace withy::study

@@ -12,14 +12,16 @@
 
 namespace withy::study {
 
-/// An integration of levels, as it was with the coarsest.
+/// An integration of levels, at the tolerance at which it adds little to the coarsest.
 struct LevelIntegration {
   std::string integrator;
   double tolerance = 0;
-  Distances added;         ///< between this tolerance and a digit less
-  double evaluations = 0;  ///< of the run with this tolerance
-  /// Explicit steps were limited by stability there: of levels that accuracy limits the tolerance says nothing.
-  bool at_stability = false;
+  Distances added;                         ///< between this tolerance and a digit less
+  std::map<int, double> evaluations = {};  ///< of its runs, by modes
+  /// Evaluations that a level with so many modes takes: as they have grown like a power of the modes over its last two
+  /// runs with no more. What a motion asks for goes on with it, whether accuracy or stability limits the steps: it is
+  /// told by runs of that integrator alone.
+  [[nodiscard]] double expected(int modes) const;
 };
 
 /// What an integration is measured with.
@@ -35,32 +37,11 @@ struct IntegrationSearch {
 /// The loosest tolerance at which a digit less changes little; nothing where none does.
 std::optional<LevelIntegration> loosest_integration(const IntegrationSearch& search);
 
-/// How many more evaluations accuracy asks of levels with more modes than of the coarsest, whatever the integrator:
-/// faster modes take part in the motion. Runs tell, but where stability limited explicit steps they tell no more than
-/// that it is less.
-class LevelGrowth {
- public:
-  /// \param explicit_evaluations that stability asks of `dop853` at that level
-  void note(int modes, const LevelIntegration& with, double evaluations, double explicit_evaluations);
-  /// Times the evaluations of the coarsest level, by the runs with the most modes up to these; at least 1.
-  [[nodiscard]] double expected(int modes) const;
-
- private:
-  struct Seen {
-    double times = 1;
-    bool at_most = false;
-  };
-  std::map<int, Seen> seen_;  ///< by modes
-};
-
-/// Whether stability, not accuracy, limits the steps of a run.
-bool limited_by_stability(const std::string& integrator, double evaluations, double explicit_evaluations);
-
-/// The one that takes the fewest evaluations with more modes: as many times what it took as levels have grown, of
-/// `dop853` what its stability asks at least.
-/// \param integrations at least one, \param growth LevelGrowth; counts where the tolerances of all are those that
-/// accuracy asked for
+/// The one that is expected to cost least with so many modes. Of `dop853` what its stability asks counts at least; one
+/// that solves equations of its own, as `radau`, takes the place of others where it takes less than half as many
+/// evaluations.
+/// \param integrations at least one
 const LevelIntegration& cheapest_with(const std::vector<LevelIntegration>& integrations, double explicit_evaluations,
-                                      double growth);
+                                      int modes);
 
 }  // namespace withy::study

@@ -26,6 +26,9 @@ constexpr double next_level = 2;
 
 /// Times the tolerance of the coarsest level that is asked for: the loosest that is looked at.
 constexpr double looser_at_most = 10;
+/// Times what the coarsest level costs with the integrations known so far: what it may cost with another, which may be
+/// the better one with more modes.
+constexpr double worth_measuring = 4;
 
 class ReferenceSearch {
  public:
@@ -103,21 +106,39 @@ class ReferenceSearch {
     look.formulation = reference_formulations(registry_).back();
     const ModelAt& model = model_at_(look);
     if (model.refused()) return;
-    std::vector<std::string> integrators{look.integrator};
-    if (model.prepared->equations->linearly_implicit() != nullptr) integrators.emplace_back("imex");
-    for (const std::string& integrator : integrators) {
+    const std::string trouble = found_.trouble;  // a run that is not worth its time is none
+    double least = std::numeric_limits<double>::infinity(), least_of_next = least;
+    for (const std::string& integrator : level_integrators(*model.prepared)) {
       const auto run_with = [&](double tolerance) {
         look.integrator = integrator, look.tolerance = tolerance;
         return at(look);
       };
       const auto little = [&](const Reference& r) { return goal_.integration(r) <= 1; };
       const double loosest = std::max(looser_at_most * first.tolerance, goal_.tightest);
-      if (found_.interrupted) return;
+      if (found_.interrupted) break;
+      most_seconds_ = worth_measuring * least;
       auto measured = loosest_integration({outputs_, run_with, little, loosest, goal_.tightest});
       if (!measured) continue;
-      measured->at_stability = limited_by_stability(integrator, measured->evaluations, explicit_evaluations(model));
       integrations_.push_back(std::move(*measured));
+      look.tolerance = integrations_.back().tolerance;
+      least = std::min(least, at(look)->walk.seconds);
+      // How it goes on with modes.
+      ++look.modes;
+      most_seconds_ = worth_measuring * least_of_next;
+      if (const auto next = at(look)) least_of_next = std::min(least_of_next, next->walk.seconds);
+      look.modes = first.modes;
     }
+    most_seconds_ = std::numeric_limits<double>::infinity();
+    found_.trouble = trouble, found_.unaffordable = false;
+  }
+
+  /// What levels may be integrated with: explicit steps, such that fold in what is stiff in bodies, and such that care
+  /// for nothing that is stiff, as a damper on a hinge between light bodies is.
+  [[nodiscard]] std::vector<std::string> level_integrators(const Prepared& prepared) const {
+    std::vector<std::string> all{goal_.first.integrator};
+    if (prepared.equations->linearly_implicit() != nullptr) all.emplace_back("imex");
+    if (registry_.find<Integrator>("radau") != nullptr) all.emplace_back("radau");
+    return all;
   }
 
   /// A level with the integration that costs least of those measured. Fast modes that limit explicit steps ring at a
@@ -128,7 +149,7 @@ class ReferenceSearch {
     plain.formulation = reference_formulations(registry_).back();
     const ModelAt& model = model_at_(plain);
     const LevelIntegration& with =
-        cheapest_with(integrations_, model.refused() ? 0 : explicit_evaluations(model), growth_.expected(point.modes));
+        cheapest_with(integrations_, model.refused() ? 0 : explicit_evaluations(model), point.modes);
     point.integrator = with.integrator, point.tolerance = with.tolerance;
     return point;
   }
@@ -150,10 +171,9 @@ class ReferenceSearch {
     std::optional<Reference> reference = run(point);
     if (!reference) return {};
     runs_.emplace(point.key(), *reference);
-    for (const LevelIntegration& with : integrations_)
+    for (LevelIntegration& with : integrations_)
       if (with.integrator == point.integrator && with.tolerance == point.tolerance)
-        growth_.note(point.modes, with, static_cast<double>(reference->walk.evaluations),
-                     explicit_evaluations(model_at_(point)));
+        with.evaluations[point.modes] = static_cast<double>(reference->walk.evaluations);
     return reference;
   }
 
@@ -255,8 +275,11 @@ class ReferenceSearch {
       outputs_.raise_ranges(r.readings.values.back(), r.readings.values.front(), r.ranges);
       return true;
     };
+    const auto afford = [&](const Walk& so_far) {
+      return so_far.seconds <= most_seconds_ && (!goal_.afford || goal_.afford(so_far));
+    };
     r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
-                  {keep, goal_.afford, control_.interrupted});
+                  {keep, afford, control_.interrupted});
     r.scales = scales(outputs_, r.ranges, r.energy);
     found_.cpu_seconds += r.walk.seconds;
     found_.interrupted = r.walk.end == Walk::End::interrupted;
@@ -300,8 +323,8 @@ class ReferenceSearch {
   std::optional<ModeSeries> lower_;             ///< of the rung below, where more modes are looked at
   std::optional<Reference> richest_;            ///< the last of its runs
   std::vector<LevelIntegration> integrations_;  ///< as measured; empty: of the goal
-  LevelGrowth growth_;                          ///< of the levels so far
-  std::map<std::string, Reference> runs_;       ///< that came to their end, by the point's key
+  double most_seconds_ = std::numeric_limits<double>::infinity();  ///< that a run may cost
+  std::map<std::string, Reference> runs_;                          ///< that came to their end, by the point's key
 };
 
 }  // namespace

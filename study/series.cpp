@@ -51,24 +51,12 @@ double greatest_of(const Output& output, const Eigen::Matrix3Xd& steps) {
 }
 
 /// Of n⁻ᵖ the step from n − 1 to n over the one before.
-double ratio_of(int n, double p) {
+double ratio_of(double n, double p) {
   return -std::expm1(p * std::log1p(-1.0 / n)) / std::expm1(p * std::log1p(1.0 / (n - 2)));
 }
 
 /// What is left of sizes that shrink on by a ratio, over the last; that itself at least.
-double goes_on(int modes, double ratio) { return std::max(1.0, tail(modes, ratio).algebraic); }
-
-/// By what part an output's changes have shrunk from a run to the next, over the last two such steps where there are as
-/// many: those of even and odd modes may differ much, and one that happens to be small is not what the next is measured
-/// by. 1 where that is not known.
-double shrinking(const std::vector<Distances>& changes, std::size_t output) {
-  const std::size_t levels = changes.size();
-  if (levels < 2) return 1;
-  const std::size_t back = levels > 2 ? 2 : 1;
-  const double before = changes[levels - 1 - back][output], ratio = changes.back()[output] / before;
-  if (!(before > 0)) return 1;
-  return back == 2 ? std::sqrt(ratio) : ratio;
-}
+double goes_on(double n, double ratio) { return std::max(1.0, tail(n, ratio).algebraic); }
 
 /// What the finest of runs may be off by where no law of its series is known: the last change, or what is left of
 /// changes that shrink on as the last two did; of several kinds of modes in turn the last change of each counts.
@@ -98,7 +86,7 @@ Readings corrected(const Outputs& outputs, const Readings& a, const Readings& b,
   return sum;
 }
 
-Tail tail(int n, double ratio) {
+Tail tail(double n, double ratio) {
   constexpr double slowest = 1, fastest = 500;  // exponents p; beyond, nothing is left
   const double greatest_ratio = ratio_of(n, slowest);
   if (!(ratio > ratio_of(n, fastest))) return {};
@@ -132,66 +120,112 @@ ModeSeries::Steps ModeSeries::steps(const Output& output, const Readings& to, co
 }
 
 void ModeSeries::add(int modes, Readings run) {
-  ++runs_;
+  if (!all_.empty()) changes_.push_back(distances(outputs_, run, all_.back()).first);
   limit_before_ = std::exchange(limit_, run);
   extrapolated_ = false;
-  if (runs_ == 1) {
+  all_.push_back(std::move(run));
+  limits_.push_back(all_.back());
+  limits_of_far_.push_back(all_.back());
+  if (all_.size() == 1) {
     limit_before_ = limit_;
-    last_ = std::move(run);
     return;
   }
-  changes_.push_back(distances(outputs_, run, last_).first);
-  const bool lawful = kinds_ == 1 && modes > 0;
-  if (lawful) {
-    before_ = std::move(now_);
-    now_.clear();
-    for (const Output& output : outputs_.list()) now_.push_back(steps(output, run, last_));
-  }
-  last_ = std::move(run);
-  if (!lawful) {
+  if (kinds_ > 1 || modes == 0) {
     own_ = rest_of(changes_, kinds_);
-  } else if (runs_ == 2) {
+    return;
+  }
+  if (all_.size() == 2) {
     // One step tells no ratio: it may be the first of those of 1/n.
     own_ = changes_.back();
     for (double& d : own_) d *= modes - 1;
-  } else {
-    own_ = outputs_.none();
-    for (std::size_t k = 0; k < own_.size(); ++k) extrapolate(modes, k);
-    if (runs_ > 3) add_changes_of_limits(modes);
+    return;
   }
+  Lead best = lead(modes, 1, limits_);
+  const std::size_t far = std::max<std::size_t>(1, static_cast<std::size_t>(modes) / 4);
+  if (2 * far < all_.size()) {
+    const Lead other = lead(modes, far, limits_of_far_);
+    for (std::size_t k = 0; k < best.own.size(); ++k)
+      if (other.own[k] < best.own[k]) take(k, other, best);
+  }
+  limit_ = std::move(best.limit);
+  own_ = std::move(best.own);
+  extrapolated_ = std::find(best.moved.begin(), best.moved.end(), true) != best.moved.end();
+}
+
+/// Takes an output over.
+void ModeSeries::take(std::size_t k, const Lead& from, Lead& to) const {
+  const Output& output = outputs_.list()[k];
+  to.own[k] = from.own[k];
+  to.moved[k] = from.moved[k];
+  for (std::size_t i = 0; i < to.limit.values.size(); ++i)
+    std::copy_n(from.limit.values[i].begin() + static_cast<std::ptrdiff_t>(output.at), output.numbers(),
+                to.limit.values[i].begin() + static_cast<std::ptrdiff_t>(output.at));
+}
+
+/// Where the last two of such steps lead to, output by output.
+/// \param limits of such steps, a run each; the last is set
+ModeSeries::Lead ModeSeries::lead(int modes, std::size_t step, std::vector<Readings>& limits) const {
+  Lead lead{run(0), outputs_.none(), std::vector<bool>(outputs_.list().size(), false)};
+  for (std::size_t k = 0; k < lead.own.size(); ++k) extrapolate(modes, step, k, lead);
+  limits.back() = lead.limit;
+  add_changes_of_limits(modes, step, limits, lead);
+  return lead;
+}
+
+/// By what part an output's steps have shrunk from each to the next, over the last two where there are as many: those
+/// of even and odd modes may differ much, and one that happens to be small is not what the next is measured by. 1 where
+/// that is not known.
+double ModeSeries::shrinking(std::size_t step, std::size_t k) const {
+  const auto size = [&](std::size_t back) {
+    return greatest_of(outputs_.list()[k], steps(outputs_.list()[k], run(back * step), run((back + 1) * step)));
+  };
+  const std::size_t back = 3 * step < all_.size() ? 2 : 1;
+  const double before = size(back), ratio = size(0) / before;
+  if (!(before > 0)) return 1;
+  return back == 2 ? std::sqrt(ratio) : ratio;
 }
 
 /// No limit is known better than what is left of changes of limits that shrink on as the last two did, or as those of
 /// runs do.
-void ModeSeries::add_changes_of_limits(int modes) {
-  const Distances before = std::exchange(limits_changed_, distances(outputs_, limit_, limit_before_).first);
-  for (std::size_t k = 0; k < own_.size(); ++k) {
-    double shrinks = shrinking(changes_, k);
-    if (!before.empty() && before[k] > 0) shrinks = std::min(shrinks, limits_changed_[k] / before[k]);
-    own_[k] = std::max(own_[k], limits_changed_[k] * goes_on(modes, shrinks));
+void ModeSeries::add_changes_of_limits(int modes, std::size_t step, const std::vector<Readings>& limits,
+                                       Lead& lead) const {
+  constexpr std::size_t first = 2;  // run that has a limit
+  const std::size_t last = limits.size() - 1;
+  if (last < first + step) return;
+  const Distances now = distances(outputs_, limits[last], limits[last - step]).first;
+  const bool twice = last >= first + 2 * step;
+  const Distances before =
+      twice ? distances(outputs_, limits[last - step], limits[last - 2 * step]).first : outputs_.none();
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    double shrinks = shrinking(step, k);
+    if (before[k] > 0) shrinks = std::min(shrinks, now[k] / before[k]);
+    lead.own[k] =
+        std::max(lead.own[k], now[k] * goes_on(static_cast<double>(modes) / static_cast<double>(step), shrinks));
   }
 }
 
-/// Moves the limit of an output to where its last two steps lead, and sets what it may be off by.
-void ModeSeries::extrapolate(int modes, std::size_t k) {
+/// Moves the limit of an output to where the last two steps lead, and sets what it may be off by.
+void ModeSeries::extrapolate(int modes, std::size_t step, std::size_t k, Lead& lead) const {
   const Output& output = outputs_.list()[k];
-  const Eigen::Index common = std::min(now_[k].cols(), before_[k].cols());
-  const Steps now = now_[k].leftCols(common), before = before_[k].leftCols(common);
-  const double step = greatest_of(output, now), step_before = greatest_of(output, before),
-               square = before.squaredNorm();
-  if (!std::isfinite(step) || !std::isfinite(step_before) || !(square > 0)) {
-    own_[k] = step * (modes - 1);
+  const Steps last = steps(output, run(0), run(step)), first = steps(output, run(step), run(2 * step));
+  const Eigen::Index common = std::min(last.cols(), first.cols());
+  const Steps now = last.leftCols(common), before = first.leftCols(common);
+  const double n = static_cast<double>(modes) / static_cast<double>(step), size = greatest_of(output, now),
+               size_before = greatest_of(output, before), square = before.squaredNorm();
+  if (!std::isfinite(size) || !std::isfinite(size_before) || !(square > 0)) {
+    lead.own[k] = size * (n - 1);
     return;
   }
-  const double slowest = tail(modes, 1).geometric, most_ratio = slowest / (1 + slowest);
+  const double slowest = tail(n, 1).geometric, most_ratio = slowest / (1 + slowest);
   const double ratio = std::clamp(now.cwiseProduct(before).sum() / square, 0.0, most_ratio);
-  const Tail lead = tail(modes, ratio);
-  const double way = 0.5 * (lead.geometric + lead.algebraic);
+  const Tail left = tail(n, ratio);
+  const double way = 0.5 * (left.geometric + left.algebraic);
   const double unlike = greatest_of(output, now - ratio * before);
-  own_[k] = (lead.algebraic - lead.geometric) * step + goes_on(modes, shrinking(changes_, k)) * unlike;
+  lead.own[k] = (left.algebraic - left.geometric) * size + goes_on(n, shrinking(step, k)) * unlike;
   if (!(way > 0)) return;
-  extrapolated_ = true;
-  for (Eigen::Index i = 0; i < common; ++i) move(output, way * now.col(i), limit_.values[static_cast<std::size_t>(i)]);
+  lead.moved[k] = true;
+  for (Eigen::Index i = 0; i < common; ++i)
+    move(output, way * now.col(i), lead.limit.values[static_cast<std::size_t>(i)]);
 }
 
 }  // namespace withy::study

@@ -24,8 +24,8 @@ struct Tail {
 /// The tails of a series whose last two steps are those from n − 2 to n − 1 and on to n modes. A series is taken to
 /// converge like 1/n at least, as functions do that cannot carry the moment at a beam's tip, and as these do after the
 /// first few: a greater ratio than that counts as (n − 2)/n, one below zero as zero, and there both are zero.
-/// \param n at least 3
-Tail tail(int n, double ratio);
+/// \param n at least 3; of steps of s modes each, modes over s
+Tail tail(double n, double ratio);
 
 /// A series of runs whose number of modes grows by one from each to the next: where their outputs lead to, by Aitken's
 /// extrapolation of each output's whole history at once (Aitken 1926; of vectors: Irons & Tuck 1969).
@@ -35,8 +35,10 @@ Tail tail(int n, double ratio);
 /// and one like n⁻ᵖ, which has more to go. The limit is half-way between what the two lead to, and may be off by what
 /// they are apart; on top comes what is left over, d_n − ρ d_(n−1), with the tail that its own size tells. Limits of a
 /// row are not known better than what is left of their changes. Of a series of one law this is at least twice what the
-/// limit is off. A slow part that a fast one hides is not seen: of beams with loaded tips in functions without a moment
-/// there, at worst a third of the true distance was told, and too little in a quarter of the levels.
+/// limit is off. Late in a slow series two steps of a mode each are nearly equal, and what tells them apart is lost in
+/// what else they differ by: the same is done with steps of a quarter of the modes, and of each output what is known
+/// better counts. A slow part that a fast one hides is not seen: of beams with loaded tips in functions without a
+/// moment there, at worst a third of the true distance was told, and too little in a quarter of the levels.
 class ModeSeries {
  public:
   /// \param outputs must outlive it
@@ -48,7 +50,7 @@ class ModeSeries {
   /// \param modes of each family that a body has; 0: none has a number of them
   void add(int modes, Readings run);
   /// Runs so far.
-  [[nodiscard]] std::size_t size() const { return runs_; }
+  [[nodiscard]] std::size_t size() const { return all_.size(); }
   /// Where the series leads to: the last run, moved; as it is where nothing more is known.
   [[nodiscard]] const Readings& limit() const { return limit_; }
   /// That of the run before; of one run its own.
@@ -61,18 +63,26 @@ class ModeSeries {
  private:
   /// An output's steps, a column a time; of numbers the first row alone.
   using Steps = Eigen::Matrix3Xd;
+  /// Where steps of so many modes each lead to.
+  struct Lead {
+    Readings limit;
+    Distances own;
+    std::vector<bool> moved;  ///< of each output, whether its limit is not that of the last run
+  };
+  [[nodiscard]] const Readings& run(std::size_t back) const { return all_[all_.size() - 1 - back]; }
   [[nodiscard]] Steps steps(const Output& output, const Readings& to, const Readings& from) const;
-  void extrapolate(int modes, std::size_t output);
-  void add_changes_of_limits(int modes);
+  [[nodiscard]] double shrinking(std::size_t step, std::size_t output) const;
+  [[nodiscard]] Lead lead(int modes, std::size_t step, std::vector<Readings>& limits) const;
+  void take(std::size_t output, const Lead& from, Lead& to) const;
+  void extrapolate(int modes, std::size_t step, std::size_t output, Lead& lead) const;
+  void add_changes_of_limits(int modes, std::size_t step, const std::vector<Readings>& limits, Lead& lead) const;
 
   const Outputs& outputs_;
   int kinds_;
-  std::size_t runs_ = 0;
-  Readings last_;
-  std::vector<Steps> before_, now_;  ///< of each output
-  std::vector<Distances> changes_;   ///< from run to run
+  std::vector<Readings> all_;
+  std::vector<Distances> changes_;                ///< from run to run
+  std::vector<Readings> limits_, limits_of_far_;  ///< of steps of a mode and of a quarter of the modes, a run each
   Readings limit_, limit_before_;
-  Distances limits_changed_;  ///< from the limit before; empty: one limit so far
   Distances own_;
   bool extrapolated_ = false;
 };

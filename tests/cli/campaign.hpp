@@ -48,6 +48,8 @@ class Campaign {
   Campaign& operator=(const Campaign&) = delete;
 
   [[nodiscard]] unsigned seeds() const { return seeds_; }
+  /// The seed before the first.
+  [[nodiscard]] unsigned after() const { return after_; }
   /// What was found for each seed, in their order. `measure` gets the seed and a file for its scene.
   template <class Finding>
   std::vector<Finding> run(const std::function<Finding(unsigned, const std::string& scene)>& measure) const {
