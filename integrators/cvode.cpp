@@ -258,8 +258,8 @@ class CvodeStepper final : public Stepper {
     const auto by = [&s](double at, const Eigen::ArrayXd& moved, Eigen::ArrayXd& slope) {
       return s.evaluate(at, moved.data(), slope.data());
     };
-    const Evaluation e =
-        s.jacobian_.update(t, h, Eigen::Map<const Eigen::ArrayXd>(N_VGetArrayPointer(y), n), s.slope_, by);
+    const Evaluation e = s.jacobian_.update(std::min(t, s.latest_), h,
+                                            Eigen::Map<const Eigen::ArrayXd>(N_VGetArrayPointer(y), n), s.slope_, by);
     if (!e.ok()) return s.refuse(e);
     // Discrete states, which are constant, and the work follow these.
     SUNMatZero(matrix);
