@@ -16,6 +16,7 @@
 #include "jacobian.hpp"
 #include "step_control.hpp"
 #include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/discrete_states.hpp"
 #include "withy/core/plugin/entry.hpp"
 
 namespace withy {
@@ -121,6 +122,7 @@ class CvodeStepper final : public Stepper {
       std::copy(previous_.begin(), previous_.end(), out.begin());
     } else {
       std::copy_n(N_VGetArrayPointer(inside_.get()), out.size(), out.begin());
+      keep_discrete_states(equations_.layout(), state_.y, out);
       equations_.normalize(out);
     }
   }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "withy/core/plugin/closed_loops.hpp"
+#include "withy/core/plugin/discrete_states.hpp"
 #include "withy/core/plugin/integrator.hpp"
 #include "withy/core/plugin/memory.hpp"
 #include "withy/core/plugin/staged_steps.hpp"
@@ -68,7 +69,7 @@ class OneStep : public Stepper, public ClosingStepper {
   }
 
   /// At and outside the ends of the last step: the state at that end, bit by bit. Inside: the method's interpolant with
-  /// its quaternions normalized.
+  /// its quaternions normalized, and the step's discrete states.
   void interpolate(double t, std::span<double> out) const final {
     Eigen::Map<Eigen::ArrayXd> values(out.data(), size_);
     if (t >= state_.time) {
@@ -77,6 +78,7 @@ class OneStep : public Stepper, public ClosingStepper {
       values = previous_;
     } else {
       inside((t - previous_time_) / (state_.time - previous_time_), values);
+      keep_discrete_states(equations_.layout(), state_.y, out);
       if (loops_ == nullptr) {
         equations_.normalize(out);
       } else {

@@ -43,7 +43,8 @@ class Stepper {
   /// other than ok the state is the last accepted one.
   virtual StepResult step(double t_limit) = 0;
   [[nodiscard]] virtual const State& state() const = 0;
-  /// State inside the last accepted step, t between its ends, to the accuracy the integrator states.
+  /// State inside the last accepted step, t between its ends, to the accuracy the integrator states. Discrete states
+  /// are those of the step, bit by bit (keep_discrete_states).
   virtual void interpolate(double t, std::span<double> y) const = 0;
   /// Forgets what was learnt of the right-hand side's smoothness: call at a discontinuity, after its time is reached.
   virtual void restart() = 0;

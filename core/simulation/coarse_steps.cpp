@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "withy/core/plugin/discrete_states.hpp"
+
 namespace withy {
 namespace {
 
@@ -62,6 +64,7 @@ class SemiImplicitStepper final : public Stepper {
     const double h = state_.time - before_.time;
     const double theta = h > 0 ? std::clamp((t - before_.time) / h, 0.0, 1.0) : 1;
     for (std::size_t i = 0; i < y.size(); ++i) y[i] = (1 - theta) * before_.y[i] + theta * state_.y[i];
+    keep_discrete_states(equations_.layout(), state_.y, y);
     equations_.normalize(y);
   }
   void restart() override { known_ = false; }

@@ -61,6 +61,40 @@ TEST(Run, EveryMethodMovesAnArmThatIsAtRestBeforeItIsPulled) {
   }
 }
 
+/// Which hinges are locked is a number in the state. Between the ends of steps it was interpolated, with some methods
+/// to a rounding below 1, which is another lock: rows at random told reactions of an unlocked arm.
+TEST(Run, TellsTheSameReactionsOfLockedHingesWithEveryMethod) {
+  const Folder folder;
+  const auto elbow = [&](const std::string& integrator) {
+    const Finished f = withy(folder, {"run", "scenes/boom-latch.yaml", "--set", "time.end=1.5", "--set",
+                                      "integrator=" + integrator, "--estimate", "never", "--out", "out", "--force"});
+    EXPECT_EQ(f.status, 0) << f.err;
+    const auto rows = lines(folder.read("out/results.csv"));
+    const auto head = cells(rows.front());
+    const auto column =
+        static_cast<std::size_t>(std::find(head.begin(), head.end(), "elbow_load.fy[N]") - head.begin());
+    std::vector<double> values;
+    for (std::size_t i = 1; i < rows.size(); ++i) values.push_back(std::stod(cells(rows[i]).at(column)));
+    return values;
+  };
+  std::vector<std::string> integrators = {"radau",
+                                          "imex",
+                                          "rosenbrock-w",
+                                          "rk4-adaptive",
+                                          "{name: rk4, step: 2 ms}",
+                                          "{name: gauss, step: 5 ms}",
+                                          "{name: generalized-alpha, step: 1 ms}"};
+  if (WITHY_HAS_CVODE) integrators.emplace_back("{name: cvode, rtol: 1e-6, atol: 1e-9}");
+  const std::vector<double> right = elbow("{name: dopri5, rtol: 1e-9, atol: 1e-12}");
+  ASSERT_EQ(right.size(), 31U);
+  for (const std::string& integrator : integrators) {
+    const std::vector<double> found = elbow(integrator);
+    ASSERT_EQ(found.size(), right.size());
+    // The arm pulls with up to 0.04 N; unlocked it would with 7 N.
+    for (std::size_t i = 0; i < right.size(); ++i) EXPECT_NEAR(found[i], right[i], 1e-3) << integrator << ", row " << i;
+  }
+}
+
 /// The same names in every command; their numbers are those of sensors that a scene defines.
 TEST(Run, AddsOutputsByNamesThatSayWhatTheyAre) {
   const Folder folder;

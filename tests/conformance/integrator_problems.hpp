@@ -128,6 +128,32 @@ inline StepResult drive(Stepper& stepper, double t_limit, std::size_t most_steps
   return {};
 }
 
+/// Discrete states are the step's, bit by bit, at 101 places in each of 20 steps: some are numbers of things, and what
+/// is a rounding below 1 is cut off to 0.
+template <class Start>
+void expect_discrete_states_kept(const Start& start) {
+  Layout layout = Duffing::equations().layout();
+  layout.discrete = 3;
+  FunctionEquations equations(layout, [](double, std::span<const double> y, std::span<double> f) {
+    f[0] = y[1];
+    f[1] = -y[0];
+    f[2] = f[3] = f[4] = f[5] = 0;
+    return Evaluation{};
+  });
+  equations.stiffness_ = {1};
+  const std::vector<double> discrete = {1, 0.1, -3};
+  const std::unique_ptr<Stepper> stepper = start(equations, State{0, {1, 0, 1, 0.1, -3, 0}});
+  std::vector<double> y(6);
+  for (int step = 0; step < 20; ++step) {
+    const double before = stepper->state().time;
+    ASSERT_EQ(stepper->step(10).outcome, StepResult::Outcome::ok);
+    for (int i = 0; i <= 100; ++i) {
+      stepper->interpolate(before + i / 100.0 * (stepper->state().time - before), y);
+      ASSERT_EQ(std::vector<double>(y.begin() + 2, y.begin() + 5), discrete) << i << " hundredths of a step";
+    }
+  }
+}
+
 /// One stepper goes on, another is saved and restored after every step and restarted as often: their states and
 /// counts agree bit by bit.
 template <class Start>

@@ -107,6 +107,10 @@ TEST_P(Cvode, interpolates_and_lands) {
   }
 }
 
+TEST_P(Cvode, leaves_discrete_states_alone_wherever_it_interpolates) {
+  expect_discrete_states_kept([&](const EquationsOfMotion& e, const State& s) { return start(e, s, 1e-6); });
+}
+
 TEST_P(Cvode, sees_declared_jumps_on_their_own_side) {
   const FunctionEquations equations = SwitchedOscillator::equations();
   const auto stepper = start(equations, SwitchedOscillator::start(), 1e-9);

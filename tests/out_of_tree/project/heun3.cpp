@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <withy/core/plugin/closed_loops.hpp>
+#include <withy/core/plugin/discrete_states.hpp>
 #include <withy/core/plugin/integrator.hpp>
 #include <withy/core/plugin/memory.hpp>
 
@@ -50,6 +51,7 @@ class Heun3Stepper final : public withy::Stepper {
     const double h = state_.time - previous_.time;
     const double a = h > 0 ? std::clamp((t - previous_.time) / h, 0.0, 1.0) : 1, b = 1 - a;
     values = b * b * ((1 + 2 * a) * before + h * a * previous_slope_) + a * a * ((1 + 2 * b) * y() - h * b * slope_);
+    withy::keep_discrete_states(equations_.layout(), state_.y, out);
     if (a > 0 && a < 1) equations_.normalize(out);
   }
   const withy::State& state() const override { return state_; }
