@@ -88,7 +88,7 @@ RunSummary CaseRun::simulate(const EquationsOfMotion& equations, const study::Co
   }
   RunOptions options = study::run_options(scene);
   options.interrupted = control.interrupted;
-  options.too_stiff = study::too_stiff_of(*prepared_);
+  study::watch_poles(*prepared_, options);
   if (kept_->watches_steps()) {
     // A checkpoint after every step has its state, and changes nothing in a run.
     options.checkpoint_due = [] { return true; };

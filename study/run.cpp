@@ -76,7 +76,7 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
     };
   options.resume = settings.resume;
   options.seen = settings.seen;
-  options.too_stiff = too_stiff_of(prepared);
+  watch_poles(prepared, options);
   if (settings.checkpoint_seconds > 0) options.checkpoint_due = [&] { return timer.due(); };
   std::optional<StatisticsWatch> watch;
   std::vector<std::string> watched = watched_outputs(scene);

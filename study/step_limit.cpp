@@ -91,11 +91,37 @@ std::optional<TooStiff> too_stiff(const Prepared& prepared, const State& state, 
   return found;
 }
 
-std::function<std::string(const State&)> too_stiff_of(const Prepared& prepared) {
-  return [&prepared](const State& state) {
+namespace {
+
+/// For RunOptions::too_fast: steps that nobody controls beyond what the integrator is stable to, at the end of the run
+/// or at a state on its way.
+std::string too_fast(const Prepared& prepared, const RunSummary& summary, double step) {
+  const Scene& scene = prepared.scene;
+  const std::optional<double> limit = scene.integrator->stability_limit();
+  const bool controlled = scene.source.at("integrator").find("rtol") != nullptr;
+  if (controlled || !limit || !std::isfinite(*limit)) return {};
+  std::optional<FastestPole> fastest = pole_at(prepared, summary.final);
+  for (const State& state : summary.validity.along) {
+    std::optional<FastestPole> pole = pole_at(prepared, state);
+    if (pole && (!fastest || std::abs(pole->value) > std::abs(fastest->value))) fastest = std::move(pole);
+  }
+  if (!fastest) return {};
+  const double product = step * std::abs(fastest->value);
+  if (!(product > *limit)) return {};
+  return fmt::format(
+      "Steps of {} s are too long for the integrator: times the fastest pole they are {}, and it is stable to {}; the "
+      "pole is {}.",
+      brief(step), brief(product), brief(*limit), describe(*fastest, prepared.model().layout()));
+}
+
+}  // namespace
+
+void watch_poles(const Prepared& prepared, RunOptions& options) {
+  options.too_stiff = [&prepared](const State& state) {
     const std::optional<TooStiff> found = too_stiff(prepared, state);
     return found ? found->text : std::string();
   };
+  options.too_fast = [&prepared](const RunSummary& summary, double step) { return too_fast(prepared, summary, step); };
 }
 
 }  // namespace withy::study

@@ -43,7 +43,7 @@ struct TooStiff {
 /// the run. Nothing where they are not, or where it is not known: of more than 200 speeds, with closed loops.
 std::optional<TooStiff> too_stiff(const Prepared& prepared, const State& state,
                                   std::size_t most_steps = RunOptions().most_steps);
-/// For RunOptions::too_stiff of runs of a scene, which must outlive them.
-std::function<std::string(const State&)> too_stiff_of(const Prepared& prepared);
+/// Gives runs of a scene, which must outlive them, what they ask of its poles: RunOptions::too_stiff and too_fast.
+void watch_poles(const Prepared& prepared, RunOptions& options);
 
 }  // namespace withy::study

@@ -37,7 +37,7 @@ TimedRun timed_run(const Prepared& model, const Outputs& outputs, const Control&
   RunOptions options = run_options(model.scene);
   options.events.clear();
   options.interrupted = control.interrupted;
-  options.too_stiff = too_stiff_of(model);
+  watch_poles(model, options);
   TimedRun run;
   std::vector<State> states;
   double spent = 0;

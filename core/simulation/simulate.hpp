@@ -43,6 +43,8 @@ struct Checkpoint {
   std::vector<double> watches;  ///< what the run has seen so far
 };
 
+struct RunSummary;
+
 struct RunOptions {
   double end = 0;                 ///< [s]
   double output = 0.01;           ///< interval of outputs [s]; the end is always one
@@ -59,6 +61,10 @@ struct RunOptions {
   /// Asked now and then where at the pace of the steps so far `most_steps` are too few to come to the end: why they are
   /// from this state on as well, in a clause without a full stop, which ends the run; empty: it goes on.
   std::function<std::string(const State&)> too_stiff;
+  /// Asked of a run that came to its end with more drift of energy than any stable integration leaves, where the
+  /// formulation need not conserve it and no elastic mode says why: what of its motion is too fast for steps of this
+  /// size [s], in a sentence that names them; empty: nothing is.
+  std::function<std::string(const RunSummary&, double)> too_fast;
   double most_seconds = 0;            ///< wall time; 0: unlimited
   std::function<bool()> interrupted;  ///< asked between steps
   std::vector<RunEvent> events;       ///< looked for on the dense output; those that do not stop do not change the run

@@ -86,6 +86,10 @@ bool surely_balanced(const RunSummary& summary, const RunOptions& options) {
 std::string imbalance(const RunSummary& summary, const RunOptions& options, const Integrator& integrator,
                       double mean_step) {
   std::string text = steps_too_long(summary, integrator, mean_step);
+  if (text.empty() && options.too_fast && summary.energy_drift > unstable_drift) {
+    text = options.too_fast(summary, mean_step);
+    if (!text.empty()) text += ' ';
+  }
   const double allowed = !text.empty() ? std::min(unstable_drift, options.drift_limit) : options.drift_limit;
   if (!(summary.energy_drift > allowed)) return {};
   text += "Energy and work do not balance: off by " + brief(summary.energy_drift) + " of the greatest energy";

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "withy/core/simulation/step_watch.hpp"
 #include "withy/study/comparison.hpp"
@@ -183,6 +184,22 @@ TEST(StudyRun, ARunWhoseEnergyDoesNotBalanceIsInaccurate) {
   const CertifiedRun r = run_of("pendulum", {{"integrator", rk4}}, "quadratic");
   EXPECT_EQ(r.summary.status, RunStatus::inaccurate) << r.summary.message;
   EXPECT_NE(r.summary.message.find("Energy and work do not balance"), std::string::npos) << r.summary.message;
+}
+
+/// No elastic mode is too fast for these steps, but what the controller does to a joint of little inertia is; and a
+/// formulation that need not conserve energy is not judged by its balance alone.
+TEST(StudyRun, StepsTooLongForAPoleThatALoadMakesAreInaccurateAndNamedFirst) {
+  for (const auto& [formulation, step, status] :
+       {std::tuple("ruthless", 0.5e-3, RunStatus::inaccurate), std::tuple("quadratic", 0.5e-3, RunStatus::inaccurate),
+        std::tuple("ruthless", 0.1e-3, RunStatus::completed)}) {
+    const Value rk4 = Value::map({{"name", Value(std::string("rk4"))}, {"step", Value(step)}});
+    const CertifiedRun r = run_of("pd-arm", {{"integrator", rk4}}, formulation);
+    EXPECT_EQ(r.summary.status, status) << formulation << ", " << step << ": " << r.summary.message;
+    if (status == RunStatus::completed) continue;
+    EXPECT_EQ(r.summary.message.find("Steps of 0.0005 s are too long"), 0U) << r.summary.message;
+    EXPECT_NE(r.summary.message.find("damping of load 'control'"), std::string::npos) << r.summary.message;
+    EXPECT_NE(r.summary.message.find("Energy and work do not balance"), std::string::npos) << r.summary.message;
+  }
 }
 
 // Sound, out of balance, and past all measure: what is left out of a summary changes no motion, no status, no message.
