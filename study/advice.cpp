@@ -94,6 +94,10 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   }
   advice.interrupted = search.stopped();
   if (advice.interrupted) advice.choice.reset();
+  if (advice.choice)
+    advice.trouble.clear(), advice.nearest.reset();
+  else if (!advice.trouble.empty())
+    advice.yardstick.reset();
   advice.cpu_seconds = evaluator.spent();
   evaluator.limit(std::numeric_limits<double>::infinity());
   return advice;

@@ -31,12 +31,16 @@ constexpr double nearly_as_cheap = 1.5;
 /// Evaluations of `dop853` at its stability limit beyond which a model is looked at with implicit steps, and the
 /// tolerance of these over the accuracy: they are a tenth as many there.
 constexpr double many_evaluations = 5000, implicit_enough = 0.1;
+/// Times those: what is fewer was limited by stability.
+constexpr double as_stability_asks = 2;
 /// Runs that last longer [s] are timed once, shorter ones twice.
 constexpr double long_run = 0.2;
 }  // namespace policy
 
 /// Linearly implicit: a step costs little more than an explicit one.
 constexpr const char* implicit_steps = "imex";
+/// Those whose evaluations at the stability limit are known.
+constexpr const char* explicit_steps = "dop853";
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -76,6 +80,10 @@ std::vector<Point> Search::models_by_cost(const std::vector<int>& all_modes) con
   return models;
 }
 
+bool Search::over() const {
+  return stopped() || evaluator_.out_of_time() || !(within_time({}, best_cost()).seconds > 0);
+}
+
 double Search::best_cost() const {
   const Probe* best = cheapest(evaluator_, advice_.probes);
   return best != nullptr ? evaluator_.cost(*best) : infinite;
@@ -97,12 +105,20 @@ void Search::tell_probe(const Probe& probe, double best_before) {
   }
 }
 
+/// An allowance within what is left when the run of the cheapest so far, as a scene that says so is, is taken off.
+Allowance Search::within_time(Allowance allowance, double best) const {
+  if (best < infinite)
+    allowance.seconds = std::min(allowance.seconds, advice_.limit_seconds - best - evaluator_.spent());
+  return allowance;
+}
+
 const Probe& Search::run(const Point& point, const Allowance& allowance) {
   const double best_before = best_cost();
   const auto made =
       std::find_if(made_.begin(), made_.end(), [&](const Reference* run) { return run->point.key() == point.key(); });
-  advice_.probes.push_back(made != made_.end() ? evaluator_.judge(**made, yardstick())
-                                               : evaluator_.run(point, yardstick(), allowance));
+  advice_.probes.push_back(made != made_.end()
+                               ? evaluator_.judge(**made, yardstick())
+                               : evaluator_.run(point, yardstick(), within_time(allowance, best_before)));
   advice_.interrupted = advice_.interrupted || advice_.probes.back().outcome == Probe::Outcome::interrupted;
   tell_probe(advice_.probes.back(), best_before);
   return advice_.probes.back();
@@ -129,7 +145,7 @@ bool Search::limited_by_stability(const Point& model) const {
 
 /// Whether the model itself may be good enough: an integration that adds next to nothing tells, cut when it is clear.
 bool Search::model_holds(const Point& model) {
-  const auto look = [&](const char* integrator, double part) -> Probe& {
+  const auto look = [&](const std::string& integrator, double part) -> Probe& {
     Point point = model;
     point.integrator = integrator;
     point.tolerance = exact_enough_tolerance(part);
@@ -140,23 +156,29 @@ bool Search::model_holds(const Point& model) {
     if (!candidate && p.passed()) p.outcome = Probe::Outcome::no_candidate;
     return p;
   };
-  const auto wrong = [&](const Probe& p, double left) {
-    return p.outcome == Probe::Outcome::inaccurate && p.use > left;
+  const auto wrong = [&](const Probe& p) {
+    return p.outcome == Probe::Outcome::inaccurate && p.use > policy::clearly_inaccurate;
+  };
+  // By how much a run that came to its end is off by more than another integration makes up for.
+  const auto beyond = [&](const Probe& p) {
+    return p.outcome == Probe::Outcome::inaccurate ? yardstick().use_with_own(p.distances) - policy::hardly_inaccurate
+                                                   : 0;
   };
   if (limited_by_stability(model)) {
-    const Probe& p = look(implicit_steps, policy::implicit_enough);
+    // Where equations are stiff beyond what `imex` folds in, levels of the reference have shown it.
+    const std::string& levels = yardstick().reference.point.integrator;
+    const std::string implicit = levels == explicit_steps ? implicit_steps : levels;
+    const Probe& p = look(implicit, policy::implicit_enough);
     // A run that the reference had made has not been cut.
-    if (wrong(p, policy::clearly_inaccurate)) return false;
+    if (wrong(p)) return false;
     if (p.outcome != Probe::Outcome::refused && p.walk.end != Walk::End::reached) return true;
     // Not as exact as the other: what a digit less of tolerance changes is what integration may have added.
-    const double use = p.use, hardly = policy::hardly_inaccurate - yardstick().own_use();
-    if (p.outcome == Probe::Outcome::inaccurate && use > hardly)
-      return std::abs(look(implicit_steps, 10 * policy::implicit_enough).use - use) > use - hardly;
+    const double use = p.use, too_much = beyond(p);
+    if (too_much > 0) return std::abs(look(implicit, 10 * policy::implicit_enough).use - use) > too_much;
     if (p.outcome != Probe::Outcome::refused) return true;
   }
-  const Probe& p = look("dop853", policy::exact_enough);
-  return !wrong(p, p.walk.end == Walk::End::reached ? policy::hardly_inaccurate - yardstick().own_use()
-                                                    : policy::clearly_inaccurate);
+  const Probe& p = look(explicit_steps, policy::exact_enough);
+  return p.walk.end == Walk::End::reached ? !(beyond(p) > 0) : !wrong(p);
 }
 
 void Search::try_model(const Point& model) {
@@ -176,14 +198,19 @@ void Search::try_model(const Point& model) {
 }
 
 /// Implicit steps pay where stability, not accuracy, limits explicit ones: there the loosest tolerance is exact enough
-/// already, or costs too much. `imex` costs little more than an explicit step and is always tried.
+/// already, or costs too much, or a tighter one takes hardly more evaluations than stability asks. `imex` costs little
+/// more than an explicit step and is always tried.
 bool Search::worth_trying(const std::string& integrator, const Point& model) const {
   const auto limit =
       make_integrator(evaluator_.registry(), integrator, candidates_.tolerances.front())->stability_limit();
   if (integrator == implicit_steps || (limit && std::isfinite(*limit))) return true;
   bool tried = false;
+  const double stable = policy::as_stability_asks * explicit_evaluations(evaluator_.model(model));
   for (const Probe& p : advice_.probes) {
-    if (!p.point.same_model(model) || p.point.tolerance != candidates_.tolerances.front()) continue;
+    if (!p.point.same_model(model)) continue;
+    if (p.passed() && p.point.integrator == explicit_steps && static_cast<double>(p.walk.evaluations) < stable)
+      return true;
+    if (p.point.tolerance != candidates_.tolerances.front()) continue;
     if (p.passed() || p.outcome == Probe::Outcome::too_costly) return true;
     tried = true;
   }
@@ -195,7 +222,7 @@ void Search::try_integrations(const Point& model, const std::string& integrator)
   const double known = exact_enough_tolerance(policy::exact_enough);
   for (const double tolerance : candidates_.tolerances) {
     if (over()) return;
-    if (integrator == "dop853" && tolerance <= known && contains(candidates_.tolerances, known)) return;
+    if (integrator == explicit_steps && tolerance <= known && contains(candidates_.tolerances, known)) return;
     Point point = model;
     point.integrator = integrator;
     point.tolerance = tolerance;

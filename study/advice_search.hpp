@@ -24,8 +24,8 @@ class Search {
   void simplify_bodies();
   void look_up();
   [[nodiscard]] bool stopped() const { return advice_.interrupted || evaluator_.control().stop(); }
-  /// So too where there is no time left.
-  [[nodiscard]] bool over() const { return stopped() || evaluator_.out_of_time(); }
+  /// So too where there is no time left, but for the run of what is chosen as a scene that says so is.
+  [[nodiscard]] bool over() const;
 
  private:
   void tell_probe(const Probe& probe, double best_before);
@@ -42,6 +42,7 @@ class Search {
   [[nodiscard]] bool limited_by_stability(const Point& model) const;
   [[nodiscard]] bool passed(const std::vector<int>& modes) const;
   [[nodiscard]] double best_cost() const;
+  [[nodiscard]] Allowance within_time(Allowance allowance, double best) const;
   const Probe& run(const Point& point, const Allowance& allowance);
   void time_again(const Probe& probe);
   [[nodiscard]] const Yardstick& yardstick() const { return *advice_.yardstick; }

@@ -24,6 +24,8 @@ constexpr double late_reference_use = 0.5, last_patience = 0.35;
 constexpr double most_poor_reference_use = 0.25 * most_reference_use;
 /// The same of the finest one there is where none of the levels is as good: less is left to what is chosen.
 constexpr double last_reference_use = 0.7;
+/// And where it is less than this of the finest, runs are held against it: one that is near it may hold the accuracy.
+constexpr double any_reference_use = 1;
 /// Of the time allowed: what the search for a reference may take; and where none is known well enough for any advice
 /// by then, without which the rest would be for nothing.
 constexpr double reference_time = 0.75, last_reference_time = 0.9;
@@ -53,7 +55,8 @@ class YardstickSearch {
  private:
   void explain(const ReferenceFound& found);
   void tell(const Reference& r);
-  [[nodiscard]] bool affordable(const Walk& so_far);
+  [[nodiscard]] double left() const;
+  [[nodiscard]] bool affordable(const Walk& so_far, double whole);
   [[nodiscard]] Yardstick of(const Reference& r) const { return {r, accuracy_.limits(evaluator_.outputs(), r.scales)}; }
   [[nodiscard]] double own_use(const Reference& r) const { return of(r).own_use(); }
 
@@ -98,7 +101,8 @@ std::vector<Reference> YardstickSearch::find() {
            rich;
   };
   goal.steady = [&](const Reference& r) { return own_use(r) <= policy::most_reference_use; };
-  goal.afford = [&](const Walk& so_far) { return affordable(so_far); };
+  goal.left = [&] { return left(); };
+  goal.afford = [&](const Walk& so_far, double whole) { return affordable(so_far, whole); };
   goal.ended = [&](const Walk& run) {
     pace_.note(run.time - evaluator_.base().scene.initial.time, run.seconds);
     pace_.end();
@@ -106,24 +110,29 @@ std::vector<Reference> YardstickSearch::find() {
   ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); },
                                         evaluator_.registry(), evaluator_.outputs(), goal, evaluator_.control());
   advice_.interrupted = found.interrupted;
-  if (!found.reference && found.nearest && own_use(*found.nearest) <= policy::last_reference_use)
-    found.reference = std::move(found.nearest);
-  if (found.reference)
-    advice_.yardstick = of(*found.reference);
-  else
-    explain(found);
+  const double nearest_use = found.nearest ? own_use(*found.nearest) : std::numeric_limits<double>::infinity();
+  if (!found.reference && nearest_use > policy::last_reference_use) explain(found);
+  if (!found.reference && nearest_use < policy::any_reference_use) found.reference = std::move(found.nearest);
+  if (found.reference) advice_.yardstick = of(*found.reference);
   return std::move(found.runs);
 }
 
-/// Whether the reference's runs, this one gone on with at its pace, keep within their share of the time.
-bool YardstickSearch::affordable(const Walk& so_far) {
-  const Scene& scene = evaluator_.base().scene;
+/// What the reference's runs may still take of their share of the time [s].
+double YardstickSearch::left() const {
   const bool none_yet = least_use_ > policy::last_reference_use;
-  const double spent = evaluator_.spent(),
-               all = (none_yet ? policy::last_reference_time : policy::reference_time) * evaluator_.limit();
-  evaluator_.control().tell(spent, evaluator_.limit());
+  const double share = none_yet ? policy::last_reference_time : policy::reference_time;
+  return share * evaluator_.limit() - evaluator_.spent();
+}
+
+/// Whether the reference's runs, this one gone on with at its pace or at what it is expected to cost, keep within their
+/// share of the time.
+bool YardstickSearch::affordable(const Walk& so_far, double whole) {
+  const Scene& scene = evaluator_.base().scene;
+  evaluator_.control().tell(evaluator_.spent(), evaluator_.limit());
   pace_.note(so_far.time - scene.initial.time, so_far.seconds);
-  return may_go_on(so_far.seconds, pace_.rest(end_of_run(scene) - scene.initial.time), all - spent + so_far.seconds);
+  double rest = pace_.rest(end_of_run(scene) - scene.initial.time);
+  if (so_far.seconds < whole) rest = std::min(rest, whole - so_far.seconds);
+  return may_go_on(so_far.seconds, rest, left() + so_far.seconds);
 }
 
 /// Why no reference will do, and what may be asked instead.

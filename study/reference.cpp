@@ -18,11 +18,14 @@ namespace {
 constexpr double much_cheaper = 0.7;
 /// Times the change by the first family's: less is another one's merit, more may be chance.
 constexpr double clearly_less = 0.5;
-/// Modes beyond the last level of the higher rung that are looked at in the lower one.
-constexpr int most_modes_beyond = 8;
+/// Modes beyond the last level of the higher rung that are looked at in the lower one: as many as candidates have.
+constexpr int most_modes_beyond = 16;
 /// Times the cost of the last level of the higher rung: what more modes in the lower one may cost before the higher one
 /// has its next level, which costs about that.
 constexpr double next_level = 2;
+
+/// Of all that a reference may be off by, what the higher rung adds: below it more modes in the lower one tell more.
+constexpr double larger_part = 0.5;
 
 /// Times the tolerance of the coarsest level that is asked for: the loosest that is looked at.
 constexpr double looser_at_most = 10;
@@ -57,11 +60,11 @@ class ReferenceSearch {
       series.add(next.modes, fine->readings);
       if (series.size() > static_cast<std::size_t>(goal_.kinds) && known_by(*fine, series)) return;
       before = std::move(coarse), coarse = std::move(fine);
-      if (much_cheaper_below(coarse->point))
+      if (much_cheaper_below(coarse->point) && lower_affordable(*coarse, *before))
         found_.reference = add_to_lower(*coarse, *before, next_level * coarse->walk.seconds);
       if (found_.reference || found_.interrupted) return;
     }
-    if (!before || found_.interrupted) return;
+    if (!before || found_.interrupted || !lower_affordable(*coarse, *before)) return;
     const std::string trouble = found_.trouble;
     found_.reference = add_to_lower(*coarse, *before, std::numeric_limits<double>::infinity());
     if (!found_.reference && found_.trouble.empty()) found_.trouble = trouble;
@@ -190,6 +193,16 @@ class ReferenceSearch {
     return low && model_at_(*low).seconds < much_cheaper * model_at_(point).seconds;
   }
 
+  /// Whether there is time for a mode more in the rung below: for the run with as many modes, where it is not made, and
+  /// for one that costs more as the finer of two levels does.
+  [[nodiscard]] bool lower_affordable(const Reference& fine, const Reference& coarse) {
+    const std::optional<Point> low = below(fine.point);
+    if (!low || !goal_.left) return true;
+    const double base = fine.walk.seconds * model_at_(*low).seconds / model_at_(fine.point).seconds,
+                 more = base * std::max(1.0, fine.walk.seconds / coarse.walk.seconds);
+    return (runs_.contains(low->key()) ? more : base + more) <= goal_.left();
+  }
+
   /// More modes in the rung below, with what the higher one adds at the finer of two levels. Nothing where there is no
   /// rung below, a run does not end, what is added changes too much or the modes cost more; the richest is then kept as
   /// nearest.
@@ -210,6 +223,7 @@ class ReferenceSearch {
     if (!goal_.steady(added)) return {};
     extend_lower(*before, *base);
     const double began = found_.cpu_seconds;
+    bool settled = true;
     while (true) {
       if (richest_->point.modes > fine.point.modes) {
         Reference reached = lead(*richest_, *lower_);
@@ -218,9 +232,10 @@ class ReferenceSearch {
         for (std::size_t k = 0; k < changed.size(); ++k) reached.own[k] += changed[k];
         if (enough(reached)) return reached;
         keep_nearest(reached, {});
+        settled = relative_error(changed, fine.scales) < larger_part * relative_error(reached.own, fine.scales);
       }
-      if (richest_->point.modes >= fine.point.modes + most_modes_beyond || found_.cpu_seconds - began > seconds)
-        return {};
+      if (richest_->point.modes >= fine.point.modes + most_modes_beyond) return {};
+      if (!settled && found_.cpu_seconds - began > seconds) return {};
       Point point = richest_->point;
       ++point.modes;
       const std::optional<Reference> richer = at(integrated(point));
@@ -260,6 +275,15 @@ class ReferenceSearch {
     found_.nearest->coarser = coarser;
   }
 
+  /// What a run costs whose evaluations are as many as those of that integration have grown to; infinite where none
+  /// was made.
+  [[nodiscard]] double expected_seconds(const ModelAt& model, const Point& point) const {
+    for (const LevelIntegration& with : integrations_)
+      if (with.integrator == point.integrator && with.tolerance == point.tolerance)
+        return model.seconds * with.expected(point.modes);
+    return std::numeric_limits<double>::infinity();
+  }
+
   std::optional<Reference> run(const Point& point) {
     const ModelAt& model = model_at_(point);
     if (model.refused()) {
@@ -275,8 +299,9 @@ class ReferenceSearch {
       outputs_.raise_ranges(r.readings.values.back(), r.readings.values.front(), r.ranges);
       return true;
     };
+    const double whole = expected_seconds(model, point);
     const auto afford = [&](const Walk& so_far) {
-      return so_far.seconds <= most_seconds_ && (!goal_.afford || goal_.afford(so_far));
+      return so_far.seconds <= most_seconds_ && (!goal_.afford || goal_.afford(so_far, whole));
     };
     r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
                   {keep, afford, control_.interrupted});

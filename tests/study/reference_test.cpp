@@ -259,8 +259,9 @@ TEST(CorrectedReadings, PutADifferenceOnTopOfNumbersVectorsAndOrientations) {
   for (std::size_t i = 0; i < off.size(); ++i) EXPECT_LT(off[i], 1e-7) << outputs.list()[i].label;
 }
 
-/// Modes of the lower rung cost more and more, where a level of the higher one may end the search.
-TEST(FindReference, ModesOfALowerRungWaitForTheNextLevelWhereTheyCostMoreThanThat) {
+/// Modes of the lower rung cost more and more, where a level of the higher one may end the search; but not where what
+/// that adds is known better than the rest.
+TEST(FindReference, ModesOfALowerRungWaitForTheNextLevelWhereWhatThatAddsIsKnownWorst) {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml");
   const Prepared scene = prepare(values.set("time.end", Value(0.5), "the test"), plugins());
   const Outputs outputs = Outputs::all(scene.model());
@@ -270,23 +271,46 @@ TEST(FindReference, ModesOfALowerRungWaitForTheNextLevelWhereTheyCostMoreThanTha
   goal.first = {"", "orthogonal-polynomials", 2, "dop853", 1e-6, {}, {}};
   goal.levels = 6;
   goal.finer = 1;
-  goal.steady = [](const Reference&) { return true; };
+  double changed = 0;  // of what the higher rung adds
+  goal.steady = [&](const Reference& r) { return changed = relative_error(r.own, r.scales), true; };
   int lower_modes = 0;  // that were looked at
-  double level = 0, spent = 0;
+  double level = 0, spent = 0, own = 0;
   goal.enough = [&](const Reference& r) {
     if (!r.added_by) {
-      level = r.walk.seconds, spent = 0;
+      level = r.walk.seconds, spent = own = 0;
     } else if (r.point.modes > lower_modes) {
-      EXPECT_LE(spent, 2 * level) << "before " << r.text();
+      EXPECT_TRUE(spent <= 2 * level || changed < 0.5 * own) << "before " << r.text();
       spent += r.walk.seconds;
       lower_modes = r.point.modes;
     }
+    own = relative_error(r.own, r.scales);
     return !r.added_by && r.point.modes >= 6;
   };
   const ReferenceFound found = find_reference(at, plugins(), outputs, goal, {});
   ASSERT_TRUE(found.reference);
   EXPECT_EQ(found.reference->point.formulation, "exact");
   EXPECT_GT(lower_modes, 3) << "nothing was looked at";
+}
+
+TEST(FindReference, ALowerRungIsNotBegunWithWhereThereIsNoTimeForAModeMoreInIt) {
+  const Prepared scene = soft_pendulum();
+  const Outputs outputs(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const auto lower_runs = [&](double left) {
+    ReferenceGoal goal;
+    goal.first = {"", "orthogonal-polynomials", 2, "dop853", 1e-6, {}, {}};
+    goal.levels = 2;
+    goal.finer = 1;
+    goal.enough = [](const Reference& r) { return r.point.modes >= 5; };
+    goal.steady = [](const Reference&) { return true; };
+    goal.left = [=] { return left; };
+    const ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator.model(p); },
+                                                plugins(), outputs, goal, {});
+    return std::count_if(found.runs.begin(), found.runs.end(),
+                         [](const Reference& r) { return r.point.formulation == "quadratic"; });
+  };
+  EXPECT_EQ(lower_runs(0), 0);
+  EXPECT_GT(lower_runs(1e3), 0);
 }
 
 /// Were the highest formulation free, it would be run with as many modes as the other: what is put together is as far
