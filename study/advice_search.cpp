@@ -33,6 +33,8 @@ constexpr double nearly_as_cheap = 1.5;
 constexpr double many_evaluations = 5000, implicit_enough = 0.1;
 /// Times those: what is fewer was limited by stability.
 constexpr double as_stability_asks = 2;
+/// Of the time that is left: what a run may cost that is made before models are looked at.
+constexpr double little = 0.1;
 /// Runs that last longer [s] are timed once, shorter ones twice.
 constexpr double long_run = 0.2;
 }  // namespace policy
@@ -219,6 +221,9 @@ bool Search::worth_trying(const std::string& integrator, const Point& model) con
 
 /// From the loosest tolerance on, until one passes or costs more than the best so far.
 void Search::try_integrations(const Point& model, const std::string& integrator) {
+  Point tried = model;
+  tried.integrator = integrator;
+  if (!tried_.insert(tried.key()).second) return;
   const double known = exact_enough_tolerance(policy::exact_enough);
   for (const double tolerance : candidates_.tolerances) {
     if (over()) return;
@@ -232,16 +237,17 @@ void Search::try_integrations(const Point& model, const std::string& integrator)
   }
 }
 
-void Search::take(const std::vector<Reference>& runs) {
+bool Search::is_candidate(const Point& p) const {
   const Candidates& c = candidates_;
+  return contains(c.formulations, p.formulation) && contains(c.families, p.family) &&
+         (contains(c.modes, p.modes) || contains(c.more_modes, p.modes) || contains(c.most_modes, p.modes)) &&
+         contains(c.integrators, p.integrator) && contains(c.tolerances, p.tolerance);
+}
+
+void Search::take(const std::vector<Reference>& runs) {
   for (const Reference& run : runs) {
     made_.push_back(&run);
-    const Point& p = run.point;
-    const bool candidate =
-        contains(c.formulations, p.formulation) && contains(c.families, p.family) &&
-        (contains(c.modes, p.modes) || contains(c.more_modes, p.modes) || contains(c.most_modes, p.modes)) &&
-        contains(c.integrators, p.integrator) && contains(c.tolerances, p.tolerance);
-    if (!candidate || p.modes > yardstick().reference.point.modes) continue;
+    if (!is_candidate(run.point) || run.point.modes > yardstick().reference.point.modes) continue;
     Probe probe = evaluator_.judge(run, yardstick());
     if (!probe.passed()) continue;
     const double best_before = best_cost();
@@ -256,7 +262,61 @@ bool Search::passed(const std::vector<int>& modes) const {
                      [&](const Probe& p) { return p.passed() && contains(modes, p.point.modes); });
 }
 
+/// What runs of the reference have shown to hold may do so at looser tolerances: there may be no time for it later.
+/// What costs much of the time that is left is left to the search for cheaper models.
+void Search::loosen_taken() {
+  std::vector<Probe> held;
+  for (const Probe& p : advice_.probes)
+    if (p.passed()) held.push_back(p);
+  const auto cheaper = [&](const Probe& a, const Probe& b) { return evaluator_.cost(a) < evaluator_.cost(b); };
+  std::stable_sort(held.begin(), held.end(), cheaper);
+  for (const Probe& p : held) {
+    const double left = advice_.limit_seconds - evaluator_.spent();
+    if (over() || evaluator_.cost(p) > policy::little * left) return;
+    Point model = p.point;
+    model.integrator.clear(), model.tolerance = 0;
+    try_integrations(model, p.point.integrator);
+  }
+}
+
+/// Candidates that hold the accuracy themselves, but not with what the reference may be off by, and would cost clearly
+/// less than the best.
+std::vector<std::size_t> Search::near_misses() const {
+  const double best = best_cost();
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < advice_.probes.size(); ++i) {
+    const Probe& p = advice_.probes[i];
+    if (p.outcome == Probe::Outcome::inaccurate && p.walk.end == Walk::End::reached && p.use < 1 &&
+        is_candidate(p.point) && policy::nearly_as_cheap * evaluator_.cost(p) < best)
+      near.push_back(i);
+  }
+  return near;
+}
+
+std::optional<double> Search::own_wanted() const {
+  constexpr double part = 0.5;  // of what such a candidate leaves: a reference that is known better moves too
+  std::optional<double> wanted;
+  for (const std::size_t i : near_misses()) wanted = std::max(wanted.value_or(0), part * (1 - advice_.probes[i].use));
+  return wanted;
+}
+
+void Search::judge_again() {
+  std::vector<std::size_t> all = near_misses();
+  for (std::size_t i = 0; i < advice_.probes.size(); ++i)
+    if (advice_.probes[i].passed()) all.push_back(i);
+  for (const std::size_t i : all) {
+    if (stopped()) return;
+    Probe& p = advice_.probes[i];
+    const double best_before = best_cost();
+    Probe again = evaluator_.run(p.point, yardstick(), within_time({}, 0));
+    if (again.walk.end != Walk::End::reached) continue;
+    p = std::move(again);
+    tell_probe(p, best_before);
+  }
+}
+
 void Search::try_models() {
+  loosen_taken();
   // Runs of the reference may hold with more modes than were tried so far: there may be cheaper ones.
   try_models(candidates_.modes);
   if (over() || passed(candidates_.modes)) return;

@@ -20,6 +20,11 @@ class Search {
   /// \param runs must outlive this
   void take(const std::vector<Reference>& runs);
   void try_models();
+  /// What the reference's own error is to be, as a share of the accuracy, that candidates which would cost clearly less
+  /// than the best are held to hold; nothing where there are none.
+  [[nodiscard]] std::optional<double> own_wanted() const;
+  /// Measures what holds, or would with a better known reference, against that of the advice.
+  void judge_again();
   void choose();
   void simplify_bodies();
   void look_up();
@@ -35,6 +40,9 @@ class Search {
   [[nodiscard]] std::vector<Point> models_by_cost(const std::vector<int>& modes) const;
   void try_models(const std::vector<int>& modes);
   void try_known(const std::vector<int>& modes);
+  void loosen_taken();
+  [[nodiscard]] bool is_candidate(const Point& point) const;
+  [[nodiscard]] std::vector<std::size_t> near_misses() const;
   void try_tightest();
   void try_model(const Point& model);
   bool model_holds(const Point& model);
@@ -52,6 +60,7 @@ class Search {
   Advice& advice_;
   const Finding& finding_;
   std::vector<const Reference*> made_;  ///< runs that need not be made again
+  std::set<std::string> tried_;         ///< models with an integrator, all of whose tolerances have been tried
   std::set<std::string> told_;          ///< formulations of which it has been told that a model is not exact enough
   std::string told_best_;               ///< the point that was last told to hold
   bool tightest_ = false;               ///< models are looked at with the tightest tolerance of all candidates

@@ -51,8 +51,11 @@ class YardstickSearch {
       : evaluator_(evaluator), candidates_(candidates), accuracy_(accuracy), advice_(advice), finding_(finding) {}
 
   std::vector<Reference> find();
+  bool refine(double own, const std::vector<Reference>& runs);
 
  private:
+  [[nodiscard]] ReferenceGoal goal();
+  [[nodiscard]] ReferenceFound search(const ReferenceGoal& goal);
   void explain(const ReferenceFound& found);
   void tell(const Reference& r);
   [[nodiscard]] double left() const;
@@ -65,12 +68,14 @@ class YardstickSearch {
   const Accuracy& accuracy_;
   Advice& advice_;
   const Finding& finding_;
-  Pace pace_;                                                   ///< of the reference's run under way
-  double least_use_ = std::numeric_limits<double>::infinity();  ///< of the accuracy: of the best reference so far
-  double told_ = std::numeric_limits<double>::infinity();       ///< of the accuracy: the least told so far
+  Pace pace_;                                                      ///< of the reference's run under way
+  double least_use_ = std::numeric_limits<double>::infinity();     ///< of the accuracy: of the best reference so far
+  double most_seconds_ = std::numeric_limits<double>::infinity();  ///< of CPU time, that all may have taken by the end
+  double told_ = std::numeric_limits<double>::infinity();          ///< of the accuracy: the least told so far
 };
 
-std::vector<Reference> YardstickSearch::find() {
+/// What any search for a reference is told but for when it ends.
+ReferenceGoal YardstickSearch::goal() {
   const bool modal = candidates_.modes.back() > 0;
   ReferenceGoal goal;
   ReferenceFamilies families = reference_families(candidates_, evaluator_.base().model());
@@ -87,6 +92,24 @@ std::vector<Reference> YardstickSearch::find() {
   goal.finer = modal ? 1 : policy::finer_integration;
   goal.tightest = modal ? policy::tightest : policy::tightest_integration;
   goal.integration = [&](const Reference& r) { return own_use(r) / policy::integration_use; };
+  goal.steady = [&](const Reference& r) { return own_use(r) <= policy::most_reference_use; };
+  goal.left = [&] { return left(); };
+  goal.afford = [&](const Walk& so_far, double whole) { return affordable(so_far, whole); };
+  goal.ended = [&](const Walk& run) {
+    pace_.note(run.time - evaluator_.base().scene.initial.time, run.seconds);
+    pace_.end();
+  };
+  return goal;
+}
+
+ReferenceFound YardstickSearch::search(const ReferenceGoal& goal) {
+  return find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); }, evaluator_.registry(),
+                        evaluator_.outputs(), goal, evaluator_.control());
+}
+
+std::vector<Reference> YardstickSearch::find() {
+  ReferenceGoal goal = this->goal();
+  const bool modal = candidates_.modes.back() > 0;
   goal.enough = [&](const Reference& r) {
     const double use = own_use(r);
     least_use_ = std::min(least_use_, use);
@@ -100,15 +123,7 @@ std::vector<Reference> YardstickSearch::find() {
                                                        : policy::good_reference_use) &&
            rich;
   };
-  goal.steady = [&](const Reference& r) { return own_use(r) <= policy::most_reference_use; };
-  goal.left = [&] { return left(); };
-  goal.afford = [&](const Walk& so_far, double whole) { return affordable(so_far, whole); };
-  goal.ended = [&](const Walk& run) {
-    pace_.note(run.time - evaluator_.base().scene.initial.time, run.seconds);
-    pace_.end();
-  };
-  ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); },
-                                        evaluator_.registry(), evaluator_.outputs(), goal, evaluator_.control());
+  ReferenceFound found = search(goal);
   advice_.interrupted = found.interrupted;
   const double nearest_use = found.nearest ? own_use(*found.nearest) : std::numeric_limits<double>::infinity();
   if (!found.reference && nearest_use > policy::last_reference_use) explain(found);
@@ -117,11 +132,28 @@ std::vector<Reference> YardstickSearch::find() {
   return std::move(found.runs);
 }
 
+bool YardstickSearch::refine(double own, const std::vector<Reference>& runs) {
+  most_seconds_ = 2 * evaluator_.spent();
+  least_use_ = told_ = advice_.yardstick->own_use();
+  ReferenceGoal goal = this->goal();
+  goal.made = runs;
+  goal.enough = [&](const Reference& r) {
+    tell(r);
+    return own_use(r) <= own;
+  };
+  ReferenceFound found = search(goal);
+  advice_.interrupted = found.interrupted;
+  if (!found.reference) found.reference = std::move(found.nearest);
+  if (!found.reference || !(own_use(*found.reference) < advice_.yardstick->own_use())) return false;
+  advice_.yardstick = of(*found.reference);
+  return true;
+}
+
 /// What the reference's runs may still take of their share of the time [s].
 double YardstickSearch::left() const {
   const bool none_yet = least_use_ > policy::last_reference_use;
   const double share = none_yet ? policy::last_reference_time : policy::reference_time;
-  return share * evaluator_.limit() - evaluator_.spent();
+  return std::min(share * evaluator_.limit(), most_seconds_) - evaluator_.spent();
 }
 
 /// Whether the reference's runs, this one gone on with at its pace or at what it is expected to cost, keep within their
@@ -188,6 +220,11 @@ void YardstickSearch::tell(const Reference& r) {
 std::vector<Reference> find_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
                                       Advice& advice, const Finding& finding) {
   return YardstickSearch(evaluator, candidates, accuracy, advice, finding).find();
+}
+
+bool refine_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice,
+                      const Finding& finding, double own, const std::vector<Reference>& runs) {
+  return YardstickSearch(evaluator, candidates, accuracy, advice, finding).refine(own, runs);
 }
 
 }  // namespace withy::study

@@ -14,4 +14,10 @@ namespace withy::study {
 std::vector<Reference> find_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
                                       Advice& advice, const Finding& finding);
 
+/// Goes on with that search until the reference is known so well, for as long as all has taken so far at most and no
+/// longer than its share of the time. \param own as a share of the accuracy \param runs made so far \return whether
+/// the advice's yardstick is now one that is better known
+bool refine_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice,
+                      const Finding& finding, double own, const std::vector<Reference>& runs);
+
 }  // namespace withy::study

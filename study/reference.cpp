@@ -32,12 +32,17 @@ constexpr double looser_at_most = 10;
 /// Times what the coarsest level costs with the integrations known so far: what it may cost with another, which may be
 /// the better one with more modes.
 constexpr double worth_measuring = 4;
+/// Of the time that is left: what that may cost in any case. Where explicit steps cost little with two modes, one that
+/// costs ten times as much may be the better one with ten.
+constexpr double look_share = 0.01;
 
 class ReferenceSearch {
  public:
   ReferenceSearch(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
                   const Outputs& outputs, const ReferenceGoal& goal, const Control& control)
-      : model_at_(model_at), registry_(registry), outputs_(outputs), goal_(goal), control_(control) {}
+      : model_at_(model_at), registry_(registry), outputs_(outputs), goal_(goal), control_(control) {
+    for (const Reference& run : goal.made) runs_.emplace(run.point.key(), run);
+  }
 
   /// Level after level, until one is known well enough or nothing more can be had.
   void find() {
@@ -119,7 +124,7 @@ class ReferenceSearch {
       const auto little = [&](const Reference& r) { return goal_.integration(r) <= 1; };
       const double loosest = std::max(looser_at_most * first.tolerance, goal_.tightest);
       if (found_.interrupted) break;
-      most_seconds_ = worth_measuring * least;
+      most_seconds_ = std::max(worth_measuring * least, worth_a_look());
       auto measured = loosest_integration({outputs_, run_with, little, loosest, goal_.tightest});
       if (!measured) continue;
       integrations_.push_back(std::move(*measured));
@@ -127,13 +132,16 @@ class ReferenceSearch {
       least = std::min(least, at(look)->walk.seconds);
       // How it goes on with modes.
       ++look.modes;
-      most_seconds_ = worth_measuring * least_of_next;
+      most_seconds_ = std::max(worth_measuring * least_of_next, worth_a_look());
       if (const auto next = at(look)) least_of_next = std::min(least_of_next, next->walk.seconds);
       look.modes = first.modes;
     }
     most_seconds_ = std::numeric_limits<double>::infinity();
     found_.trouble = trouble, found_.unaffordable = false;
   }
+
+  /// What a run that measures an integration may cost in any case [s].
+  [[nodiscard]] double worth_a_look() const { return goal_.left ? look_share * goal_.left() : 0; }
 
   /// What levels may be integrated with: explicit steps, such that fold in what is stiff in bodies, and such that care
   /// for nothing that is stiff, as a damper on a hinge between light bodies is.
@@ -170,10 +178,9 @@ class ReferenceSearch {
   /// A run, made once; nothing where it does not come to its end.
   std::optional<Reference> at(const Point& point) {
     const auto made = runs_.find(point.key());
-    if (made != runs_.end()) return made->second;
-    std::optional<Reference> reference = run(point);
+    std::optional<Reference> reference = made != runs_.end() ? made->second : run(point);
     if (!reference) return {};
-    runs_.emplace(point.key(), *reference);
+    if (made == runs_.end()) runs_.emplace(point.key(), *reference);
     for (LevelIntegration& with : integrations_)
       if (with.integrator == point.integrator && with.tolerance == point.tolerance)
         with.evaluations[point.modes] = static_cast<double>(reference->walk.evaluations);

@@ -56,6 +56,7 @@ struct ReferenceGoal {
   /// of the coarsest tell, in the lowest rung that truncates nothing, from ten times the tolerance of `first` on.
   /// Empty, or without modes: levels have the integrator of `first`, and its tolerance by `finer`.
   std::function<double(const Reference&)> integration;
+  std::vector<Reference> made = {};              ///< runs that need not be made again
   std::function<bool(const Reference&)> enough;  ///< empty: one level is
   /// Whether what a higher rung adds has changed little enough from the level before, as `own`; empty: never.
   std::function<bool(const Reference&)> steady;

@@ -235,6 +235,20 @@ TEST(StudyAdvice, WhereTheReferenceIsKnownToNearlyTheAccuracyARunThatIsNearItIsA
   EXPECT_THAT(none.trouble, HasSubstr("no reference is exact enough to measure against"));
 }
 
+/// Three modes hold 0.1 % on the screw with less left over than the reference may be off by when it is first good
+/// enough.
+TEST(StudyAdvice, WhatCostsLessAndWouldHoldWithABetterKnownReferenceGetsOne) {
+  const Prepared screw = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/screw.yaml"), plugins());
+  const Outputs outputs(screw.model());
+  Evaluator evaluator(screw, plugins(), outputs, {});
+  const Advice advice = advise(
+      evaluator, candidates_for(screw, plugins(), {{"exact"}, {""}, {1, 2, 3, 4}, {"dop853"}, {1e-2, 1e-3, 1e-4}, {}}),
+      Accuracy::parse("0.1%"));
+  ASSERT_TRUE(advice.choice) << advice.trouble;
+  EXPECT_EQ(advice.choice->point.modes, 3);
+  EXPECT_LE(advice.yardstick->use_with_own(advice.choice->distances), 1);
+}
+
 /// The boom's fast modes, not its motion, limit explicit steps, but at the loosest tolerance these leave too much in
 /// them.
 TEST(StudyAdvice, ImplicitStepsAreTriedWhereAnExactRunTakesWhatStabilityAsks) {
