@@ -8,7 +8,7 @@
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/accuracy.hpp"
-#include "withy/study/level_integration.hpp"
+#include "withy/study/level_integrations.hpp"
 #include "withy/study/output_reader.hpp"
 
 namespace withy::study {
@@ -27,28 +27,24 @@ constexpr double next_level = 2;
 /// Of all that a reference may be off by, what the higher rung adds: below it more modes in the lower one tell more.
 constexpr double larger_part = 0.5;
 
-/// Times the tolerance of the coarsest level that is asked for: the loosest that is looked at.
-constexpr double looser_at_most = 10;
-/// Times what the coarsest level costs with the integrations known so far: what it may cost with another, which may be
-/// the better one with more modes.
-constexpr double worth_measuring = 4;
-/// Of the time that is left: what that may cost in any case. Where explicit steps cost little with two modes, one that
-/// costs ten times as much may be the better one with ten.
-constexpr double look_share = 0.01;
-
 class ReferenceSearch {
  public:
   ReferenceSearch(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
                   const Outputs& outputs, const ReferenceGoal& goal, const Control& control)
-      : model_at_(model_at), registry_(registry), outputs_(outputs), goal_(goal), control_(control) {
+      : model_at_(model_at),
+        registry_(registry),
+        outputs_(outputs),
+        goal_(goal),
+        control_(control),
+        integrations_(model_at, registry, outputs, goal) {
     for (const Reference& run : goal.made) runs_.emplace(run.point.key(), run);
   }
 
   /// Level after level, until one is known well enough or nothing more can be had.
   void find() {
     Point first = goal_.first;
-    if (goal_.integration && first.modes > 0) measure_integrations(first);
-    first = integrated(first);
+    if (goal_.integration && first.modes > 0) measure_integrations();
+    first = integrations_.on(first);
     if (!found_.interrupted) first.family = best_family(first);
     std::optional<Reference> before, coarse = found_.interrupted ? std::nullopt : begin(first);
     if (!coarse) return;
@@ -107,62 +103,16 @@ class ReferenceSearch {
     return best;
   }
 
-  /// At which tolerance each integrator adds as little to a level as it may: by the coarsest, in the lowest rung that
-  /// truncates nothing.
-  void measure_integrations(const Point& first) {
-    Point look = first;
-    look.formulation = reference_formulations(registry_).back();
-    const ModelAt& model = model_at_(look);
-    if (model.refused()) return;
-    const std::string trouble = found_.trouble;  // a run that is not worth its time is none
-    double least = std::numeric_limits<double>::infinity(), least_of_next = least;
-    for (const std::string& integrator : level_integrators(*model.prepared)) {
-      const auto run_with = [&](double tolerance) {
-        look.integrator = integrator, look.tolerance = tolerance;
-        return at(look);
-      };
-      const auto little = [&](const Reference& r) { return goal_.integration(r) <= 1; };
-      const double loosest = std::max(looser_at_most * first.tolerance, goal_.tightest);
-      if (found_.interrupted) break;
-      most_seconds_ = std::max(worth_measuring * least, worth_a_look());
-      auto measured = loosest_integration({outputs_, run_with, little, loosest, goal_.tightest});
-      if (!measured) continue;
-      integrations_.push_back(std::move(*measured));
-      look.tolerance = integrations_.back().tolerance;
-      least = std::min(least, at(look)->walk.seconds);
-      // How it goes on with modes.
-      ++look.modes;
-      most_seconds_ = std::max(worth_measuring * least_of_next, worth_a_look());
-      if (const auto next = at(look)) least_of_next = std::min(least_of_next, next->walk.seconds);
-      look.modes = first.modes;
-    }
+  /// A run that is not worth its time is no trouble.
+  void measure_integrations() {
+    const std::string trouble = found_.trouble;
+    const auto run = [&](const Point& point, double seconds) {
+      most_seconds_ = seconds;
+      return at(point);
+    };
+    integrations_.measure(run, [&] { return found_.interrupted; });
     most_seconds_ = std::numeric_limits<double>::infinity();
     found_.trouble = trouble, found_.unaffordable = false;
-  }
-
-  /// What a run that measures an integration may cost in any case [s].
-  [[nodiscard]] double worth_a_look() const { return goal_.left ? look_share * goal_.left() : 0; }
-
-  /// What levels may be integrated with: explicit steps, such that fold in what is stiff in bodies, and such that care
-  /// for nothing that is stiff, as a damper on a hinge between light bodies is.
-  [[nodiscard]] std::vector<std::string> level_integrators(const Prepared& prepared) const {
-    std::vector<std::string> all{goal_.first.integrator};
-    if (prepared.equations->linearly_implicit() != nullptr) all.emplace_back("imex");
-    if (registry_.find<Integrator>("radau") != nullptr) all.emplace_back("radau");
-    return all;
-  }
-
-  /// A level with the integration that costs least of those measured. Fast modes that limit explicit steps ring at a
-  /// loose tolerance, the more the more modes there are; implicit steps damp them.
-  [[nodiscard]] Point integrated(Point point) const {
-    if (integrations_.empty()) return point;
-    Point plain = point;
-    plain.formulation = reference_formulations(registry_).back();
-    const ModelAt& model = model_at_(plain);
-    const LevelIntegration& with =
-        cheapest_with(integrations_, model.refused() ? 0 : explicit_evaluations(model), point.modes);
-    point.integrator = with.integrator, point.tolerance = with.tolerance;
-    return point;
   }
 
   /// The coarsest level, in the richest formulation that comes to the end.
@@ -181,9 +131,7 @@ class ReferenceSearch {
     std::optional<Reference> reference = made != runs_.end() ? made->second : run(point);
     if (!reference) return {};
     if (made == runs_.end()) runs_.emplace(point.key(), *reference);
-    for (LevelIntegration& with : integrations_)
-      if (with.integrator == point.integrator && with.tolerance == point.tolerance)
-        with.evaluations[point.modes] = static_cast<double>(reference->walk.evaluations);
+    integrations_.note(*reference);
     return reference;
   }
 
@@ -191,7 +139,7 @@ class ReferenceSearch {
   [[nodiscard]] Point finer(Point point) const {
     if (point.modes > 0) ++point.modes;
     point.tolerance = std::max(goal_.finer * point.tolerance, goal_.tightest);
-    return integrated(point);
+    return integrations_.on(point);
   }
 
   /// Whether an evaluation costs a fraction in the rung below.
@@ -245,7 +193,7 @@ class ReferenceSearch {
       if (!settled && found_.cpu_seconds - began > seconds) return {};
       Point point = richest_->point;
       ++point.modes;
-      const std::optional<Reference> richer = at(integrated(point));
+      const std::optional<Reference> richer = at(integrations_.on(point));
       if (!richer) return {};
       extend_lower(*richest_, *richer);
     }
@@ -267,9 +215,7 @@ class ReferenceSearch {
   [[nodiscard]] Reference lead(Reference run, const ModeSeries& series) const {
     run.readings = series.limit();
     run.own = series.own();
-    for (const LevelIntegration& with : integrations_)
-      if (with.integrator == run.point.integrator)
-        for (std::size_t k = 0; k < run.own.size(); ++k) run.own[k] += with.added[k];
+    integrations_.add_to(run);
     run.extrapolated = series.extrapolated();
     return run;
   }
@@ -280,15 +226,6 @@ class ReferenceSearch {
     if (found_.nearest && off(r) > off(*found_.nearest)) return;
     found_.nearest = r;
     found_.nearest->coarser = coarser;
-  }
-
-  /// What a run costs whose evaluations are as many as those of that integration have grown to; infinite where none
-  /// was made.
-  [[nodiscard]] double expected_seconds(const ModelAt& model, const Point& point) const {
-    for (const LevelIntegration& with : integrations_)
-      if (with.integrator == point.integrator && with.tolerance == point.tolerance)
-        return model.seconds * with.expected(point.modes);
-    return std::numeric_limits<double>::infinity();
   }
 
   std::optional<Reference> run(const Point& point) {
@@ -306,7 +243,7 @@ class ReferenceSearch {
       outputs_.raise_ranges(r.readings.values.back(), r.readings.values.front(), r.ranges);
       return true;
     };
-    const double whole = expected_seconds(model, point);
+    const double whole = integrations_.expected_seconds(point);
     const auto afford = [&](const Walk& so_far) {
       return so_far.seconds <= most_seconds_ && (!goal_.afford || goal_.afford(so_far, whole));
     };
@@ -352,9 +289,9 @@ class ReferenceSearch {
   const ReferenceGoal& goal_;
   const Control& control_;
   ReferenceFound found_;
-  std::optional<ModeSeries> lower_;             ///< of the rung below, where more modes are looked at
-  std::optional<Reference> richest_;            ///< the last of its runs
-  std::vector<LevelIntegration> integrations_;  ///< as measured; empty: of the goal
+  std::optional<ModeSeries> lower_;   ///< of the rung below, where more modes are looked at
+  std::optional<Reference> richest_;  ///< the last of its runs
+  LevelIntegrations integrations_;
   double most_seconds_ = std::numeric_limits<double>::infinity();  ///< that a run may cost
   std::map<std::string, Reference> runs_;                          ///< that came to their end, by the point's key
 };
