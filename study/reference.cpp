@@ -18,14 +18,11 @@ namespace {
 constexpr double much_cheaper = 0.7;
 /// Times the change by the first family's: less is another one's merit, more may be chance.
 constexpr double clearly_less = 0.5;
-/// Modes beyond the last level of the higher rung that are looked at in the lower one: as many as candidates have.
-constexpr int most_modes_beyond = 16;
+/// Modes beyond the last level of the higher rung that are looked at in the lower one.
+constexpr int most_modes_beyond = 8;
 /// Times the cost of the last level of the higher rung: what more modes in the lower one may cost before the higher one
 /// has its next level, which costs about that.
 constexpr double next_level = 2;
-
-/// Of all that a reference may be off by, what the higher rung adds: below it more modes in the lower one tell more.
-constexpr double larger_part = 0.5;
 
 class ReferenceSearch {
  public:
@@ -169,6 +166,8 @@ class ReferenceSearch {
     if (!before) return {};
     const auto base = at(*low);
     if (!base) return {};
+    beside_.insert_or_assign(before->point.modes, *before);
+    beside_.insert_or_assign(base->point.modes, *base);
     // What the coarser level would have added.
     const Distances changed =
         distances(outputs_, corrected(outputs_, base->readings, coarse.readings, before->readings), fine.readings)
@@ -178,7 +177,6 @@ class ReferenceSearch {
     if (!goal_.steady(added)) return {};
     extend_lower(*before, *base);
     const double began = found_.cpu_seconds;
-    bool settled = true;
     while (true) {
       if (richest_->point.modes > fine.point.modes) {
         Reference reached = lead(*richest_, *lower_);
@@ -187,10 +185,9 @@ class ReferenceSearch {
         for (std::size_t k = 0; k < changed.size(); ++k) reached.own[k] += changed[k];
         if (enough(reached)) return reached;
         keep_nearest(reached, {});
-        settled = relative_error(changed, fine.scales) < larger_part * relative_error(reached.own, fine.scales);
       }
-      if (richest_->point.modes >= fine.point.modes + most_modes_beyond) return {};
-      if (!settled && found_.cpu_seconds - began > seconds) return {};
+      if (richest_->point.modes >= fine.point.modes + most_modes_beyond || found_.cpu_seconds - began > seconds)
+        return {};
       Point point = richest_->point;
       ++point.modes;
       const std::optional<Reference> richer = at(integrations_.on(point));
@@ -200,11 +197,14 @@ class ReferenceSearch {
   }
 
   /// Adds a run to the series of the lower rung, which goes on from level to level of the higher one and may be ahead
-  /// of it; where the run does not follow its last, it begins anew with the one before.
+  /// of it; where the run does not follow its last, it begins anew with those that were made beside levels.
   void extend_lower(const Reference& before, const Reference& run) {
     if (lower_ && richest_->point.modes >= run.point.modes) return;
     if (!lower_ || richest_->point.modes != before.point.modes) {
       lower_.emplace(outputs_, goal_.kinds);
+      int first = before.point.modes;
+      while (beside_.contains(first - 1)) --first;
+      for (; first < before.point.modes; ++first) lower_->add(first, beside_.at(first).readings);
       lower_->add(before.point.modes, before.readings);
     }
     lower_->add(run.point.modes, run.readings);
@@ -290,6 +290,7 @@ class ReferenceSearch {
   const Control& control_;
   ReferenceFound found_;
   std::optional<ModeSeries> lower_;   ///< of the rung below, where more modes are looked at
+  std::map<int, Reference> beside_;   ///< runs in that rung with as many modes as levels, by modes
   std::optional<Reference> richest_;  ///< the last of its runs
   LevelIntegrations integrations_;
   double most_seconds_ = std::numeric_limits<double>::infinity();  ///< that a run may cost
