@@ -66,6 +66,16 @@ void finish(Search& search, Evaluator& evaluator, Advice& advice) {
   for (Probe& p : advice.above) p.cost = evaluator.cost(p);
 }
 
+/// Goes on with the reference where what would cost clearly less than the best holds the accuracy itself, but not with
+/// what the reference may be off by.
+void refine(Search& search, Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
+            Advice& advice, const Finding& finding, const std::vector<Reference>& runs) {
+  if (search.over()) return;
+  const std::optional<double> own = search.own_wanted();
+  if (!own || *own >= advice.yardstick->own_use()) return;
+  if (refine_yardstick(evaluator, candidates, accuracy, advice, finding, *own, runs)) search.judge_again();
+}
+
 }  // namespace
 
 Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, const Finding& finding) {
@@ -88,12 +98,17 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   if (advice.yardstick && !search.stopped()) {
     search.take(runs);
     search.try_models();
+    refine(search, evaluator, candidates, accuracy, advice, finding, runs);
     search.choose();
     search.simplify_bodies();
     finish(search, evaluator, advice);
   }
   advice.interrupted = search.stopped();
   if (advice.interrupted) advice.choice.reset();
+  if (advice.choice)
+    advice.trouble.clear(), advice.nearest.reset();
+  else if (!advice.trouble.empty())
+    advice.yardstick.reset();
   advice.cpu_seconds = evaluator.spent();
   evaluator.limit(std::numeric_limits<double>::infinity());
   return advice;

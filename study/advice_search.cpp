@@ -31,12 +31,18 @@ constexpr double nearly_as_cheap = 1.5;
 /// Evaluations of `dop853` at its stability limit beyond which a model is looked at with implicit steps, and the
 /// tolerance of these over the accuracy: they are a tenth as many there.
 constexpr double many_evaluations = 5000, implicit_enough = 0.1;
+/// Times those: what is fewer was limited by stability.
+constexpr double as_stability_asks = 2;
+/// Of the time that is left: what a run may cost that is made before models are looked at.
+constexpr double little = 0.1;
 /// Runs that last longer [s] are timed once, shorter ones twice.
 constexpr double long_run = 0.2;
 }  // namespace policy
 
 /// Linearly implicit: a step costs little more than an explicit one.
 constexpr const char* implicit_steps = "imex";
+/// Those whose evaluations at the stability limit are known.
+constexpr const char* explicit_steps = "dop853";
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -76,6 +82,10 @@ std::vector<Point> Search::models_by_cost(const std::vector<int>& all_modes) con
   return models;
 }
 
+bool Search::over() const {
+  return stopped() || evaluator_.out_of_time() || !(within_time({}, best_cost()).seconds > 0);
+}
+
 double Search::best_cost() const {
   const Probe* best = cheapest(evaluator_, advice_.probes);
   return best != nullptr ? evaluator_.cost(*best) : infinite;
@@ -97,12 +107,20 @@ void Search::tell_probe(const Probe& probe, double best_before) {
   }
 }
 
+/// An allowance within what is left when the run of the cheapest so far, as a scene that says so is, is taken off.
+Allowance Search::within_time(Allowance allowance, double best) const {
+  if (best < infinite)
+    allowance.seconds = std::min(allowance.seconds, advice_.limit_seconds - best - evaluator_.spent());
+  return allowance;
+}
+
 const Probe& Search::run(const Point& point, const Allowance& allowance) {
   const double best_before = best_cost();
   const auto made =
       std::find_if(made_.begin(), made_.end(), [&](const Reference* run) { return run->point.key() == point.key(); });
-  advice_.probes.push_back(made != made_.end() ? evaluator_.judge(**made, yardstick())
-                                               : evaluator_.run(point, yardstick(), allowance));
+  advice_.probes.push_back(made != made_.end()
+                               ? evaluator_.judge(**made, yardstick())
+                               : evaluator_.run(point, yardstick(), within_time(allowance, best_before)));
   advice_.interrupted = advice_.interrupted || advice_.probes.back().outcome == Probe::Outcome::interrupted;
   tell_probe(advice_.probes.back(), best_before);
   return advice_.probes.back();
@@ -129,7 +147,7 @@ bool Search::limited_by_stability(const Point& model) const {
 
 /// Whether the model itself may be good enough: an integration that adds next to nothing tells, cut when it is clear.
 bool Search::model_holds(const Point& model) {
-  const auto look = [&](const char* integrator, double part) -> Probe& {
+  const auto look = [&](const std::string& integrator, double part) -> Probe& {
     Point point = model;
     point.integrator = integrator;
     point.tolerance = exact_enough_tolerance(part);
@@ -140,23 +158,29 @@ bool Search::model_holds(const Point& model) {
     if (!candidate && p.passed()) p.outcome = Probe::Outcome::no_candidate;
     return p;
   };
-  const auto wrong = [&](const Probe& p, double left) {
-    return p.outcome == Probe::Outcome::inaccurate && p.use > left;
+  const auto wrong = [&](const Probe& p) {
+    return p.outcome == Probe::Outcome::inaccurate && p.use > policy::clearly_inaccurate;
+  };
+  // By how much a run that came to its end is off by more than another integration makes up for.
+  const auto beyond = [&](const Probe& p) {
+    return p.outcome == Probe::Outcome::inaccurate ? yardstick().use_with_own(p.distances) - policy::hardly_inaccurate
+                                                   : 0;
   };
   if (limited_by_stability(model)) {
-    const Probe& p = look(implicit_steps, policy::implicit_enough);
+    // Where equations are stiff beyond what `imex` folds in, levels of the reference have shown it.
+    const std::string& levels = yardstick().reference.point.integrator;
+    const std::string implicit = levels == explicit_steps ? implicit_steps : levels;
+    const Probe& p = look(implicit, policy::implicit_enough);
     // A run that the reference had made has not been cut.
-    if (wrong(p, policy::clearly_inaccurate)) return false;
+    if (wrong(p)) return false;
     if (p.outcome != Probe::Outcome::refused && p.walk.end != Walk::End::reached) return true;
     // Not as exact as the other: what a digit less of tolerance changes is what integration may have added.
-    const double use = p.use, hardly = policy::hardly_inaccurate - yardstick().own_use();
-    if (p.outcome == Probe::Outcome::inaccurate && use > hardly)
-      return std::abs(look(implicit_steps, 10 * policy::implicit_enough).use - use) > use - hardly;
+    const double use = p.use, too_much = beyond(p);
+    if (too_much > 0) return std::abs(look(implicit, 10 * policy::implicit_enough).use - use) > too_much;
     if (p.outcome != Probe::Outcome::refused) return true;
   }
-  const Probe& p = look("dop853", policy::exact_enough);
-  return !wrong(p, p.walk.end == Walk::End::reached ? policy::hardly_inaccurate - yardstick().own_use()
-                                                    : policy::clearly_inaccurate);
+  const Probe& p = look(explicit_steps, policy::exact_enough);
+  return p.walk.end == Walk::End::reached ? !(beyond(p) > 0) : !wrong(p);
 }
 
 void Search::try_model(const Point& model) {
@@ -176,14 +200,19 @@ void Search::try_model(const Point& model) {
 }
 
 /// Implicit steps pay where stability, not accuracy, limits explicit ones: there the loosest tolerance is exact enough
-/// already, or costs too much. `imex` costs little more than an explicit step and is always tried.
+/// already, or costs too much, or a tighter one takes hardly more evaluations than stability asks. `imex` costs little
+/// more than an explicit step and is always tried.
 bool Search::worth_trying(const std::string& integrator, const Point& model) const {
   const auto limit =
       make_integrator(evaluator_.registry(), integrator, candidates_.tolerances.front())->stability_limit();
   if (integrator == implicit_steps || (limit && std::isfinite(*limit))) return true;
   bool tried = false;
+  const double stable = policy::as_stability_asks * explicit_evaluations(evaluator_.model(model));
   for (const Probe& p : advice_.probes) {
-    if (!p.point.same_model(model) || p.point.tolerance != candidates_.tolerances.front()) continue;
+    if (!p.point.same_model(model)) continue;
+    if (p.passed() && p.point.integrator == explicit_steps && static_cast<double>(p.walk.evaluations) < stable)
+      return true;
+    if (p.point.tolerance != candidates_.tolerances.front()) continue;
     if (p.passed() || p.outcome == Probe::Outcome::too_costly) return true;
     tried = true;
   }
@@ -192,10 +221,13 @@ bool Search::worth_trying(const std::string& integrator, const Point& model) con
 
 /// From the loosest tolerance on, until one passes or costs more than the best so far.
 void Search::try_integrations(const Point& model, const std::string& integrator) {
+  Point tried = model;
+  tried.integrator = integrator;
+  if (!tried_.insert(tried.key()).second) return;
   const double known = exact_enough_tolerance(policy::exact_enough);
   for (const double tolerance : candidates_.tolerances) {
     if (over()) return;
-    if (integrator == "dop853" && tolerance <= known && contains(candidates_.tolerances, known)) return;
+    if (integrator == explicit_steps && tolerance <= known && contains(candidates_.tolerances, known)) return;
     Point point = model;
     point.integrator = integrator;
     point.tolerance = tolerance;
@@ -205,16 +237,17 @@ void Search::try_integrations(const Point& model, const std::string& integrator)
   }
 }
 
-void Search::take(const std::vector<Reference>& runs) {
+bool Search::is_candidate(const Point& p) const {
   const Candidates& c = candidates_;
+  return contains(c.formulations, p.formulation) && contains(c.families, p.family) &&
+         (contains(c.modes, p.modes) || contains(c.more_modes, p.modes) || contains(c.most_modes, p.modes)) &&
+         contains(c.integrators, p.integrator) && contains(c.tolerances, p.tolerance);
+}
+
+void Search::take(const std::vector<Reference>& runs) {
   for (const Reference& run : runs) {
     made_.push_back(&run);
-    const Point& p = run.point;
-    const bool candidate =
-        contains(c.formulations, p.formulation) && contains(c.families, p.family) &&
-        (contains(c.modes, p.modes) || contains(c.more_modes, p.modes) || contains(c.most_modes, p.modes)) &&
-        contains(c.integrators, p.integrator) && contains(c.tolerances, p.tolerance);
-    if (!candidate || p.modes > yardstick().reference.point.modes) continue;
+    if (!is_candidate(run.point) || run.point.modes > yardstick().reference.point.modes) continue;
     Probe probe = evaluator_.judge(run, yardstick());
     if (!probe.passed()) continue;
     const double best_before = best_cost();
@@ -229,7 +262,61 @@ bool Search::passed(const std::vector<int>& modes) const {
                      [&](const Probe& p) { return p.passed() && contains(modes, p.point.modes); });
 }
 
+/// What runs of the reference have shown to hold may do so at looser tolerances: there may be no time for it later.
+/// What costs much of the time that is left is left to the search for cheaper models.
+void Search::loosen_taken() {
+  std::vector<Probe> held;
+  for (const Probe& p : advice_.probes)
+    if (p.passed()) held.push_back(p);
+  const auto cheaper = [&](const Probe& a, const Probe& b) { return evaluator_.cost(a) < evaluator_.cost(b); };
+  std::stable_sort(held.begin(), held.end(), cheaper);
+  for (const Probe& p : held) {
+    const double left = advice_.limit_seconds - evaluator_.spent();
+    if (over() || evaluator_.cost(p) > policy::little * left) return;
+    Point model = p.point;
+    model.integrator.clear(), model.tolerance = 0;
+    try_integrations(model, p.point.integrator);
+  }
+}
+
+/// Candidates that hold the accuracy themselves, but not with what the reference may be off by, and would cost clearly
+/// less than the best.
+std::vector<std::size_t> Search::near_misses() const {
+  const double best = best_cost();
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < advice_.probes.size(); ++i) {
+    const Probe& p = advice_.probes[i];
+    if (p.outcome == Probe::Outcome::inaccurate && p.walk.end == Walk::End::reached && p.use < 1 &&
+        is_candidate(p.point) && policy::nearly_as_cheap * evaluator_.cost(p) < best)
+      near.push_back(i);
+  }
+  return near;
+}
+
+std::optional<double> Search::own_wanted() const {
+  constexpr double part = 0.5;  // of what such a candidate leaves: a reference that is known better moves too
+  std::optional<double> wanted;
+  for (const std::size_t i : near_misses()) wanted = std::max(wanted.value_or(0), part * (1 - advice_.probes[i].use));
+  return wanted;
+}
+
+void Search::judge_again() {
+  std::vector<std::size_t> all = near_misses();
+  for (std::size_t i = 0; i < advice_.probes.size(); ++i)
+    if (advice_.probes[i].passed()) all.push_back(i);
+  for (const std::size_t i : all) {
+    if (stopped()) return;
+    Probe& p = advice_.probes[i];
+    const double best_before = best_cost();
+    Probe again = evaluator_.run(p.point, yardstick(), within_time({}, 0));
+    if (again.walk.end != Walk::End::reached) continue;
+    p = std::move(again);
+    tell_probe(p, best_before);
+  }
+}
+
 void Search::try_models() {
+  loosen_taken();
   // Runs of the reference may hold with more modes than were tried so far: there may be cheaper ones.
   try_models(candidates_.modes);
   if (over() || passed(candidates_.modes)) return;

@@ -20,12 +20,17 @@ class Search {
   /// \param runs must outlive this
   void take(const std::vector<Reference>& runs);
   void try_models();
+  /// What the reference's own error is to be, as a share of the accuracy, that candidates which would cost clearly less
+  /// than the best are held to hold; nothing where there are none.
+  [[nodiscard]] std::optional<double> own_wanted() const;
+  /// Measures what holds, or would with a better known reference, against that of the advice.
+  void judge_again();
   void choose();
   void simplify_bodies();
   void look_up();
   [[nodiscard]] bool stopped() const { return advice_.interrupted || evaluator_.control().stop(); }
-  /// So too where there is no time left.
-  [[nodiscard]] bool over() const { return stopped() || evaluator_.out_of_time(); }
+  /// So too where there is no time left, but for the run of what is chosen as a scene that says so is.
+  [[nodiscard]] bool over() const;
 
  private:
   void tell_probe(const Probe& probe, double best_before);
@@ -35,6 +40,9 @@ class Search {
   [[nodiscard]] std::vector<Point> models_by_cost(const std::vector<int>& modes) const;
   void try_models(const std::vector<int>& modes);
   void try_known(const std::vector<int>& modes);
+  void loosen_taken();
+  [[nodiscard]] bool is_candidate(const Point& point) const;
+  [[nodiscard]] std::vector<std::size_t> near_misses() const;
   void try_tightest();
   void try_model(const Point& model);
   bool model_holds(const Point& model);
@@ -42,6 +50,7 @@ class Search {
   [[nodiscard]] bool limited_by_stability(const Point& model) const;
   [[nodiscard]] bool passed(const std::vector<int>& modes) const;
   [[nodiscard]] double best_cost() const;
+  [[nodiscard]] Allowance within_time(Allowance allowance, double best) const;
   const Probe& run(const Point& point, const Allowance& allowance);
   void time_again(const Probe& probe);
   [[nodiscard]] const Yardstick& yardstick() const { return *advice_.yardstick; }
@@ -51,6 +60,7 @@ class Search {
   Advice& advice_;
   const Finding& finding_;
   std::vector<const Reference*> made_;  ///< runs that need not be made again
+  std::set<std::string> tried_;         ///< models with an integrator, all of whose tolerances have been tried
   std::set<std::string> told_;          ///< formulations of which it has been told that a model is not exact enough
   std::string told_best_;               ///< the point that was last told to hold
   bool tightest_ = false;               ///< models are looked at with the tightest tolerance of all candidates

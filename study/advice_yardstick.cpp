@@ -24,6 +24,8 @@ constexpr double late_reference_use = 0.5, last_patience = 0.35;
 constexpr double most_poor_reference_use = 0.25 * most_reference_use;
 /// The same of the finest one there is where none of the levels is as good: less is left to what is chosen.
 constexpr double last_reference_use = 0.7;
+/// And where it is less than this of the finest, runs are held against it: one that is near it may hold the accuracy.
+constexpr double any_reference_use = 1;
 /// Of the time allowed: what the search for a reference may take; and where none is known well enough for any advice
 /// by then, without which the rest would be for nothing.
 constexpr double reference_time = 0.75, last_reference_time = 0.9;
@@ -49,11 +51,15 @@ class YardstickSearch {
       : evaluator_(evaluator), candidates_(candidates), accuracy_(accuracy), advice_(advice), finding_(finding) {}
 
   std::vector<Reference> find();
+  bool refine(double own, const std::vector<Reference>& runs);
 
  private:
+  [[nodiscard]] ReferenceGoal goal();
+  [[nodiscard]] ReferenceFound search(const ReferenceGoal& goal);
   void explain(const ReferenceFound& found);
   void tell(const Reference& r);
-  [[nodiscard]] bool affordable(const Walk& so_far);
+  [[nodiscard]] double left() const;
+  [[nodiscard]] bool affordable(const Walk& so_far, double whole);
   [[nodiscard]] Yardstick of(const Reference& r) const { return {r, accuracy_.limits(evaluator_.outputs(), r.scales)}; }
   [[nodiscard]] double own_use(const Reference& r) const { return of(r).own_use(); }
 
@@ -62,12 +68,14 @@ class YardstickSearch {
   const Accuracy& accuracy_;
   Advice& advice_;
   const Finding& finding_;
-  Pace pace_;                                                   ///< of the reference's run under way
-  double least_use_ = std::numeric_limits<double>::infinity();  ///< of the accuracy: of the best reference so far
-  double told_ = std::numeric_limits<double>::infinity();       ///< of the accuracy: the least told so far
+  Pace pace_;                                                      ///< of the reference's run under way
+  double least_use_ = std::numeric_limits<double>::infinity();     ///< of the accuracy: of the best reference so far
+  double most_seconds_ = std::numeric_limits<double>::infinity();  ///< of CPU time, that all may have taken by the end
+  double told_ = std::numeric_limits<double>::infinity();          ///< of the accuracy: the least told so far
 };
 
-std::vector<Reference> YardstickSearch::find() {
+/// What any search for a reference is told but for when it ends.
+ReferenceGoal YardstickSearch::goal() {
   const bool modal = candidates_.modes.back() > 0;
   ReferenceGoal goal;
   ReferenceFamilies families = reference_families(candidates_, evaluator_.base().model());
@@ -84,6 +92,24 @@ std::vector<Reference> YardstickSearch::find() {
   goal.finer = modal ? 1 : policy::finer_integration;
   goal.tightest = modal ? policy::tightest : policy::tightest_integration;
   goal.integration = [&](const Reference& r) { return own_use(r) / policy::integration_use; };
+  goal.steady = [&](const Reference& r) { return own_use(r) <= policy::most_reference_use; };
+  goal.left = [&] { return left(); };
+  goal.afford = [&](const Walk& so_far, double whole) { return affordable(so_far, whole); };
+  goal.ended = [&](const Walk& run) {
+    pace_.note(run.time - evaluator_.base().scene.initial.time, run.seconds);
+    pace_.end();
+  };
+  return goal;
+}
+
+ReferenceFound YardstickSearch::search(const ReferenceGoal& goal) {
+  return find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); }, evaluator_.registry(),
+                        evaluator_.outputs(), goal, evaluator_.control());
+}
+
+std::vector<Reference> YardstickSearch::find() {
+  ReferenceGoal goal = this->goal();
+  const bool modal = candidates_.modes.back() > 0;
   goal.enough = [&](const Reference& r) {
     const double use = own_use(r);
     least_use_ = std::min(least_use_, use);
@@ -97,33 +123,48 @@ std::vector<Reference> YardstickSearch::find() {
                                                        : policy::good_reference_use) &&
            rich;
   };
-  goal.steady = [&](const Reference& r) { return own_use(r) <= policy::most_reference_use; };
-  goal.afford = [&](const Walk& so_far) { return affordable(so_far); };
-  goal.ended = [&](const Walk& run) {
-    pace_.note(run.time - evaluator_.base().scene.initial.time, run.seconds);
-    pace_.end();
-  };
-  ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator_.model(p); },
-                                        evaluator_.registry(), evaluator_.outputs(), goal, evaluator_.control());
+  ReferenceFound found = search(goal);
   advice_.interrupted = found.interrupted;
-  if (!found.reference && found.nearest && own_use(*found.nearest) <= policy::last_reference_use)
-    found.reference = std::move(found.nearest);
-  if (found.reference)
-    advice_.yardstick = of(*found.reference);
-  else
-    explain(found);
+  const double nearest_use = found.nearest ? own_use(*found.nearest) : std::numeric_limits<double>::infinity();
+  if (!found.reference && nearest_use > policy::last_reference_use) explain(found);
+  if (!found.reference && nearest_use < policy::any_reference_use) found.reference = std::move(found.nearest);
+  if (found.reference) advice_.yardstick = of(*found.reference);
   return std::move(found.runs);
 }
 
-/// Whether the reference's runs, this one gone on with at its pace, keep within their share of the time.
-bool YardstickSearch::affordable(const Walk& so_far) {
-  const Scene& scene = evaluator_.base().scene;
+bool YardstickSearch::refine(double own, const std::vector<Reference>& runs) {
+  most_seconds_ = 2 * evaluator_.spent();
+  least_use_ = told_ = advice_.yardstick->own_use();
+  ReferenceGoal goal = this->goal();
+  goal.made = runs;
+  goal.enough = [&](const Reference& r) {
+    tell(r);
+    return own_use(r) <= own;
+  };
+  ReferenceFound found = search(goal);
+  advice_.interrupted = found.interrupted;
+  if (!found.reference) found.reference = std::move(found.nearest);
+  if (!found.reference || !(own_use(*found.reference) < advice_.yardstick->own_use())) return false;
+  advice_.yardstick = of(*found.reference);
+  return true;
+}
+
+/// What the reference's runs may still take of their share of the time [s].
+double YardstickSearch::left() const {
   const bool none_yet = least_use_ > policy::last_reference_use;
-  const double spent = evaluator_.spent(),
-               all = (none_yet ? policy::last_reference_time : policy::reference_time) * evaluator_.limit();
-  evaluator_.control().tell(spent, evaluator_.limit());
+  const double share = none_yet ? policy::last_reference_time : policy::reference_time;
+  return std::min(share * evaluator_.limit(), most_seconds_) - evaluator_.spent();
+}
+
+/// Whether the reference's runs, this one gone on with at its pace or at what it is expected to cost, keep within their
+/// share of the time.
+bool YardstickSearch::affordable(const Walk& so_far, double whole) {
+  const Scene& scene = evaluator_.base().scene;
+  evaluator_.control().tell(evaluator_.spent(), evaluator_.limit());
   pace_.note(so_far.time - scene.initial.time, so_far.seconds);
-  return may_go_on(so_far.seconds, pace_.rest(end_of_run(scene) - scene.initial.time), all - spent + so_far.seconds);
+  double rest = pace_.rest(end_of_run(scene) - scene.initial.time);
+  if (so_far.seconds < whole) rest = std::min(rest, whole - so_far.seconds);
+  return may_go_on(so_far.seconds, rest, left() + so_far.seconds);
 }
 
 /// Why no reference will do, and what may be asked instead.
@@ -179,6 +220,11 @@ void YardstickSearch::tell(const Reference& r) {
 std::vector<Reference> find_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
                                       Advice& advice, const Finding& finding) {
   return YardstickSearch(evaluator, candidates, accuracy, advice, finding).find();
+}
+
+bool refine_yardstick(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, Advice& advice,
+                      const Finding& finding, double own, const std::vector<Reference>& runs) {
+  return YardstickSearch(evaluator, candidates, accuracy, advice, finding).refine(own, runs);
 }
 
 }  // namespace withy::study

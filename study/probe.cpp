@@ -26,7 +26,7 @@ Distances on_the_way(const Outputs& outputs, Distances distances) {
 Probe::Outcome outcome_of(const Probe& p, const Yardstick& yardstick, bool afforded) {
   switch (p.walk.end) {
     case Walk::End::reached:
-      return p.use + yardstick.own_use() <= 1 ? Probe::Outcome::passed : Probe::Outcome::inaccurate;
+      return yardstick.use_with_own(p.distances) <= 1 ? Probe::Outcome::passed : Probe::Outcome::inaccurate;
     case Walk::End::cut:
       return afforded ? Probe::Outcome::inaccurate : Probe::Outcome::too_costly;
     case Walk::End::stopped:
@@ -43,6 +43,12 @@ double Yardstick::use(const Distances& distances) const {
   if (distances.empty()) return 0;
   const std::size_t i = worst(distances);
   return std::isfinite(limits[i]) ? distances[i] / limits[i] : 0;
+}
+
+double Yardstick::use_with_own(const Distances& distances) const {
+  Distances all = distances;
+  for (std::size_t i = 0; i < std::min(all.size(), reference.own.size()); ++i) all[i] += reference.own[i];
+  return use(all);
 }
 
 std::size_t Yardstick::worst(const Distances& distances) const {
@@ -85,7 +91,12 @@ double Evaluator::spent() const { return thread_cpu_seconds() - began_; }
 const ModelAt& Evaluator::model(const Point& point) {
   for (const auto& m : models_)
     if (m->point.same_model(point)) return *m;
-  models_.push_back(std::make_unique<ModelAt>(model_at(base_, registry_, point)));
+  Point plain = point;
+  plain.formulation = reference_formulations(registry_).back();
+  plain.bodies.clear();
+  const ModelAt* const alike = plain.same_model(point) ? nullptr : &model(plain);
+  models_.push_back(std::make_unique<ModelAt>(
+      model_at(base_, registry_, point, alike != nullptr && !alike->refused() ? alike : nullptr)));
   return *models_.back();
 }
 

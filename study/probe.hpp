@@ -19,7 +19,9 @@ struct Yardstick {
   Distances limits;  ///< infinite where nothing is asked
   /// Greatest share of what is allowed.
   [[nodiscard]] double use(const Distances& distances) const;
-  /// Index of the output of which that is so.
+  /// The same with what the reference itself may be off by on top, output by output: up to 1 the accuracy is held.
+  [[nodiscard]] double use_with_own(const Distances& distances) const;
+  /// Index of the output of which `use` is so.
   [[nodiscard]] std::size_t worst(const Distances& distances) const;
   /// That of the reference itself.
   [[nodiscard]] double own_use() const { return use(reference.own); }

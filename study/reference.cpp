@@ -8,7 +8,7 @@
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/accuracy.hpp"
-#include "withy/study/level_integration.hpp"
+#include "withy/study/level_integrations.hpp"
 #include "withy/study/output_reader.hpp"
 
 namespace withy::study {
@@ -24,23 +24,24 @@ constexpr int most_modes_beyond = 8;
 /// has its next level, which costs about that.
 constexpr double next_level = 2;
 
-/// Times the tolerance of the coarsest level that is asked for: the loosest that is looked at.
-constexpr double looser_at_most = 10;
-/// Times what the coarsest level costs with the integrations known so far: what it may cost with another, which may be
-/// the better one with more modes.
-constexpr double worth_measuring = 4;
-
 class ReferenceSearch {
  public:
   ReferenceSearch(const std::function<const ModelAt&(const Point&)>& model_at, Registry& registry,
                   const Outputs& outputs, const ReferenceGoal& goal, const Control& control)
-      : model_at_(model_at), registry_(registry), outputs_(outputs), goal_(goal), control_(control) {}
+      : model_at_(model_at),
+        registry_(registry),
+        outputs_(outputs),
+        goal_(goal),
+        control_(control),
+        integrations_(model_at, registry, outputs, goal) {
+    for (const Reference& run : goal.made) runs_.emplace(run.point.key(), run);
+  }
 
   /// Level after level, until one is known well enough or nothing more can be had.
   void find() {
     Point first = goal_.first;
-    if (goal_.integration && first.modes > 0) measure_integrations(first);
-    first = integrated(first);
+    if (goal_.integration && first.modes > 0) measure_integrations();
+    first = integrations_.on(first);
     if (!found_.interrupted) first.family = best_family(first);
     std::optional<Reference> before, coarse = found_.interrupted ? std::nullopt : begin(first);
     if (!coarse) return;
@@ -57,11 +58,11 @@ class ReferenceSearch {
       series.add(next.modes, fine->readings);
       if (series.size() > static_cast<std::size_t>(goal_.kinds) && known_by(*fine, series)) return;
       before = std::move(coarse), coarse = std::move(fine);
-      if (much_cheaper_below(coarse->point))
+      if (much_cheaper_below(coarse->point) && lower_affordable(*coarse, *before))
         found_.reference = add_to_lower(*coarse, *before, next_level * coarse->walk.seconds);
       if (found_.reference || found_.interrupted) return;
     }
-    if (!before || found_.interrupted) return;
+    if (!before || found_.interrupted || !lower_affordable(*coarse, *before)) return;
     const std::string trouble = found_.trouble;
     found_.reference = add_to_lower(*coarse, *before, std::numeric_limits<double>::infinity());
     if (!found_.reference && found_.trouble.empty()) found_.trouble = trouble;
@@ -99,59 +100,16 @@ class ReferenceSearch {
     return best;
   }
 
-  /// At which tolerance each integrator adds as little to a level as it may: by the coarsest, in the lowest rung that
-  /// truncates nothing.
-  void measure_integrations(const Point& first) {
-    Point look = first;
-    look.formulation = reference_formulations(registry_).back();
-    const ModelAt& model = model_at_(look);
-    if (model.refused()) return;
-    const std::string trouble = found_.trouble;  // a run that is not worth its time is none
-    double least = std::numeric_limits<double>::infinity(), least_of_next = least;
-    for (const std::string& integrator : level_integrators(*model.prepared)) {
-      const auto run_with = [&](double tolerance) {
-        look.integrator = integrator, look.tolerance = tolerance;
-        return at(look);
-      };
-      const auto little = [&](const Reference& r) { return goal_.integration(r) <= 1; };
-      const double loosest = std::max(looser_at_most * first.tolerance, goal_.tightest);
-      if (found_.interrupted) break;
-      most_seconds_ = worth_measuring * least;
-      auto measured = loosest_integration({outputs_, run_with, little, loosest, goal_.tightest});
-      if (!measured) continue;
-      integrations_.push_back(std::move(*measured));
-      look.tolerance = integrations_.back().tolerance;
-      least = std::min(least, at(look)->walk.seconds);
-      // How it goes on with modes.
-      ++look.modes;
-      most_seconds_ = worth_measuring * least_of_next;
-      if (const auto next = at(look)) least_of_next = std::min(least_of_next, next->walk.seconds);
-      look.modes = first.modes;
-    }
+  /// A run that is not worth its time is no trouble.
+  void measure_integrations() {
+    const std::string trouble = found_.trouble;
+    const auto run = [&](const Point& point, double seconds) {
+      most_seconds_ = seconds;
+      return at(point);
+    };
+    integrations_.measure(run, [&] { return found_.interrupted; });
     most_seconds_ = std::numeric_limits<double>::infinity();
     found_.trouble = trouble, found_.unaffordable = false;
-  }
-
-  /// What levels may be integrated with: explicit steps, such that fold in what is stiff in bodies, and such that care
-  /// for nothing that is stiff, as a damper on a hinge between light bodies is.
-  [[nodiscard]] std::vector<std::string> level_integrators(const Prepared& prepared) const {
-    std::vector<std::string> all{goal_.first.integrator};
-    if (prepared.equations->linearly_implicit() != nullptr) all.emplace_back("imex");
-    if (registry_.find<Integrator>("radau") != nullptr) all.emplace_back("radau");
-    return all;
-  }
-
-  /// A level with the integration that costs least of those measured. Fast modes that limit explicit steps ring at a
-  /// loose tolerance, the more the more modes there are; implicit steps damp them.
-  [[nodiscard]] Point integrated(Point point) const {
-    if (integrations_.empty()) return point;
-    Point plain = point;
-    plain.formulation = reference_formulations(registry_).back();
-    const ModelAt& model = model_at_(plain);
-    const LevelIntegration& with =
-        cheapest_with(integrations_, model.refused() ? 0 : explicit_evaluations(model), point.modes);
-    point.integrator = with.integrator, point.tolerance = with.tolerance;
-    return point;
   }
 
   /// The coarsest level, in the richest formulation that comes to the end.
@@ -167,13 +125,10 @@ class ReferenceSearch {
   /// A run, made once; nothing where it does not come to its end.
   std::optional<Reference> at(const Point& point) {
     const auto made = runs_.find(point.key());
-    if (made != runs_.end()) return made->second;
-    std::optional<Reference> reference = run(point);
+    std::optional<Reference> reference = made != runs_.end() ? made->second : run(point);
     if (!reference) return {};
-    runs_.emplace(point.key(), *reference);
-    for (LevelIntegration& with : integrations_)
-      if (with.integrator == point.integrator && with.tolerance == point.tolerance)
-        with.evaluations[point.modes] = static_cast<double>(reference->walk.evaluations);
+    if (made == runs_.end()) runs_.emplace(point.key(), *reference);
+    integrations_.note(*reference);
     return reference;
   }
 
@@ -181,13 +136,23 @@ class ReferenceSearch {
   [[nodiscard]] Point finer(Point point) const {
     if (point.modes > 0) ++point.modes;
     point.tolerance = std::max(goal_.finer * point.tolerance, goal_.tightest);
-    return integrated(point);
+    return integrations_.on(point);
   }
 
   /// Whether an evaluation costs a fraction in the rung below.
   [[nodiscard]] bool much_cheaper_below(const Point& point) {
     const std::optional<Point> low = below(point);
     return low && model_at_(*low).seconds < much_cheaper * model_at_(point).seconds;
+  }
+
+  /// Whether there is time for a mode more in the rung below: for the run with as many modes, where it is not made, and
+  /// for one that costs more as the finer of two levels does.
+  [[nodiscard]] bool lower_affordable(const Reference& fine, const Reference& coarse) {
+    const std::optional<Point> low = below(fine.point);
+    if (!low || !goal_.left) return true;
+    const double base = fine.walk.seconds * model_at_(*low).seconds / model_at_(fine.point).seconds,
+                 more = base * std::max(1.0, fine.walk.seconds / coarse.walk.seconds);
+    return (runs_.contains(low->key()) ? more : base + more) <= goal_.left();
   }
 
   /// More modes in the rung below, with what the higher one adds at the finer of two levels. Nothing where there is no
@@ -201,6 +166,8 @@ class ReferenceSearch {
     if (!before) return {};
     const auto base = at(*low);
     if (!base) return {};
+    beside_.insert_or_assign(before->point.modes, *before);
+    beside_.insert_or_assign(base->point.modes, *base);
     // What the coarser level would have added.
     const Distances changed =
         distances(outputs_, corrected(outputs_, base->readings, coarse.readings, before->readings), fine.readings)
@@ -223,18 +190,21 @@ class ReferenceSearch {
         return {};
       Point point = richest_->point;
       ++point.modes;
-      const std::optional<Reference> richer = at(integrated(point));
+      const std::optional<Reference> richer = at(integrations_.on(point));
       if (!richer) return {};
       extend_lower(*richest_, *richer);
     }
   }
 
   /// Adds a run to the series of the lower rung, which goes on from level to level of the higher one and may be ahead
-  /// of it; where the run does not follow its last, it begins anew with the one before.
+  /// of it; where the run does not follow its last, it begins anew with those that were made beside levels.
   void extend_lower(const Reference& before, const Reference& run) {
     if (lower_ && richest_->point.modes >= run.point.modes) return;
     if (!lower_ || richest_->point.modes != before.point.modes) {
       lower_.emplace(outputs_, goal_.kinds);
+      int first = before.point.modes;
+      while (beside_.contains(first - 1)) --first;
+      for (; first < before.point.modes; ++first) lower_->add(first, beside_.at(first).readings);
       lower_->add(before.point.modes, before.readings);
     }
     lower_->add(run.point.modes, run.readings);
@@ -245,9 +215,7 @@ class ReferenceSearch {
   [[nodiscard]] Reference lead(Reference run, const ModeSeries& series) const {
     run.readings = series.limit();
     run.own = series.own();
-    for (const LevelIntegration& with : integrations_)
-      if (with.integrator == run.point.integrator)
-        for (std::size_t k = 0; k < run.own.size(); ++k) run.own[k] += with.added[k];
+    integrations_.add_to(run);
     run.extrapolated = series.extrapolated();
     return run;
   }
@@ -275,8 +243,9 @@ class ReferenceSearch {
       outputs_.raise_ranges(r.readings.values.back(), r.readings.values.front(), r.ranges);
       return true;
     };
+    const double whole = integrations_.expected_seconds(point);
     const auto afford = [&](const Walk& so_far) {
-      return so_far.seconds <= most_seconds_ && (!goal_.afford || goal_.afford(so_far));
+      return so_far.seconds <= most_seconds_ && (!goal_.afford || goal_.afford(so_far, whole));
     };
     r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
                   {keep, afford, control_.interrupted});
@@ -320,9 +289,10 @@ class ReferenceSearch {
   const ReferenceGoal& goal_;
   const Control& control_;
   ReferenceFound found_;
-  std::optional<ModeSeries> lower_;             ///< of the rung below, where more modes are looked at
-  std::optional<Reference> richest_;            ///< the last of its runs
-  std::vector<LevelIntegration> integrations_;  ///< as measured; empty: of the goal
+  std::optional<ModeSeries> lower_;   ///< of the rung below, where more modes are looked at
+  std::map<int, Reference> beside_;   ///< runs in that rung with as many modes as levels, by modes
+  std::optional<Reference> richest_;  ///< the last of its runs
+  LevelIntegrations integrations_;
   double most_seconds_ = std::numeric_limits<double>::infinity();  ///< that a run may cost
   std::map<std::string, Reference> runs_;                          ///< that came to their end, by the point's key
 };

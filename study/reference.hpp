@@ -56,11 +56,15 @@ struct ReferenceGoal {
   /// of the coarsest tell, in the lowest rung that truncates nothing, from ten times the tolerance of `first` on.
   /// Empty, or without modes: levels have the integrator of `first`, and its tolerance by `finer`.
   std::function<double(const Reference&)> integration;
+  std::vector<Reference> made = {};              ///< runs that need not be made again
   std::function<bool(const Reference&)> enough;  ///< empty: one level is
   /// Whether what a higher rung adds has changed little enough from the level before, as `own`; empty: never.
   std::function<bool(const Reference&)> steady;
-  std::function<bool(const Walk&)> afford;  ///< asked along each run; false ends the search; empty: always
-  std::function<void(const Walk&)> ended;   ///< told of each run that has come to its end; may be empty
+  std::function<double()> left;  ///< CPU time that all runs to come may take [s]; empty: any
+  /// Asked along each run, with what it is expected to cost as evaluations have grown with modes [s], infinite where
+  /// that is not known; false ends the search; empty: always.
+  std::function<bool(const Walk&, double whole)> afford;
+  std::function<void(const Walk&)> ended;  ///< told of each run that has come to its end; may be empty
 };
 
 struct ReferenceFound {

@@ -126,7 +126,7 @@ class Watch final : public SteppingObserver {
 
 }  // namespace
 
-ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
+ModelAt model_at(const Prepared& base, Registry& registry, const Point& point, const ModelAt* alike) {
   ModelAt m{point, {}, {}, 0, 0};
   try {
     Point any = point;  // a scene has an integrator, whatever is walked with
@@ -142,7 +142,9 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point) {
   m.seconds = seconds_per_evaluation(*m.prepared);
   const EquationsOfMotion& equations = *m.prepared->equations;
   const State& initial = m.prepared->scene.initial;
-  if (equations.layout().speeds <= largest_examined)
+  if (alike != nullptr)
+    m.fastest = alike->fastest;
+  else if (equations.layout().speeds <= largest_examined)
     m.fastest = fastest_mode(m.prepared->model(), equations.system(initial.time, initial.y));
   return m;
 }

@@ -24,8 +24,10 @@ struct ModelAt {
   [[nodiscard]] bool refused() const { return !prepared; }
 };
 /// \param base the scene that the point changes
+/// \param alike the same modes in another formulation, of which the fastest mode is taken: formulations differ in it by
+/// what deflections at the start change alone, and some are long about telling their own; null: it is looked for
 /// \throws PluginError
-ModelAt model_at(const Prepared& base, Registry& registry, const Point& point);
+ModelAt model_at(const Prepared& base, Registry& registry, const Point& point, const ModelAt* alike = nullptr);
 
 /// Evaluations over the whole run that `dop853` takes at its stability limit, whatever the tolerance.
 double explicit_evaluations(const ModelAt& model);

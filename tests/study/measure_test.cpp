@@ -207,6 +207,36 @@ TEST(Probe, PassesOnlyWithTheReferencesOwnErrorOnTop) {
   EXPECT_EQ(evaluator.run(point, yardstick).outcome, Probe::Outcome::inaccurate);
 }
 
+/// What the reference may be off by in one output takes nothing from another.
+TEST(Probe, TheReferencesOwnErrorIsOnTopOutputByOutput) {
+  const Prepared scene = pendulum();
+  const Outputs outputs(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  Yardstick yardstick = yardstick_of(evaluator);
+  ASSERT_GE(yardstick.limits.size(), 2U);
+  yardstick.limits.assign(yardstick.limits.size(), 1);
+  yardstick.reference.own = outputs.none();
+  yardstick.reference.own[0] = 0.75;
+  Distances off = outputs.none();
+  off[1] = 0.75;
+  EXPECT_DOUBLE_EQ(yardstick.use_with_own(off), 0.75);
+  off[0] = 0.5;
+  EXPECT_DOUBLE_EQ(yardstick.use_with_own(off), 1.25);
+  EXPECT_DOUBLE_EQ(yardstick.use(off), 0.75);
+}
+
+/// Some formulations are long about telling their own.
+TEST(Probe, ModelsHaveTheFastestModeOfTheSameModesInQuadratic) {
+  const Prepared scene =
+      prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml"), plugins());
+  const Outputs outputs(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const double fastest = evaluator.model({"quadratic", "", 2, "", 0, {}, {}}).fastest;
+  EXPECT_GT(fastest, 0);
+  for (const char* formulation : {"ruthless", "symmetric", "consistent", "exact"})
+    EXPECT_EQ(evaluator.model({formulation, "", 2, "", 0, {}, {}}).fastest, fastest) << formulation;
+}
+
 TEST(Probe, IsCutWhereItsAllowanceIsUsedUp) {
   const Prepared scene = pendulum();
   const Outputs outputs(scene.model());

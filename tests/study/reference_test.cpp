@@ -289,6 +289,67 @@ TEST(FindReference, ModesOfALowerRungWaitForTheNextLevelWhereTheyCostMoreThanTha
   EXPECT_GT(lower_modes, 3) << "nothing was looked at";
 }
 
+TEST(FindReference, RunsThatAreThereAreNotMadeAgain) {
+  const Prepared scene = soft_pendulum();
+  const Outputs outputs(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+  ReferenceGoal goal;
+  goal.first = {"", "orthogonal-polynomials", 2, "dop853", 1e-6, {}, {}};
+  goal.levels = 3;
+  goal.finer = 1;
+  goal.enough = [](const Reference& r) { return r.point.modes >= 4; };
+  const ReferenceFound found = find_reference(at, plugins(), outputs, goal, {});
+  ASSERT_TRUE(found.reference);
+  EXPECT_GT(found.cpu_seconds, 0);
+  goal.made = found.runs;
+  const ReferenceFound again = find_reference(at, plugins(), outputs, goal, {});
+  ASSERT_TRUE(again.reference);
+  EXPECT_EQ(again.cpu_seconds, 0);
+  EXPECT_EQ(again.reference->own, found.reference->own);
+}
+
+/// Explicit steps cost a few milliseconds with two modes of the slew, and implicit ones several times that.
+TEST(FindReference, AnIntegrationThatCostsLittleInAnyCaseIsMeasured) {
+  const Prepared slew =
+      prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/least-time-slew.yaml"), plugins());
+  const Outputs outputs = Outputs::all(slew.model());
+  Evaluator evaluator(slew, plugins(), outputs, {});
+  ReferenceGoal goal;
+  goal.first = {"", "orthogonal-polynomials", 2, "dop853", 1e-5, {}, {}};
+  goal.levels = 1;
+  goal.finer = 1;
+  goal.integration = [](const Reference& r) { return relative_error(r.own, r.scales) / 2e-5; };
+  goal.left = [] { return 1e4; };
+  const ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator.model(p); },
+                                              plugins(), outputs, goal, {});
+  for (const char* integrator : {"dop853", "imex", "radau"})
+    EXPECT_TRUE(std::any_of(found.runs.begin(), found.runs.end(), [&](const Reference& r) {
+      return r.point.integrator == integrator && r.point.modes == 3;
+    })) << integrator;
+}
+
+TEST(FindReference, ALowerRungIsNotBegunWithWhereThereIsNoTimeForAModeMoreInIt) {
+  const Prepared scene = soft_pendulum();
+  const Outputs outputs(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const auto lower_runs = [&](double left) {
+    ReferenceGoal goal;
+    goal.first = {"", "orthogonal-polynomials", 2, "dop853", 1e-6, {}, {}};
+    goal.levels = 2;
+    goal.finer = 1;
+    goal.enough = [](const Reference& r) { return r.point.modes >= 5; };
+    goal.steady = [](const Reference&) { return true; };
+    goal.left = [=] { return left; };
+    const ReferenceFound found = find_reference([&](const Point& p) -> const ModelAt& { return evaluator.model(p); },
+                                                plugins(), outputs, goal, {});
+    return std::count_if(found.runs.begin(), found.runs.end(),
+                         [](const Reference& r) { return r.point.formulation == "quadratic"; });
+  };
+  EXPECT_EQ(lower_runs(0), 0);
+  EXPECT_GT(lower_runs(1e3), 0);
+}
+
 /// Were the highest formulation free, it would be run with as many modes as the other: what is put together is as far
 /// from that as it says.
 TEST(FindReference, WhatAHigherRungAddsAtFewModesStandsForWhatItAddsAtMany) {

@@ -1,0 +1,100 @@
+#include "withy/study/level_integrations.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace withy::study {
+namespace {
+
+/// Times the tolerance of the coarsest level that is asked for: the loosest that is looked at.
+constexpr double looser_at_most = 10;
+/// Times what the coarsest level costs with the integrations known so far: what it may cost with another, which may be
+/// the better one with more modes.
+constexpr double worth_measuring = 4;
+/// Of the time that is left: what that may cost in any case. Where explicit steps cost little with two modes, one that
+/// costs ten times as much may be the better one with ten.
+constexpr double look_share = 0.01;
+
+}  // namespace
+
+/// In the lowest rung that truncates nothing.
+Point LevelIntegrations::coarsest() const {
+  Point point = goal_.first;
+  point.formulation = reference_formulations(registry_).back();
+  return point;
+}
+
+/// What a run that measures an integration may cost where another took that [s].
+double LevelIntegrations::worth(double least) const {
+  return std::max(worth_measuring * least, goal_.left ? look_share * goal_.left() : 0);
+}
+
+/// Explicit steps, such that fold in what is stiff in bodies, and such that care for nothing that is stiff, as a damper
+/// on a hinge between light bodies is.
+std::vector<std::string> LevelIntegrations::integrators(const Prepared& prepared) const {
+  std::vector<std::string> ids{goal_.first.integrator};
+  if (prepared.equations->linearly_implicit() != nullptr) ids.emplace_back("imex");
+  if (registry_.find<Integrator>("radau") != nullptr) ids.emplace_back("radau");
+  return ids;
+}
+
+void LevelIntegrations::measure(const Run& run, const std::function<bool()>& stopped) {
+  const ModelAt& model = model_at_(coarsest());
+  if (model.refused()) return;
+  least_ = least_of_next_ = std::numeric_limits<double>::infinity();
+  for (const std::string& integrator : integrators(*model.prepared)) {
+    if (stopped()) return;
+    measure(integrator, run);
+  }
+}
+
+void LevelIntegrations::measure(const std::string& integrator, const Run& run) {
+  Point look = coarsest();
+  look.integrator = integrator;
+  const double seconds = worth(least_);
+  const auto run_with = [&](double tolerance) {
+    look.tolerance = tolerance;
+    return run(look, seconds);
+  };
+  const auto little = [&](const Reference& r) { return goal_.integration(r) <= 1; };
+  const double loosest = std::max(looser_at_most * goal_.first.tolerance, goal_.tightest);
+  auto measured = loosest_integration({outputs_, run_with, little, loosest, goal_.tightest});
+  if (!measured) return;
+  all_.push_back(std::move(*measured));
+  if (const auto chosen = run_with(all_.back().tolerance)) least_ = std::min(least_, chosen->walk.seconds);
+  // How it goes on with modes.
+  ++look.modes;
+  if (const auto next = run(look, worth(least_of_next_))) least_of_next_ = std::min(least_of_next_, next->walk.seconds);
+}
+
+Point LevelIntegrations::on(Point point) const {
+  if (all_.empty()) return point;
+  Point plain = point;
+  plain.formulation = reference_formulations(registry_).back();
+  const ModelAt& model = model_at_(plain);
+  const LevelIntegration& with = cheapest_with(all_, model.refused() ? 0 : explicit_evaluations(model), point.modes);
+  point.integrator = with.integrator, point.tolerance = with.tolerance;
+  return point;
+}
+
+void LevelIntegrations::note(const Reference& run) {
+  for (LevelIntegration& with : all_)
+    if (with.integrator == run.point.integrator && with.tolerance == run.point.tolerance)
+      with.evaluations[run.point.modes] = static_cast<double>(run.walk.evaluations);
+}
+
+double LevelIntegrations::expected_seconds(const Point& point) const {
+  for (const LevelIntegration& with : all_)
+    if (with.integrator == point.integrator && with.tolerance == point.tolerance)
+      return model_at_(point).seconds * with.expected(point.modes);
+  return std::numeric_limits<double>::infinity();
+}
+
+void LevelIntegrations::add_to(Reference& level) const {
+  for (const LevelIntegration& with : all_)
+    if (with.integrator == level.point.integrator)
+      for (std::size_t k = 0; k < level.own.size(); ++k) level.own[k] += with.added[k];
+}
+
+}  // namespace withy::study
