@@ -95,6 +95,22 @@ TEST(Run, TellsTheSameReactionsOfLockedHingesWithEveryMethod) {
   }
 }
 
+/// The arm is unlocked at 2 s, where a row stands: until then its elbow bears next to nothing, from then on its spring.
+TEST(Run, ARowAtAnEventShowsWhatWasUntilThen) {
+  const Folder folder;
+  const Finished f =
+      withy(folder, {"run", "scenes/boom-latch.yaml", "--set", "time.end=2.1", "--estimate", "never", "--out", "out"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const auto rows = lines(folder.read("out/results.csv"));
+  const auto head = cells(rows.front());
+  const auto column =
+      static_cast<std::size_t>(std::find(head.begin(), head.end(), "elbow_load.mz[N m]") - head.begin());
+  const auto moment = [&](std::size_t row) { return std::abs(std::stod(cells(rows.at(row + 1)).at(column))); };
+  EXPECT_EQ(cells(rows.at(41)).front(), "2");
+  EXPECT_LT(moment(40), 0.2) << "N m";
+  EXPECT_GT(moment(41), 2) << "N m, 0.05 s later";
+}
+
 /// The same names in every command; their numbers are those of sensors that a scene defines.
 TEST(Run, AddsOutputsByNamesThatSayWhatTheyAre) {
   const Folder folder;
