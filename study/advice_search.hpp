@@ -1,8 +1,10 @@
 /// \file
-/// The steps of a search for advice, among models that a yardstick measures. Its numbers are in advice_search.cpp, with
-/// what they mean.
+/// The steps of a search for advice, among models that a yardstick measures. Its numbers are where they are used, with
+/// what they mean. Costs are CPU times, which other work on the machine makes longer by some tens of per cent: what is
+/// within such a margin is not told apart by one run.
 #pragma once
 
+#include <algorithm>
 #include <set>
 
 #include "withy/study/advice.hpp"
@@ -33,6 +35,14 @@ class Search {
   [[nodiscard]] bool over() const;
 
  private:
+  /// Times the best cost so far: what finding out about a model may cost, since a looser integration of it may cost
+  /// less.
+  static constexpr double model_allowance = 4;
+
+  template <class T>
+  [[nodiscard]] static bool contains(const std::vector<T>& all, const T& value) {
+    return std::find(all.begin(), all.end(), value) != all.end();
+  }
   void tell_probe(const Probe& probe, double best_before);
   [[nodiscard]] bool worth_trying(const std::string& integrator, const Point& model) const;
   void try_integrations(const Point& model, const std::string& integrator);
