@@ -10,6 +10,10 @@ part=${1:-0/1}
 rooms=(bodies dynamics fem formulations integrators loads modal plate scene simulation validity)
 logs=$(mktemp -d)
 trap 'rm -rf "$logs"' EXIT
+grep -q "^WITHY_ANY_PROCESSOR:BOOL=ON" build/release/CMakeCache.txt || {
+  echo "memcheck: build/release has no sweeps for any processor: cmake --preset release -DWITHY_ANY_PROCESSOR=ON, and build" >&2
+  exit 3
+}
 # AVX2 off, which takes the sweeps of any processor: valgrind does not know all of it.
 export GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2 GTEST_SHARD_INDEX=$((${part%/*} % ${part#*/})) GTEST_TOTAL_SHARDS=${part#*/} \
   GTEST_FILTER='-Fuzz.*'

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# packages.sh [BUILD]: makes the Debian packages of a build tree that is up to date (build/release), asks lintian, and tries
-# them: unpacked in a folder somewhere, and installed by apt in a bare Debian root where mmdebstrap and the system's package
+# packages.sh [BUILD]: makes the Debian packages of a build tree for any processor (build/release, configured with
+# -DWITHY_ANY_PROCESSOR=ON) that is up to date, asks lintian, and tries them: unpacked in a folder somewhere, and installed by apt in a bare Debian root where mmdebstrap and the system's package
 # sources allow it. Needs lintian, pkg-config and a compiler; some minutes.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -9,6 +9,10 @@ for tool in cpack lintian pkg-config dpkg-deb file; do
   command -v "$tool" >/dev/null || { echo "$tool is missing: apt-get install cmake lintian pkg-config dpkg file" >&2; exit 3; }
 done
 
+grep -q "^WITHY_ANY_PROCESSOR:BOOL=ON" "$build/CMakeCache.txt" || {
+  echo "$build is for processors with AVX2 alone: cmake $build -DWITHY_ANY_PROCESSOR=ON, and build" >&2
+  exit 3
+}
 rm -rf "$build/packages"
 (cd "$build" && cpack -G DEB >/dev/null)
 mapfile -t packages < <(printf '%s\n' "$build"/packages/*.deb)

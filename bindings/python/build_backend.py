@@ -44,8 +44,8 @@ def _install(settings, prefix):
     """Configures, builds and installs into a folder, for the interpreter that runs this."""
     build = pathlib.Path(settings.get("build-dir", "build/wheel"))
     if not (ROOT / build / "CMakeCache.txt").exists():
-        _cmake("--preset", "release", "-B", build, "-DWITHY_TESTS=OFF", "-DCMAKE_INSTALL_LIBDIR=lib",
-               f"-DPython3_EXECUTABLE={sys.executable}")
+        _cmake("--preset", "release", "-B", build, "-DWITHY_TESTS=OFF", "-DWITHY_ANY_PROCESSOR=ON",
+               "-DCMAKE_INSTALL_LIBDIR=lib", f"-DPython3_EXECUTABLE={sys.executable}")
     _cmake("--build", build, "--target", "withy-package", "--parallel", os.cpu_count() or 1)
     _cmake("--install", build, "--prefix", prefix)
     if not (prefix / PACKAGE / "withy").exists():
