@@ -28,14 +28,15 @@ void ZipFile::expect(bool good) const {
 void ZipFile::add(const std::string& name, std::string_view bytes) {
   constexpr unsigned long made_by_unix = 3U << 8U | 20U, utf8_names = 1U << 11U;
   constexpr unsigned long file_of_all = 0100644U, program_of_all = 0100755U;
+  constexpr int level = 4;  // of zlib: the engine's library is 3 % longer than with its default, in 0.4 of the time
   zip_fileinfo info{};
   info.tmz_date.tm_year = 1980;
   info.tmz_date.tm_mday = 1;
   info.external_fa = (name.ends_with(".so") ? program_of_all : file_of_all) << 16U;
   errno = 0;
-  expect(zipOpenNewFileInZip4(zip_, name.c_str(), &info, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED,
-                              Z_DEFAULT_COMPRESSION, 0, -MAX_WBITS, DEF_MEM_LEVEL, Z_DEFAULT_STRATEGY, nullptr, 0,
-                              made_by_unix, utf8_names) == ZIP_OK);
+  expect(zipOpenNewFileInZip4(zip_, name.c_str(), &info, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED, level, 0,
+                              -MAX_WBITS, DEF_MEM_LEVEL, Z_DEFAULT_STRATEGY, nullptr, 0, made_by_unix,
+                              utf8_names) == ZIP_OK);
   constexpr std::size_t most = 1U << 24U;
   for (std::size_t at = 0; at < bytes.size(); at += most) {
     const std::string_view piece = bytes.substr(at, most);
