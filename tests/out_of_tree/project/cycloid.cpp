@@ -26,7 +26,7 @@ class Cycloid final : public withy::Motion {
   double from_, change_, duration_;
 };
 
-std::unique_ptr<withy::Motion> make(const withy::Value& p, const withy::MakeContext& /*context*/) {
+std::unique_ptr<withy::Motion> make_cycloid(const withy::Value& p, const withy::MakeContext& /*context*/) {
   return std::make_unique<Cycloid>(p.number_at("from"), p.number_at("to"), p.number_at("duration"));
 }
 
@@ -38,7 +38,7 @@ withy::Plugin<withy::Motion> cycloid() {
           .parameters = {withy::number("from", "rad", "coordinate at time 0").otherwise(0.0),
                          withy::number("to", "rad", "coordinate at the end"),
                          withy::number("duration", "s", "time until the end").above(0)},
-          .make = &make};
+          .make = &make_cycloid};
 }
 
 }  // namespace example

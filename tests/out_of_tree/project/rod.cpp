@@ -41,7 +41,7 @@ class Rod final : public withy::Body {
   withy::ModalShape shape_;
 };
 
-std::unique_ptr<withy::Body> make(const withy::Value& p, const withy::MakeContext&) {
+std::unique_ptr<withy::Body> make_rod(const withy::Value& p, const withy::MakeContext&) {
   return std::make_unique<Rod>(p.number_at("length"), p.number_at("mass"), p.number_at("radius"));
 }
 
@@ -52,7 +52,7 @@ withy::Plugin<withy::Body> rod() {
           .summary = "Uniform rigid round rod along x",
           .parameters = {withy::number("length", "m", "length").above(0), withy::number("mass", "kg", "mass").above(0),
                          withy::number("radius", "m", "radius of its section").least(0).otherwise(0.0)},
-          .make = &make};
+          .make = &make_rod};
 }
 
 }  // namespace example

@@ -35,7 +35,7 @@ class Speed final : public withy::Sensor {
   std::string of_;
 };
 
-std::unique_ptr<withy::Sensor> make(const withy::Value& p, const withy::MakeContext&) {
+std::unique_ptr<withy::Sensor> make_speed(const withy::Value& p, const withy::MakeContext&) {
   return std::make_unique<Speed>(p.text_at("of"));
 }
 
@@ -45,7 +45,7 @@ withy::Plugin<withy::Sensor> speed() {
   return {.id = "speed",
           .summary = "Speed of a frame's origin",
           .parameters = {withy::text("of", "frame that is observed").naming(withy::ParameterSpec::Refers::frame)},
-          .make = &make};
+          .make = &make_speed};
 }
 
 }  // namespace example

@@ -97,7 +97,7 @@ class TaperedBeam final : public withy::Body {
   withy::ModalShape shape_;
 };
 
-std::unique_ptr<withy::Body> make(const withy::Value& p, const withy::MakeContext& context) {
+std::unique_ptr<withy::Body> make_tapered_beam(const withy::Value& p, const withy::MakeContext& context) {
   const TaperedBeam::Data data = {p.number_at("length"), p.number_at("mass_per_length"), p.number_at("stiffness"),
                                   p.number_at("taper"), p.number_at("damping_ratio")};
   // A family is another plugin, found by its id: one of withy's own, or anybody's.
@@ -128,7 +128,7 @@ withy::Plugin<withy::Body> tapered_beam() {
                          .otherwise("clamped-free")
                          .as(withy::ParameterSpec::Role::bending_family),
                      number("damping_ratio", "1", "modal damping, as a fraction of critical").least(0).otherwise(0.0)},
-      .make = &make};
+      .make = &make_tapered_beam};
 }
 
 }  // namespace example
