@@ -97,8 +97,9 @@ Enrollment load_library(const std::filesystem::path& directory, const Manifest& 
   std::filesystem::path file;
   std::string exposed;
   try {
-    file = std::filesystem::canonical(named);
-    exposed = exposure(file);
+    const bool elsewhere = std::filesystem::is_symlink(named);
+    file = elsewhere ? std::filesystem::canonical(named) : std::filesystem::path(named);
+    exposed = elsewhere ? exposure(file) : exposure_in_safe_directory(file);
     if (!std::filesystem::is_regular_file(file))
       throw PluginError("the plugin library " + named + " cannot be loaded: it is no file");
     if (is_cut_short(file)) throw PluginError("the plugin library " + named + " cannot be loaded: it is cut short");
