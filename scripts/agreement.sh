@@ -10,6 +10,7 @@ python3 - "$build/bin/withy" <<'PYTHON' | record_table agreement "scripts/agreem
 import csv, glob, json, os, shutil, subprocess, sys, tempfile
 
 PROGRAM, FOLDER = sys.argv[1], tempfile.mkdtemp()
+shutil.copytree("scenes", FOLDER + "/scenes")
 SCENES = [s for s in sorted(glob.glob("scenes/*.yaml") + glob.glob("scenes/gallery/*.yaml")) if "rigid-chain" not in s]
 TIGHT = "{name: dopri5, rtol: 1e-9, atol: 1e-12}"
 LEAST_SPAN = 1e-4  # of a column, in its unit, and of the greatest number in it
@@ -53,7 +54,7 @@ def beside_a_slanted_hinge(scene):
         ("hinges", "slanted: {type: revolute, axis: [0.3, 0.5, 0.8], parent: world, child: apart}"),
     ):
         text = text.replace(f"\n{group}:", f"\n{group}:\n  {member}", 1)
-    place = os.path.join(os.path.dirname(scene), ".beside.yaml")  # where the files that it names are
+    place = os.path.join(FOLDER, scene)  # a copy, which has the files that it names beside it
     with open(place, "w") as file:
         file.write(text)
     return place
@@ -90,10 +91,7 @@ def end(scene):
 def pairs(first, second, change=lambda scene: scene):
     for scene in SCENES:
         short = ["--set", f"time.end={end(scene)}"]
-        other = change(scene)
-        yield os.path.basename(scene)[:-5], run(scene, *short, *first), run(other, *short, *second)
-        if other != scene:
-            os.remove(other)
+        yield os.path.basename(scene)[:-5], run(scene, *short, *first), run(change(scene), *short, *second)
 
 print("what is changed\truns\tother bits\tgreatest difference\tof")
 tight = ["--set", "integrator=" + TIGHT]
