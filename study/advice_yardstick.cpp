@@ -24,6 +24,8 @@ constexpr double late_reference_use = 0.5, last_patience = 0.35;
 constexpr double most_poor_reference_use = 0.25 * most_reference_use;
 /// The same of the finest one there is where none of the levels is as good: less is left to what is chosen.
 constexpr double last_reference_use = 0.7;
+/// Also of one whose run took more than this share of the time that is left: a finer one takes what models need.
+constexpr double dear_run = 0.25;
 /// And where it is less than this of the finest, runs are held against it: one that is near it may hold the accuracy.
 constexpr double any_reference_use = 1;
 /// Of the time allowed: what the search for a reference may take; and where none is known well enough for any advice
@@ -89,6 +91,7 @@ ReferenceGoal YardstickSearch::goal() {
                 {}};
   goal.levels = policy::reference_levels;
   goal.kinds = kinds_of_modes(evaluator_.base().scene);
+  goal.leaps = true;
   goal.finer = modal ? 1 : policy::finer_integration;
   goal.tightest = modal ? policy::tightest : policy::tightest_integration;
   goal.integration = [&](const Reference& r) { return own_use(r) / policy::integration_use; };
@@ -117,7 +120,8 @@ std::vector<Reference> YardstickSearch::find() {
     // Candidates are not to have more modes than the truth.
     const bool rich = !modal || r.point.modes >= candidates_.modes.back() || use < policy::most_poor_reference_use;
     const double gone = evaluator_.spent() / evaluator_.limit();
-    return use <= (gone > policy::reference_time       ? policy::last_reference_use
+    const bool last = gone > policy::reference_time || r.walk.seconds > policy::dear_run * left();
+    return use <= (last                                ? policy::last_reference_use
                    : gone > policy::last_patience      ? policy::late_reference_use
                    : gone > policy::reference_patience ? policy::most_reference_use
                                                        : policy::good_reference_use) &&

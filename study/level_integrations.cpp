@@ -15,6 +15,9 @@ constexpr double worth_measuring = 4;
 /// Of the time that is left: what that may cost in any case. Where explicit steps cost little with two modes, one that
 /// costs ten times as much may be the better one with ten.
 constexpr double look_share = 0.01;
+/// Of the time that is left: what it may cost at most, but for what takes hardly longer than the best. Where the
+/// coarsest level takes a fiftieth of the time, ways that cost several times as much take what levels need.
+constexpr double most_look_share = 0.02, hardly_longer = 1.5;
 
 }  // namespace
 
@@ -27,7 +30,9 @@ Point LevelIntegrations::coarsest() const {
 
 /// What a run that measures an integration may cost where another took that [s].
 double LevelIntegrations::worth(double least) const {
-  return std::max(worth_measuring * least, goal_.left ? look_share * goal_.left() : 0);
+  if (!goal_.left) return worth_measuring * least;
+  const double left = goal_.left(), worth = std::max(worth_measuring * least, look_share * left);
+  return std::max(hardly_longer * least, std::min(worth, most_look_share * left));
 }
 
 /// Explicit steps, such that fold in what is stiff in bodies, and such that care for nothing that is stiff, as a damper

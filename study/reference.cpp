@@ -1,28 +1,31 @@
 #include "withy/study/reference.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
-#include <map>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/accuracy.hpp"
-#include "withy/study/level_integrations.hpp"
-#include "withy/study/output_reader.hpp"
+#include "withy/study/family_choice.hpp"
+#include "withy/study/reference_runs.hpp"
 
 namespace withy::study {
 namespace {
 
 /// Share of an evaluation's cost below which more modes are looked at in a lower rung at once.
 constexpr double much_cheaper = 0.7;
-/// Times the change by the first family's: less is another one's merit, more may be chance.
-constexpr double clearly_less = 0.5;
-/// Modes beyond the last level of the higher rung that are looked at in the lower one.
+/// Modes beyond the last level of the higher rung that are looked at in the lower one before it has its next level.
 constexpr int most_modes_beyond = 8;
+/// Modes that are looked at in any case: no motion needs more.
+constexpr int most_modes = 48;
 /// Times the cost of the last level of the higher rung: what more modes in the lower one may cost before the higher one
 /// has its next level, which costs about that.
 constexpr double next_level = 2;
+/// Of what a sum may be off by, what the higher rung adds has changed by: with less the next of its levels would not
+/// help.
+constexpr double little_of_all = 0.25;
+/// Of the time that is left: what the last level may have cost where levels begin anew in another family.
+constexpr double level_share = 0.1, longest_level = 0.2;
+constexpr double most = std::numeric_limits<double>::infinity();
 
 class ReferenceSearch {
  public:
@@ -32,48 +35,50 @@ class ReferenceSearch {
         registry_(registry),
         outputs_(outputs),
         goal_(goal),
-        control_(control),
-        integrations_(model_at, registry, outputs, goal) {
-    for (const Reference& run : goal.made) runs_.emplace(run.point.key(), run);
-  }
+        runs_(model_at, registry, outputs, goal, control),
+        steps_(goal, runs_.integrations()),
+        families_(model_at, registry, outputs, goal, runs_, steps_) {}
 
   /// Level after level, until one is known well enough or nothing more can be had.
   void find() {
     Point first = goal_.first;
-    if (goal_.integration && first.modes > 0) measure_integrations();
-    first = integrations_.on(first);
-    if (!found_.interrupted) first.family = best_family(first);
-    std::optional<Reference> before, coarse = found_.interrupted ? std::nullopt : begin(first);
-    if (!coarse) return;
-    ModeSeries series(outputs_, goal_.kinds);
-    series.add(coarse->point.modes, coarse->readings);
-    found_.trouble.clear();
-    found_.unaffordable = false;
-    for (int level = 0; level < goal_.levels; ++level) {
-      const Point next = finer(coarse->point);
-      // The same run again would agree with itself.
-      if (next.key() == coarse->point.key()) break;
-      std::optional<Reference> fine = at(next);
-      if (!fine) break;
-      series.add(next.modes, fine->readings);
-      if (series.size() > static_cast<std::size_t>(goal_.kinds) && known_by(*fine, series)) return;
-      before = std::move(coarse), coarse = std::move(fine);
-      if (much_cheaper_below(coarse->point) && lower_affordable(*coarse, *before))
-        found_.reference = add_to_lower(*coarse, *before, next_level * coarse->walk.seconds);
-      if (found_.reference || found_.interrupted) return;
+    if (goal_.integration && first.modes > 0) runs_.measure_integrations();
+    first = runs_.integrations().on(first);
+    if (!found().interrupted) families_.begin(first), first.family = families_.family();
+    coarse_ = found().interrupted ? std::nullopt : begin(first);
+    if (!coarse_) return;
+    series_.emplace(outputs_, goal_.kinds).add(coarse_->point.modes, coarse_->readings);
+    found().trouble.clear();
+    found().unaffordable = false;
+    for (int level = 0; level < goal_.levels && go_on(); ++level) {
+      if (found().reference || found().interrupted) return;
     }
-    if (!before || found_.interrupted || !lower_affordable(*coarse, *before)) return;
-    const std::string trouble = found_.trouble;
-    found_.reference = add_to_lower(*coarse, *before, std::numeric_limits<double>::infinity());
-    if (!found_.reference && found_.trouble.empty()) found_.trouble = trouble;
+    if (found().reference || !before_ || found().interrupted || !lower_affordable(*coarse_, *before_)) return;
+    const std::string trouble = found().trouble;
+    found().reference = add_to_lower(most);
+    if (!found().reference && found().trouble.empty()) found().trouble = trouble;
   }
 
-  ReferenceFound take_found() {
-    for (auto& [key, run] : runs_) found_.runs.push_back(std::move(run));
-    return std::move(found_);
-  }
+  ReferenceFound take_found() { return runs_.take_found(); }
 
  private:
+  /// The next level, and more modes in the lower rung where that is worth it. False where there is no finer one.
+  bool go_on() {
+    const Point next = steps_.finer(coarse_->point);
+    // The same run again would agree with itself.
+    if (next.key() == coarse_->point.key()) return false;
+    std::optional<Reference> fine = runs_.at(next);
+    if (!fine) return false;
+    series_->add(next.modes, fine->readings);
+    if (series_->size() > static_cast<std::size_t>(goal_.kinds) && known_by(*fine, *series_)) return true;
+    before_ = std::move(coarse_), coarse_ = std::move(fine);
+    if (much_cheaper_below(coarse_->point) && lower_affordable(*coarse_, *before_))
+      found().reference = add_to_lower(next_level * coarse_->walk.seconds);
+    if (found().reference || found().interrupted || !families_.look(*coarse_)) return true;
+    begin_in_family();
+    return true;
+  }
+
   /// Whether a level is known well enough, which is the end of the search; what comes near it is kept.
   bool known_by(const Reference& level, const ModeSeries& series) {
     Reference reached = lead(level, series);
@@ -81,62 +86,48 @@ class ReferenceSearch {
       keep_nearest(reached, series.limit_before());
       return false;
     }
-    found_.reference = std::move(reached);
+    found().reference = std::move(reached);
     return true;
   }
 
-  /// The family whose series of modes begins best.
-  std::string best_family(const Point& first) {
-    std::string best = first.family;
-    if (goal_.families.empty() || first.modes == 0) return best;
-    std::optional<double> least = first_change(first, best);
-    for (const std::string& family : goal_.families) {
-      if (family == best) continue;
-      const std::optional<double> change = first_change(first, family);
-      if (!change || (least && *change > clearly_less * *least)) continue;
-      least = change;
-      best = family;
+  /// Levels anew in the family that is known better, with as many modes as the last; what a higher rung adds is left in
+  /// the family so far where that costs much of the time that is left.
+  void begin_in_family() {
+    const double left = goal_.left ? goal_.left() : most;
+    if (coarse_->walk.seconds > level_share * left) return;
+    ModeSeries anew(outputs_, goal_.kinds);
+    std::optional<Reference> coarse, fine;
+    for (const int modes : steps_.upper_half(coarse_->point.modes)) {
+      Point point = coarse_->point;
+      point.modes = modes, point.family = families_.family();
+      coarse = std::move(fine);
+      fine = runs_.at(runs_.integrations().on(point), longest_level * left);
+      if (!fine) return;
+      anew.add(modes, fine->readings);
     }
-    return best;
-  }
-
-  /// A run that is not worth its time is no trouble.
-  void measure_integrations() {
-    const std::string trouble = found_.trouble;
-    const auto run = [&](const Point& point, double seconds) {
-      most_seconds_ = seconds;
-      return at(point);
-    };
-    integrations_.measure(run, [&] { return found_.interrupted; });
-    most_seconds_ = std::numeric_limits<double>::infinity();
-    found_.trouble = trouble, found_.unaffordable = false;
+    coarse_ = std::move(fine), before_ = std::move(coarse);
+    series_.emplace(std::move(anew));
+    static_cast<void>(known_by(*coarse_, *series_));
   }
 
   /// The coarsest level, in the richest formulation that comes to the end.
   std::optional<Reference> begin(Point point) {
     for (const std::string& formulation : reference_formulations(registry_)) {
       point.formulation = formulation;
-      if (auto reference = at(point)) return reference;
-      if (found_.interrupted) break;
+      if (auto reference = runs_.at(point)) return reference;
+      if (found().interrupted) break;
     }
     return {};
   }
 
-  /// A run, made once; nothing where it does not come to its end.
-  std::optional<Reference> at(const Point& point) {
-    const auto made = runs_.find(point.key());
-    std::optional<Reference> reference = made != runs_.end() ? made->second : run(point);
-    if (!reference) return {};
-    if (made == runs_.end()) runs_.emplace(point.key(), *reference);
-    integrations_.note(*reference);
-    return reference;
-  }
-
   [[nodiscard]] bool enough(const Reference& r) const { return !goal_.enough || goal_.enough(r); }
-  [[nodiscard]] Point finer(Point point) const {
-    if (point.modes > 0) ++point.modes;
-    point.tolerance = std::max(goal_.finer * point.tolerance, goal_.tightest);
-    return integrations_.on(point);
+
+  /// The next run of the series of the lower rung. Where one with more modes would cost much of the time that is left,
+  /// one half a step before the last comes first: of two shorter steps more may be known, for less.
+  [[nodiscard]] Point next_in_lower(const Point& richest) const {
+    Point next = steps_.finer(richest), between = steps_.between(richest);
+    const bool enough_steps = families_.series().has(richest.family, between.modes);
+    return enough_steps || steps_.costs_little(next) ? next : between;
   }
 
   /// Whether an evaluation costs a fraction in the rung below.
@@ -152,70 +143,64 @@ class ReferenceSearch {
     if (!low || !goal_.left) return true;
     const double base = fine.walk.seconds * model_at_(*low).seconds / model_at_(fine.point).seconds,
                  more = base * std::max(1.0, fine.walk.seconds / coarse.walk.seconds);
-    return (runs_.contains(low->key()) ? more : base + more) <= goal_.left();
+    return (runs_.has(*low) ? more : base + more) <= goal_.left();
   }
 
-  /// More modes in the rung below, with what the higher one adds at the finer of two levels. Nothing where there is no
-  /// rung below, a run does not end, what is added changes too much or the modes cost more; the richest is then kept as
+  /// More modes in the rung below, with what the higher one adds at the last level. Nothing where there is no rung
+  /// below, a run does not end, what is added changes too much or the modes cost more; the richest is then kept as
   /// nearest.
-  /// \param seconds of CPU time that more modes may cost; the run under way is ended
-  std::optional<Reference> add_to_lower(const Reference& fine, const Reference& coarse, double seconds) {
+  /// \param seconds of CPU time that more modes may cost where what is added has a part in what the sum may be off by:
+  /// the run under way is ended
+  std::optional<Reference> add_to_lower(double seconds) {
+    const Reference &fine = *coarse_, &coarse = *before_;
     const std::optional<Point> low = below(fine.point);
     if (!low || fine.point.modes == 0 || !goal_.steady) return {};
-    const auto before = at(*below(coarse.point));
+    const auto before = families_.run(*below(coarse.point));
     if (!before) return {};
-    const auto base = at(*low);
+    const auto base = families_.run(*low);
     if (!base) return {};
-    beside_.insert_or_assign(before->point.modes, *before);
-    beside_.insert_or_assign(base->point.modes, *base);
     // What the coarser level would have added.
-    const Distances changed =
+    Reference added = fine;
+    added.own =
         distances(outputs_, corrected(outputs_, base->readings, coarse.readings, before->readings), fine.readings)
             .first;
-    Reference added = fine;
-    added.own = changed;
-    if (!goal_.steady(added)) return {};
-    extend_lower(*before, *base);
-    const double began = found_.cpu_seconds;
+    Reference by_a_mode = added;
+    for (double& d : by_a_mode.own) d /= fine.point.modes - coarse.point.modes;
+    if (!goal_.steady(by_a_mode)) return {};
+    const double began = found().cpu_seconds;
+    bool little = false;
     while (true) {
-      if (richest_->point.modes > fine.point.modes) {
-        Reference reached = lead(*richest_, *lower_);
-        reached.added_by = fine.point;
-        reached.readings = corrected(outputs_, lower_->limit(), fine.readings, base->readings);
-        for (std::size_t k = 0; k < changed.size(); ++k) reached.own[k] += changed[k];
+      const Reference richest = *families_.series().richest(families_.family());
+      if (richest.point.modes > fine.point.modes) {
+        const Reference reached = with_added(richest, added, *base);
         if (enough(reached)) return reached;
         keep_nearest(reached, {});
+        if (families_.look(richest)) continue;
+        little = relative_error(added.own, added.scales) < little_of_all * relative_error(reached.own, reached.scales);
       }
-      if (richest_->point.modes >= fine.point.modes + most_modes_beyond || found_.cpu_seconds - began > seconds)
+      const bool beyond = richest.point.modes >= fine.point.modes + most_modes_beyond;
+      if (richest.point.modes >= most_modes || (!little && (beyond || found().cpu_seconds - began > seconds)))
         return {};
-      Point point = richest_->point;
-      ++point.modes;
-      const std::optional<Reference> richer = at(integrations_.on(point));
-      if (!richer) return {};
-      extend_lower(*richest_, *richer);
+      if (!families_.run(next_in_lower(richest.point))) return {};
     }
   }
 
-  /// Adds a run to the series of the lower rung, which goes on from level to level of the higher one and may be ahead
-  /// of it; where the run does not follow its last, it begins anew with those that were made beside levels.
-  void extend_lower(const Reference& before, const Reference& run) {
-    if (lower_ && richest_->point.modes >= run.point.modes) return;
-    if (!lower_ || richest_->point.modes != before.point.modes) {
-      lower_.emplace(outputs_, goal_.kinds);
-      int first = before.point.modes;
-      while (beside_.contains(first - 1)) --first;
-      for (; first < before.point.modes; ++first) lower_->add(first, beside_.at(first).readings);
-      lower_->add(before.point.modes, before.readings);
-    }
-    lower_->add(run.point.modes, run.readings);
-    richest_ = run;
+  /// Where the series of the lower rung leads to, with what a level of the higher one adds to the run with as many
+  /// modes.
+  [[nodiscard]] Reference with_added(const Reference& richest, const Reference& level, const Reference& base) const {
+    const ModeSeries series = families_.series().series(richest.point.family);
+    Reference reached = lead(richest, series);
+    reached.added_by = level.point;
+    reached.readings = corrected(outputs_, series.limit(), level.readings, base.readings);
+    for (std::size_t k = 0; k < level.own.size(); ++k) reached.own[k] += level.own[k];
+    return reached;
   }
 
   /// The run that a series has come to, with the readings that it leads to.
   [[nodiscard]] Reference lead(Reference run, const ModeSeries& series) const {
     run.readings = series.limit();
     run.own = series.own();
-    integrations_.add_to(run);
+    runs_.integrations().add_to(run);
     run.extrapolated = series.extrapolated();
     return run;
   }
@@ -223,57 +208,11 @@ class ReferenceSearch {
   void keep_nearest(const Reference& r, const Readings& coarser) {
     // Where runs part by all they go through the finer one agrees for longer.
     const auto off = [](const Reference& of) { return std::min(relative_error(of.own, of.scales), 1.0); };
-    if (found_.nearest && off(r) > off(*found_.nearest)) return;
-    found_.nearest = r;
-    found_.nearest->coarser = coarser;
+    if (found().nearest && off(r) > off(*found().nearest)) return;
+    found().nearest = r;
+    found().nearest->coarser = coarser;
   }
 
-  std::optional<Reference> run(const Point& point) {
-    const ModelAt& model = model_at_(point);
-    if (model.refused()) {
-      found_.trouble = model.refusal;
-      return {};
-    }
-    Reference r{.point = point, .readings = {}, .ranges = outputs_.none(), .scales = {}, .own = {}, .walk = {}};
-    OutputReader reader(outputs_, model.prepared->model(), *model.prepared->equations, model.prepared->scene.outputs);
-    const auto keep = [&](const State& s) {
-      r.readings.times.push_back(s.time);
-      r.readings.values.push_back(reader.read(s));
-      r.energy = std::max(r.energy, reader.kinetic_energy());
-      outputs_.raise_ranges(r.readings.values.back(), r.readings.values.front(), r.ranges);
-      return true;
-    };
-    const double whole = integrations_.expected_seconds(point);
-    const auto afford = [&](const Walk& so_far) {
-      return so_far.seconds <= most_seconds_ && (!goal_.afford || goal_.afford(so_far, whole));
-    };
-    r.walk = walk(*model.prepared, *make_integrator(registry_, point.integrator, point.tolerance),
-                  {keep, afford, control_.interrupted});
-    r.scales = scales(outputs_, r.ranges, r.energy);
-    found_.cpu_seconds += r.walk.seconds;
-    found_.interrupted = r.walk.end == Walk::End::interrupted;
-    if (r.walk.end == Walk::End::reached) {
-      if (goal_.ended) goal_.ended(r.walk);
-      return r;
-    }
-    found_.unaffordable = r.walk.end == Walk::End::cut;
-    if (found_.unaffordable) {
-      found_.trouble = fmt::format("{}: at {:.4g} s of the run after {:.2g} s of CPU time, when the time for it ended",
-                                   point.text(), r.walk.time, r.walk.seconds);
-      return {};
-    }
-    found_.trouble = fmt::format("{}: ends at {:.4g} s: {}", point.text(), r.walk.time, r.walk.reason);
-    return {};
-  }
-
-  /// By what part of the outputs' scales a mode more changes them in the lowest rung; nothing where a run does not end.
-  [[nodiscard]] std::optional<double> first_change(Point point, const std::string& family) {
-    point.family = family;
-    point.formulation = reference_formulations(registry_).back();
-    const std::optional<Reference> few = at(point), more = few ? at(finer(point)) : few;
-    if (!more) return {};
-    return relative_error(distances(outputs_, more->readings, few->readings).first, more->scales);
-  }
   /// The same in the next rung that truncates nothing.
   [[nodiscard]] std::optional<Point> below(Point point) const {
     const std::vector<std::string> all = reference_formulations(registry_);
@@ -283,18 +222,18 @@ class ReferenceSearch {
     return point;
   }
 
+  ReferenceFound& found() { return runs_.found(); }
+  [[nodiscard]] const ReferenceFound& found() const { return runs_.found(); }
+
   const std::function<const ModelAt&(const Point&)>& model_at_;
   Registry& registry_;
   const Outputs& outputs_;
   const ReferenceGoal& goal_;
-  const Control& control_;
-  ReferenceFound found_;
-  std::optional<ModeSeries> lower_;   ///< of the rung below, where more modes are looked at
-  std::map<int, Reference> beside_;   ///< runs in that rung with as many modes as levels, by modes
-  std::optional<Reference> richest_;  ///< the last of its runs
-  LevelIntegrations integrations_;
-  double most_seconds_ = std::numeric_limits<double>::infinity();  ///< that a run may cost
-  std::map<std::string, Reference> runs_;                          ///< that came to their end, by the point's key
+  ReferenceRuns runs_;
+  std::optional<Reference> before_, coarse_;  ///< the last two levels
+  std::optional<ModeSeries> series_;          ///< of levels
+  LevelSteps steps_;
+  FamilyChoice families_;  ///< with the runs of the lowest rung, where more modes are looked at
 };
 
 }  // namespace

@@ -43,12 +43,14 @@ int kinds_of_modes(const Scene& scene);
 struct ReferenceGoal {
   Point first;  ///< the coarsest; its formulation means nothing
   /// Families beside that of `first`: the one is taken whose first added mode changes clearly less, in the lowest rung
-  /// that truncates nothing.
+  /// that truncates nothing; and one whose series there is known clearly better, when there are more modes.
   std::vector<std::string> families;
-  /// Finer ones that are looked at: a mode more where the first has any, the tolerance times `finer` down to
-  /// `tightest`.
+  /// Finer ones that are looked at: modes more where the first has any, the tolerance times `finer` down to `tightest`.
   int levels = 1;
   int kinds = 1;  ///< kinds_of_modes
+  /// Whether levels with many modes are next_step() apart, as it pays where nobody knows how many it takes; else each
+  /// has a mode more.
+  bool leaps = false;
   double finer = 0.1;
   double tightest = 1e-9;
   /// What integration adds to a level, where that is its `own`, over what it may add. Each level then has the
@@ -58,7 +60,7 @@ struct ReferenceGoal {
   std::function<double(const Reference&)> integration;
   std::vector<Reference> made = {};              ///< runs that need not be made again
   std::function<bool(const Reference&)> enough;  ///< empty: one level is
-  /// Whether what a higher rung adds has changed little enough from the level before, as `own`; empty: never.
+  /// Whether what a higher rung adds has changed little enough with the last mode, as `own`; empty: never.
   std::function<bool(const Reference&)> steady;
   std::function<double()> left;  ///< CPU time that all runs to come may take [s]; empty: any
   /// Asked along each run, with what it is expected to cost as evaluations have grown with modes [s], infinite where

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <limits>
@@ -86,6 +87,11 @@ Readings corrected(const Outputs& outputs, const Readings& a, const Readings& b,
   return sum;
 }
 
+int next_step(int modes) {
+  constexpr int part = 4;
+  return static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max(modes / part, 1))));
+}
+
 Tail tail(double n, double ratio) {
   constexpr double slowest = 1, fastest = 500;  // exponents p; beyond, nothing is left
   const double greatest_ratio = ratio_of(n, slowest);
@@ -120,33 +126,35 @@ ModeSeries::Steps ModeSeries::steps(const Output& output, const Readings& to, co
 }
 
 void ModeSeries::add(int modes, Readings run) {
-  if (!all_.empty()) changes_.push_back(distances(outputs_, run, all_.back()).first);
+  const int before = runs_.empty() ? modes : runs_.rbegin()->first;
+  if (!runs_.empty()) changes_.push_back(distances(outputs_, run, last_).first);
   limit_before_ = std::exchange(limit_, run);
+  if (runs_.empty()) limit_before_ = limit_;
   extrapolated_ = false;
-  all_.push_back(std::move(run));
-  limits_.push_back(all_.back());
-  limits_of_far_.push_back(all_.back());
-  if (all_.size() == 1) {
-    limit_before_ = limit_;
-    return;
-  }
+  last_ = std::move(run);
+  if (!runs_.empty() && modes == before) runs_.erase(modes);  // without modes runs differ by their tolerance alone
+  runs_.emplace(modes, last_);
+  ++size_;
+  if (size_ == 1) return;
   if (kinds_ > 1 || modes == 0) {
     own_ = rest_of(changes_, kinds_);
     return;
   }
-  if (all_.size() == 2) {
+  int step = modes - before;
+  const auto stepped = [&](int by) { return has(modes - by) && has(modes - 2 * by); };
+  while (step < modes && !stepped(step)) ++step;
+  if (step >= modes) {
     // One step tells no ratio: it may be the first of those of 1/n.
     own_ = changes_.back();
-    for (double& d : own_) d *= modes - 1;
+    for (double& d : own_) d *= static_cast<double>(before) / (modes - before);
     return;
   }
-  Lead best = lead(modes, 1, limits_);
-  const std::size_t far = std::max<std::size_t>(1, static_cast<std::size_t>(modes) / 4);
-  if (2 * far < all_.size()) {
-    const Lead other = lead(modes, far, limits_of_far_);
-    for (std::size_t k = 0; k < best.own.size(); ++k)
-      if (other.own[k] < best.own[k]) take(k, other, best);
-  }
+  Lead best = lead(modes, step, limits_);
+  int far = std::max(step, modes / 4);
+  while (!stepped(far)) --far;
+  const Lead other = lead(modes, far, limits_of_far_);
+  for (std::size_t k = 0; k < best.own.size(); ++k)
+    if (other.own[k] < best.own[k]) take(k, other, best);
   limit_ = std::move(best.limit);
   own_ = std::move(best.own);
   extrapolated_ = std::find(best.moved.begin(), best.moved.end(), true) != best.moved.end();
@@ -163,11 +171,11 @@ void ModeSeries::take(std::size_t k, const Lead& from, Lead& to) const {
 }
 
 /// Where the last two of such steps lead to, output by output.
-/// \param limits of such steps, a run each; the last is set
-ModeSeries::Lead ModeSeries::lead(int modes, std::size_t step, std::vector<Readings>& limits) const {
-  Lead lead{run(0), outputs_.none(), std::vector<bool>(outputs_.list().size(), false)};
+/// \param limits of such steps, by modes; that of the last is added
+ModeSeries::Lead ModeSeries::lead(int modes, int step, std::map<int, Readings>& limits) const {
+  Lead lead{last_, outputs_.none(), std::vector<bool>(outputs_.list().size(), false)};
   for (std::size_t k = 0; k < lead.own.size(); ++k) extrapolate(modes, step, k, lead);
-  limits.back() = lead.limit;
+  limits.insert_or_assign(modes, lead.limit);
   add_changes_of_limits(modes, step, limits, lead);
   return lead;
 }
@@ -175,29 +183,25 @@ ModeSeries::Lead ModeSeries::lead(int modes, std::size_t step, std::vector<Readi
 /// By what part an output's steps have shrunk from each to the next, over the last two where there are as many: those
 /// of even and odd modes may differ much, and one that happens to be small is not what the next is measured by. 1 where
 /// that is not known.
-double ModeSeries::shrinking(std::size_t step, std::size_t k) const {
-  const auto size = [&](std::size_t back) {
-    return greatest_of(outputs_.list()[k], steps(outputs_.list()[k], run(back * step), run((back + 1) * step)));
-  };
-  const std::size_t back = 3 * step < all_.size() ? 2 : 1;
-  const double before = size(back), ratio = size(0) / before;
+double ModeSeries::shrinking(int modes, int step, std::size_t k) const {
+  const Output& output = outputs_.list()[k];
+  const auto size = [&](int at) { return greatest_of(output, steps(output, runs_.at(at), runs_.at(at - step))); };
+  const int back = has(modes - 3 * step) ? 2 : 1;
+  const double before = size(modes - back * step), ratio = size(modes) / before;
   if (!(before > 0)) return 1;
   return back == 2 ? std::sqrt(ratio) : ratio;
 }
 
 /// No limit is known better than what is left of changes of limits that shrink on as the last two did, or as those of
 /// runs do.
-void ModeSeries::add_changes_of_limits(int modes, std::size_t step, const std::vector<Readings>& limits,
-                                       Lead& lead) const {
-  constexpr std::size_t first = 2;  // run that has a limit
-  const std::size_t last = limits.size() - 1;
-  if (last < first + step) return;
-  const Distances now = distances(outputs_, limits[last], limits[last - step]).first;
-  const bool twice = last >= first + 2 * step;
+void ModeSeries::add_changes_of_limits(int modes, int step, const std::map<int, Readings>& limits, Lead& lead) const {
+  const auto last = limits.find(modes), before_last = limits.find(modes - step), first = limits.find(modes - 2 * step);
+  if (before_last == limits.end()) return;
+  const Distances now = distances(outputs_, last->second, before_last->second).first;
   const Distances before =
-      twice ? distances(outputs_, limits[last - step], limits[last - 2 * step]).first : outputs_.none();
+      first != limits.end() ? distances(outputs_, before_last->second, first->second).first : outputs_.none();
   for (std::size_t k = 0; k < now.size(); ++k) {
-    double shrinks = shrinking(step, k);
+    double shrinks = shrinking(modes, step, k);
     if (before[k] > 0) shrinks = std::min(shrinks, now[k] / before[k]);
     lead.own[k] =
         std::max(lead.own[k], now[k] * goes_on(static_cast<double>(modes) / static_cast<double>(step), shrinks));
@@ -205,9 +209,10 @@ void ModeSeries::add_changes_of_limits(int modes, std::size_t step, const std::v
 }
 
 /// Moves the limit of an output to where the last two steps lead, and sets what it may be off by.
-void ModeSeries::extrapolate(int modes, std::size_t step, std::size_t k, Lead& lead) const {
+void ModeSeries::extrapolate(int modes, int step, std::size_t k, Lead& lead) const {
   const Output& output = outputs_.list()[k];
-  const Steps last = steps(output, run(0), run(step)), first = steps(output, run(step), run(2 * step));
+  const Readings& between = runs_.at(modes - step);
+  const Steps last = steps(output, last_, between), first = steps(output, between, runs_.at(modes - 2 * step));
   const Eigen::Index common = std::min(last.cols(), first.cols());
   const Steps now = last.leftCols(common), before = first.leftCols(common);
   const double n = static_cast<double>(modes) / static_cast<double>(step), size = greatest_of(output, now),
@@ -221,7 +226,7 @@ void ModeSeries::extrapolate(int modes, std::size_t step, std::size_t k, Lead& l
   const Tail left = tail(n, ratio);
   const double way = 0.5 * (left.geometric + left.algebraic);
   const double unlike = greatest_of(output, now - ratio * before);
-  lead.own[k] = (left.algebraic - left.geometric) * size + goes_on(n, shrinking(step, k)) * unlike;
+  lead.own[k] = (left.algebraic - left.geometric) * size + goes_on(n, shrinking(modes, step, k)) * unlike;
   if (!(way > 0)) return;
   lead.moved[k] = true;
   for (Eigen::Index i = 0; i < common; ++i)

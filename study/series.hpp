@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <vector>
 
 #include "withy/study/measures.hpp"
@@ -27,8 +28,14 @@ struct Tail {
 /// \param n at least 3; of steps of s modes each, modes over s
 Tail tail(double n, double ratio);
 
-/// A series of runs whose number of modes grows by one from each to the next: where their outputs lead to, by Aitken's
-/// extrapolation of each output's whole history at once (Aitken 1926; of vectors: Irons & Tuck 1969).
+/// How many modes more the next run of a series is to have: a mode, late in it a quarter of those that it has or less,
+/// a power of two. Runs two and three such steps before the last are then there too. Each mode in turn would cost more
+/// than twice as much, and say little: what steps of one mode differ by is lost in all else.
+int next_step(int modes);
+
+/// A series of runs whose number of modes grows from each to the next, by one or by next_step(): where their outputs
+/// lead to, by Aitken's extrapolation of each output's whole history at once (Aitken 1926; of vectors: Irons & Tuck
+/// 1969).
 ///
 /// Of the steps d_n = u_n − u_(n−1) of an output, ρ is the least-squares ratio d_n ≈ ρ d_(n−1) over all times and
 /// components; of an orientation, d is the rotation vector of u_n u_(n−1)⁻¹. Two laws fit two steps: a geometric series
@@ -50,7 +57,7 @@ class ModeSeries {
   /// \param modes of each family that a body has; 0: none has a number of them
   void add(int modes, Readings run);
   /// Runs so far.
-  [[nodiscard]] std::size_t size() const { return all_.size(); }
+  [[nodiscard]] std::size_t size() const { return size_; }
   /// Where the series leads to: the last run, moved; as it is where nothing more is known.
   [[nodiscard]] const Readings& limit() const { return limit_; }
   /// That of the run before; of one run its own.
@@ -69,19 +76,21 @@ class ModeSeries {
     Distances own;
     std::vector<bool> moved;  ///< of each output, whether its limit is not that of the last run
   };
-  [[nodiscard]] const Readings& run(std::size_t back) const { return all_[all_.size() - 1 - back]; }
+  [[nodiscard]] bool has(int modes) const { return runs_.contains(modes); }
   [[nodiscard]] Steps steps(const Output& output, const Readings& to, const Readings& from) const;
-  [[nodiscard]] double shrinking(std::size_t step, std::size_t output) const;
-  [[nodiscard]] Lead lead(int modes, std::size_t step, std::vector<Readings>& limits) const;
+  [[nodiscard]] double shrinking(int modes, int step, std::size_t output) const;
+  [[nodiscard]] Lead lead(int modes, int step, std::map<int, Readings>& limits) const;
   void take(std::size_t output, const Lead& from, Lead& to) const;
-  void extrapolate(int modes, std::size_t step, std::size_t output, Lead& lead) const;
-  void add_changes_of_limits(int modes, std::size_t step, const std::vector<Readings>& limits, Lead& lead) const;
+  void extrapolate(int modes, int step, std::size_t output, Lead& lead) const;
+  void add_changes_of_limits(int modes, int step, const std::map<int, Readings>& limits, Lead& lead) const;
 
   const Outputs& outputs_;
   int kinds_;
-  std::vector<Readings> all_;
-  std::vector<Distances> changes_;                ///< from run to run
-  std::vector<Readings> limits_, limits_of_far_;  ///< of steps of a mode and of a quarter of the modes, a run each
+  std::size_t size_ = 0;
+  std::map<int, Readings> runs_;  ///< by modes
+  Readings last_;
+  std::vector<Distances> changes_;                  ///< from run to run
+  std::map<int, Readings> limits_, limits_of_far_;  ///< of the last steps and of steps of a quarter of the modes
   Readings limit_, limit_before_;
   Distances own_;
   bool extrapolated_ = false;

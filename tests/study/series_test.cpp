@@ -131,6 +131,35 @@ TEST(ModeSeries, ASumOfTwoSeriesIsAtMostThreeTimesAsFarOffAsItSays) {
   EXPECT_LT(most, 3);
 }
 
+/// Late in a series levels are several modes apart.
+TEST(ModeSeries, OneThatLeapsIsKnownAsWell) {
+  std::vector<int> all{2};
+  while (all.back() < 24) all.push_back(all.back() + next_step(all.back()));
+  EXPECT_EQ(all, (std::vector<int>{2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24}));
+  const MadeUp made;
+  for (const double p : {1.0, 2.0, 3.0}) {
+    ModeSeries series(made.outputs(), 1);
+    for (const int modes : all) {
+      series.add(modes, made.run(algebraic(p)(modes)));
+      if (modes < 4) continue;
+      EXPECT_LE(made.over_told(series), 0.501) << modes << ' ' << p;
+      EXPECT_GT(made.over_told(series), 0.2) << modes << ' ' << p;
+    }
+  }
+}
+
+/// A run that comes between two others makes two shorter steps of the last.
+TEST(ModeSeries, OfAllStepsThatEndAtTheLastRunTheBestCounts) {
+  const MadeUp made;
+  const auto own = [&](const std::vector<int>& all) {
+    ModeSeries series(made.outputs(), 1);
+    for (const int modes : all) series.add(modes, made.run(geometric(0.3)(modes)));
+    return *std::max_element(series.own().begin(), series.own().end());
+  };
+  EXPECT_LT(own({3, 4, 5, 6, 7, 8}), own({3, 4, 5, 6, 8}));
+  EXPECT_GT(own({3, 5, 8}), 3 * own({4, 6, 8})) << "no two steps are alike: it may be the first of those of 1/n";
+}
+
 TEST(ModeSeries, OneThatGoesToAndFroIsTakenAsItIs) {
   const MadeUp made;
   const ModeSeries series = made.series(6, [](int n) { return 0.05 * std::pow(-0.6, n); });
