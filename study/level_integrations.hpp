@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/study/level_integration.hpp"
+#include "withy/study/loosest_integration.hpp"
 
 namespace withy::study {
 

@@ -1,5 +1,5 @@
 // How levels of a reference are integrated: what integration adds, which integrator costs least, what runs are worth.
-#include "withy/study/level_integration.hpp"
+#include "withy/study/loosest_integration.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "withy/study/level_integration.hpp"
+#include "withy/study/loosest_integration.hpp"
 
 #include <algorithm>
 #include <cmath>
