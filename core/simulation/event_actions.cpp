@@ -31,8 +31,9 @@ EventActions::EventActions(const Model& model, const EquationsOfMotion& equation
     const ActingEvent& event = plan.events[i];
     watched_.push_back({event.name,
                         [this, &event, i](double t, std::span<const double> y) {
+                          // Zero has no sign: an event that does not look passes nothing, then or when it looks again.
                           return event.when != ActingEvent::When::passes || over_at(i, y)
-                                     ? 1.0
+                                     ? 0.0
                                      : value(event, t, y) - event.value;
                         },
                         event.direction, event.stops});
@@ -95,7 +96,6 @@ const EventActions::Done& EventActions::act(State& state, std::span<const std::s
       if (!perform(i, state)) return done_;
       done_.acted.push_back(plain_ + i);
       done_.stops = done_.stops || events[i].stops;
-      done_.changes = done_.changes || !events[i].actions.empty();
       for (std::size_t k = 0; k < events.size(); ++k)
         if (events[k].when == ActingEvent::When::after && events[k].after == i && !over_at(k, state.y)) wait(k);
     }

@@ -89,6 +89,7 @@ ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const
   }
   values_.resize(switches_ + events.size());
   signs_.resize(values_.size());
+  unsure_.assign(values_.size(), -1);
   begin_at(start);
 }
 
@@ -112,9 +113,12 @@ void ZeroWatch::begin_at(const State& state) {
   std::transform(values_.begin(), values_.end(), signs_.begin(), sign);
 }
 
-const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& state, std::span<const Zero> known) {
+const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& before, const State& state,
+                                                    std::span<const Zero> known) {
   zeros_.clear();
+  evaluate(before.time, before.y, ends_);
   evaluate(state.time, state.y, values_);
+  landed_ = values_;
   signs_ = start_signs_;  // what else `find` has seen lies beyond this state, or is seen again
   for (const Zero& zero : known) {
     signs_[zero.function] = zero.direction;
@@ -126,6 +130,12 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& state, std::spa
     if (signs_[f] * now < 0 && noticed(f, now)) zeros_.push_back({state.time, f, now});
     signs_[f] = now;
   }
+  // As near as interpolation and root finding come, and as near as this state is.
+  const auto passed = [&](const Zero& zero) {
+    unsure_[zero.function] = std::max(2 * std::abs(landed_[zero.function]), 1e-9 * std::abs(ends_[zero.function]));
+  };
+  std::for_each(known.begin(), known.end(), passed);
+  std::for_each(zeros_.begin(), zeros_.end(), passed);
   return zeros_;
 }
 
@@ -133,6 +143,7 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::leap(const State& state) {
   zeros_.clear();
   evaluate(state.time, state.y, values_);
   for (std::size_t f = 0; f < signs_.size(); ++f) {
+    if (unsure_[f] >= 0 && std::abs(values_[f] - landed_[f]) <= unsure_[f]) continue;
     const int now = sign(values_[f]);
     if (signs_[f] * now < 0 && noticed(f, now)) zeros_.push_back({state.time, f, now});
     signs_[f] = now;
@@ -162,6 +173,7 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, doub
         .second;
   };
   zeros_.clear();
+  std::fill(unsure_.begin(), unsure_.end(), -1);
   before_ = start_signs_ = signs_;
   double begin = from;
   for (int look = 1; look <= looks; ++look) {

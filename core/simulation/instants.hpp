@@ -76,10 +76,11 @@ class ZeroWatch {
   void pass(const Zero& zero) { signs_[zero.function] = zero.direction; }
   /// Whether a zero changes the run: a load switches there, or an event stops it.
   [[nodiscard]] bool acts(const Zero& zero) const { return zero.function < switches_ || event(zero.function).stops; }
-  /// At a state that a step was made to end at because of one of the zeros `known`: the zeros of others passed with
-  /// it. The functions of `known` have passed, whatever sign rounding leaves them here.
-  const std::vector<Zero>& land(const State& state, std::span<const Zero> known);
-  /// At a state that events have changed: the zeros passed by that.
+  /// At a state that a step from `before` was made to end at because of one of the zeros `known`: the zeros of others
+  /// passed with it. The functions of `known` have passed, whatever sign rounding leaves them here.
+  const std::vector<Zero>& land(const State& before, const State& state, std::span<const Zero> known);
+  /// At a state that events have changed: the zeros passed by that. Functions that `land` saw pass have, until an event
+  /// moves them by more than their zeros are known to.
   const std::vector<Zero>& leap(const State& state);
   /// Takes the signs at a state where discrete states have changed.
   void begin_at(const State& state);
@@ -105,6 +106,8 @@ class ZeroWatch {
   std::vector<int> before_;
   std::vector<int> start_signs_;  ///< `signs_` at the start of the step that `find` has looked at
   std::vector<double> values_, ends_;
+  std::vector<double> landed_;  ///< values at the state that `land` has seen
+  std::vector<double> unsure_;  ///< how far from zero these may be of functions that passed there; else below zero
   std::vector<Zero> zeros_;
   State inside_;
 };

@@ -81,8 +81,6 @@ bool Stepping::act(std::span<const std::size_t> happened) {
     observer_->acted(acted_on_, state());
     observer_->jumped();
     if (done.stops) return end(Cause::event);
-    // What is only looked for has passed, whatever side of its value rounding leaves it on.
-    if (!done.changes) return true;
     const std::vector<std::size_t> acted = done.acted;
     if (!leap(acted)) return false;
     if (happened_.empty()) return true;
@@ -235,7 +233,7 @@ bool Stepping::cut_at(double time, std::size_t noted) {
   last_zero_ = time;
   stepper_->jump(before_);
   if (!to(time, false)) return false;
-  const std::vector<Zero>& others = zeros_.land(state(), handled_);
+  const std::vector<Zero>& others = zeros_.land(before_, state(), handled_);
   handled_.insert(handled_.end(), others.begin(), others.end());
   sample_ = state();
   bool stops = false;
