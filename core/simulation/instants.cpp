@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/held_numbers.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy {
@@ -44,8 +45,11 @@ Clocks::Clocks(const Model& model, const EquationsOfMotion& equations) : model_(
 }
 
 void Clocks::begin(State& state) {
-  renewal_.at(state);
-  for (const LoadSlot& slot : model_.layout().discrete_slots) renewal_(state, slot, {});
+  if (const auto begun = place_of_begun(model_); !begun || state.y[*begun] == 0) {
+    renewal_.at(state);
+    for (const LoadSlot& slot : model_.layout().discrete_slots) renewal_(state, slot, {});
+    if (begun) state.y[*begun] = 1;
+  }
   go_on_after(state.time);
 }
 

@@ -21,7 +21,8 @@ namespace withy {
 /// Whether any load switches where a function of the state is zero, or events act.
 bool has_switches(const Model& model);
 
-/// The state with all discrete states set for the start of a run of the equations at its time.
+/// The state with all discrete states set for a run of the equations from its time on: those that a run has set already
+/// stay, instants up to that time having been.
 State begun(const Model& model, const EquationsOfMotion& equations, State state);
 
 /// Renews discrete states by their loads' clocks.
@@ -29,7 +30,7 @@ class Clocks {
  public:
   /// The model and its equations must outlive the clocks.
   Clocks(const Model& model, const EquationsOfMotion& equations);
-  /// Sets all discrete states for the start of a run at the state's time.
+  /// Sets all discrete states for a run from the state's time on, as `begun`.
   void begin(State& state);
   /// Goes on from a state whose instants up to its time have been.
   void go_on_after(double time);
