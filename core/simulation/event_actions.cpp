@@ -7,6 +7,7 @@
 
 #include "withy/core/model/switched_load.hpp"
 #include "withy/core/plugin/forward_dynamics.hpp"
+#include "withy/core/simulation/same_instant.hpp"
 
 namespace withy {
 
@@ -63,7 +64,7 @@ double EventActions::next(const State& state) const {
   if (!book_.any()) return first;
   for (std::size_t i = 0; i < book_.plan().events.size(); ++i) {
     const EventNumbers n = book_.numbers(state.y, i);
-    if (n.waiting > 0 && n.due >= state.time) first = std::min(first, n.due);
+    if (n.waiting > 0 && (n.due >= state.time || same_instant(n.due, state.time))) first = std::min(first, n.due);
   }
   return first;
 }
@@ -84,7 +85,7 @@ const EventActions::Done& EventActions::act(State& state, std::span<const std::s
     const std::size_t before = done_.acted.size();
     for (std::size_t i = 0; i < events.size(); ++i) {
       EventNumbers n = book_.numbers(state.y, i);
-      if (n.waiting == 0 || n.due != state.time) continue;
+      if (n.waiting == 0 || !same_instant(n.due, state.time)) continue;
       if (round == most_rounds) {
         done_.crowded = true;
         return done_;
