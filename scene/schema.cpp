@@ -259,6 +259,7 @@ class SchemaWriter {
              {{"hinges", part("position", position(), "rate")},
               {"bodies", part("modes", list_or_one(), "rates")},
               {"loads", by_name(numbers_by_key)},
+              {"held", by_name({{"type", "array"}, {"items", {{"type", "number"}}}})},
               {"inputs", by_name(number)},
               {"locked", {{"type", "array"}, {"items", reference("name")}}},
               {"settings", by_name({{"type", "string"}})},

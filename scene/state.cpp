@@ -9,6 +9,7 @@
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/scene/events_done.hpp"
 #include "withy/scene/grammar.hpp"
+#include "withy/scene/held.hpp"
 #include "withy/scene/names.hpp"
 #include "withy/scene/orientation.hpp"
 #include "withy/scene/scene.hpp"
@@ -42,13 +43,15 @@ class StateReader {
       : model_(model), checker_(checker), state_(state) {}
 
   bool read(const Value& value) {
-    if (!map_with(value, {"hinges", "bodies", "loads", "inputs", "locked", "settings", "events", "time", "work"}))
+    if (!map_with(value,
+                  {"hinges", "bodies", "loads", "held", "inputs", "locked", "settings", "events", "time", "work"}))
       return false;
     scalar(value, number("time", "s", ""), state_.time);
     model_.prescribe(state_);  // what the state does not say of driven hinges, their motions do
     if (const Value* hinges = value.find("hinges")) read_hinges(*hinges);
     if (const Value* bodies = value.find("bodies")) read_bodies(*bodies);
     if (const Value* loads = value.find("loads")) read_loads(*loads);
+    if (const Value* held = value.find("held")) good_ = read_held(*held, model_, checker_, state_) && good_;
     if (const Value* inputs = value.find("inputs")) read_inputs(*inputs);
     scalar(value, number("work", "J", ""), state_.y.back());
     good_ = read_events_done(value, model_, checker_, state_) && good_;

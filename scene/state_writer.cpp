@@ -2,6 +2,7 @@
 #include <span>
 #include <utility>
 
+#include "withy/core/model/held_numbers.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/scene/events_done.hpp"
 #include "withy/scene/scene.hpp"
@@ -43,6 +44,17 @@ Value inputs_of(const Model& model, const State& state) {
   return inputs;
 }
 
+/// What loads hold between instants, of a state of a run.
+Value held_of(const Model& model, const State& state) {
+  Value all = Value::map({});
+  const auto begun = place_of_begun(model);
+  if (!begun || state.y[*begun] == 0) return all;
+  for (const LoadNode& load : model.loads())
+    if (const auto held = held_numbers(load, std::span(state.y)); !held.empty())
+      all.members().emplace_back(load.name, list_of(held));
+  return all;
+}
+
 void add_events_done(const EventsDone& done, Value& all) {
   Value locked = Value::list({}), settings = Value::map({}), events = Value::map({});
   for (const std::string& name : done.locked) locked.items().emplace_back(name);
@@ -79,6 +91,7 @@ Value state_value(const Model& model, const State& state) {
                           {"bodies", std::move(bodies)},
                           {"work", Value(state.y.back())}});
   if (Value loads = continuous_of(model, state); !loads.members().empty()) all.set("loads", std::move(loads));
+  if (Value held = held_of(model, state); !held.members().empty()) all.set("held", std::move(held));
   if (Value inputs = inputs_of(model, state); !inputs.members().empty()) all.set("inputs", std::move(inputs));
   if (const auto done = events_done(model, state)) add_events_done(*done, all);
   return all;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "withy/core/plugin/formula.hpp"
@@ -66,8 +67,21 @@ class ExpressionSensor final : public Sensor {
   std::string unit_;
 };
 
+/// Whether a column can have a text for its unit: heads of tables are ASCII, with commas and brackets of their own.
+bool is_unit(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) {
+    return c >= ' ' && c <= '~' && std::string_view(",\"[]").find(c) == std::string_view::npos;
+  });
+}
+
 std::unique_ptr<Sensor> make_expression(const Value& p, const MakeContext& context) {
   const Value& given = p.at("value");
+  if (const Value& unit = p.at("unit"); !is_unit(unit.text())) {
+    context.diagnostics.error(unit.place(),
+                              "got what no column can have for its unit; need ASCII text without commas, quotes and "
+                              "brackets");
+    return nullptr;
+  }
   try {
     return std::make_unique<ExpressionSensor>(Formula(given.text()), p.text_at("unit"));
   } catch (const std::invalid_argument& e) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "withy/core/model/held_numbers.hpp"
 #include "withy/core/model/hosted_motion.hpp"
 #include "withy/core/plugin/central_difference.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
@@ -265,6 +266,7 @@ State Dynamics::start() const {
     const std::span<const double> first = load.discrete(std::span(prepared_->scene.initial.y));
     std::copy(first.begin(), first.end(), load.discrete(std::span(state.y)).begin());
   }
+  if (const auto begun = place_of_begun(model())) state.y[*begun] = prepared_->scene.initial.y[*begun];
   return state;
 }
 

@@ -110,7 +110,8 @@ void Model::add_load(std::string name, const Load& load) {
     for (LoadSlot& slot : layout_.discrete_slots) loads_[slot.load].slot.first = slot.first += count;
   }
   if (const DiscretePart* part = bound->discrete(); part != nullptr && part->states() > 0) {
-    node.slot = {index, layout_.moving() + layout_.discrete, part->states()};
+    if (layout_.discrete_slots.empty()) layout_.discrete = 1;  // behind all, whether they are those of a run
+    node.slot = {index, layout_.moving() + layout_.discrete - 1, part->states()};
     layout_.discrete_slots.push_back(node.slot);
     layout_.discrete += part->states();
   }

@@ -7,6 +7,7 @@
 
 #include "withy/core/model/switched_load.hpp"
 #include "withy/core/plugin/forward_dynamics.hpp"
+#include "withy/core/simulation/same_instant.hpp"
 
 namespace withy {
 
@@ -31,8 +32,9 @@ EventActions::EventActions(const Model& model, const EquationsOfMotion& equation
     const ActingEvent& event = plan.events[i];
     watched_.push_back({event.name,
                         [this, &event, i](double t, std::span<const double> y) {
+                          // Zero has no sign: an event that does not look passes nothing, then or when it looks again.
                           return event.when != ActingEvent::When::passes || over_at(i, y)
-                                     ? 1.0
+                                     ? 0.0
                                      : value(event, t, y) - event.value;
                         },
                         event.direction, event.stops});
@@ -62,7 +64,7 @@ double EventActions::next(const State& state) const {
   if (!book_.any()) return first;
   for (std::size_t i = 0; i < book_.plan().events.size(); ++i) {
     const EventNumbers n = book_.numbers(state.y, i);
-    if (n.waiting > 0 && n.due >= state.time) first = std::min(first, n.due);
+    if (n.waiting > 0 && (n.due >= state.time || same_instant(n.due, state.time))) first = std::min(first, n.due);
   }
   return first;
 }
@@ -83,7 +85,7 @@ const EventActions::Done& EventActions::act(State& state, std::span<const std::s
     const std::size_t before = done_.acted.size();
     for (std::size_t i = 0; i < events.size(); ++i) {
       EventNumbers n = book_.numbers(state.y, i);
-      if (n.waiting == 0 || n.due != state.time) continue;
+      if (n.waiting == 0 || !same_instant(n.due, state.time)) continue;
       if (round == most_rounds) {
         done_.crowded = true;
         return done_;
@@ -95,7 +97,6 @@ const EventActions::Done& EventActions::act(State& state, std::span<const std::s
       if (!perform(i, state)) return done_;
       done_.acted.push_back(plain_ + i);
       done_.stops = done_.stops || events[i].stops;
-      done_.changes = done_.changes || !events[i].actions.empty();
       for (std::size_t k = 0; k < events.size(); ++k)
         if (events[k].when == ActingEvent::When::after && events[k].after == i && !over_at(k, state.y)) wait(k);
     }

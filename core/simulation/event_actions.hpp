@@ -35,7 +35,6 @@ class EventActions {
   /// What `act` has done.
   struct Done {
     std::vector<std::size_t> acted;  ///< indices in `watched`, in their order
-    bool changes = false;            ///< one of them has changed the state, beside what it knows of events
     bool stops = false;              ///< one of them ends the run
     bool crowded = false;            ///< events go round in a circle, without time between them
     Evaluation evaluation;           ///< of the impulses; not ok: there are none, the mass matrix cannot be solved

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/model/held_numbers.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 
 namespace withy {
@@ -44,8 +45,11 @@ Clocks::Clocks(const Model& model, const EquationsOfMotion& equations) : model_(
 }
 
 void Clocks::begin(State& state) {
-  renewal_.at(state);
-  for (const LoadSlot& slot : model_.layout().discrete_slots) renewal_(state, slot, {});
+  if (const auto begun = place_of_begun(model_); !begun || state.y[*begun] == 0) {
+    renewal_.at(state);
+    for (const LoadSlot& slot : model_.layout().discrete_slots) renewal_(state, slot, {});
+    if (begun) state.y[*begun] = 1;
+  }
   go_on_after(state.time);
 }
 
@@ -89,6 +93,7 @@ ZeroWatch::ZeroWatch(const Model& model, std::span<const RunEvent> events, const
   }
   values_.resize(switches_ + events.size());
   signs_.resize(values_.size());
+  unsure_.assign(values_.size(), -1);
   begin_at(start);
 }
 
@@ -112,9 +117,12 @@ void ZeroWatch::begin_at(const State& state) {
   std::transform(values_.begin(), values_.end(), signs_.begin(), sign);
 }
 
-const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& state, std::span<const Zero> known) {
+const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& before, const State& state,
+                                                    std::span<const Zero> known) {
   zeros_.clear();
+  evaluate(before.time, before.y, ends_);
   evaluate(state.time, state.y, values_);
+  landed_ = values_;
   signs_ = start_signs_;  // what else `find` has seen lies beyond this state, or is seen again
   for (const Zero& zero : known) {
     signs_[zero.function] = zero.direction;
@@ -126,6 +134,12 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::land(const State& state, std::spa
     if (signs_[f] * now < 0 && noticed(f, now)) zeros_.push_back({state.time, f, now});
     signs_[f] = now;
   }
+  // As near as interpolation and root finding come, and as near as this state is.
+  const auto passed = [&](const Zero& zero) {
+    unsure_[zero.function] = std::max(2 * std::abs(landed_[zero.function]), 1e-9 * std::abs(ends_[zero.function]));
+  };
+  std::for_each(known.begin(), known.end(), passed);
+  std::for_each(zeros_.begin(), zeros_.end(), passed);
   return zeros_;
 }
 
@@ -133,6 +147,7 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::leap(const State& state) {
   zeros_.clear();
   evaluate(state.time, state.y, values_);
   for (std::size_t f = 0; f < signs_.size(); ++f) {
+    if (unsure_[f] >= 0 && std::abs(values_[f] - landed_[f]) <= unsure_[f]) continue;
     const int now = sign(values_[f]);
     if (signs_[f] * now < 0 && noticed(f, now)) zeros_.push_back({state.time, f, now});
     signs_[f] = now;
@@ -162,6 +177,7 @@ const std::vector<ZeroWatch::Zero>& ZeroWatch::find(const Stepper& stepper, doub
         .second;
   };
   zeros_.clear();
+  std::fill(unsure_.begin(), unsure_.end(), -1);
   before_ = start_signs_ = signs_;
   double begin = from;
   for (int look = 1; look <= looks; ++look) {

@@ -21,7 +21,8 @@ namespace withy {
 /// Whether any load switches where a function of the state is zero, or events act.
 bool has_switches(const Model& model);
 
-/// The state with all discrete states set for the start of a run of the equations at its time.
+/// The state with all discrete states set for a run of the equations from its time on: those that a run has set already
+/// stay, instants up to that time having been.
 State begun(const Model& model, const EquationsOfMotion& equations, State state);
 
 /// Renews discrete states by their loads' clocks.
@@ -29,7 +30,7 @@ class Clocks {
  public:
   /// The model and its equations must outlive the clocks.
   Clocks(const Model& model, const EquationsOfMotion& equations);
-  /// Sets all discrete states for the start of a run at the state's time.
+  /// Sets all discrete states for a run from the state's time on, as `begun`.
   void begin(State& state);
   /// Goes on from a state whose instants up to its time have been.
   void go_on_after(double time);
@@ -76,10 +77,11 @@ class ZeroWatch {
   void pass(const Zero& zero) { signs_[zero.function] = zero.direction; }
   /// Whether a zero changes the run: a load switches there, or an event stops it.
   [[nodiscard]] bool acts(const Zero& zero) const { return zero.function < switches_ || event(zero.function).stops; }
-  /// At a state that a step was made to end at because of one of the zeros `known`: the zeros of others passed with
-  /// it. The functions of `known` have passed, whatever sign rounding leaves them here.
-  const std::vector<Zero>& land(const State& state, std::span<const Zero> known);
-  /// At a state that events have changed: the zeros passed by that.
+  /// At a state that a step from `before` was made to end at because of one of the zeros `known`: the zeros of others
+  /// passed with it. The functions of `known` have passed, whatever sign rounding leaves them here.
+  const std::vector<Zero>& land(const State& before, const State& state, std::span<const Zero> known);
+  /// At a state that events have changed: the zeros passed by that. Functions that `land` saw pass have, until an event
+  /// moves them by more than their zeros are known to.
   const std::vector<Zero>& leap(const State& state);
   /// Takes the signs at a state where discrete states have changed.
   void begin_at(const State& state);
@@ -105,6 +107,8 @@ class ZeroWatch {
   std::vector<int> before_;
   std::vector<int> start_signs_;  ///< `signs_` at the start of the step that `find` has looked at
   std::vector<double> values_, ends_;
+  std::vector<double> landed_;  ///< values at the state that `land` has seen
+  std::vector<double> unsure_;  ///< how far from zero these may be of functions that passed there; else below zero
   std::vector<Zero> zeros_;
   State inside_;
 };

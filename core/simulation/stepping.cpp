@@ -6,6 +6,7 @@
 #include <string>
 
 #include "withy/core/plugin/registry.hpp"
+#include "withy/core/simulation/same_instant.hpp"
 
 namespace withy {
 
@@ -33,7 +34,7 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
   observer_ = &observer;
   ended_ = {};
   if (!sound(state())) return ended_;
-  if (actions_ != nullptr && actions_->next(state()) == state().time && !act({})) return ended_;
+  if (actions_ != nullptr && same_instant(actions_->next(state()), state().time) && !act({})) return ended_;
   while (state().time < end_) {
     const auto jump = std::upper_bound(jumps_.begin(), jumps_.end(), state().time);
     const bool jumps = jump != jumps_.end() && *jump <= end_;
@@ -44,7 +45,7 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
         if (!renew_clocks()) return ended_;
         if (!happened_.empty() && !act(std::vector<std::size_t>(happened_))) return ended_;
       }
-      if (actions_ != nullptr && actions_->next(state()) == state().time && !act({})) return ended_;
+      if (actions_ != nullptr && same_instant(actions_->next(state()), state().time) && !act({})) return ended_;
     }
     if (!jumps) continue;
     observer_->landed(state());
@@ -60,7 +61,8 @@ bool Stepping::end(Cause cause) {
 }
 
 double Stepping::next_instant() const {
-  return actions_ == nullptr ? clocks_.next() : std::min(clocks_.next(), actions_->next(state()));
+  const double sample = clocks_.next(), event = actions_ == nullptr ? sample : actions_->next(state());
+  return same_instant(sample, event) ? sample : std::min(sample, event);
 }
 
 /// Events happen at the present state, and others may be due: what they ask for is done. What passes its value because
@@ -81,8 +83,6 @@ bool Stepping::act(std::span<const std::size_t> happened) {
     observer_->acted(acted_on_, state());
     observer_->jumped();
     if (done.stops) return end(Cause::event);
-    // What is only looked for has passed, whatever side of its value rounding leaves it on.
-    if (!done.changes) return true;
     const std::vector<std::size_t> acted = done.acted;
     if (!leap(acted)) return false;
     if (happened_.empty()) return true;
@@ -235,7 +235,7 @@ bool Stepping::cut_at(double time, std::size_t noted) {
   last_zero_ = time;
   stepper_->jump(before_);
   if (!to(time, false)) return false;
-  const std::vector<Zero>& others = zeros_.land(state(), handled_);
+  const std::vector<Zero>& others = zeros_.land(before_, state(), handled_);
   handled_.insert(handled_.end(), others.begin(), others.end());
   sample_ = state();
   bool stops = false;

@@ -124,6 +124,28 @@ TEST(Description, TheLibraryNeedsTheRunTimesOfCAndCppAndWhatStandsBesideIt) {
   }
 }
 
+TEST(Description, UnitsThatScenesAreNotWrittenWithAreThoseOfTheStandardOrNamesAlone) {
+  const std::filesystem::path file = scratch() / "motor.yaml";
+  std::ofstream(file) << R"(format: withy/1
+bodies: {rotor: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: rotor}}
+loads: {motor: {type: dc-motor, hinge: axle, reference: 2, resistance: 1, inductance: 0.1, torque_constant: 0.2}}
+outputs: {drive: {type: control, of: motor}, turns: {type: expression, value: drive.command / 2, unit: <turns>}}
+time: {end: 1}
+)";
+  for (const int version : {2, 3}) {
+    const Unpacked& fmu = exported(file.string(), version);
+    std::map<std::string, std::map<std::string, std::string>> units;
+    for (const auto& [tag, unit] : fmu.xml.get_child("UnitDefinitions")) {
+      const auto base = unit.get_child_optional("BaseUnit");
+      units[attributes_of(unit).at("name")] = base ? attributes_of(*base) : std::map<std::string, std::string>{};
+    }
+    EXPECT_EQ(units.at("V"), (std::map<std::string, std::string>{{"kg", "1"}, {"m", "2"}, {"s", "-3"}, {"A", "-1"}}));
+    EXPECT_EQ(units.at("A"), (std::map<std::string, std::string>{{"A", "1"}}));
+    EXPECT_EQ(units.at("<turns>"), (std::map<std::string, std::string>{}));
+  }
+}
+
 TEST(Description, WhatCannotBeAnFmuIsRefusedWithItsReason) {
   const auto refused = [](host::Scene scene) -> std::string {
     const auto prepared = scene.prepare();

@@ -85,6 +85,27 @@ events:
   EXPECT_THAT(missed.summary.message, HasSubstr("'late' did not happen"));
 }
 
+// The third multiple of 0.1 is not 0.3, nor the sum of 0.2 and 0.1.
+TEST(ActingEvents, at_the_instant_of_a_sample_come_after_it_whatever_rounding_makes_of_the_two_times) {
+  for (int k = 1; k <= 9; ++k) {
+    for (const std::string& when :
+         {"{at: 0." + std::to_string(k), "{after: first, delay: 0." + std::to_string(k - 1)}) {
+      const ActedRun run(discs("time: {end: 0." + std::to_string(k) + R"(5, output: 1}
+loads:
+  motor: {type: hinge-effort, hinge: axle, value: 0}
+  seen: {type: quantizer, of: table.acceleration, step: 0.001, range: 10, sample: 0.1}
+outputs: {table: {type: hinge, hinge: axle}}
+events:
+  first: {at: 0.1}
+  push: )" + when + ", do: {set: loads.motor.value=2}}\n"));
+      ASSERT_EQ(run.event(1).happened, 1) << when;
+      const LoadNode& seen = run.scene.model->loads()[1];
+      const double held = seen.discrete(std::span(run.summary.final.y)).back();
+      EXPECT_NEAR(held, 0, 1e-9) << when << ": the sample was taken before the push";
+    }
+  }
+}
+
 std::string problem_of(const std::string& text) {
   try {
     const Made made(text);

@@ -1,0 +1,110 @@
+/// \file
+/// Every passage of an event's value is one: it is told once and acts once, whatever side of the value rounding leaves
+/// the state on that a step is made to end at.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "acted_run.hpp"
+
+namespace withy {
+namespace {
+
+using test::ActedRun;
+
+// x = cos 2t of a disc on a spring, and events that act on a spring which the motion knows nothing of: they are to
+// happen where x or its rate passes their values, one way and the other in turn.
+std::string swinging_disc(const std::string& integrator, const std::string& events) {
+  return "format: withy/1\nintegrator: " + integrator + R"(
+time: {end: 12, output: 12}
+bodies:
+  disc: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}
+  other: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: disc}
+  idle: {type: revolute, axis: [0, 0, 1], parent: world, child: other}
+loads:
+  spring: {type: hinge-spring, hinge: axle, stiffness: 0.8}
+  idle_spring: {type: hinge-spring, hinge: idle, stiffness: 1}
+outputs: {turn: {type: gyro, of: disc}, pull: {type: hinge, hinge: axle}}
+initial: {hinges: {axle: {position: 1}}}
+)" + events;
+}
+
+/// Times [s] up to `end` at which cos 2t passes a value.
+std::vector<double> passages(double value, double end) {
+  std::vector<double> times;
+  const double first = std::acos(value) / 2;
+  for (double begin = 0; begin < end; begin += std::numbers::pi) {
+    if (begin + first < end) times.push_back(begin + first);
+    if (begin + std::numbers::pi - first < end) times.push_back(begin + std::numbers::pi - first);
+  }
+  return times;
+}
+
+TEST(EventPassages, act_once_each_and_in_turn_downwards_and_upwards) {
+  constexpr int events = 15;
+  // What watches the coordinate, its rate −2 sin 2t and its acceleration −4 cos 2t: of all the same cosine passes.
+  const struct {
+    std::string watch;
+    double scale, shift;
+  } signals[] = {
+      {"hinge: axle", 1, 0}, {"signal: turn.z", 2, -std::numbers::pi / 4}, {"signal: pull.acceleration", -4, 0}};
+  for (const std::string integrator :
+       {"{name: dopri5, rtol: 1e-9, atol: 1e-11}", "{name: dop853, rtol: 1e-9, atol: 1e-11}",
+        "{name: radau, rtol: 1e-9, atol: 1e-11}", "{name: cvode, rtol: 1e-9, atol: 1e-11}",
+        "{name: gauss, step: 0.01}"}) {
+    for (const auto& signal : signals) {
+      std::string text = "events:\n";
+      for (int i = 0; i < events; ++i)
+        text += fmt::format(
+            "  e{}: {{{}, value: {}, direction: both, repeat: true, do: {{set: loads.idle_spring.stiffness={}}}}}\n", i,
+            signal.watch, signal.scale * (-0.9 + 0.12 * i), 2 + i);
+      const ActedRun run(swinging_disc(integrator, text));
+      for (int i = 0; i < events; ++i) {
+        std::vector<double> expected = passages(-0.9 + 0.12 * i, 12 - signal.shift);
+        std::vector<EventTime> found;
+        for (const EventTime& e : run.summary.events)
+          if (e.name == "e" + std::to_string(i)) found.push_back(e);
+        for (double& t : expected) t += signal.shift;
+        std::erase_if(expected, [](double t) { return t < 0; });
+        ASSERT_EQ(found.size(), expected.size()) << integrator << signal.watch << i;
+        EXPECT_EQ(run.event(static_cast<std::size_t>(i)).happened, static_cast<double>(found.size()));
+        for (std::size_t k = 1; k < found.size(); ++k)
+          EXPECT_EQ(found[k].direction, -found[k - 1].direction) << integrator << signal.watch << i;
+        // Integration to 1e-9, or of order four in a hundredth: errors of x over its rate, at least 0.8 here.
+        for (std::size_t k = 0; k < found.size(); ++k)
+          EXPECT_NEAR(found[k].time, expected[k], 1e-6) << integrator << signal.watch << i;
+      }
+    }
+  }
+}
+
+// An event that waits does not look; those that do are not told more than there is.
+TEST(EventPassages, of_an_event_with_a_delay_act_once_each_and_are_no_passages_of_others) {
+  for (const std::string direction : {"both", "down", "up"}) {
+    const std::string watch = "hinge: axle, value: 0.3, direction: " + direction;
+    const ActedRun run(
+        swinging_disc("{name: dopri5, rtol: 1e-9, atol: 1e-11}",
+                      "events:\n  late: {" + watch +
+                          ", delay: 0.1, repeat: true, do: {set: loads.idle_spring.stiffness=3}}\n  silent: {" + watch +
+                          ", delay: 0.1, repeat: true}\n  seen: {" + watch + "}\n"));
+    for (const std::string name : {"late", "silent", "seen"}) {
+      const double delay = name == "seen" ? 0 : 0.1;
+      std::vector<double> expected = passages(0.3, 12 - delay);
+      if (direction != "both")
+        std::erase_if(expected, [&](double t) { return (std::sin(2 * t) > 0) != (direction == "down"); });
+      std::vector<double> found;
+      for (const EventTime& e : run.summary.events)
+        if (e.name == name) found.push_back(e.time);
+      ASSERT_EQ(found.size(), expected.size()) << direction << name;
+      for (std::size_t k = 0; k < found.size(); ++k)
+        EXPECT_NEAR(found[k], expected[k] + delay, 1e-7) << direction << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace withy
