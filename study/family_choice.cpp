@@ -14,7 +14,7 @@ constexpr double clearly_less = 0.5;
 /// Times the modes of one look at families: those of the next.
 constexpr double until_next_look = 1.5;
 /// Of the time that is left: what the richest run of each family may be expected to cost, and what it may cost.
-constexpr double look_share = 0.075, longest_look = 0.15;
+constexpr double family_look_share = 0.075, longest_look = 0.15;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ bool FamilyChoice::worth_a_look(const Reference& richest) {
   next_look_ = static_cast<int>(std::ceil(until_next_look * richest.point.modes));
   const double cost =
       richest.walk.seconds * model_at_(in_lowest(richest.point)).seconds / model_at_(richest.point).seconds;
-  return !goal_.left || cost <= look_share * goal_.left();
+  return !goal_.left || cost <= family_look_share * goal_.left();
 }
 
 bool FamilyChoice::look(const Reference& richest) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "withy/core/model/closing.hpp"
 #include "withy/core/model/event_plan.hpp"
@@ -23,6 +24,16 @@ bool may_float(const Model& model) {
   // On the rates of a free hinge acts what comes from outside the tree; what its bodies do to each other cancels there.
   for (const LoopClosure* loop : loops_of(model)) floats = floats && loop->a().body >= 0 && loop->b().body >= 0;
   return floats;
+}
+
+/// Why a state has no energy although its numbers are finite: the greatest of its speeds, squared, is beyond all.
+std::string without_energy(const Layout& layout, const State& state) {
+  const auto speeds = std::span(state.y).subspan(layout.positions, layout.speeds);
+  const auto fastest =
+      std::max_element(speeds.begin(), speeds.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  if (fastest == speeds.end()) return "the energy is not finite";
+  const auto index = static_cast<std::size_t>(fastest - speeds.begin());
+  return "the energy is not finite: the speed '" + layout.speed_names[index] + "' is " + brief(*fastest);
 }
 
 }  // namespace
@@ -205,6 +216,7 @@ void Monitor::audit_energy(const State& state) {
   const double energy = kinetic_energy + e.potential;
   const double work = state.y.back() - initial_work_;
   const double error = std::abs(energy - initial_energy_ - work);
+  if (!std::isfinite(error) && excess_.empty()) excess_ = without_energy(model_.layout(), state);
   energy_error_ = std::max(energy_error_, error);
   energy_scale_ =
       std::max({energy_scale_, std::abs(energy), std::abs(initial_energy_), std::abs(work), kinetic_energy});

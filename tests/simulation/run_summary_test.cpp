@@ -1,6 +1,6 @@
 /// \file
 /// Efforts, peaks and drifts that a run reports beside its states.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 
@@ -91,6 +91,24 @@ TEST(RunSummaries, peaks_drift_and_samples_do_not_depend_on_the_output_interval)
         [&](const State& s) { greatest = std::max(greatest, std::abs(deflection(*m.equations, s.y, ends[0])[1])); }));
     EXPECT_NEAR(a.peak_deflection.at("boom")[1], greatest, 2e-3 * greatest) << formulation;
   }
+}
+
+// The square of 1e200 is beyond all numbers: what it does to the energy must not pass for a balance.
+TEST(RunSummaries, a_motion_whose_energy_is_no_number_is_not_completed) {
+  const auto run = [](const std::string& rate) {
+    const Made m(
+        "format: withy/1\ntime: {end: 1}\nbodies: {wheel: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+        "hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}\n"
+        "initial: {hinges: {axle: {rate: " +
+        rate + "}}}\n");
+    RunOptions options;
+    options.end = options.output = 1;
+    return simulate(*m.scene.model, *m.equations, *m.scene.integrator, m.scene.initial, options, [](const State&) {});
+  };
+  const RunSummary summary = run("1e200");
+  EXPECT_EQ(summary.status, RunStatus::diverged);
+  EXPECT_THAT(summary.message, testing::HasSubstr("the energy is not finite: the speed 'axle.rate' is 1e+200"));
+  EXPECT_EQ(run("1e150").status, RunStatus::completed);
 }
 
 }  // namespace
