@@ -107,7 +107,7 @@ TEST(RunSummaries, a_motion_whose_energy_is_no_number_is_not_completed) {
   };
   const RunSummary summary = run("1e200");
   EXPECT_EQ(summary.status, RunStatus::diverged);
-  EXPECT_THAT(summary.message, testing::HasSubstr("the energy is not finite: the speed 'axle.rate' is 1e+200"));
+  EXPECT_THAT(summary.message, testing::HasSubstr("the energy is not finite: the speed 'axle.0' is 1e+200"));
   EXPECT_EQ(run("1e150").status, RunStatus::completed);
 }
 
