@@ -5,5 +5,5 @@ source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 # Three tests ask other programs to read, to draw and to run what withy writes; without them they are left out.
 need_packages "${build_packages[@]}" hdf5-tools librsvg2-bin zsh
 build release
-# Two more than there are processors: some tests wait, for a browser, a clock or a process that is to be killed.
-ctest --preset release --parallel $(($(nproc) + 2)) --progress "$@"
+# One more than there are processors: some tests wait, for a browser, a clock or a process that is to be killed.
+ctest --preset release --parallel $(($(nproc) + 1)) --progress "$@"
