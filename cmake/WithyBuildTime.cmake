@@ -6,7 +6,7 @@
 #   core       core/ but the sweeps                                       precompiled/engine.hpp
 #   plugins    bodies, loads, integrators, modes, formulations, fem       precompiled/engine.hpp
 #   programs   scene, study, results, campaign, program, apps                     precompiled/programs.hpp
-#   tests      tests but for benchmarks and the zoo of bad plugins        precompiled/tests.hpp
+#   tests      tests but for benchmarks and bad plugins with flags of their own   precompiled/tests.hpp
 #   computing-tests  those of them that compute much themselves           the same
 #
 # They all also declare Eigen's decompositions and products as compiled elsewhere (eigen_instances.cpp), for a source
@@ -16,10 +16,10 @@
 # a source a second or two a kind to compile (core/reference 33 s of CPU time, and 24 s so); three rows run in 0.6 to 1.1
 # times the time so.
 #
-# All but the core is compiled twelve sources at a time, programs as many as a room has: a room's sources instantiate
-# the same, apps took 292 s of CPU time and take 150 s, tests/cli 231 s and 76 s. Of the core rooms of small sources are
-# one source each (simulation took 51 s and takes 34 s); core/analysis and core/tangents share too little and take longer
-# as one.
+# Plugins are compiled twelve sources at a time, programs and tests forty, which most rooms do not have: a room's sources
+# instantiate the same, apps took 292 s of CPU time and take 150 s, tests/cli 231 s and 76 s; tests that take 140 s took
+# 182 s at twelve a time. Of the core rooms of small sources are one source each (simulation took 51 s and takes 34 s);
+# core/analysis and core/tangents share too little and take longer as one.
 # Names in unnamed namespaces must then differ within a room.
 #
 # Programs hold no loop that time is spent in: a release build compiles them at -O1. Most tests ask libraries and other
@@ -27,10 +27,11 @@
 # in themselves, those of dynamics 0.1: they are at -O1. Precompiled headers keep the level that they were compiled at and
 # impose it on all who use them, whatever their own flags say: a group has one.
 #
-# The sweeps are compiled without precompiled headers, which two sets of flags would need twice; benchmarks and the zoo
-# file by file. A build with a cache of objects (ccache, which passes by sources with precompiled headers) goes without:
-# sources include all they need, and there a missing #include is an error. So does clang, but for the preset that fuzzes:
-# it would be 516 commands, each of which instruments anew what it instantiates, and is 125.
+# The sweeps are compiled without precompiled headers, which two sets of flags would need twice; benchmarks and
+# plugins with flags of their own file by file. A build with a cache of objects (ccache, which passes by sources with
+# precompiled headers) goes without: sources include all they need, and there a missing #include is an error. So does
+# clang, but for the preset that fuzzes: it would be 516 commands, each of which instruments anew what it
+# instantiates, and is 125.
 set(WITHY_PRECOMPILE_HEADERS "" CACHE STRING "ON or OFF; if empty, ON for g++ without a compiler launcher")
 set(precompile ${WITHY_PRECOMPILE_HEADERS})
 if(WITHY_PRECOMPILE_HEADERS STREQUAL "")
@@ -106,8 +107,8 @@ function(withy_precompile group)
       # It refuses headers that were compiled for names of another visibility, where g++ takes them.
       set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
     endif()
-    if(group STREQUAL "programs")
-      withy_unite(${target} 30)
+    if(group MATCHES "programs|tests")
+      withy_unite(${target} 40)
     elseif(NOT group STREQUAL "core")
       withy_unite(${target})
     endif()

@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 kept=${1:-results/advise.jsonl}
 mkdir -p "$(dirname "$kept")"
 campaign() { # SCENES AFTER COUNT
-  WITHY_TEST_AFTER=$2 WITHY_TEST_SEEDS=$3 WITHY_TEST_FILE=$kept build/release/bin/test-advise-campaign --gtest_filter="*$1*" || true
+  WITHY_TEST_AFTER=$2 WITHY_TEST_SEEDS=$3 WITHY_TEST_FILE=$kept build/release/bin/test-campaigns --gtest_filter="AdviseCampaign.*$1*" || true
 }
 {
   printf 'scenes\tasked\tscenes asked for\tadvised\taccuracy met\tmost of it used\tcost at most 1.5 times the least\tthe same by CPU time\tworst cost\tleft out\n'

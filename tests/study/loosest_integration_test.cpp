@@ -15,15 +15,15 @@ namespace {
 
 using test::plugins;
 
-Prepared arm(const char* scene, double end) {
+Prepared until(const char* scene, double end) {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/" + scene);
   return prepare(values.set("time.end", Value(end), "the test"), plugins());
 }
 
 /// An integrator whose error is a multiple of its tolerance.
-class MadeUp {
+class RoughIntegrator {
  public:
-  explicit MadeUp(double error) : error_(error) {}
+  explicit RoughIntegrator(double error) : error_(error) {}
   std::optional<LevelIntegration> loosest(double allowed, double tightest = 1e-9) {
     const auto run = [&](double tolerance) {
       asked.push_back(tolerance);
@@ -42,24 +42,24 @@ class MadeUp {
 
  private:
   double error_;
-  Prepared scene_ = arm("two-link-slew.yaml", 0.5);
+  Prepared scene_ = until("two-link-slew.yaml", 0.5);
   Outputs outputs_ = Outputs::all(scene_.model());
 };
 
 TEST(LevelIntegration, TheToleranceIsTheLoosestPowerOfTenAtWhichADigitLessChangesLittle) {
-  MadeUp of(2);
+  RoughIntegrator of(2);
   const auto found = of.loosest(1e-4);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->tolerance, 1e-5) << "a candidate's, to the last bit; vectors are off by √3 of each number";
   EXPECT_EQ(of.asked, (std::vector<double>{1e-3, 1e-4, 1e-5, 1e-6}));
   EXPECT_EQ(found->evaluations, (std::map<int, double>{{0, 300}})) << "of the run with that tolerance";
-  EXPECT_EQ(MadeUp(0).loosest(1e-4)->tolerance, 1e-3);
+  EXPECT_EQ(RoughIntegrator(0).loosest(1e-4)->tolerance, 1e-3);
 }
 
 TEST(LevelIntegration, WhereNoToleranceWillDoThereIsNone) {
-  EXPECT_FALSE(MadeUp(1e9).loosest(1e-4));
-  EXPECT_FALSE(MadeUp(2).loosest(1e-4, 1e-4));
-  MadeUp stops(2);
+  EXPECT_FALSE(RoughIntegrator(1e9).loosest(1e-4));
+  EXPECT_FALSE(RoughIntegrator(2).loosest(1e-4, 1e-4));
+  RoughIntegrator stops(2);
   stops.ends_below = 1e-5;
   EXPECT_FALSE(stops.loosest(1e-4)) << "a run does not end";
 }
@@ -104,7 +104,7 @@ TEST(LevelIntegration, StepsThatSolveEquationsAreTakenWhereTheyAreLessThanHalfAs
 /// Its elbow has a damper between light bodies: the more modes, the faster it lets go of what they do at the hinge.
 /// Neither the fastest mode nor what is folded into implicit steps tells of that.
 TEST(LevelIntegration, WhatADamperMakesStiffIsIntegratedWithStepsThatSolveForAll) {
-  const Prepared scene = arm("commanded-arm.yaml", 2);
+  const Prepared scene = until("commanded-arm.yaml", 2);
   const Outputs outputs = Outputs::all(scene.model());
   Evaluator evaluator(scene, plugins(), outputs, {});
   const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
@@ -121,7 +121,7 @@ TEST(LevelIntegration, WhatADamperMakesStiffIsIntegratedWithStepsThatSolveForAll
 
 /// The manipulator's booms vibrate fast in polynomials, and its motions are slow.
 TEST(LevelIntegration, FastModesThatLimitExplicitStepsAreIntegratedImplicitlyAndAsExactly) {
-  const Prepared scene = arm("gallery/manipulator.yaml", 2);
+  const Prepared scene = until("gallery/manipulator.yaml", 2);
   const Outputs outputs = Outputs::all(scene.model());
   Evaluator evaluator(scene, plugins(), outputs, {});
   const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
@@ -146,7 +146,7 @@ TEST(LevelIntegration, FastModesThatLimitExplicitStepsAreIntegratedImplicitlyAnd
 }
 
 TEST(Evaluator, ARunOfAReferenceIsTheProbeThatRunningItAgainIs) {
-  const Prepared scene = arm("two-link-slew.yaml", 0.5);
+  const Prepared scene = until("two-link-slew.yaml", 0.5);
   const Outputs outputs = Outputs::all(scene.model());
   Evaluator evaluator(scene, plugins(), outputs, {});
   const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
