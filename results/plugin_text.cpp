@@ -79,7 +79,7 @@ std::string plugins_table(const std::vector<PluginEntry>& plugins) {
     if (!p.refused.empty())
       refused += (p.id.empty() ? "" : p.kind + '/' + p.id + ": ") + p.refused + '\n';
     else
-      table.add({p.kind, p.id, p.version, p.file.filename().string(), p.about.summary});
+      table.add({p.kind, p.id, p.version, p.file.filename().string(), std::string(p.about.summary)});
   }
   return table.str() + (refused.empty() ? "" : "\nrefused:\n" + refused);
 }
@@ -88,7 +88,8 @@ std::string plugin_text(const PluginEntry& plugin) {
   std::string out =
       fmt::format("{}/{}  version {}\n{}\n", plugin.kind, plugin.id, plugin.version, plugin.file.string());
   if (!plugin.refused.empty()) return out + "refused: " + plugin.refused + '\n';
-  out += plugin.about.summary + '\n';
+  out += plugin.about.summary;
+  out += '\n';
   if (!plugin.about.parameters.empty()) out += "options:\n";
   add_options(out, plugin_json(plugin)["options"], "  ");
   return out;

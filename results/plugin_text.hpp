@@ -4,17 +4,19 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "withy/core/plugin/registry.hpp"
 
 namespace withy {
 
-/// What a plugin of any kind says of itself.
+/// What a plugin of any kind says of itself; the registry it was asked of keeps it.
 struct PluginDescription {
-  std::string summary;
-  std::vector<ParameterSpec> parameters;
+  std::string_view summary;
+  std::span<const ParameterSpec> parameters;
 };
 /// Loads the plugin's library. \param kind as "body" \throws PluginError where it is refused
 PluginDescription described(Registry& registry, const std::string& kind, const std::string& id);

@@ -19,25 +19,25 @@ std::vector<PluginEntry> load_wanted(const Plugins& plugins, const std::string& 
   const auto wanted = [&](const PluginRecord& r) {
     return name.empty() || r.id == name || r.kind + '/' + r.id == name;
   };
-  const std::vector<PluginRecord> found = plugins.host().plugins();
-  std::vector<PluginDescription> about(found.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].state == PluginRecord::State::refused || !wanted(found[i])) continue;
+  std::vector<PluginDescription> about;
+  for (const PluginRecord& found : plugins.host().plugins()) {
+    about.emplace_back();
+    if (found.state == PluginRecord::State::refused || !wanted(found)) continue;
     try {
-      about[i] = described(plugins.registry(), found[i].kind, found[i].id);
+      about.back() = described(plugins.registry(), found.kind, found.id);
     } catch (const PluginError&) {
       // The host has recorded why; it is shown with the others.
     }
   }
   // The same in the same order, with what has become of them.
-  const std::vector<PluginRecord> now = plugins.host().plugins();
+  std::vector<PluginRecord> now = plugins.host().plugins();
   std::vector<PluginEntry> entries;
   for (std::size_t i = 0; i < now.size(); ++i) {
-    const PluginRecord& r = now[i];
+    PluginRecord& r = now[i];
     if (!wanted(r)) continue;
     const bool refused = r.state == PluginRecord::State::refused;
-    entries.push_back({r.kind, r.id, r.file, r.version, refused ? r.reason : "",
-                       refused ? PluginDescription() : std::move(about[i])});
+    entries.push_back({std::move(r.kind), std::move(r.id), std::move(r.file), std::move(r.version),
+                       refused ? std::move(r.reason) : "", refused ? PluginDescription() : about[i]});
   }
   return entries;
 }

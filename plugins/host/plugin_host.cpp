@@ -155,6 +155,9 @@ std::vector<std::string> PluginHost::Catalogue::ids(std::string_view kind) const
 std::vector<PluginRecord> PluginHost::Catalogue::records() const {
   const std::lock_guard lock(mutex_);
   std::vector<PluginRecord> records;
+  std::size_t count = 0;
+  for (const Library& library : libraries_) count += std::max<std::size_t>(1, library.manifest.provides.size());
+  records.reserve(count);
   for (const Library& library : libraries_) {
     PluginRecord record;
     record.file = library.file;
