@@ -196,22 +196,29 @@ void expect_steps(const Certified& c) {
   EXPECT_NEAR(said.fastest, fastest, 0.02 * fastest);
 }
 
-/// Places of tips against those in the model up, both at a tolerance of 1e-10.
+/// Places of tips against those in the model up, both at a tolerance of 1e-10. Where the certificate says that coarse
+/// runs leave this one by a part of a range, it claims no more than that.
 void expect_error(const Certified& c, const Certified& tight, const Certified& up) {
   const ErrorEstimate& said = *c.certificate().estimate;
   if (tight.seen.size() != up.seen.size() || said.distances.until < said.end) return;
+  constexpr double worth_saying = 0.1;
+  const double left = said.off > worth_saying ? said.off : 0;
   for (const Tip& tip : tips(c.model())) {
     const auto found = said.distances.tips.find(tip.body + ".tip");
     if (found == said.distances.tips.end() || tip.in_segments()) continue;
-    double real = 0;
+    const auto place = [&](const Certified& of, std::size_t i) {
+      const auto p = of.equations().frame_pose(of.seen[i].y, tip.tip.body, tip.tip.frame).position;
+      return Vector3(p[0], p[1], p[2]);
+    };
+    double real = 0, range = 0;
     for (std::size_t i = 0; i < up.seen.size(); ++i) {
-      const auto a = tight.equations().frame_pose(tight.seen[i].y, tip.tip.body, tip.tip.frame).position,
-                 b = up.equations().frame_pose(up.seen[i].y, tip.tip.body, tip.tip.frame).position;
-      real = std::max(real, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+      real = std::max(real, (place(tight, i) - place(up, i)).norm());
+      range = std::max(range, (place(tight, i) - place(tight, 0)).norm());
     }
-    EXPECT_LE(real, 1.15 * found->second + 1e-5 * tip.length) << tip.body;
+    const double beside = left * range + 1e-5 * tip.length;
+    EXPECT_LE(real, 1.15 * found->second + beside) << tip.body;
     if (said.at_most.count(found->first) == 0) {
-      EXPECT_LE(found->second, 1.5 * real + 1e-5 * tip.length) << tip.body;
+      EXPECT_LE(found->second, 1.5 * real + beside) << tip.body;
     }
   }
 }
