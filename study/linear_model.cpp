@@ -128,10 +128,9 @@ LinearModel linear_model(const Configuration& c, const Ports& ports) {
     linear.inputs.push_back(inputs[k].column);
     efforts.col(static_cast<Eigen::Index>(k)) = inputs[k].efforts;
   }
-  sample(
-      sampled,
-      {motions.A(), motions.by_effort() * sampled.efforts(), motions.by_effort() * efforts, sampled.felt(efforts), {}},
-      linear);
+  sample(sampled,
+         {motions.A(), sampled.moved(sampled.efforts()), motions.by_effort() * efforts, sampled.felt(efforts), {}},
+         linear);
   return linear;
 }
 

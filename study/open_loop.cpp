@@ -115,7 +115,7 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
                                   "loop of the slowest alone can be opened",
                                   name, sampled.period_of(load), sampled.period()));
   const Eigen::MatrixXd all =
-      is_sampled ? sampled.efforts().middleCols(sampled.held_by(load).first, sampled.held_by(load).second)
+      is_sampled ? sampled.own_efforts().middleCols(sampled.held_by(load).first, sampled.held_by(load).second)
                  : fed_back(motions, load);
   const Answer answer = answer_of(c, all, name, hinge);
   LinearModel linear = about(c, motions, sampled);
@@ -138,7 +138,7 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
     linear.system.C.leftCols(motions.size()) = -answer.row;
     A = difference(A, push * answer.row);
   }
-  sample(sampled, {A, motions.by_effort() * held, push, sampled.felt(answer.along), replaced}, linear);
+  sample(sampled, {A, sampled.moved(held), push, sampled.felt(answer.along), replaced}, linear);
   return linear;
 }
 

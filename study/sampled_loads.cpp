@@ -40,6 +40,8 @@ SampledLoads::SampledLoads(const SmallMotions& motions)
       names_.push_back(fmt::format("{}.held[{}]", model.loads()[slot.load].name, i));
   }
   efforts_.setZero(motions_.by_effort().cols(), size());
+  own_efforts_ = efforts_;
+  rates_.setZero(motions_.size(), size());
   if (none()) return;
   find_period();
   differentiate();
@@ -127,10 +129,15 @@ void SampledLoads::differentiate() {
     const auto count = static_cast<Eigen::Index>(part.slot.count);
     const double size_of_held = std::max(1.0, now.segment(part.first, count).cwiseAbs().maxCoeff());
     if (change.segment(part.first, count).cwiseAbs().maxCoeff() > 1e-9 * size_of_held) steady_ = false;
-    for (Eigen::Index i = part.first; i < part.first + count; ++i)
-      efforts_.col(i) =
-          adaptive_difference([&](double h) { return motions_.efforts(displaced(i, h), part.slot.load); }, size_of_held)
-              .slope;
+    for (Eigen::Index i = part.first; i < part.first + count; ++i) {
+      const auto slope = [&](auto&& of) {
+        return adaptive_difference([&](double h) { return of(displaced(i, h)); }, size_of_held).slope;
+      };
+      own_efforts_.col(i) = slope([&](const State& s) { return motions_.efforts(s, part.slot.load); });
+      efforts_.col(i) = slope([&](const State& s) { return motions_.efforts(s); });
+      const Eigen::VectorXd rates = slope([&](const State& s) { return motions_.rates(s); });
+      rates_.col(i).tail(rates.size()) = rates;
+    }
   }
   for (const double t : instants_) {
     const std::vector<bool> now_due = due(t);

@@ -14,7 +14,7 @@ namespace withy::study {
 
 /// With x the small motions and d what the loads hold, beside x in one vector (x, d):
 ///   at an instant   d⁺ = R (x, d)   of the loads whose instant it is; what they measure may depend on all efforts,
-///   until the next  ẋ = A x + B_τ E d,   d constant.
+///   until the next  ẋ = A x + (B_τ E + Z) d,   d constant, Z of the rates of loads' continuous states.
 class SampledLoads {
  public:
   /// \throws InputError where the periods have no common one within a thousand instants.
@@ -27,8 +27,15 @@ class SampledLoads {
   [[nodiscard]] double period() const { return period_; }
   /// The period of one load (index in Model::loads()) [s]; 0: it is not sampled.
   [[nodiscard]] double period_of(std::size_t load) const;
-  /// E: efforts on all speeds of what is held.
+  /// E: efforts on all speeds of all loads by what is held: of the load that holds it, and of those that measure what
+  /// that one gives, as an actuator its command.
   [[nodiscard]] const Eigen::MatrixXd& efforts() const { return efforts_; }
+  /// The part of E that is the efforts of the load itself that holds it.
+  [[nodiscard]] const Eigen::MatrixXd& own_efforts() const { return own_efforts_; }
+  /// ẋ by what is held, for E or what of it still acts: continuous states of loads may measure what is held as well.
+  [[nodiscard]] Eigen::MatrixXd moved(const Eigen::MatrixXd& efforts) const {
+    return motions_.by_effort() * efforts + rates_;
+  }
   /// The columns of E that belong to a load.
   [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> held_by(std::size_t load) const;
   /// Whether renewing changes what is held where the motion stays at the state.
@@ -74,7 +81,8 @@ class SampledLoads {
   std::vector<Eigen::MatrixXd> renewals_;  ///< one a kind: R
   double period_ = 0;
   bool steady_ = true;
-  Eigen::MatrixXd efforts_;  ///< of all loads
+  Eigen::MatrixXd efforts_, own_efforts_;
+  Eigen::MatrixXd rates_;  ///< Z: zero but for the rows of continuous states
 };
 
 }  // namespace withy::study

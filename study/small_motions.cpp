@@ -136,11 +136,28 @@ State SmallMotions::pushed(std::size_t speed, double effort) const {
   return state;
 }
 
-Eigen::VectorXd SmallMotions::efforts(const State& state, std::size_t load) const {
+Eigen::VectorXd SmallMotions::efforts_of(const State& state, int load) const {
   Eigen::VectorXd efforts(by_effort_.cols());
-  equations_->load_efforts(state.time, state.y, static_cast<int>(load),
-                           {efforts.data(), static_cast<std::size_t>(efforts.size())}, work_);
+  equations_->load_efforts(state.time, state.y, load, {efforts.data(), static_cast<std::size_t>(efforts.size())},
+                           work_);
   return efforts;
+}
+
+Eigen::VectorXd SmallMotions::efforts(const State& state, std::size_t load) const {
+  return efforts_of(state, static_cast<int>(load));
+}
+
+Eigen::VectorXd SmallMotions::efforts(const State& state) const { return efforts_of(state, -1); }
+
+Eigen::VectorXd SmallMotions::rates(const State& state) const {
+  const Layout& layout = model_->layout();
+  std::vector<double> y_dot(layout.size()), scratch(model_->load_scratch());
+  std::copy_n(accelerations_.data(), accelerations_.size(),
+              y_dot.begin() + static_cast<std::ptrdiff_t>(layout.positions));
+  // Of states that are not finite the derivative is not finite, and says so where the system is put together.
+  static_cast<void>(model_->continuous_rates(state.time, state.y, y_dot, scratch));
+  return Eigen::Map<const Eigen::VectorXd>(y_dot.data() + layout.positions + layout.speeds,
+                                           static_cast<Eigen::Index>(layout.continuous));
 }
 
 Eigen::VectorXd SmallMotions::sensed(const State& state) {

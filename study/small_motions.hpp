@@ -44,12 +44,17 @@ class SmallMotions {
   [[nodiscard]] State pushed(std::size_t speed, double effort) const;
   /// Efforts [N m, N] of a load (index in Model::loads()) on all speeds.
   [[nodiscard]] Eigen::VectorXd efforts(const State& state, std::size_t load) const;
+  /// Those of all loads together.
+  [[nodiscard]] Eigen::VectorXd efforts(const State& state) const;
+  /// Rates of the continuous states of loads, accelerations being those of the configuration.
+  [[nodiscard]] Eigen::VectorXd rates(const State& state) const;
   /// What the sensors show. \throws std::domain_error where accelerations are not finite
   [[nodiscard]] Eigen::VectorXd sensed(const State& state);
   [[nodiscard]] const std::vector<Column>& columns() const { return reader_->columns(); }
 
  private:
   void hold(const Configuration& c, Model& model, bool needed) const;
+  [[nodiscard]] Eigen::VectorXd efforts_of(const State& state, int load) const;
   void find_steps(const Configuration& c);
 
   std::shared_ptr<const Model> model_;

@@ -116,5 +116,47 @@ initial: {hinges: {slide: {position: [0.1], rate: [0.5]}}}
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(run.final.y[i], z[static_cast<Eigen::Index>(i)], 1e-9) << i;
 }
 
+/// At rest until 0.03 s, when an input begins that stays: how far a run and the map from sample to sample are apart at
+/// 0.6 s, over all that moves.
+double map_against_run(const std::string& text, double kick) {
+  const Prepared prepared = prepare(SceneValues::parse("format: withy/1\ntime: {end: 0.6}\n"
+                                                       "integrator: {name: dopri5, rtol: 1e-12, atol: 1e-14}\n" +
+                                                           text,
+                                                       "text"),
+                                    plugins());
+  State rest = prepared.scene.initial;
+  std::fill(rest.y.begin(), rest.y.end(), 0.0);
+  const LinearModel m = linear_model({prepared, rest, {}, Sampling::kept}, {{"kick"}, {"slide"}});
+  EXPECT_DOUBLE_EQ(m.system.period, 0.03);
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(m.system.A.rows());
+  for (int k = 1; k < 20; ++k) z = m.system.A * z + m.system.B.col(0) * kick;
+  const RunSummary run = simulate(prepared, plugins(), {});
+  EXPECT_EQ(run.status, RunStatus::completed);
+  double apart = 0;
+  for (std::size_t i = 0; i < prepared.model().layout().moving(); ++i)
+    apart = std::max(apart, std::abs(run.final.y[i] - z[static_cast<Eigen::Index>(i)]));
+  EXPECT_GT(std::abs(run.final.y[0]), 0.01) << "it moves";
+  return apart;
+}
+
+const std::string kicked_cart = R"(
+bodies: {cart: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}}
+)";
+
+/// An actuator follows what a sampled controller commands, and a spring without pause what a sampled mean shows.
+TEST(LinearModel, OfLoadsThatMeasureWhatIsHeldIsTheMapOfARun) {
+  EXPECT_LT(map_against_run(kicked_cart + R"(
+loads:
+  kick: {type: input, hinge: slide, table: [[0, 0], [0.03, 5]]}
+  servo: {type: pid, of: slide, to: nothing, proportional: 30, derivative: 4, sample: 0.03, delay: 0.03}
+  drive: {type: actuator, of: servo, hinge: slide, frequency: 20}
+  mean: {type: moving-average, of: slide, window: 0.06, sample: 0.03}
+  stay: {type: expression, hinge: slide, value: -12 * mean}
+)",
+                            5),
+            1e-9);
+}
+
 }  // namespace
 }  // namespace withy::study
