@@ -32,9 +32,8 @@ LinearInput input_of_speed(const SmallMotions& motions, std::size_t speed) {
     if (speed >= slot.speed && speed < slot.speed + slot.speeds)
       unit = hinge_rates(*motions.model().hinges()[h].hinge)[speed - slot.speed].angular ? "N m" : "N";
   }
-  return {{layout.speed_names[speed], unit},
-          Eigen::VectorXd::Unit(motions.by_effort().cols(), static_cast<Eigen::Index>(speed)),
-          [&motions, speed](double h) { return motions.pushed(speed, h); }};
+  const Eigen::VectorXd one = Eigen::VectorXd::Unit(motions.by_effort().cols(), static_cast<Eigen::Index>(speed));
+  return {{layout.speed_names[speed], unit}, one, [&motions, one](double h) { return motions.pushed(h * one); }};
 }
 
 std::vector<std::size_t> input_loads(const Model& model) {

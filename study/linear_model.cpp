@@ -56,15 +56,13 @@ void look(SmallMotions& motions, const SampledLoads& sampled, const std::vector<
     seen = sensed_derivatives(motions);
     by_held.resize(seen.values.size(), sampled.size());
     by_input.resize(seen.values.size(), s.D.cols());
-    const auto step = [&](const Eigen::VectorXd& efforts) {
-      const double moved = (motions.by_effort() * efforts).cwiseAbs().maxCoeff();
-      return moved > 0 ? 1 / moved : 1.0;
-    };
-    for (Eigen::Index i = 0; i < sampled.size(); ++i)
-      by_held.col(i) = sensed_slope(
-          motions, [&](double h) { return sampled.displaced(i, h); }, step(sampled.efforts().col(i)));
+    for (Eigen::Index i = 0; i < sampled.size(); ++i) {
+      const auto held_at = [&](double h) { return sampled.displaced(h * Eigen::VectorXd::Unit(sampled.size(), i)); };
+      by_held.col(i) = sensed_slope(motions, held_at, motions.step(sampled.efforts().col(i)));
+    }
     for (std::size_t k = 0; k < inputs.size(); ++k)
-      by_input.col(static_cast<Eigen::Index>(k)) = sensed_slope(motions, inputs[k].state_at, step(inputs[k].efforts));
+      by_input.col(static_cast<Eigen::Index>(k)) =
+          sensed_slope(motions, inputs[k].state_at, motions.step(inputs[k].efforts));
   }
   for (Eigen::Index k = 0; k < rows; ++k) {
     const LinearOutput& o = outputs[static_cast<std::size_t>(k)];
@@ -129,7 +127,7 @@ LinearModel linear_model(const Configuration& c, const Ports& ports) {
     efforts.col(static_cast<Eigen::Index>(k)) = inputs[k].efforts;
   }
   sample(sampled,
-         {motions.A(), sampled.moved(sampled.efforts()), motions.by_effort() * efforts, sampled.felt(efforts), {}},
+         {motions.A(), sampled.moved(sampled.efforts()), motions.by_effort() * efforts, sampled.felt(inputs), {}},
          linear);
   return linear;
 }

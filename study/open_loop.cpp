@@ -86,6 +86,18 @@ Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::
   return answer;
 }
 
+/// What stands in the place of a load's answer. A load that acts at frames is pushed through what it holds, so that its
+/// force is where it was; one on speeds directly, for others may measure what it holds.
+LinearInput in_place_of(const SmallMotions& motions, const SampledLoads& sampled, std::size_t load,
+                        const Answer& answer) {
+  if (motions.model().loads()[load].load->frames().empty() || sampled.period_of(load) == 0)
+    return {{}, answer.along, [&](double h) { return motions.pushed(h * answer.along); }};
+  const auto [first, count] = sampled.held_by(load);
+  Eigen::VectorXd one = Eigen::VectorXd::Zero(sampled.size());
+  one.segment(first, count) = answer.row.transpose() / answer.row.squaredNorm();
+  return {{}, answer.along, [&sampled, one](double h) { return sampled.displaced(h * one); }};
+}
+
 /// a − b, zero where they are the same but for rounding: a stiffness that is taken off leaves none.
 Eigen::MatrixXd difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   constexpr double rounding = 1e-11;  // of differences of eighth order
@@ -138,7 +150,8 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
     linear.system.C.leftCols(motions.size()) = -answer.row;
     A = difference(A, push * answer.row);
   }
-  sample(sampled, {A, sampled.moved(held), push, sampled.felt(answer.along), replaced}, linear);
+  sample(sampled, {A, sampled.moved(held), push, sampled.felt({in_place_of(motions, sampled, load, answer)}), replaced},
+         linear);
   return linear;
 }
 

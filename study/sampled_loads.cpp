@@ -94,13 +94,11 @@ Eigen::VectorXd SampledLoads::renewed(State state, const std::vector<bool>& due)
   return held(state);
 }
 
-State SampledLoads::displaced(Eigen::Index i, double h) const {
+State SampledLoads::displaced(const Eigen::VectorXd& d) const {
   State state = motions_.state();
-  for (const Part& part : loads_) {
-    const Eigen::Index own = i - part.first;
-    if (own >= 0 && own < static_cast<Eigen::Index>(part.slot.count))
-      state.y[part.slot.first + static_cast<std::size_t>(own)] += h;
-  }
+  for (const Part& part : loads_)
+    for (std::size_t i = 0; i < part.slot.count; ++i)
+      state.y[part.slot.first + i] += d[part.first + static_cast<Eigen::Index>(i)];
   return state;
 }
 
@@ -117,7 +115,8 @@ Eigen::MatrixXd SampledLoads::differentiated(const std::vector<bool>& due) {
     const auto count = static_cast<Eigen::Index>(part.slot.count);
     const double size_of_held = std::max(1.0, now.segment(part.first, count).cwiseAbs().maxCoeff());
     for (Eigen::Index i = part.first; i < part.first + count; ++i)
-      R.col(n + i).tail(size()) = slope([&](double h) { return displaced(i, h); }, size_of_held);
+      R.col(n + i).tail(size()) =
+          slope([&](double h) { return displaced(h * Eigen::VectorXd::Unit(size(), i)); }, size_of_held);
   }
   return R;
 }
@@ -131,7 +130,9 @@ void SampledLoads::differentiate() {
     if (change.segment(part.first, count).cwiseAbs().maxCoeff() > 1e-9 * size_of_held) steady_ = false;
     for (Eigen::Index i = part.first; i < part.first + count; ++i) {
       const auto slope = [&](auto&& of) {
-        return adaptive_difference([&](double h) { return of(displaced(i, h)); }, size_of_held).slope;
+        return adaptive_difference([&](double h) { return of(displaced(h * Eigen::VectorXd::Unit(size(), i))); },
+                                   size_of_held)
+            .slope;
       };
       own_efforts_.col(i) = slope([&](const State& s) { return motions_.efforts(s, part.slot.load); });
       efforts_.col(i) = slope([&](const State& s) { return motions_.efforts(s); });
@@ -149,19 +150,17 @@ void SampledLoads::differentiate() {
   }
 }
 
-std::vector<Eigen::MatrixXd> SampledLoads::felt(const Eigen::MatrixXd& efforts) {
+std::vector<Eigen::MatrixXd> SampledLoads::felt(const std::vector<LinearInput>& inputs) {
   bool any = false;
   std::vector<Eigen::MatrixXd> all;
   for (const std::vector<bool>& due : due_) {
-    Eigen::MatrixXd by_effort = Eigen::MatrixXd::Zero(size(), efforts.rows());
-    for (Eigen::Index s = 0; s < efforts.rows(); ++s) {
-      if (efforts.row(s).isZero(0)) continue;
-      const double moved = motions_.by_effort().col(s).cwiseAbs().maxCoeff();
-      const auto pushed = [&](double h) { return renewed(motions_.pushed(static_cast<std::size_t>(s), h), due); };
-      by_effort.col(s) = adaptive_difference(pushed, moved > 0 ? 1 / moved : 1.0).slope;
+    Eigen::MatrixXd by_input(size(), static_cast<Eigen::Index>(inputs.size()));
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+      const auto pushed = [&](double h) { return renewed(inputs[k].state_at(h), due); };
+      by_input.col(static_cast<Eigen::Index>(k)) = adaptive_difference(pushed, motions_.step(inputs[k].efforts)).slope;
     }
-    any = any || !by_effort.isZero(0);
-    all.push_back(by_effort * efforts);
+    any = any || !by_input.isZero(0);
+    all.push_back(std::move(by_input));
   }
   return any ? all : std::vector<Eigen::MatrixXd>();
 }

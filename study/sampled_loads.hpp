@@ -8,7 +8,7 @@
 
 #include "withy/core/analysis/linear_system.hpp"
 #include "withy/core/simulation/renewal.hpp"
-#include "withy/study/small_motions.hpp"
+#include "withy/study/linear_inputs.hpp"
 
 namespace withy::study {
 
@@ -40,11 +40,12 @@ class SampledLoads {
   [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> held_by(std::size_t load) const;
   /// Whether renewing changes what is held where the motion stays at the state.
   [[nodiscard]] bool steady() const { return steady_; }
-  /// The state with d_i = h.
-  [[nodiscard]] State displaced(Eigen::Index i, double h) const;
-  /// Derivatives of d⁺ by the efforts of v just before instants, for efforts (speeds × v) of v: one a kind of instant.
-  /// Empty where loads measure nothing that follows these efforts at once.
-  [[nodiscard]] std::vector<Eigen::MatrixXd> felt(const Eigen::MatrixXd& efforts);
+  /// The state with what is held displaced by d.
+  [[nodiscard]] State displaced(const Eigen::VectorXd& d) const;
+  /// Derivatives of d⁺ by v just before instants, of which `inputs` tell the states: reactions and inner forces feel
+  /// where a force acts, not its efforts alone. One a kind of instant; empty where loads measure nothing that follows v
+  /// at once.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> felt(const std::vector<LinearInput>& inputs);
   /// A linear system from what is held from one common instant to the next, and what it takes at once.
   struct Held {
     Eigen::MatrixXd A, by_held, B;      ///< ẋ = A x + by_held d + B v

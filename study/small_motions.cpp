@@ -130,9 +130,14 @@ State SmallMotions::displaced(Eigen::Index i, double h) const {
 
 double SmallMotions::step(Eigen::Index i) const { return steps_[static_cast<std::size_t>(i)]; }
 
-State SmallMotions::pushed(std::size_t speed, double effort) const {
+double SmallMotions::step(const Eigen::VectorXd& efforts) const {
+  const double moved = (by_effort_ * efforts).cwiseAbs().maxCoeff();
+  return moved > 0 ? 1 / moved : 1.0;
+}
+
+State SmallMotions::pushed(const Eigen::VectorXd& efforts) const {
   State state = state_;
-  state.y[push_ + speed] = effort;
+  std::copy_n(efforts.data(), efforts.size(), state.y.begin() + static_cast<std::ptrdiff_t>(push_));
   return state;
 }
 

@@ -40,8 +40,10 @@ class SmallMotions {
   /// A step of z_i over which anything changes little: 0.01 rad, a hundredth or (modes) a thousandth of the longest
   /// body; of a load's state a hundredth of it, or of one.
   [[nodiscard]] double step(Eigen::Index i) const;
-  /// The state with an effort [N m, N] on a speed.
-  [[nodiscard]] State pushed(std::size_t speed, double effort) const;
+  /// A step of what makes these efforts over which anything changes little.
+  [[nodiscard]] double step(const Eigen::VectorXd& efforts) const;
+  /// The state with efforts [N m, N] on all speeds.
+  [[nodiscard]] State pushed(const Eigen::VectorXd& efforts) const;
   /// Efforts [N m, N] of a load (index in Model::loads()) on all speeds.
   [[nodiscard]] Eigen::VectorXd efforts(const State& state, std::size_t load) const;
   /// Those of all loads together.
