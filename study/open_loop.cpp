@@ -86,8 +86,8 @@ Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::
   return answer;
 }
 
-/// What stands in the place of a load's answer. A load that acts at frames is pushed through what it holds, so that its
-/// force is where it was; one on speeds directly, for others may measure what it holds.
+/// What stands in the place of a load's answer. Of a sampled load at frames it is what the load holds, so that the
+/// force is where it was; on speeds it is an effort on these, for the loop may be opened at some of them.
 LinearInput in_place_of(const SmallMotions& motions, const SampledLoads& sampled, std::size_t load,
                         const Answer& answer) {
   if (motions.model().loads()[load].load->frames().empty() || sampled.period_of(load) == 0)

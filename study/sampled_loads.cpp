@@ -87,8 +87,8 @@ Eigen::VectorXd SampledLoads::held(const State& state) const {
   return d;
 }
 
-Eigen::VectorXd SampledLoads::renewed(State state, const std::vector<bool>& due) {
-  renewal_.at(state);
+Eigen::VectorXd SampledLoads::renewed(const State& before, State state, const std::vector<bool>& due) {
+  renewal_.at(before);
   for (std::size_t i = 0; i < loads_.size(); ++i)
     if (due[i]) renewal_(state, loads_[i].slot, {});
   return held(state);
@@ -106,7 +106,11 @@ Eigen::MatrixXd SampledLoads::differentiated(const std::vector<bool>& due) {
   const Eigen::Index n = motions_.size();
   Eigen::MatrixXd R = Eigen::MatrixXd::Identity(n + size(), n + size());
   const auto slope = [&](auto&& state_at, double step) {
-    return adaptive_difference([&](double h) { return renewed(state_at(h), due); }, step).slope;
+    const auto after = [&](double h) {
+      const State state = state_at(h);
+      return renewed(state, state, due);
+    };
+    return adaptive_difference(after, step).slope;
   };
   for (Eigen::Index i = 0; i < n; ++i)
     R.col(i).tail(size()) = slope([&](double h) { return motions_.displaced(i, h); }, motions_.step(i));
@@ -123,7 +127,7 @@ Eigen::MatrixXd SampledLoads::differentiated(const std::vector<bool>& due) {
 
 void SampledLoads::differentiate() {
   const Eigen::VectorXd now = held(motions_.state());
-  const Eigen::VectorXd change = renewed(motions_.state(), due(0)) - now;
+  const Eigen::VectorXd change = renewed(motions_.state(), motions_.state(), due(0)) - now;
   for (const Part& part : loads_) {
     const auto count = static_cast<Eigen::Index>(part.slot.count);
     const double size_of_held = std::max(1.0, now.segment(part.first, count).cwiseAbs().maxCoeff());
@@ -156,7 +160,8 @@ std::vector<Eigen::MatrixXd> SampledLoads::felt(const std::vector<LinearInput>& 
   for (const std::vector<bool>& due : due_) {
     Eigen::MatrixXd by_input(size(), static_cast<Eigen::Index>(inputs.size()));
     for (std::size_t k = 0; k < inputs.size(); ++k) {
-      const auto pushed = [&](double h) { return renewed(inputs[k].state_at(h), due); };
+      // Only outputs feel v at once: what loads remember, and give one another, is what it was.
+      const auto pushed = [&](double h) { return renewed(inputs[k].state_at(h), motions_.state(), due); };
       by_input.col(static_cast<Eigen::Index>(k)) = adaptive_difference(pushed, motions_.step(inputs[k].efforts)).slope;
     }
     any = any || !by_input.isZero(0);

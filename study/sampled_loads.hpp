@@ -67,7 +67,8 @@ class SampledLoads {
   void find_period();
   [[nodiscard]] std::vector<bool> due(double t) const;
   [[nodiscard]] Eigen::VectorXd held(const State& state) const;
-  [[nodiscard]] Eigen::VectorXd renewed(State state, const std::vector<bool>& due);
+  /// What is held after an instant at which outputs are those of `before`.
+  [[nodiscard]] Eigen::VectorXd renewed(const State& before, State state, const std::vector<bool>& due);
   [[nodiscard]] Eigen::MatrixXd differentiated(const std::vector<bool>& due);
   [[nodiscard]] Eigen::MatrixXd renewal(const Held& system, std::size_t kind) const;
   void differentiate();

@@ -210,7 +210,7 @@ Margins margins(const TransferFunction& G, const std::vector<ResponseAt>& respon
                    [](const GainMargin& a, const GainMargin& b) { return a.omega < b.omega; });
   m.growth = -std::numeric_limits<double>::infinity();
   std::vector<Complex> unmoved;
-  for (const Complex pole : without(G.system(), poles(closed_loop(G.system(), 1)), hidden, unmoved))
+  for (const Complex pole : without(G.system(), poles(closed_loop(G.given(), 1)), hidden, unmoved))
     m.growth = std::max(m.growth, exponent_of(G.system(), pole).real());
   m.stable = m.growth < 0;
   return m;

@@ -141,7 +141,7 @@ ZerosAndGain zeros(LinearSystem s) {
   return {s.sampled() ? eigenvalues(left) : eigenvalues_with_zeros(left), product * d};
 }
 
-TransferFunction::TransferFunction(LinearSystem system) : of_(std::move(system)) {
+TransferFunction::TransferFunction(LinearSystem system) : given_(std::move(system)), of_(given_) {
   balance(of_);
   if (of_.A.rows() < 2) return;
   const Eigen::HessenbergDecomposition<Eigen::MatrixXd> form(of_.A);

@@ -53,9 +53,11 @@ class TransferFunction {
   [[nodiscard]] std::complex<double> at_frequency(double omega) const { return (*this)(of_.at_frequency(omega))(0, 0); }
   /// Balanced and in Hessenberg form.
   [[nodiscard]] const LinearSystem& system() const { return of_; }
+  /// As it was given. In Hessenberg form states are mixed, and what feedback adds to A cannot be balanced any more.
+  [[nodiscard]] const LinearSystem& given() const { return given_; }
 
  private:
-  LinearSystem of_;
+  LinearSystem given_, of_;
 };
 
 }  // namespace withy

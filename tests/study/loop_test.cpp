@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <limits>
 #include <numbers>
 
 #include "withy/study/response.hpp"
@@ -141,6 +143,33 @@ initial: {hinges: {axle: {position: [0.01]}}}
   ASSERT_TRUE(r.margins && r.margins->lower() != nullptr);
   EXPECT_NEAR(r.margins->lower()->factor, 2.0 * 10 / (4 * 8), 1e-8);
   confirm(text, true, {{"proportional", 8}, {"integral", 10}, {"derivative", 4}});
+}
+
+// A controller measures the reaction to the torque that it gives itself. Slide and beam move apart from one another but
+// for rounding, which the poles of the closed loop have to bear.
+TEST(Loop, OfAReactionToItsOwnTorqueGrowsAsTheClosedSystemDoes) {
+  const Prepared prepared = scene_of(R"(
+bodies:
+  boom:
+    type: beam
+    length: 1
+    mass_per_length: 1
+    bending_y: {stiffness: 50, modes: 2}
+    torsion: {stiffness: 50, inertia: 0.003, modes: 2}
+    frames: {r: {at: root, position: [-0.1, -0.1, 0.3], orientation: {xyz: [0.7, 1.1, 0.4]}}, a: {at: tip}}
+hinges: {slide: {type: prismatic, axis: [-0.5, -0.8, 0], parent: world, child: boom.r}}
+outputs: {rail: {type: reaction, hinge: slide}}
+loads:
+  control: {type: pid, of: rail.my, to: push, proportional: 0.05, sample: 0.01, delay: 0.02}
+  push: {type: input, frame: boom.a, direction: [-0.7, 0, -0.8], following: true, acts: torque}
+)");
+  const Response r = response(at_start(prepared), {"control", "", {}, {}, 50, {}});
+  ASSERT_TRUE(r.margins.has_value());
+  const LinearModel closed = linear_model(at_start(prepared), {{"push"}, {"slide"}});
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const std::complex<double> pole : poles(closed.system))
+    nearest = std::min(nearest, std::abs(exponent_of(closed.system, pole).real() - r.margins->growth));
+  EXPECT_LT(nearest, 1e-6);
 }
 
 }  // namespace
