@@ -10,20 +10,28 @@ namespace {
 
 constexpr double most_outputs = 1e8;
 
-/// Reports loads whose samples come so often that the last ones of the run are no times of their own.
+/// Reports loads whose samples come so often that the last ones of the run are no times of their own, or that no run
+/// comes to its end: a step ends at each.
 void check_samples(const Model& model, const Scene& scene, const Document& document, const Checker& checker) {
   constexpr double most_samples = 0x1p53;  // beyond, the number of a sample and the next are the same
+  constexpr double most_in_a_run = 1e9;
   const double latest = std::max(std::abs(scene.initial.time), std::abs(scene.end.value_or(0)));
+  const double span = scene.end.value_or(scene.initial.time) - scene.initial.time;
   for (const LoadNode& node : model.loads()) {
     const double period = node.load->discrete() == nullptr ? 0 : node.load->discrete()->period();
-    if (!(period > 0) || latest / period < most_samples) continue;
+    const bool apart = !(period > 0) || latest / period < most_samples;
+    const bool ends = !(period > 0) || span / period <= most_in_a_run;
+    if (apart && ends) continue;
     const Value* load = scene.source.at("loads").find(node.name);
     const Value* sample = load == nullptr ? nullptr : load->find("sample");
     const Place place = sample != nullptr ? sample->place() : document.key_place("/loads/" + node.name);
-    checker.diagnostics().error(place,
-                                fmt::format("got a period of {:g} s, too short to tell samples apart at t = {:g} s; "
-                                            "need more than {:.3g} s",
-                                            period, latest, latest / most_samples));
+    checker.diagnostics().error(
+        place, apart ? fmt::format("got a period of {:g} s, which makes {:.3g} samples in a run, with a step at each; "
+                                   "need at most {:g}",
+                                   period, span / period, most_in_a_run)
+                     : fmt::format("got a period of {:g} s, too short to tell samples apart at t = {:g} s; need more "
+                                   "than {:.3g} s",
+                                   period, latest, latest / most_samples));
   }
 }
 

@@ -90,7 +90,8 @@ void Session::apply_settings(double t) {
 }
 
 SessionEnd Session::advance(double t, bool halt) {
-  if (!std::isfinite(t) || t < state().time)
+  if (!std::isfinite(t)) throw std::invalid_argument("the time " + brief(t) + " s is no time; need a finite number");
+  if (t < state().time)
     throw std::invalid_argument("the time " + brief(t) + " s lies before the present one, " + brief(state().time) +
                                 " s");
   if (ended_) throw std::logic_error("the simulation has come to its end; restore a snapshot or begin anew");

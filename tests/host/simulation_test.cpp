@@ -227,8 +227,8 @@ TEST(HostedSimulation, refuses_bad_use_and_lives_on) {
   EXPECT_THAT(text_of([&] { simulation.restore(pendulum.snapshot()); }), HasSubstr("of another scene"));
   simulation.step(0.1);
   EXPECT_THAT(text_of([&] { simulation.step(0.05); }), HasSubstr("before the present one"));
-  EXPECT_THROW(simulation.step(std::nan("")), std::invalid_argument);
-  EXPECT_THROW(simulation.step(INFINITY), std::invalid_argument);
+  EXPECT_THAT(text_of([&] { simulation.step(std::nan("")); }), HasSubstr("need a finite number"));
+  EXPECT_THAT(text_of([&] { simulation.step(INFINITY); }), HasSubstr("need a finite number"));
   EXPECT_THAT(text_of([] { const Simulation automatic(busy_scene().formulation("auto")); }), HasSubstr("got 'auto'"));
   Simulation fresh(busy_scene());
   fresh.step(0.1);

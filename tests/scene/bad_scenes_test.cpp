@@ -201,6 +201,9 @@ const BadScene bad_scenes[] = {
     {"zero_output", "output: 0.1", "output: 0", "3:26: /time/output: got 0; need finite > 0 [s]"},
     {"too_many_outputs", "output: 0.1", "output: 1e-12",
      "3:18: /time/output: got 1e-12 s, which makes 1e+12 outputs; need at most 1e+08"},
+    {"too_many_samples", "loads:", "loads:\n  hold: {type: pid, hinge: shoulder, proportional: 1, sample: 1e-12}",
+     "21:63: /loads/hold/sample: got a period of 1e-12 s, which makes 1e+12 samples in a run, with a step at each; "
+     "need at most 1e+09"},
     {"negative_deflection_limit", "format: withy/1", "format: withy/1\nlimits: {deflection: -1}",
      "2:22: /limits/deflection: got -1; need finite > 0"},
     {"motion_type", "loads:", "motions: {spin: {hinge: shoulder, rate: 1}}\nloads:",
