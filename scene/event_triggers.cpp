@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <set>
+#include <string>
+
 #include "withy/core/model/columns.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/model/limit_sensor.hpp"
@@ -82,6 +85,23 @@ std::optional<Watched> watched(const Model& model, const std::vector<SensorNode>
   if (event.has("hinge")) return hinge_number(model, event, checker);
   if (event.has("signal")) return signal(model, outputs, event, checker);
   return Watched{};
+}
+
+void refuse_circles(const Value& events, const Checker& checker) {
+  std::set<std::string> told;
+  for (const auto& [first, event] : events.members()) {
+    std::string circle = in_quotes(first);
+    std::set<std::string> passed;
+    const Value* at = &event;
+    while (at != nullptr && at->has("after") && passed.insert(at->text_at("after")).second) {
+      circle += " after " + in_quotes(at->text_at("after"));
+      at = events.find(at->text_at("after"));
+    }
+    // What only leads into a circle waits for it, and is no part of what is wrong.
+    if (!passed.contains(first) || told.contains(first)) continue;
+    told.insert(passed.begin(), passed.end());
+    checker.key_error(event.place().path + "/after", circle + ": none of these can happen first");
+  }
 }
 
 std::shared_ptr<const BoundSensor> limit_of(const Model& model, const Value& event, const Checker& checker) {

@@ -24,6 +24,10 @@ struct Watched {
 std::optional<Watched> watched(const Model& model, const std::vector<SensorNode>& outputs, const Value& event,
                                const Checker& checker);
 
+/// Reports events that come after one another in a circle: none of them can begin.
+/// \param events checked by grammar::scene_members
+void refuse_circles(const Value& events, const Checker& checker);
+
 /// A sensor of how far the load that the event names under `limit` is from it; null after a reported error.
 std::shared_ptr<const BoundSensor> limit_of(const Model& model, const Value& event, const Checker& checker);
 

@@ -252,6 +252,7 @@ void SceneEvents::resolve_after(EventPlan& plan) const {
 
 void SceneEvents::add_to(Model& model, const std::vector<SensorNode>& outputs, std::vector<RunEvent>& plain) {
   EventPlan plan;
+  refuse_circles(events_, checker_);
   bool senses = false;
   std::vector<SensorNode> limits;
   std::vector<std::size_t> at_limits;  // events that watch them, one each

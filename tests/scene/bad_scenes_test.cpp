@@ -204,6 +204,11 @@ const BadScene bad_scenes[] = {
     {"too_many_samples", "loads:", "loads:\n  hold: {type: pid, hinge: shoulder, proportional: 1, sample: 1e-12}",
      "21:63: /loads/hold/sample: got a period of 1e-12 s, which makes 1e+12 samples in a run, with a step at each; "
      "need at most 1e+09"},
+    {"event_after_itself", "loads:", "events: {a: {after: a}}\nloads:",
+     R"(20:14: /events/a/after: "a" after "a": none of these can happen first)"},
+    {"events_in_a_circle",
+     "loads:", "events: {c: {after: b}, a: {after: b, do: {lock: shoulder}}, b: {after: a}}\nloads:",
+     R"(20:29: /events/a/after: "a" after "b" after "a": none of these can happen first)"},
     {"negative_deflection_limit", "format: withy/1", "format: withy/1\nlimits: {deflection: -1}",
      "2:22: /limits/deflection: got -1; need finite > 0"},
     {"motion_type", "loads:", "motions: {spin: {hinge: shoulder, rate: 1}}\nloads:",
