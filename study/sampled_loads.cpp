@@ -44,7 +44,23 @@ SampledLoads::SampledLoads(const SmallMotions& motions)
   rates_.setZero(motions_.size(), size());
   if (none()) return;
   find_period();
+  refuse_held_alone();
   differentiate();
+}
+
+void SampledLoads::refuse_held_alone() {
+  const State& now = motions_.state();
+  for (const Eigen::Index s : motions_.held_alone()) {
+    const State pushed = motions_.pushed(Eigen::VectorXd::Unit(motions_.by_effort().cols(), s));
+    for (const double t : instants_) {
+      // An effort on it changes accelerations alone: what does not depend on them keeps its bits.
+      if (renewed(pushed, now, due(t)) == renewed(now, now, due(t))) continue;
+      const std::string& name = motions_.model().layout().speed_names[static_cast<std::size_t>(s)];
+      throw InputError("'" + name +
+                       "' is held and other rates of its hinge are not, and a sampled load measures accelerations or "
+                       "forces, which do not know of that: hold all of the hinge");
+    }
+  }
 }
 
 void SampledLoads::find_period() {

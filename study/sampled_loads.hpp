@@ -17,7 +17,8 @@ namespace withy::study {
 ///   until the next  ẋ = A x + (B_τ E + Z) d,   d constant, Z of the rates of loads' continuous states.
 class SampledLoads {
  public:
-  /// \throws InputError where the periods have no common one within a thousand instants.
+  /// \throws InputError where the periods have no common one within a thousand instants, or a load measures what the
+  /// acceleration of a speed has a part in that is held while others of its hinge are not.
   explicit SampledLoads(const SmallMotions& motions);
 
   [[nodiscard]] bool none() const { return loads_.empty(); }
@@ -72,6 +73,7 @@ class SampledLoads {
   [[nodiscard]] Eigen::MatrixXd differentiated(const std::vector<bool>& due);
   [[nodiscard]] Eigen::MatrixXd renewal(const Held& system, std::size_t kind) const;
   void differentiate();
+  void refuse_held_alone();
 
   const SmallMotions& motions_;
   std::vector<Part> loads_;

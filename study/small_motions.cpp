@@ -78,17 +78,21 @@ SmallMotions::SmallMotions(const Configuration& c, std::vector<SensorNode> senso
   find_steps(c);
 }
 
-void SmallMotions::hold(const Configuration& c, Model& model, bool needed) const {
+void SmallMotions::hold(const Configuration& c, Model& model, bool needed) {
   for (std::size_t h = 0; h < c.layout().hinges.size(); ++h) {
     const Slot& slot = c.layout().hinges[h];
     const auto first = c.held().begin() + static_cast<std::ptrdiff_t>(slot.speed);
     const auto held = std::count(first, first + static_cast<std::ptrdiff_t>(slot.speeds), true);
     if (held == 0 || model.driven(h)) continue;
-    if (static_cast<std::size_t>(held) == slot.speeds)
+    if (static_cast<std::size_t>(held) == slot.speeds) {
       model.add_motion("hold " + slot.name, slot.name, std::make_shared<HeldStill>());
-    else if (needed)
+      continue;
+    }
+    if (needed)
       throw InputError("one rate of several of hinge '" + slot.name +
                        "' is held, and sensors do not know of that: hold all of it, or choose other outputs");
+    for (std::size_t i = 0; i < slot.speeds; ++i)
+      if (first[static_cast<std::ptrdiff_t>(i)]) held_alone_.push_back(static_cast<Eigen::Index>(slot.speed + i));
   }
 }
 

@@ -32,6 +32,8 @@ class SmallMotions {
   [[nodiscard]] const Eigen::VectorXd& accelerations() const { return accelerations_; }  ///< of all speeds
   /// Speeds that are not held.
   [[nodiscard]] const std::vector<Eigen::Index>& free() const { return free_; }
+  /// Speeds that are held while others of their hinge are not: in states that are looked at they accelerate freely.
+  [[nodiscard]] const std::vector<Eigen::Index>& held_alone() const { return held_alone_; }
   /// How A was found.
   [[nodiscard]] const std::string& derivatives() const { return derivatives_; }
 
@@ -55,7 +57,7 @@ class SmallMotions {
   [[nodiscard]] const std::vector<Column>& columns() const { return reader_->columns(); }
 
  private:
-  void hold(const Configuration& c, Model& model, bool needed) const;
+  void hold(const Configuration& c, Model& model, bool needed);
   [[nodiscard]] Eigen::VectorXd efforts_of(const State& state, int load) const;
   void find_steps(const Configuration& c);
 
@@ -66,7 +68,7 @@ class SmallMotions {
   mutable Work work_;
   State state_;
   std::size_t push_ = 0;  ///< first of the discrete states that push
-  std::vector<Eigen::Index> free_;
+  std::vector<Eigen::Index> free_, held_alone_;
   std::vector<std::string> names_;
   std::vector<double> steps_;
   Eigen::MatrixXd A_, by_effort_;

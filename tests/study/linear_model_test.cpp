@@ -173,5 +173,24 @@ loads:
             1e-9);
 }
 
+/// With one rate of a hinge held, what a sampled load measures of accelerations would be that of a body free in it.
+TEST(LinearModel, OfASampledAccelerationOnAHingeThatIsHeldInPartIsRefused) {
+  const auto scene = [](const std::string& measured) {
+    return scene_of(R"(
+bodies: {puck: {type: rigid, mass: 2, center_of_mass: [0.3, 0.2, 0], inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {ice: {type: planar, parent: world, child: puck}}
+outputs: {imu: {type: accelerometer, of: puck}, turn: {type: gyro, of: puck}}
+loads: {servo: {type: pid, of: )" +
+                    measured + ", hinge: ice, component: 2, proportional: 0.4, sample: 0.01}}\n");
+  };
+  const auto held = [](const Prepared& prepared) {
+    return Configuration{prepared, prepared.scene.initial, {{"ice.1"}, {}}, Sampling::kept};
+  };
+  const Prepared acceleration = scene("imu.y"), rate = scene("turn.z");
+  EXPECT_THROW(static_cast<void>(linear_model(held(acceleration), {{"ice.2"}, {"ice.2"}})), InputError);
+  EXPECT_THROW(static_cast<void>(open_loop(held(acceleration), "servo")), InputError);
+  EXPECT_NO_THROW(static_cast<void>(linear_model(held(rate), {{"ice.2"}, {"ice.2"}})));
+}
+
 }  // namespace
 }  // namespace withy::study
