@@ -70,7 +70,12 @@ std::vector<LinearOutput> linear_outputs(const Configuration& c, const std::vect
   std::vector<LinearOutput> chosen;
   for (const std::string& name : names) {
     const std::size_t before = chosen.size();
-    const auto is = [&](const std::string& known) { return known == name || known.starts_with(name + '.'); };
+    // A coordinate, `elbow.0`, is the beginning of its rate's name too.
+    const bool whole =
+        std::any_of(all.begin(), all.end(), [&](const LinearOutput& o) { return o.column.name == name; });
+    const auto is = [&](const std::string& known) {
+      return known == name || (!whole && known.starts_with(name + '.'));
+    };
     for (const LinearOutput& o : all)
       if (is(o.column.name) || is(o.in_tables)) chosen.push_back(o);
     if (chosen.size() > before) continue;

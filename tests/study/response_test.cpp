@@ -42,6 +42,18 @@ loads:
   }
 }
 
+/// Its name is the beginning of its rate's.
+TEST(Response, OfACoordinateIsThatOfNoRate) {
+  const Prepared prepared = scene_of(R"(
+bodies: {cart: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}}
+loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 30}}
+)");
+  const Response r = response(at_start(prepared), {"slide", "slide.0", {}, {}, 20, {}});
+  EXPECT_NEAR(r.static_gain, 1.0 / 30, 1e-12);
+  EXPECT_EQ(linear_model(at_start(prepared), {{"slide"}, {"slide"}}).outputs.size(), 2U) << "the hinge is both";
+}
+
 /// One clamped-free mode on a hinge: J = 1/3, coupling ∫xφ = 2/β², modal mass 1, stiffness β⁴.
 const std::string hinged_beam = R"(
 bodies: {boom: {type: beam, length: 1, mass_per_length: 1, bending_y: {stiffness: 1, modes: 1, family: clamped-free}}}
