@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "withy/core/equations/lane_equations.hpp"
+#include "withy/core/simulation/run_times.hpp"
 #include "withy/core/simulation/step_watch.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/run.hpp"
@@ -95,7 +96,8 @@ RunSummary CaseRun::simulate(const EquationsOfMotion& equations, const study::Co
     options.checkpoint = [this](const Checkpoint& checkpoint) { kept_->see(checkpoint.state, 0); };
   }
   std::optional<StatisticsWatch> watch;
-  if (!kept_->watched().empty()) watch.emplace(scene.outputs, kept_->watched(), equations);
+  if (!kept_->watched().empty())
+    watch.emplace(scene.outputs, kept_->watched(), equations, discontinuities(*scene.model));
   RunSummary summary = withy::simulate(
       *scene.model, equations, *scene.integrator, scene.initial, options,
       [this](const State& state) { kept_->see_output(state, 0); }, watch ? &*watch : nullptr, Attention::outcome);

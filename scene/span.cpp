@@ -26,7 +26,7 @@ void check_samples(const Model& model, const Scene& scene, const Document& docum
     const Value* sample = load == nullptr ? nullptr : load->find("sample");
     const Place place = sample != nullptr ? sample->place() : document.key_place("/loads/" + node.name);
     checker.diagnostics().error(
-        place, apart ? fmt::format("got a period of {:g} s, which makes {:.3g} samples in a run, with a step at each; "
+        place, !ends ? fmt::format("got a period of {:g} s, which makes {:.3g} samples in a run, with a step at each; "
                                    "need at most {:g}",
                                    period, span / period, most_in_a_run)
                      : fmt::format("got a period of {:g} s, too short to tell samples apart at t = {:g} s; need more "

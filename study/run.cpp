@@ -11,6 +11,7 @@
 #include "withy/core/simulation/changing_equations.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/run_times.hpp"
 #include "withy/study/accuracy.hpp"
 #include "withy/study/growth.hpp"
 #include "withy/study/input_error.hpp"
@@ -81,7 +82,8 @@ RunSummary run_equations(const Prepared& prepared, const RunSettings& settings, 
   std::optional<StatisticsWatch> watch;
   std::vector<std::string> watched = watched_outputs(scene);
   watched.insert(watched.end(), settings.watched.begin(), settings.watched.end());
-  if (!watched.empty() && settings.statistics != nullptr) watch.emplace(scene.outputs, watched, equations);
+  if (!watched.empty() && settings.statistics != nullptr)
+    watch.emplace(scene.outputs, watched, equations, discontinuities(*scene.model));
   RunSummary summary = withy::simulate(
       *scene.model, equations, *scene.integrator, scene.initial, options,
       [&](const State& state) {

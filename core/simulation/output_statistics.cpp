@@ -33,8 +33,8 @@ double along(const std::array<double, 3>& t, const std::array<double, 3>& x, dou
 double OutputStatistics::rms() const { return span > 0 ? std::sqrt(std::max(0.0, square / span)) : std::abs(least); }
 
 StatisticsWatch::StatisticsWatch(const std::vector<SensorNode>& sensors, const std::vector<std::string>& watched,
-                                 const EquationsOfMotion& equations)
-    : reader_(needed(sensors, watched), equations) {
+                                 const EquationsOfMotion& equations, std::vector<double> jumps)
+    : reader_(needed(sensors, watched), equations), jumps_(std::move(jumps)) {
   std::size_t column = 0;
   for (const SensorNode& node : needed(sensors, watched)) {
     const bool asked = std::find(watched.begin(), watched.end(), node.name) != watched.end();
@@ -61,6 +61,13 @@ bool StatisticsWatch::read(const State& state, std::vector<double>& values) {
   return true;
 }
 
+bool StatisticsWatch::read_end(const State& state, std::vector<double>& values) {
+  if (!std::binary_search(jumps_.begin(), jumps_.end(), state.time)) return read(state, values);
+  between_ = state;
+  between_.time = std::nextafter(state.time, from_);
+  return read(between_, values);
+}
+
 void StatisticsWatch::note(double t, const std::vector<double>& values) {
   for (std::size_t i = 0; i < results_.size(); ++i) {
     OutputStatistics& r = results_[i];
@@ -84,7 +91,7 @@ void StatisticsWatch::observe(const Stepper& stepper) {
     stepper.interpolate(between_.time, between_.y);
     good = read(between_, within_[k]);
   }
-  good = good && read(stepper.state(), within_.back());
+  good = good && read_end(stepper.state(), within_.back());
   if (!good) {
     begin_at(stepper.state());
     return;

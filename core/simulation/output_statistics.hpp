@@ -30,8 +30,9 @@ class StatisticsWatch final : public StepWatch {
  public:
   /// \param sensors all of the scene, bound to the model of the equations, which must outlive it
   /// \param watched names of those whose statistics are asked for
+  /// \param jumps times [s] at which loads or motions of the model jump, increasing, as `discontinuities` has them
   StatisticsWatch(const std::vector<SensorNode>& sensors, const std::vector<std::string>& watched,
-                  const EquationsOfMotion& equations);
+                  const EquationsOfMotion& equations, std::vector<double> jumps);
   void begin_at(const State& state) override;
   void observe(const Stepper& stepper) override;
   void remember(Memory& memory) override;
@@ -42,10 +43,13 @@ class StatisticsWatch final : public StepWatch {
   static constexpr std::size_t places = 5;
   /// Sets one number a result; false where the state has none.
   bool read(const State& state, std::vector<double>& values);
+  /// The same at the end of a step, which no jump there belongs to.
+  bool read_end(const State& state, std::vector<double>& values);
   void note(double t, const std::vector<double>& values);
   void refine(const Stepper& stepper, std::size_t result, double sign);
 
   SensorReader reader_;
+  std::vector<double> jumps_;         ///< times at which loads or motions jump; steps end there
   std::vector<std::size_t> columns_;  ///< of the reader, one a result
   std::vector<OutputStatistics> results_;
   std::vector<double> all_, now_;

@@ -131,9 +131,13 @@ TEST(Failures, SamplesThatCannotBeToldApartAreBadInputAtReading) {
     EXPECT_EQ(f.status, 2) << command;
     EXPECT_EQ(f.out, "");
     EXPECT_THAT(f.err, HasSubstr("fast.yaml:6:60: /loads/servo/sample: got a period of 1e-16 s"));
-    EXPECT_THAT(f.err, HasSubstr("at t = 2 s; need more than 2.22e-16 s"));
+    EXPECT_THAT(f.err, HasSubstr("2e+16 samples in a run, with a step at each; need at most 1e+09"));
   }
-  EXPECT_EQ(withy(folder, {"check", "fast.yaml", "--set", "loads.servo.sample=2.23e-16"}).status, 0);
+  EXPECT_EQ(withy(folder, {"check", "fast.yaml", "--set", "loads.servo.sample=2e-9"}).status, 0);
+  const Finished late = withy(folder, {"check", "fast.yaml", "--set", "loads.servo.sample=1e-9", "--set",
+                                       "initial.time=1e8", "--set", "time.end=1e8"});
+  EXPECT_EQ(late.status, 2);
+  EXPECT_THAT(late.err, HasSubstr("at t = 1e+08 s; need more than 1.11e-08 s"));
 }
 
 }  // namespace

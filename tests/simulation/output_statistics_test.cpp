@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "withy/core/simulation/run_times.hpp"
 #include "withy/tests/loads/scene_run.hpp"
 
 namespace withy {
@@ -29,7 +30,7 @@ loads:
 }
 
 std::vector<OutputStatistics> statistics_of(const test::LoadedScene& s, const RunOptions& options = {}) {
-  StatisticsWatch watch(s.scene.outputs, {"place", "twice"}, *s.equations);
+  StatisticsWatch watch(s.scene.outputs, {"place", "twice"}, *s.equations, discontinuities(*s.scene.model));
   RunOptions all = options;
   all.end = end_of_run(s.scene);
   all.output = s.scene.output;
@@ -77,9 +78,9 @@ TEST(OutputStatistics, SeeBothSidesOfJumps) {
       swinging_block("  push: {type: noise, hinge: slide, deviation: 5, seed: 2, sample: 0.05}\n"),
       {"time.output=0.05", "time.end=2"});
   double greatest = 0;
-  SensorReader reader(s.scene.outputs, *s.equations);
+  SensorReader reader(s.scene.outputs, *s.equations, discontinuities(*s.scene.model));
   std::vector<double> row(reader.columns().size());
-  StatisticsWatch watch(s.scene.outputs, {"place", "twice"}, *s.equations);
+  StatisticsWatch watch(s.scene.outputs, {"place", "twice"}, *s.equations, discontinuities(*s.scene.model));
   RunOptions options;
   options.end = 2;
   options.output = 0.05;
@@ -111,6 +112,34 @@ TEST(OutputStatistics, GoThroughACheckpointBitByBit) {
     EXPECT_EQ(whole[i].least_at, resumed[i].least_at);
     EXPECT_EQ(whole[i].square, resumed[i].square);
   }
+}
+
+/// A step that ends where an effort jumps is of the effort before: the work is what the power makes over time.
+TEST(OutputStatistics, OfWhatJumpsAreThoseOfBothSides) {
+  const test::LoadedScene s(R"(format: withy/1
+time: {end: 1.2, output: 1}
+integrator: {name: dop853, rtol: 1e-9, atol: 1e-11}
+bodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}
+outputs:
+  drive: {type: effort, hinge: slide}
+  power: {type: power}
+loads:
+  push: {type: hinge-effort, hinge: slide, law: steps, table: [[0, 1], [0.35, 5], [0.9, -3]]}
+)");
+  StatisticsWatch watch(s.scene.outputs, {"drive", "power"}, *s.equations, discontinuities(*s.scene.model));
+  RunOptions options;
+  options.end = end_of_run(s.scene);
+  options.output = s.scene.output;
+  const RunSummary summary =
+      simulate(*s.scene.model, *s.equations, *s.scene.integrator, s.scene.initial, options, {}, &watch);
+  ASSERT_EQ(summary.status, RunStatus::completed) << summary.message;
+  const std::vector<OutputStatistics> all = watch.results();
+  EXPECT_NEAR(all[0].integral, 0.35 + 5 * 0.55 - 3 * 0.3, 1e-12);
+  EXPECT_EQ(all[0].greatest, 5);
+  EXPECT_EQ(all[0].least, -3);
+  const double speed = all[0].integral / 2;
+  EXPECT_NEAR(all[1].integral, speed * speed, 1e-9) << "½ m v² of m = 2";
 }
 
 }  // namespace
