@@ -78,7 +78,7 @@ TEST(OutputStatistics, SeeBothSidesOfJumps) {
       swinging_block("  push: {type: noise, hinge: slide, deviation: 5, seed: 2, sample: 0.05}\n"),
       {"time.output=0.05", "time.end=2"});
   double greatest = 0;
-  SensorReader reader(s.scene.outputs, *s.equations, discontinuities(*s.scene.model));
+  SensorReader reader(s.scene.outputs, *s.equations);
   std::vector<double> row(reader.columns().size());
   StatisticsWatch watch(s.scene.outputs, {"place", "twice"}, *s.equations, discontinuities(*s.scene.model));
   RunOptions options;
