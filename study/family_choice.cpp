@@ -54,7 +54,19 @@ bool FamilyChoice::look(const Reference& richest) {
     least = known;
     family_ = *family;
   }
-  return family_ != before;
+  return family_ != before && may_leave(before);
+}
+
+/// Whether the family just chosen takes the place of one: a family that was left comes back where two looks in a row
+/// say so. Steps of a series may be as large as those before them for some modes, and then shrink at once.
+bool FamilyChoice::may_leave(const std::string& before) {
+  const bool back = std::find(left_.begin(), left_.end(), family_) != left_.end();
+  if (back && std::exchange(coming_back_, family_) != family_) {
+    family_ = before;
+    return false;
+  }
+  left_.push_back(before);
+  return true;
 }
 
 /// By what part of the outputs' scales a mode more changes them; nothing where a run does not end.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "withy/study/family_series.hpp"
 #include "withy/study/level_steps.hpp"
@@ -38,6 +39,8 @@ class FamilyChoice {
 
   /// A run in the lowest rung, which may cost so much CPU time [s]; nothing where it does not end.
   std::optional<Reference> run(Point point, double seconds = std::numeric_limits<double>::infinity());
+  /// Adds one, in the place of that with as many modes.
+  void add(const Reference& run) { series_.add(run); }
   /// All such runs.
   [[nodiscard]] const FamilySeries& series() const { return series_; }
 
@@ -46,6 +49,7 @@ class FamilyChoice {
   [[nodiscard]] std::optional<double> first_change(Point point, const std::string& family);
   [[nodiscard]] std::optional<double> known_in(const std::string& family, Point point);
   [[nodiscard]] bool worth_a_look(const Reference& richest);
+  [[nodiscard]] bool may_leave(const std::string& before);
 
   const std::function<const ModelAt&(const Point&)>& model_at_;
   Registry& registry_;
@@ -55,7 +59,9 @@ class FamilyChoice {
   const LevelSteps& steps_;
   FamilySeries series_;
   std::string family_;
-  int next_look_ = 4;  ///< modes at which all are looked at again
+  std::vector<std::string> left_;  ///< families that others took the place of
+  std::string coming_back_;        ///< one of these, which the last look has found the best again
+  int next_look_ = 4;              ///< modes at which all are looked at again
 };
 
 }  // namespace withy::study

@@ -1,14 +1,16 @@
 #include "withy/study/level_integrations.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 namespace withy::study {
 namespace {
 
-/// Times the tolerance of the coarsest level that is asked for: the loosest that is looked at.
-constexpr double looser_at_most = 10;
+/// The loosest tolerance that is looked at, where that of the coarsest level that is asked for is not looser: the
+/// loosest of candidates. Steps that fast modes limit, or that fold these in, add next to nothing to slow outputs.
+constexpr double loosest_tolerance = 1e-2;
 /// Times what the coarsest level costs with the integrations known so far: what it may cost with another, which may be
 /// the better one with more modes.
 constexpr double worth_measuring = 4;
@@ -18,6 +20,10 @@ constexpr double look_share = 0.01;
 /// Of the time that is left: what it may cost at most, but for what takes hardly longer than the best. Where the
 /// coarsest level takes a fiftieth of the time, ways that cost several times as much take what levels need.
 constexpr double most_look_share = 0.02, hardly_longer = 1.5;
+/// Times the modes of the level at which it was measured what integration adds: with more it is measured again.
+constexpr int many_more = 2;
+/// Of the time that is left: what a run may cost that tells it.
+constexpr double confirming_share = 0.15;
 
 }  // namespace
 
@@ -63,7 +69,7 @@ void LevelIntegrations::measure(const std::string& integrator, const Run& run) {
     return run(look, seconds);
   };
   const auto little = [&](const Reference& r) { return goal_.integration(r) <= 1; };
-  const double loosest = std::max(looser_at_most * goal_.first.tolerance, goal_.tightest);
+  const double loosest = std::max({loosest_tolerance, goal_.first.tolerance, goal_.tightest});
   auto measured = loosest_integration({outputs_, run_with, little, loosest, goal_.tightest});
   if (!measured) return;
   all_.push_back(std::move(*measured));
@@ -81,6 +87,33 @@ Point LevelIntegrations::on(Point point) const {
   const LevelIntegration& with = cheapest_with(all_, model.refused() ? 0 : explicit_evaluations(model), point.modes);
   point.integrator = with.integrator, point.tolerance = with.tolerance;
   return point;
+}
+
+LevelIntegration* LevelIntegrations::of(const Point& point) {
+  const auto with = std::find_if(all_.begin(), all_.end(), [&](const LevelIntegration& i) {
+    return i.integrator == point.integrator && i.tolerance == point.tolerance;
+  });
+  return with == all_.end() ? nullptr : &*with;
+}
+
+std::optional<Reference> LevelIntegrations::confirm(Reference& level, const Run& run,
+                                                    const std::function<bool(const Reference&)>& enough) {
+  LevelIntegration* const with = of(level.point);
+  if (with == nullptr || level.point.modes <= many_more * with->modes) return {};
+  Point point = level.point;
+  point.formulation = reference_formulations(registry_).back();
+  const double seconds = goal_.left ? confirming_share * goal_.left() : std::numeric_limits<double>::infinity();
+  const std::optional<Reference> loose = run(point, seconds);
+  point.tolerance = std::max(std::pow(10, std::round(std::log10(point.tolerance)) - 1), goal_.tightest);
+  if (!loose || point.tolerance == level.point.tolerance) return {};
+  std::optional<Reference> tight = run(point, seconds);
+  if (!tight) return {};
+  const Distances added = distances(outputs_, tight->readings, loose->readings).first;
+  for (std::size_t k = 0; k < added.size(); ++k) level.own[k] += std::max(0.0, added[k] - with->added[k]);
+  if (enough(level)) return {};
+  with->tolerance = point.tolerance;
+  with->evaluations = {{point.modes, static_cast<double>(tight->walk.evaluations)}};
+  return tight;
 }
 
 void LevelIntegrations::note(const Reference& run) {

@@ -36,9 +36,16 @@ class LevelIntegrations {
   [[nodiscard]] double expected_seconds(const Point& point) const;
   /// What integration may add to a level's outputs, on top of its `own`.
   void add_to(Reference& level) const;
+  /// Holds a level that is known well enough against what integration adds to its own modes, which is measured where
+  /// these are many more than those it was measured at: fast modes ring at a tolerance that slow ones are content with.
+  /// It is put into `own`. Where that is then too much, levels have a digit less from there on, and the run with that,
+  /// in the lowest rung, is returned; nothing where it is not, or there is not the time to know.
+  std::optional<Reference> confirm(Reference& level, const Run& run,
+                                   const std::function<bool(const Reference&)>& enough);
 
  private:
   void measure(const std::string& integrator, const Run& run);
+  [[nodiscard]] LevelIntegration* of(const Point& point);
   [[nodiscard]] Point coarsest() const;
   [[nodiscard]] double worth(double least) const;
   [[nodiscard]] std::vector<std::string> integrators(const Prepared& prepared) const;

@@ -22,7 +22,8 @@ std::optional<LevelIntegration> loosest_integration(const IntegrationSearch& sea
       return LevelIntegration{loose->point.integrator,
                               loose->point.tolerance,
                               tight->own,
-                              {{loose->point.modes, static_cast<double>(loose->walk.evaluations)}}};
+                              {{loose->point.modes, static_cast<double>(loose->walk.evaluations)}},
+                              loose->point.modes};
     loose = std::move(tight);
   }
   return {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "withy/core/plugin/formulation_ladder.hpp"
 #include "withy/study/accuracy.hpp"
@@ -82,7 +83,7 @@ class ReferenceSearch {
   /// Whether a level is known well enough, which is the end of the search; what comes near it is kept.
   bool known_by(const Reference& level, const ModeSeries& series) {
     Reference reached = lead(level, series);
-    if (!enough(reached)) {
+    if (!settled(reached)) {
       keep_nearest(reached, series.limit_before());
       return false;
     }
@@ -121,6 +122,13 @@ class ReferenceSearch {
   }
 
   [[nodiscard]] bool enough(const Reference& r) const { return !goal_.enough || goal_.enough(r); }
+  /// The same with what integration adds to as many modes; where that is too much a tighter run is kept.
+  bool settled(Reference& r) {
+    tighter_.reset();
+    if (!enough(r)) return false;
+    tighter_ = runs_.confirm(r, [&](const Reference& confirmed) { return enough(confirmed); });
+    return !tighter_;
+  }
 
   /// The next run of the series of the lower rung. Where one with more modes would cost much of the time that is left,
   /// one half a step before the last comes first: of two shorter steps more may be known, for less.
@@ -172,9 +180,13 @@ class ReferenceSearch {
     while (true) {
       const Reference richest = *families_.series().richest(families_.family());
       if (richest.point.modes > fine.point.modes) {
-        const Reference reached = with_added(richest, added, *base);
-        if (enough(reached)) return reached;
+        Reference reached = with_added(richest, added, *base);
+        if (settled(reached)) return reached;
         keep_nearest(reached, {});
+        if (tighter_) {
+          families_.add(*std::exchange(tighter_, std::nullopt));
+          continue;
+        }
         if (families_.look(richest)) continue;
         little = relative_error(added.own, added.scales) < little_of_all * relative_error(reached.own, reached.scales);
       }
@@ -232,6 +244,7 @@ class ReferenceSearch {
   ReferenceRuns runs_;
   std::optional<Reference> before_, coarse_;  ///< the last two levels
   std::optional<ModeSeries> series_;          ///< of levels
+  std::optional<Reference> tighter_;          ///< of what was not settled for its integration alone, in the lowest rung
   LevelSteps steps_;
   FamilyChoice families_;  ///< with the runs of the lowest rung, where more modes are looked at
 };

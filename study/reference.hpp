@@ -55,7 +55,7 @@ struct ReferenceGoal {
   double tightest = 1e-9;
   /// What integration adds to a level, where that is its `own`, over what it may add. Each level then has the
   /// integrator that costs least there, of that of `first` and `imex`, at the tolerance at which it adds no more: runs
-  /// of the coarsest tell, in the lowest rung that truncates nothing, from ten times the tolerance of `first` on.
+  /// of the coarsest tell, in the lowest rung that truncates nothing, and runs of a level that has many more modes.
   /// Empty, or without modes: levels have the integrator of `first`, and its tolerance by `finer`.
   std::function<double(const Reference&)> integration;
   std::vector<Reference> made = {};              ///< runs that need not be made again

@@ -26,6 +26,11 @@ void ReferenceRuns::measure_integrations() {
   integrations_.measure(run, [&] { return found_.interrupted; });
 }
 
+std::optional<Reference> ReferenceRuns::confirm(Reference& level, const std::function<bool(const Reference&)>& enough) {
+  return integrations_.confirm(
+      level, [&](const Point& point, double seconds) { return at(point, seconds); }, enough);
+}
+
 std::optional<Reference> ReferenceRuns::at(const Point& point) {
   const auto made = runs_.find(point.key());
   std::optional<Reference> reference = made != runs_.end() ? made->second : run(point);

@@ -24,6 +24,9 @@ class ReferenceRuns {
   /// How levels are integrated.
   [[nodiscard]] const LevelIntegrations& integrations() const { return integrations_; }
 
+  /// LevelIntegrations::confirm by runs of this.
+  std::optional<Reference> confirm(Reference& level, const std::function<bool(const Reference&)>& enough);
+
   /// A run, made once; nothing where it does not come to its end.
   std::optional<Reference> at(const Point& point);
   /// The same, where one that is not worth its time is no trouble. \param seconds of CPU time that it may cost

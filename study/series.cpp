@@ -6,6 +6,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace withy::study {
@@ -51,13 +52,29 @@ double greatest_of(const Output& output, const Eigen::Matrix3Xd& steps) {
   return output.over_a_run() ? steps.rightCols<1>().norm() : steps.colwise().norm().maxCoeff();
 }
 
-/// Of n⁻ᵖ the step from n − 1 to n over the one before.
-double ratio_of(double n, double p) {
-  return -std::expm1(p * std::log1p(-1.0 / n)) / std::expm1(p * std::log1p(1.0 / (n - 2)));
+/// Of n⁻ᵖ the step from n − 1 to n over the one so many steps before.
+double ratio_of(double n, double p, int back = 1) {
+  const double first = n - back;
+  return std::exp(p * std::log(first / n)) * std::expm1(-p * std::log1p(-1 / n)) /
+         std::expm1(-p * std::log1p(-1 / first));
 }
 
-/// What is left of sizes that shrink on by a ratio, over the last; that itself at least.
-double goes_on(double n, double ratio) { return std::max(1.0, tail(n, ratio).algebraic); }
+/// The exponent p of the law n⁻ᵖ whose step to n is `ratio` times the one so many steps before; nothing where no more
+/// is left.
+std::optional<double> exponent(double n, double ratio, int back = 1) {
+  constexpr double slowest = 1, fastest = 500;
+  if (!(ratio > ratio_of(n, fastest, back))) return {};
+  if (ratio >= ratio_of(n, slowest, back)) return slowest;
+  constexpr int bits = 40;
+  std::uintmax_t most = 200;
+  const auto found =
+      boost::math::tools::toms748_solve([&](double at) { return ratio_of(n, at, back) - ratio; }, slowest, fastest,
+                                        boost::math::tools::eps_tolerance<double>(bits), most);
+  return 0.5 * (found.first + found.second);
+}
+
+/// What is left of n⁻ᵖ over its last step.
+double left_over(double n, double p) { return 1 / std::expm1(-p * std::log1p(-1.0 / n)); }
 
 /// What the finest of runs may be off by where no law of its series is known: the last change, or what is left of
 /// changes that shrink on as the last two did; of several kinds of modes in turn the last change of each counts.
@@ -93,20 +110,10 @@ int next_step(int modes) {
 }
 
 Tail tail(double n, double ratio) {
-  constexpr double slowest = 1, fastest = 500;  // exponents p; beyond, nothing is left
-  const double greatest_ratio = ratio_of(n, slowest);
-  if (!(ratio > ratio_of(n, fastest))) return {};
-  ratio = std::min(ratio, greatest_ratio);
-  double p = slowest;
-  if (ratio < greatest_ratio) {
-    constexpr int bits = 40;
-    std::uintmax_t most = 200;
-    const auto found =
-        boost::math::tools::toms748_solve([&](double at) { return ratio_of(n, at) - ratio; }, slowest, fastest,
-                                          boost::math::tools::eps_tolerance<double>(bits), most);
-    p = 0.5 * (found.first + found.second);
-  }
-  return {ratio / (1 - ratio), 1 / std::expm1(-p * std::log1p(-1.0 / n))};
+  const std::optional<double> p = exponent(n, ratio);
+  if (!p) return {};
+  ratio = std::min(ratio, ratio_of(n, 1));
+  return {ratio / (1 - ratio), left_over(n, *p)};
 }
 
 ModeSeries::Steps ModeSeries::steps(const Output& output, const Readings& to, const Readings& from) const {
@@ -180,16 +187,17 @@ ModeSeries::Lead ModeSeries::lead(int modes, int step, std::map<int, Readings>& 
   return lead;
 }
 
-/// By what part an output's steps have shrunk from each to the next, over the last two where there are as many: those
-/// of even and odd modes may differ much, and one that happens to be small is not what the next is measured by. 1 where
-/// that is not known.
-double ModeSeries::shrinking(int modes, int step, std::size_t k) const {
+/// What is left of the sizes of an output's steps, over the last of them; that itself at least. They are taken to be
+/// those of n⁻ᵖ, with the p that the last and the one two steps before it tell, where there are as many: those of even
+/// and odd modes may differ much, and one that happens to be small is not what the next is measured by. Of the ratio of
+/// two steps in a row and its root over three p would be too great: ratios grow with n.
+double ModeSeries::goes_on(int modes, int step, std::size_t k) const {
   const Output& output = outputs_.list()[k];
   const auto size = [&](int at) { return greatest_of(output, steps(output, runs_.at(at), runs_.at(at - step))); };
   const int back = has(modes - 3 * step) ? 2 : 1;
-  const double before = size(modes - back * step), ratio = size(modes) / before;
-  if (!(before > 0)) return 1;
-  return back == 2 ? std::sqrt(ratio) : ratio;
+  const double n = static_cast<double>(modes) / step, before = size(modes - back * step);
+  const std::optional<double> p = before > 0 ? exponent(n, size(modes) / before, back) : 1.0;
+  return p ? std::max(1.0, left_over(n, *p)) : 1;
 }
 
 /// No limit is known better than what is left of changes of limits that shrink on as the last two did, or as those of
@@ -200,11 +208,11 @@ void ModeSeries::add_changes_of_limits(int modes, int step, const std::map<int, 
   const Distances now = distances(outputs_, last->second, before_last->second).first;
   const Distances before =
       first != limits.end() ? distances(outputs_, before_last->second, first->second).first : outputs_.none();
+  const double n = static_cast<double>(modes) / step;
   for (std::size_t k = 0; k < now.size(); ++k) {
-    double shrinks = shrinking(modes, step, k);
-    if (before[k] > 0) shrinks = std::min(shrinks, now[k] / before[k]);
-    lead.own[k] =
-        std::max(lead.own[k], now[k] * goes_on(static_cast<double>(modes) / static_cast<double>(step), shrinks));
+    double left = goes_on(modes, step, k);
+    if (before[k] > 0) left = std::min(left, std::max(1.0, tail(n, now[k] / before[k]).algebraic));
+    lead.own[k] = std::max(lead.own[k], now[k] * left);
   }
 }
 
@@ -226,7 +234,7 @@ void ModeSeries::extrapolate(int modes, int step, std::size_t k, Lead& lead) con
   const Tail left = tail(n, ratio);
   const double way = 0.5 * (left.geometric + left.algebraic);
   const double unlike = greatest_of(output, now - ratio * before);
-  lead.own[k] = (left.algebraic - left.geometric) * size + goes_on(n, shrinking(modes, step, k)) * unlike;
+  lead.own[k] = (left.algebraic - left.geometric) * size + goes_on(modes, step, k) * unlike;
   if (!(way > 0)) return;
   lead.moved[k] = true;
   for (Eigen::Index i = 0; i < common; ++i)

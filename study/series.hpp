@@ -78,7 +78,7 @@ class ModeSeries {
   };
   [[nodiscard]] bool has(int modes) const { return runs_.contains(modes); }
   [[nodiscard]] Steps steps(const Output& output, const Readings& to, const Readings& from) const;
-  [[nodiscard]] double shrinking(int modes, int step, std::size_t output) const;
+  [[nodiscard]] double goes_on(int modes, int step, std::size_t output) const;
   [[nodiscard]] Lead lead(int modes, int step, std::map<int, Readings>& limits) const;
   void take(std::size_t output, const Lead& from, Lead& to) const;
   void extrapolate(int modes, int step, std::size_t output, Lead& lead) const;

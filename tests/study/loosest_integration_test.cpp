@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "withy/study/accuracy.hpp"
+#include "withy/study/output_reader.hpp"
 #include "withy/study/probe.hpp"
 #include "withy/tests/study/plugins.hpp"
 
@@ -143,6 +144,48 @@ TEST(LevelIntegration, FastModesThatLimitExplicitStepsAreIntegratedImplicitlyAnd
   const double off = relative_error(distances(outputs, found.reference->readings, tight.readings).first, tight.scales);
   EXPECT_LT(off, 2 * allowed) << found.reference->text();
   EXPECT_LT(found.reference->walk.evaluations, tight.walk.evaluations / 2);
+}
+
+/// At the start of a beam that is let go all its modes count in the effort of the motion, and fast ones ring at a
+/// tolerance that two modes are content with.
+TEST(LevelIntegration, WhatItAddsToALevelWithManyModesIsToldOrMadeLess) {
+  const Prepared scene = until("gallery/spinning-beam.yaml", 1);
+  const Outputs outputs = Outputs::all(scene.model());
+  Evaluator evaluator(scene, plugins(), outputs, {});
+  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+  constexpr double allowed = 2e-4;
+  const auto found = [&](double most) {
+    ReferenceGoal goal;
+    goal.first = {"", "", 2, "dop853", 1e-4, {}, {}};
+    goal.levels = 14;
+    goal.finer = 1;
+    goal.leaps = true;
+    goal.integration = [](const Reference& r) { return relative_error(r.own, r.scales) / allowed; };
+    goal.steady = [](const Reference&) { return true; };
+    goal.enough = [=](const Reference& r) { return r.point.modes >= 12 && relative_error(r.own, r.scales) <= most; };
+    return *find_reference(at, plugins(), outputs, goal, {}).reference;
+  };
+  const auto run = [&](const Point& point, double tolerance) {
+    const ModelAt& model = evaluator.model(point);
+    OutputReader reader(outputs, model.prepared->model(), *model.prepared->equations);
+    Readings readings;
+    const auto keep = [&](const State& s) {
+      readings.times.push_back(s.time);
+      readings.values.push_back(reader.read(s));
+      return true;
+    };
+    walk(*model.prepared, *make_integrator(plugins(), point.integrator, tolerance), {keep, {}, {}});
+    return readings;
+  };
+  const auto added_to = [&](const Reference& r) {
+    return relative_error(distances(outputs, run(r.point, r.point.tolerance), run(r.point, 1e-9)).first, r.scales);
+  };
+  const Reference told = found(1);
+  EXPECT_GT(added_to(told), 3 * allowed) << "more than to two modes";
+  EXPECT_LE(added_to(told), relative_error(told.own, told.scales));
+  const Reference less = found(3e-3);
+  EXPECT_LT(less.point.tolerance, told.point.tolerance);
+  EXPECT_LE(added_to(less), relative_error(less.own, less.scales)) << less.text();
 }
 
 TEST(Evaluator, ARunOfAReferenceIsTheProbeThatRunningItAgainIs) {

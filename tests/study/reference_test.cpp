@@ -262,6 +262,27 @@ TEST(FindReference, AFamilyWhoseSeriesTurnsOutSlowIsLeft) {
     EXPECT_LE(apart[k], slow.own[k] + fast.own[k]) << outputs.list()[k].label;
 }
 
+/// With five and six modes that know what the booms carry steps are as large as with four, and with eight a twentieth
+/// of that: polynomials, which were left with four, look the better with six.
+TEST(FindReference, AFamilyThatWasLeftDoesNotComeBackForOneLook) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spacecraft.yaml");
+  const Prepared craft = prepare(values.set("time.end", Value(1.0), "the test"), plugins());
+  const Outputs outputs(craft.model());
+  Evaluator evaluator(craft, plugins(), outputs, {});
+  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+  ReferenceGoal goal;
+  goal.first = {"", "orthogonal-polynomials", 2, "imex", 1e-2, {}, {}};
+  goal.families = {"clamped-loaded"};
+  goal.levels = 14;
+  goal.finer = 1;
+  goal.leaps = true;
+  goal.steady = [](const Reference&) { return true; };
+  goal.enough = [](const Reference& r) { return r.point.modes >= 8; };
+  const Reference found = *find_reference(at, plugins(), outputs, goal, {}).reference;
+  EXPECT_EQ(found.point.family, "clamped-loaded");
+  EXPECT_LT(relative_error(found.own, found.scales), 0.01);
+}
+
 /// The slew's links carry an elbow and a payload.
 TEST(FindReference, WhereATipCarriesABodyFunctionsThatKnowItMayTakeThePlaceOfPolynomials) {
   const Prepared arm = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml"), plugins());
