@@ -1,6 +1,7 @@
 // Whether a model holds the accuracy, and with which integrations.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "withy/study/advice_search.hpp"
 
@@ -99,7 +100,7 @@ void Search::try_model(const Point& model) {
   if (!held && !model_holds(model)) return;
   for (const std::string& integrator : candidates_.integrators) {
     if (over()) return;
-    if (worth_trying(integrator, model)) try_integrations(model, integrator);
+    if (worth_trying(integrator, model) && !try_integrations(model, integrator)) return;
   }
 }
 
@@ -123,22 +124,29 @@ bool Search::worth_trying(const std::string& integrator, const Point& model) con
   return !tried;
 }
 
-/// From the loosest tolerance on, until one passes or costs more than the best so far.
-void Search::try_integrations(const Point& model, const std::string& integrator) {
+/// From the loosest tolerance on, until one passes or costs more than the best so far. False where a digit less changed
+/// the error of a run by less than what is missing: then the model is off, together with what the reference may be, and
+/// no integration helps.
+bool Search::try_integrations(const Point& model, const std::string& integrator) {
   Point tried = model;
   tried.integrator = integrator;
-  if (!tried_.insert(tried.key()).second) return;
+  if (!tried_.insert(tried.key()).second) return true;
+  std::optional<double> before;  // of the run before, where it came to its end
   const double known = exact_enough_tolerance(policy::exact_enough);
   for (const double tolerance : candidates_.tolerances) {
-    if (over()) return;
-    if (integrator == explicit_steps && tolerance <= known && contains(candidates_.tolerances, known)) return;
+    if (over()) return true;
+    if (integrator == explicit_steps && tolerance <= known && contains(candidates_.tolerances, known)) return true;
     Point point = model;
     point.integrator = integrator;
     point.tolerance = tolerance;
     const Probe& p = run(point, {1, policy::candidate_allowance * best_cost()});
     // Tighter ones cost more.
-    if (p.passed() || p.outcome == Probe::Outcome::too_costly || p.outcome == Probe::Outcome::refused) return;
+    if (p.passed() || p.outcome == Probe::Outcome::too_costly || p.outcome == Probe::Outcome::refused) return true;
+    if (p.walk.end != Walk::End::reached) continue;
+    if (before && std::abs(p.use - *before) < yardstick().use_with_own(p.distances) - 1) return false;
+    before = p.use;
   }
+  return true;
 }
 
 }  // namespace withy::study

@@ -45,7 +45,7 @@ class Search {
   }
   void tell_probe(const Probe& probe, double best_before);
   [[nodiscard]] bool worth_trying(const std::string& integrator, const Point& model) const;
-  void try_integrations(const Point& model, const std::string& integrator);
+  bool try_integrations(const Point& model, const std::string& integrator);
   [[nodiscard]] bool hold(const Point& above);
   [[nodiscard]] std::vector<Point> models_by_cost(const std::vector<int>& modes) const;
   void try_models(const std::vector<int>& modes);
