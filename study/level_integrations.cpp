@@ -99,7 +99,7 @@ LevelIntegration* LevelIntegrations::of(const Point& point) {
 std::optional<Reference> LevelIntegrations::confirm(Reference& level, const Run& run,
                                                     const std::function<bool(const Reference&)>& enough) {
   LevelIntegration* const with = of(level.point);
-  if (with == nullptr || level.point.modes <= many_more * with->modes) return {};
+  if (with == nullptr || level.point.modes <= many_more * with->measured_at) return {};
   Point point = level.point;
   point.formulation = reference_formulations(registry_).back();
   const double seconds = goal_.left ? confirming_share * goal_.left() : std::numeric_limits<double>::infinity();

@@ -18,7 +18,7 @@ struct LevelIntegration {
   double tolerance = 0;
   Distances added;                         ///< between this tolerance and a digit less
   std::map<int, double> evaluations = {};  ///< of its runs, by modes
-  int modes = 0;                           ///< of the level at which `added` was measured
+  int measured_at = 0;                     ///< modes of the level that told what is `added`
   /// Evaluations that a level with so many modes takes: as they have grown like a power of the modes over its last two
   /// runs with no more. What a motion asks for goes on with it, whether accuracy or stability limits the steps: it is
   /// told by runs of that integrator alone.

@@ -1,13 +1,11 @@
-// How a reference is found within a time: what the rest of a run will cost, and what a higher formulation adds.
+// How a reference is found within a time, and what a higher formulation adds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "withy/study/advice.hpp"
 #include "withy/study/output_reader.hpp"
-#include "withy/study/pace.hpp"
 #include "withy/tests/study/plugins.hpp"
 
 namespace withy::study {
@@ -15,117 +13,9 @@ namespace {
 
 using test::plugins;
 
-/// A run of 10 s whose first tenth costs ten times as much a second as the rest: 1 s of CPU time for that, 0.9 for all
-/// else.
-double cost_of_slow_start(double gone) { return gone < 1 ? gone : 1 + 0.1 * (gone - 1); }
-
-TEST(Pace, ASlowStartIsNotTakenForTheWholeRun) {
-  Pace pace;
-  for (double gone = 0; gone <= 1; gone += 0.01) pace.note(gone, cost_of_slow_start(gone));
-  EXPECT_NEAR(pace.rest(10), 9, 0.2) << "nothing else was seen";
-  double gone = 1;
-  for (; cost_of_slow_start(gone) < 1.5; gone += 0.01) pace.note(gone, cost_of_slow_start(gone));
-  EXPECT_NEAR(pace.rest(10), cost_of_slow_start(10) - cost_of_slow_start(gone), 0.3);
-  for (; gone <= 10; gone += 0.01) pace.note(gone, cost_of_slow_start(gone));
-  EXPECT_NEAR(pace.rest(10), 0, 0.01);
-}
-
-TEST(Pace, ARunThatGetsSlowerIsSeenToBeTooCostlyLater) {
-  Pace pace;
-  const auto cost = [](double gone) { return gone < 5 ? 0.01 * gone : 0.05 + 2 * (gone - 5); };
-  double cut = 0;
-  for (double gone = 0; gone <= 10 && cut == 0; gone += 0.01) {
-    pace.note(gone, cost(gone));
-    if (!may_go_on(cost(gone), pace.rest(10), 1)) cut = gone;
-  }
-  EXPECT_GT(cut, 5);
-  EXPECT_LT(cost(cut), 0.2) << "not the whole second is spent on it";
-}
-
-TEST(Pace, NothingIsJudgedBeforeItHasShownItsPaceAndNothingGoesBeyondWhatIsLeft) {
-  EXPECT_TRUE(may_go_on(0.09, std::numeric_limits<double>::infinity(), 1));
-  EXPECT_FALSE(may_go_on(0.11, 0.9, 1));
-  EXPECT_TRUE(may_go_on(0.11, 0.88, 1));
-  EXPECT_FALSE(may_go_on(0.01, 0, 0.005));
-}
-
-TEST(Pace, ANewRunBeginsAnew) {
-  Pace pace;
-  EXPECT_EQ(pace.rest(1), 0) << "nothing is known";
-  pace.note(1, 5);
-  pace.note(0.5, 0.05);
-  EXPECT_NEAR(pace.rest(1), 0.05, 1e-15);
-  pace.note(0.5, 0.06);
-  EXPECT_NEAR(pace.rest(1), 0.06, 1e-15);
-}
-
-/// As a run with more modes is, which costs three times as much all along.
-TEST(Pace, ARunIsTakenToBeLikeTheLastThatEnded) {
-  Pace pace;
-  for (double gone = 0; gone <= 10; gone += 0.01) pace.note(gone, cost_of_slow_start(gone));
-  pace.end();
-  double gone = 0;
-  for (; gone < 0.5; gone += 0.01) pace.note(gone, 3 * cost_of_slow_start(gone));
-  EXPECT_NEAR(pace.rest(10), 3 * (1.9 - 0.5), 0.2) << "though it has seen a slow start alone";
-  pace.note(0.1, 0.05);  // it was cut there, and another has begun
-  EXPECT_NEAR(pace.rest(10), 0.5 * 1.9 - 0.05, 0.01) << "one that did not end shows nothing";
-}
-
-TEST(Pace, WhereARunCostNothingSoFarThatEndedItsOwnPaceCounts) {
-  Pace pace;
-  pace.note(0, 0);
-  pace.note(5, 0);
-  pace.note(10, 1);
-  pace.end();
-  pace.note(0, 0);
-  pace.note(1, 0.1);
-  EXPECT_NEAR(pace.rest(10), 0.9, 1e-12);
-}
-
 Prepared soft_pendulum() {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/flexible-pendulum.yaml");
   return prepare(values.set("time.end", Value(0.4), "the test"), plugins());
-}
-
-/// The scene's own start in the functions of another family: the shape is kept, not the numbers.
-TEST(ModeBasis, ABentStartKeepsItsShapeInOtherFunctions) {
-  const Prepared scene = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spacecraft.yaml"), plugins());
-  const auto start = [&](const char* family, int modes) {
-    const Point point{"quadratic", family, modes, "", 0, {}, {}};
-    const Prepared at = prepare(values_at(scene.values, scene.scene, point, plugins()), plugins());
-    Outputs outputs(at.model());
-    OutputReader reader(outputs, at.model(), *at.equations);
-    return std::pair(outputs, reader.read(at.scene.initial));
-  };
-  const auto own = start("", 6);
-  const auto off = [&](const char* family, int modes) {
-    const auto [outputs, values] = start(family, modes);
-    Distances apart = outputs.none();
-    outputs.raise(values, own.second, apart);
-    return *std::max_element(apart.begin(), apart.end());
-  };
-  EXPECT_LT(off("orthogonal-polynomials", 8), 1e-9) << "of 81 mm";
-  EXPECT_LT(off("craig-bampton", 8), 1e-5);
-  EXPECT_GT(off("orthogonal-polynomials", 1), 1e-3) << "one function cannot have the shape of another";
-  EXPECT_LT(off("clamped-free", 4), 1e-12) << "the same functions keep their numbers";
-}
-
-/// Bending and twist go together: neither is left in functions that converge more slowly.
-TEST(ModeBasis, EveryStrainOfAClampedBeamTakesTheFamily) {
-  const Prepared scene = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spacecraft.yaml"), plugins());
-  const Candidates candidates = candidates_for(scene, plugins(), usual_axes());
-  EXPECT_EQ(reference_families(candidates, scene.model()).first, "orthogonal-polynomials");
-  const auto paths = [&](const char* family) {
-    std::vector<std::string> named;
-    for (const Change& change : changes_at(scene.scene, {"quadratic", family, 2, "", 0, {}, {}}, plugins()))
-      if (change.path.ends_with("family")) named.push_back(change.path);
-    return named;
-  };
-  EXPECT_EQ(paths("orthogonal-polynomials").size(), 6U);
-  EXPECT_EQ(paths("clamped-pinned"),
-            (std::vector<std::string>{"bodies.left_boom.bending_y.family", "bodies.left_boom.bending_z.family",
-                                      "bodies.right_boom.bending_y.family", "bodies.right_boom.bending_z.family"}))
-      << "it has no twist";
 }
 
 /// Eigenfunctions of the bare beam carry no moment where the tip carries a body: they converge like 1/n, and what the
@@ -211,84 +101,6 @@ TEST(FindReference, AModeThatTheMotionDoesNotExciteIsNotTakenForTheEndOfTheSerie
   };
   EXPECT_LE(wrong(to(kinds_of_modes(plate.scene), 2)), asked);
   EXPECT_GT(wrong(to(1, 2)), asked) << "the last change alone says less than what is missing";
-}
-
-/// The beam that spins carries nothing; polynomials leave what its first eigenfunction has at the start to fast modes.
-TEST(FindReference, EigenfunctionsAreTakenForABareBeamWhereTheyConvergeFaster) {
-  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/spinning-beam.yaml");
-  const Prepared beam = prepare(values.set("time.end", Value(0.5), "the test"), plugins());
-  EXPECT_FALSE(reference_families(candidates_for(beam, plugins(), usual_axes()), beam.model()).others.empty());
-  const Outputs outputs = Outputs::all(beam.model());
-  Evaluator evaluator(beam, plugins(), outputs, {});
-  const auto family = [&](std::vector<std::string> families) {
-    ReferenceGoal goal;
-    goal.first = {"", "orthogonal-polynomials", 2, "dop853", 1e-5, {}, {}};
-    goal.families = std::move(families);
-    const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
-    goal.levels = 1;
-    goal.enough = [](const Reference&) { return true; };
-    return find_reference(at, plugins(), outputs, goal, {}).reference->point.family;
-  };
-  EXPECT_EQ(family({"", "orthogonal-polynomials"}), "");
-  EXPECT_EQ(family({"craig-bampton"}), "orthogonal-polynomials") << "not clearly better";
-  EXPECT_EQ(family({}), "orthogonal-polynomials");
-}
-
-/// The third mode changes less in functions that know what the tips carry, and all that follow less in polynomials: the
-/// elbow's spring gives a moment that those do not have.
-TEST(FindReference, AFamilyWhoseSeriesTurnsOutSlowIsLeft) {
-  const Prepared arm = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/commanded-arm.yaml"), plugins());
-  const Outputs outputs = Outputs::all(arm.model());
-  Evaluator evaluator(arm, plugins(), outputs, {});
-  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
-  const auto found = [&](std::vector<std::string> families) {
-    ReferenceGoal goal;
-    goal.first = {"", "clamped-loaded", 2, "radau", 1e-4, {}, {}};
-    goal.families = std::move(families);
-    goal.levels = 14;
-    goal.finer = 1;
-    goal.leaps = true;
-    goal.steady = [](const Reference&) { return true; };
-    goal.enough = [](const Reference& r) { return r.point.modes >= 12; };
-    return *find_reference(at, plugins(), outputs, goal, {}).reference;
-  };
-  const Reference slow = found({}), fast = found({"orthogonal-polynomials"});
-  EXPECT_EQ(slow.point.family, "clamped-loaded");
-  EXPECT_EQ(fast.point.family, "orthogonal-polynomials");
-  EXPECT_EQ(fast.point.modes, 12);
-  EXPECT_LT(relative_error(fast.own, fast.scales), 0.5 * relative_error(slow.own, slow.scales));
-  const Distances apart = distances(outputs, slow.readings, fast.readings).first;
-  for (std::size_t k = 0; k < apart.size(); ++k)
-    EXPECT_LE(apart[k], slow.own[k] + fast.own[k]) << outputs.list()[k].label;
-}
-
-/// With five and six modes that know what the booms carry steps are as large as with four, and with eight a twentieth
-/// of that: polynomials, which were left with four, look the better with six.
-TEST(FindReference, AFamilyThatWasLeftDoesNotComeBackForOneLook) {
-  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/spacecraft.yaml");
-  const Prepared craft = prepare(values.set("time.end", Value(1.0), "the test"), plugins());
-  const Outputs outputs(craft.model());
-  Evaluator evaluator(craft, plugins(), outputs, {});
-  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
-  ReferenceGoal goal;
-  goal.first = {"", "orthogonal-polynomials", 2, "imex", 1e-2, {}, {}};
-  goal.families = {"clamped-loaded"};
-  goal.levels = 14;
-  goal.finer = 1;
-  goal.leaps = true;
-  goal.steady = [](const Reference&) { return true; };
-  goal.enough = [](const Reference& r) { return r.point.modes >= 8; };
-  const Reference found = *find_reference(at, plugins(), outputs, goal, {}).reference;
-  EXPECT_EQ(found.point.family, "clamped-loaded");
-  EXPECT_LT(relative_error(found.own, found.scales), 0.01);
-}
-
-/// The slew's links carry an elbow and a payload.
-TEST(FindReference, WhereATipCarriesABodyFunctionsThatKnowItMayTakeThePlaceOfPolynomials) {
-  const Prepared arm = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml"), plugins());
-  const ReferenceFamilies families = reference_families(candidates_for(arm, plugins(), usual_axes()), arm.model());
-  EXPECT_EQ(families.first, "orthogonal-polynomials");
-  EXPECT_EQ(families.others, std::vector<std::string>{"clamped-loaded"});
 }
 
 TEST(CorrectedReadings, PutADifferenceOnTopOfNumbersVectorsAndOrientations) {
