@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "withy/core/shape/vibrations.hpp"
 
 namespace withy {
 
@@ -71,10 +72,10 @@ void add_modes(const Eigen::MatrixXd& K, const Eigen::MatrixXd& G, const std::ve
     return;
   }
   const Eigen::MatrixXd inertia = G(group, group);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K(group, group), inertia);
+  const Vibrations found = vibrations(K(group, group), inertia);
   for (Eigen::Index k = 0; k < inertia.rows(); ++k) {
-    const Eigen::VectorXd momentum = inertia * solver.eigenvectors().col(k);
-    const double square = std::max(0.0, solver.eigenvalues()[k]);
+    const Eigen::VectorXd momentum = inertia * found.vectors.col(k);
+    const double square = std::max(0.0, found.squares[k]);
     modes.push_back({square, &group, 2 * std::sqrt(square) * momentum * momentum.transpose()});
   }
 }
@@ -90,8 +91,7 @@ Eigen::MatrixXd BodyDamping::matrix(const Eigen::MatrixXd& K, const Eigen::Matri
   std::stable_sort(modes.begin(), modes.end(), [](const OwnMode& a, const OwnMode& b) { return a.square < b.square; });
   int number = 0;
   for (const OwnMode& mode : modes) {
-    // Squared frequencies spread over 1e5 for ten modes; what is 1e-10 of the greatest is a motion without strain.
-    if (mode.square <= 1e-10 * modes.back().square) continue;
+    if (is_rounding(mode.square, modes.back().square)) continue;  // a motion without strain
     const auto own = ratios.find(++number);
     D(*mode.coordinates, *mode.coordinates) += (own != ratios.end() ? own->second : ratio) * mode.critical;
   }

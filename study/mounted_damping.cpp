@@ -9,6 +9,7 @@
 
 #include "withy/core/analysis/modes.hpp"
 #include "withy/core/plugin/registry.hpp"
+#include "withy/core/shape/vibrations.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 
@@ -69,27 +70,26 @@ Prepared with_one_mode(const Prepared& prepared, Registry& registry, const std::
 }
 
 /// Undamped vibrations of all speeds, those that are held at rest; φᵀ M φ = 1.
-struct Vibrations {
+struct MountedVibrations {
   Eigen::VectorXd frequencies;
   Eigen::MatrixXd shapes;
 };
 
-Vibrations vibrations(const Tangents& t, const Held& held, Index speeds, std::size_t count) {
+MountedVibrations mounted_vibrations(const Tangents& t, const Held& held, Index speeds, std::size_t count) {
   const std::vector<Index> free = free_speeds(held);
   const Eigen::MatrixXd M = t.mass(free, free), K = t.by_position(free, free);
   const Eigen::MatrixXd symmetric_K = 0.5 * (K + K.transpose()), symmetric_M = 0.5 * (M + M.transpose());
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(symmetric_K, symmetric_M);
-  if (modes.info() != Eigen::Success)
+  if (Eigen::LLT<Eigen::MatrixXd>(symmetric_M).info() != Eigen::Success)
     throw std::domain_error("the mass matrix of what is free is not positive at this state");
-  const Eigen::VectorXd& squares = modes.eigenvalues();
-  const double rounding = 1e-9 * (squares.size() > 0 ? squares.cwiseAbs().maxCoeff() : 0);
-  if (squares.size() > 0 && squares[0] < -rounding)
+  const Vibrations found = free.empty() ? Vibrations() : vibrations(symmetric_K, symmetric_M);
+  const Eigen::VectorXd& squares = found.squares;
+  if (squares.size() > 0 && squares.minCoeff() < 0 && !is_rounding(squares.minCoeff(), squares.cwiseAbs().maxCoeff()))
     throw std::domain_error("small motions about this state grow: what grows has no damping ratio");
-  const Index rigid = (squares.array() <= rounding).count(), wanted = static_cast<Index>(count);
+  const Index rigid = found.rigid(), wanted = static_cast<Index>(count);
   if (squares.size() - rigid < wanted)
     throw InputError(fmt::format("{} ratios are asked, and the tree has {} vibrations", count, squares.size() - rigid));
-  Vibrations v{squares.segment(rigid, wanted).cwiseSqrt(), Eigen::MatrixXd::Zero(speeds, wanted)};
-  v.shapes(free, Eigen::all) = modes.eigenvectors().middleCols(rigid, wanted);
+  MountedVibrations v{squares.segment(rigid, wanted).cwiseSqrt(), Eigen::MatrixXd::Zero(speeds, wanted)};
+  v.shapes(free, Eigen::all) = found.vectors.middleCols(rigid, wanted);
   return v;
 }
 
@@ -182,7 +182,7 @@ MountedDamping mounted_damping(const Configuration& c, Registry& registry, const
   const Prepared bare = with_one_mode(c.prepared(), registry, bodies, 0);
   const TangentDynamics dynamics(bare.scene.model, bare.scene.formulation->terms());
   const Tangents t = dynamics.tangents(c.state().time, c.state().y, accelerations(dynamics, c.state(), c.held()));
-  const Vibrations v = vibrations(t, c.held(), static_cast<Index>(c.layout().speeds), ratios.size());
+  const MountedVibrations v = mounted_vibrations(t, c.held(), static_cast<Index>(c.layout().speeds), ratios.size());
 
   const Eigen::VectorXd asked = Eigen::Map<const Eigen::VectorXd>(ratios.data(), static_cast<Index>(ratios.size()));
   Eigen::MatrixXd shares(asked.size(), all);

@@ -1,10 +1,10 @@
 #include "withy/core/simulation/elastic_modes.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <numeric>
 
 #include "withy/core/shape/modal_mass.hpp"
+#include "withy/core/shape/vibrations.hpp"
 
 namespace withy {
 
@@ -15,14 +15,10 @@ ElasticModes elastic_modes(const ModalShape& shape, const std::vector<Eigen::Ind
   // Coordinates that move no mass have no frequencies.
   if (coordinates.empty() || Eigen::LLT<Eigen::MatrixXd>(modes.mass).info() != Eigen::Success) return modes;
   const Eigen::MatrixXd K = shape.stiffness(coordinates, coordinates);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, modes.mass);
-  const Eigen::VectorXd& squares = solver.eigenvalues();
-  // Squared frequencies of beam modes spread over 1e5 for ten modes; what is 1e-10 of the greatest is a rigid motion.
-  Eigen::Index rigid = 0;
-  while (rigid < squares.size() && squares[rigid] <= 1e-10 * squares[squares.size() - 1]) ++rigid;
-  const Eigen::Index kept = squares.size() - rigid;
-  modes.frequencies = squares.tail(kept).cwiseSqrt();
-  modes.vectors = solver.eigenvectors().rightCols(kept);
+  const Vibrations found = vibrations(K, modes.mass);
+  const Eigen::Index kept = found.squares.size() - found.rigid();
+  modes.frequencies = found.squares.tail(kept).cwiseSqrt();
+  modes.vectors = found.vectors.rightCols(kept);
   return modes;
 }
 

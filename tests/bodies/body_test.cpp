@@ -1,7 +1,12 @@
 #include <gmock/gmock.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
+#include "withy/core/shape/modal_mass.hpp"
+#include "withy/core/shape/vibrations.hpp"
 #include "withy/core/simulation/elastic_modes.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 #include "withy/tests/bodies/beam_fixture.hpp"
@@ -132,6 +137,48 @@ TEST(Beam, damping_ratio_is_of_its_own_modes_in_every_family) {
     for (Eigen::Index k = 0; k < count; ++k) EXPECT_NEAR(ratio_of_mode(body->shape(), k), 0.01, 1e-10) << family << k;
     EXPECT_TRUE(body->shape().damping.topRightCorner(4, 4).isZero(0)) << "planes stay apart, " << family;
   }
+}
+
+/// A hundred polynomials have squared frequencies 1e14 apart: the least is no rounding of the greatest. The lowest mode
+/// by inverse iteration, which does not feel the others.
+TEST(Beam, damping_ratio_is_of_the_lowest_mode_too_however_many_functions_there_are) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  for (const int n : {8, 31, 32, 48, 100}) {
+    Value bending = strain(40, n);
+    bending.set("family", Value(std::string("orthogonal-polynomials")));
+    const auto body = make_plugin<Body>(registry, "beam",
+                                        {{"length", Value(1.3)},
+                                         {"mass_per_length", Value(0.7)},
+                                         {"bending_y", bending},
+                                         {"damping_ratio", Value(0.01)}});
+    ASSERT_NE(body, nullptr);
+    const Eigen::MatrixXd G = modal_mass(body->shape());
+    const Eigen::LLT<Eigen::MatrixXd> stiffness(body->shape().stiffness);
+    Eigen::VectorXd v = Eigen::VectorXd::Unit(n, 0);
+    for (int i = 0; i < 20; ++i) v = stiffness.solve(Eigen::VectorXd(G * v)).normalized();
+    const double omega = std::sqrt(v.dot(body->shape().stiffness * v) / v.dot(G * v));
+    EXPECT_NEAR(omega / (3.5160152685 / (1.3 * 1.3) * std::sqrt(40 / 0.7)), 1, 1e-9) << n;
+    EXPECT_NEAR(v.dot(body->shape().damping * v) / (2 * omega * v.dot(G * v)), 0.01, 1e-7) << n;
+    const ElasticModes modes = elastic_modes(body->shape());
+    ASSERT_EQ(modes.frequencies.size(), n) << "none is taken for a motion without strain";
+    EXPECT_NEAR(modes.frequencies[0] / omega, 1, 1e-5) << n;
+  }
+}
+
+/// Masses in a row on springs from 1 to 1e11 N/m: all of them together are held by none.
+TEST(Vibrations, a_motion_without_strain_is_told_from_slow_vibrations) {
+  constexpr Eigen::Index n = 12;
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i + 1 < n; ++i) {
+    const Eigen::Vector2d ends(1, -1);
+    K.block<2, 2>(i, i) += std::pow(10.0, static_cast<double>(i)) * ends * ends.transpose();
+  }
+  const Vibrations all = vibrations(K, Eigen::MatrixXd::Identity(n, n));
+  EXPECT_EQ(all.rigid(), 1);
+  // The first mass on the softest spring, all others as one.
+  EXPECT_NEAR(all.squares[1], 1 + 1.0 / (n - 1), 0.2);
+  EXPECT_THROW(static_cast<void>(vibrations(K, K)), std::domain_error);
 }
 
 TEST(Beam, single_modes_and_stiffness_have_damping_of_their_own) {
