@@ -316,9 +316,9 @@ def test_equations_say_what_was_wrong_with_an_array(slew):
 def test_a_simulation_refuses_what_is_not_its_own(slew):
     sim = withy.Simulation(slew)
     sim.step(0.1)
-    for wrong in (0.05, float("nan")):
+    for wrong, why in ((0.05, "lies before the present one"), (float("nan"), "need a finite number")):
         for call in (sim.step, sim.advance_to):
-            with pytest.raises(ValueError, match="lies before the present one"):
+            with pytest.raises(ValueError, match=why):
                 call(wrong)
     with pytest.raises(ValueError, match="the snapshot is of another scene"):
         sim.restore(withy.Simulation(withy.load(SCENES / "pendulum.yaml")).snapshot())
