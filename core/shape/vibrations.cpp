@@ -16,7 +16,7 @@ bool is_rounding(double square, double greatest) {
 Eigen::Index Vibrations::rigid() const {
   if (squares.size() == 0) return 0;
   const double greatest = squares.cwiseAbs().maxCoeff();
-  return std::count_if(squares.begin(), squares.end(), [&](double s) { return is_rounding(s, greatest); });
+  return std::count_if(squares.begin(), squares.end(), [&](double s) { return s < 0 || is_rounding(s, greatest); });
 }
 
 Vibrations vibrations(const Eigen::MatrixXd& K, const Eigen::MatrixXd& G) {

@@ -8,14 +8,15 @@ namespace withy {
 
 /// Columns v with vᵀ G v = 1 and their squared frequencies ω² = vᵀ K v [1/s²], increasing.
 ///
-/// Eigenvalues are known to rounding of the greatest of them, which with many modes is all of the least: of n
-/// polynomials on a clamped beam they are n⁸ apart, 1e12 for 32. The quotients of the vectors are known to the square
+/// Eigenvalues are known to rounding of the greatest of them, which with many modes may be all of the least: those of n
+/// polynomials on a clamped beam spread like n⁸, over 1e10 for 32. The quotients of the vectors are known to the square
 /// of what these are off by.
 struct Vibrations {
   Eigen::VectorXd squares;
   Eigen::MatrixXd vectors;
 
-  /// How many of the first are motions without strain: their squares are rounding beside the greatest.
+  /// How many of the first are motions without strain: their squares are rounding beside the greatest, or negative, as
+  /// those of a K from a file may be.
   [[nodiscard]] Eigen::Index rigid() const;
 };
 

@@ -144,7 +144,7 @@ TEST(Beam, damping_ratio_is_of_its_own_modes_in_every_family) {
 TEST(Beam, damping_ratio_is_of_the_lowest_mode_too_however_many_functions_there_are) {
   Registry registry;
   enroll_static_plugins(registry);
-  for (const int n : {8, 31, 32, 48, 100}) {
+  for (const int n : {31, 32, 100}) {
     Value bending = strain(40, n);
     bending.set("family", Value(std::string("orthogonal-polynomials")));
     const auto body = make_plugin<Body>(registry, "beam",
@@ -179,6 +179,8 @@ TEST(Vibrations, a_motion_without_strain_is_told_from_slow_vibrations) {
   // The first mass on the softest spring, all others as one.
   EXPECT_NEAR(all.squares[1], 1 + 1.0 / (n - 1), 0.2);
   EXPECT_THROW(static_cast<void>(vibrations(K, K)), std::domain_error);
+  K(0, 0) -= 1e-3;  // as a file with few digits has it
+  EXPECT_EQ(vibrations(K, Eigen::MatrixXd::Identity(n, n)).rigid(), 1);
 }
 
 TEST(Beam, single_modes_and_stiffness_have_damping_of_their_own) {

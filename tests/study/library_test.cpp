@@ -65,6 +65,35 @@ TEST(StudyModes, DampingThatIsOutOfReachIsReportedAsWhatIsReached) {
     EXPECT_NEAR(ratio_of(prepared, damping, holding, j), damping.modes[j].reached, 1e-9);
 }
 
+/// Of 24 functions the squared frequencies of a clamped beam spread over 1e9.
+TEST(StudyModes, DampingIsFoundForTheLowestOfManyModes) {
+  const Prepared prepared =
+      prepare(SceneValues::parse("format: withy/1\nbodies:\n  beam: {type: beam, length: 1.3, mass_per_length: 2, "
+                                 "bending_y: {stiffness: 50, modes: 24, family: orthogonal-polynomials}}\n"
+                                 "hinges:\n  root: {type: weld, parent: world, child: beam}\ntime: {end: 1}\n",
+                                 "beam.yaml"),
+              plugins());
+  const MountedDamping damping = mounted_damping({prepared, prepared.scene.initial, {}}, plugins(), {0.01, 0.02});
+  EXPECT_NEAR(damping.modes[0].frequency / (3.5160152685 / (1.3 * 1.3) * 5), 1, 1e-5);
+  EXPECT_NEAR(damping.modes[0].reached, 0.01, 1e-4);
+  EXPECT_NEAR(damping.modes[1].reached, 0.02, 2e-4);
+}
+
+/// A bob above its pin falls slowly beside vibrations of a beam with 16 modes, whose squares are 1e8 times as great.
+TEST(StudyModes, WhatGrowsSlowlyHasNoDampingRatioHoweverFastOthersAre) {
+  const Prepared prepared =
+      prepare(SceneValues::parse(
+                  "format: withy/1\ngravity: [0, -9.81, 0]\nbodies:\n"
+                  "  beam: {type: beam, length: 1.3, mass_per_length: 2, bending_y: {stiffness: 50, modes: 16, family: "
+                  "orthogonal-polynomials}}\n"
+                  "  bob: {type: rigid, mass: 1, center_of_mass: [0, 0.1, 0], inertia: [1, 1, 1, 0, 0, 0]}\n"
+                  "hinges:\n  root: {type: weld, parent: world, child: beam}\n"
+                  "  pin: {type: revolute, axis: [0, 0, 1], parent: world, child: bob}\ntime: {end: 1}\n",
+                  "bob.yaml"),
+              plugins());
+  EXPECT_THROW(mounted_damping({prepared, prepared.scene.initial, {}}, plugins(), {0.01}), std::domain_error);
+}
+
 TEST(StudyModes, SayHowFarTheyAreFromTheNextModelUp) {
   const Prepared prepared = prepare(scene("two-link-slew"), plugins());
   const Holding holding{{"shoulder", "elbow"}, {}};
