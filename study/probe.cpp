@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "withy/core/simulation/run_times.hpp"
 #include "withy/study/output_reader.hpp"
+#include "withy/study/search_time.hpp"
 
 namespace withy::study {
 namespace {
@@ -84,9 +84,9 @@ const char* outcome_name(Probe::Outcome outcome) {
 }
 
 Evaluator::Evaluator(const Prepared& base, Registry& registry, const Outputs& outputs, Control control)
-    : base_(base), registry_(registry), outputs_(outputs), control_(std::move(control)), began_(thread_cpu_seconds()) {}
+    : base_(base), registry_(registry), outputs_(outputs), control_(std::move(control)), began_(search_time().now()) {}
 
-double Evaluator::spent() const { return thread_cpu_seconds() - began_; }
+double Evaluator::spent() const { return search_time().now() - began_; }
 
 const ModelAt& Evaluator::model(const Point& point) {
   for (const auto& m : models_)

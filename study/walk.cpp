@@ -1,8 +1,6 @@
 #include "withy/study/walk.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -10,28 +8,10 @@
 #include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/stepping.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/search_time.hpp"
 
 namespace withy::study {
 namespace {
-
-/// CPU time of one evaluation at the initial state [s]: the least of some batches, since other work only adds; of fewer
-/// evaluations each where these take long.
-double seconds_per_evaluation(const Prepared& model) {
-  const EquationsOfMotion& equations = *model.equations;
-  const State& initial = model.scene.initial;
-  Work work = equations.make_work();
-  std::vector<double> rates(equations.size());
-  double least = std::numeric_limits<double>::max();
-  constexpr int first = 4, most = 40;
-  constexpr double batch_seconds = 1e-3;
-  for (int batch = 0, count = first; batch < 5; ++batch) {
-    if (batch > 0) count = std::clamp(static_cast<int>(batch_seconds / least), 1, most);
-    const double began = thread_cpu_seconds();
-    for (int i = 0; i < count; ++i) static_cast<void>(equations.derivatives(initial.time, initial.y, rates, work));
-    least = std::min(least, (thread_cpu_seconds() - began) / count);
-  }
-  return least;
-}
 
 std::string reason_of(const StepResult& result, const Prepared& model) {
   const auto& bodies = model.model().bodies();
@@ -51,19 +31,20 @@ std::string reason_of(const StepResult& result, const Prepared& model) {
 class Watch final : public SteppingObserver {
  public:
   /// \param sign of the mass matrix's determinant at the start
-  Watch(const WalkObserver& observer, LoopWatch loops, int sign)
-      : observer_(observer), loops_(std::move(loops)), sign_(sign), began_(thread_cpu_seconds()) {}
+  Watch(const Prepared& model, const WalkObserver& observer, LoopWatch loops, int sign)
+      : model_(model), observer_(observer), loops_(std::move(loops)), sign_(sign) {}
 
   bool output(const State& state) override {
     pause();
     walk.time = state.time;
     const bool on = may_go_on() && seen(observer_.output(state));
-    began_ = thread_cpu_seconds();
+    began_ = time_.now();
     return on;
   }
 
   bool after_step(const Stepper& stepper, bool) override {
     constexpr std::size_t steps_between_looks = 64;
+    count(stepper);
     if (stepper.statistics().determinant_sign != sign_) {
       walk.end = Walk::End::stopped;
       walk.reason = "the determinant of the mass matrix changed its sign";
@@ -76,20 +57,19 @@ class Watch final : public SteppingObserver {
     if (stepper.statistics().accepted % steps_between_looks != 0) return true;
     pause();
     walk.time = stepper.state().time;
-    count(stepper);
     const bool on = may_go_on();
-    began_ = thread_cpu_seconds();
+    began_ = time_.now();
     return on;
   }
 
   /// What is known when stepping has ended.
-  void finish(const Stepping& loop, const SteppingEnd& ended, const Prepared& model) {
+  void finish(const Stepping& loop, const SteppingEnd& ended) {
+    count(loop.stepper());
     pause();
     walk.time = loop.state().time;
-    count(loop.stepper());
     if (ended.cause == SteppingEnd::Cause::reached) static_cast<void>(seen(observer_.output(loop.state())));
     if (ended.cause == SteppingEnd::Cause::failed)
-      stop(ended.reason.empty() ? reason_of(ended.step, model) : ended.reason);
+      stop(ended.reason.empty() ? reason_of(ended.step, model_) : ended.reason);
     if (ended.cause == SteppingEnd::Cause::crowded)
       stop("loads switch or events act again and again without time between the instants");
   }
@@ -99,9 +79,10 @@ class Watch final : public SteppingObserver {
  private:
   void count(const Stepper& stepper) {
     walk.steps = stepper.statistics().accepted;
+    time_.evaluated(model_, stepper.statistics().evaluations - walk.evaluations);
     walk.evaluations = stepper.statistics().evaluations;
   }
-  void pause() { walk.seconds += thread_cpu_seconds() - began_; }
+  void pause() { walk.seconds += time_.now() - began_; }
   void stop(std::string why) {
     walk.end = Walk::End::stopped;
     walk.reason = std::move(why);
@@ -118,10 +99,12 @@ class Watch final : public SteppingObserver {
     return on;
   }
 
+  const Prepared& model_;
   const WalkObserver& observer_;
   LoopWatch loops_;
   int sign_;
-  double began_;
+  SearchTime& time_ = search_time();
+  double began_ = time_.now();
 };
 
 }  // namespace
@@ -139,7 +122,7 @@ ModelAt model_at(const Prepared& base, Registry& registry, const Point& point, c
     m.refusal = e.what();
   }
   if (m.refused()) return m;
-  m.seconds = seconds_per_evaluation(*m.prepared);
+  m.seconds = search_time().of_evaluation(*m.prepared);
   const EquationsOfMotion& equations = *m.prepared->equations;
   const State& initial = m.prepared->scene.initial;
   if (alike != nullptr)
@@ -164,12 +147,12 @@ Walk walk(const Prepared& model, const Integrator& integrator, const WalkObserve
       {.end = end_of_run(model.scene), .output = model.scene.output, .events = actions.watched(), .actions = &actions});
   std::vector<double> rates(equations.size());
   Work work = equations.make_work();
-  Watch watch(observer, LoopWatch(equations, start),
+  Watch watch(model, observer, LoopWatch(equations, start),
               equations.derivatives(start.time, start.y, rates, work).determinant_sign);
   if (watch.output(start)) {
     SteppingEnd ended = loop.run(watch);
     while (ended.cause == SteppingEnd::Cause::event) ended = loop.run(watch);  // what stops a run stops no walk
-    watch.finish(loop, ended, model);
+    watch.finish(loop, ended);
   }
   return watch.walk;
 }
