@@ -1,44 +1,18 @@
 // All searches of these tests share out a time that counts evaluations: what they find is the same on any machine,
 // busy or not.
+#include "counted_time.hpp"
+
 #include <gtest/gtest.h>
 
 #include <optional>
-#include <string>
 #include <thread>
 
 #include "plugins.hpp"
 #include "scenes.hpp"
-#include "withy/study/prepared.hpp"
-#include "withy/study/search_time.hpp"
 #include "withy/study/walk.hpp"
 
 namespace withy::study {
 namespace {
-
-/// An evaluation of `quadratic` takes about this on one machine of 2024; of others in proportion.
-class CountedTime final : public SearchTime {
- public:
-  [[nodiscard]] double now() const override { return seconds_; }
-  [[nodiscard]] double of_evaluation(const Prepared& model) const override {
-    double seconds = 0;
-    const Layout& layout = model.equations->layout();
-    for (std::size_t b = 0; b < layout.modes_of.size(); ++b) {
-      const Slot* slot = layout.modes(b);
-      const double modes = slot != nullptr ? static_cast<double>(slot->speeds) : 0;
-      seconds += 1e-7 + 2e-8 * modes + 1e-8 * modes * modes;
-    }
-    return seconds * beside_quadratic(model.scene.formulation_name);
-  }
-  void evaluated(const Prepared& model, std::size_t count) override {
-    seconds_ += static_cast<double>(count) * of_evaluation(model);
-  }
-
- private:
-  static double beside_quadratic(const std::string& formulation) {
-    return formulation == "ruthless" ? 0.4 : formulation == "linear" ? 0.6 : formulation == "exact" ? 3 : 1;
-  }
-  double seconds_ = 0;
-};
 
 class InPlaceOfTheProcessors final : public testing::Environment {
  public:
@@ -46,7 +20,7 @@ class InPlaceOfTheProcessors final : public testing::Environment {
   void TearDown() override { in_place_.reset(); }
 
  private:
-  CountedTime time_;
+  test::CountedTime time_;
   std::optional<SearchTimeInPlace> in_place_;
 };
 
