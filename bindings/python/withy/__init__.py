@@ -53,7 +53,7 @@ class _Names:
         return index
 
 
-class _Ports(Mapping):
+class _Ports(Mapping[str, float]):
     """Numbers of a simulation by their names. Made at each access: a simulation that held it would hold itself."""
 
     def __init__(self, names: _Names, get: Callable[[int], float]) -> None:
@@ -77,7 +77,7 @@ class _Ports(Mapping):
         return repr(dict(self))
 
 
-class _Inputs(_Ports, MutableMapping):
+class _Inputs(_Ports, MutableMapping[str, float]):
     """The same, to be set."""
 
     def __init__(self, names: _Names, get: Callable[[int], float], set_: Callable[[int, float], None]) -> None:

@@ -1,5 +1,9 @@
 """The exceptions of the package."""
 
+from __future__ import annotations
+
+from typing import Any
+
 
 class SceneError(ValueError):
     """A scene, a value set in it, or what is asked of a study cannot be.
@@ -31,5 +35,5 @@ class SimulationStopped(RuntimeError):
         self.status = status
         self.time = time
 
-    def __reduce__(self):  # pickled with its attributes
+    def __reduce__(self) -> tuple[Any, ...]:  # pickled with its attributes
         return type(self), (str(self), self.status, self.time)

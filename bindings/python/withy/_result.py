@@ -6,11 +6,14 @@ import difflib
 import json
 import os
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
 from . import _withy
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 def nearest(name: object, known: list[str]) -> str:
@@ -24,7 +27,7 @@ def unknown(what: str, name: object, known: list[str]) -> KeyError:
     return KeyError(f"no {what} {name!r}" + nearest(name, known))
 
 
-class Result(Mapping):
+class Result(Mapping[str, "NDArray[numpy.float64]"]):
     """The table of a run by the names of its columns, those of results.csv: ``result["shoulder"]``.
 
     Attributes:
@@ -37,7 +40,7 @@ class Result(Mapping):
         cause: where the status is ``load-failed``, the exception that a load written in Python raised; else None.
     """
 
-    def __init__(self, status: str, message: str, names: list[str], units: list[str], table: numpy.ndarray,
+    def __init__(self, status: str, message: str, names: list[str], units: list[str], table: NDArray[numpy.float64],
                  text: str, cause: BaseException | None = None) -> None:
         self.status = status
         self.message = message
@@ -48,19 +51,21 @@ class Result(Mapping):
         self._index = {name: i for i, name in enumerate(names)}
 
     @property
-    def t(self) -> numpy.ndarray:
+    def t(self) -> NDArray[numpy.float64]:
         """Times of the rows [s]."""
         return self["t"]
 
     @property
     def final(self) -> dict[str, Any]:
         """The last accepted state, in the form of ``initial`` in a scene."""
-        return self.summary["final"]
+        final: dict[str, Any] = self.summary["final"]
+        return final
 
     @property
     def certificate(self) -> dict[str, Any]:
         """What was modelled, what was left out, and how large that was."""
-        return self.summary["certificate"]
+        certificate: dict[str, Any] = self.summary["certificate"]
+        return certificate
 
     @property
     def statistics(self) -> dict[str, Any]:
@@ -68,7 +73,7 @@ class Result(Mapping):
         ``integral`` and ``unit``; empty where the scene has none."""
         return self.summary.get("outputs", {})
 
-    def __getitem__(self, name: str) -> numpy.ndarray:
+    def __getitem__(self, name: str) -> NDArray[numpy.float64]:
         """The numbers of a column [rows], a view of the table.
 
         Raises:
@@ -88,7 +93,7 @@ class Result(Mapping):
         end = f"{self.t[-1]:.6g} s" if len(self.table) else "nothing"
         return f"<withy.Result {self.status}, {end}, {len(self.table)} rows of {len(self)} columns>"
 
-    def to_pandas(self):
+    def to_pandas(self) -> Any:
         """The table as a pandas.DataFrame with the times as its index.
 
         Raises:
@@ -108,7 +113,7 @@ class Result(Mapping):
         _withy.write_hdf5(os.fspath(path), list(self), list(self.units.values()), self.table,
                           [("run", json.dumps(self.summary)), ("status", self.status)])
 
-    def plot(self, *names: str, axes=None):
+    def plot(self, *names: str, axes: Any = None) -> Any:
         """Draws columns over time with matplotlib, angles in degrees.
 
         Args:

@@ -68,7 +68,13 @@ def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-class _Section(MutableMapping):
+def _read_json(text: str) -> dict[str, Any]:
+    """An object that the engine wrote."""
+    values: dict[str, Any] = json.loads(text)
+    return values
+
+
+class _Section(MutableMapping[str, Any]):
     """The parts of a scene by their names. What it gives can be looked at; assign anew, or use Scene.set(), to change it."""
 
     def __init__(self, scene: Scene, name: str) -> None:
@@ -133,7 +139,7 @@ class Scene:
 
     def _values_now(self) -> dict[str, Any]:
         if self._values is None:
-            self._values = json.loads(self._made.values)
+            self._values = _read_json(self._made.values)
         return self._values
 
     def _changing(self, section: str) -> dict[str, Any]:
@@ -144,7 +150,8 @@ class Scene:
         self._read = None
         if not isinstance(values.get(section), dict):
             values[section] = {}
-        return values[section]
+        members: dict[str, Any] = values[section]
+        return members
 
     @property
     def bodies(self) -> MutableMapping[str, Any]:
@@ -212,10 +219,10 @@ class Scene:
 
     __copy__ = copy
 
-    def __deepcopy__(self, memo: dict) -> Scene:
+    def __deepcopy__(self, memo: dict[int, Any]) -> Scene:
         return self.copy()
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (self._made.text, self._made.name, self._plugins, list(self._made.changes))
 
     def __repr__(self) -> str:
@@ -244,7 +251,7 @@ class Scene:
         """
         return Result(*self._with(options)._made.run(progress))
 
-    def compile(self, formulation: str | dict | None = None) -> Equations:
+    def compile(self, formulation: str | dict[str, Any] | None = None) -> Equations:
         """The equations of motion y' = f(t, y), for an integrator of your own.
 
         Args:
@@ -268,7 +275,7 @@ class Scene:
         Raises:
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        return json.loads(self._made.compare(list(formulations), reference, list(outputs), progress))
+        return _read_json(self._made.compare(list(formulations), reference, list(outputs), progress))
 
     def trade(self, *, outputs: Sequence[str] = (), formulations: Sequence[str] = (), families: Sequence[str] = (),
               modes: Sequence[int] = (), integrators: Sequence[str] = (), tolerances: Sequence[float] = (),
@@ -282,7 +289,7 @@ class Scene:
         Raises:
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        return json.loads(self._made.trade(list(outputs), list(formulations), list(families), list(modes),
+        return _read_json(self._made.trade(list(outputs), list(formulations), list(families), list(modes),
                                            list(integrators), list(tolerances), jobs, progress))
 
     def advise(self, accuracy: str | float, outputs: Sequence[str] = (), *, formulations: Sequence[str] = (),
@@ -297,7 +304,7 @@ class Scene:
         Raises:
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        return json.loads(self._made.advise(str(accuracy), list(outputs), list(formulations), list(families),
+        return _read_json(self._made.advise(str(accuracy), list(outputs), list(formulations), list(families),
                                             list(modes), list(integrators), list(tolerances), progress))
 
     def modes(self, lock: Sequence[str] = (), *, progress: Progress | None = None) -> dict[str, Any]:
@@ -306,7 +313,7 @@ class Scene:
         Raises:
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        return json.loads(self._made.modes(list(lock), progress))
+        return _read_json(self._made.modes(list(lock), progress))
 
     def linearize(self, inputs: Sequence[str] = (), outputs: Sequence[str] = (),
                   lock: Sequence[str] = ()) -> dict[str, Any]:
@@ -322,7 +329,7 @@ class Scene:
             SimulationStopped: where the mass matrix of what is free is singular.
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        linear = json.loads(self._made.linearize(list(inputs), list(outputs), list(lock)))
+        linear = _read_json(self._made.linearize(list(inputs), list(outputs), list(lock)))
         for name, columns in (("A", "states"), ("B", "inputs"), ("C", "states"), ("D", "inputs")):
             linear[name] = numpy.array(linear[name], float).reshape(-1, len(linear[columns]))
         return linear

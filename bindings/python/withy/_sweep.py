@@ -7,7 +7,7 @@ import csv
 import os
 import pathlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Union
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy
 
@@ -15,6 +15,9 @@ from . import _withy
 from ._errors import StoreError
 from ._library import library
 from ._result import unknown
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 Path = Union[str, "os.PathLike[str]"]
 Key = tuple[str, str, tuple[str, ...]]
@@ -41,7 +44,7 @@ def _run_part(key: Key, fingerprint: str, part: int, parts: int, jobs: int) -> t
     return cases, before + ran, stop
 
 
-class SweepResult(Mapping):
+class SweepResult(Mapping[str, "NDArray[numpy.float64]"]):
     """What a sweep has: a mapping of the columns of its table.csv to arrays, a row a case in the order of the plan.
 
     Attributes:
@@ -63,7 +66,7 @@ class SweepResult(Mapping):
             self._columns = {name: [row[i] for row in rows] for i, name in enumerate(head)}
         return self._columns
 
-    def __getitem__(self, column: str) -> numpy.ndarray:
+    def __getitem__(self, column: str) -> NDArray[numpy.float64]:
         """Numbers in SI units [cases], or texts where not all are numbers.
 
         Raises:
