@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -97,6 +98,10 @@ class Scene {
   /// The cheapest model that holds an accuracy, "1%" or "1 mm, 0.1 deg"; "advice" is null where none does.
   [[nodiscard]] std::string advise(const std::string& accuracy, const std::vector<std::string>& outputs = {},
                                    const Axes& axes = {}, const Follow& follow = {}) const;
+  /// \param seconds of CPU time that the search may cost; nothing, as above: 20 runs of the scene in `quadratic`, or
+  /// 10 s if that is more
+  [[nodiscard]] std::string advise(const std::string& accuracy, const std::vector<std::string>& outputs,
+                                   const Axes& axes, const Follow& follow, std::optional<double> seconds) const;
   /// Modes about the steady state of the scene's initial state, hinges in `lock` held.
   [[nodiscard]] std::string modes(const std::vector<std::string>& lock = {}, const Follow& follow = {}) const;
   /// The linear model of small motions about the scene's initial state: A, B, C, D with names and units.

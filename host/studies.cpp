@@ -89,13 +89,18 @@ std::string Scene::trade(const Axes& axes, std::size_t jobs, const Follow& follo
 
 std::string Scene::advise(const std::string& accuracy, const std::vector<std::string>& outputs, const Axes& axes,
                           const Follow& follow) const {
+  return advise(accuracy, outputs, axes, follow, {});
+}
+
+std::string Scene::advise(const std::string& accuracy, const std::vector<std::string>& outputs, const Axes& axes,
+                          const Follow& follow, std::optional<double> seconds) const {
   const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
   const study::Accuracy asked = study::Accuracy::parse(accuracy);
   const study::Outputs measured(base->model(), outputs, base->scene.outputs);
   const study::Candidates candidates =
       study::candidates_for(*base, library().registry(), axes_of(axes, study::usual_axes()));
   study::Evaluator evaluator(*base, library().registry(), measured, control_of(follow));
-  const study::Advice advice = study::advise(evaluator, candidates, asked);
+  const study::Advice advice = study::advise(evaluator, candidates, asked, {}, seconds);
   return advice_of(*base, measured, asked, advice, evaluator);
 }
 

@@ -168,8 +168,9 @@ std::string no_advice_text(const study::Advice& a, const AdviceQuestion& questio
       fmt::format(" Measured: {:.2g} s of CPU time of the {:.2g} allowed{}.", a.cpu_seconds, a.limit_seconds, models);
   const auto ended = [](std::string text) { return text.ends_with('.') ? text : text + '.'; };
   if (!a.trouble.empty()) return ended(a.trouble) + measured;
-  std::string text = a.models_tried < a.models ? "the time for the search was over before a model was found that holds "
-                                               : "none of the candidates holds ";
+  const bool over = a.models_tried < a.models;
+  std::string text =
+      over ? "the time for the search was over before a model was found that holds " : "none of the candidates holds ";
   text += accuracy.text();
   if (!a.yardstick) return text + '.' + measured;
   text += fmt::format("; the reference ({}) is known to {}.", a.yardstick->reference.text(),
@@ -192,9 +193,11 @@ std::string no_advice_text(const study::Advice& a, const AdviceQuestion& questio
   else
     text += " All were cut off when they were further off than that.";
   const bool modal = a.yardstick->reference.point.modes > 0;
-  text += modal ? " What to do: allow more --modes; give a body that carries something modes made for that, as family: "
+  text += " What to do: ";
+  if (over) text += study::more_time_text(a) + "; ";
+  text += modal ? "allow more --modes; give a body that carries something modes made for that, as family: "
                   "{name: clamped-loaded, tip_mass: ...};"
-                : " What to do: allow tighter --tolerances or a shorter time (--set time.end=...), since motions that "
+                : "allow tighter --tolerances or a shorter time (--set time.end=...), since motions that "
                   "begin alike may part;";
   return text + " ask of --output no more than you need, or a coarser --accuracy." + measured;
 }

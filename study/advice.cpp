@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "withy/core/simulation/instants.hpp"
@@ -78,7 +79,10 @@ void refine(Search& search, Evaluator& evaluator, const Candidates& candidates, 
 
 }  // namespace
 
-Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, const Finding& finding) {
+Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, const Finding& finding,
+              std::optional<double> seconds) {
+  if (seconds && !(*seconds > 0 && std::isfinite(*seconds)))
+    throw OptionError("seconds", fmt::format("got {:g} s; need a finite time above 0", *seconds));
   const Scene& scene = evaluator.base().scene;
   if (has_switches(*scene.model))
     throw InputError(
@@ -88,11 +92,11 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
         "runs that are measured against each other need common ones");
   accuracy.require_something_of(evaluator.outputs());
   Advice advice;
-  advice.limit_seconds = time_limit(evaluator);
+  advice.limit_seconds = seconds ? *seconds : time_limit(evaluator);
   evaluator.limit(search_share * advice.limit_seconds);
   if (finding)
-    finding(fmt::format("the search takes {:.3g} s of CPU time at most, the longer of 10 s and 20 runs in quadratic",
-                        advice.limit_seconds));
+    finding(fmt::format("the search takes {:.3g} s of CPU time at most{}", advice.limit_seconds,
+                        seconds ? "" : ", the longer of 10 s and 20 runs in quadratic"));
   const std::vector<Reference> runs = find_yardstick(evaluator, candidates, accuracy, advice, finding);
   Search search(evaluator, candidates, advice, finding);
   if (advice.yardstick && !search.stopped()) {
@@ -112,6 +116,11 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
   advice.cpu_seconds = evaluator.spent();
   evaluator.limit(std::numeric_limits<double>::infinity());
   return advice;
+}
+
+std::string more_time_text(const Advice& advice) {
+  constexpr double times = 3;
+  return fmt::format("give the search more time (--seconds {:.2g})", times * advice.limit_seconds);
 }
 
 std::vector<Change> new_changes(const Scene& scene, const Point& choice, Registry& registry) {

@@ -27,7 +27,7 @@ struct Advice {
   StepLimit steps;                     ///< of that run
   std::vector<Indicator> indicators;   ///< the same
   double cpu_seconds = 0;              ///< of the search
-  double limit_seconds = 0;  ///< what it may cost: 20 runs of the scene in `quadratic`, or 10 s if that is more
+  double limit_seconds = 0;            ///< what it may cost
   std::size_t models = 0, models_tried = 0;  ///< of the candidates; fewer tried: the time was over
   bool interrupted = false;                  ///< the user ended the search: there is no advice
 };
@@ -40,8 +40,13 @@ using Finding = std::function<void(const std::string&)>;
 /// Searches the candidates. Nothing is chosen that does not complete a run as a scene that says so would, and nothing
 /// is "above" that does not hold the accuracy. \throws InputError where the scene has loads that switch by the state.
 /// \param finding may be empty
-Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
-              const Finding& finding = {});
+/// \param seconds of CPU time that the search may cost; nothing: 20 runs of the scene in `quadratic`, or 10 s if that
+/// is more \throws OptionError of "seconds" where these are not above 0
+Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy, const Finding& finding = {},
+              std::optional<double> seconds = {});
+
+/// What to do where the time was over: "give the search more time (--seconds 30)".
+std::string more_time_text(const Advice& advice);
 
 /// What the choice changes in the scene that it does not say already, formulation and integrator first.
 std::vector<Change> new_changes(const Scene& scene, const Point& choice, Registry& registry);

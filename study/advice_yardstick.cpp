@@ -177,6 +177,7 @@ void YardstickSearch::explain(const ReferenceFound& found) {
   if (!found.nearest) {
     advice_.trouble = "no reference to measure against";
     if (!found.trouble.empty()) advice_.trouble += ": " + found.trouble;
+    if (found.unaffordable) advice_.trouble += ". What to do: " + more_time_text(advice_);
     return;
   }
   const Reference& r = *found.nearest;
@@ -201,9 +202,11 @@ void YardstickSearch::explain(const ReferenceFound& found) {
                 "{:.2g} times what is asked, most in {}",
                 there_was_time, r.text(), use, worst);
   advice_.trouble = fmt::format(
-      "no reference is exact enough to measure against: {}. What to do: ask {}for a shorter time (--set time.end={}), "
+      "no reference is exact enough to measure against: {}. What to do: {}ask {}for a shorter time (--set "
+      "time.end={}), "
       "or for other outputs (--output)",
-      known, askable ? fmt::format("for --accuracy {}, ", accuracy_.times(times).option()) : "",
+      known, found.unaffordable ? more_time_text(advice_) + "; or " : "",
+      askable ? fmt::format("for --accuracy {}, ", accuracy_.times(times).option()) : "",
       long_enough ? fmt::format("{:.3g}, up to which they agree", agree) : "...");
   if (!found.trouble.empty())
     advice_.trouble +=

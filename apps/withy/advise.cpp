@@ -19,6 +19,7 @@ struct AdviseArguments : SceneArguments, OutputArguments {
   std::string accuracy = "1%";
   study::Axes axes = study::usual_axes();  ///< families empty: the scene's, and another where it means the same beams
   std::string write;                       ///< file for the scene as advised; empty: none
+  std::optional<double> seconds;           ///< of CPU time; nothing: as the scene's runs take
 };
 
 std::vector<std::string> texts_of(const std::vector<study::Change>& changes) {
@@ -37,7 +38,7 @@ ExitStatus advise(const AdviseArguments& arguments) {
   const study::Candidates candidates = study::candidates_for(engine.prepared(), engine.registry(), arguments.axes);
   const auto [control, finding] = told_control("advise, s of CPU time");
   study::Evaluator evaluator(engine.prepared(), engine.registry(), outputs, control);
-  const study::Advice advice = study::advise(evaluator, candidates, accuracy, finding);
+  const study::Advice advice = study::advise(evaluator, candidates, accuracy, finding, arguments.seconds);
   const AdviceQuestion question{engine.prepared(), outputs, accuracy};
   if (advice.interrupted) return ExitStatus::interrupted;
   if (!advice.choice) {
@@ -88,6 +89,10 @@ void add_advise(Options& o, AdviseArguments& a) {
        "imex,radau,cvode");
   axis("--tolerances", a.axes.tolerances, "R,...",
        "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
+  o.value(
+      "--seconds", a.seconds, "S",
+      "CPU time that the search may take; default: 20 times that of the scene's run in quadratic, or 10 s if that is "
+      "more");
   o.value("--write", a.write, "FILE", "File for the scene with what is advised; comments are kept");
   add_output(o, a, "Folder for report.html and advice.json; default: none is kept");
 }

@@ -100,9 +100,10 @@ void bind_scene(py::module_& m) {
       .def("advise",
            [axes](const Scene& s, const std::string& accuracy, const Names& outputs, const Names& formulations,
                   const Names& families, const std::vector<int>& modes, const Names& integrators,
-                  const std::vector<double>& tolerances, const py::object& progress) {
+                  const std::vector<double>& tolerances, std::optional<double> seconds, const py::object& progress) {
              return followed(progress, [&](const Follow& f) {
-               return s.advise(accuracy, outputs, axes(formulations, families, modes, integrators, tolerances), f);
+               return s.advise(accuracy, outputs, axes(formulations, families, modes, integrators, tolerances), f,
+                               seconds);
              });
            })
       .def_property_readonly("values", &Scene::values)

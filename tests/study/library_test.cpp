@@ -264,6 +264,28 @@ TEST(StudyAdvice, WhereTheReferenceIsKnownToNearlyTheAccuracyARunThatIsNearItIsA
   EXPECT_THAT(none.trouble, HasSubstr("no reference is exact enough to measure against"));
 }
 
+TEST(StudyAdvice, WhatThereWasNoTimeForIsAdvisedWhereItIsGivenMore) {
+  const Prepared slew = prepare(short_slew(), plugins());
+  const Outputs outputs(slew.model());
+  const Candidates candidates = candidates_for(slew, plugins(), usual_axes());
+  const auto within = [&](std::optional<double> seconds) {
+    Evaluator evaluator(slew, plugins(), outputs, {});
+    return advise(evaluator, candidates, Accuracy::parse("0.1%"), {}, seconds);
+  };
+  const Advice whole = within({});
+  ASSERT_TRUE(whole.choice) << whole.trouble;
+  EXPECT_EQ(whole.limit_seconds, 10);
+  const double enough = 1.5 * whole.cpu_seconds, little = 0.05 * whole.cpu_seconds;
+  EXPECT_TRUE(within(enough).choice);
+  const Advice cut = within(little);
+  EXPECT_FALSE(cut.choice);
+  EXPECT_EQ(cut.limit_seconds, little);
+  EXPECT_LE(cut.cpu_seconds, 1.5 * little) << "it ends where its time does";
+  EXPECT_THAT(cut.trouble, HasSubstr("give the search more time (--seconds "));
+  EXPECT_THROW(within(0), OptionError);
+  EXPECT_THROW(within(std::numeric_limits<double>::infinity()), OptionError);
+}
+
 /// Three modes hold 0.1 % on the screw with less left over than the reference may be off by when it is first good
 /// enough.
 TEST(StudyAdvice, WhatCostsLessAndWouldHoldWithABetterKnownReferenceGetsOne) {

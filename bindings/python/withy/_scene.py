@@ -294,18 +294,21 @@ class Scene:
 
     def advise(self, accuracy: str | float, outputs: Sequence[str] = (), *, formulations: Sequence[str] = (),
                families: Sequence[str] = (), modes: Sequence[int] = (), integrators: Sequence[str] = (),
-               tolerances: Sequence[float] = (), progress: Progress | None = None) -> dict[str, Any]:
+               tolerances: Sequence[float] = (), seconds: float | None = None,
+               progress: Progress | None = None) -> dict[str, Any]:
         """The cheapest model that holds an accuracy: what ``withy advise --json`` prints; "advice" is None where none does.
 
         Args:
             accuracy: a share (0.01 or ``"1%"``), a length or an angle (``"1 mm, 0.1 deg"``).
             outputs: what it is asked of: hinges, ``"link1.tip"``, ``"link1.tip.deflection"``; all where left out.
+            seconds: of CPU time that the search may take; where left out 20 times that of the scene's run in
+                ``quadratic``, or 10 s if that is more.
 
         Raises:
             SceneError: where the scene, or what is asked of it, cannot be.
         """
         return _read_json(self._made.advise(str(accuracy), list(outputs), list(formulations), list(families),
-                                            list(modes), list(integrators), list(tolerances), progress))
+                                            list(modes), list(integrators), list(tolerances), seconds, progress))
 
     def modes(self, lock: Sequence[str] = (), *, progress: Progress | None = None) -> dict[str, Any]:
         """Natural modes about the steady state, hinges in ``lock`` held: an element of "runs" of ``withy modes --json``.
