@@ -120,7 +120,7 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
 
 std::string more_time_text(const Advice& advice) {
   constexpr double times = 3;
-  return fmt::format("give the search more time (--seconds {:.2g})", times * advice.limit_seconds);
+  return fmt::format("give the search more time (--seconds {:.3g})", times * advice.limit_seconds);
 }
 
 std::vector<Change> new_changes(const Scene& scene, const Point& choice, Registry& registry) {
