@@ -98,6 +98,7 @@ Json response_json(const study::Configuration& c, const study::Response& r) {
   j["opened"] = r.opened;
   j["period"] = s.period;
   j["equilibrium"] = r.model.equilibrium;
+  j["changing"] = r.model.changing;
   j["held"] = c.held_names();
   j["derivatives"] = r.model.derivatives;
   j["output_derivatives"] = r.model.output_derivatives;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "withy/core/model/switched_load.hpp"
+#include "withy/core/plugin/changing_law.hpp"
 #include "withy/study/linear_inputs.hpp"
 #include "withy/study/linear_outputs.hpp"
 #include "withy/study/linear_parts.hpp"
@@ -33,6 +35,28 @@ bool states_rest(const Configuration& c) {
   for (std::size_t i = layout.positions + layout.speeds; i < layout.moving(); ++i)
     if (std::abs(y_dot[i]) > 1e-9 * (1 + std::abs(c.state().y[i]))) return false;
   return true;
+}
+
+std::string quoted_list(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += fmt::format("{}'{}'", text.empty() ? "" : ", ", name);
+  return text;
+}
+
+/// Loads that act and whose gain is that of an instant.
+std::vector<std::string> changing_loads(const Configuration& c) {
+  std::vector<std::string> names;
+  const std::vector<LoadNode>& loads = c.prepared().model().loads();
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const BoundLoad* load = loads[i].load.get();
+    if (const auto* forms = dynamic_cast<const LoadOfForms*>(load)) {
+      for (const LoadSlot& slot : c.layout().discrete_slots)
+        if (slot.load == i) load = forms->acting(std::span(c.state().y).subspan(slot.first, slot.count));
+    }
+    const auto* law = dynamic_cast<const ChangingLaw*>(load);
+    if (law != nullptr && law->changes_gain()) names.push_back(loads[i].name);
+  }
+  return names;
 }
 
 /// What rounding leaves of accelerations in equilibrium: of terms M⁻¹ K q, to four digits more than they have.
@@ -94,6 +118,7 @@ LinearModel about(const Configuration& c, const SmallMotions& motions, const Sam
     linear.accelerations.emplace_back(c.layout().speed_names[static_cast<std::size_t>(s)], motions.accelerations()[s]);
     greatest = std::max(greatest, std::abs(motions.accelerations()[s]));
   }
+  linear.changing = changing_loads(c);
   linear.equilibrium =
       at_rest(c) && states_rest(c) && sampled.steady() && greatest <= acceleration_tolerance(c, motions.A());
   return linear;
@@ -111,6 +136,12 @@ void sample(const SampledLoads& sampled, const SampledLoads::Held& held, LinearM
   system.period = sampled.period();
   if (held.felt.empty()) return;
   for (const Column& input : linear.inputs) linear.states.push_back(input.name + ".before");
+}
+
+std::string note_of_changing(const LinearModel& linear, double time) {
+  if (linear.changing.empty()) return {};
+  return fmt::format("the gain of {} changes as time goes on: this is what it is at t = {:g} s",
+                     quoted_list(linear.changing), time);
 }
 
 LinearModel linear_model(const Configuration& c, const Ports& ports) {

@@ -23,8 +23,9 @@ struct LinearModel {
   LinearSystem system;
   std::vector<std::pair<std::string, double>> accelerations;  ///< of the free speeds at the state
   bool equilibrium = false;                                   ///< nothing that is free moves or begins to
-  std::string derivatives;                                    ///< how A was found
-  std::string output_derivatives;                             ///< how C and D were
+  std::vector<std::string> changing;  ///< loads whose gain changes with time by itself: it is that at the state's time
+  std::string derivatives;            ///< how A was found
+  std::string output_derivatives;     ///< how C and D were
 };
 
 /// What goes in and comes out.
@@ -41,5 +42,8 @@ struct Ports {
 /// there is no such input or output, or no common period; std::domain_error where the mass matrix of what is free is
 /// singular.
 LinearModel linear_model(const Configuration& configuration, const Ports& ports);
+
+/// What is to be known where loads change their gain with time, in a sentence without a full stop; empty elsewhere.
+std::string note_of_changing(const LinearModel& linear, double time);
 
 }  // namespace withy::study

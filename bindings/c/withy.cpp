@@ -90,10 +90,45 @@ void need_size(std::size_t got, std::size_t least, const char* array) {
                  std::to_string(least));
 }
 
+/// What a handle is; null of none.
+const char* name_of(Kind kind) {
+  switch (kind) {
+    case Kind::library:
+      return "library";
+    case Kind::scene:
+      return "scene";
+    case Kind::result:
+      return "result";
+    case Kind::simulation:
+      return "simulation";
+    case Kind::snapshot:
+      return "snapshot";
+    case Kind::equations:
+      return "equations";
+    case Kind::none:
+      break;
+  }
+  return nullptr;
+}
+
+/// The handle of another kind says so, where it is one.
+void refuse(const Handle* handle, Kind wanted) noexcept {
+  if (handle == nullptr || name_of(handle->kind) == nullptr) return;
+  try {
+    handle->error =
+        std::string("got a handle of another kind, '") + name_of(handle->kind) + "'; need '" + name_of(wanted) + "'";
+  } catch (...) {
+    handle->error.clear();
+  }
+}
+
 /// Does what a function is for; whatever it throws becomes a status and the handle's error.
 template <class H, class Act>
 withy_status guarded(H* handle, Act&& act) noexcept {
-  if (!good(handle)) return WITHY_BAD_USE;
+  if (!good(handle)) {
+    refuse(handle, H::its_kind);
+    return WITHY_BAD_USE;
+  }
   const auto fail = [&](withy_status status, const char* why) {
     try {
       handle->error = why;

@@ -32,6 +32,12 @@ constexpr bool has_modal_solver = requires(const Sweep& s, double* a, std::byte*
   s.solve(a, 0.0, a, work);
 };
 
+/// Whether a sweep has weight by a potential of its own.
+template <class Sweep>
+constexpr bool has_own_weight = requires(const Sweep& s, const double* a, std::byte* work) {
+  s.weight_potential(a, a, work);
+};
+
 /// What the compilation of a tree made of it, a line each.
 std::vector<std::string> savings_of(const NodeTree& tree, const std::vector<std::string>& of_sweep);
 
@@ -155,6 +161,16 @@ class SweepEquations final : public EquationsOfMotion,
     const std::span<double> at_rest = efforts_.in(work);
     std::fill(at_rest.begin(), at_rest.end(), 0.0);
     sweep_.inverse(y.data(), at_rest.data(), a.data(), true, result.data(), of_sweep_.in(work));
+  }
+
+  std::optional<double> weight_potential(std::span<const double> y, Work& work) const noexcept override {
+    if constexpr (has_own_weight<Sweep>) {
+      const std::span<double> at_rest = efforts_.in(work);
+      std::fill(at_rest.begin(), at_rest.end(), 0.0);
+      return sweep_.weight_potential(y.data(), at_rest.data(), of_sweep_.in(work));
+    } else {
+      return std::nullopt;
+    }
   }
 
   const LinearlyImplicit* linearly_implicit() const override { return has_modal_solver<Sweep> ? this : nullptr; }

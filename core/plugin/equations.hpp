@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -179,6 +180,12 @@ class EquationsOfMotion {
   /// M(y) a, in the same time.
   virtual void mass_times(std::span<const double> y, std::span<const double> a, std::span<double> product,
                           Work& work) const = 0;
+  /// Potential energy of weight [J] whose gradient these equations have, where that is not Energies': in truncation
+  /// `symmetric` that of second order in the elastic coordinates. With ½ uᵀ M u and ½ qᵀ K q it is what they conserve.
+  [[nodiscard]] virtual std::optional<double> weight_potential(std::span<const double> /*y*/,
+                                                               Work& /*work*/) const noexcept {
+    return std::nullopt;
+  }
   /// Solves linear systems for linearly implicit integrators; null where the formulation has no way to.
   [[nodiscard]] virtual const LinearlyImplicit* linearly_implicit() const { return nullptr; }
   /// The exact ∂ẏ/∂y for implicit integrators; null where the formulation has none.

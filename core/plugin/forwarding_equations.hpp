@@ -38,6 +38,9 @@ class ForwardingEquations : public EquationsOfMotion {
                   Work& work) const override {
     at(y).mass_times(y, a, product, work);
   }
+  [[nodiscard]] std::optional<double> weight_potential(std::span<const double> y, Work& work) const noexcept override {
+    return at(y).weight_potential(y, work);
+  }
   [[nodiscard]] const LinearlyImplicit* linearly_implicit() const override { return own().linearly_implicit(); }
   [[nodiscard]] const Linearization* linearization() const override { return own().linearization(); }
   Evaluation position_rates(double t, std::span<const double> y, std::span<double> y_dot,

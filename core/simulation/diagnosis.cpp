@@ -27,6 +27,15 @@ DenseMatrix decoupled(const DenseSystem& system) {
   return M;
 }
 
+/// Least |eigenvalue| of first⁻¹ last.
+double least_share_of(const Eigen::MatrixXd& first, const Eigen::MatrixXd& last) {
+  if (first.size() == 0 || !first.allFinite() || !last.allFinite()) return 1;
+  const Eigen::FullPivLU<Eigen::MatrixXd> factors(first);
+  if (!factors.isInvertible()) return 1;
+  const Eigen::EigenSolver<Eigen::MatrixXd> shares(factors.solve(last), false);
+  return shares.info() == Eigen::Success ? shares.eigenvalues().cwiseAbs().minCoeff() : 1;
+}
+
 /// Unit vector of the scaled coordinates along which M acts least or, where M is indefinite and not singular, that of
 /// the lowest eigenvalue.
 Eigen::VectorXd weakest_direction(const MassMatrixHistory& h, bool negative) {
@@ -134,8 +143,18 @@ std::string brief(double x) {
 // A condition of 1e13 leaves three digits of the accelerations.
 bool MassMatrixHistory::became_singular() const { return end.condition > std::max(1e13, 100 * start.condition); }
 
+bool MassMatrixHistory::nearly_singular() const { return least_share < 1e-6; }
+
+bool MassMatrixHistory::has_negative_inertia() const {
+  if (!(end.smallest_eigenvalue < 0)) return false;
+  const DenseMatrix M = decoupled(last);
+  const double size = M.cwiseAbs().maxCoeff();
+  return end.smallest_eigenvalue < -1e-12 * size && (M - M.transpose()).cwiseAbs().maxCoeff() <= 1e-10 * size;
+}
+
 bool MassMatrixHistory::lost_definiteness() const {
-  return change.has_value() || became_singular() || end.determinant_sign != start.determinant_sign ||
+  return change.has_value() || became_singular() || nearly_singular() ||
+         end.determinant_sign != start.determinant_sign ||
          (start.smallest_eigenvalue > 0 && end.smallest_eigenvalue <= 0);
 }
 
@@ -150,10 +169,13 @@ MassMatrixHistory examine(const EquationsOfMotion& equations, const State& first
   return h;
 }
 
+void compare_inertia(MassMatrixHistory& h) { h.least_share = least_share_of(decoupled(h.first), decoupled(h.last)); }
+
 std::string describe(const MassMatrixHistory& h, const Layout& layout) {
   if (h.last.size == 0) return "Nothing moves.";
   if (h.end.weakest.empty()) return "The mass matrix is not finite.";
-  const bool negative = h.end.smallest_eigenvalue < 0 && !h.became_singular();
+  const bool near = h.nearly_singular() && !h.change;
+  const bool negative = h.end.smallest_eigenvalue < 0 && !h.became_singular() && !near;
   std::string between;
   if (h.change && brief(h.change->before) != brief(h.change->after))
     between = " between t = " + brief(h.change->before) + " and " + brief(h.change->after) + " s";
@@ -161,12 +183,19 @@ std::string describe(const MassMatrixHistory& h, const Layout& layout) {
   if (h.became_singular()) {
     text = "The mass matrix of this formulation became singular, so that a motion has no inertia, as in no structure: ";
     text += "det M came to zero" + between;
+  } else if (near) {
+    text =
+        "The mass matrix of this formulation comes near to being singular, so that a motion has hardly any inertia, ";
+    text += "as in no structure: " + brief(h.least_share) + " of what it had at the start";
   } else if (h.change) {
     text = "The mass matrix of this formulation became singular on the way and then indefinite, so that a motion has ";
     text += "negative inertia, as in no structure: det M changed sign" + between;
   } else if (h.lost_definiteness()) {
     text = "The mass matrix of this formulation lost its positive definiteness: det M is " +
            sign_text(h.end.determinant_sign) + ", at the start it was " + sign_text(h.start.determinant_sign);
+  } else if (h.has_negative_inertia()) {
+    text = "The mass matrix of this formulation is indefinite, as it was at the start, so that a motion has negative ";
+    text += "inertia, as in no structure: det M is " + sign_text(h.end.determinant_sign);
   } else {
     text = std::string("The mass matrix is ") + (h.end.smallest_eigenvalue > 0 ? "positive definite" : "indefinite") +
            " as it was at the start: det M is " + sign_text(h.end.determinant_sign);

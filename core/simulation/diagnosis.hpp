@@ -25,16 +25,29 @@ struct MassMatrixHistory {
   DenseSystem first, last;
   Conditioning start, end;
   std::optional<SignChange> change;
+  /// The least share of its inertia at the start that a motion has now: least |eigenvalue| of M_first⁻¹ M_last, where
+  /// `compare_inertia` has looked; 1 where M was singular at the start.
+  double least_share = 1;
 
   /// M is now singular to working accuracy, and was not at the start.
   [[nodiscard]] bool became_singular() const;
-  /// M, positive definite at the start, is or was something else since.
+  /// M is so near to being singular that a motion has nothing left to be accelerated by but rounding and chance: with
+  /// ½ λ q̇² bounded rates grow as 1/√λ, and come to where λ is zero in a finite time and with ever shorter steps.
+  [[nodiscard]] bool nearly_singular() const;
+  /// M is symmetric and not positive definite: a motion has negative inertia, as in no structure. The strict
+  /// formulations have no symmetric M, and what its symmetric part is says little.
+  [[nodiscard]] bool has_negative_inertia() const;
+  /// M, positive definite at the start, is or was something else since, or is about to be.
   [[nodiscard]] bool lost_definiteness() const;
 };
 
 /// Looks at M at both ends. For at most `largest_examined` generalized speeds.
 MassMatrixHistory examine(const EquationsOfMotion& equations, const State& first, const State& last,
                           const std::optional<SignChange>& change);
+
+/// Finds `least_share`, of a symmetric truncation: without truncation inertia may go to zero as in a structure, as that
+/// about a hinge whose axis all mass comes onto.
+void compare_inertia(MassMatrixHistory& history);
 
 /// One or two sentences about M at the end of a run: sign of det M and where it changed, condition, smallest eigenvalue
 /// of the symmetric part, and whose coordinates make up the direction of least (or of negative) mass. That direction is

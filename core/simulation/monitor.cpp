@@ -123,10 +123,26 @@ double Monitor::kinetic(const State& state, const Energies& energies) {
   return 0.5 * twice;
 }
 
+double Monitor::potential(const State& state, const Energies& energies) {
+  if (!own_energy_) return energies.potential;
+  const auto weight = equations_.weight_potential(state.y, work_);
+  if (!weight) return energies.potential;
+  double twice = 0;
+  for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
+    const Slot* modes = model_.layout().modes(b);
+    if (modes == nullptr) continue;
+    const Eigen::MatrixXd& K = model_.bodies()[b].body->shape().stiffness;
+    const double* q = state.y.data() + modes->position;
+    for (Eigen::Index j = 0; j < K.cols(); ++j)
+      for (Eigen::Index i = 0; i < K.rows(); ++i) twice += q[i] * K(i, j) * q[j];
+  }
+  return *weight + 0.5 * twice;
+}
+
 void Monitor::use_own_energy(const State& initial) {
   work_ = equations_.make_work();
   own_energy_ = true;
-  initial_energy_ = kinetic(initial, initial_energies_) + initial_energies_.potential;
+  initial_energy_ = kinetic(initial, initial_energies_) + potential(initial, initial_energies_);
 }
 
 void Monitor::rebase_energy(const State& state, const std::function<void()>& change) {
@@ -213,7 +229,7 @@ void Monitor::audit_energy(const State& state) {
   const Energies e = seen_.energies();
   audit_momenta(e);
   const double kinetic_energy = kinetic(state, e);
-  const double energy = kinetic_energy + e.potential;
+  const double energy = kinetic_energy + potential(state, e);
   const double work = state.y.back() - initial_work_;
   const double error = std::abs(energy - initial_energy_ - work);
   if (!std::isfinite(error) && excess_.empty()) excess_ = without_energy(model_.layout(), state);

@@ -47,7 +47,7 @@ class Monitor {
   void rebase_energy(const State& state, const std::function<void()>& change);
   /// Events have changed the state: what they did is in its work, and nothing is smooth across.
   void pass_event(const State& before, const State& after);
-  /// The kinetic energy is that of the equations' mass matrix (RunOptions::own_energy).
+  /// The energy is that of the equations' mass matrix and of their weight (RunOptions::own_energy).
   void use_own_energy(const State& initial);
   /// To be called at the end: what the loads have done on the way decides whether momenta are conserved.
   void finish_momenta();
@@ -159,6 +159,7 @@ class Monitor {
   std::vector<double> efforts_;
   Work work_;  ///< for the equations' own energy
   [[nodiscard]] double kinetic(const State& state, const Energies& energies);
+  [[nodiscard]] double potential(const State& state, const Energies& energies);
   void audit_momenta(const Energies& energies);
 
   bool own_energy_ = false;

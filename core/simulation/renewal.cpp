@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "withy/core/simulation/run_times.hpp"
+
 namespace withy {
 namespace {
 
@@ -24,7 +26,8 @@ std::vector<SensorNode> up_to(const Model& model, std::size_t number) {
 
 }  // namespace
 
-Renewal::Renewal(const Model& model, const EquationsOfMotion& equations) : model_(model) {
+Renewal::Renewal(const Model& model, const EquationsOfMotion& equations)
+    : model_(model), jumps_(discontinuities(model)) {
   std::size_t scratch = 0, most = 0, last = 0;
   bool outputs = false, loads = false;
   for (const LoadSlot& slot : model.layout().discrete_slots) {
@@ -60,7 +63,7 @@ Renewal::Renewal(const Model& model, const EquationsOfMotion& equations) : model
 void Renewal::at(const State& before) {
   looked_ = false;
   if (reader_ == nullptr && sensed_ == nullptr) return;
-  before_.time = before.time;
+  before_.time = from_jump_on(jumps_, before.time);
   std::copy(before.y.begin(), before.y.end(), before_.y.begin());
 }
 

@@ -24,7 +24,8 @@ class Renewal {
   /// The model and its equations must outlive it.
   /// \throws std::invalid_argument where a load measures what there is not.
   Renewal(const Model& model, const EquationsOfMotion& equations);
-  /// Goes to an instant, before any load is renewed there.
+  /// Goes to an instant, before any load is renewed there. Where loads or motions jump at it, which their times may
+  /// tell by rounding later, outputs are what they are from then on.
   void at(const State& before);
   /// Renews the states of one load at the state's time: that of the last call of `at`.
   void operator()(State& state, const LoadSlot& slot, const Crossing& crossing);
@@ -51,6 +52,7 @@ class Renewal {
   std::string said(const State& state, std::string (ForeignLaw::*what)(std::span<const double>) const) const;
 
   const Model& model_;
+  std::vector<double> jumps_;       ///< [s], of loads and motions
   std::vector<Measured> measured_;  ///< one a slot of discrete states
   std::vector<Foreign> foreign_;
   std::unique_ptr<SensorReader> reader_;  ///< null: no load measures outputs

@@ -10,6 +10,7 @@
 
 #include "withy/core/model/model.hpp"
 #include "withy/core/plugin/memory.hpp"
+#include "withy/core/simulation/same_instant.hpp"
 
 namespace withy {
 
@@ -29,6 +30,13 @@ inline std::vector<double> discontinuities(const Model& model) {
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
+}
+
+/// A time [s]; where one of the jumps comes at the same instant, but by rounding later, the time of that: what is from
+/// then on.
+inline double from_jump_on(const std::vector<double>& jumps, double time) {
+  const auto jump = std::upper_bound(jumps.begin(), jumps.end(), time);
+  return jump != jumps.end() && same_instant(*jump, time) ? *jump : time;
 }
 
 /// The multiples of the interval after `start` and before `end`. Multiples that differ from either by rounding alone

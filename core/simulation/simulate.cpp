@@ -33,6 +33,7 @@ class Run final : public SteppingObserver {
         output_(output),
         watch_(watch),
         summary_(summary),
+        initial_(initial),
         start_(initial.time),
         hand_overs_(options.changing != nullptr ? options.changing->hand_overs() : std::vector<double>()),
         actions_(model, equations, options.events),
@@ -90,6 +91,10 @@ class Run final : public SteppingObserver {
                false};
     } else if (options_.most_seconds > 0 && seconds() > options_.most_seconds) {
       stop_ = {RunStatus::interrupted, "stopped after the " + brief(options_.most_seconds) + " s allowed", false};
+    } else if (creeps(stepper) && without_inertia(stepper.state())) {
+      stop_ = {RunStatus::singular, "the steps come to nothing: half of the " +
+                                        std::to_string(stepper.statistics().accepted) +
+                                        " made have gained less than a hundredth of the time"};
     } else if (out_of_reach(stepper)) {
       if (std::string why = options_.too_stiff(stepper.state()); !why.empty())
         stop_ = {RunStatus::too_stiff, std::move(why), false};
@@ -159,6 +164,25 @@ class Run final : public SteppingObserver {
     const double t = stepper.state().time;
     return (options_.end - t) * static_cast<double>(made) > static_cast<double>(options_.most_steps) * (t - start_);
   }
+  /// Whether the later half of the steps has gained next to nothing: looked at each time that they have doubled. So it
+  /// is where a motion's inertia goes to zero, and the more steps the smaller the tolerance, until time resolves no
+  /// more.
+  bool creeps(const Stepper& stepper) {
+    constexpr double next_to_nothing = 0.01;
+    const std::size_t made = stepper.statistics().accepted;
+    if (made < 2 * half_) return false;
+    const double t = stepper.state().time, before = half_time_;
+    half_ = made;
+    half_time_ = t;
+    return t - before < next_to_nothing * (before - start_);
+  }
+  /// Whether M has lost a motion's inertia since the start, or gives it a negative one.
+  [[nodiscard]] bool without_inertia(const State& state) const {
+    if (!options_.own_energy || equations_.layout().speeds > largest_examined) return false;
+    MassMatrixHistory history = examine(equations_, initial_, state, {});
+    compare_inertia(history);
+    return history.nearly_singular() || history.has_negative_inertia();
+  }
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   }
@@ -188,6 +212,8 @@ class Run final : public SteppingObserver {
     loops_.remember(memory);
     if (watch_ != nullptr) watch_->remember(memory);
     memory(emitted_);
+    memory(half_);
+    memory(half_time_);
     memory(summary_.switchings);
     std::size_t count = summary_.events.size();
     memory(count);
@@ -213,6 +239,7 @@ class Run final : public SteppingObserver {
   const std::function<void(const State&)>& output_;
   StepWatch* watch_;  ///< null: there is none
   RunSummary& summary_;
+  const State initial_;
   double start_;                    ///< [s]
   std::vector<double> hand_overs_;  ///< increasing
   EventActions actions_;
@@ -220,8 +247,10 @@ class Run final : public SteppingObserver {
   Monitor monitor_;
   std::optional<ValidityWatch> validity_;  ///< nothing where nobody asks
   LoopWatch loops_;
-  double emitted_ = 0;  ///< time of the last output
-  Stop stop_;           ///< why this observer has ended the stepping
+  double emitted_ = 0;         ///< time of the last output
+  std::size_t half_ = 1024;    ///< of the steps made, when they were looked at last
+  double half_time_ = start_;  ///< when these were made [s]
+  Stop stop_;                  ///< why this observer has ended the stepping
   std::vector<std::string> stopped_by_;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
@@ -238,12 +267,13 @@ void go_back(Monitor& monitor, RunSummary& summary) {
 
 /// Looks at the mass matrix at the end of a run, and why a run that ended badly did.
 MassMatrixHistory look_at_mass_matrix(const Run& run, const Model& model, const EquationsOfMotion& equations,
-                                      const State& initial, const Stop& stop, RunSummary& summary) {
+                                      const State& initial, const Stop& stop, bool own_energy, RunSummary& summary) {
   MassMatrixHistory history;
   if (equations.layout().speeds > largest_examined) return history;
   const std::optional<SignChange>& change = run.monitor().sign_change();
   if (change || stop.status != RunStatus::completed) {
     history = examine(equations, initial, summary.final, change);
+    if (own_energy) compare_inertia(history);
     summary.conditioning = history.end;
   } else {
     history.last = equations.system(summary.final.time, summary.final.y);
@@ -295,7 +325,7 @@ RunSummary simulate(const Model& model, const EquationsOfMotion& equations, cons
   summary.steps = run.stepper().statistics();
   MassMatrixHistory history;
   if (attention == Attention::whole || stop.status != RunStatus::completed || !surely_balanced(summary, options))
-    history = look_at_mass_matrix(run, model, equations, initial, stop, summary);
+    history = look_at_mass_matrix(run, model, equations, initial, stop, options.own_energy, summary);
   const bool examined = equations.layout().speeds <= largest_examined;
   const double mean_step =
       (summary.reached - initial.time) / static_cast<double>(std::max<std::size_t>(summary.steps.accepted, 1));

@@ -52,8 +52,8 @@ struct RunOptions {
   /// Greatest RunSummary::energy_drift that the formulation and the tolerance explain; a run that comes to the end with
   /// more is inaccurate. Infinite where the formulation does not conserve energy.
   double drift_limit = std::numeric_limits<double>::infinity();
-  /// The energy whose drift is looked at has ½ uᵀ M u of the equations' own mass matrix in the place of the kinetic
-  /// energy without truncation: that is what a symmetric truncation conserves.
+  /// The energy whose drift is looked at has ½ uᵀ M u of the equations' own mass matrix and their own potential of
+  /// weight in the place of those without truncation: that is what a symmetric truncation conserves.
   bool own_energy = false;
   /// Motion with no speed above this [m/s, rad/s] is rounding, and its energy balances or not.
   double least_speed = 1e-12;

@@ -187,6 +187,7 @@ bool Stepping::after_step() {
   for (; times_.due(time); times_.pass()) {
     sample_.time = times_.next();
     stepper_->interpolate(sample_.time, sample_.y);
+    sample_.time = from_jump_on(jumps_, sample_.time);
     if (!observer_->output(sample_)) return end(Cause::stopped);
   }
   return observer_->after_step(*stepper_, outputs) || end(Cause::stopped);

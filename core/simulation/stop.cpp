@@ -104,8 +104,8 @@ std::string explain(Stop& stop, double time, const MassMatrixHistory* history, c
   std::string text = "t = " + brief(time) + " s: " + stop.reason + ".";
   if (!stop.physical) return text;
   if (history == nullptr) return text + " The mass matrix, with so many rows, was not examined.";
-  const bool sound =
-      stop.status != RunStatus::singular && !history->lost_definiteness() && !history->end.weakest.empty();
+  const bool sound = stop.status != RunStatus::singular && !history->lost_definiteness() &&
+                     !history->has_negative_inertia() && !history->end.weakest.empty();
   return text + " " + (sound ? describe_sound(*history) : describe(*history, layout));
 }
 

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "withy/core/model/model.hpp"
+#include "withy/core/plugin/changing_law.hpp"
 #include "withy/core/plugin/load_numbers.hpp"
 #include "withy/loads/control/control_load.hpp"
 
 namespace withy {
 
 /// A controller of one model: what it measures by name, and where it acts. It adds nothing by itself.
-class BoundControl : public BoundLoad, public LoadOutput, public LoadNumbers {
+class BoundControl : public BoundLoad, public LoadOutput, public LoadNumbers, public ChangingLaw {
  public:
   /// \throws std::invalid_argument where the ends do not fit the model or the block.
   BoundControl(const Model& model, ControlEnds ends, std::shared_ptr<const ControlBlock> block);
@@ -34,6 +35,7 @@ class BoundControl : public BoundLoad, public LoadOutput, public LoadNumbers {
   std::size_t outputs() const override { return block_->outputs(); }
   /// Commands, what the block shows, its states.
   std::vector<SensorColumn> numbers() const override { return numbers_; }
+  bool changes_gain() const override { return block_->changes_gain(); }
 
  protected:
   /// Leaves away what the block shows of its inputs, which are not known at all times.

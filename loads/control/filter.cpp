@@ -194,6 +194,7 @@ class OverTime final : public ControlBlock {
     }
   }
   bool feeds_through(std::size_t /*input*/) const override { return extreme(); }
+  bool changes_gain() const override { return sum_ == Sum::mean || sum_ == Sum::rms; }
   void set_sample(double period) override { period_ = period; }
   void advance(double /*t*/, std::span<const double> w, std::span<double> z) const noexcept override {
     if (sum_ == Sum::least) z[0] = std::min(z[0], w[0]);

@@ -139,6 +139,7 @@ static void misuse(withy_library* library, withy_scene* scene) {
   EXPECT(strstr(withy_error(library), "no-such-file") != NULL, library);
   EXPECT(withy_scene_parse(library, "a: [", NULL, &none) == WITHY_BAD_INPUT, library);
   EXPECT(withy_scene_check((withy_scene*)library) == WITHY_BAD_USE, library);
+  EXPECT(strstr(withy_error(library), "another kind, 'library'; need 'scene'") != NULL, library);
   EXPECT(withy_scene_parse(library, "format: withy/1\nbodies: {b: {type: rigd}}\n", "mine", &none) == WITHY_OK,
          library);
   EXPECT(withy_scene_check(none) == WITHY_BAD_INPUT, none);

@@ -244,5 +244,45 @@ TEST(Digital, WhatBlocksLackIsSaid) {
   EXPECT_THAT(problem("type: over-time, of: axle, what: max"), HasSubstr("it needs a 'sample'"));
 }
 
+/// A force that jumps at a sample is read and shown as it is from then on, whichever of the two times, k T and that of
+/// the row, is the earlier one by rounding, and with all integrators.
+TEST(SampledMeasurement, OfAForceThatJumpsAtTheSampleIsOfWhatIsFromThenOn) {
+  struct Instant {
+    double sample;
+    int multiple;
+    double jump;
+  };
+  const Instant earlier{0.1, 3, 0.3}, later{0.009, 3, 0.027}, same{0.125, 2, 0.25};
+  ASSERT_LT(earlier.jump, earlier.multiple * earlier.sample);
+  ASSERT_GT(later.jump, later.multiple * later.sample);
+  for (const char* integrator :
+       {"dopri5", "dop853", "rk4-adaptive", "{name: rk4, step: 0.0037}", "radau", "{name: gauss, step: 0.0037}",
+        "{name: generalized-alpha, step: 0.0037}", "imex", "rosenbrock-w", "cvode"}) {
+    for (const Instant& at : {earlier, later, same}) {
+      const Shown s(
+          R"(
+format: withy/1
+bodies: {cart: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}}
+outputs:
+  imu: {type: accelerometer, of: cart}
+  push: {type: effort, hinge: slide, of: jump}
+  read: {type: control, of: felt, show: command}
+  told: {type: control, of: known, show: command}
+loads:
+  jump: {type: hinge-effort, hinge: slide, law: steps, table: [[0, 1], [1, 9]]}
+  felt: {type: expression, value: imu.x, to: nothing, sample: 1}
+  known: {type: expression, value: push, to: nothing, sample: 1}
+)",
+          {std::string("integrator=") + integrator, "loads.jump.table.1.0=" + std::to_string(at.jump),
+           "loads.felt.sample=" + std::to_string(at.sample), "loads.known.sample=" + std::to_string(at.sample),
+           "time={end: " + std::to_string(at.jump + at.sample / 2) + ", output: " + std::to_string(at.sample) + "}"});
+      EXPECT_DOUBLE_EQ(s["read.command"].back(), 4.5) << integrator << ", " << at.jump;
+      EXPECT_DOUBLE_EQ(s["told.command"].back(), 9) << integrator << ", " << at.jump;
+      EXPECT_DOUBLE_EQ(s["push"][static_cast<std::size_t>(at.multiple)], 9) << integrator << ", " << at.jump;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace withy

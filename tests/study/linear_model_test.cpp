@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "withy/core/model/switched_load.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/open_loop.hpp"
 #include "withy/study/run.hpp"
@@ -145,6 +146,39 @@ const std::string kicked_cart = R"(
 bodies: {cart: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
 hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}}
 )";
+
+/// A mean since the start is a sum over a time that grows: its gain is that of the state's time, and that is said, of
+/// loads that act alone.
+TEST(LinearModel, SaysWhichLoadsHaveTheGainOfAnInstant) {
+  const Prepared prepared = scene_of(R"(
+bodies: {cart: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: cart}}
+loads:
+  area: {type: over-time, of: slide, what: integral}
+  mean: {type: over-time, of: slide, what: mean}
+  size: {type: over-time, of: slide, what: rms}
+  stay: {type: expression, hinge: slide, value: -12 * mean - area}
+events: {later: {at: 0.9, do: {switch_off: size}}}
+)");
+  const auto gain = [&](double time) {
+    State state = prepared.scene.initial;
+    state.time = time;
+    const LinearModel m = linear_model({prepared, state, {}, Sampling::kept}, {{"slide"}, {"slide"}});
+    EXPECT_EQ(m.changing, (std::vector<std::string>{"mean", "size"}));
+    EXPECT_NE(note_of_changing(m, time).find("the gain of 'mean', 'size' changes"), std::string::npos);
+    const auto sum = std::find(m.states.begin(), m.states.end(), "mean.sum") - m.states.begin();
+    return m.system.A(1, sum);
+  };
+  EXPECT_NEAR(gain(0.5), -12 / (2 * 0.5), 1e-9);
+  EXPECT_NEAR(gain(0.8), -12 / (2 * 0.8), 1e-9);
+  State off = prepared.scene.initial;
+  off.time = 0.5;
+  for (const LoadSlot& slot : prepared.model().layout().discrete_slots)
+    if (prepared.model().loads()[slot.load].name == "size")
+      off.y[SwitchedLoad::place_of_form(slot)] = SwitchedLoad::off;
+  const LinearModel m = linear_model({prepared, off, {}, Sampling::kept}, {{"slide"}, {"slide"}});
+  EXPECT_EQ(m.changing, std::vector<std::string>{"mean"});
+}
 
 /// An actuator follows what a sampled controller commands, and a spring without pause what a sampled mean shows.
 TEST(LinearModel, OfLoadsThatMeasureWhatIsHeldIsTheMapOfARun) {

@@ -54,6 +54,90 @@ CertifiedRun run_of(const std::string& name, const std::vector<std::pair<std::st
   return run(prepared, plugins(), settings);
 }
 
+/// A boom that hangs in its weight with a body on a hinge at its tip, bent at first.
+CertifiedRun run_of_a_hanging_boom(const std::string& formulation, double tolerance) {
+  SceneValues values = SceneValues::parse(R"(
+format: withy/1
+gravity: [0, -7, 0]
+time: {end: 0.5}
+bodies:
+  boom: {type: beam, length: 2, mass_per_length: 1.2, bending_y: {stiffness: 60, modes: 2}}
+  arm: {type: rigid, mass: 0.5, center_of_mass: [0.2, 0.1, 0], inertia: [0.05, 0.08, 0.07, 0, 0, 0]}
+hinges:
+  root: {type: revolute, axis: [0, 0, 1], parent: world, child: boom, offset: {position: [0.3, 0.2, 0.1]}}
+  wrist: {type: revolute, axis: [0, 0, 1], parent: boom.tip, child: arm}
+initial: {bodies: {boom: {modes: [0.05, 0]}}}
+)",
+                                          "boom");
+  values.set("integrator",
+             Value::map({{"name", Value(std::string("dop853"))}, {"rtol", Value(tolerance)}, {"atol", Value(1e-13)}}),
+             "the test");
+  RunSettings settings;
+  settings.estimate = Estimate::never;
+  return run(prepare(values.choose_formulation(formulation, "the test"), plugins()), plugins(), settings);
+}
+
+/// The potential of weight that a symmetric truncation has is of second order: with it its energy stays, and what
+/// drifts is the integration's.
+TEST(StudyRun, AHeavyTreesOwnEnergyInASymmetricTruncationDriftsByIntegrationAlone) {
+  for (const char* formulation : {"symmetric", "symmetric-linear"}) {
+    const CertifiedRun r = run_of_a_hanging_boom(formulation, 1e-11);
+    ASSERT_EQ(r.summary.status, RunStatus::completed) << r.summary.message;
+    EXPECT_LT(r.summary.energy_drift, 1e-10) << formulation;
+    EXPECT_GT(r.summary.untruncated_drift, 1e-4) << formulation;
+  }
+}
+
+/// A boom with a heavy body beside its axis, in space: bent, M0 + M1 loses the inertia of a motion.
+CertifiedRun run_of_a_bent_boom(double bent, double rate, const std::string& formulation, double tolerance = 1e-8) {
+  SceneValues values = SceneValues::parse(R"(
+format: withy/1
+time: {end: 1}
+integrator: {name: dop853, atol: 1e-12}
+bodies:
+  boom: {type: beam, length: 2, mass_per_length: 1.2, bending_y: {stiffness: 60, modes: 2}, bending_z: {stiffness: 40, modes: 1}, torsion: {stiffness: 20, inertia: 0.02, modes: 1}}
+  arm: {type: rigid, mass: 0.5, center_of_mass: [0.2, 0.1, 0], inertia: [0.05, 0.08, 0.07, 0, 0, 0]}
+hinges:
+  root: {type: spherical, parent: world, child: boom, offset: {position: [0.3, 0.2, 0.1]}}
+  wrist: {type: revolute, axis: [0.2, 0.3, 1], parent: boom.tip, child: arm}
+)",
+                                          "boom");
+  values.set("integrator.rtol", Value(tolerance), "the test");
+  const std::string q = std::to_string(bent);
+  values.set_text("initial={bodies: {boom: {modes: [" + q + ", 0, " + q + ", " + q + "], rates: [0, 0, " +
+                  std::to_string(rate) + ", 0]}}}");
+  RunSettings settings;
+  settings.estimate = Estimate::never;
+  return run(prepare(values.choose_formulation(formulation, "the test"), plugins()), plugins(), settings);
+}
+
+/// With its energy conserved the rate of a motion grows without bound as its inertia goes to zero, within a finite
+/// time: steps shrink to nothing before the matrix is singular to working accuracy, and it is the reason all the same.
+TEST(StudyRun, WhereAMotionsInertiaGoesToZeroTheMassMatrixIsTheReason) {
+  const CertifiedRun r = run_of_a_bent_boom(0.03, 3, "symmetric");
+  ASSERT_EQ(r.summary.status, RunStatus::singular) << r.summary.message;
+  EXPECT_LT(r.summary.conditioning.condition, 1e13) << "not to working accuracy";
+  EXPECT_NE(r.summary.message.find("comes near to being singular"), std::string::npos) << r.summary.message;
+  EXPECT_EQ(r.summary.message.find("not the reason"), std::string::npos) << r.summary.message;
+  EXPECT_EQ(run_of_a_bent_boom(0.03, 3, "quadratic").summary.status, RunStatus::completed);
+}
+
+/// Near the instant at which nothing has inertia left the steps of a tight tolerance go on until time resolves no more,
+/// 80,000 of them here: the run ends long before.
+TEST(StudyRun, StepsThatComeToNothingWhereAMotionHasNoInertiaEndARun) {
+  const CertifiedRun r = run_of_a_bent_boom(0.045, 0, "symmetric", 1e-12);
+  ASSERT_EQ(r.summary.status, RunStatus::singular) << r.summary.message;
+  EXPECT_LT(r.summary.steps.accepted, 20000U);
+  EXPECT_NE(r.summary.message.find("the steps come to nothing"), std::string::npos) << r.summary.message;
+}
+
+TEST(StudyRun, AnIndefiniteMassMatrixIsTheReasonWhereItWasSoFromTheStart) {
+  const CertifiedRun r = run_of_a_bent_boom(0.05, 0, "symmetric-linear");
+  ASSERT_EQ(r.summary.status, RunStatus::step_underflow) << r.summary.message;
+  EXPECT_NE(r.summary.message.find("is indefinite, as it was at the start"), std::string::npos) << r.summary.message;
+  EXPECT_EQ(r.summary.message.find("not the reason"), std::string::npos) << r.summary.message;
+}
+
 /// The inconsistent blade softens as it spins: past its own fundamental frequency nothing holds it.
 TEST(StudyRun, NamesWhatGrowsWhereABodySpinsPastItsFundamentalFrequency) {
   const CertifiedRun r = run_of("spin-up", {}, "inconsistent");

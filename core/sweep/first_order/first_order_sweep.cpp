@@ -119,6 +119,24 @@ Evaluation FirstOrderSweep<Space>::accelerations(const double* positions, const 
   return evaluation;
 }
 
+// In the frame of a root gravity has order zero alone, and all that hangs on it is in its first moment of mass.
+template <class Space>
+double FirstOrderSweep<Space>::weight_potential(const double* positions, const double* at_rest,
+                                                std::byte* work) const noexcept {
+  if (!heavy_) return 0;
+  const FirstOrderState<Space> state{positions, at_rest, at_rest, nullptr, work, nodes_.data()};
+  move(state);
+  find_weight(state, at<double>(work, weight_offset_));
+  double potential = 0;
+  for (const FirstOrderNode<Space>& node : nodes_) {
+    if (node.parent >= 0) continue;
+    const auto& root = *at<FirstOrderNodeWork<Space>>(work, node.work);
+    potential -= node.mass * weight::scalar(gravity_, root.SM.p);
+    for (std::size_t order = 0; order < 3; ++order) potential -= weight::scalar(root.g[0], root.s[order]);
+  }
+  return potential;
+}
+
 template <class Space>
 Evaluation FirstOrderSweep<Space>::factorize(const double* positions, const double* at_rest, double delta,
                                              std::byte* work) const noexcept {

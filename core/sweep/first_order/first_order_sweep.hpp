@@ -62,6 +62,8 @@ class FirstOrderSweep {
                            std::byte* work) const noexcept;
   void inverse(const double* positions, const double* speeds, const double* accelerations, bool inertial,
                double* efforts, std::byte* work) const noexcept;
+  /// The potential of weight, of second order in the elastic coordinates, from the world's origin [J].
+  double weight_potential(const double* positions, const double* at_rest, std::byte* work) const noexcept;
   Evaluation factorize(const double* positions, const double* at_rest, double delta, std::byte* work) const noexcept;
   void solve(const double* forces, double delta, double* result, std::byte* work) const noexcept;
 
