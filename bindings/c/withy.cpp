@@ -3,8 +3,10 @@
 #include "withy/bindings/c/withy.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <exception>
+#include <initializer_list>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -92,34 +94,25 @@ void need_size(std::size_t got, std::size_t least, const char* array) {
 
 /// What a handle is; null of none.
 const char* name_of(Kind kind) {
-  switch (kind) {
-    case Kind::library:
-      return "library";
-    case Kind::scene:
-      return "scene";
-    case Kind::result:
-      return "result";
-    case Kind::simulation:
-      return "simulation";
-    case Kind::snapshot:
-      return "snapshot";
-    case Kind::equations:
-      return "equations";
-    case Kind::none:
-      break;
+  constexpr std::array names = {"library", "scene", "result", "simulation", "snapshot", "equations"};
+  const std::uint64_t number = static_cast<std::uint64_t>(kind) - static_cast<std::uint64_t>(Kind::library);
+  return number < names.size() ? names[number] : nullptr;
+}
+
+/// Sets the handle's error; where there is no memory for it there is none.
+void tell(const Handle& handle, std::initializer_list<const char*> why) noexcept {
+  handle.error.clear();
+  try {
+    for (const char* part : why) handle.error += part;
+  } catch (...) {
+    handle.error.clear();
   }
-  return nullptr;
 }
 
 /// The handle of another kind says so, where it is one.
 void refuse(const Handle* handle, Kind wanted) noexcept {
-  if (handle == nullptr || name_of(handle->kind) == nullptr) return;
-  try {
-    handle->error =
-        std::string("got a handle of another kind, '") + name_of(handle->kind) + "'; need '" + name_of(wanted) + "'";
-  } catch (...) {
-    handle->error.clear();
-  }
+  if (handle != nullptr && name_of(handle->kind) != nullptr)
+    tell(*handle, {"got a handle of another kind, '", name_of(handle->kind), "'; need '", name_of(wanted), "'"});
 }
 
 /// Does what a function is for; whatever it throws becomes a status and the handle's error.
@@ -130,11 +123,7 @@ withy_status guarded(H* handle, Act&& act) noexcept {
     return WITHY_BAD_USE;
   }
   const auto fail = [&](withy_status status, const char* why) {
-    try {
-      handle->error = why;
-    } catch (...) {
-      handle->error.clear();
-    }
+    tell(*handle, {why});
     return status;
   };
   try {
