@@ -68,31 +68,25 @@ ExitStatus advise(const AdviseArguments& arguments) {
 
 void add_advise(Options& o, AdviseArguments& a) {
   add_scene(o, a);
-  const auto axis = [&](const char* name, auto& values, const char* type, const char* meaning) {
-    o.list(name, values, type, meaning);
-  };
   o.value("--accuracy", a.accuracy, "A,...",
           "Greatest error of the outputs: a share of each one's own range, a length, an angle, or several")
       .with_default();
-  axis("--outputs,--output", a.outputs, "NAME,...",
-       "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection, HINGE.motion_effort, outputs (root.mz, "
-       "shoulder.effort); default: all but these last, and but hinges that motions drive");
-  axis("--formulations,--formulation", a.axes.formulations, "ID,...",
-       "Formulations to choose from; default: all that take part in studies, plugins' too");
-  axis("--families,--family", a.axes.families, "ID,...",
-       "Mode families of bending to choose from; default: the scene's, and where they are the same beams "
-       "orthogonal-polynomials and, of those that carry something, clamped-loaded with that load");
-  axis("--modes", a.axes.modes, "N,...",
-       "Modes of each family of a beam to choose from; default: 1,2,3,4 and, where these will not do, to 8");
-  axis("--integrators", a.axes.integrators, "ID,...",
-       "Integrators to choose from, with a relative tolerance; default: dopri5,dop853 and, where installed, "
-       "imex,radau,cvode");
-  axis("--tolerances", a.axes.tolerances, "R,...",
-       "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
-  o.value(
-      "--seconds", a.seconds, "S",
-      "CPU time that the search may take; default: 20 times that of the scene's run in quadratic, or 10 s if that is "
-      "more");
+  o.list("--outputs,--output", a.outputs, "NAME,...",
+         "What the accuracy is asked of: hinges, BODY.tip, BODY.tip.deflection, HINGE.motion_effort, outputs (root.mz, "
+         "shoulder.effort); default: all but these last, and but hinges that motions drive");
+  o.list("--formulations,--formulation", a.axes.formulations, "ID,...",
+         "Formulations to choose from; default: all that take part in studies, plugins' too");
+  o.list("--families,--family", a.axes.families, "ID,...",
+         "Mode families of bending to choose from; default: the scene's, and where they are the same beams "
+         "orthogonal-polynomials and, of those that carry something, clamped-loaded with that load");
+  o.list("--modes", a.axes.modes, "N,...",
+         "Modes of each family of a beam to choose from; default: 1,2,3,4 and, where these will not do, to 8");
+  o.list("--integrators", a.axes.integrators, "ID,...",
+         "Integrators to choose from; default: dopri5,dop853 and, where installed, imex,radau,cvode");
+  o.list("--tolerances", a.axes.tolerances, "R,...",
+         "Relative tolerances to choose from; default: 1e-2,1e-3,1e-4,1e-5,1e-6");
+  o.value("--seconds", a.seconds, "S",
+          "CPU time that the search may take; default: 20 runs in quadratic, or 10 s if that is more");
   o.value("--write", a.write, "FILE", "File for the scene with what is advised; comments are kept");
   add_output(o, a, "Folder for report.html and advice.json; default: none is kept");
 }

@@ -280,7 +280,7 @@ TEST(StudyAdvice, WhatThereWasNoTimeForIsAdvisedWhereItIsGivenMore) {
   const Advice cut = within(little);
   EXPECT_FALSE(cut.choice);
   EXPECT_EQ(cut.limit_seconds, little);
-  EXPECT_LE(cut.cpu_seconds, 1.5 * little) << "it ends where its time does";
+  EXPECT_LE(cut.cpu_seconds, 1.5 * little) << "counted as evaluations: it ends where its time does";
   EXPECT_THAT(cut.trouble, HasSubstr("give the search more time (--seconds "));
   EXPECT_THROW(within(0), OptionError);
   EXPECT_THROW(within(std::numeric_limits<double>::infinity()), OptionError);
