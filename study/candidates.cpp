@@ -14,8 +14,10 @@
 namespace withy::study {
 namespace {
 
-/// A basis that is complete for any clamped beam, whatever it carries.
+/// Bases that are complete for any clamped beam, whatever it carries. Where that is much, the tip's static shapes and
+/// modes with a fixed tip need fewer, and the fastest of n has a frequency like n², not n⁴.
 constexpr const char* polynomials = "orthogonal-polynomials";
+constexpr const char* static_shapes = "craig-bampton";
 /// What stands for all formulations where no body is flexible: the one of scenes that name none.
 constexpr const char* plain_formulation = "quadratic";
 
@@ -109,11 +111,13 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes ask
   check(c, registry);
   const Scene& scene = prepared.scene;
   if (!flexible(prepared.model())) c.formulations = {plain_formulation};  // without modes all are the same
-  bool any = false, polynomial_already = true, loaded_already = true;
+  const bool loaded = loaded_somewhere(scene);
+  const char* const complete = loaded ? static_shapes : polynomials;
+  bool any = false, complete_already = true, loaded_already = true;
   for_each_family(scene, registry, [&](const ModeCount& count, const Value& family) {
     if (count.family_path.empty() && !spans_cantilevers(family, registry)) return;
     any = true;
-    polynomial_already = polynomial_already && id_of(family) == polynomials;
+    complete_already = complete_already && id_of(family) == complete;
     loaded_already = loaded_already && id_of(family) == loaded_modes;
   });
   if (scene.modes.empty()) {
@@ -125,8 +129,8 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes ask
   if (c.families.empty()) {
     c.families = {""};
     if (families_are_exchangeable(scene, registry)) {
-      if (!polynomial_already) c.families.emplace_back(polynomials);
-      if (!loaded_already && loaded_somewhere(scene)) c.families.emplace_back(loaded_modes);
+      if (!complete_already) c.families.emplace_back(complete);
+      if (!loaded_already && loaded) c.families.emplace_back(loaded_modes);
     }
   }
   std::sort(c.tolerances.begin(), c.tolerances.end(), std::greater<>());
@@ -142,7 +146,8 @@ ReferenceFamilies reference_families(const Candidates& candidates, const Model& 
   });
   std::vector<std::string> others = all;
   if (loaded) std::erase_if(others, [](const std::string& family) { return family != loaded_modes; });
-  return {among(polynomials) ? polynomials : "", std::move(others)};
+  const char* const first = among(static_shapes) ? static_shapes : among(polynomials) ? polynomials : "";
+  return {first, std::move(others)};
 }
 
 std::vector<std::string> flexible_bodies(const Scene& scene) {

@@ -106,14 +106,14 @@ void TradeStudy::find_reference_for(const Point& point) {
   // Of all that mean the same, whatever families are compared.
   ReferenceFamilies families = reference_families(candidates_for(base_, registry_, usual_axes()), base_.model());
   goal.families = std::move(families.others);
-  // Polynomials do not depend on what the scene says of bodies at tips, which may be gone over.
+  // Static shapes do not depend on what the scene says of bodies at tips, which may be gone over.
   std::erase(goal.families, loaded_modes);
   goal.first = {"", std::move(families.first), 0, "dop853", 1e-6, point.over};
   for (const Point& p : points_) {
     goal.first.modes = std::max(goal.first.modes, p.modes);
     goal.first.tolerance = std::min(goal.first.tolerance, p.tolerance);
   }
-  // Of polynomials the first two tell little of what more will change.
+  // The first two of a complete basis tell little of what more will change.
   if (goal.first.modes > 0 && !goal.first.family.empty()) goal.first.modes = std::max(goal.first.modes, 3);
   goal.tightest = 0.1 * goal.first.tolerance;
   goal.levels = goal.kinds = kinds_of_modes(base_.scene);

@@ -84,11 +84,39 @@ TEST(FindReference, AFamilyThatWasLeftDoesNotComeBackForOneLook) {
 }
 
 /// The slew's links carry an elbow and a payload.
-TEST(FindReference, WhereATipCarriesABodyFunctionsThatKnowItMayTakeThePlaceOfPolynomials) {
-  const Prepared arm = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml"), plugins());
+Prepared arm_for(double seconds) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml");
+  return prepare(values.set("time.end", Value(seconds), "the test"), plugins());
+}
+
+TEST(FindReference, WhereATipCarriesABodyItsStaticShapesAreTakenOrFunctionsThatKnowTheBody) {
+  const Prepared arm = arm_for(0.5);
   const ReferenceFamilies families = reference_families(candidates_for(arm, plugins(), usual_axes()), arm.model());
-  EXPECT_EQ(families.first, "orthogonal-polynomials");
+  EXPECT_EQ(families.first, "craig-bampton");
   EXPECT_EQ(families.others, std::vector<std::string>{"clamped-loaded"});
+}
+
+/// By ten polynomials, which are no kin of static shapes. The fastest frequency of n polynomials grows like n⁴, of
+/// shapes and modes with a fixed tip like n²; explicit steps follow it.
+TEST(FindReference, UnderALoadedTipStaticShapesAreNearerTheTruthThanAsManyPolynomialsInFewerSteps) {
+  const Prepared arm = arm_for(0.2);
+  const Outputs outputs = Outputs::all(arm.model());
+  Evaluator evaluator(arm, plugins(), outputs, {});
+  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+  const auto run = [&](const char* family, int modes) {
+    ReferenceGoal goal;
+    goal.first = {"", family, modes, "dop853", 1e-7, {}, {}};
+    return *find_reference(at, plugins(), outputs, goal, {}).reference;
+  };
+  const Reference truth = run("orthogonal-polynomials", 10);
+  for (const int modes : {6, 8}) {
+    const Reference shapes = run("craig-bampton", modes), polynomials = run("orthogonal-polynomials", modes);
+    const auto error = [&](const Reference& r) {
+      return relative_error(distances(outputs, r.readings, truth.readings).first, truth.scales);
+    };
+    EXPECT_LT(error(shapes), error(polynomials)) << modes;
+    EXPECT_LT(shapes.walk.evaluations, polynomials.walk.evaluations) << modes;
+  }
 }
 
 }  // namespace
