@@ -34,8 +34,8 @@ struct ReferenceFamilies {
   std::vector<std::string> others;  ///< that may do better
 };
 
-/// Where they mean the same beams polynomials, or where a tip carries something its static shapes: eigenfunctions of the
-/// bare beam begin well and go on badly there. Those that know the load may do better, elsewhere all others.
+/// Where they mean the same beams polynomials, or where a tip carries something its static shapes: eigenfunctions of
+/// the bare beam begin well and go on badly there. Those that know the load may do better, elsewhere all others.
 ReferenceFamilies reference_families(const Candidates& candidates, const Model& model);
 
 /// Names of the scene's bodies that have modes, in its order; a beam in segments is one.
