@@ -56,7 +56,8 @@ struct Simulation::Parts {
       : library(scene.library()),
         prepared(with_one_formulation(scene)),
         session(prepared->model(), *prepared->equations, *prepared->scene.integrator, prepared->scene.initial,
-                {prepared->scene.deflection_limit, prepared->scene.events, std::move(interrupted)}),
+                {prepared->scene.deflection_limit, prepared->scene.events, std::move(interrupted),
+                 study::has_own_energy(prepared->scene)}),
         table(prepared->model(), *prepared->equations, prepared->scene.outputs) {
     for (std::size_t l = 0; l < prepared->model().loads().size(); ++l) {
       const LoadNode& load = prepared->model().loads()[l];

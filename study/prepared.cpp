@@ -137,6 +137,8 @@ std::string use_threads(Prepared& prepared, std::size_t threads) {
   return branched.refusal;
 }
 
+bool has_own_energy(const Scene& scene) { return scene.formulation->terms().truncation == Truncation::symmetric; }
+
 RunOptions run_options(const Scene& scene) {
   RunOptions options;
   options.end = end_of_run(scene);
@@ -144,7 +146,7 @@ RunOptions run_options(const Scene& scene) {
   options.deflection_limit = scene.deflection_limit;
   options.events = scene.events;
   options.drift_limit = drift_limit(scene);
-  options.own_energy = scene.formulation->terms().truncation == Truncation::symmetric;
+  options.own_energy = has_own_energy(scene);
   const Value* atol = scene.source.at("integrator").find("atol");
   constexpr double of_atol = 1e3;
   if (atol != nullptr) options.least_speed = std::max(options.least_speed, of_atol * atol->number());

@@ -49,6 +49,8 @@ std::string use_threads(Prepared& prepared, std::size_t threads);
 
 /// How a run of the scene goes: its end, outputs, limits and events. \throws SceneError where it has no end.
 RunOptions run_options(const Scene& scene);
+/// Whether its energy is truncated as its equations are (RunOptions::own_energy).
+bool has_own_energy(const Scene& scene);
 
 /// A formulation with its options at their defaults. \throws InputError where there is none of that id.
 std::shared_ptr<const Formulation> make_formulation(Registry& registry, const std::string& id);

@@ -28,6 +28,7 @@ Session::Session(const Model& model, const EquationsOfMotion& equations, const I
             {.end = initial.time, .output = infinity, .events = actions_.watched(), .actions = &actions_}),
       monitor_(model, equations, loop_.state(), options_.deflection_limit, infinity, nullptr, summary_),
       loops_(equations, loop_.state()),
+      creep_(equations, initial_, options_.own_energy),
       with_inputs_(loop_.state()) {
   for (std::size_t l = 0; l < model.loads().size(); ++l)
     if (model.loads()[l].load->input() != nullptr) {
@@ -131,16 +132,20 @@ SessionEnd Session::bad_end(Stop stop) {
   if (stop.status == RunStatus::interrupted) return {stop.status, "interrupted", false};
   ended_ = true;
   const bool examined = model_.layout().speeds <= largest_examined;
-  const MassMatrixHistory history =
+  MassMatrixHistory history =
       examined ? examine(equations_, initial_, state(), monitor_.sign_change()) : MassMatrixHistory{};
+  if (examined && options_.own_energy) compare_inertia(history);
   std::string message = explain(stop, state().time, examined ? &history : nullptr, model_.layout());
   return {stop.status, std::move(message), false};
 }
 
-bool Session::before_step(const Stepper& /*stepper*/) {
-  if (!options_.interrupted || !options_.interrupted()) return true;
-  stop_ = {RunStatus::interrupted, "interrupted", false};
-  return false;
+bool Session::before_step(const Stepper& stepper) {
+  if (options_.interrupted && options_.interrupted()) {
+    stop_ = {RunStatus::interrupted, "interrupted", false};
+  } else if (std::string why = creep_.fault(stepper); !why.empty()) {
+    stop_ = {RunStatus::singular, std::move(why)};
+  }
+  return stop_.status == RunStatus::completed;
 }
 
 bool Session::output(const State& /*state*/) { return true; }
@@ -166,6 +171,7 @@ void Session::remember(Memory& memory) {
   monitor_.remember(memory);
   loop_.remember(memory);
   loops_.remember(memory);
+  creep_.remember(memory);
   for (Setting& s : settings_) {
     memory(s.waiting);
     memory(s.value);

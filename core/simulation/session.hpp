@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/simulation/creep_watch.hpp"
 #include "withy/core/simulation/loop_watch.hpp"
 #include "withy/core/simulation/monitor.hpp"
 #include "withy/core/simulation/stepping.hpp"
@@ -18,6 +19,7 @@ struct SessionOptions {
   double deflection_limit = 1.0;      ///< a deflection past this many lengths of its body is divergence
   std::vector<RunEvent> events;       ///< looked for on the dense output
   std::function<bool()> interrupted;  ///< asked between integration steps
+  bool own_energy = false;            ///< as RunOptions::own_energy
 };
 
 /// How a call of Session::advance ended.
@@ -91,6 +93,7 @@ class Session final : private SteppingObserver {
   Stepping loop_;
   Monitor monitor_;
   LoopWatch loops_;
+  CreepWatch creep_;
   std::vector<Setting> settings_;
   State with_inputs_;
   std::vector<EventTime> events_;

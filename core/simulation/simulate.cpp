@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "withy/core/simulation/changing_equations.hpp"
+#include "withy/core/simulation/creep_watch.hpp"
 #include "withy/core/simulation/end_notes.hpp"
 #include "withy/core/simulation/event_actions.hpp"
 #include "withy/core/simulation/instants.hpp"
@@ -33,7 +34,6 @@ class Run final : public SteppingObserver {
         output_(output),
         watch_(watch),
         summary_(summary),
-        initial_(initial),
         start_(initial.time),
         hand_overs_(options.changing != nullptr ? options.changing->hand_overs() : std::vector<double>()),
         actions_(model, equations, options.events),
@@ -41,7 +41,8 @@ class Run final : public SteppingObserver {
               {options.end, options.output, actions_.watched(), hand_overs_, &actions_}),
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
                  summary, attention),
-        loops_(equations, loop_.state()) {
+        loops_(equations, loop_.state()),
+        creep_(equations, initial, options.own_energy) {
     if (attention == Attention::whole) validity_.emplace(model, equations, options.beyond, summary.validity);
     if (options.own_energy) monitor_.use_own_energy(loop_.state());
     if (std::isfinite(options.drift_limit)) monitor_.trust(options.drift_limit);
@@ -91,10 +92,8 @@ class Run final : public SteppingObserver {
                false};
     } else if (options_.most_seconds > 0 && seconds() > options_.most_seconds) {
       stop_ = {RunStatus::interrupted, "stopped after the " + brief(options_.most_seconds) + " s allowed", false};
-    } else if (creeps(stepper) && without_inertia(stepper.state())) {
-      stop_ = {RunStatus::singular, "the steps come to nothing: half of the " +
-                                        std::to_string(stepper.statistics().accepted) +
-                                        " made have gained less than a hundredth of the time"};
+    } else if (std::string why = creep_.fault(stepper); !why.empty()) {
+      stop_ = {RunStatus::singular, std::move(why)};
     } else if (out_of_reach(stepper)) {
       if (std::string why = options_.too_stiff(stepper.state()); !why.empty())
         stop_ = {RunStatus::too_stiff, std::move(why), false};
@@ -164,25 +163,6 @@ class Run final : public SteppingObserver {
     const double t = stepper.state().time;
     return (options_.end - t) * static_cast<double>(made) > static_cast<double>(options_.most_steps) * (t - start_);
   }
-  /// Whether the later half of the steps has gained next to nothing: looked at each time that they have doubled. So it
-  /// is where a motion's inertia goes to zero, and the more steps the smaller the tolerance, until time resolves no
-  /// more.
-  bool creeps(const Stepper& stepper) {
-    constexpr double next_to_nothing = 0.01;
-    const std::size_t made = stepper.statistics().accepted;
-    if (made < 2 * half_) return false;
-    const double t = stepper.state().time, before = half_time_;
-    half_ = made;
-    half_time_ = t;
-    return t - before < next_to_nothing * (before - start_);
-  }
-  /// Whether M has lost a motion's inertia since the start, or gives it a negative one.
-  [[nodiscard]] bool without_inertia(const State& state) const {
-    if (!options_.own_energy || equations_.layout().speeds > largest_examined) return false;
-    MassMatrixHistory history = examine(equations_, initial_, state, {});
-    compare_inertia(history);
-    return history.nearly_singular() || history.has_negative_inertia();
-  }
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   }
@@ -212,8 +192,7 @@ class Run final : public SteppingObserver {
     loops_.remember(memory);
     if (watch_ != nullptr) watch_->remember(memory);
     memory(emitted_);
-    memory(half_);
-    memory(half_time_);
+    creep_.remember(memory);
     memory(summary_.switchings);
     std::size_t count = summary_.events.size();
     memory(count);
@@ -239,7 +218,6 @@ class Run final : public SteppingObserver {
   const std::function<void(const State&)>& output_;
   StepWatch* watch_;  ///< null: there is none
   RunSummary& summary_;
-  const State initial_;
   double start_;                    ///< [s]
   std::vector<double> hand_overs_;  ///< increasing
   EventActions actions_;
@@ -247,10 +225,9 @@ class Run final : public SteppingObserver {
   Monitor monitor_;
   std::optional<ValidityWatch> validity_;  ///< nothing where nobody asks
   LoopWatch loops_;
-  double emitted_ = 0;         ///< time of the last output
-  std::size_t half_ = 1024;    ///< of the steps made, when they were looked at last
-  double half_time_ = start_;  ///< when these were made [s]
-  Stop stop_;                  ///< why this observer has ended the stepping
+  CreepWatch creep_;
+  double emitted_ = 0;  ///< time of the last output
+  Stop stop_;           ///< why this observer has ended the stepping
   std::vector<std::string> stopped_by_;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };

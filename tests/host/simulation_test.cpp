@@ -198,6 +198,36 @@ TEST(HostedSimulation, that_cannot_go_on_says_why_and_may_go_back) {
   EXPECT_EQ(simulation.time(), 0.02);
 }
 
+/// A boom with a heavy body beside its axis, in space: bent, M0 + M1 loses the inertia of a motion. Steps go on there
+/// until time resolves no more, 80,000 of them, but for the watch that runs have too.
+TEST(HostedSimulation, whose_steps_come_to_nothing_where_a_motion_has_no_inertia_ends) {
+  Scene scene = Scene::parse(library(), R"(
+format: withy/1
+time: {end: 1}
+formulation: symmetric
+integrator: {name: dop853, rtol: 1e-12, atol: 1e-12}
+bodies:
+  boom: {type: beam, length: 2, mass_per_length: 1.2, bending_y: {stiffness: 60, modes: 2}, bending_z: {stiffness: 40, modes: 1}, torsion: {stiffness: 20, inertia: 0.02, modes: 1}}
+  arm: {type: rigid, mass: 0.5, center_of_mass: [0.2, 0.1, 0], inertia: [0.05, 0.08, 0.07, 0, 0, 0]}
+hinges:
+  root: {type: spherical, parent: world, child: boom, offset: {position: [0.3, 0.2, 0.1]}}
+  wrist: {type: revolute, axis: [0.2, 0.3, 1], parent: boom.tip, child: arm}
+initial: {bodies: {boom: {modes: [0.045, 0, 0.045, 0.045]}}}
+)",
+                             "boom");
+  Simulation simulation(scene);
+  try {
+    for (int k = 1; k <= 1000; ++k) simulation.step(1e-3 * k);
+    FAIL();
+  } catch (const host::SimulationStopped& e) {
+    EXPECT_EQ(e.status(), "singular");
+    EXPECT_THAT(e.what(), HasSubstr("the steps come to nothing"));
+    EXPECT_THAT(e.what(), testing::Not(HasSubstr("not the reason")));
+  }
+  constexpr std::size_t of_a_step = 12;
+  EXPECT_LT(simulation.evaluations(), 20000 * of_a_step);
+}
+
 TEST(HostedSimulation, that_is_interrupted_goes_on) {
   int asked = 0;
   Simulation simulation(busy_scene(), [&] { return ++asked == 5; });
