@@ -10,8 +10,8 @@
 namespace withy {
 
 /// With its own energy conserved the rate of a motion grows without bound as its inertia goes to zero, within a finite
-/// time: steps shrink, the more of them the smaller the tolerance, until time resolves no more. Looked at each time that
-/// the steps have doubled.
+/// time: steps shrink, the more of them the smaller the tolerance, until time resolves no more. Looked at each time
+/// that the steps have doubled.
 class CreepWatch {
  public:
   /// \param own_energy whether the formulation truncates its energy (RunOptions::own_energy): M of others that are
