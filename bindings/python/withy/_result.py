@@ -117,7 +117,8 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
         """Draws columns over time with matplotlib, angles in degrees.
 
         Args:
-            names: of columns, or their beginnings up to a dot (``"link1.tip"``); none: the coordinates of hinges.
+            names: of columns, or their beginnings up to a dot (``"link1.tip"``), or ``"link1.tip.deflection"``; none: the
+                coordinates of hinges.
             axes: of matplotlib, to draw into; new ones where left out.
 
         Returns:
@@ -148,7 +149,8 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
             return [n for n in self if n in hinges or (n.split(".")[0] in hinges and self.units[n] in ("m", "rad"))]
         chosen = []
         for name in names:
-            found = [name] if name in self else [n for n in self if n.startswith(name + ".")]
+            after = "_" if name.endswith(".deflection") else "."
+            found = [name] if name in self else [n for n in self if n.startswith(name + after)]
             if not found:
                 raise unknown("column", name, list(self))
             chosen += found
