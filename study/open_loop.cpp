@@ -83,7 +83,11 @@ Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::
     names += (names.empty() ? "" : ", ") + c.layout().speed_names[s];
     speeds.push_back(s);
   }
-  if (speeds.empty()) throw OptionError("input", "load '" + name + "' feeds nothing back");
+  if (speeds.empty())
+    throw OptionError("input", "load '" + name +
+                                   "' feeds nothing back at this state: it is at a limit, or acts "
+                                   "through other loads, of which one that gives an effort can be "
+                                   "opened");
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slopes, Eigen::ComputeThinU | Eigen::ComputeThinV);
   if (svd.singularValues().size() > 1 && svd.singularValues()[1] > 1e-9 * svd.singularValues()[0])
     throw OptionError("input",

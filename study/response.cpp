@@ -145,8 +145,12 @@ Response response(const Configuration& c, const ResponseQuestion& question) {
   const LinearSystem& s = r.model.system;
   const ZerosAndGain found = zeros(s);
   if (found.gain == 0)
-    throw std::domain_error("the output " + r.model.outputs[0].name + " does not feel the input " +
-                            r.model.inputs[0].name + " at this state");
+    throw std::domain_error(
+        r.opened ? fmt::format("the loop of '{0}' is open at this state: what it measures does not feel its effort, or "
+                               "'{0}' or a load before it is at a limit",
+                               r.model.inputs[0].name)
+                 : fmt::format("the output {} does not feel the input {} at this state", r.model.outputs[0].name,
+                               r.model.inputs[0].name));
   r.every = poles(s);
   r.roots = seen_roots(s, r.every, found.zeros);
   const TransferFunction G(s);

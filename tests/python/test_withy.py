@@ -119,6 +119,9 @@ def test_a_simulation_is_stepped():
         assert simulation.time == t
         assert simulation.outputs["axle"] == pytest.approx(x, abs=1e-9)
         assert simulation.outputs["axle.rate"] == pytest.approx(v, abs=1e-9)
+    without = withy.loads(TURNTABLE.replace("loads: {command: {type: input, hinge: axle}}", ""))
+    with pytest.raises(KeyError, match="no input 'push'; there is none"):
+        withy.Simulation(without).inputs["push"]
     with pytest.raises(KeyError, match="did you mean 'command'"):
         simulation.inputs["comand"] = 1
     with pytest.raises(KeyError, match="did you mean 'axle'"):

@@ -99,6 +99,16 @@ TEST(Loop, OfASampledChainOfIntegratorsWithADelayHasItsMargins) {
   EXPECT_NEAR(r.margins->phase()->angle, pi + std::arg(L(r.margins->phase()->omega)), 1e-6);
 }
 
+TEST(Loop, OfAControllerAtItsLimitIsSaidToBeOpen) {
+  const Configuration far = at_start(scene_of(chain(", limit: 400")));
+  try {
+    response(far, {"control", "", {}, {}, 50, {}});
+    FAIL() << "no error";
+  } catch (const std::exception& e) {
+    EXPECT_NE(std::string(e.what()).find("it is at a limit"), std::string::npos) << e.what();
+  }
+}
+
 using Gains = std::vector<std::pair<std::string, double>>;
 
 /// Greatest |coordinate| in the last over that in the first fifth of a run with the controller's gains times `factor`.

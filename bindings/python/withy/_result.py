@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 def nearest(name: object, known: list[str]) -> str:
     """What an error about a name says after it: the nearest one, or all."""
     near = difflib.get_close_matches(str(name), known, 1)
+    if not near and not known:
+        return "; there is none"
     return f"; did you mean {near[0]!r}?" if near else f"; known: {', '.join(known)}"
 
 
@@ -31,8 +33,8 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
     """The table of a run by the names of its columns, those of results.csv: ``result["shoulder"]``.
 
     Attributes:
-        status: ``completed``, ``diverged``, ``singular``, ``step-underflow``, ``interrupted``, ``load-failed`` or
-            ``too-stiff``.
+        status: ``completed``, ``inaccurate``, ``diverged``, ``singular``, ``step-underflow``, ``interrupted``,
+            ``load-failed`` or ``too-stiff``.
         message: the physical reason of a bad end, or what a completed run should not keep to itself; else empty.
         units: SI unit of each column by its name; empty for modal coordinates.
         table: all numbers [rows, columns], in SI units.
