@@ -106,7 +106,7 @@ std::vector<Column> asked_for(const std::vector<Column>& all, const std::string&
   for (const Column& column : all) known.push_back(column_name(column.name));
   const std::string guess = nearest(name, known);
   throw ResultsError("there is no column " + in_quotes(name) +
-                     (guess.empty() ? "" : "; did you mean " + in_quotes(guess) + "?"));
+                     (guess.empty() ? "; there are: " + listed(known) : "; did you mean " + in_quotes(guess) + "?"));
 }
 
 }  // namespace

@@ -81,6 +81,8 @@ TEST(Run, LeavesAPictureThatPlotAndReportMakeAnew) {
   f = withy(folder, {"plot", "ruthless", "elbow", "--out", "elbow.gif"});
   EXPECT_EQ(f.status, 2);
   EXPECT_THAT(f.err, HasSubstr("got the file 'elbow.gif' for a picture; need a name that ends in .svg or .png"));
+  f = withy(folder, {"plot", "ruthless", "nonsense"});
+  EXPECT_THAT(f.err, HasSubstr("there is no column \"nonsense\"; there are: shoulder, elbow, "));
   f = withy(folder, {"plot", "ruthless", "elbw"});
   EXPECT_EQ(f.status, 2);
   EXPECT_THAT(f.err, HasSubstr("there is no column \"elbw\"; did you mean \"elbow\"?"));
