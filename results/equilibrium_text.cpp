@@ -55,6 +55,7 @@ Json equilibrium_json(const study::Configuration& c, const study::Equilibrium& f
   for (const auto& [name, d] : found.deflections) deflections[name] = d;
   j["tip_deflections"] = std::move(deflections);
   j["stays_steady"] = found.stays;
+  j["bent"] = found.bent;
   j["against_next"] = against_json(found.against);
   j["derivatives"] = found.derivatives;
   j["message"] = found.problem.empty() ? found.changing : found.problem;
@@ -69,6 +70,7 @@ std::string equilibrium_text(const study::Configuration& c, const study::Equilib
   if (!found.deflections.empty()) text += '\n' + deflection_table(found).str();
   if (const std::string words = study::against_next_text(found.against, "deflections"); !words.empty())
     text += '\n' + words + '\n';
+  if (!found.bent.empty()) text += '\n' + found.bent + '\n';
   if (!found.changing.empty()) text += '\n' + found.changing + '\n';
   return text;
 }

@@ -121,6 +121,7 @@ Json modes_json(const study::ModesOf& run) {
     point["steady"] = at.steady ? found_json(at) : Json();
     point["turn"] = at.turn ? turn_json(*at.turn) : Json();
     point["problem"] = at.problem;
+    point["bent"] = at.bent;
     point["modes"] = std::move(modes);
     points.push_back(std::move(point));
   }

@@ -17,6 +17,10 @@ std::string run_of_modes_text(const study::ModesOf& run, const std::optional<stu
                                                       : fmt::format("the {} lowest frequencies", against->compared));
       !words.empty())
     text += '\n' + words + '\n';
+  const auto bent = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return !at.bent.empty(); });
+  if (bent != run.points.end())
+    text +=
+        '\n' + (sweep.none() ? "" : fmt::format("{} = {}: ", sweep.path, sweep.text(bent->value))) + bent->bent + '\n';
   // Of a sweep the first value at which the equations are periodic speaks for all.
   const auto frozen = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return at.frozen(); });
   const study::ModesAt& spoken_of = frozen != run.points.end() ? *frozen : run.points.back();

@@ -109,6 +109,7 @@ std::string remarks_text(const Scene& scene, const std::vector<study::Remark>& r
   text += fmt::format("{} is valid: {} {}, {} {}, formulation {}, integrator {}; ", scene.file, bodies,
                       bodies == 1 ? "body" : "bodies", speeds, speeds == 1 ? "speed" : "speeds", scene.formulation_name,
                       scene.integrator_name);
+  if (!scene.end) text += "it has no end, and for a run wants time.end; ";
   if (remarks.empty()) return text + "nothing is implausible\n";
   if (remarks.size() == 1) return text + "one thing is implausible\n";
   return text + fmt::format("{} things are implausible\n", remarks.size());

@@ -17,7 +17,10 @@ constexpr std::size_t most_panels = 8;
 
 bool asked(const std::string& full, const std::string& given) {
   const std::string column = column_name(full), name = column_name(given);
-  return column == name || (column.starts_with(name) && column[name.size()] == '.');
+  if (column == name) return true;
+  // A deflection as studies name it is that of three columns.
+  const char next = name.ends_with(".deflection") ? '_' : '.';
+  return column.starts_with(name) && column[name.size()] == next;
 }
 
 Curve curve_of(const DecimatedTable& table, std::size_t column, double scale) {
@@ -103,7 +106,7 @@ std::vector<Column> asked_for(const std::vector<Column>& all, const std::string&
   for (const Column& column : all) known.push_back(column_name(column.name));
   const std::string guess = nearest(name, known);
   throw ResultsError("there is no column " + in_quotes(name) +
-                     (guess.empty() ? "" : "; did you mean " + in_quotes(guess) + "?"));
+                     (guess.empty() ? "; there are: " + listed(known) : "; did you mean " + in_quotes(guess) + "?"));
 }
 
 }  // namespace

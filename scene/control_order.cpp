@@ -9,6 +9,7 @@
 #include "withy/core/plugin/sampled_part.hpp"
 #include "withy/scene/grammar.hpp"
 #include "withy/scene/make.hpp"
+#include "withy/scene/names.hpp"
 
 namespace withy {
 namespace {
@@ -67,6 +68,19 @@ std::shared_ptr<const std::vector<SensorNode>> measurable(const Value& outputs, 
   return all;
 }
 
+std::string problem_of(const UnknownSignal& e) {
+  const std::string guess = nearest(e.name, e.known);
+  return guess.empty() ? e.what() : fmt::format("no signal '{}'; did you mean '{}'?", e.name, guess);
+}
+
+/// Where a load names a signal: an element of `of`, or a formula; null where that cannot be seen.
+const Value* naming(const Value& value, const std::string& signal) {
+  if (value.kind() == Value::Kind::text) return value.text().find(signal) != std::string::npos ? &value : nullptr;
+  for (const Value& item : value.items())
+    if (const Value* found = naming(item, signal)) return found;
+  return nullptr;
+}
+
 bool measures(const Value& load) {
   const Value* type = load.find("type");
   return load.has("of") || load.has("schedule") ||
@@ -102,9 +116,44 @@ void give_outputs(Model& model, const std::vector<SensorNode>& outputs, const Ch
     try {
       for (const std::string& name : sampled == nullptr ? std::vector<std::string>{} : sampled->measures())
         static_cast<void>(find_signal(model, name));
-    } catch (const std::invalid_argument& e) {
-      checker.key_error("/loads/" + node.name, e.what());
+    } catch (const UnknownSignal& e) {
+      checker.key_error("/loads/" + node.name, problem_of(e));
     }
+  }
+}
+
+void UnboundLoads::add(const std::string& name, const Value& load) {
+  Unbound unbound{name, load, {}, {}};
+  try {
+    throw;
+  } catch (const UnknownSignal& e) {
+    unbound.problem = problem_of(e);
+    for (const char* key : {"of", "value", "schedule"})
+      if (const Value* given = load.find(key))
+        if (const Value* at = naming(*given, e.name); at != nullptr && unbound.place.line == 0)
+          unbound.place = at->place();
+  } catch (const std::invalid_argument& e) {
+    unbound.problem = e.what();
+  }
+  names_.insert(name);
+  loads_.push_back(std::move(unbound));
+}
+
+bool UnboundLoads::concern(const std::string& name, const Value& output) {
+  if (!mentions(output, names_)) return false;
+  names_.insert(name);
+  return true;
+}
+
+void UnboundLoads::report(const Checker& checker, std::set<std::string>& refused) {
+  for (const Unbound& l : loads_) {
+    if (!mentions(l.load, refused)) {
+      if (l.place.line > 0)
+        checker.diagnostics().error(l.place, l.problem);
+      else
+        checker.key_error("/loads/" + l.name, l.problem);
+    }
+    refused.insert(l.name);
   }
 }
 

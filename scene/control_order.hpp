@@ -10,6 +10,7 @@
 
 #include "withy/core/plugin/load.hpp"
 #include "withy/core/plugin/sensor.hpp"
+#include "withy/core/plugin/value.hpp"
 #include "withy/scene/check.hpp"
 
 namespace withy {
@@ -27,6 +28,29 @@ std::set<std::string> needed_loads(const Value& load, const std::set<std::string
 /// In an order in which every load stands behind those that it needs. Loads that go round in a circle are reported and
 /// left out, and so are those that need a load which is not among them.
 std::list<PendingLoad> in_order_of_need(std::list<PendingLoad> loads, const Checker& checker);
+
+/// Loads that cannot be bound. Why is told when all outputs have been read: what rests on a part that is reported needs
+/// no report of its own, and an output that a load measures is reported behind the loads, on which it may rest.
+class UnboundLoads {
+ public:
+  /// Call in a handler of what binding it has thrown. \param load as checked
+  void add(const std::string& name, const Value& load);
+  [[nodiscard]] bool has(const std::string& name) const { return names_.contains(name); }
+  /// Whether an output that cannot be bound names one of them, or an output that does: it is told with the load.
+  bool concern(const std::string& name, const Value& output);
+  /// Reports those that name none of `refused`, which all of them then belong to.
+  void report(const Checker& checker, std::set<std::string>& refused);
+
+ private:
+  struct Unbound {
+    std::string name;
+    Value load;
+    Place place;  ///< of what is wrong in it, or that of its name, without a line
+    std::string problem;
+  };
+  std::vector<Unbound> loads_;
+  std::set<std::string> names_;  ///< of the outputs too
+};
 
 /// Fills the names of loads and signals from what the scene says, and where a load measures anything gives the model
 /// its outputs: those without a sensor cannot be bound before the loads. Reports nothing. \param model null where the

@@ -237,6 +237,24 @@ class Builder final : public YAML::EventHandler {
   bool whole_ = true;
 };
 
+/// A line of a text, counted from 0.
+std::string_view line_of(std::string_view text, int line) {
+  for (; line > 0 && !text.empty(); --line) text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
+  return text.substr(0, text.find('\n'));
+}
+/// What a line begins with before its first word.
+std::string_view indent_of(std::string_view line) { return line.substr(0, line.find_first_not_of(" \t")); }
+
+/// What is wrong with a line where a ':' stands that cannot: its indentation, or that of no key of a map.
+std::string misplaced_colon(std::string_view text, int line) {
+  const std::string_view here = line_of(text, line), before = line > 0 ? line_of(text, line - 1) : std::string_view();
+  if (indent_of(here).find('\t') != std::string_view::npos) return "a tab; indent with spaces, not tabs";
+  const bool complete = before.find(": ") != std::string_view::npos && before.find('#') == std::string_view::npos;
+  if (complete && indent_of(here).size() > indent_of(before).size())
+    return "a ':' where none can stand; this line is indented farther than the one before, which has its value already";
+  return "a ':' where none can stand; does the line before lack its own, or a text with ': ' its quotes?";
+}
+
 /// What the parser complains of, as who wrote the file would say it.
 std::string syntax_problem(const YAML::Exception& e, std::string_view text) {
   namespace Says = YAML::ErrorMsg;
@@ -247,8 +265,7 @@ std::string syntax_problem(const YAML::Exception& e, std::string_view text) {
     return "a list in brackets goes on where it should end; is a ',' missing before here, or a ']'?";
   if (says == Says::FLOW_END)
     return "this bracket or brace closes none that is open; is one of another kind still open?";
-  if (says == Says::MAP_VALUE || says == Says::MAP_KEY)
-    return "a ':' where none can stand; does the line before lack its own, or a text with ': ' its quotes?";
+  if (says == Says::MAP_VALUE || says == Says::MAP_KEY) return misplaced_colon(text, e.mark.line);
   if (says == Says::BLOCK_ENTRY) return "a '-' where no list can begin; is the line indented as those around it?";
   const bool tab = says == Says::TAB_IN_INDENTATION || text.find("\n\t") != std::string_view::npos;
   if (tab) return "a tab; indent with spaces, not tabs";

@@ -70,6 +70,7 @@ class SceneBuilder {
     add_motion_laws(tree.model.get());
     known(2, tree.names);
     add_outputs(tree);
+    unbound_.report(checker_, refused_);
     if (tree.model != nullptr && diagnostics_.ok()) give_outputs(*tree.model, scene_.outputs, checker_);
     if (tree.model != nullptr && diagnostics_.ok()) events.add_to(*tree.model, scene_.outputs, scene_.events);
     if (tree.model != nullptr && diagnostics_.ok()) set_start(*tree.model, document_, checker_, scene_);
@@ -160,6 +161,7 @@ class SceneBuilder {
       try {
         add(name, kept, std::move(object));
       } catch (const std::invalid_argument& e) {
+        if (unbound_.concern(name, kept)) continue;
         // What rests on a part that is reported needs no report of its own.
         if (!mentions(kept, refused_)) checker_.key_error(path, e.what());
         refused_.insert(name);
@@ -195,8 +197,8 @@ class SceneBuilder {
     for (const PendingLoad& pending : in_order_of_need(std::move(loads), checker_)) {
       try {
         model->add_load(pending.name, *pending.load);
-      } catch (const std::invalid_argument& e) {
-        checker_.key_error("/loads/" + pending.name, e.what());
+      } catch (const std::invalid_argument&) {
+        unbound_.add(pending.name, *scene_.source.at("loads").find(pending.name));
       }
     }
   }
@@ -206,7 +208,7 @@ class SceneBuilder {
     tree.names.loads = {};
     if (const Value* loads = document_.root.find("loads"))
       for (const auto& [name, given] : loads->members())
-        if (refused_.contains(name)) tree.names.loads.add(name);
+        if (refused_.contains(name) || unbound_.has(name)) tree.names.loads.add(name);
     for (const LoadNode& load : tree.model != nullptr ? tree.model->loads() : std::vector<LoadNode>{})
       if (dynamic_cast<const LoopClosure*>(load.load.get()) == nullptr) tree.names.loads.add(load.name);
   }
@@ -270,6 +272,7 @@ class SceneBuilder {
   Scene scene_;
   Vector3 gravity_ = Vector3::Zero();
   std::list<Value> none_;          ///< in the place of parts that there are not
+  UnboundLoads unbound_;
   std::set<std::string> refused_;  ///< loads, motions, constraints and outputs that are reported already
 };
 

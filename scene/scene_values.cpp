@@ -80,6 +80,12 @@ std::string path_problem(const std::vector<std::string>& keys) {
   return keys.size() > static_cast<std::size_t>(DocumentLimits::depth) ? "the path is too long" : "";
 }
 
+/// As "time.end = 2" is written: no key begins or ends with a blank.
+std::string_view without_blanks(std::string_view path) {
+  const std::size_t first = path.find_first_not_of(' '), last = path.find_last_not_of(' ');
+  return first == std::string_view::npos ? std::string_view() : path.substr(first, last - first + 1);
+}
+
 }  // namespace
 
 SceneValues SceneValues::read(const std::string& file) { return parse(read_bytes(file), file); }
@@ -195,7 +201,7 @@ SceneValues& SceneValues::set_text(const std::string& text, std::string origin) 
     diagnostics_.error({line, 0, ""}, "need path=value, as time.end=2");
     return *this;
   }
-  const std::vector<std::string> keys = split(std::string_view(text).substr(0, equals));
+  const std::vector<std::string> keys = split(without_blanks(std::string_view(text).substr(0, equals)));
   if (const std::string problem = path_problem(keys); !problem.empty()) {
     diagnostics_.error({line, 0, ""}, problem);
     return *this;

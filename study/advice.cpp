@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "withy/core/model/event_plan.hpp"
 #include "withy/core/simulation/instants.hpp"
 #include "withy/study/advice_search.hpp"
 #include "withy/study/advice_yardstick.hpp"
@@ -67,6 +68,15 @@ void finish(Search& search, Evaluator& evaluator, Advice& advice) {
   for (Probe& p : advice.above) p.cost = evaluator.cost(p);
 }
 
+/// Which load switches or which event acts, of a model that has one.
+std::string what_switches(const Model& model) {
+  if (const EventBook book(model); book.any()) return fmt::format("event '{}' acts", book.plan().events.front().name);
+  for (const LoadNode& load : model.loads())
+    if (load.load->discrete() != nullptr && load.load->discrete()->switches() > 0)
+      return fmt::format("load '{}' switches at zeros of a function of the state", load.name);
+  return "a load switches";
+}
+
 /// Goes on with the reference where what would cost clearly less than the best holds the accuracy itself, but not with
 /// what the reference may be off by.
 void refine(Search& search, Evaluator& evaluator, const Candidates& candidates, const Accuracy& accuracy,
@@ -85,11 +95,10 @@ Advice advise(Evaluator& evaluator, const Candidates& candidates, const Accuracy
     throw OptionError("seconds", fmt::format("got {:g} s; need a finite time above 0", *seconds));
   const Scene& scene = evaluator.base().scene;
   if (has_switches(*scene.model))
-    throw InputError(
-        scene.file +
-        ": a load switches at zeros of a function of the state, or an event acts, at times of their own in every "
-        "model; "
-        "runs that are measured against each other need common ones");
+    throw InputError(fmt::format(
+        "{}: {}, at times of its own in every model; runs that are measured against each other need common ones here. "
+        "'withy trade' and 'withy compare' take it",
+        scene.file, what_switches(*scene.model)));
   accuracy.require_something_of(evaluator.outputs());
   Advice advice;
   advice.limit_seconds = seconds ? *seconds : time_limit(evaluator);

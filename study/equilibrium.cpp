@@ -1,6 +1,7 @@
 #include "withy/study/equilibrium.hpp"
 
 #include "withy/core/simulation/tips.hpp"
+#include "withy/study/bent.hpp"
 #include "withy/study/continuous_states.hpp"
 #include "withy/study/turning.hpp"
 
@@ -19,6 +20,7 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
     if (tip.flexible)
       found.deflections.emplace_back(tip.body + ".tip", deflection(*c.prepared().equations, state.y, tip));
   }
+  if (found.steady.converged) found.bent = bent_text(c, state);
   found.against = deflections_against_next(c, found.steady, holding, registry);
   if (found.stays) return found;
   found.passing = moving_freely(c, state);

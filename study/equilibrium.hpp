@@ -21,7 +21,8 @@ struct Equilibrium {
   std::vector<std::string> passing;  ///< hinges that nothing holds at the rates they have: an instant of a motion
   std::string derivatives;           ///< how they were found
   std::vector<std::pair<std::string, std::array<double, 3>>> deflections;  ///< of flexible bodies' tips [m]
-  std::optional<AgainstNext> against;                                      ///< of these, in the next model up
+  std::string bent;                    ///< by how much and by what, where that is far; else empty
+  std::optional<AgainstNext> against;  ///< of these, in the next model up
 };
 
 /// \throws InputError where a load has continuous states; SceneError, PluginError

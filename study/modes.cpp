@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "withy/study/bent.hpp"
 #include "withy/study/continuous_states.hpp"
 
 namespace withy::study {
@@ -34,6 +35,7 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
     at.problem = no_steady_state(c, at.steady->steady);
     if (!at.steady->steady.converged) return at;
     state = at.steady->steady.state;
+    at.bent = bent_text(c, state);
   }
   try {
     const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));

@@ -45,6 +45,7 @@ struct ModesAt {
   std::vector<std::string> names;     ///< of the speeds
   Eigen::VectorXd masses;             ///< M_ii, one a speed; empty where there are no modes
   std::string problem;                ///< why there are none; empty where there are
+  std::string bent;                   ///< how far the steady state is bent and by what, where that is far; else empty
   std::optional<SteadyFound> steady;  ///< none where the state was taken as it is
   std::shared_ptr<const Model> model;
   std::optional<TurningModes> turn;  ///< none where there are no modes

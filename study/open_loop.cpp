@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/study/input_error.hpp"
@@ -14,13 +15,22 @@ namespace withy::study {
 namespace {
 
 /// Derivatives of a load's efforts with respect to the small motions: speeds × size.
-Eigen::MatrixXd fed_back(const SmallMotions& motions, std::size_t load) {
-  Eigen::MatrixXd slopes(motions.by_effort().cols(), motions.size());
-  for (Eigen::Index i = 0; i < slopes.cols(); ++i)
-    slopes.col(i) =
-        adaptive_difference([&](double h) { return motions.efforts(motions.displaced(i, h), load); }, motions.step(i))
-            .slope;
-  return slopes;
+struct FedBack {
+  Eigen::MatrixXd slopes;
+  Eigen::RowVectorXd errors;  ///< what differences may be off by, of the greatest effort
+};
+FedBack fed_back(const SmallMotions& motions, std::size_t load) {
+  FedBack all{Eigen::MatrixXd(motions.by_effort().cols(), motions.size()), Eigen::RowVectorXd::Zero(motions.size())};
+  const double effort = motions.efforts(motions.state(), load).cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < all.slopes.cols(); ++i) {
+    const double step = motions.step(i);
+    const Differenced d =
+        adaptive_difference([&](double h) { return motions.efforts(motions.displaced(i, h), load); }, step);
+    all.slopes.col(i) = d.slope;
+    // A constant effort that is far above what a displacement changes takes digits from it.
+    all.errors[i] = d.change.maxCoeff() + 8 * std::numeric_limits<double>::epsilon() * effort / step;
+  }
+  return all;
 }
 
 std::size_t find_load(const Model& model, const std::string& name) {
@@ -73,7 +83,11 @@ Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::
     names += (names.empty() ? "" : ", ") + c.layout().speed_names[s];
     speeds.push_back(s);
   }
-  if (speeds.empty()) throw OptionError("input", "load '" + name + "' feeds nothing back");
+  if (speeds.empty())
+    throw OptionError("input", "load '" + name +
+                                   "' feeds nothing back at this state: it is at a limit, or acts "
+                                   "through other loads, of which one that gives an effort can be "
+                                   "opened");
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slopes, Eigen::ComputeThinU | Eigen::ComputeThinV);
   if (svd.singularValues().size() > 1 && svd.singularValues()[1] > 1e-9 * svd.singularValues()[0])
     throw OptionError("input",
@@ -98,11 +112,12 @@ LinearInput in_place_of(const SmallMotions& motions, const SampledLoads& sampled
   return {{}, answer.along, [&sampled, one](double h) { return sampled.displaced(h * one); }};
 }
 
-/// a − b, zero where they are the same but for rounding: a stiffness that is taken off leaves none.
-Eigen::MatrixXd difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+/// a − b, zero where they are the same but for rounding and what b may be off by: a stiffness that is taken off leaves
+/// none.
+Eigen::MatrixXd difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const Eigen::MatrixXd& errors) {
   constexpr double rounding = 1e-11;  // of differences of eighth order
-  return (a - b).binaryExpr(a.cwiseAbs() + b.cwiseAbs(),
-                            [](double left, double size) { return std::abs(left) <= rounding * size ? 0.0 : left; });
+  return (a - b).binaryExpr(rounding * (a.cwiseAbs() + b.cwiseAbs()) + errors,
+                            [](double left, double none) { return std::abs(left) <= none ? 0.0 : left; });
 }
 
 }  // namespace
@@ -126,10 +141,11 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
                       fmt::format("load '{}' is sampled each {:g} s, and all loads together repeat each {:g} s: the "
                                   "loop of the slowest alone can be opened",
                                   name, sampled.period_of(load), sampled.period()));
-  const Eigen::MatrixXd all =
-      is_sampled ? sampled.own_efforts().middleCols(sampled.held_by(load).first, sampled.held_by(load).second)
-                 : fed_back(motions, load);
-  const Answer answer = answer_of(c, all, name, hinge);
+  const FedBack all =
+      is_sampled
+          ? FedBack{sampled.own_efforts().middleCols(sampled.held_by(load).first, sampled.held_by(load).second), {}}
+          : fed_back(motions, load);
+  const Answer answer = answer_of(c, all.slopes, name, hinge);
   LinearModel linear = about(c, motions, sampled);
   linear.inputs = {{name, answer.unit}};
   linear.outputs = {{"-" + name, answer.unit}};
@@ -145,10 +161,11 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
     linear.system.C.block(0, motions.size() + first, 1, count) = -answer.row;
     replaced.setZero(1, sampled.size());
     replaced.middleCols(first, count) = answer.row;
-    held.middleCols(first, count) = difference(held.middleCols(first, count), answer.along * answer.row);
+    held.middleCols(first, count) =
+        difference(held.middleCols(first, count), answer.along * answer.row, Eigen::MatrixXd::Zero(held.rows(), count));
   } else {
     linear.system.C.leftCols(motions.size()) = -answer.row;
-    A = difference(A, push * answer.row);
+    A = difference(A, push * answer.row, push.cwiseAbs() * all.errors);
   }
   sample(sampled, {A, sampled.moved(held), push, sampled.felt({in_place_of(motions, sampled, load, answer)}), replaced},
          linear);

@@ -9,8 +9,10 @@
 #include <numbers>
 #include <set>
 
+#include "withy/core/model/closing.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/tips.hpp"
 #include "withy/study/step_limit.hpp"
 #include "withy/study/tip_moments.hpp"
 
@@ -231,6 +233,27 @@ void look_at_angles(const Prepared& prepared, std::vector<Remark>& all) {
   if (const Value* initial = root.find("initial")) of_hinges(*initial);
 }
 
+/// Bodies that begin bent beyond what a run goes on with.
+void look_at_start(const Prepared& prepared, std::vector<Remark>& all) {
+  const Scene& scene = prepared.scene;
+  for (const Tip& tip : tips(prepared.model())) {
+    if (!tip.flexible || !(tip.length > 0)) continue;
+    const auto d = deflection(*prepared.equations, scene.initial.y, tip);
+    const double share = std::hypot(d[0], d[1], d[2]) / tip.length;
+    if (!(share > scene.deflection_limit)) continue;
+    all.push_back(
+        {place_of(scene, "bodies", tip.body),
+         fmt::format(
+             "the scene begins with the tip of '{}' deflected by {} times its length, beyond what a run goes on "
+             "with (limits.deflection, {}){}",
+             tip.body, brief(share), brief(scene.deflection_limit),
+             loops_of(prepared.model()).empty()
+                 ? ""
+                 : "; loops that hinges cannot close are closed by bending: are the frames and offsets of "
+                   "constraints meant so?")});
+  }
+}
+
 }  // namespace
 
 std::vector<Remark> implausible(const Prepared& prepared, Registry& registry) {
@@ -241,6 +264,7 @@ std::vector<Remark> implausible(const Prepared& prepared, Registry& registry) {
   look_at_steps(prepared, all);
   look_at_frames(prepared, all);
   look_at_angles(prepared, all);
+  look_at_start(prepared, all);
   std::stable_sort(all.begin(), all.end(),
                    [](const Remark& a, const Remark& b) { return a.place.line < b.place.line; });
   return all;

@@ -91,25 +91,41 @@ void find_participation(double gain, Response& r) {
   for (double& share : r.participation) share = sum > 0 ? share / sum : 0.0;
 }
 
-/// The ends of the frequencies [rad/s].
-std::pair<double, double> ends(const ResponseQuestion& question, const Response& r) {
+/// A decade around the poles [rad/s] or, where all of these are at zero, the zeros; of a loop that is opened the zeros
+/// count as well, and it is looked at until its gain is one.
+std::pair<double, double> decades(const TransferFunction& G, const Response& r) {
+  const LinearSystem& s = r.model.system;
+  const double half_rate = s.sampled() ? pi / s.period : std::numeric_limits<double>::infinity();
   double low = std::numeric_limits<double>::infinity(), high = 0;
-  const auto meet = [&](const Eigen::VectorXcd& roots) {
+  const auto meet = [&](const Eigen::VectorXcd& roots, double least) {
     for (const Complex root : roots) {
-      const double size = std::abs(exponent_of(r.model.system, root));
-      if (at_zero(r.model.system, root) || !std::isfinite(size)) continue;
+      const double size = std::abs(exponent_of(s, root));
+      // What is over before the next sample has no frequency.
+      if (at_zero(s, root) || !(size < 2 * half_rate) || size < least) continue;
       low = std::min(low, size);
       high = std::max(high, size);
     }
   };
-  meet(r.roots.poles);
-  // Zeros far beyond the poles are small numbers in the leading coefficient.
-  if (!(high > 0)) meet(r.roots.zeros);
-  if (!(high > 0)) low = high = 2 * pi;
-  low /= 10, high *= 10;
+  meet(r.roots.poles, 0);
+  const double fastest = high;
+  // Zeros far below the poles are rounding of zero; far beyond them, of nothing in the leading coefficient.
+  if (r.opened || !(high > 0)) meet(r.roots.zeros, high > 0 ? 1e-4 * low : 0);
+  if (fastest > 0) high = fastest;
+  if (!(high > 0)) low = high = std::min(2 * pi, half_rate);
+  high = s.sampled() && r.opened ? half_rate : std::min(10 * high, half_rate);
+  low = std::min(low / 10, high / 10);
+  const auto gain = [&](double omega) { return std::abs(G.at_frequency(omega)); };
+  constexpr int farthest = 6;  // decades
+  const bool falls = r.opened && !s.sampled() && std::abs(s.D(0, 0)) < 1;
+  for (int k = 0; falls && k < farthest && gain(high) > 1; ++k) high *= 10;
+  for (int k = 0; r.opened && k < farthest && r.integrators > 0 && gain(low) < 1; ++k) low /= 10;
+  return {low, high};
+}
+
+/// The ends of the frequencies [rad/s].
+std::pair<double, double> ends(const ResponseQuestion& question, const TransferFunction& G, const Response& r) {
+  auto [low, high] = decades(G, r);
   const double half_rate = r.model.system.sampled() ? pi / r.model.system.period : high;
-  high = std::min(high, half_rate);
-  low = std::min(low, high / 10);
   if (question.from) low = 2 * pi * *question.from;
   if (question.to) high = 2 * pi * *question.to;
   if (!(low > 0) || !(high > low))
@@ -129,14 +145,18 @@ Response response(const Configuration& c, const ResponseQuestion& question) {
   const LinearSystem& s = r.model.system;
   const ZerosAndGain found = zeros(s);
   if (found.gain == 0)
-    throw std::domain_error("the output " + r.model.outputs[0].name + " does not feel the input " +
-                            r.model.inputs[0].name + " at this state");
+    throw std::domain_error(
+        r.opened ? fmt::format("the loop of '{0}' is open at this state: what it measures does not feel its effort, or "
+                               "'{0}' or a load before it is at a limit",
+                               r.model.inputs[0].name)
+                 : fmt::format("the output {} does not feel the input {} at this state", r.model.outputs[0].name,
+                               r.model.inputs[0].name));
   r.every = poles(s);
   r.roots = seen_roots(s, r.every, found.zeros);
   const TransferFunction G(s);
   find_static_gain(G, found.gain, r);
   find_participation(found.gain, r);
-  const auto [low, high] = ends(question, r);
+  const auto [low, high] = ends(question, G, r);
   Eigen::VectorXcd marks(r.roots.poles.size() + r.roots.zeros.size());
   marks << r.roots.poles, r.roots.zeros;
   r.values = frequency_response(G, low, high, question.per_decade, marks);

@@ -116,7 +116,10 @@ Eigen::VectorXd balance(LinearSystem& s) {
 Eigen::VectorXcd poles(const LinearSystem& system) {
   LinearSystem s = system;
   balance(s);
-  return s.sampled() ? eigenvalues(s.A) : eigenvalues_with_zeros(s.A);
+  if (!s.sampled()) return eigenvalues_with_zeros(s.A);
+  // What rests between samples stands at 1.
+  s.A.diagonal().array() -= 1;
+  return eigenvalues_with_zeros(s.A).array() + 1;
 }
 
 ZerosAndGain zeros(LinearSystem s) {

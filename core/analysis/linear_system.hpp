@@ -28,9 +28,9 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> hold(const Eigen::MatrixXd& A, const
 /// that nothing is rounded. \returns the units: z = units · balanced z
 Eigen::VectorXd balance(LinearSystem& system);
 
-/// Eigenvalues of A, complex pairs side by side. Of a system in continuous time those at zero are found by rank, not as
-/// small numbers: rigid motions and integrators are chains of them.
-/// \throws std::domain_error where A is not finite
+/// Eigenvalues of A, complex pairs side by side. Those at zero, of a sampled system those at one, are found by rank,
+/// not as numbers near by: rigid motions and integrators are chains of them. \throws std::domain_error where A is not
+/// finite
 Eigen::VectorXcd poles(const LinearSystem& system);
 
 /// What G(s) = C (s − A)⁻¹ B + D is: gain · ∏ (s − zero) / ∏ (s − pole) of one input and one output.

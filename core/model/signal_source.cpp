@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <optional>
-#include <stdexcept>
+#include <utility>
 
 #include "withy/core/model/columns.hpp"
 
@@ -24,7 +24,7 @@ std::span<const SensorNode> measured(const Model& model) {
   return model.measured() == nullptr ? std::span<const SensorNode>() : std::span(*model.measured());
 }
 
-std::string known(const Model& model) {
+std::vector<std::string> known(const Model& model) {
   std::vector<std::string> all;
   for (const HingeNode& hinge : model.hinges()) {
     for (const Column& c : coordinate_columns(hinge)) all.push_back(c.name);
@@ -34,6 +34,10 @@ std::string known(const Model& model) {
     for (const Column& c : node.sensor == nullptr ? std::vector<Column>{} : columns_of(node)) all.push_back(c.name);
   for (const LoadNode& node : model.loads())
     for (const std::string& name : names_of(node)) all.push_back(name);
+  return all;
+}
+
+std::string listed(const std::vector<std::string>& all) {
   std::string text;
   for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 30); ++i) text += (i == 0 ? "" : ", ") + all[i];
   return all.size() > 30 ? text + " ..." : text;
@@ -46,6 +50,11 @@ std::optional<std::size_t> place_of(const std::string& name, const std::vector<C
 }
 
 }  // namespace
+
+UnknownSignal::UnknownSignal(std::string called, std::vector<std::string> there_are)
+    : std::invalid_argument("no signal '" + called + "'; known: " + listed(there_are)),
+      name(std::move(called)),
+      known(std::move(there_are)) {}
 
 SignalSource find_signal(const Model& model, const std::string& name) {
   for (std::size_t h = 0; h < model.hinges().size(); ++h) {
@@ -69,7 +78,7 @@ SignalSource find_signal(const Model& model, const std::string& name) {
     if (const auto i = place_of(name, columns)) return {Kind::output, first + *i};
     first += columns.size();
   }
-  throw std::invalid_argument("no signal '" + name + "'; known: " + known(model));
+  throw UnknownSignal(name, known(model));
 }
 
 }  // namespace withy

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "withy/core/model/model.hpp"
 
@@ -23,9 +25,17 @@ struct SignalSource {
   std::size_t number = 0;  ///< among what a load gives
 };
 
+/// A name that is no number of a model.
+struct UnknownSignal : std::invalid_argument {
+  UnknownSignal(std::string called, std::vector<std::string> there_are);
+
+  std::string name;
+  std::vector<std::string> known;  ///< what could have been meant
+};
+
 /// The source of a column of a hinge (`shoulder`, `shoulder.rate`), of what a load gives (`servo`, of several numbers
 /// `servo.0`) or of a number of an output (`imu.z`).
-/// \throws std::invalid_argument where there is no such number; the text has those that there are.
+/// \throws UnknownSignal where there is no such number; the text has those that there are.
 SignalSource find_signal(const Model& model, const std::string& name);
 
 }  // namespace withy

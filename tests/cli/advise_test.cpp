@@ -309,7 +309,13 @@ TEST(Advise, LoadsThatSwitchByTheStateAreRefusedPlainly) {
                                  "rate_time: 1}\n");
   const Finished f = advise(folder, {}, {"advise", "relay.yaml"});
   EXPECT_EQ(f.status, 2);
-  EXPECT_THAT(f.err, HasSubstr("relay.yaml: a load switches at zeros of a function of the state"));
+  EXPECT_THAT(f.err, testing::AllOf(HasSubstr("relay.yaml: load 'jets' switches at zeros of a function of the state"),
+                                    HasSubstr("'withy trade' and 'withy compare' take it")));
+  folder.write("latch.yaml",
+               std::string(turned_boom) + "events: {stop: {hinge: axle, value: 0.05, do: {lock: axle}}}\n");
+  const Finished latched = advise(folder, {}, {"advise", "latch.yaml"});
+  EXPECT_EQ(latched.status, 2);
+  EXPECT_THAT(latched.err, HasSubstr("latch.yaml: event 'stop' acts, at times of its own in every model"));
 }
 
 TEST(Advise, WhereMotionsThatBeginAlikePartItSaysForHowLongTheyDoNot) {

@@ -20,6 +20,26 @@ using testing::HasSubstr;
 const std::string blade = "scenes/rotating-blade.yaml";
 
 /// Flap 3.68165, lag √(3.68165² − 1) at η = 1 (docs/modes.md); four modes.
+TEST(AnalysisCli, AStateThatAKickBendsFarIsSaidToBe) {
+  const Folder folder;
+  folder.write("kick.yaml",
+               "format: withy/1\ntime: {end: 1}\n"
+               "bodies: {boom: {type: beam, length: 10, mass_per_length: 0.5, bending_y: {stiffness: 800, modes: 2}}}\n"
+               "hinges: {root: {type: weld, parent: world, child: boom}}\n"
+               "loads: {kick: {type: force, frame: boom.tip, law: steps, table: [[0, 0, 100, 0], [0.01, 0, 0, 0]]}}\n");
+  for (const char* command : {"modes", "equilibrium"}) {
+    const Finished f = withy(folder, {command, "kick.yaml"});
+    EXPECT_THAT(f.out, testing::AllOf(testing::HasSubstr("boom.tip is deflected by "),
+                                      testing::HasSubstr("the loads (kick) as they are at t = 0 s")))
+        << f.err;
+    EXPECT_THAT(withy(folder, {command, "kick.yaml", "--set", "loads={}"}).out,
+                testing::Not(testing::HasSubstr("is deflected by")));
+  }
+  EXPECT_THAT(withy(folder, {"modes", "kick.yaml", "--as-is"}).out, testing::Not(testing::HasSubstr("is deflected")));
+  EXPECT_THAT(result(folder, {"equilibrium", "kick.yaml", "--json"}).at("bent").get<std::string>(),
+              testing::HasSubstr("Beyond 0.1"));
+}
+
 TEST(Modes, OfASpinningBladeAreThePublishedOnes) {
   const Folder folder;
   const json j = result(folder, {"modes", blade, "--spin", "axle=1", "--json"});

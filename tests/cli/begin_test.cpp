@@ -213,6 +213,21 @@ TEST(New, EveryKindIsPlausibleAndRuns) {
   EXPECT_THAT(f.err, HasSubstr("did you mean \"satellite\"?"));
 }
 
+TEST(Check, SaysThatABodyHasToBendFarToCloseALoop) {
+  const Folder folder;
+  folder.write("far.yaml",
+               "format: withy/1\ntime: {end: 1}\nbodies:\n  hub: {type: rigid, mass: 20, inertia: [1, 1, 1, 0, 0, 0]}\n"
+               "  arm: {type: beam, length: 2, mass_per_length: 1, bending_y: {stiffness: 100, modes: 2}}\nhinges:\n"
+               "  shoulder: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}\n"
+               "  root: {type: weld, parent: hub, child: arm}\nconstraints:\n"
+               "  pin: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: arm.tip, b: world, offset: {position: [9, 9, "
+               "0]}}\n");
+  const Finished f = withy(folder, {"check", "far.yaml"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(f.out, testing::AllOf(HasSubstr("far.yaml:5:"), HasSubstr("the tip of 'arm' deflected by 7"),
+                                    HasSubstr("loops that hinges cannot close are closed by bending")));
+}
+
 TEST(Check, SaysWhatIsHardlyMeant) {
   const Folder folder;
   const auto said = [&](const std::vector<std::string>& settings, const std::string& scene = "scenes/new/arm.yaml") {

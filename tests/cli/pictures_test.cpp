@@ -72,11 +72,17 @@ TEST(Run, LeavesAPictureThatPlotAndReportMakeAnew) {
   const std::string picture = folder.read("two.svg");
   for (const char* text : {"shoulder [deg]", "link2.tip.deflection_y [m]", "t [s]", ">ruthless<", ">quadratic<"})
     EXPECT_THAT(picture, HasSubstr(text));
+  f = withy(folder, {"plot", "ruthless", "link2.tip.deflection", "--out", "bent.svg"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  for (const char* text : {"link2.tip.deflection_x [m]", "link2.tip.deflection_y [m]", "link2.tip.deflection_z [m]"})
+    EXPECT_THAT(folder.read("bent.svg"), HasSubstr(text));
   f = withy(folder, {"plot", "ruthless", "elbow", "--terminal"});
   EXPECT_THAT(f.out, HasSubstr("elbow [deg]"));
   f = withy(folder, {"plot", "ruthless", "elbow", "--out", "elbow.gif"});
   EXPECT_EQ(f.status, 2);
   EXPECT_THAT(f.err, HasSubstr("got the file 'elbow.gif' for a picture; need a name that ends in .svg or .png"));
+  f = withy(folder, {"plot", "ruthless", "nonsense"});
+  EXPECT_THAT(f.err, HasSubstr("there is no column \"nonsense\"; there are: shoulder, elbow, "));
   f = withy(folder, {"plot", "ruthless", "elbw"});
   EXPECT_EQ(f.status, 2);
   EXPECT_THAT(f.err, HasSubstr("there is no column \"elbw\"; did you mean \"elbow\"?"));

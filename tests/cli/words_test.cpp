@@ -48,6 +48,7 @@ const Fault faults[] = {
      check_scene,
      2,
      {"s.yaml:8:20", "does the line before lack its own"}},
+    {"no_end", "end: 1, ", "", check_scene, 0, {"it has no end, and for a run wants time.end"}},
     {"tab", "    length: 8", "\tlength: 8", check_scene, 2, {"s.yaml:7:1", "indent with spaces, not tabs"}},
     {"body_twice", "  boom:\n", "  hub:\n", check_scene, 2, {"s.yaml:5:3", "duplicate key 'hub'", "4:3 already"}},
     {"key_misspelt", "    length: 8", "    lenght: 8", check_scene, 2, {"s.yaml:7:5", "did you mean 'length'?"}},

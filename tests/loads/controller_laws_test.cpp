@@ -228,7 +228,7 @@ TEST(Control, MistakesAreLocatedAndNamed) {
               HasSubstr("loop servo -> servo is algebraic"));
   const std::string imu =
       "outputs: {imu: {type: accelerometer, of: table}, drive: {type: effort, hinge: axle}, of_servo: {type: effort, "
-      "load: servo}}\n";
+      "hinge: axle, of: servo}}\n";
   EXPECT_THAT(problem("type: pid, of: imu.y, to: command, proportional: 1", imu),
               testing::AllOf(HasSubstr("imu.y -> this load -> accelerations -> imu.y"), HasSubstr("algebraic"),
                              HasSubstr("give this load a 'sample'"), HasSubstr("put a filter between")));
@@ -237,7 +237,7 @@ TEST(Control, MistakesAreLocatedAndNamed) {
   EXPECT_EQ(problem("type: pid, of: imu.y, to: command, proportional: 1, sample: 0.01", felt_outputs), "");
   EXPECT_THAT(problem("type: pid, of: felt.y, to: command, proportional: 1, sample: 0.01",
                       "outputs: {felt: {type: effort, hinge: axle, of: command}}\n"),
-              HasSubstr("/loads/servo: no signal 'felt.y'; known: axle, axle.rate, felt, servo"));
+              HasSubstr("/loads/servo: no signal 'felt.y'; did you mean 'felt'?"));
   EXPECT_THAT(problem("type: pid, of: imu.y, to: nothing, proportional: 1}\n  second: {type: expression, to: command, "
                       "value: 2 * servo",
                       felt_outputs),
@@ -262,6 +262,41 @@ TEST(Control, MistakesAreLocatedAndNamed) {
   EXPECT_THAT(problem("type: expression, to: command, value: second, sample: 0.1}\n  second: {type: expression, to: "
                       "nothing, value: servo"),
               HasSubstr("algebraic"));
+}
+
+TEST(Control, AMisspeltNumberOfASignalIsToldWhereItStandsWithTheNearest) {
+  const auto problem = [](const std::string& load) {
+    return test::problem_of(test::turntable + "outputs: {turn: {type: gyro, of: table}}\nloads:\n  servo: {" + load +
+                            "}\n");
+  };
+  EXPECT_THAT(problem("type: pid, of: turn.zz, hinge: axle, proportional: 1"),
+              HasSubstr("/loads/servo/of: no signal 'turn.zz'; did you mean 'turn.z'?"));
+  EXPECT_THAT(problem("type: pid, of: turn.zz, hinge: axle, proportional: 1, sample: 0.1"),
+              HasSubstr("/loads/servo/of: no signal 'turn.zz'; did you mean 'turn.z'?"));
+  EXPECT_THAT(problem("type: expression, hinge: axle, value: 2 * axel.rate"),
+              HasSubstr("/loads/servo/value: no signal 'axel.rate'; did you mean 'axle.rate'?"));
+}
+
+TEST(Control, WhatRestsOnAWrongOutputOrLoadIsNotReportedBesideIt) {
+  const auto problem = [](const std::string& outputs, const std::string& loads) {
+    return test::problem_of(test::turntable + "outputs:\n" + outputs + "loads:\n" + loads);
+  };
+  const std::string chain =
+      "  law: {type: pid, of: back, to: nothing, proportional: 1}\n"
+      "  drive: {type: actuator, of: law, hinge: axle, frequency: 10}\n";
+  const std::string formula = problem("  back: {type: expression, value: -turn.z}\n", chain);
+  EXPECT_THAT(formula, HasSubstr("/outputs/back: no number 'turn.z'"));
+  EXPECT_EQ(std::count(formula.begin(), formula.end(), '\n'), 0) << formula;
+  const std::string law =
+      problem("  shown: {type: control, of: law}\n  twice: {type: expression, value: 2 * shown.error}\n",
+              "  law: {type: pid, of: axel.rate, to: nothing, proportional: 1}\n"
+              "  drive: {type: actuator, of: law, hinge: axle, frequency: 10}\n");
+  EXPECT_THAT(law, HasSubstr("/loads/law/of"));
+  EXPECT_EQ(std::count(law.begin(), law.end(), '\n'), 0) << law;
+  // Two that rest on each other and on nothing that is wrong are not silent.
+  EXPECT_THAT(problem("  shown: {type: control, of: law}\n",
+                      "  law: {type: pid, of: shown.command, hinge: axle, proportional: 1}\n"),
+              HasSubstr("/loads/law"));
 }
 
 TEST(Control, FormulasThatRunAwayAreNamedWhereTheyEndARun) {

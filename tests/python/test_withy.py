@@ -72,6 +72,24 @@ def test_scenes_are_values(slew):
     assert turned.run(time={"end": 1})["axle.rate"][-1] == pytest.approx(1, abs=1e-9)
 
 
+def test_a_scene_that_set_has_completed_can_be_pickled():
+    broken = TURNTABLE.replace("mass: ", "mass: -", 1)
+    assert broken != TURNTABLE
+    mended = withy.loads(broken, check=False).set("bodies.table.mass", 3)
+    assert pickle.loads(pickle.dumps(mended)).to_yaml() == mended.to_yaml()
+
+
+def test_a_misspelt_set_is_taken_back(slew):
+    fast = slew.copy().set("loads.slew.time_scale", 1.2).set("loads.slew.time_scal", 3)
+    with pytest.raises(withy.SceneError, match="did you mean 'time_scale'"):
+        fast.check()
+    with pytest.raises(KeyError, match="did you mean 'loads.slew.time_scal'"):
+        fast.unset("loads.slew.time_skal")
+    fast.unset("loads.slew.time_scal").check()
+    assert fast.to_yaml() == slew.copy().set("loads.slew.time_scale", 1.2).to_yaml()
+    assert fast.unset("loads.slew.time_scale").to_yaml() == slew.to_yaml()
+
+
 def test_errors_have_their_places(slew, tmp_path):
     text = "format: withy/1\nbodies: {b: {type: rigd}}\nhinges: {}\n"
     with pytest.raises(withy.SceneError, match=r"(?s)(?=.*mine.yaml:2:)(?=.*did you mean 'rigid')"):
@@ -101,6 +119,9 @@ def test_a_simulation_is_stepped():
         assert simulation.time == t
         assert simulation.outputs["axle"] == pytest.approx(x, abs=1e-9)
         assert simulation.outputs["axle.rate"] == pytest.approx(v, abs=1e-9)
+    without = withy.loads(TURNTABLE.replace("loads: {command: {type: input, hinge: axle}}", ""))
+    with pytest.raises(KeyError, match="no input 'push'; there is none"):
+        withy.Simulation(without).inputs["push"]
     with pytest.raises(KeyError, match="did you mean 'command'"):
         simulation.inputs["comand"] = 1
     with pytest.raises(KeyError, match="did you mean 'axle'"):

@@ -21,6 +21,10 @@ const BadScene bad_scenes[] = {
     {"syntax_unclosed_list", "gravity: [0, -9.81, 0]", "gravity: [0, -9.81, 0",
      "3:5: syntax: a list in brackets goes on where it should end; is a ',' missing before here, or a ']'?"},
     {"syntax_tab_indentation", "    type: rigid", "\ttype: rigid", "6:2: syntax: a tab; indent with spaces, not tabs"},
+    {"syntax_tab_before_a_key", "  hub:", "\thub:", "5:5: syntax: a tab; indent with spaces, not tabs"},
+    {"syntax_indented_farther", "    mass: 20.0", "      mass: 20.0",
+     "7:11: syntax: a ':' where none can stand; this line is indented farther than the one before, which has its value "
+     "already"},
     {"syntax_bad_indentation", "    mass: 20.0", "   mass: 20.0",
      "7:4: syntax: this line is indented otherwise than those that it belongs to, or a line before lacks its ':'"},
     {"syntax_missing_comma", "type: revolute, axis: [0, 0, 1], parent: world,",

@@ -36,6 +36,12 @@ TEST_F(Overrides, AddWhatTheFormatKnowsAndTheFileLeavesOut) {
 
 TEST_F(Overrides, TakeEffectInTheirOrder) { EXPECT_EQ(read({"time.end=2", "time.end=3"}).end, 3); }
 
+TEST_F(Overrides, MayHaveBlanksAroundTheEquals) {
+  EXPECT_EQ(read({"time.end = 2"}).end, 2);
+  EXPECT_EQ(read({" formulation = ruthless "}).formulation_name, "ruthless");
+  EXPECT_NE(problem(" = 2"), "");
+}
+
 TEST_F(Overrides, ReplaceWholeMaps) {
   const Scene s = read({"time={end: 4}", "formulation=ruthless"});
   EXPECT_EQ(s.end, 4);

@@ -50,6 +50,65 @@ TEST(Loop, OfASampledDamperIsUnstableAtTwiceTheInertiaOverTheDamping) {
   EXPECT_EQ(r.roots.poles.size(), 1);
 }
 
+/// A mass of 45 kg behind a PID, far from its reference: a chain of three integrators.
+std::string chain(const std::string& clock) {
+  return R"(
+bodies: {m: {type: rigid, mass: 45}}
+hinges: {rail: {type: prismatic, axis: [1, 0, 0], parent: world, child: m}}
+loads: {control: {type: pid, hinge: rail, proportional: 4500, integral: 2000, derivative: 630, reference: 0.5)" +
+         clock + "}}\n";
+}
+
+TEST(Loop, OfAChainOfIntegratorsHasItsMarginsWhateverEffortStands) {
+  const Response r = response(at_start(scene_of(chain(""))), {"control", "", {}, {}, 50, {}});
+  ASSERT_TRUE(r.margins);
+  EXPECT_EQ(r.integrators, 3);
+  EXPECT_NEAR(r.static_gain, 2000. / 45, 1e-8);
+  EXPECT_TRUE(r.margins->stable);
+  // L = (630 s² + 4500 s + 2000)/(45 s³) is real at ω² = 2000/630.
+  ASSERT_NE(r.margins->lower(), nullptr);
+  EXPECT_NEAR(r.margins->lower()->omega, std::sqrt(2000. / 630), 1e-8);
+  EXPECT_NEAR(r.margins->lower()->factor, 45 * 2000 / (630. * 4500), 1e-9);
+  ASSERT_EQ(r.margins->phases.size(), 1U);
+  const std::complex<double> s(0, r.margins->phase()->omega);
+  const std::complex<double> L = (630. * s * s + 4500. * s + 2000.) / (45. * s * s * s);
+  EXPECT_NEAR(std::abs(L), 1, 1e-8);
+  EXPECT_NEAR(r.margins->phase()->angle, pi + std::arg(L), 1e-8);
+}
+
+TEST(Loop, OfASampledChainOfIntegratorsWithADelayHasItsMargins) {
+  constexpr double T = 0.002;
+  const Response r =
+      response(at_start(scene_of(chain(", sample: 0.002, delay: 0.002"))), {"control", "", {}, {}, 50, {}});
+  ASSERT_TRUE(r.margins);
+  EXPECT_EQ(r.integrators, 3);
+  EXPECT_NEAR(r.static_gain, 2000. / 45, 1e-6);
+  EXPECT_TRUE(r.margins->stable);
+  const auto L = [T](double omega) {
+    const std::complex<double> z = std::polar(1., omega * T), d = z - 1.;
+    return ((4500. + 2000. * T / d) * T * T * (z + 1.) / (2. * d * d) + 630. * T / d) / (45. * z);
+  };
+  ASSERT_NE(r.margins->lower(), nullptr);
+  ASSERT_NE(r.margins->upper(), nullptr);
+  for (const GainMargin* g : {r.margins->lower(), r.margins->upper()}) {
+    EXPECT_NEAR(L(g->omega).real(), -1 / g->factor, 1e-6 / g->factor);
+    EXPECT_NEAR(L(g->omega).imag(), 0, 1e-6 / g->factor);
+  }
+  ASSERT_EQ(r.margins->phases.size(), 1U);
+  EXPECT_NEAR(std::abs(L(r.margins->phase()->omega)), 1, 1e-6);
+  EXPECT_NEAR(r.margins->phase()->angle, pi + std::arg(L(r.margins->phase()->omega)), 1e-6);
+}
+
+TEST(Loop, OfAControllerAtItsLimitIsSaidToBeOpen) {
+  const Configuration far = at_start(scene_of(chain(", limit: 400")));
+  try {
+    response(far, {"control", "", {}, {}, 50, {}});
+    FAIL() << "no error";
+  } catch (const std::exception& e) {
+    EXPECT_NE(std::string(e.what()).find("it is at a limit"), std::string::npos) << e.what();
+  }
+}
+
 using Gains = std::vector<std::pair<std::string, double>>;
 
 /// Greatest |coordinate| in the last over that in the first fifth of a run with the controller's gains times `factor`.

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 def nearest(name: object, known: list[str]) -> str:
     """What an error about a name says after it: the nearest one, or all."""
     near = difflib.get_close_matches(str(name), known, 1)
+    if not near and not known:
+        return "; there is none"
     return f"; did you mean {near[0]!r}?" if near else f"; known: {', '.join(known)}"
 
 
@@ -31,8 +33,8 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
     """The table of a run by the names of its columns, those of results.csv: ``result["shoulder"]``.
 
     Attributes:
-        status: ``completed``, ``diverged``, ``singular``, ``step-underflow``, ``interrupted``, ``load-failed`` or
-            ``too-stiff``.
+        status: ``completed``, ``inaccurate``, ``diverged``, ``singular``, ``step-underflow``, ``interrupted``,
+            ``load-failed`` or ``too-stiff``.
         message: the physical reason of a bad end, or what a completed run should not keep to itself; else empty.
         units: SI unit of each column by its name; empty for modal coordinates.
         table: all numbers [rows, columns], in SI units.
@@ -117,7 +119,8 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
         """Draws columns over time with matplotlib, angles in degrees.
 
         Args:
-            names: of columns, or their beginnings up to a dot (``"link1.tip"``); none: the coordinates of hinges.
+            names: of columns, or their beginnings up to a dot (``"link1.tip"``), or ``"link1.tip.deflection"``; none: the
+                coordinates of hinges.
             axes: of matplotlib, to draw into; new ones where left out.
 
         Returns:
@@ -148,7 +151,8 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
             return [n for n in self if n in hinges or (n.split(".")[0] in hinges and self.units[n] in ("m", "rad"))]
         chosen = []
         for name in names:
-            found = [name] if name in self else [n for n in self if n.startswith(name + ".")]
+            after = "_" if name.endswith(".deflection") else "."
+            found = [name] if name in self else [n for n in self if n.startswith(name + after)]
             if not found:
                 raise unknown("column", name, list(self))
             chosen += found

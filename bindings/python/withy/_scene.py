@@ -213,6 +213,26 @@ class Scene:
         self._values = None
         return self
 
+    def unset(self, path: str) -> Scene:
+        """Takes back what set() has said of a value since parts of the scene were last assigned in code.
+
+        Args:
+            path: as set() was given it.
+
+        Returns:
+            The scene itself.
+
+        Raises:
+            KeyError: with the nearest path where set() has said nothing of this one.
+        """
+        paths = [change.partition("=")[0] for change in self._made.changes]
+        if path not in paths:
+            raise unknown("set value", path, paths)
+        kept = [change for change, of in zip(self._made.changes, paths) if of != path]
+        self._read = _restored(self._made.text, self._made.name, self._plugins, kept)._made
+        self._values = None
+        return self
+
     def copy(self) -> Scene:
         """A scene of its own that says the same."""
         return Scene._of(self._made.copy(), self._plugins)
@@ -351,7 +371,7 @@ class Scene:
 
 
 def _restored(text: str, name: str, plugins: tuple[str, ...], changes: list[str]) -> Scene:
-    scene = loads(text, name, plugins)
+    scene = loads(text, name, plugins, check=False)  # what is wrong in the text may be mended by the changes
     for change in changes:
         path, _, value = change.partition("=")
         scene.set(path, value)
