@@ -80,16 +80,6 @@ LinearSystem LinearSystem::between(Eigen::Index input, Eigen::Index output) cons
   return {A, B.col(input), C.row(output), D.block(output, input, 1, 1), period};
 }
 
-std::pair<Eigen::MatrixXd, Eigen::MatrixXd> hold(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double T) {
-  const Eigen::Index n = A.rows(), m = B.cols();
-  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + m, n + m);
-  both.topLeftCorner(n, n) = A * T;
-  both.topRightCorner(n, m) = B * T;
-  if (!both.allFinite()) throw std::domain_error("the linear system is not finite");
-  const Eigen::MatrixXd e = both.exp();
-  return {e.topLeftCorner(n, n), e.topRightCorner(n, m)};
-}
-
 Eigen::VectorXd balance(LinearSystem& s) {
   const Eigen::Index n = s.A.rows();
   Eigen::VectorXd units = Eigen::VectorXd::Ones(n);
@@ -111,6 +101,26 @@ Eigen::VectorXd balance(LinearSystem& s) {
   s.B = units.cwiseInverse().asDiagonal() * s.B;
   s.C = s.C * units.asDiagonal();
   return units;
+}
+
+std::pair<Eigen::MatrixXd, Eigen::MatrixXd> hold(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double T) {
+  const Eigen::Index n = A.rows(), m = B.cols();
+  // The exponential is exact for the norm of all of it: in units in which states, and inputs beside them, are of one
+  // size. What a newton does to a gram is a large number, and what matters to it would be lost beside it.
+  LinearSystem s{A, B, Eigen::MatrixXd::Zero(0, n), Eigen::MatrixXd::Zero(0, m)};
+  const Eigen::VectorXd of_states = balance(s);
+  Eigen::VectorXd of_inputs = Eigen::VectorXd::Ones(m);
+  const double size = s.A.norm();
+  for (Eigen::Index k = 0; k < m; ++k)
+    if (const double felt = s.B.col(k).norm(); felt > 0)
+      of_inputs[k] = std::exp2(std::round(std::log2((size > 0 ? size : 1) / felt)));
+  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + m, n + m);
+  both.topLeftCorner(n, n) = s.A * T;
+  both.topRightCorner(n, m) = s.B * of_inputs.asDiagonal() * T;
+  if (!both.allFinite()) throw std::domain_error("the linear system is not finite");
+  const Eigen::MatrixXd e = both.exp();
+  return {of_states.asDiagonal() * e.topLeftCorner(n, n) * of_states.cwiseInverse().asDiagonal(),
+          of_states.asDiagonal() * e.topRightCorner(n, m) * of_inputs.cwiseInverse().asDiagonal()};
 }
 
 Eigen::VectorXcd poles(const LinearSystem& system) {

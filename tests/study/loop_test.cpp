@@ -1,4 +1,5 @@
 // Margins of loops: those of textbooks, and where a run begins to grow.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,6 +49,30 @@ TEST(Loop, OfASampledDamperIsUnstableAtTwiceTheInertiaOverTheDamping) {
   EXPECT_NEAR(r.margins->upper()->omega, pi / 0.05, 1e-9);
   // L = c T / (J (z − 1)) has the pole 1 and no zero.
   EXPECT_EQ(r.roots.poles.size(), 1);
+}
+
+/// A wheel of 0.01 kg m² times `scale` behind a controller with an integral, all efforts as small.
+Response of_small_wheel(double scale, const std::string& sample, double limit) {
+  const std::string bounded = limit > 0 ? fmt::format(", limit: {}", limit * scale) : "";
+  return response(at_start(scene_of(fmt::format(R"(
+bodies: {{wheel: {{type: rigid, mass: 1, inertia: [{0}, {0}, {0}, 0, 0, 0]}}}}
+hinges: {{axle: {{type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}}}
+loads: {{control: {{type: pid, hinge: axle, proportional: {1}, integral: {0}, derivative: {2}, filter: 0.05{3}{4}}}}}
+)",
+                                                0.01 * scale, 0.04 * scale, 0.03 * scale, sample, bounded))),
+                  {"control", "", {}, {}, 50, {}});
+}
+
+TEST(Loop, OfAControllerIsThatWithoutItsLimitHoweverSmallTheLimitIs) {
+  for (const char* sample : {"", ", sample: 0.01"}) {
+    for (const double scale : {1.0, 1e-3, 1e-6}) {
+      const Response free = of_small_wheel(scale, sample, 0), bounded = of_small_wheel(scale, sample, 1e-3);
+      ASSERT_TRUE(free.margins && bounded.margins && free.margins->phase() && bounded.margins->phase());
+      EXPECT_TRUE(bounded.margins->stable) << scale << sample;
+      EXPECT_NEAR(bounded.margins->phase()->omega, free.margins->phase()->omega, 1e-7) << scale << sample;
+      EXPECT_NEAR(bounded.margins->phase()->angle, free.margins->phase()->angle, 1e-7) << scale << sample;
+    }
+  }
 }
 
 using Gains = std::vector<std::pair<std::string, double>>;
