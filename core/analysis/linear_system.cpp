@@ -123,6 +123,23 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> hold(const Eigen::MatrixXd& A, const
           of_states.asDiagonal() * e.topRightCorner(n, m) * of_inputs.cwiseInverse().asDiagonal()};
 }
 
+namespace {
+
+/// Balances B and C too, as if y were the input: a state that A does not move, or that moves none, has units all the
+/// same, by which the others are not to be measured.
+void balance_with_ends(LinearSystem& s) {
+  const Eigen::Index n = s.A.rows();
+  Eigen::MatrixXd closed = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  closed << s.A, s.B, s.C, 0;
+  LinearSystem all{closed, Eigen::MatrixXd::Zero(n + 1, 0), Eigen::MatrixXd::Zero(0, n + 1), {}};
+  balance(all);
+  s.A = all.A.topLeftCorner(n, n);
+  s.B = all.A.topRightCorner(n, 1);
+  s.C = all.A.bottomLeftCorner(1, n);
+}
+
+}  // namespace
+
 Eigen::VectorXcd poles(const LinearSystem& system) {
   LinearSystem s = system;
   balance(s);
@@ -130,7 +147,7 @@ Eigen::VectorXcd poles(const LinearSystem& system) {
 }
 
 ZerosAndGain zeros(LinearSystem s) {
-  balance(s);
+  balance_with_ends(s);
   const double output = s.C.norm(), input = s.B.norm(), direct = std::abs(s.D(0, 0));
   double product = 1, scale = output;
   // D by itself, beside what the states carry to y: they have the unit of time between them, which the norm of A tells.
@@ -152,7 +169,10 @@ ZerosAndGain zeros(LinearSystem s) {
 }
 
 TransferFunction::TransferFunction(LinearSystem system) : given_(std::move(system)), of_(given_) {
-  balance(of_);
+  if (of_.B.cols() == 1 && of_.C.rows() == 1)
+    balance_with_ends(of_);
+  else
+    balance(of_);
   if (of_.A.rows() < 2) return;
   const Eigen::HessenbergDecomposition<Eigen::MatrixXd> form(of_.A);
   const Eigen::MatrixXd Q = form.matrixQ();

@@ -75,6 +75,19 @@ TEST(Loop, OfAControllerIsThatWithoutItsLimitHoweverSmallTheLimitIs) {
   }
 }
 
+TEST(Loop, OfAWheelIsTheSameWhateverItsSize) {
+  for (const char* sample : {"", ", sample: 0.01"}) {
+    const Response wheel = of_small_wheel(1, sample, 0);
+    for (const double scale : {1e12, 1e-6, 1e-12, 1e-18}) {
+      const Response small = of_small_wheel(scale, sample, 0);
+      ASSERT_TRUE(small.margins && small.margins->phase()) << scale << sample;
+      EXPECT_TRUE(small.margins->stable) << scale << sample;
+      EXPECT_NEAR(small.margins->phase()->omega, wheel.margins->phase()->omega, 1e-7) << scale << sample;
+      EXPECT_NEAR(small.margins->phase()->angle, wheel.margins->phase()->angle, 1e-7) << scale << sample;
+    }
+  }
+}
+
 using Gains = std::vector<std::pair<std::string, double>>;
 
 /// Greatest |coordinate| in the last over that in the first fifth of a run with the controller's gains times `factor`.
