@@ -6,8 +6,8 @@
 
 #include "withy/core/model/held_numbers.hpp"
 #include "withy/core/model/hosted_motion.hpp"
-#include "withy/core/plugin/central_difference.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/tangents/refined_difference.hpp"
 
 namespace withy::fmi {
 namespace {
@@ -192,7 +192,7 @@ void Dynamics::differences(std::span<const double> along_states, std::span<const
     for (std::size_t c = 0; c < columns.size(); ++c) numbers[static_cast<Eigen::Index>(c)] = row[columns[c]];
     return numbers;
   };
-  const Eigen::VectorXd found = central_difference(at, h);
+  const Eigen::VectorXd found = refined_difference(at, h);
   if (!found.allFinite()) throw Discarded("t = " + brief(state_.time) + " s: an output has no finite derivative");
   std::copy(found.begin(), found.end(), values.begin());
 }

@@ -80,16 +80,6 @@ LinearSystem LinearSystem::between(Eigen::Index input, Eigen::Index output) cons
   return {A, B.col(input), C.row(output), D.block(output, input, 1, 1), period};
 }
 
-std::pair<Eigen::MatrixXd, Eigen::MatrixXd> hold(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double T) {
-  const Eigen::Index n = A.rows(), m = B.cols();
-  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + m, n + m);
-  both.topLeftCorner(n, n) = A * T;
-  both.topRightCorner(n, m) = B * T;
-  if (!both.allFinite()) throw std::domain_error("the linear system is not finite");
-  const Eigen::MatrixXd e = both.exp();
-  return {e.topLeftCorner(n, n), e.topRightCorner(n, m)};
-}
-
 Eigen::VectorXd balance(LinearSystem& s) {
   const Eigen::Index n = s.A.rows();
   Eigen::VectorXd units = Eigen::VectorXd::Ones(n);
@@ -113,6 +103,43 @@ Eigen::VectorXd balance(LinearSystem& s) {
   return units;
 }
 
+std::pair<Eigen::MatrixXd, Eigen::MatrixXd> hold(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double T) {
+  const Eigen::Index n = A.rows(), m = B.cols();
+  // The exponential is exact for the norm of all of it: in units in which states, and inputs beside them, are of one
+  // size. What a newton does to a gram is a large number, and what matters to it would be lost beside it.
+  LinearSystem s{A, B, Eigen::MatrixXd::Zero(0, n), Eigen::MatrixXd::Zero(0, m)};
+  const Eigen::VectorXd of_states = balance(s);
+  Eigen::VectorXd of_inputs = Eigen::VectorXd::Ones(m);
+  const double size = s.A.norm();
+  for (Eigen::Index k = 0; k < m; ++k)
+    if (const double felt = s.B.col(k).norm(); felt > 0)
+      of_inputs[k] = std::exp2(std::round(std::log2((size > 0 ? size : 1) / felt)));
+  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + m, n + m);
+  both.topLeftCorner(n, n) = s.A * T;
+  both.topRightCorner(n, m) = s.B * of_inputs.asDiagonal() * T;
+  if (!both.allFinite()) throw std::domain_error("the linear system is not finite");
+  const Eigen::MatrixXd e = both.exp();
+  return {of_states.asDiagonal() * e.topLeftCorner(n, n) * of_states.cwiseInverse().asDiagonal(),
+          of_states.asDiagonal() * e.topRightCorner(n, m) * of_inputs.cwiseInverse().asDiagonal()};
+}
+
+namespace {
+
+/// Balances B and C too, as if y were the input: a state that A does not move, or that moves none, has units all the
+/// same, by which the others are not to be measured.
+void balance_with_ends(LinearSystem& s) {
+  const Eigen::Index n = s.A.rows();
+  Eigen::MatrixXd closed = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  closed << s.A, s.B, s.C, 0;
+  LinearSystem all{closed, Eigen::MatrixXd::Zero(n + 1, 0), Eigen::MatrixXd::Zero(0, n + 1), {}};
+  balance(all);
+  s.A = all.A.topLeftCorner(n, n);
+  s.B = all.A.topRightCorner(n, 1);
+  s.C = all.A.bottomLeftCorner(1, n);
+}
+
+}  // namespace
+
 Eigen::VectorXcd poles(const LinearSystem& system) {
   LinearSystem s = system;
   balance(s);
@@ -123,7 +150,7 @@ Eigen::VectorXcd poles(const LinearSystem& system) {
 }
 
 ZerosAndGain zeros(LinearSystem s) {
-  balance(s);
+  balance_with_ends(s);
   const double output = s.C.norm(), input = s.B.norm(), direct = std::abs(s.D(0, 0));
   double product = 1, scale = output;
   // D by itself, beside what the states carry to y: they have the unit of time between them, which the norm of A tells.
@@ -145,7 +172,10 @@ ZerosAndGain zeros(LinearSystem s) {
 }
 
 TransferFunction::TransferFunction(LinearSystem system) : given_(std::move(system)), of_(given_) {
-  balance(of_);
+  if (of_.B.cols() == 1 && of_.C.rows() == 1)
+    balance_with_ends(of_);
+  else
+    balance(of_);
   if (of_.A.rows() < 2) return;
   const Eigen::HessenbergDecomposition<Eigen::MatrixXd> form(of_.A);
   const Eigen::MatrixXd Q = form.matrixQ();

@@ -85,9 +85,13 @@ std::vector<double> Signals::probe(const Model& model, Unknown unknown, std::vec
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += 0.1 * std::sin(1.0 + static_cast<double>(slot.position + i));
     model.hinges()[h].hinge->normalize(x);
   }
-  for (const Slot& slot : layout.bodies) {
-    for (std::size_t i = 0; i < slot.positions; ++i)
-      state.y[slot.position + i] = 1e-3 * std::cos(static_cast<double>(slot.position + i));
+  // A part of the body's length: an exact rod that is bent by many of its lengths has no numbers.
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const Slot* const slot = layout.modes(b);
+    if (slot == nullptr) continue;
+    const double length = model.bodies()[b].body->shape().length, size = 1e-3 * (length > 0 ? length : 1.0);
+    for (std::size_t i = 0; i < slot->positions; ++i)
+      state.y[slot->position + i] = size * std::cos(static_cast<double>(slot->position + i));
   }
   for (std::size_t i = 0; i < layout.speeds; ++i)
     state.y[layout.positions + i] = 0.1 * std::cos(1.0 + static_cast<double>(i));

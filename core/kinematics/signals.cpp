@@ -1,14 +1,12 @@
 #include "withy/core/kinematics/signals.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
 
 #include "withy/core/deformation/mass_points.hpp"
-#include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/model/signal_source.hpp"
 #include "withy/core/plugin/sensed_fields.hpp"
 
@@ -101,13 +99,6 @@ class Signals::Seen final : public SensedState, public SensedFields {
 Signals::Signals(const Model& model, const Terms& terms, std::vector<std::string> names) : names_(std::move(names)) {
   zeros_.assign(model.layout().speeds, 0.0);
   for (const std::string& name : names_) sources_.push_back(find(model, name));
-  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
-    const std::vector<HingeRate> rates = hinge_rates(*model.hinges()[h].hinge);
-    for (std::size_t i = 0; i < rates.size(); ++i)
-      if (rates[i].angular) turning_.push_back(model.layout().hinges[h].speed + i);
-  }
-  for (const Slot& slot : model.layout().bodies)
-    for (std::size_t i = 0; i < slot.speeds; ++i) turning_.push_back(slot.speed + i);
   choose_readings(model, terms);
 }
 Signals::Signals(Signals&&) noexcept = default;
@@ -154,8 +145,7 @@ std::size_t Signals::paths_doubles() const {
 
 void Signals::lay_out() {
   own_ = numbers_ + frames_.size() * doubles_of_motion;
-  if (accelerates_)
-    own_ += frames_.size() * (doubles_of_acceleration + doubles_of_motion) + 2 * model_->layout().positions;
+  if (accelerates_) own_ += frames_.size() * (doubles_of_acceleration + doubles_of_motion);
   own_ += paths_doubles();
   scratch_ = own_;
   for (const Source& s : sources_) {
@@ -181,39 +171,20 @@ void Signals::read_sensors(const LoadView& view, Unknown unknown, std::vector<Fr
 }
 
 void Signals::accelerate(const LoadView& view, std::byte* work) const noexcept {
-  constexpr double turn = 1e-3;  // rad
-  const Layout& layout = view.layout;
   const std::size_t count = frames_.size();
-  double* at = view.scratch.data() + numbers_ + count * doubles_of_motion;
+  double* const at = view.scratch.data() + numbers_ + count * doubles_of_motion;
   auto* const found = reinterpret_cast<FrameAcceleration*>(at);
-  auto* const motions = reinterpret_cast<FrameMotion*>(at += count * doubles_of_acceleration);
-  const std::span<double> x_dot(at += count * doubles_of_motion, layout.positions);
-  const std::span<double> x(at + layout.positions, layout.positions);
-  for (std::size_t i = 0; i < count; ++i) std::construct_at(motions + i);
-  paths_->motions(view.positions(), view.accelerations, {motions, count}, work);
-  for (std::size_t i = 0; i < count; ++i)
-    std::construct_at(found + i, FrameAcceleration{motions[i].angular_velocity, motions[i].velocity});
-  double fastest = 0;
-  for (const std::size_t s : turning_) fastest = std::max(fastest, std::abs(view.speeds()[s]));
-  if (fastest == 0) return;
-  const std::span<const double> now = view.positions();
-  for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
-    const Slot& slot = layout.hinges[h];
-    if (slot.speeds > 0)
-      model_->hinges()[h].hinge->derivatives(now.subspan(slot.position, slot.positions),
-                                             view.speeds().subspan(slot.speed, slot.speeds),
-                                             x_dot.subspan(slot.position, slot.positions));
+  auto* const motions = reinterpret_cast<FrameMotion*>(at + count * doubles_of_acceleration);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::construct_at(found + i);
+    std::construct_at(motions + i);
   }
-  for (const Slot& slot : layout.bodies)
-    for (std::size_t i = 0; i < slot.positions; ++i) x_dot[slot.position + i] = view.speeds()[slot.speed + i];
-  const double step = turn / fastest;
-  for (const auto& [place, weight] : {std::pair(-2.0, 1.0), {-1.0, -8.0}, {1.0, 8.0}, {2.0, -1.0}}) {
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = now[i] + place * step * x_dot[i];
-    paths_->motions(x, view.speeds(), {motions, count}, work);
-    for (std::size_t i = 0; i < count; ++i) {
-      found[i].angular += weight / (12 * step) * motions[i].angular_velocity;
-      found[i].linear += weight / (12 * step) * motions[i].velocity;
-    }
+  // First, for it is of the state that the work memory has.
+  paths_->velocity_accelerations({found, count}, work);
+  paths_->motions(view.positions(), view.accelerations, {motions, count}, work);
+  for (std::size_t i = 0; i < count; ++i) {
+    found[i].angular += motions[i].angular_velocity;
+    found[i].linear += motions[i].velocity;
   }
 }
 

@@ -75,8 +75,7 @@ class [[gnu::visibility("default")]] Signals {
   /// Refuses numbers that depend on efforts or energies, and marks those that depend on accelerations.
   void sort_out(const Model& model);
   void read_sensors(const LoadView& view, Unknown unknown, std::vector<FrameIndex>* asked) const noexcept;
-  /// Accelerations of the frames in the scratch space: J u̇ + J̇ u, the latter by the central difference of fourth order
-  /// of J(x) u along ẋ, over a thousandth of a radian.
+  /// Accelerations of the frames in the scratch space, J u̇ + J̇ u, at the state that the work memory has.
   void accelerate(const LoadView& view, std::byte* work) const noexcept;
   /// The numbers of the sources at a state about the reference.
   [[nodiscard]] std::vector<double> probe(const Model& model, Unknown unknown, std::vector<FrameIndex>* asked) const;
@@ -91,7 +90,6 @@ class [[gnu::visibility("default")]] Signals {
   std::vector<FrameIndex> frames_;
   std::unique_ptr<const FramePaths> paths_;  ///< null: no frame is asked for
   std::vector<double> zeros_;                ///< one a speed
-  std::vector<std::size_t> turning_;         ///< speeds that are angular or of modes
   bool accelerates_ = false;                 ///< accelerations of frames are needed
   std::size_t own_ = 0;                      ///< doubles for sensors
   std::size_t scratch_ = 0;

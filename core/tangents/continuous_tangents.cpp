@@ -1,7 +1,7 @@
 #include "withy/core/tangents/continuous_tangents.hpp"
 
-#include "withy/core/plugin/central_difference.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
+#include "withy/core/tangents/refined_difference.hpp"
 
 namespace withy {
 namespace {
@@ -16,7 +16,7 @@ void add_differences(Function&& of, const Layout& layout, std::span<const double
                      ContinuousTangents& to) {
   const auto n = static_cast<Eigen::Index>(layout.speeds);
   const auto slope = [&](auto&& move) -> Eigen::VectorXd {
-    return central_difference(
+    return refined_difference(
         [&](double h) -> Eigen::VectorXd {
           std::vector<double> moved(y.begin(), y.end());
           move(moved, h);
@@ -76,7 +76,7 @@ ContinuousTangents continuous_tangents(const Model& model, double t, std::span<c
     };
     // Rates are linear in the accelerations, but for limits.
     const auto by_acceleration = [&](Eigen::Index j) {
-      return central_difference(
+      return refined_difference(
           [&](double h) -> Eigen::VectorXd {
             std::vector<double> moved(a.begin(), a.end());
             moved[static_cast<std::size_t>(j)] += h;

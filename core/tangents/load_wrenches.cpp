@@ -1,7 +1,7 @@
 #include "withy/core/tangents/load_wrenches.hpp"
 
 #include "withy/core/deformation/mass_points.hpp"
-#include "withy/core/plugin/central_difference.hpp"
+#include "withy/core/tangents/refined_difference.hpp"
 
 namespace withy::analysis {
 
@@ -68,7 +68,7 @@ bool add_differences(const WrenchesAt& wrenches_at, const std::vector<FrameMotio
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const JetDerivatives change = change_of(frames[k], motions[k], part, axis);
         if (change.isZero(0)) continue;
-        const Wrenches slope = central_difference(
+        const Wrenches slope = refined_difference(
             [&](double h) {
               std::vector<FrameMotion> changed = motions;
               changed[k] = moved(motions[k], part, h * Vector3::Unit(axis));

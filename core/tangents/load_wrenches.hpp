@@ -8,7 +8,8 @@
 
 namespace withy::analysis {
 
-/// Loads and hinges that have no derivatives of their own are differentiated with this step [rad, m, s⁻¹ of these].
+/// Loads that have no derivatives of their own are differentiated with this step [rad, m, s⁻¹ of these], or shorter
+/// ones where it is too long (refined_difference.hpp).
 constexpr double difference_step = 1e-3;
 
 /// Wrenches at frames in motion; y as State::y, for the load's own states.

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <functional>
 
-#include "withy/core/plugin/central_difference.hpp"
 #include "withy/core/tangents/continuous_tangents.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
+#include "withy/core/tangents/refined_difference.hpp"
 #include "withy/core/tangents/tangent_dynamics.hpp"
 
 namespace withy {
@@ -61,14 +61,14 @@ void TangentDynamics::add_loads(double t, std::span<const double> y, const Eigen
       return efforts;
     };
     for (Eigen::Index j = 0; j < n; ++j) {
-      by_position.col(j) += central_difference(
+      by_position.col(j) += refined_difference(
           [&](double h) {
             std::vector<double> moved(y.begin(), y.end());
             displace(moved, h * Eigen::VectorXd::Unit(n, j));
             return at(moved);
           },
           difference_step);
-      by_speed.col(j) += central_difference(
+      by_speed.col(j) += refined_difference(
           [&](double h) {
             std::vector<double> moved(y.begin(), y.end());
             moved[layout.positions + static_cast<std::size_t>(j)] += h;

@@ -1,6 +1,7 @@
 /// \file
 /// Loops closed by controllers, as the equations of motion have them: their solutions, derivatives and linear form,
 /// states that are kept, and steps that allocate nothing.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <Eigen/Core>
@@ -174,11 +175,23 @@ loads:
   seen: {type: state-space, of: [imu.x, imu.y, end.ax, end.wz, joint.acceleration], to: nothing, A: [[0, 0, 0, 0, 0], [0, 0, 0, 0, 0], [0, 0, 0, 0, 0], [0, 0, 0, 0, 0], [0, 0, 0, 0, 0]], B: [[1, 0, 0, 0, 0], [0, 1, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 1, 0], [0, 0, 0, 0, 1]], C: [[1, 0, 0, 0, 0]]}
 )";
 
-TEST(Control, AccelerationsThatAreMeasuredAreThoseOfTheOutputs) {
-  LoadedScene s(shaken_arm);
+/// Of the shaken arm with a boom of a length [m], at a state that is the same but for that; its axle turns or is at
+/// rest.
+void expect_measured_as_shown(const std::string& formulation, double length, bool turns) {
+  const double stiffness = 30 * std::pow(length, 4);  // the frequencies stay
+  LoadedScene s(shaken_arm, {"formulation=" + formulation, fmt::format("bodies.boom.length={}", length),
+                             fmt::format("bodies.boom.bending_y.stiffness={}", stiffness),
+                             fmt::format("bodies.hub.frames.out.position=[{}, 0, 0]", 0.1 * length)});
   const Layout& layout = s.scene.model->layout();
   State state = s.scene.initial;
   for (std::size_t i = 0; i < layout.moving(); ++i) state.y[i] += 0.3 * std::sin(1.0 + 2.3 * static_cast<double>(i));
+  if (!turns) state.y[layout.positions + s.hinge("axle").speed] = 0;
+  for (const Slot& boom : layout.bodies) {
+    for (std::size_t i = 0; i < boom.positions; ++i) {
+      state.y[boom.position + i] *= length;
+      state.y[layout.positions + boom.speed + i] *= length;
+    }
+  }
   Work work = s.equations->make_work();
   std::vector<double> y_dot(layout.size());
   ASSERT_TRUE(s.equations->derivatives(0, state.y, y_dot, work).ok());
@@ -193,9 +206,20 @@ TEST(Control, AccelerationsThatAreMeasuredAreThoseOfTheOutputs) {
         std::find_if(reader.columns().begin(), reader.columns().end(), [&](const Column& c) { return c.name == name; });
     ASSERT_NE(column, reader.columns().end()) << name;
     const double value = values[static_cast<std::size_t>(column - reader.columns().begin())];
-    EXPECT_NEAR(y_dot[k++], value, 1e-10 * (1 + std::abs(value))) << name;
+    EXPECT_NEAR(y_dot[k++], value, 1e-10 * (length + std::abs(value))) << name << ", " << formulation << ", " << length;
     EXPECT_NE(value, 0) << name;
   }
+}
+
+TEST(Control, AccelerationsThatAreMeasuredAreThoseOfTheOutputs) {
+  for (const char* formulation : {"quadratic", "exact", "consistent", "symmetric", "ruthless"})
+    expect_measured_as_shown(formulation, 1, true);
+}
+
+TEST(Control, AccelerationsAreMeasuredAlikeOnBeamsOfMicrometresAndOfKilometres) {
+  for (const char* formulation : {"quadratic", "exact"})
+    for (const double length : {1e-6, 1e-3, 1e3})
+      for (const bool turns : {false, true}) expect_measured_as_shown(formulation, length, turns);
 }
 
 TEST(Control, JacobiansKnowOfMeasuredAccelerations) {

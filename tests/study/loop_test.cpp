@@ -1,4 +1,5 @@
 // Margins of loops: those of textbooks, and where a run begins to grow.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -106,6 +107,43 @@ TEST(Loop, OfAControllerAtItsLimitIsSaidToBeOpen) {
     FAIL() << "no error";
   } catch (const std::exception& e) {
     EXPECT_NE(std::string(e.what()).find("it is at a limit"), std::string::npos) << e.what();
+  }
+}
+
+/// A wheel of 0.01 kg m² times `scale` behind a controller with an integral, all efforts as small.
+Response of_small_wheel(double scale, const std::string& sample, double limit) {
+  const std::string bounded = limit > 0 ? fmt::format(", limit: {}", limit * scale) : "";
+  return response(at_start(scene_of(fmt::format(R"(
+bodies: {{wheel: {{type: rigid, mass: 1, inertia: [{0}, {0}, {0}, 0, 0, 0]}}}}
+hinges: {{axle: {{type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}}}
+loads: {{control: {{type: pid, hinge: axle, proportional: {1}, integral: {0}, derivative: {2}, filter: 0.05{3}{4}}}}}
+)",
+                                                0.01 * scale, 0.04 * scale, 0.03 * scale, sample, bounded))),
+                  {"control", "", {}, {}, 50, {}});
+}
+
+TEST(Loop, OfAControllerIsThatWithoutItsLimitHoweverSmallTheLimitIs) {
+  for (const char* sample : {"", ", sample: 0.01"}) {
+    for (const double scale : {1.0, 1e-3, 1e-6}) {
+      const Response free = of_small_wheel(scale, sample, 0), bounded = of_small_wheel(scale, sample, 1e-3);
+      ASSERT_TRUE(free.margins && bounded.margins && free.margins->phase() && bounded.margins->phase());
+      EXPECT_TRUE(bounded.margins->stable) << scale << sample;
+      EXPECT_NEAR(bounded.margins->phase()->omega, free.margins->phase()->omega, 1e-7) << scale << sample;
+      EXPECT_NEAR(bounded.margins->phase()->angle, free.margins->phase()->angle, 1e-7) << scale << sample;
+    }
+  }
+}
+
+TEST(Loop, OfAWheelIsTheSameWhateverItsSize) {
+  for (const char* sample : {"", ", sample: 0.01"}) {
+    const Response wheel = of_small_wheel(1, sample, 0);
+    for (const double scale : {1e12, 1e-6, 1e-12, 1e-18}) {
+      const Response small = of_small_wheel(scale, sample, 0);
+      ASSERT_TRUE(small.margins && small.margins->phase()) << scale << sample;
+      EXPECT_TRUE(small.margins->stable) << scale << sample;
+      EXPECT_NEAR(small.margins->phase()->omega, wheel.margins->phase()->omega, 1e-7) << scale << sample;
+      EXPECT_NEAR(small.margins->phase()->angle, wheel.margins->phase()->angle, 1e-7) << scale << sample;
+    }
   }
 }
 

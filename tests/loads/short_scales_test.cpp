@@ -1,0 +1,68 @@
+/// \file
+/// Derivatives of loads that have none of their own, at lengths far below and above a metre.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "withy/core/tangents/refined_difference.hpp"
+#include "withy/core/tangents/tangent_dynamics.hpp"
+#include "withy/tests/loads/scene_run.hpp"
+
+namespace withy {
+namespace {
+
+using test::LoadedScene;
+using Number = Eigen::Matrix<double, 1, 1>;
+
+Tangents tangents_of(const LoadedScene& s) {
+  const TangentDynamics dynamics(s.scene.model, s.scene.formulation->terms());
+  const auto speeds = static_cast<Eigen::Index>(s.scene.model->layout().speeds);
+  return dynamics.tangents(0, s.scene.initial.y, Eigen::VectorXd::Zero(speeds));
+}
+
+/// A block that slides across the line of a spring of length d, slack at 0.4 d: its stiffness is 0.6 k whatever d.
+TEST(ShortScales, SpringsOfAnyLengthHaveTheirStiffness) {
+  for (double d = 1; d > 1e-7; d /= 10) {
+    const LoadedScene s(
+        "format: withy/1\ntime: {end: 1}\nbodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+        "hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}\n" +
+        fmt::format("loads: {{stay: {{type: spring-damper, frame: block, anchor: [0, {}, 0], stiffness: 1000, "
+                    "damping: 3, free_length: {}}}}}\n",
+                    d, 0.4 * d));
+    EXPECT_NEAR(tangents_of(s).by_position(0, 0), 600, 600e-8) << d;
+  }
+}
+
+/// A force −k x³/d² along x, at x = d, by a formula of a distance, which has no derivatives: its slope is −3 k.
+TEST(ShortScales, FormulasOfSignalsOfAnyLengthHaveTheirSlope) {
+  for (double d = 1; d > 1e-7; d /= 10) {
+    const LoadedScene s(
+        "format: withy/1\ntime: {end: 1}\nbodies: {block: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+        "hinges: {slide: {type: prismatic, axis: [1, 0, 0], parent: world, child: block}}\n"
+        "outputs: {far: {type: distance, to: block}}\n" +
+        fmt::format("loads: {{law: {{type: expression, hinge: slide, value: -30 * far * far * far / {} ^ 2}}}}\n"
+                    "initial: {{hinges: {{slide: {{position: [{}]}}}}}}\n",
+                    d, d));
+    EXPECT_NEAR(tangents_of(s).by_position(0, 0), 90, 90e-8) << d;
+  }
+}
+
+TEST(RefinedDifference, HasTheNumbersOfItsFirstStepWhereAShorterOneGivesTheSame) {
+  const auto f = [](double x) { return Number(std::sin(1 + x)); };
+  EXPECT_EQ(refined_difference(f, 1e-3)(0), central_difference(f, 1e-3)(0));
+}
+
+TEST(RefinedDifference, FindsTheSlopeBesideAKinkAndThatOfAShortScale) {
+  EXPECT_NEAR(refined_difference([](double x) { return Number(std::abs(x + 1e-6)); }, 1e-3)(0), 1, 1e-9);
+  EXPECT_NEAR(refined_difference([](double x) { return Number(std::tanh(x / 1e-6)); }, 1e-3)(0), 1e6, 1e-2);
+}
+
+TEST(RefinedDifference, TellsAJumpAsItsFirstStepHasIt) {
+  const auto f = [](double x) { return Number(x < 0 ? -1.0 : 1.0); };
+  EXPECT_EQ(refined_difference(f, 1e-3)(0), central_difference(f, 1e-3)(0));
+}
+
+}  // namespace
+}  // namespace withy
