@@ -14,9 +14,11 @@
 #include "withy/campaign/list_file.hpp"
 #include "withy/campaign/plan_reader.hpp"
 #include "withy/campaign/random.hpp"
+#include "withy/campaign/store.hpp"
 #include "withy/campaign/trials.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/provenance.hpp"
+#include "withy/results/results_error.hpp"
 #include "withy/scene/asked_outputs.hpp"
 #include "withy/scene/describe.hpp"
 #include "withy/scene/names.hpp"
@@ -305,7 +307,9 @@ class PlanBuilder {
 
 }  // namespace
 
-std::string is_a_scene(const std::string& file) try {
+std::string is_no_plan(const std::string& file) try {
+  if (std::filesystem::is_directory(file))
+    return fmt::format("{} is the store of a sweep; need its plan, {}", file, read_description(file).plan);
   Problems problems(file);
   Document document;
   if (!read_document(read_bytes(file), {}, document, problems.of_plan())) return {};
@@ -316,6 +320,8 @@ std::string is_a_scene(const std::string& file) try {
       "  format: withy-sweep/1\n  scene: {1}\n  vary:\n    bodies.NAME.mass: {{grid: [1, 2, 3]}}\n"
       "docs/sweep.md says more; withy run {0} runs the scene once",
       file, std::filesystem::path(file).filename().string());
+} catch (const ResultsError&) {
+  return {};
 } catch (const std::system_error&) {
   return {};
 }

@@ -73,8 +73,9 @@ struct Plan {
   std::string fingerprint;  ///< SHA-256 of all that decides on the bits of the cases: plan, scene, files, programs
 };
 
-/// What to do instead where a file is a scene, which is no plan; empty where it is none, or cannot be read.
-std::string is_a_scene(const std::string& file);
+/// What to do instead where what is given for a plan is a scene or the store of a sweep; empty where it is neither, or
+/// cannot be read.
+std::string is_no_plan(const std::string& file);
 
 /// Reads a plan, with its scene and its lists, and checks all it says: every path and every value that stands in it is
 /// tried in the scene.

@@ -44,7 +44,7 @@ ExitStatus sweep_case(const SweepArguments& arguments) {
 namespace {
 
 void add_plan(Options& o, SweepArguments& a) {
-  o.argument("PLAN", a.plan, "Plan of the sweep (YAML or JSON)").required().checked(campaign::is_a_scene);
+  o.argument("PLAN", a.plan, "Plan of the sweep (YAML or JSON)").required().checked(campaign::is_no_plan);
 }
 
 void add_case(Options& o, SweepArguments& a) {

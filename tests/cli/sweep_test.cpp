@@ -197,6 +197,8 @@ TEST(SweepCommand, FailuresAreResultsWithTheirReasonAndTheCommandThatRepeatsThem
   EXPECT_THAT(folder.read("store/failed.csv"), HasSubstr("withy sweep case plan.yaml 1\n"));
   EXPECT_EQ(folder.sweep({"case", "plan.yaml", "1"}).status, 1);
   EXPECT_EQ(folder.sweep({"case", "plan.yaml", "2"}).status, 2) << "there is none";
+  EXPECT_THAT(folder.sweep({"case", "store", "1"}).err,
+              HasSubstr("store is the store of a sweep; need its plan, plan.yaml"));
 }
 
 TEST(SweepCommand, BadInputIsSaidInOneLineEach) {
