@@ -271,7 +271,7 @@ class SceneBuilder {
   Checker checker_;
   Scene scene_;
   Vector3 gravity_ = Vector3::Zero();
-  std::list<Value> none_;          ///< in the place of parts that there are not
+  std::list<Value> none_;  ///< in the place of parts that there are not
   UnboundLoads unbound_;
   std::set<std::string> refused_;  ///< loads, motions, constraints and outputs that are reported already
 };
