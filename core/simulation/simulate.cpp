@@ -92,8 +92,8 @@ class Run final : public SteppingObserver {
                false};
     } else if (options_.most_seconds > 0 && seconds() > options_.most_seconds) {
       stop_ = {RunStatus::interrupted, "stopped after the " + brief(options_.most_seconds) + " s allowed", false};
-    } else if (std::string why = creep_.fault(stepper); !why.empty()) {
-      stop_ = {RunStatus::singular, std::move(why)};
+    } else if (std::string fault = creep_.fault(stepper); !fault.empty()) {
+      stop_ = {RunStatus::singular, std::move(fault)};
     } else if (out_of_reach(stepper)) {
       if (std::string why = options_.too_stiff(stepper.state()); !why.empty())
         stop_ = {RunStatus::too_stiff, std::move(why), false};
