@@ -133,7 +133,8 @@ std::vector<double> decade_marks(double low, double high) {
       if (mark >= low && mark <= high) marks.push_back(mark);
     }
   }
-  return marks;
+  constexpr std::size_t enough = 3;  // to read others between them
+  return marks.size() < enough ? axis_marks(low, high) : marks;
 }
 
 std::string svg_plot(const std::string& title, const std::vector<std::string>& legend,

@@ -49,7 +49,8 @@ inline std::string svg_plot(const Picture& p) { return svg_plot(p.title, p.legen
 /// Round numbers inside [low, high], five or so, for the marks of an axis.
 std::vector<double> axis_marks(double low, double high);
 
-/// The same for an axis in decades: powers of ten in [low, high], and twice and five times them where these are few.
+/// The same for an axis in decades: powers of ten in [low, high], and twice and five times them where these are few;
+/// where even those are less than three, as axis_marks() has them.
 std::vector<double> decade_marks(double low, double high);
 
 }  // namespace withy

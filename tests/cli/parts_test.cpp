@@ -82,6 +82,17 @@ TEST(SvgPlot, MarksInDecadesArePowersOfTenAndPartsWhereTheseAreFew) {
   EXPECT_THAT(decade_marks(0.9, 30), testing::ElementsAre(1, 2, 5, 10, 20));
 }
 
+/// Values between marks are read by them: one mark alone says nothing.
+TEST(SvgPlot, AnAxisInDecadesHasThreeMarksHoweverShortItIs) {
+  for (double low = 1e-6; low < 1e6; low *= 1.37) {
+    for (const double ratio : {1.001, 1.1, 1.5, 2.0, 2.3, 4.9, 9.7, 20.0, 999.0, 1e6}) {
+      const auto marks = decade_marks(low, ratio * low);
+      EXPECT_GE(marks.size(), 3U) << low << " to " << ratio * low;
+      for (const double m : marks) EXPECT_TRUE(m >= low && m <= ratio * low) << m;
+    }
+  }
+}
+
 TEST(SvgPlot, DecadesAreEquallyLong) {
   Panel panel{"x", "y", {1, 100}, {Curve{{1, 10, 100}, {1, 10, 100}, false, false, {}}}};
   panel.log_x = panel.log_y = true;
