@@ -12,6 +12,9 @@
 namespace withy {
 namespace {
 
+/// To read others between them.
+constexpr std::size_t enough_marks = 3;
+
 constexpr double width = 860;
 constexpr double left = 88;
 constexpr double right = 24;
@@ -115,11 +118,15 @@ void draw_curve(std::string& out, const Curve& curve, const Scale& s, const Pen&
 std::vector<double> axis_marks(double low, double high) {
   const double wanted = (high - low) / 5;
   const double decade = std::pow(10.0, std::floor(std::log10(wanted)));
-  double step = 10 * decade;
-  for (const double s : {5.0, 2.0, 1.0})
-    if (s * decade >= wanted * 0.99) step = s * decade;
   std::vector<double> marks;
-  for (double k = std::ceil(low / step); k * step <= high; ++k) marks.push_back(k == 0 ? 0 : k * step);
+  for (const double part : {0.5, 1.0, 2.0, 5.0, 10.0}) {
+    const double step = part * decade;
+    std::vector<double> wider;
+    for (double k = std::ceil(low / step); k * step <= high; ++k) wider.push_back(k == 0 ? 0 : k * step);
+    if (wider.size() < enough_marks) break;
+    marks = std::move(wider);
+    if (step >= wanted * 0.99) break;
+  }
   return marks;
 }
 
@@ -133,8 +140,7 @@ std::vector<double> decade_marks(double low, double high) {
       if (mark >= low && mark <= high) marks.push_back(mark);
     }
   }
-  constexpr std::size_t enough = 3;  // to read others between them
-  return marks.size() < enough ? axis_marks(low, high) : marks;
+  return marks.size() < enough_marks ? axis_marks(low, high) : marks;
 }
 
 std::string svg_plot(const std::string& title, const std::vector<std::string>& legend,
