@@ -8,6 +8,7 @@
 #include "withy/core/plugin/formula.hpp"
 #include "withy/core/plugin/motion.hpp"
 #include "withy/loads/motion_input.hpp"
+#include "withy/loads/shaped_motion.hpp"
 #include "withy/loads/trajectory.hpp"
 
 namespace withy {
@@ -124,6 +125,7 @@ ParameterSpec from_parameter() { return number("from", "rad", "coordinate at tim
 
 void enroll(Enrollment& enrollment) {
   enroll_motion_input(enrollment);
+  enroll_shaped_motion(enrollment);
   enrollment.add<Motion>({.id = "locked",
                           .summary = "The hinge stays where the simulation begins; hinges of any kind",
                           .parameters = {},

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """tables.py [PROGRAM]: measures the small tables of the pages that are no trades and no times, into docs/measured, and puts
-them into the pages: ends of slews (loads), convergence of mode families, a round trip of inverse dynamics (modes), arms
+them into the pages: ends of slews (loads), what shapers leave (motions), convergence of mode families, a round trip of inverse dynamics (modes), arms
 in segments (bodies), the reference turbine (models). Two minutes of CPU time."""
 import csv
 import math
@@ -151,7 +151,20 @@ def turbine():
     record("turbine-frequencies", [["", "imported [Hz]", "published [Hz]"]] + [[n, f"{f:.3f}", p] for (n, p), f in zip(heads, hertz)])
 
 
+def shapers():
+    withy("sweep", "run", "scenes/sweeps/shapers.yaml", "--out", work / "shapers")
+    withy("sweep", "collect", work / "shapers")
+    left, masses, names = {}, [], []
+    for row in csv.DictReader(open(work / "shapers" / "table.csv")):
+        name, mass = row["motions.slew.shaper"], float(row["bodies.payload.mass"])
+        left[name, mass] = 1000 * float(row["final.left.max[m]"])
+        masses += [] if mass in masses else [mass]
+        names += [] if name in names else [name]
+    record("shapers", [["payload", *(f"`{n}`" for n in names)]] + [[f"{m:g} kg", *(f"{left[n, m]:.2g} mm" for n in names)] for m in masses])
+
+
 slews()
+shapers()
 cantilevers()
 arm_families()
 segments()
