@@ -3,7 +3,7 @@
 # `<!-- end -->`, from the measurements in docs/measured/NAME.txt, and sources that tests build and run in the place of
 # what stands after `<!-- source: PATH -->`. With --check nothing is written: a page that says something else than its
 # measurements and sources, a mark without a file, a file of measurements that no page shows and a measured number that
-# was typed by hand (scripts/numbers.py) are errors.
+# was typed by hand (scripts/typed_numbers.py) are errors.
 #
 # A file of measurements: lines `command: …`, `commit: …`, `machine: …`, `date: …`; an empty line; rows with tabs between their cells,
 # the heads first; an empty line; sentences about them. scripts/gallery.sh writes those of the gallery, benchmarks.sh
@@ -49,7 +49,7 @@ shown_source() {
 
 bad=0
 scripts/choosing.py $check || bad=1
-[ -z "$check" ] || scripts/numbers.py || bad=1
+[ -z "$check" ] || scripts/typed_numbers.py || bad=1
 shown=" "
 text=$(mktemp)
 block=$(mktemp)

@@ -160,7 +160,7 @@ def shapers():
         left[name, mass] = 1000 * float(row["final.left.max[m]"])
         masses += [] if mass in masses else [mass]
         names += [] if name in names else [name]
-    record("shapers", [["payload", *(f"`{n}`" for n in names)]] + [[f"{m:g} kg", *(f"{left[n, m]:.2g} mm" for n in names)] for m in masses])
+    record("shapers", [["payload", *(f"`{n}`" for n in names)]] + [[f"{m:g} kg", *(f"{float(f'{left[n, m]:.2g}'):g} mm" for n in names)] for m in masses])
 
 
 slews()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""numbers.py [--self-test]: finds measured numbers that somebody typed by hand into README.md and the pages of docs/.
+"""typed_numbers.py [--self-test]: finds measured numbers that somebody typed by hand into README.md and the pages of docs/.
 
 A number counts as measured where one of these stands behind it, or behind the list or range that it begins ("14 to
 15 mm"): a unit of time (ns to h), a length (nm to m), rad/s, Hz, rpm, N, an angle (°, deg), memory (kB to GB), %, times, ×; a count of cases ("22 of
@@ -175,14 +175,14 @@ def self_test():
     fact = (1, "page.md", "Off by 1.5 %", "definition what is asked")
     assert not check({"page.md": "Off by 1.5 %."}, [fact])
     assert len(check({"page.md": "Off by 1.6 %."}, [fact])) == 2, "a number that has changed, and an entry that nothing needs"
-    assert check({"page.md": "Off by 1.5 %."}, [(*fact[:3], "source scripts/numbers.py: words that are" + " not there")])
-    assert not check({"page.md": "Off by 1.5 %."}, [(*fact[:3], "source scripts/numbers.py: def self_test")])
+    assert check({"page.md": "Off by 1.5 %."}, [(*fact[:3], "source scripts/typed_numbers.py: words that are" + " not there")])
+    assert not check({"page.md": "Off by 1.5 %."}, [(*fact[:3], "source scripts/typed_numbers.py: def self_test")])
     assert check({"page.md": "Off by 1.5 %."}, [(*fact[:3], "so")])
 
 
 def main():
     if sys.argv[1:] not in ([], ["--self-test"]):
-        sys.exit("usage: scripts/numbers.py [--self-test]")
+        sys.exit("usage: scripts/typed_numbers.py [--self-test]")
     self_test()
     if sys.argv[1:]:
         return
