@@ -22,14 +22,19 @@ namespace {
 
 std::string name_of_sign(int sign) { return sign > 0 ? "positive" : (sign < 0 ? "negative" : "zero"); }
 
+/// In degrees to four places; what rounds to zero has no sign.
+std::string in_degrees(double angle) {
+  const std::string text = fmt::format("{:.4f}", angle * 180 / std::numbers::pi);
+  return text == "-0.0000" ? text.substr(1) : text;
+}
+
 /// Of a quaternion w x y z: intrinsic turns about x, y, z, R = Rx(a) Ry(b) Rz(c).
 std::string attitude(std::span<const double> q) {
   const double w = q[0], x = q[1], y = q[2], z = q[3], size = w * w + x * x + y * y + z * z;
-  const auto degrees = [](double angle) { return angle * 180 / std::numbers::pi + 0.0; };
-  return fmt::format("{:.4f}, {:.4f}, {:.4f} deg, turned about x, y, z in this order",
-                     degrees(std::atan2(2 * (w * x - y * z), w * w - x * x - y * y + z * z)),
-                     degrees(std::asin(std::clamp(2 * (x * z + w * y) / size, -1.0, 1.0))),
-                     degrees(std::atan2(2 * (w * z - x * y), w * w + x * x - y * y - z * z)));
+  return fmt::format("{}, {}, {} deg, turned about x, y, z in this order",
+                     in_degrees(std::atan2(2 * (w * x - y * z), w * w - x * x - y * y + z * z)),
+                     in_degrees(std::asin(std::clamp(2 * (x * z + w * y) / size, -1.0, 1.0))),
+                     in_degrees(std::atan2(2 * (w * z - x * y), w * w + x * x - y * y - z * z)));
 }
 
 }  // namespace
@@ -37,7 +42,7 @@ std::string attitude(std::span<const double> q) {
 std::string readable(double value, const std::string& unit) {
   constexpr double many = 20 * std::numbers::pi;  // a wheel: its turns tell more than its degrees
   const std::string turns = std::abs(value) > many ? fmt::format(", {:.5g} turns", value / (2 * std::numbers::pi)) : "";
-  if (unit == "rad") return fmt::format("{:.4f} deg{}", value * 180 / std::numbers::pi, turns);
+  if (unit == "rad") return fmt::format("{} deg{}", in_degrees(value), turns);
   if (unit == "rad/s" && std::abs(value) > many)
     return fmt::format("{:.6g} rad/s, {:.5g} rpm", value, value * 30 / std::numbers::pi);
   return fmt::format("{:.6g}{}{}", value, unit.empty() || unit == "1" ? "" : " ", unit == "1" ? "" : unit);

@@ -171,7 +171,7 @@ inline void add_rod(const sweep::RodKinematics<Planar>& rod, const sweep::RodWor
     for (int c = 0; c < 2; ++c) {
       r[c] = m * y[c * packs];
       v[c] = spread(0.0);
-      for (int i = 0; i < n; ++i) v[c] += y[(Rod::P + 2 * i + c) * packs] * spread(q_dot[i]);
+      for (int i = 0; i < n; ++i) v[c] += y[(Rod::P(n) + 2 * i + c) * packs] * spread(q_dot[i]);
       v[c] = m * v[c];
     }
     add_particles<Planar>(V, m, r, v, part);

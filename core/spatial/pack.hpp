@@ -75,6 +75,10 @@ inline Pack shuffle(const Pack& a, const Pack& b) {
 
 #endif
 
+inline Pack mirrored(const Pack& p) { return detail::shuffle<3, 2, 1, 0>(p, p); }
+inline void store(const Pack& p, double* at) {
+  for (std::size_t i = 0; i < lanes; ++i) at[i] = p[i];
+}
 inline double first(const Pack& p) { return p[0]; }
 inline double sum(const Pack& p) { return (p[0] + p[2]) + (p[1] + p[3]); }
 

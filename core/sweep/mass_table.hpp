@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "withy/core/sweep/mass_sums.hpp"
 #include "withy/core/sweep/node.hpp"
 
 namespace withy::sweep {
@@ -32,12 +33,6 @@ struct MassTable {
   explicit MassTable(const NodeSpec& node);
 };
 
-/// n where it is known at compile time, otherwise a run-time number.
-template <int N>
-constexpr int count(int n) {
-  return N >= 0 ? N : n;
-}
-
 /// The generalized particles of one pack at q, q̇: positions r, velocities ṙ, acceleration terms q̇ᵀΓq̇ and partial
 /// velocities P = Φ + Γq; n·linear packs of scratch in `P`.
 template <class Space, int N>
@@ -57,15 +52,20 @@ struct ParticleMotion {
     if (second_order) {
       const Group* g = phi + n * L;
       for (int i = 0; i < n; ++i) {
-        for (int j = i; j < n; ++j, g += L) {
-          const Group qj = spread(q[j]);
-          const Group qi = spread(q[i]);
-          const Group rates = spread((i == j ? 1.0 : 2.0) * q_dot[i] * q_dot[j]);
-          for (int c = 0; c < L; ++c) {
-            P[i * L + c] += g[c] * qj;
-            if (i != j) P[j * L + c] += g[c] * qi;
-            a[c] += g[c] * rates;
+        const Group qi = spread(q[i]);
+        if constexpr (N >= 0) {
+          for (int j = i; j < n; ++j, g += L) {
+            const Group qj = spread(q[j]);
+            const Group rates = spread((i == j ? 1.0 : 2.0) * q_dot[i] * q_dot[j]);
+            for (int c = 0; c < L; ++c) {
+              P[i * L + c] += g[c] * qj;
+              if (i != j) P[j * L + c] += g[c] * qi;
+              a[c] += g[c] * rates;
+            }
           }
+        } else {
+          // Row by row: products of rates would be found anew for each group.
+          g = add_row(g, i, n, q, q_dot, P);
         }
       }
     }
@@ -77,6 +77,32 @@ struct ParticleMotion {
         v[c] += P[i * L + c] * rate;
       }
     }
+  }
+
+ private:
+  /// What Γ_ij, j ≥ i, adds to P and a. \return Γ_jj of the next row
+  const Group* add_row(const Group* g, int i, int n, const Scalar* q, const Scalar* q_dot, Group* P) {
+    const Group qi = spread(q[i]), rate = spread(q_dot[i]), twice = rate + rate;
+    Group own[L], right[L];
+    for (int c = 0; c < L; ++c) {
+      own[c] = P[i * L + c] + g[c] * qi;
+      a[c] += g[c] * (rate * rate);
+      right[c] = spread(Scalar(0));
+    }
+    g += L;
+    for (int j = i + 1; j < n; ++j, g += L) {
+      const Group qj = spread(q[j]), rate_j = spread(q_dot[j]);
+      for (int c = 0; c < L; ++c) {
+        own[c] += g[c] * qj;
+        P[j * L + c] += g[c] * qi;
+        right[c] += g[c] * rate_j;
+      }
+    }
+    for (int c = 0; c < L; ++c) {
+      P[i * L + c] = own[c];
+      a[c] += right[c] * twice;
+    }
+    return g;
   }
 };
 
@@ -149,61 +175,81 @@ requires(Space::angular == 3) inline void add_products(const typename Space::Gro
   }
 }
 
+/// What the constant function has a part in: the first lane of the first pack.
+template <class Space>
+requires(Space::angular == 1) inline void add_constant(typename Space::Scalar m, const typename Space::Twist& V,
+                                                       const typename Space::Group* r, typename Space::Group* a,
+                                                       const typename Space::Group* P, int n,
+                                                       typename Space::Inertia& I, typename Space::Twist* C,
+                                                       typename Space::Twist& p) {
+  add_to_first(a[0], -m * V.w * V.y);  // ω×v acts through the constant function
+  add_to_first(a[1], m * V.w * V.x);
+  I += typename Space::Inertia{0, -m * first(r[1]), m * first(r[0]), m * m, 0, m * m};
+  p += typename Space::Twist{0, m * first(a[0]), m * first(a[1])};
+  for (int i = 0; i < n; ++i) {
+    C[i].x += m * first(P[i * 2]);
+    C[i].y += m * first(P[i * 2 + 1]);
+  }
+}
+
+template <class Space>
+requires(Space::angular == 3) inline void add_constant(typename Space::Scalar m, const typename Space::Twist& V,
+                                                       const typename Space::Group* r, typename Space::Group* a,
+                                                       const typename Space::Group* P, int n,
+                                                       typename Space::Inertia& I, typename Space::Twist* C,
+                                                       typename Space::Twist& p) {
+  using Triple = typename Space::Triple;
+  const Triple acceleration = cross(V.w, V.v) * m;
+  for (int c = 0; c < 3; ++c) add_to_first(a[c], acceleration[c]);
+  I.L -= Space::Block::skew(Triple(first(r[0]), first(r[1]), first(r[2])) * m);
+  I.M += typename Space::Block{{Triple(m * m, 0, 0), Triple(0, m * m, 0), Triple(0, 0, m * m)}};
+  p.v += Triple(first(a[0]), first(a[1]), first(a[2])) * m;
+  for (int i = 0; i < n; ++i) C[i].v += Triple(first(P[i * 3]), first(P[i * 3 + 1]), first(P[i * 3 + 2])) * m;
+}
+
+/// From so many on a body of any number of modes has its products by rows; with fewer that takes longer.
+constexpr std::size_t many_groups = 6;
+
+/// Groups of scratch that `integrate` needs.
+template <class Space>
+std::size_t mass_scratch(const MassTable<Space>& table, std::size_t modes) {
+  return Space::linear * (modes + (modes + 2) * table.packs);
+}
+
 /// Adds the particles' integrals at q, q̇ and twist V of the node's frame:
 ///   I: ∫ of the rigid part; C, G: coupling and modal mass (lower triangle); p, h: velocity terms, so that the
 ///   particles exert F = I A + C q̈ + p and Q = Cᵀ A + G q̈ + h.
 /// With r = X + Φq + ½qᵀΓq, P = Φ + Γq, a = ω×v + ω×(ω×r) + 2 ω×ṙ + q̇ᵀΓq̇:
 ///   C_i = ∫ (r×P_i; P_i), G_ij = ∫ P_i·P_j, p = ∫ (r×a; a), h_i = ∫ P_i·a.
-/// The constant function is the first lane of the first pack; sums over lanes are taken last.
+/// \param P scratch: of N modes N·linear groups, otherwise mass_scratch
 template <class Space, int N>
-requires(Space::angular ==
-         1) inline void integrate(const MassTable<Space>& table, int modes, const typename Space::Scalar* q,
-                                  const typename Space::Scalar* q_dot, const typename Space::Twist& V,
-                                  typename Space::Group* P, typename Space::Inertia& I, typename Space::Twist* C,
-                                  typename Space::Scalar* G, typename Space::Twist& p, typename Space::Scalar* h) {
+inline void integrate(const MassTable<Space>& table, int modes, const typename Space::Scalar* q,
+                      const typename Space::Scalar* q_dot, const typename Space::Twist& V, typename Space::Group* P,
+                      typename Space::Inertia& I, typename Space::Twist* C, typename Space::Scalar* G,
+                      typename Space::Twist& p, typename Space::Scalar* h) {
+  constexpr int L = Space::linear;
   const int n = count<N>(modes);
-  const auto m = table.root_mass;
-  for (std::size_t k = 0; k < table.packs; ++k) {
+  const auto particles = [&](std::size_t k, const auto& then) {
     ParticleMotion<Space, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
-    auto *r = x.r, *a = x.a;
-    add_turning<Space>(V, r, x.v, a);
-    if (k == 0) {
-      add_to_first(a[0], -m * V.w * V.y);  // ω×v acts through the constant function
-      add_to_first(a[1], m * V.w * V.x);
-      I += typename Space::Inertia{0, -m * first(r[1]), m * first(r[0]), m * m, 0, m * m};
-      p += typename Space::Twist{0, m * first(a[0]), m * first(a[1])};
-      for (int i = 0; i < n; ++i) {
-        C[i].x += m * first(P[i * 2]);
-        C[i].y += m * first(P[i * 2 + 1]);
-      }
+    add_turning<Space>(V, x.r, x.v, x.a);
+    if (k == 0) add_constant<Space>(table.root_mass, V, x.r, x.a, P, n, I, C, p);
+    then(x);
+  };
+  if (N >= 0 || table.packs < many_groups) {
+    for (std::size_t k = 0; k < table.packs; ++k)
+      particles(k, [&](const auto& x) { add_products<Space, N>(x.r, x.a, P, n, I, C, G, p, h); });
+  } else {
+    auto *r = P + n * L, *a = r + L * table.packs, *rows = a + L * table.packs;
+    for (std::size_t k = 0; k < table.packs; ++k) {
+      particles(k, [&](const auto& x) {
+        for (std::size_t c = 0; c < L; ++c) {
+          r[c * table.packs + k] = x.r[c];
+          a[c * table.packs + k] = x.a[c];
+        }
+        for (std::size_t i = 0; i < static_cast<std::size_t>(n) * L; ++i) rows[i * table.packs + k] = P[i];
+      });
     }
-    add_products<Space, N>(r, a, P, n, I, C, G, p, h);
-  }
-}
-
-template <class Space, int N>
-requires(Space::angular ==
-         3) inline void integrate(const MassTable<Space>& table, int modes, const typename Space::Scalar* q,
-                                  const typename Space::Scalar* q_dot, const typename Space::Twist& V,
-                                  typename Space::Group* P, typename Space::Inertia& I, typename Space::Twist* C,
-                                  typename Space::Scalar* G, typename Space::Twist& p, typename Space::Scalar* h) {
-  using Triple = typename Space::Triple;
-  using Block = typename Space::Block;
-  const int n = count<N>(modes);
-  for (std::size_t k = 0; k < table.packs; ++k) {
-    ParticleMotion<Space, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
-    auto *r = x.r, *a = x.a;
-    add_turning<Space>(V, r, x.v, a);
-    if (k == 0) {
-      const auto m = table.root_mass;
-      const Triple acceleration = cross(V.w, V.v) * m;
-      for (int c = 0; c < 3; ++c) add_to_first(a[c], acceleration[c]);
-      I.L -= Block::skew(Triple(first(r[0]), first(r[1]), first(r[2])) * m);
-      I.M += Block{{Triple(m * m, 0, 0), Triple(0, m * m, 0), Triple(0, 0, m * m)}};
-      p.v += Triple(first(a[0]), first(a[1]), first(a[2])) * m;
-      for (int i = 0; i < n; ++i) C[i].v += Triple(first(P[i * 3]), first(P[i * 3 + 1]), first(P[i * 3 + 2])) * m;
-    }
-    add_products<Space, N>(r, a, P, n, I, C, G, p, h);
+    add_rows<Space>(r, a, rows, static_cast<int>(table.packs), n, I, C, G, p, h);
   }
 }
 

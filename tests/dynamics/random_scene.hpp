@@ -17,6 +17,7 @@ struct SceneWish {
   bool any_root = false;    ///< beams may be held at their tip
   bool any_family = false;  ///< beams may bend in any mode family, those whose root moves too
   bool floating = true;     ///< a free hinge to the world is possible
+  int modes = 0;            ///< in bending_y of every beam; 0: one to three
 };
 
 /// Text of a random scene; the same seed gives the same text.
@@ -90,8 +91,8 @@ class RandomScene {
     text_ << "  " << name << ":\n";
     if (beam) {
       text_ << "    type: beam\n    length: " << number(0.5, 2) << "\n    mass_per_length: " << number(0.5, 2) << "\n"
-            << "    damping_ratio: 0.01\n    bending_y: {stiffness: " << number(20, 90) << ", modes: " << whole(1, 3)
-            << family() << "}\n";
+            << "    damping_ratio: 0.01\n    bending_y: {stiffness: " << number(20, 90)
+            << ", modes: " << (wish_.modes > 0 ? wish_.modes : whole(1, 3)) << family() << "}\n";
       if (!wish_.planar && chance(0.7)) {
         text_ << "    bending_z: {stiffness: " << number(20, 90) << ", modes: " << whole(1, 2) << family() << "}\n";
       }

@@ -17,6 +17,7 @@
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/report/solids.hpp"
 #include "withy/results/results_error.hpp"
+#include "withy/results/run_text.hpp"
 #include "withy/results/table_picture.hpp"
 #include "withy/results/terminal_plot.hpp"
 
@@ -25,6 +26,12 @@ namespace {
 
 using test::Scratch;
 using testing::HasSubstr;
+
+TEST(RunText, AnAngleThatRoundsToZeroHasNoSign) {
+  EXPECT_EQ(readable(-1e-9, "rad"), "0.0000 deg");
+  EXPECT_EQ(readable(-0.0, "rad"), "0.0000 deg");
+  EXPECT_EQ(readable(-0.001, "rad"), "-0.0573 deg");
+}
 
 TEST(DecimatedTable, KeepsEveryExtremeAtItsPlaceAndOrderWhateverTheLength) {
   std::mt19937 random(5);

@@ -41,9 +41,20 @@ RodIntegrals::RodIntegrals(const RodTable& table, const std::vector<double>& alo
   const PanelQuadrature& quadrature = table.quadrature;
   const std::size_t nodes = quadrature.nodes().size();
   packs = static_cast<int>(nodes / lanes);
-  // By columns: the weights of one node in the integrals to all.
-  running = packed(quadrature.running().data(), RodTable::order * RodTable::order);
-  weights = packed(quadrature.weights().data(), RodTable::order);
+  const Eigen::MatrixXd& to_nodes = quadrature.running();
+  std::vector<double> even, odd;
+  for (int j = 0; j < half; ++j) {
+    const int mirror = 2 * half - 1 - j;
+    for (int i = half; i < 2 * half; ++i) {
+      const double own = to_nodes(i, j), other = to_nodes(i, mirror),
+                   weight = quadrature.weights()[static_cast<std::size_t>(j)];
+      even.push_back(0.5 * (own + other - weight));
+      odd.push_back(0.5 * (other - own));
+    }
+  }
+  from_even = packed(even.data(), even.size());
+  from_odd = packed(odd.data(), odd.size());
+  weights = packed(quadrature.weights().data(), half);
   std::vector<double> lengths;
   for (std::size_t k = 0; k < nodes; k += RodTable::order)
     lengths.push_back(quadrature.weights()[k] / quadrature.weights()[0]);

@@ -19,13 +19,21 @@
 namespace withy::sweep {
 
 /// Integrals along a rod, of functions stored one after the other, each `packs` packs of values at the nodes.
+///
+/// A panel's nodes x_j and x_j′ = −x_j are mirrored, and weights w with them. From its middle on a function that is
+/// even has an odd integral and the reverse: with e_j = f_j + f_j′ and o_j = f_j′ − f_j of the lower half's nodes j and
+/// T = Σ w_j e_j, all of the panel, the integrals to a node of the upper half and to its mirror image are
+///   y, y′ = ½ T + Σ M_j o_j ± Σ D_j e_j,   M_j = ½ (S_j′ − S_j),   D_j = ½ (S_j + S_j′ − w_j),
+/// with S_j what node j gives to the upper one: half of the products that S takes.
 struct RodIntegrals {
   static constexpr int packs_per_panel = RodTable::order / static_cast<int>(lanes);
+  static constexpr int half = static_cast<int>(RodTable::order) / 2;
 
-  int packs = 0;                ///< nodes / 4; 0: no rod
-  SharedNumbers<Pack> running;  ///< of the first panel, j·4 + k: what node j gives to the nodes of pack k
-  SharedNumbers<Pack> weights;  ///< of the first panel
-  SharedNumbers<double> scale;  ///< lengths of the panels over that of the first
+  int packs = 0;                              ///< nodes / 4; 0: no rod
+  SharedNumbers<Pack> from_even;              ///< of the first panel, j·2 + k: D_j of pack k of the upper half
+  SharedNumbers<Pack> from_odd;               ///< the same of M_j
+  SharedNumbers<Pack> weights;                ///< of the first panel's lower half
+  SharedNumbers<double> scale;                ///< lengths of the panels over that of the first
   std::vector<SharedNumbers<Pack>> stations;  ///< ∫₀ˣ to each station, weights of all nodes
   SharedNumbers<Pack> root_mass;              ///< square roots of the nodes' masses
   std::vector<double> station_x;              ///< where the stations are [m]
@@ -36,32 +44,57 @@ struct RodIntegrals {
 
   /// y = ∫₀ˣ f at the nodes.
   void integrate(const Pack* f, Pack* y, int functions) const {
+    int function = 0;
+    for (; function + 2 <= functions; function += 2) integrate<2>(f + function * packs, y + function * packs);
+    if (function < functions) integrate<1>(f + function * packs, y + function * packs);
+  }
+
+ private:
+  /// Of so many functions at once, which share what is read of D and M.
+  template <int count>
+  void integrate(const Pack* f, Pack* y) const {
     constexpr int m = packs_per_panel;
-    for (int function = 0; function < functions; ++function) {
-      double before = 0;
-      const double* relative = scale.data();
-      for (int panel = 0; panel < packs; panel += m, f += m, y += m, ++relative) {
-        const Pack length = spread(*relative);
-        Pack sums[m];
-        for (Pack& s : sums) s = spread(before);
-        const Pack* from = running.data();
-        Pack total = spread(0.0);
-        for (int k = 0; k < m; ++k) {
-          const Pack values = f[k] * length;
-          total += weights[static_cast<std::size_t>(k)] * values;
-#pragma GCC unroll 4
-          for (int lane = 0; lane < 4;
-               ++lane, from += m) {  // known to the compiler, which otherwise goes through memory
-            const Pack value = spread(values[lane]);
-#pragma GCC unroll 4
-            for (int i = 0; i < m; ++i) sums[i] += from[i] * value;
+    double before[count] = {};
+    for (int panel = 0; panel < packs; panel += m) {
+      const Pack length = spread(scale[static_cast<std::size_t>(panel / m)]);
+      double even[count][half], odd[count][half];
+      Pack sums[count][2], differences[count][2];
+      for (int i = 0; i < count; ++i) {
+        const Pack* at = f + i * packs + panel;
+        Pack all = spread(0.0);
+        for (int k = 0; k < 2; ++k) {
+          const Pack lower = at[k] * length, upper = mirrored(at[m - 1 - k]) * length;
+          const Pack e = lower + upper;
+          all += weights[static_cast<std::size_t>(k)] * e;
+          store(e, even[i] + 4 * k);
+          store(upper - lower, odd[i] + 4 * k);
+        }
+        const double total = sum(all);
+        for (Pack& p : sums[i]) p = spread(before[i] + 0.5 * total);
+        for (Pack& p : differences[i]) p = spread(0.0);
+        before[i] += total;
+      }
+      const Pack *D = from_even.data(), *M = from_odd.data();
+      for (int j = 0; j < half; ++j, D += 2, M += 2) {
+        for (int i = 0; i < count; ++i) {
+          const Pack e = spread(even[i][j]), o = spread(odd[i][j]);
+          for (int k = 0; k < 2; ++k) {
+            differences[i][k] += D[k] * e;
+            sums[i][k] += M[k] * o;
           }
         }
-        before += sum(total);
-        for (int i = 0; i < m; ++i) y[i] = sums[i];
+      }
+      for (int i = 0; i < count; ++i) {
+        Pack* at = y + i * packs + panel;
+        for (int k = 0; k < 2; ++k) {
+          at[2 + k] = sums[i][k] + differences[i][k];
+          at[1 - k] = mirrored(sums[i][k] - differences[i][k]);
+        }
       }
     }
   }
+
+ public:
   /// ∫₀ˣ f to a station.
   [[nodiscard]] double to(std::size_t station, const Pack* f) const {
     const SharedNumbers<Pack>& w = stations[station];
@@ -96,8 +129,8 @@ struct RodKinematics<Planar> {
   [[nodiscard]] bool fits(const NodeSpec& spec) const;
 
   // Functions and where they stand: t or r, then P_i, then a.
-  static constexpr int P = 2;
-  static constexpr int a(int n) { return P + 2 * n; }
+  static constexpr int P(int /*n*/) { return 2; }
+  static constexpr int a(int n) { return P(n) + 2 * n; }
   static constexpr int functions(int n) { return a(n) + 2; }
 };
 
@@ -145,6 +178,12 @@ std::size_t rod_work(const RodKinematics<Space>& rod, int modes) {
   return static_cast<std::size_t>(values) + turns;
 }
 
+/// Packs of scratch that the integrals over its mass need.
+template <class Space>
+std::size_t rod_scratch(const RodKinematics<Space>& rod) {
+  return Space::linear * static_cast<std::size_t>(rod.integrals.packs);
+}
+
 template <class Space>
 RodWork rod_work_at(const RodKinematics<Space>& rod, int modes, Pack* memory) {
   const int values = RodKinematics<Space>::functions(modes) * rod.integrals.packs;
@@ -172,8 +211,8 @@ template <int N>
     f[packs] = sine - spread(dy) - angle * spread(dx);
     const Pack across_x = spread(dy) - sine, across_y = cosine - spread(dx);
     for (int i = 0; i < n; ++i) {
-      f[(Rod::P + 2 * i) * packs] = first[i * 3] * across_x;
-      f[(Rod::P + 2 * i + 1) * packs] = first[i * 3] * across_y;
+      f[(Rod::P(n) + 2 * i) * packs] = first[i * 3] * across_x;
+      f[(Rod::P(n) + 2 * i + 1) * packs] = first[i * 3] * across_y;
     }
     const Pack inward = -rate * rate;
     f[Rod::a(n) * packs] = inward * cosine;
@@ -188,7 +227,7 @@ template <int N>
       for (int i = 0; i < n; ++i) {
         const Pack& phi = first[i * 3 + 1 + c];
         r += phi * spread(q[i]);
-        y[(Rod::P + 2 * i + c) * packs] += phi;
+        y[(Rod::P(n) + 2 * i + c) * packs] += phi;
       }
       y[c * packs] += r;
     }

@@ -8,64 +8,33 @@
 
 namespace withy::sweep {
 
-/// `integrate` of mass_table.hpp over the rod's nodes; P: n·linear packs of scratch.
-template <int N>
-inline void integrate(const RodKinematics<Planar>& rod, const RodWork& work, int modes, const double* q_dot,
-                      const Planar::Twist& V, Pack* P, Planar::Inertia& I, Planar::Twist* C, double* G,
-                      Planar::Twist& p, double* h) {
-  using Rod = RodKinematics<Planar>;
-  const int n = count<N>(modes), packs = rod.integrals.packs;
-  for (int k = 0; k < packs; ++k) {
-    const Pack m = rod.integrals.root_mass[static_cast<std::size_t>(k)];
-    const Pack* y = work.value + k;
-    Pack r[2] = {m * y[0], m * y[packs]};
-    Pack a[2] = {m * (y[Rod::a(n) * packs] - spread(V.w * V.y)), m * (y[(Rod::a(n) + 1) * packs] + spread(V.w * V.x))};
-    Pack v[2] = {spread(0.0), spread(0.0)};
-    for (int i = 0; i < n; ++i) {
-      for (int c = 0; c < 2; ++c) {
-        P[i * 2 + c] = m * y[(Rod::P + 2 * i + c) * packs];
-        v[c] += P[i * 2 + c] * spread(q_dot[i]);
-      }
-      C[i].x += sum(m * P[i * 2]);
-      C[i].y += sum(m * P[i * 2 + 1]);
-    }
-    add_turning<Planar>(V, r, v, a);
-    I += Planar::Inertia{0, -sum(m * r[1]), sum(m * r[0]), 0, 0, 0};
-    p += Planar::Twist{0, sum(m * a[0]), sum(m * a[1])};
-    add_products<Planar, N>(r, a, P, n, I, C, G, p, h);
-  }
-  I += Planar::Inertia{0, 0, 0, rod.integrals.mass, 0, rod.integrals.mass};
+/// What a rod gives beside the products of its fields: its mass, and the sums r, a of m r and m a over its nodes.
+inline void put_linear(double mass, const double* r, const double* a, Planar::Inertia& I, Planar::Twist& p) {
+  I += Planar::Inertia{0, -r[1], r[0], mass, 0, mass};
+  p += Planar::Twist{0, a[0], a[1]};
 }
+inline void put_linear(double mass, const double* r, const double* a, Spatial::Inertia& I, Spatial::Twist& p) {
+  I.L -= Block::skew(Triple(r[0], r[1], r[2]));
+  I.M += Block{{Triple(mass, 0, 0), Triple(0, mass, 0), Triple(0, 0, mass)}};
+  p.v += Triple(a[0], a[1], a[2]);
+}
+/// The same of a partial velocity.
+inline void put_linear(const double* P, Planar::Twist& C) { C.x += P[0], C.y += P[1]; }
+inline void put_linear(const double* P, Spatial::Twist& C) { C.v += Triple(P[0], P[1], P[2]); }
 
+/// ω × v.
+inline Planar::Position carried(const Planar::Twist& V) { return {-V.w * V.y, V.w * V.x}; }
+inline Triple carried(const Spatial::Twist& V) { return cross(V.w, V.v); }
+
+/// What the rotary inertia of a rod's sections adds to `integrate`.
 template <int N>
-inline void integrate(const RodKinematics<Spatial>& rod, const RodWork& work, int modes, const double* q_dot,
-                      const Spatial::Twist& V, Pack* P, Spatial::Inertia& I, Spatial::Twist* C, double* G,
-                      Spatial::Twist& p, double* h) {
+inline void integrate_rotary(const RodKinematics<Spatial>& rod, const RodWork& work, int modes, const double* q_dot,
+                             const Spatial::Twist& V, Spatial::Inertia& I, Spatial::Twist* C, double* G,
+                             Spatial::Twist& p, double* h) {
   using Rod = RodKinematics<Spatial>;
   const int n = count<N>(modes), packs = rod.integrals.packs;
-  const Triple carried = cross(V.w, V.v);
-  Triple moment = Triple::zero();
   for (int k = 0; k < packs; ++k) {
-    const Pack m = rod.integrals.root_mass[static_cast<std::size_t>(k)];
     const Pack* y = work.value + k;
-    Pack r[3], a[3], v[3];
-    for (int c = 0; c < 3; ++c) {
-      r[c] = m * y[c * packs];
-      a[c] = m * (y[(Rod::a(n) + c) * packs] + spread(carried[c]));
-      v[c] = spread(0.0);
-    }
-    for (int i = 0; i < n; ++i) {
-      for (int c = 0; c < 3; ++c) {
-        P[i * 3 + c] = m * y[(Rod::P(n) + 3 * i + c) * packs];
-        v[c] += P[i * 3 + c] * spread(q_dot[i]);
-      }
-      C[i].v += Triple(sum(m * P[i * 3]), sum(m * P[i * 3 + 1]), sum(m * P[i * 3 + 2]));
-    }
-    add_turning<Spatial>(V, r, v, a);
-    moment += Triple(sum(m * r[0]), sum(m * r[1]), sum(m * r[2]));
-    p.v += Triple(sum(m * a[0]), sum(m * a[1]), sum(m * a[2]));
-    add_products<Spatial, N>(r, a, P, n, I, C, G, p, h);
-    if (rod.inertia.empty()) continue;
     const Pack* t = work.slope + Rod::axis(n) * packs + k;
     PackVector omega = PackVector::zero();
     for (int i = 0; i < n; ++i) {
@@ -75,9 +44,60 @@ inline void integrate(const RodKinematics<Spatial>& rod, const RodWork& work, in
     add_rotary<N>(rod.inertia[static_cast<std::size_t>(k)], {t[0], t[packs], t[2 * packs]}, omega,
                   {b[0], b[packs], b[2 * packs]}, y + Rod::w * packs, packs, V.w, n, I, C, G, p, h);
   }
-  I.L -= Block::skew(moment);
-  const double mass = rod.integrals.mass;
-  I.M += Block{{Triple(mass, 0, 0), Triple(0, mass, 0), Triple(0, 0, mass)}};
+}
+
+/// `integrate` of mass_table.hpp over the rod's nodes. r, P_i and a in the work memory become those times root masses,
+/// a with what turning adds. \param v scratch: rod_scratch
+template <class Space, int N>
+inline void integrate(const RodKinematics<Space>& rod, const RodWork& work, int modes, const double* q_dot,
+                      const typename Space::Twist& V, Pack* v, typename Space::Inertia& I, typename Space::Twist* C,
+                      double* G, typename Space::Twist& p, double* h) {
+  using Rod = RodKinematics<Space>;
+  constexpr int L = Space::linear;
+  const int n = count<N>(modes), packs = rod.integrals.packs;
+  const Pack* m = rod.integrals.root_mass.data();
+  Pack *r = work.value, *P = work.value + Rod::P(n) * packs, *a = work.value + Rod::a(n) * packs;
+  for (int k = 0; k < L * packs; ++k) v[k] = spread(0.0);
+  for (int i = 0; i < n; ++i) {
+    const Pack rate = spread(q_dot[i]);
+    double sums[L];
+    for (int c = 0; c < L; ++c) {
+      Pack* row = P + (i * L + c) * packs;
+      Pack total = spread(0.0);
+      for (int k = 0; k < packs; ++k) {
+        row[k] = m[k] * row[k];
+        v[c * packs + k] += row[k] * rate;
+        total += m[k] * row[k];
+      }
+      sums[c] = sum(total);
+    }
+    put_linear(sums, C[i]);
+  }
+  const auto with_frame = carried(V);
+  Pack r_sums[L], a_sums[L];
+  for (int c = 0; c < L; ++c) r_sums[c] = a_sums[c] = spread(0.0);
+  for (int k = 0; k < packs; ++k) {
+    Pack here[L], rate[L], acceleration[L];
+    for (int c = 0; c < L; ++c) {
+      here[c] = m[k] * r[c * packs + k];
+      rate[c] = v[c * packs + k];
+      acceleration[c] = m[k] * (a[c * packs + k] + spread(with_frame[c]));
+    }
+    add_turning<Space>(V, here, rate, acceleration);
+    for (int c = 0; c < L; ++c) {
+      r[c * packs + k] = here[c];
+      a[c * packs + k] = acceleration[c];
+      r_sums[c] += m[k] * here[c];
+      a_sums[c] += m[k] * acceleration[c];
+    }
+  }
+  double of_r[L], of_a[L];
+  for (int c = 0; c < L; ++c) of_r[c] = sum(r_sums[c]), of_a[c] = sum(a_sums[c]);
+  put_linear(rod.integrals.mass, of_r, of_a, I, p);
+  add_rows<Space>(r, a, P, packs, n, I, C, G, p, h);
+  if constexpr (Space::angular == 3) {
+    if (!rod.inertia.empty()) integrate_rotary<N>(rod, work, n, q_dot, V, I, C, G, p, h);
+  }
 }
 
 /// `station_motion` of a rod's station.
@@ -101,7 +121,7 @@ inline void rod_station_motion(const RodKinematics<Planar>& rod, std::size_t sta
   out.rate = Planar::Twist::zero();
   for (int i = 0; i < n; ++i) {
     const Planar::Twist& first = at.first[static_cast<std::size_t>(i)];
-    J[i] = back(first.w, Planar::Position{first.x, first.y} + vector(Rod::P + 2 * i));
+    J[i] = back(first.w, Planar::Position{first.x, first.y} + vector(Rod::P(n) + 2 * i));
     out.rate += J[i] * q_dot[i];
   }
   const Planar::Twist b = back(0, vector(Rod::a(n)));

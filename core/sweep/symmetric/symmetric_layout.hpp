@@ -98,18 +98,22 @@ std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes, std::span<const st
   WorkLayout memory;
   place_sums(nodes, groups, memory);
   // What no pass leaves for another is shared by all nodes of a thread.
-  std::size_t most = 0, most_rod = 0;
+  std::size_t most = 0, most_P = 0, most_rod = 0;
   for (const SymmetricNode<Space>& node : nodes) {
-    most = std::max(most, static_cast<std::size_t>(node.modes));
+    const auto modes = static_cast<std::size_t>(node.modes);
+    most = std::max(most, modes);
+    most_P = std::max(most_P, mass_scratch(node.own->mass, modes));
     if constexpr (has_rods<Space>) {
-      if (!node.own->rod.empty()) most_rod = std::max(most_rod, rod_work(*node.own->rod, node.modes));
+      if (node.own->rod.empty()) continue;
+      most_rod = std::max(most_rod, rod_work(*node.own->rod, node.modes));
+      most_P = std::max(most_P, rod_scratch(*node.own->rod));
     }
   }
   std::vector<std::size_t> shared_h, shared_P, shared_rod;
   const std::size_t count = groups.empty() ? 1 : *std::max_element(groups.begin(), groups.end()) + 1;
   for (std::size_t k = 0; k < count; ++k) {
     shared_h.push_back(memory.template take<Scalar>(most));
-    shared_P.push_back(memory.template take<typename Space::Group>(most * Space::linear));
+    shared_P.push_back(memory.template take<typename Space::Group>(most_P));
     shared_rod.push_back(memory.template take<Pack>(most_rod));
   }
   for (std::size_t i = 0; i < nodes.size(); ++i) {

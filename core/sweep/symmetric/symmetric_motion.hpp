@@ -62,16 +62,8 @@ inline void integrate_rod(const SymmetricNode<Space>& node, const SymmetricState
                           const typename Space::Twist& V) {
   using Twist = typename Space::Twist;
   const int n = count<N>(node.modes);
-  // On the stack where the compiler knows their size: it then keeps them in registers.
-  constexpr int size = N > 0 ? N : 1;
-  Pack P_here[size * Space::linear];
-  Twist C_here[size];
-  double G_here[size * size], h_here[size];
-  Twist* const C_kept = at<Twist>(s.work, node.work_C);
-  double *const G_kept = at<double>(s.work, node.work_G), *const h_kept = at<double>(s.work, node.work_y);
-  Pack* P = N > 0 ? P_here : at<Pack>(s.work, node.work_P);
-  Twist* C = N > 0 ? C_here : C_kept;
-  double *G = N > 0 ? G_here : G_kept, *h = N > 0 ? h_here : h_kept;
+  Twist* const C = at<Twist>(s.work, node.work_C);
+  double *const G = at<double>(s.work, node.work_G), *const h = at<double>(s.work, node.work_y);
   for (int i = 0; i < n; ++i) {
     C[i] = Twist::zero();
     h[i] = 0;
@@ -79,16 +71,9 @@ inline void integrate_rod(const SymmetricNode<Space>& node, const SymmetricState
   for (int i = 0; i < n * n; ++i) G[i] = 0;
   auto I = Space::Inertia::zero();
   Twist p = Twist::zero();
-  integrate<N>(*node.own->rod, rod_work_at(*node.own->rod, n, at<Pack>(s.work, node.work_rod)), n,
-               s.speeds + node.mode_speed, V, P, I, C, G, p, h);
+  integrate<Space, N>(*node.own->rod, rod_work_at(*node.own->rod, n, at<Pack>(s.work, node.work_rod)), n,
+                      s.speeds + node.mode_speed, V, at<Pack>(s.work, node.work_P), I, C, G, p, h);
   *at<RodMass<Space>>(s.work, node.work_rod_mass) = {I, p};
-  if constexpr (N > 0) {
-    for (int i = 0; i < n; ++i) {
-      C_kept[i] = C[i];
-      h_kept[i] = h[i];
-    }
-    for (int i = 0; i < n * n; ++i) G_kept[i] = G[i];
-  }
 }
 
 template <class Space, int N, Flavor flavor>
