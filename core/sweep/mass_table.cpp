@@ -7,6 +7,8 @@
 #include <mutex>
 #include <utility>
 
+#include "withy/core/sweep/with_modes.hpp"
+
 namespace withy::sweep {
 namespace {
 
@@ -121,6 +123,28 @@ MassTable<Space>::MassTable(const NodeSpec& node) {
   }
   data = std::move(numbers);
   straight = second_order && lies_straight<Space>(R.rightCols(columns - 1), n);
+  if (straight && modes > modes_known) lay_straight();
+}
+
+template <class Space>
+void MassTable<Space>::lay_straight() {
+  const auto n = static_cast<std::size_t>(modes);
+  const std::size_t pairs = n * (n + 1) / 2;
+  // Columns of `data`: X, Φ_i, Γ_ij, two components each.
+  const auto column = [&](std::size_t pack, std::size_t vector, std::size_t component) {
+    return data[pack * stride + 2 * vector + component];
+  };
+  std::vector<typename Space::Group> blocks, rows;
+  for (std::size_t k = 0; k < packs; k += block) {
+    const std::size_t end = std::min(packs, k + block);
+    for (std::size_t i = 0; i < 1 + pairs; ++i)
+      for (std::size_t pack = k; pack < end; ++pack) blocks.push_back(column(pack, i == 0 ? 0 : n + i, 0));
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t pack = 0; pack < packs; ++pack) rows.push_back(column(pack, 1 + i, 1));
+  std::vector<double> products_of_rows(n * n, 0.0);
+  add_gram<double>(rows.data(), static_cast<int>(packs), modes, products_of_rows.data());
+  along = std::move(blocks), across = std::move(rows), across_products = std::move(products_of_rows);
 }
 
 template struct MassTable<Spatial>;

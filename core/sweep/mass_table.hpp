@@ -28,9 +28,17 @@ struct MassTable {
   bool straight = false;
   /// Of several cases, straight ones of few modes, in the place of `data`: StraightMass.
   SharedNumbers<typename Space::Scalar> products;
+  /// Of one case, straight: X, then Γ_ij for i ≤ j, of `block` packs at once, which stand innermost, and of what is
+  /// left over; Φ_i across, of all packs each; products of these, n rows of n. See straight_rows.hpp.
+  static constexpr int block = 4;
+  SharedNumbers<typename Space::Group> along, across;
+  SharedNumbers<typename Space::Scalar> across_products;
 
   MassTable() = default;
   explicit MassTable(const NodeSpec& node);
+
+ private:
+  void lay_straight();
 };
 
 /// The generalized particles of one pack at q, q̇: positions r, velocities ṙ, acceleration terms q̇ᵀΓq̇ and partial
@@ -175,36 +183,34 @@ requires(Space::angular == 3) inline void add_products(const typename Space::Gro
   }
 }
 
-/// What the constant function has a part in: the first lane of the first pack.
-template <class Space>
+/// What the constant function has a part in: the first lane of the first pack. \param P component c of P_i by (i, c)
+template <class Space, class Partial>
 requires(Space::angular == 1) inline void add_constant(typename Space::Scalar m, const typename Space::Twist& V,
                                                        const typename Space::Group* r, typename Space::Group* a,
-                                                       const typename Space::Group* P, int n,
-                                                       typename Space::Inertia& I, typename Space::Twist* C,
-                                                       typename Space::Twist& p) {
+                                                       const Partial& P, int n, typename Space::Inertia& I,
+                                                       typename Space::Twist* C, typename Space::Twist& p) {
   add_to_first(a[0], -m * V.w * V.y);  // ω×v acts through the constant function
   add_to_first(a[1], m * V.w * V.x);
   I += typename Space::Inertia{0, -m * first(r[1]), m * first(r[0]), m * m, 0, m * m};
   p += typename Space::Twist{0, m * first(a[0]), m * first(a[1])};
   for (int i = 0; i < n; ++i) {
-    C[i].x += m * first(P[i * 2]);
-    C[i].y += m * first(P[i * 2 + 1]);
+    C[i].x += m * first(P(i, 0));
+    C[i].y += m * first(P(i, 1));
   }
 }
 
-template <class Space>
+template <class Space, class Partial>
 requires(Space::angular == 3) inline void add_constant(typename Space::Scalar m, const typename Space::Twist& V,
                                                        const typename Space::Group* r, typename Space::Group* a,
-                                                       const typename Space::Group* P, int n,
-                                                       typename Space::Inertia& I, typename Space::Twist* C,
-                                                       typename Space::Twist& p) {
+                                                       const Partial& P, int n, typename Space::Inertia& I,
+                                                       typename Space::Twist* C, typename Space::Twist& p) {
   using Triple = typename Space::Triple;
   const Triple acceleration = cross(V.w, V.v) * m;
   for (int c = 0; c < 3; ++c) add_to_first(a[c], acceleration[c]);
   I.L -= Space::Block::skew(Triple(first(r[0]), first(r[1]), first(r[2])) * m);
   I.M += typename Space::Block{{Triple(m * m, 0, 0), Triple(0, m * m, 0), Triple(0, 0, m * m)}};
   p.v += Triple(first(a[0]), first(a[1]), first(a[2])) * m;
-  for (int i = 0; i < n; ++i) C[i].v += Triple(first(P[i * 3]), first(P[i * 3 + 1]), first(P[i * 3 + 2])) * m;
+  for (int i = 0; i < n; ++i) C[i].v += Triple(first(P(i, 0)), first(P(i, 1)), first(P(i, 2))) * m;
 }
 
 /// From so many on a body of any number of modes has its products by rows; with fewer that takes longer.
@@ -232,7 +238,10 @@ inline void integrate(const MassTable<Space>& table, int modes, const typename S
   const auto particles = [&](std::size_t k, const auto& then) {
     ParticleMotion<Space, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
     add_turning<Space>(V, x.r, x.v, x.a);
-    if (k == 0) add_constant<Space>(table.root_mass, V, x.r, x.a, P, n, I, C, p);
+    if (k == 0) {
+      const auto partial = [&](int i, int c) { return P[i * L + c]; };
+      add_constant<Space>(table.root_mass, V, x.r, x.a, partial, n, I, C, p);
+    }
     then(x);
   };
   if (N >= 0 || table.packs < many_groups) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "withy/core/sweep/straight_rows.hpp"
 #include "withy/core/sweep/symmetric/straight_mass.hpp"
 #include "withy/core/sweep/symmetric/symmetric_motion.hpp"
 
@@ -33,17 +34,27 @@ inline void integrate_mass(const SymmetricNode<Space>& node, const SymmetricStat
     using Group = typename Space::Group;
     Group P_here[N > 0 ? N * Space::linear : 1];
     Group* P = N > 0 ? P_here : at<Group>(s.work, node.work_P);
-    const auto sum_particles = [&] {
+    const auto clear = [&] {
       for (int i = 0; i < n; ++i) {
         C[i] = Space::Twist::zero();
         h[i] = 0;
       }
       for (int i = 0; i < n * n; ++i) G[i] = 0;
+    };
+    const auto sum_particles = [&] {
+      clear();
       integrate<Space, N>(node.own->mass, n, q, q_dot, V, P, I, C, G, p, h);
     };
     if constexpr (has_straight_mass<Space, N>) {
       if (node.own->mass.straight) {
         integrate_straight<Space, N>(node.own->mass.products.data(), q, q_dot, V, I, C, G, p, h);
+      } else {
+        sum_particles();
+      }
+    } else if constexpr (has_straight_rows<Space, N>) {
+      if (!node.own->mass.along.empty()) {
+        clear();
+        integrate_straight_rows<Space>(node.own->mass, q, q_dot, V, P, I, C, G, p, h);
       } else {
         sum_particles();
       }

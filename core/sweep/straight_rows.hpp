@@ -1,0 +1,132 @@
+/// \file
+/// The integrals over the mass of a straight beam in a plane, of one case and any number of modes: half of what any
+/// body takes.
+#pragma once
+
+#include <algorithm>
+
+#include "withy/core/sweep/mass_table.hpp"
+
+namespace withy::sweep {
+
+/// Whether a node of N modes may have them; see MassTable::along.
+template <class Space, int N>
+constexpr bool has_straight_rows = Space::angular == 1 && !in_lanes<Space> && N < 0;
+
+/// What moves along the beam in a block of B packs of particles: x = X + ½ qᵀΓq, its rate, q̇ᵀΓq̇, and P = Γq with the
+/// packs of mode i at i·B. Several packs at once, since sums along a row wait for each other.
+template <class Space, int B>
+struct StraightBlock {
+  using Group = typename Space::Group;
+  using Scalar = typename Space::Scalar;
+  Group x[B], rate[B], bend[B];
+
+  /// \param g X, then Γ_ij for i ≤ j, of the block's packs
+  StraightBlock(const Group* g, int n, const Scalar* q, const Scalar* q_dot, Group* P) {
+    for (int b = 0; b < B; ++b) {
+      x[b] = g[b];
+      rate[b] = bend[b] = spread(Scalar(0));
+    }
+    g += B;
+    for (int i = 0; i < n * B; ++i) P[i] = spread(Scalar(0));
+    for (int i = 0; i < n; ++i) g = add_row(g, i, n, q, q_dot, P);
+    for (int i = 0; i < n; ++i) {
+      const Group half = spread(0.5 * q[i]), speed = spread(q_dot[i]);
+      for (int b = 0; b < B; ++b) {
+        x[b] += P[i * B + b] * half;
+        rate[b] += P[i * B + b] * speed;
+      }
+    }
+  }
+
+ private:
+  /// As that of ParticleMotion.
+  const Group* add_row(const Group* g, int i, int n, const Scalar* q, const Scalar* q_dot, Group* P) {
+    const Group qi = spread(q[i]), speed = spread(q_dot[i]), twice = speed + speed;
+    Group own[B], right[B];
+    for (int b = 0; b < B; ++b) {
+      own[b] = P[i * B + b] + g[b] * qi;
+      bend[b] += g[b] * (speed * speed);
+      right[b] = spread(Scalar(0));
+    }
+    g += B;
+    for (int j = i + 1; j < n; ++j, g += B) {
+      const Group qj = spread(q[j]), speed_j = spread(q_dot[j]);
+      for (int b = 0; b < B; ++b) {
+        own[b] += g[b] * qj;
+        P[j * B + b] += g[b] * qi;
+        right[b] += g[b] * speed_j;
+      }
+    }
+    for (int b = 0; b < B; ++b) {
+      P[i * B + b] = own[b];
+      bend[b] += right[b] * twice;
+    }
+    return g;
+  }
+};
+
+/// `integrate` of mass_table.hpp. \param P scratch: mass_scratch
+template <class Space>
+inline void integrate_straight_rows(const MassTable<Space>& table, const typename Space::Scalar* q,
+                                    const typename Space::Scalar* q_dot, const typename Space::Twist& V,
+                                    typename Space::Group* P, typename Space::Inertia& I, typename Space::Twist* C,
+                                    typename Space::Scalar* G, typename Space::Twist& p, typename Space::Scalar* h) {
+  using Group = typename Space::Group;
+  using Scalar = typename Space::Scalar;
+  constexpr int block = MassTable<Space>::block;
+  const int n = table.modes, packs = static_cast<int>(table.packs);
+  Group *r = P + n * block, *a = r + 2 * packs, *rows = a + 2 * packs;
+  const Group* across = table.across.data();
+  const auto sweep_block = [&](auto packs_here, int first_pack) {
+    constexpr int B = decltype(packs_here)::value;
+    const StraightBlock<Space, B> along(table.along.data() + first_pack * (1 + n * (n + 1) / 2), n, q, q_dot, P);
+    for (int b = 0; b < B; ++b) {
+      const int k = first_pack + b;
+      Group here[2] = {along.x[b], spread(Scalar(0))}, rate[2] = {along.rate[b], here[1]},
+            bend[2] = {along.bend[b], here[1]};
+      for (int i = 0; i < n; ++i) {
+        const Group phi = across[i * packs + k];
+        here[1] += phi * spread(q[i]);
+        rate[1] += phi * spread(q_dot[i]);
+        rows[i * packs + k] = P[i * B + b];
+      }
+      add_turning<Space>(V, here, rate, bend);
+      if (k == 0) {
+        const auto partial = [&](int i, int c) { return c == 0 ? P[i * B] : across[i * packs]; };
+        add_constant<Space>(table.root_mass, V, here, bend, partial, n, I, C, p);
+      }
+      for (int c = 0; c < 2; ++c) {
+        r[c * packs + k] = here[c];
+        a[c * packs + k] = bend[c];
+      }
+    }
+  };
+  int k = 0;
+  for (; k + block <= packs; k += block) sweep_block(std::integral_constant<int, block>{}, k);
+  if (packs - k == 3) sweep_block(std::integral_constant<int, 3>{}, k);
+  if (packs - k == 2) sweep_block(std::integral_constant<int, 2>{}, k);
+  if (packs - k == 1) sweep_block(std::integral_constant<int, 1>{}, k);
+
+  Group r_r = spread(Scalar(0)), r_a = r_r;
+  for (k = 0; k < packs; ++k) {
+    add_squares<Space>(r + k, packs, &r_r);
+    add_moment<Space>(r + k, a + k, packs, &r_a);
+  }
+  put_squares<Space>(&r_r, I);
+  put_moment<Space>(&r_a, p);
+  for (int i = 0; i < n; ++i) {
+    const Group *Pi = rows + i * packs, *phi = across + i * packs;
+    Group r_P = spread(Scalar(0)), P_a = r_P;
+    for (k = 0; k < packs; ++k) {
+      r_P += r[k] * phi[k] - r[packs + k] * Pi[k];
+      P_a += Pi[k] * a[k] + phi[k] * a[packs + k];
+    }
+    put_moment<Space>(&r_P, C[i]);
+    h[i] += sum(P_a);
+    for (int j = 0; j <= i; ++j) G[i * n + j] += table.across_products[static_cast<std::size_t>(i * n + j)];
+  }
+  add_gram<Scalar>(rows, packs, n, G);
+}
+
+}  // namespace withy::sweep
