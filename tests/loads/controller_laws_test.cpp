@@ -247,6 +247,9 @@ TEST(Control, MistakesAreLocatedAndNamed) {
   EXPECT_THAT(problem("type: pid, of: of_servo, to: command, proportional: 1", imu), HasSubstr("algebraic"));
   EXPECT_THAT(problem("type: transfer-function, of: axle, to: command, numerator: [1, 0, 0], denominator: [1, 2]"),
               testing::AllOf(HasSubstr("/loads/servo/numerator"), HasSubstr("improper")));
+  EXPECT_THAT(problem("type: transfer-function, of: axle, to: command, numerator: [], denominator: []"),
+              testing::AllOf(HasSubstr("/loads/servo/numerator: got an empty list"),
+                             HasSubstr("/loads/servo/denominator: got an empty list")));
   EXPECT_THAT(problem("type: pid, of: axle, to: command, proportional: 1, sample: 0.01, delay: 0.004"),
               testing::AllOf(HasSubstr("/loads/servo/delay"), HasSubstr("shorter than a step")));
   EXPECT_THAT(problem("type: pid, of: axle, to: command, proportional: 1, sample: 0.01, delay: 0.015"),
@@ -277,9 +280,6 @@ TEST(Control, AMisspeltNumberOfASignalIsToldWhereItStandsWithTheNearest) {
               HasSubstr("/loads/servo/value: no signal 'axel.rate'; did you mean 'axle.rate'?"));
 }
 
-TEST(Control, WhatRestsOnAWrongOutputOrLoadIsNotReportedBesideIt) {
-  const auto problem = [](const std::string& outputs, const std::string& loads) {
-    return test::problem_of(test::turntable + "outputs:\n" + outputs + "loads:\n" + loads);
 TEST(Control, AMistakeInTheTreeMakesNoSignalUnknown) {
   const std::string tree =
       "format: withy/1\ntime: {end: 1}\nbodies: {table: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
@@ -297,6 +297,9 @@ TEST(Control, AMistakeInTheTreeMakesNoSignalUnknown) {
               HasSubstr("/loads/drive/of: no signal \"lwa\"; did you mean 'law'?"));
 }
 
+TEST(Control, WhatRestsOnAWrongOutputOrLoadIsNotReportedBesideIt) {
+  const auto problem = [](const std::string& outputs, const std::string& loads) {
+    return test::problem_of(test::turntable + "outputs:\n" + outputs + "loads:\n" + loads);
   };
   const std::string chain =
       "  law: {type: pid, of: back, to: nothing, proportional: 1}\n"
@@ -310,15 +313,15 @@ TEST(Control, AMistakeInTheTreeMakesNoSignalUnknown) {
               "  drive: {type: actuator, of: law, hinge: axle, frequency: 10}\n");
   EXPECT_THAT(law, HasSubstr("/loads/law/of"));
   EXPECT_EQ(std::count(law.begin(), law.end(), '\n'), 0) << law;
-  // Two that rest on each other and on nothing that is wrong are not silent.
-  EXPECT_THAT(problem("  shown: {type: control, of: law}\n",
-                      "  law: {type: pid, of: shown.command, hinge: axle, proportional: 1}\n"),
   // A load that names one which cannot be made is not missing where an output shows it.
   const std::string plain = problem("  shown: {type: control, of: drive}\n",
                                     "  law: {type: pid, of: axle, to: nothing, proportional: 1, sample: 0}\n"
                                     "  drive: {type: actuator, of: law, hinge: axle, frequency: 10}\n");
   EXPECT_THAT(plain, HasSubstr("/loads/law/sample: got 0"));
   EXPECT_EQ(std::count(plain.begin(), plain.end(), '\n'), 0) << plain;
+  // Two that rest on each other and on nothing that is wrong are not silent.
+  EXPECT_THAT(problem("  shown: {type: control, of: law}\n",
+                      "  law: {type: pid, of: shown.command, hinge: axle, proportional: 1}\n"),
               HasSubstr("/loads/law"));
 }
 
