@@ -60,6 +60,24 @@ TEST(Turning, EqualBladesAreSeenFromTheTower) {
   EXPECT_THAT(named.err, HasSubstr("not like"));
 }
 
+/// A gust that grows over the turn is none of a periodic motion: exponents that took it for one were wrong.
+TEST(Turning, ALoadThatDoesNotRepeatIsNamedWhereAWholeTurnIsAskedFor) {
+  const Folder folder;
+  const auto asked = [&](const std::string& force, const std::string& option) {
+    folder.write("gust.yaml", rotor(3, "loads: {gust: {type: force, frame: hub, " + force + "}}\n"));
+    return withy(folder,
+                 {"modes", "gust.yaml", "--spin", "shaft=12 rpm", option, option == "--blades" ? "auto" : "--json"});
+  };
+  for (const char* option : {"--blades", "--floquet"}) {
+    const Finished gust = asked("law: table, table: [[0, 0, 0, 0], [9, 3e5, 0, 0], [20, 0, 0, 0]]", option);
+    EXPECT_EQ(gust.status, 1);
+    EXPECT_THAT(gust.err, HasSubstr("load 'gust' acts otherwise 5 s later"));
+    EXPECT_EQ(asked("value: [3e4, 0, 0]", option).status, 0);
+    EXPECT_EQ(asked("law: sine, amplitude: [3e4, 0, 0], period: 1.6666666666666667", option).status, 0)
+        << "three times a turn";
+  }
+}
+
 /// The reference of a servo moves at the start, and the hinge with it: nothing turns, and nothing stays.
 TEST(Turning, AStateThatAFreeHingePassesThroughIsNamed) {
   const Folder folder;
