@@ -27,10 +27,10 @@ class MjcfReader {
     for (const Element& e : mujoco_.children) {
       if (e.name == "compiler") compiler(e);
       if (e.name == "default") defaults_.add(e);
-      if (e.name == "option") tree_.gravity = Attributes(e, diagnostics_).vector("gravity", tree_.gravity);
+      if (e.name == "option") option(e);
       if (e.name == "include") diagnostics_.error(e.place, "<include> is not followed; put the files into one");
     }
-    for (const char* left_out : {"actuator", "tendon", "equality", "contact", "deformable"})
+    for (const char* left_out : {"actuator", "tendon", "equality", "contact", "deformable", "sensor", "keyframe"})
       for (const Element& e : mujoco_.children)
         if (e.name == left_out && !e.children.empty())
           tree_.remarks.push_back(
@@ -50,6 +50,14 @@ class MjcfReader {
  private:
   static std::string counted(std::size_t n, const char* what) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  }
+
+  void option(const Element& e) {
+    const Attributes a(e, diagnostics_);
+    tree_.gravity = a.vector("gravity", tree_.gravity);
+    for (const char* key : {"density", "viscosity"})
+      if (const double value = a.number(key, 0); value != 0)
+        tree_.remarks.push_back(fmt::format("<option>: {} {} of a medium, and its forces, are left out", key, value));
   }
 
   void compiler(const Element& e) {
@@ -85,6 +93,8 @@ class MjcfReader {
     const std::string* called = e.find("name");
     const std::string name = called != nullptr ? *called : fmt::format("body_{}", e.place.line);
     Pose at{angles_.rotation(e, diagnostics_), Attributes(e, diagnostics_).vector("pos", Vector3::Zero())};
+    if (const double share = Attributes(e, diagnostics_).number("gravcomp", 0); share != 0)
+      tree_.remarks.push_back(fmt::format("body {}: gravcomp {} is left out, its weight acts", in_quotes(name), share));
     std::vector<Element> joints;
     for (const Element& child : e.children)
       if (child.name == "joint" || child.name == "freejoint")

@@ -200,7 +200,10 @@ EvaluatedRows Equations::derivatives_many(double t, std::span<const double> y, s
     }
     p.in_lanes->together->derivatives(std::span(calls).first(lanes.size()));
     for (std::size_t k = 0; k < some; ++k) {
-      if (!lanes[k].call.evaluation.ok()) return {first + k, lanes[k].call.evaluation};
+      if (!lanes[k].call.evaluation.ok()) {
+        std::copy_n(lanes[k].y.begin(), n, p.full.begin());  // for `reason`
+        return {first + k, lanes[k].call.evaluation};
+      }
       std::copy_n(lanes[k].y_dot.begin(), n, y_dot.begin() + static_cast<std::ptrdiff_t>((first + k) * n));
     }
   }
@@ -241,6 +244,12 @@ std::string Equations::reason(double t, const Evaluation& evaluation) const {
         law->forget();
         return text + "load '" + node.name + "': " + words + ".";
       }
+  // Whatever the equations came upon: it is the caller's numbers that are wrong.
+  if (!std::isfinite(t)) return text + "the time is not finite.";
+  for (std::size_t i = 0; i < parts_->size; ++i)
+    if (!std::isfinite(parts_->full[i]))
+      return text + "the state is not finite: '" + parts_->states[i].name + "' is " +
+             (std::isnan(parts_->full[i]) ? "nan" : "infinite") + ".";
   if (evaluation.outcome == Evaluation::Outcome::nonfinite) {
     text += "the derivatives are not finite";
   } else {

@@ -15,11 +15,12 @@ void check_columns(const study::Prepared& prepared, const std::vector<std::strin
   const ResultColumns table(prepared.model(), *prepared.equations, prepared.scene.outputs);
   std::vector<std::string> known = asked_names(prepared.values.root());
   for (const Column& column : table.columns()) known.push_back(column.name);
+  std::vector<std::string> unknown;
   for (const std::string& name : names) {
     const auto is = [&](const Column& c) { return c.name == name || c.name.starts_with(name + '.'); };
-    if (std::none_of(table.columns().begin(), table.columns().end(), is))
-      throw study::OptionError("output", "no '" + name + "'" + suggestion(name, known));
+    if (std::none_of(table.columns().begin(), table.columns().end(), is)) unknown.push_back(name);
   }
+  if (!unknown.empty()) throw study::OptionError("output", unknown_names(unknown, known));
 }
 
 }  // namespace withy

@@ -12,7 +12,7 @@ struct Prepared;
 namespace withy {
 
 /// Checks names of columns of results.csv, or of several by what stands before a dot. \throws study::OptionError with
-/// the nearest name where there is no such column.
+/// the nearest name of each that is no such column.
 void check_columns(const study::Prepared& prepared, const std::vector<std::string>& names);
 
 }  // namespace withy

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -12,6 +13,7 @@
 #include "withy/results/report/modes_page.hpp"
 #include "withy/results/report/report_page.hpp"
 #include "withy/results/svg_plot.hpp"
+#include "withy/scene/units.hpp"
 
 namespace withy {
 namespace {
@@ -195,11 +197,85 @@ Json modes_study_json(const std::string& scene, const study::Sweep& sweep, const
   return j;
 }
 
+bool sees_blades(const std::vector<study::ModesOf>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const study::ModesOf& run) {
+    return std::any_of(run.points.begin(), run.points.end(),
+                       [](const study::ModesAt& at) { return at.turn && at.turn->blades; });
+  });
+}
+
+std::string blades_csv(const std::vector<study::ModesOf>& runs, const std::string& label) {
+  std::string text =
+      "formulation," + label + ",mode,dominated_by,frequency[rad/s],frequency[Hz],damping_ratio,growth[1/s]\n";
+  for (const study::ModesOf& run : runs) {
+    for (const study::ModesAt& at : run.points) {
+      if (!at.turn || !at.turn->blades) continue;
+      for (std::size_t i = 0; i < at.turn->blades->modes.size(); ++i) {
+        const study::NamedMode& m = at.turn->blades->modes[i];
+        const double size = std::abs(m.exponent);
+        text += fmt::format("{},{},{},{},{},{},{},{}\n", run.formulation, at.value, i + 1, m.dominated_by,
+                            m.exponent.imag(), m.exponent.imag() / (2 * std::numbers::pi),
+                            size > 0 ? fmt::format("{}", -m.exponent.real() / size) : std::string(), m.exponent.real());
+      }
+    }
+  }
+  return text;
+}
+
+std::string blades_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const study::Sweep& sweep,
+                           std::size_t count) {
+  Panel frequencies{swept_label(sweep), "frequency, from where the rotor does not turn [rad/s]", {0, 0}, {}, 420};
+  std::vector<std::string> legend;
+  std::size_t blades = 0;
+  double fastest = 0;
+  for (const study::ModesOf& run : runs) {
+    std::map<std::string, Curve> curves;  // of the modes of one name the n-th at each value
+    for (const study::ModesAt& at : run.points) {
+      fastest = std::max(fastest, at.value);
+      if (!at.turn || !at.turn->blades) continue;
+      blades = at.turn->blades->blades.size();
+      std::map<std::string, int> met;
+      std::size_t shown = 0;
+      for (const study::NamedMode& m : at.turn->blades->modes) {
+        if (!(m.exponent.imag() > 0) || shown++ >= count) continue;
+        const int nth = ++met[m.dominated_by];
+        Curve& curve = curves[m.dominated_by + (nth > 1 ? fmt::format(" ({})", nth) : "")];
+        curve.x.push_back(at.value);
+        curve.y.push_back(m.exponent.imag());
+        frequencies.y_range.second = std::max(frequencies.y_range.second, curve.y.back());
+      }
+    }
+    for (auto& [name, curve] : curves) {
+      curve.pen = legend.size();
+      curve.points = curve.x.size() == 1;
+      legend.push_back(runs.size() > 1 ? run.formulation + ", " + name : name);
+      frequencies.curves.push_back(std::move(curve));
+    }
+  }
+  if (!sweep.spun().empty()) {
+    const double unit = sweep.unit.empty() ? 1 : read_any_quantity("1 " + sweep.unit).value.value_or(0);
+    for (const std::size_t times : {std::size_t{1}, blades, 2 * blades}) {
+      const double least = std::max(fastest, 0.0) * unit * static_cast<double>(times);
+      if (!(least > 0)) continue;
+      const double end = std::min(1.0, frequencies.y_range.second / least);  // where the line leaves the picture
+      Curve line{{0, end * fastest}, {0, end * least}};
+      line.pen = legend.size();
+      legend.push_back(times == 1 ? "once a turn" : fmt::format("{} times a turn", times));
+      frequencies.curves.push_back(std::move(line));
+    }
+  }
+  return svg_plot(title, legend, {frequencies});
+}
+
 void write_modes(const std::filesystem::path& folder, const std::vector<study::ModesOf>& runs, const Json& content,
                  const std::string& title, const study::Sweep& sweep, std::size_t count) {
   write_file(folder / "modes.json", json_text(content));
   write_file(folder / "modes.csv", modes_csv(runs, sweep.none() ? "value" : sweep.path));
   if (!sweep.none()) write_file(folder / "modes.svg", modes_picture(runs, title, swept_label(sweep), count));
+  if (sees_blades(runs)) {
+    write_file(folder / "blades.csv", blades_csv(runs, sweep.none() ? "value" : sweep.path));
+    if (!sweep.none()) write_file(folder / "blades.svg", blades_picture(runs, title, sweep, count));
+  }
   if (has_report_page()) write_study_page(folder / report_name, "modes", title, modes_page(runs, sweep, count));
 }
 

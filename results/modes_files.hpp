@@ -24,10 +24,20 @@ std::string modes_csv(const std::vector<study::ModesOf>& runs, const std::string
 std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const std::string& label,
                           std::size_t count);
 
+/// Whether equal blades were seen from where the rotor does not turn, at any value.
+bool sees_blades(const std::vector<study::ModesOf>& runs);
+/// The modes of equal blades seen from where the rotor does not turn: a line a formulation, value and mode.
+std::string blades_csv(const std::vector<study::ModesOf>& runs, const std::string& label);
+/// Their frequencies over the value, a curve a name; of a rotor's rate with those of one turn and of the passing
+/// blades.
+std::string blades_picture(const std::vector<study::ModesOf>& runs, const std::string& title, const study::Sweep& sweep,
+                           std::size_t count);
+
 /// The content of modes.json.
 nlohmann::ordered_json modes_study_json(const std::string& scene, const study::Sweep& sweep,
                                         const study::ModesFound& found);
-/// Writes modes.json with this content, modes.csv, of a sweep modes.svg, and the page.
+/// Writes modes.json with this content, modes.csv, of a sweep modes.svg, of equal blades blades.csv and blades.svg too,
+/// and the page.
 void write_modes(const std::filesystem::path& folder, const std::vector<study::ModesOf>& runs,
                  const nlohmann::ordered_json& content, const std::string& title, const study::Sweep& sweep,
                  std::size_t count);

@@ -29,7 +29,10 @@ std::string run_of_modes_text(const study::ModesOf& run, const std::optional<stu
   }
   if (poles && !run.points.front().modes.empty()) text += '\n' + poles_text(run.points.front());
   for (const study::ModesAt& at : run.points) {
-    if (at.turn)
+    if (study::stands_still(at, sweep))
+      text += fmt::format("\nAt {} = {} nothing turns: the frequencies there are those of the table above.\n",
+                          sweep.path, sweep.text(at.value));
+    else if (at.turn)
       text += turning_text(*at.turn, sweep.none() ? "" : fmt::format("{} = {}", sweep.path, sweep.text(at.value)));
   }
   return text;

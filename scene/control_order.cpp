@@ -97,14 +97,18 @@ void name_signals(const Document& document, Model* model, SceneNames& names, Reg
   };
   const std::vector<Value::Member>& loads = map_of("loads").members();
   for (const auto& [name, given] : loads) names.loads.add(name);
-  if (model == nullptr) return;
-  for (const HingeNode& hinge : model->hinges()) {
-    for (const Column& c : coordinate_columns(hinge)) names.signals.add(c.name);
-    for (const Column& c : rate_columns(hinge)) names.signals.add(c.name);
+  if (model == nullptr) {  // no hinge's columns are known: any number behind the name of one is taken
+    for (const std::string& hinge : names.hinges.names()) names.signals.add(hinge);
+  } else {
+    for (const HingeNode& hinge : model->hinges()) {
+      for (const Column& c : coordinate_columns(hinge)) names.signals.add(c.name);
+      for (const Column& c : rate_columns(hinge)) names.signals.add(c.name);
+    }
   }
   for (const char* key : {"outputs", "loads"})
     for (const auto& [name, given] : map_of(key).members()) names.signals.add(name);
-  if (std::any_of(loads.begin(), loads.end(), [](const Value::Member& load) { return measures(load.second); }))
+  if (model != nullptr &&
+      std::any_of(loads.begin(), loads.end(), [](const Value::Member& load) { return measures(load.second); }))
     model->set_measured(measurable(map_of("outputs"), *model, document, names, registry));
 }
 

@@ -145,6 +145,20 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
   return candidates.empty() ? "; there is none" : "; known: " + listed(candidates);
 }
 
+std::string unknown_names(const std::vector<std::string>& names, const std::vector<std::string>& candidates) {
+  if (names.size() == 1) return fmt::format("no '{}'{}", names[0], suggestion(names[0], candidates));
+  std::string text, known;
+  for (const std::string& name : names) {
+    const std::string guess = nearest(name, candidates);
+    text += fmt::format("{}no '{}'", text.empty() ? "" : ", ", name);
+    if (!guess.empty())
+      text += fmt::format(" (did you mean '{}'?)", guess);
+    else
+      known = suggestion(name, candidates);
+  }
+  return text + known;
+}
+
 Value placed(Value value, const Place& place) {
   value.set_place(place);
   if (value.kind() == Value::Kind::list) {

@@ -21,6 +21,8 @@ std::vector<std::string> keys_of(const Value& map);
 std::vector<std::string> keys_of(const std::vector<ParameterSpec>& members);
 /// "; did you mean 'length'?" or, where none is near, "; known: length, mass".
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates);
+/// "no 'lenght'; did you mean 'length'?", of several names "no 'lenght' (did you mean 'length'?), no 'x'; known: …".
+std::string unknown_names(const std::vector<std::string>& names, const std::vector<std::string>& candidates);
 /// Of "z" or "-x" where three numbers are needed, as ", as [0, 0, 1]"; empty for all else.
 std::string axis_as_list(const Value& value);
 /// The plugin of `ids` that is meant by a name: the one of the method that other programs call so, else the nearest;

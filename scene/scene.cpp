@@ -194,7 +194,10 @@ class SceneBuilder {
                     [&](const std::string& name, const Value& value, std::shared_ptr<const Load> load) {
                       loads.push_back({name, needed_loads(value, names), events.with_forms(name, std::move(load))});
                     });
+    // What a load needs that is reported, or what goes round in a circle with it, needs no report of its own.
+    for (const PendingLoad& pending : loads) refused_.insert(pending.name);
     for (const PendingLoad& pending : in_order_of_need(std::move(loads), checker_)) {
+      refused_.erase(pending.name);
       try {
         model->add_load(pending.name, *pending.load);
       } catch (const std::invalid_argument&) {

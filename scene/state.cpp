@@ -276,7 +276,10 @@ State parse_state(std::string_view text, const std::string& file, const Model& m
   State state = start;
   if (read_document(text, {}, document, diagnostics)) {
     Registry none;
-    set_state(document.root, model, Checker(document, none, diagnostics), state);
+    // A run.json says with which state its run ended.
+    const Value& root = document.root;
+    const Value* final = root.kind() == Value::Kind::map && root.has("status") ? root.find("final") : nullptr;
+    set_state(final != nullptr ? *final : root, model, Checker(document, none, diagnostics), state);
   }
   if (!diagnostics.ok()) throw SceneError(file, diagnostics.errors());
   return state;

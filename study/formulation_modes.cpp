@@ -25,15 +25,23 @@ ModesFound find_modes(const Prepared& base, Registry& registry, const ModesQuest
   return found;
 }
 
+bool stands_still(const ModesAt& at, const Sweep& sweep) {
+  return !sweep.spun().empty() && at.value == 0 && at.turn && !at.turn->problem.empty() &&
+         at.turn->check.turning.period == 0;
+}
+
 std::vector<std::string> modes_problems(const std::vector<ModesOf>& runs, const Sweep& sweep) {
   std::vector<std::string> problems;
   for (const ModesOf& run : runs) {
     for (const ModesAt& at : run.points) {
-      if (at.turn && !at.turn->problem.empty()) problems.push_back("a whole turn: " + at.turn->problem);
-      if (at.turn && !at.turn->blade_problem.empty()) problems.push_back("--blades: " + at.turn->blade_problem);
+      const std::string where = sweep.none() ? "" : fmt::format("{} = {}", sweep.path, sweep.text(at.value));
+      const std::string before = where.empty() ? "" : where + ": ";
+      if (at.turn && !at.turn->problem.empty() && !stands_still(at, sweep))
+        problems.push_back(before + "a whole turn: " + at.turn->problem);
+      if (at.turn && !at.turn->blade_problem.empty())
+        problems.push_back(before + "--blades: " + at.turn->blade_problem);
       if (!at.problem.empty())
-        problems.push_back(fmt::format("{}{}: {}", run.formulation,
-                                       sweep.none() ? "" : fmt::format(", {} = {}", sweep.path, at.value), at.problem));
+        problems.push_back(run.formulation + (where.empty() ? "" : ", " + where) + ": " + at.problem);
     }
   }
   return problems;

@@ -32,7 +32,11 @@ struct ModesFound {
 ModesFound find_modes(const Prepared& base, Registry& registry, const ModesQuestion& question,
                       const std::function<Control(const std::string& formulation)>& control);
 
-/// Where there are no modes, exponents or blades, and why: a sentence each.
+/// Whether a sweep of a hinge's rate stands still at this value, and a turn that was asked for is none.
+bool stands_still(const ModesAt& at, const Sweep& sweep);
+
+/// Where there are no modes, exponents or blades, and why: a sentence each. That a sweep begins where nothing turns
+/// is none.
 std::vector<std::string> modes_problems(const std::vector<ModesOf>& runs, const Sweep& sweep);
 
 }  // namespace withy::study

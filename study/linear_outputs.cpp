@@ -68,6 +68,7 @@ std::vector<LinearOutput> linear_outputs(const Configuration& c, const std::vect
   add_tips(c, all);
   if (names.empty()) return all;
   std::vector<LinearOutput> chosen;
+  std::vector<std::string> unknown;
   for (const std::string& name : names) {
     const std::size_t before = chosen.size();
     // A coordinate, `elbow.0`, is the beginning of its rate's name too.
@@ -78,12 +79,12 @@ std::vector<LinearOutput> linear_outputs(const Configuration& c, const std::vect
     };
     for (const LinearOutput& o : all)
       if (is(o.column.name) || is(o.in_tables)) chosen.push_back(o);
-    if (chosen.size() > before) continue;
-    std::vector<std::string> known;
-    for (const LinearOutput& o : all) known.push_back(o.column.name);
-    throw OptionError("outputs", "no '" + name + "'" + suggestion(name, known));
+    if (chosen.size() == before) unknown.push_back(name);
   }
-  return chosen;
+  if (unknown.empty()) return chosen;
+  std::vector<std::string> known;
+  for (const LinearOutput& o : all) known.push_back(o.column.name);
+  throw OptionError("outputs", unknown_names(unknown, known));
 }
 
 Eigen::RowVectorXd row_of_free(const LinearOutput& output, const std::vector<Eigen::Index>& free) {

@@ -78,14 +78,19 @@ std::vector<std::string> known_names(const Model& model, const std::vector<Tip>&
 }
 
 /// What stands where a name is none of an output: the nearest, or all.
-std::string unknown_output(const std::string& name, const std::vector<std::string>& known) {
-  if (const std::string guess = nearest(name, known); !guess.empty())
-    return "got '" + name + "'; did you mean '" + guess + "'?";
-  return "got '" + name + "'; need one of: " + listed(known) +
-         "; or what it is, as HINGE.rate, HINGE.effort, FRAME.acceleration; behind the name of an output .min, .max, "
-         ".mean, .rms "
-         "or "
-         ".integral";
+std::string unknown_outputs(const std::vector<std::string>& names, const std::vector<std::string>& known) {
+  std::string text, all;
+  for (const std::string& name : names) {
+    const std::string guess = nearest(name, known);
+    text += (text.empty() ? "got '" : ", '") + name + '\'';
+    if (guess.empty())
+      all = "; need one of: " + listed(known) +
+            "; or what it is, as HINGE.rate, HINGE.effort, FRAME.acceleration; behind the name of an output .min, "
+            ".max, .mean, .rms or .integral";
+    else
+      text += names.size() == 1 ? "; did you mean '" + guess + "'?" : " (did you mean '" + guess + "'?)";
+  }
+  return text + all;
 }
 
 double greatest(const std::map<std::string, double>& values) {
@@ -118,7 +123,13 @@ Outputs::Outputs(const Model& model, const std::vector<std::string>& names, std:
     : length_(longest_body(model)) {
   const std::vector<Tip> all_tips = tips(model);
   if (names.empty()) add_all(model, all_tips, false);
-  for (const std::string& name : names) add_named(model, all_tips, name, sensors);
+  std::vector<std::string> unknown;
+  for (const std::string& name : names) {
+    const std::size_t before = outputs_.size();
+    add_named(model, all_tips, name, sensors);
+    if (outputs_.size() == before) unknown.push_back(name);
+  }
+  if (!unknown.empty()) throw OptionError("outputs", unknown_outputs(unknown, known_names(model, all_tips, sensors)));
   if (outputs_.empty()) throw InputError("no hinge of the scene moves and no body has a tip: nothing to measure");
 }
 
@@ -157,7 +168,6 @@ void Outputs::add_named(const Model& model, const std::vector<Tip>& tips, const 
     add_rates(model, number, sensors.size(), over);
     add_sensors(number, sensors, over);
   }
-  if (outputs_.size() == before) throw OptionError("outputs", unknown_output(name, known_names(model, tips, sensors)));
 }
 
 /// Of one column of a hinge's rates, or of all those of a name with numbers behind it.

@@ -49,6 +49,13 @@ std::pair<std::size_t, std::string> load_and_hinge(const Model& model, const std
   return {load, name.substr(dot + 1)};
 }
 
+OptionError nothing_fed_back(const std::string& name) {
+  return {"input", "load '" + name +
+                       "' feeds nothing back at this state: it is at a limit, or acts through other loads, of which "
+                       "one that gives an effort, or a sampled one whose command continuous loads follow, can be "
+                       "opened"};
+}
+
 /// What a load answers with: efforts in one proportion, along · (row · states).
 struct Answer {
   Eigen::VectorXd along;  ///< one a speed, the greatest 1
@@ -83,11 +90,7 @@ Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::
     names += (names.empty() ? "" : ", ") + c.layout().speed_names[s];
     speeds.push_back(s);
   }
-  if (speeds.empty())
-    throw OptionError("input", "load '" + name +
-                                   "' feeds nothing back at this state: it is at a limit, or acts "
-                                   "through other loads, of which one that gives an effort can be "
-                                   "opened");
+  if (speeds.empty()) throw nothing_fed_back(name);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slopes, Eigen::ComputeThinU | Eigen::ComputeThinV);
   if (svd.singularValues().size() > 1 && svd.singularValues()[1] > 1e-9 * svd.singularValues()[0])
     throw OptionError("input",
@@ -100,11 +103,38 @@ Answer answer_of(const Configuration& c, const Eigen::MatrixXd& all, const std::
   return answer;
 }
 
-/// What stands in the place of a load's answer. Of a sampled load at frames it is what the load holds, so that the
-/// force is where it was; on speeds it is an effort on these, for the loop may be opened at some of them.
+/// The command of a sampled load that acts through continuous ones alone, and what one unit of it does.
+struct Command {
+  Answer answer;         ///< `along`: the efforts that follow the command at once; `row` of what the load holds
+  Eigen::VectorXd push;  ///< ẋ by it
+};
+
+/// \throws InputError where nothing measures it, several commands act, or sampled loads measure it too
+Command command_of(SampledLoads& sampled, std::size_t load, const std::string& name) {
+  const auto [first, count] = sampled.held_by(load);
+  const Eigen::MatrixXd moved = sampled.moved(sampled.efforts()).middleCols(first, count);
+  if (moved.isZero(0)) throw nothing_fed_back(name);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(moved, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  if (svd.singularValues().size() > 1 && svd.singularValues()[1] > 1e-9 * svd.singularValues()[0])
+    throw OptionError("input", "load '" + name + "' gives several commands, through which it acts on several loads");
+  if (sampled.measured_by_others(load))
+    throw OptionError("input", "load '" + name +
+                                   "' acts through continuous loads, and sampled ones measure its command as well: no "
+                                   "one place opens its loop");
+  Eigen::RowVectorXd row = svd.matrixV().col(0).transpose();
+  Eigen::Index greatest = 0;
+  row.cwiseAbs().maxCoeff(&greatest);
+  row /= row[greatest];  // the command is one of the numbers held
+  const Eigen::VectorXd one = row.transpose() / row.squaredNorm();
+  return {{sampled.efforts().middleCols(first, count) * one, row, ""}, moved * one};
+}
+
+/// What stands in the place of a load's answer. Of a sampled load at frames, or that acts through others, it is what
+/// the load holds, so that the force is where it was; on speeds it is an effort on these, for the loop may be opened at
+/// some of them.
 LinearInput in_place_of(const SmallMotions& motions, const SampledLoads& sampled, std::size_t load,
-                        const Answer& answer) {
-  if (motions.model().loads()[load].load->frames().empty() || sampled.period_of(load) == 0)
+                        const Answer& answer, bool is_command) {
+  if (!is_command && (motions.model().loads()[load].load->frames().empty() || sampled.period_of(load) == 0))
     return {{}, answer.along, [&](double h) { return motions.pushed(h * answer.along); }};
   const auto [first, count] = sampled.held_by(load);
   Eigen::VectorXd one = Eigen::VectorXd::Zero(sampled.size());
@@ -141,33 +171,47 @@ LinearModel open_loop(const Configuration& c, const std::string& name) {
                       fmt::format("load '{}' is sampled each {:g} s, and all loads together repeat each {:g} s: the "
                                   "loop of the slowest alone can be opened",
                                   name, sampled.period_of(load), sampled.period()));
-  const FedBack all =
-      is_sampled
-          ? FedBack{sampled.own_efforts().middleCols(sampled.held_by(load).first, sampled.held_by(load).second), {}}
-          : fed_back(motions, load);
-  const Answer answer = answer_of(c, all.slopes, name, hinge);
+  const auto [first, count] = sampled.held_by(load);
+  const bool is_command = is_sampled && hinge.empty() && sampled.own_efforts().middleCols(first, count).isZero(0);
+  FedBack all;
+  Answer answer;
+  Eigen::VectorXd push;
+  if (is_command) {
+    Command command = command_of(sampled, load, name);
+    answer = std::move(command.answer);
+    push = std::move(command.push);
+  } else {
+    all = is_sampled ? FedBack{sampled.own_efforts().middleCols(first, count), {}} : fed_back(motions, load);
+    answer = answer_of(c, all.slopes, name, hinge);
+    push = motions.by_effort() * answer.along;
+  }
   LinearModel linear = about(c, motions, sampled);
   linear.inputs = {{name, answer.unit}};
   linear.outputs = {{"-" + name, answer.unit}};
-  linear.output_values = {-answer.along.dot(motions.efforts(motions.state(), load)) / answer.along.squaredNorm()};
+  linear.output_values = {is_command
+                              ? -answer.row.dot(sampled.held_at_state().segment(first, count))
+                              : -answer.along.dot(motions.efforts(motions.state(), load)) / answer.along.squaredNorm()};
   linear.output_derivatives = "by central differences of eighth order";
   Eigen::MatrixXd A = motions.A(), held = sampled.efforts();
-  const Eigen::VectorXd push = motions.by_effort() * answer.along;
   linear.system.C.setZero(1, motions.size() + sampled.size());
   linear.system.D.setZero(1, 1);
   Eigen::MatrixXd replaced;
   if (is_sampled) {
-    const auto [first, count] = sampled.held_by(load);
     linear.system.C.block(0, motions.size() + first, 1, count) = -answer.row;
     replaced.setZero(1, sampled.size());
     replaced.middleCols(first, count) = answer.row;
-    held.middleCols(first, count) =
-        difference(held.middleCols(first, count), answer.along * answer.row, Eigen::MatrixXd::Zero(held.rows(), count));
+    if (!is_command)
+      held.middleCols(first, count) = difference(held.middleCols(first, count), answer.along * answer.row,
+                                                 Eigen::MatrixXd::Zero(held.rows(), count));
   } else {
     linear.system.C.leftCols(motions.size()) = -answer.row;
     A = difference(A, push * answer.row, push.cwiseAbs() * all.errors);
   }
-  sample(sampled, {A, sampled.moved(held), push, sampled.felt({in_place_of(motions, sampled, load, answer)}), replaced},
+  Eigen::MatrixXd by_held = sampled.moved(held);
+  if (is_command)
+    by_held.middleCols(first, count) =
+        difference(by_held.middleCols(first, count), push * answer.row, Eigen::MatrixXd::Zero(by_held.rows(), count));
+  sample(sampled, {A, by_held, push, sampled.felt({in_place_of(motions, sampled, load, answer, is_command)}), replaced},
          linear);
   return linear;
 }

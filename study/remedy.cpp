@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "withy/core/simulation/stop.hpp"
 
 namespace withy::study {
@@ -14,17 +18,43 @@ bool leaves_something_out(const Terms& terms) {
 
 bool has_modes(const Model& model) { return !model.layout().bodies.empty(); }
 
+/// "'law' (line 12 of the scene)": a part of the scene that stands under `key`.
+std::string placed_name(const Prepared& prepared, const char* key, const std::string& name) {
+  const Value* parts = prepared.scene.source.find(key);
+  const Value* given = parts == nullptr ? nullptr : parts->find(name);
+  const int line = given == nullptr ? 0 : given->place().line;
+  return fmt::format("'{}'{}", name, line > 0 ? fmt::format(" (line {} of the scene)", line) : "");
+}
+
+/// Where a load gives no finite efforts at the last state or a step later.
+std::string load_remedy(const Prepared& prepared, const RunSummary& summary) {
+  const Model& model = prepared.model();
+  Work work = prepared.equations->make_work();
+  std::vector<double> efforts(model.layout().speeds);
+  for (std::size_t load = 0; load < model.loads().size(); ++load) {
+    const double ahead = summary.steps.largest_step;
+    for (double after = 0; after <= ahead; after = after > 0 ? 2 * after : ahead * 0x1p-30) {
+      prepared.equations->load_efforts(summary.final.time + after, summary.final.y, static_cast<int>(load), efforts,
+                                       work);
+      if (!std::all_of(efforts.begin(), efforts.end(), [](double e) { return std::isfinite(e); }))
+        return fmt::format(
+            " What to do: change load {} so that its effort is finite up to the end of the run: no division by zero, "
+            "and no root or logarithm of what falls to zero or below.",
+            placed_name(prepared, "loads", model.loads()[load].name));
+      if (!(ahead > 0)) break;
+    }
+  }
+  return {};
+}
+
 /// Where a motion has no finite numbers any more.
 std::string motion_remedy(const Prepared& prepared, const NonfiniteMotion& motion) {
-  const Value* motions = prepared.scene.source.find("motions");
-  const Value* given = motions == nullptr ? nullptr : motions->find(motion.name);
-  const int line = given == nullptr ? 0 : given->place().line;
   return fmt::format(
-      " What to do: change the law of '{}'{} so that its coordinate, rate and acceleration are finite up to the end of "
+      " What to do: change the law of {} so that its coordinate, rate and acceleration are finite up to the end of "
       "the run: no division by zero, and no root or logarithm of what falls to zero or below; or end the run before, "
       "as "
       "--set time.end={:.3g}.",
-      motion.name, line > 0 ? fmt::format(" (line {} of the scene)", line) : "", 0.99 * motion.time);
+      placed_name(prepared, "motions", motion.name), 0.99 * motion.time);
 }
 
 }  // namespace
@@ -50,6 +80,8 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
   if (summary.status == RunStatus::diverged || summary.status == RunStatus::step_underflow)
     if (const auto motion = nonfinite_motion(prepared.model(), summary.reached, summary.steps.largest_step))
       return motion_remedy(prepared, *motion);
+  if (summary.status == RunStatus::diverged && summary.final.y.size() == prepared.equations->size())
+    if (std::string text = load_remedy(prepared, summary); !text.empty()) return text;
   if (bends && leaves_something_out(terms))
     return " What to do: run it with --formulation quadratic, which leaves out less; if that ends the same way it is "
            "the model and not the formulation.";

@@ -198,6 +198,22 @@ std::pair<Eigen::Index, Eigen::Index> SampledLoads::held_by(std::size_t load) co
   return {0, 0};
 }
 
+bool SampledLoads::measured_by_others(std::size_t load) {
+  const auto [first, count] = held_by(load);
+  for (std::vector<bool> due : due_) {
+    // Were it renewed too, the others would be given its new numbers.
+    for (std::size_t i = 0; i < loads_.size(); ++i) due[i] = due[i] && loads_[i].slot.load != load;
+    Eigen::VectorXd as_held = renewed(motions_.state(), motions_.state(), due);
+    for (Eigen::Index i = first; i < first + count; ++i) {
+      Eigen::VectorXd change =
+          renewed(motions_.state(), displaced(1e-3 * Eigen::VectorXd::Unit(size(), i)), due) - as_held;
+      change.segment(first, count).setZero();
+      if (!change.isZero(0)) return true;
+    }
+  }
+  return false;
+}
+
 Eigen::MatrixXd SampledLoads::renewal(const Held& system, std::size_t kind) const {
   const Eigen::Index n = motions_.size(), d = size();
   if (system.felt.empty()) return renewals_[kind];

@@ -39,8 +39,12 @@ class SampledLoads {
   }
   /// The columns of E that belong to a load.
   [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> held_by(std::size_t load) const;
+  /// Whether other sampled loads are renewed with what a load holds, directly and not by what it makes others do.
+  [[nodiscard]] bool measured_by_others(std::size_t load);
   /// Whether renewing changes what is held where the motion stays at the state.
   [[nodiscard]] bool steady() const { return steady_; }
+  /// What is held at the state.
+  [[nodiscard]] Eigen::VectorXd held_at_state() const { return held(motions_.state()); }
   /// The state with what is held displaced by d.
   [[nodiscard]] State displaced(const Eigen::VectorXd& d) const;
   /// Derivatives of d⁺ by v just before instants, of which `inputs` tell the states: reactions and inner forces feel

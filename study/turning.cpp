@@ -53,6 +53,30 @@ double greatest_displacement(const Turn& turn, const Layout& layout) {
   return greatest;
 }
 
+/// The first load whose efforts are others a period later with everything as it was; empty where all repeat.
+std::string not_repeating(const Configuration& c, const State& steady, const Turning& turning) {
+  constexpr int instants = 11;
+  constexpr double rounding = 1e-9;  // of the load's greatest effort: a sine at t and at t + T
+  const Model& model = c.prepared().model();
+  const EquationsOfMotion& equations = *c.prepared().equations;
+  Work work = equations.make_work();
+  std::vector<double> now(model.layout().speeds), later(now.size());
+  for (std::size_t load = 0; load < model.loads().size(); ++load) {
+    double greatest = 0, change = 0;
+    for (int k = 0; k < instants; ++k) {
+      const State state = carried(model, turning, steady, turning.period * k / instants);
+      equations.load_efforts(state.time, state.y, static_cast<int>(load), now, work);
+      equations.load_efforts(state.time + turning.period, state.y, static_cast<int>(load), later, work);
+      for (std::size_t s = 0; s < now.size(); ++s) {
+        greatest = std::max({greatest, std::abs(now[s]), std::abs(later[s])});
+        change = std::max(change, std::abs(later[s] - now[s]));
+      }
+    }
+    if (change > rounding * greatest) return model.loads()[load].name;
+  }
+  return {};
+}
+
 }  // namespace
 
 TurningModes turning_modes(const Configuration& c, const State& steady, const TurningWish& wish) {
@@ -65,6 +89,13 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
     if (turning.period == 0) {
       result.problem = turning.problem.empty() ? "nothing turns: spin a hinge (--spin), or give the period (--period)"
                                                : turning.problem;
+      return result;
+    }
+    if (const std::string load = not_repeating(c, steady, turning); !load.empty()) {
+      result.problem = fmt::format(
+          "load '{}' acts otherwise {:.6g} s later, and no turn is like the next: take it away (--set loads={{}}), or "
+          "give the period after which everything repeats (--period)",
+          load, turning.period);
       return result;
     }
     const TurningForm form = turning_form(c.dynamics(), steady, c.held(), turning);

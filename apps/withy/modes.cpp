@@ -83,7 +83,7 @@ ExitStatus modes(const ModesArguments& arguments) {
   check_write(arguments.write, arguments);
   const Engine engine(arguments);
   const auto folder = take_folder(arguments, "modes", provenance_of(engine.scene(), engine.plugins()),
-                                  {"modes.json", "modes.csv", "modes.svg", report_name});
+                                  {"modes.json", "modes.csv", "modes.svg", "blades.csv", "blades.svg", report_name});
   const study::ModesFound all = found(engine, arguments, sweep);
   if (all.interrupted) return ExitStatus::interrupted;
   const study::ModesAt& first = all.runs.front().points.front();
@@ -133,7 +133,7 @@ void add_modes(Options& o, ModesArguments& a) {
   o.value("--period", a.period, "SECONDS", "Period of motions and loads [s]; default: that of the hinges' rates")
       .positive();
   o.flag("--as-is", a.as_is, "About the state as it is given, without finding the steady one");
-  add_output(o, a, "Folder for modes.csv, modes.json and, of a sweep, modes.svg");
+  add_output(o, a, "Folder for modes.csv, modes.json, of a sweep modes.svg; with --blades also blades.csv and .svg");
 }
 
 }  // namespace

@@ -86,7 +86,8 @@ std::string nonfinite_loads(const Model& model, const EquationsOfMotion& equatio
       const auto bad =
           std::find_if(efforts.begin(), efforts.end(), [](double e) { return !(std::abs(e) < unbearable); });
       if (bad != efforts.end()) {
-        text += (text.empty() ? "" : "; ") + ("load '" + model.loads()[load].name + "' gives " + brief(*bad) + " on ") +
+        text += (text.empty() ? "" : "; ") +
+                ("load '" + model.loads()[load].name + "' gives " + (std::isnan(*bad) ? "nan" : brief(*bad)) + " on ") +
                 layout.speed_names[static_cast<std::size_t>(bad - efforts.begin())] +
                 " at t = " + brief(state.time + after) + " s";
         break;

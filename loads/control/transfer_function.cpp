@@ -32,6 +32,13 @@ std::unique_ptr<Load> make_transfer_function(const Value& p, const MakeContext& 
     context.diagnostics.error(p.at(key).place(), message);
     return nullptr;
   };
+  bool given = true;
+  for (const char* key : {"numerator", "denominator"}) {
+    if (!p.at(key).items().empty()) continue;
+    error(key, "got an empty list; need one coefficient or more");
+    given = false;
+  }
+  if (!given) return nullptr;
   if (denominator.empty()) return error("denominator", "is zero");
   if (numerator.size() > denominator.size())
     return error("numerator", fmt::format("is of degree {} over a denominator of degree {}: the transfer function is "

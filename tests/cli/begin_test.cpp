@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "withy/tests/cli/process.hpp"
@@ -190,6 +191,22 @@ TEST(New, EveryKindIsPlausibleAndRuns) {
     ASSERT_EQ(f.status, 0) << f.err;
     const std::string file = kind + ".yaml";
     EXPECT_EQ(folder.read(file), folder.read("scenes/new/" + file));
+    // What its head says to do can be done.
+    std::size_t commands = 0;
+    std::stringstream head(folder.read(file));
+    for (std::string line; std::getline(head, line) && line.starts_with('#');) {
+      if (!line.starts_with("#   withy ")) continue;
+      std::stringstream words(line.substr(10, line.find('#', 1) - 10));
+      std::vector<std::string> command;
+      for (std::string word; words >> word;) command.push_back(word);
+      if (command.front() == "advise") continue;  // takes minutes
+      if (command.front() != "check" && command.front() != "modes")
+        command.insert(command.end(), {"--set", "time.end=0.1"});
+      const Finished said = withy(folder, command);
+      EXPECT_EQ(said.status, 0) << line << '\n' << said.err;
+      ++commands;
+    }
+    EXPECT_GE(commands, 3U) << kind;
     f = withy(folder, {"check", file, "--strict"});
     EXPECT_EQ(f.status, 0) << f.out << f.err;
     EXPECT_THAT(f.out, HasSubstr(file + " is valid"));

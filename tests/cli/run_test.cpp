@@ -135,6 +135,16 @@ TEST(Run, AddsOutputsByNamesThatSayWhatTheyAre) {
   f = run({"run"}, {"--output", "shoulder.efort"});
   EXPECT_EQ(f.status, 2);
   EXPECT_THAT(f.err, HasSubstr("--output: no 'shoulder.efort'; did you mean 'shoulder.effort'?"));
+  // Every name that is wrong is told, by each command in its words.
+  const std::string wrong = "shoulder.efort,elbow.rat";
+  f = run({"run"}, {"--output", wrong + ",nowhere"});
+  EXPECT_THAT(f.err, HasSubstr("--output: no 'shoulder.efort' (did you mean 'shoulder.effort'?), no 'elbow.rat' (did "
+                               "you mean 'elbow.rate'?), no 'nowhere'; known: "));
+  f = run({"linearize"}, {"--outputs", "link2.tp.x,elbow.0.rat"});
+  EXPECT_THAT(f.err, HasSubstr("--outputs: no 'link2.tp.x' (did you mean 'link2.tip.x'?), no 'elbow.0.rat' (did you "
+                               "mean 'elbow.0.rate'?)"));
+  f = run({"compare"}, {"--formulations", "quadratic,linear", "--output", "link2.tp,elbw"});
+  EXPECT_THAT(f.err, HasSubstr("got 'link2.tp' (did you mean 'link2.tip'?), 'elbw' (did you mean 'elbow'?)"));
   f = run({"compare"}, {"--formulations", "quadratic,linear", "--output", "root.mz,link1.section@0.mz", "--json"});
   ASSERT_EQ(f.status, 0) << f.err;
   const json errors = json::parse(f.out).at("runs")[1].at("outputs");

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "withy/tests/analysis/rotor.hpp"
 #include "withy/tests/cli/json_result.hpp"
@@ -58,6 +60,67 @@ TEST(Turning, EqualBladesAreSeenFromTheTower) {
       withy(folder, {"modes", "three.yaml", "--spin", "shaft=12 rpm", "--blades", "blade1,blade2,tower"});
   EXPECT_EQ(named.status, 2);
   EXPECT_THAT(named.err, HasSubstr("not like"));
+}
+
+/// A gust that grows over the turn is none of a periodic motion: exponents that took it for one were wrong.
+TEST(Turning, ALoadThatDoesNotRepeatIsNamedWhereAWholeTurnIsAskedFor) {
+  const Folder folder;
+  const auto asked = [&](const std::string& force, const std::string& option) {
+    folder.write("gust.yaml", rotor(3, "loads: {gust: {type: force, frame: hub, " + force + "}}\n"));
+    return withy(folder,
+                 {"modes", "gust.yaml", "--spin", "shaft=12 rpm", option, option == "--blades" ? "auto" : "--json"});
+  };
+  for (const char* option : {"--blades", "--floquet"}) {
+    const Finished gust = asked("law: table, table: [[0, 0, 0, 0], [9, 3e5, 0, 0], [20, 0, 0, 0]]", option);
+    EXPECT_EQ(gust.status, 1);
+    EXPECT_THAT(gust.err, HasSubstr("load 'gust' acts otherwise 5 s later"));
+    EXPECT_EQ(asked("value: [3e4, 0, 0]", option).status, 0);
+    EXPECT_EQ(asked("law: sine, amplitude: [3e4, 0, 0], period: 1.6666666666666667", option).status, 0)
+        << "three times a turn";
+  }
+}
+
+/// The diagram of a turbine begins where its rotor stands, and its files have what is seen from the tower.
+TEST(Turning, ASweepOfARotorsRateFromRestLeavesWhatTheTowerSees) {
+  const Folder folder;
+  folder.write("three.yaml", rotor(3));
+  const Finished f = withy(folder, {"modes", "three.yaml", "--sweep", "spin.shaft=0:12 rpm:3", "--blades", "auto",
+                                    "--count", "8", "--out", "campbell"});
+  EXPECT_EQ(f.status, 0) << f.err;
+  EXPECT_THAT(f.out, HasSubstr("At spin.shaft = 0 rpm nothing turns"));
+  const std::string csv = folder.read("campbell/blades.csv"), picture = folder.read("campbell/blades.svg");
+  EXPECT_THAT(csv, HasSubstr("formulation,spin.shaft,mode,dominated_by,frequency[rad/s],frequency[Hz]"));
+  EXPECT_THAT(csv, Not(HasSubstr("\nquadratic,0,")));
+  for (const char* name : {"blade1.bending_z[1] backward", "blade1.bending_z[1] forward"}) {
+    EXPECT_THAT(csv, HasSubstr(name));
+    EXPECT_THAT(picture, HasSubstr(name));
+  }
+  for (const char* line : {"once a turn", "3 times a turn", "6 times a turn"}) EXPECT_THAT(picture, HasSubstr(line));
+  // The numbers are those that are printed for one rate.
+  const json at = result(folder, {"modes", "three.yaml", "--spin", "shaft=12 rpm", "--blades", "auto", "--json"})
+                      .at("runs")
+                      .at(0)
+                      .at("points")
+                      .at(0)
+                      .at("turn")
+                      .at("multiblade")
+                      .at("modes");
+  std::map<std::string, double> seen;
+  std::stringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> cells;
+    std::stringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    if (cells.size() == 8 && cells[1] == "12") seen[cells[2]] = std::stod(cells[4]);
+  }
+  ASSERT_EQ(seen.size(), at.size());
+  for (std::size_t i = 0; i < at.size(); ++i)
+    EXPECT_NEAR(seen.at(std::to_string(i + 1)), at[i].at("exponent")[1].get<double>(), 1e-6);
+  // A turn that is no sweep's beginning is asked for in vain, and a value is named.
+  EXPECT_EQ(withy(folder, {"modes", "three.yaml", "--floquet"}).status, 1);
+  const Finished idle = withy(folder, {"modes", "three.yaml", "--sweep", "gravity.2=-9:0:2", "--blades", "auto"});
+  EXPECT_EQ(idle.status, 1);
+  EXPECT_THAT(idle.err, HasSubstr("gravity.2 = -9: a whole turn: nothing turns"));
 }
 
 /// The reference of a servo moves at the start, and the hinge with it: nothing turns, and nothing stays.

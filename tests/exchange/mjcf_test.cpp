@@ -46,6 +46,21 @@ TEST(Mjcf, TheCartPoleAndTheFallingPlateMoveAsMechanicsSays) {
   EXPECT_NEAR(got.at("pz.rate"), -g + 2.5 * 2.5 * arm.z(), 1e-12);
 }
 
+/// Whatever a model says that changes its motion, or was measured in it, and has no place in a scene is told.
+TEST(Mjcf, WhatIsLeftOutIsTold) {
+  const Scratch file(".xml", R"(<mujoco>
+<option density="1.2" viscosity="0" timestep="0.002"/>
+<worldbody><light pos="0 0 3"/><body name="arm" gravcomp="1"><joint name="j" axis="0 1 0"/><site name="s"/>
+<inertial mass="1" pos="1 0 0" diaginertia="1 1 1"/></body></worldbody>
+<sensor><gyro site="s"/></sensor>
+<keyframe><key qpos="0.4"/><key qpos="0.8"/></keyframe>
+</mujoco>)");
+  EXPECT_EQ(imported({file.file(), {}, false, 0, 0}).remarks,
+            (std::vector<std::string>{"<option>: density 1.2 of a medium, and its forces, are left out",
+                                      "<sensor> with 1 element is left out", "<keyframe> with 2 elements is left out",
+                                      "body \"arm\": gravcomp 1 is left out, its weight acts"}));
+}
+
 TEST(Mjcf, OrientationsInEveryFormAreTheSame) {
   const auto scene = [](const std::string& turned) {
     const Scratch file(

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include "withy/core/plugin/central_difference.hpp"
@@ -141,6 +142,8 @@ TEST(HostedEquations, of_many_states_name_the_row_that_has_none) {
   const host::EvaluatedRows done = equations.derivatives_many(0, y, y_dot);
   EXPECT_EQ(done.rows, 6U);
   EXPECT_FALSE(done.evaluation.ok());
+  EXPECT_EQ(equations.reason(0, done.evaluation),
+            "t = 0 s: the state is not finite: '" + equations.states()[7].name + "' is nan.");
   y.pop_back();
   EXPECT_THROW(static_cast<void>(equations.derivatives_many(0, y, y_dot)), std::invalid_argument);
 }
@@ -161,7 +164,10 @@ TEST(HostedEquations, refuse_what_they_do_not_know) {
   y[7] = std::nan("");
   const Evaluation evaluation = equations.derivatives(0, y, y_dot);
   EXPECT_FALSE(evaluation.ok());
-  EXPECT_THAT(equations.reason(0, evaluation), HasSubstr("t = 0 s: "));
+  EXPECT_EQ(equations.reason(0, evaluation),
+            "t = 0 s: the state is not finite: '" + equations.states()[7].name + "' is nan.");
+  y[7] = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(equations.reason(0, equations.derivatives(0, y, y_dot)), HasSubstr("is infinite."));
 }
 
 }  // namespace

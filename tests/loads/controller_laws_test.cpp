@@ -247,6 +247,9 @@ TEST(Control, MistakesAreLocatedAndNamed) {
   EXPECT_THAT(problem("type: pid, of: of_servo, to: command, proportional: 1", imu), HasSubstr("algebraic"));
   EXPECT_THAT(problem("type: transfer-function, of: axle, to: command, numerator: [1, 0, 0], denominator: [1, 2]"),
               testing::AllOf(HasSubstr("/loads/servo/numerator"), HasSubstr("improper")));
+  EXPECT_THAT(problem("type: transfer-function, of: axle, to: command, numerator: [], denominator: []"),
+              testing::AllOf(HasSubstr("/loads/servo/numerator: got an empty list"),
+                             HasSubstr("/loads/servo/denominator: got an empty list")));
   EXPECT_THAT(problem("type: pid, of: axle, to: command, proportional: 1, sample: 0.01, delay: 0.004"),
               testing::AllOf(HasSubstr("/loads/servo/delay"), HasSubstr("shorter than a step")));
   EXPECT_THAT(problem("type: pid, of: axle, to: command, proportional: 1, sample: 0.01, delay: 0.015"),
@@ -277,6 +280,23 @@ TEST(Control, AMisspeltNumberOfASignalIsToldWhereItStandsWithTheNearest) {
               HasSubstr("/loads/servo/value: no signal 'axel.rate'; did you mean 'axle.rate'?"));
 }
 
+TEST(Control, AMistakeInTheTreeMakesNoSignalUnknown) {
+  const std::string tree =
+      "format: withy/1\ntime: {end: 1}\nbodies: {table: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+      "hinges: {axle: {type: revolute, axs: [0, 0, 1], axis: [0, 0, 1], parent: world, child: table}}\n"
+      "outputs: {turn: {type: gyro, of: table}}\n";
+  const std::string law = "loads:\n  law: {type: pid, of: [turn.z], to: nothing, proportional: 1}\n";
+  const std::string problem = test::problem_of(
+      tree + law +
+      "  drive: {type: actuator, of: law, hinge: axle, frequency: 10}\n  brake: {type: pid, of: axle.rate, "
+      "hinge: axle, proportional: 1}\n");
+  EXPECT_THAT(problem, HasSubstr("/hinges/axle/axs: unknown key"));
+  EXPECT_EQ(std::count(problem.begin(), problem.end(), '\n'), 0) << problem;
+  // What is misspelt is still told beside it.
+  EXPECT_THAT(test::problem_of(tree + law + "  drive: {type: actuator, of: lwa, hinge: axle, frequency: 10}\n"),
+              HasSubstr("/loads/drive/of: no signal \"lwa\"; did you mean 'law'?"));
+}
+
 TEST(Control, WhatRestsOnAWrongOutputOrLoadIsNotReportedBesideIt) {
   const auto problem = [](const std::string& outputs, const std::string& loads) {
     return test::problem_of(test::turntable + "outputs:\n" + outputs + "loads:\n" + loads);
@@ -293,6 +313,12 @@ TEST(Control, WhatRestsOnAWrongOutputOrLoadIsNotReportedBesideIt) {
               "  drive: {type: actuator, of: law, hinge: axle, frequency: 10}\n");
   EXPECT_THAT(law, HasSubstr("/loads/law/of"));
   EXPECT_EQ(std::count(law.begin(), law.end(), '\n'), 0) << law;
+  // A load that names one which cannot be made is not missing where an output shows it.
+  const std::string plain = problem("  shown: {type: control, of: drive}\n",
+                                    "  law: {type: pid, of: axle, to: nothing, proportional: 1, sample: 0}\n"
+                                    "  drive: {type: actuator, of: law, hinge: axle, frequency: 10}\n");
+  EXPECT_THAT(plain, HasSubstr("/loads/law/sample: got 0"));
+  EXPECT_EQ(std::count(plain.begin(), plain.end(), '\n'), 0) << plain;
   // Two that rest on each other and on nothing that is wrong are not silent.
   EXPECT_THAT(problem("  shown: {type: control, of: law}\n",
                       "  law: {type: pid, of: shown.command, hinge: axle, proportional: 1}\n"),

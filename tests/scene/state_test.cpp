@@ -54,6 +54,17 @@ TEST_F(States, ComeBackFromJsonWithTheSameBits) {
   }
 }
 
+TEST_F(States, OfARunAreTheOnesThatItEndedWith) {
+  const std::string end = R"({"time": 2.5, "hinges": {"right_slide": {"position": [0.1], "rate": [0.7]}}})";
+  const State alone = parse_state(end, "s", *scene.model, scene.initial);
+  const State of_run = parse_state(R"({"scene": "s.yaml", "status": "completed", "final": )" + end + "}", "run.json",
+                                   *scene.model, scene.initial);
+  EXPECT_EQ(of_run.time, 2.5);
+  EXPECT_EQ(of_run.y, alone.y);
+  EXPECT_THAT(problem(R"({"status": "completed", "final": {"hinges": {"right_slid": {"rate": [0.7]}}}})"),
+              testing::HasSubstr("/final/hinges/right_slid"));
+}
+
 TEST_F(States, LeaveWhatTheyDoNotNameAsItWas) {
   const State state = parse_state(R"({"hinges": {"right_slide": {"rate": [0.7]}}})", "s", *scene.model, scene.initial);
   const Slot* slide = scene.model->layout().hinge("right_slide");

@@ -87,6 +87,22 @@ motions: {turn: {type: expression, hinge: axle, value: sqrt(1 - t) * sin(t)}}
   EXPECT_EQ(run_of(shorter.set("time.end", Value(0.99), "the test")).status, RunStatus::completed);
 }
 
+TEST(Causes, ALoadThatCeasesToBeFinite) {
+  const std::string scene = R"(time: {end: 1}
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+loads:
+  fine: {type: hinge-spring, hinge: axle, stiffness: 1}
+  law: {type: expression, hinge: axle, value: log(0.5 - t)}
+)";
+  const RunSummary s = run_of_text(scene);
+  EXPECT_EQ(s.status, RunStatus::diverged);
+  EXPECT_NEAR(s.reached, 0.5, 1e-3);
+  EXPECT_THAT(s.message, HasSubstr("load 'law' gives nan on axle.0"));
+  EXPECT_THAT(s.message, HasSubstr("What to do: change load 'law' (line 9 of the scene)"));
+  EXPECT_THAT(s.message, Not(HasSubstr("rtol"))) << "no accuracy mends it";
+}
+
 // d/J = 1500/1e-9 = 1.5e12/s: dopri5, stable to 1.7 over that of a vibration, would need 9e11 steps, of a motion that
 // dies out half as many.
 TEST(Causes, ADampedHingeThatMovesNextToNothing) {

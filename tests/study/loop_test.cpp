@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "withy/study/input_error.hpp"
 #include "withy/study/response.hpp"
 #include "withy/study/run.hpp"
 #include "withy/tests/study/linear_scenes.hpp"
@@ -267,6 +268,84 @@ loads:
   for (const std::complex<double> pole : poles(closed.system))
     nearest = std::min(nearest, std::abs(exponent_of(closed.system, pole).real() - r.margins->growth));
   EXPECT_LT(nearest, 1e-6);
+}
+
+/// A boom on a bus with a wheel, and a sampled controller of the bus.
+std::string bus_with_wheel(const std::string& loads) {
+  return R"(
+integrator: {name: dopri5, rtol: 1e-8, atol: 1e-10}
+bodies:
+  bus: {type: rigid, mass: 50, inertia: [5, 5, 6, 0, 0, 0], frames: {out: {position: [0.3, 0, 0]}}}
+  boom: {type: beam, length: 3, mass_per_length: 0.5, bending_y: {stiffness: 60, modes: 2, family: clamped-free}, damping_ratio: 0.02}
+  wheel: {type: rigid, mass: 2, inertia: [0.01, 0.01, 0.02, 0, 0, 0]}
+hinges:
+  turn: {type: revolute, axis: [0, 0, 1], parent: world, child: bus}
+  root: {type: weld, parent: bus.out, child: boom}
+  axle: {type: revolute, axis: [0, 0, 1], parent: bus, child: wheel}
+outputs: {sense: {type: gyro, of: bus}, back: {type: expression, value: -sense.z}}
+initial: {hinges: {turn: {rate: [0.001]}}}
+loads:
+  hold: {type: hinge-spring, hinge: turn, stiffness: 2}
+)" + loads;
+}
+
+TEST(Loop, OfASampledControllerThatActsThroughAContinuousLoadIsThatOfOneThatActsItself) {
+  const std::string law = "type: pid, of: back, proportional: 4, integral: 1, sample: 0.05, delay: 0.1";
+  const auto loop = [](const std::string& loads) {
+    return response(at_start(scene_of(bus_with_wheel(loads))), {"control", "", {}, {}, 50, {}});
+  };
+  const Response itself = loop("  control: {" + law + ", hinge: axle}\n");
+  const Response through =
+      loop("  control: {" + law + ", to: nothing}\n  drive: {type: reaction-wheel, of: control, hinge: axle}\n");
+  ASSERT_TRUE(itself.margins && through.margins && itself.margins->phase() && itself.margins->upper());
+  EXPECT_TRUE(through.opened);
+  EXPECT_EQ(through.margins->stable, itself.margins->stable);
+  EXPECT_NEAR(through.margins->growth, itself.margins->growth, 1e-9);
+  ASSERT_NE(through.margins->phase(), nullptr);
+  EXPECT_NEAR(through.margins->phase()->angle, itself.margins->phase()->angle, 1e-8);
+  ASSERT_NE(through.margins->upper(), nullptr);
+  EXPECT_NEAR(through.margins->upper()->factor, itself.margins->upper()->factor, 1e-8);
+  ASSERT_EQ(through.values.size(), itself.values.size());
+  for (std::size_t i = 0; i < itself.values.size(); ++i)
+    EXPECT_LT(std::abs(through.values[i].value - itself.values[i].value), 1e-8 * std::abs(itself.values[i].value));
+}
+
+TEST(Loop, OfASampledControllerBehindADriveWithALagGoesUnstableInSimulationWhereItsMarginSays) {
+  confirm(
+      "time: {end: 200, output: 0.05}\n" +
+          bus_with_wheel("  control: {type: pid, of: back, to: nothing, proportional: 4, sample: 0.05, delay: 0.05}\n"
+                         "  drive: {type: reaction-wheel, of: control, hinge: axle, time_constant: 0.2}\n"),
+      false, {{"proportional", 4}});
+}
+
+/// The accelerations of the wheel are felt by what is sampled: the loop is opened at the command for these too.
+TEST(Loop, OfASampledControllerBehindADriveGrowsAsTheClosedSystemDoesWhereItMeasuresWhatTheDriveDoes) {
+  std::string text = bus_with_wheel(
+      "  control: {type: pid, of: felt.mz, to: nothing, proportional: 0.2, sample: 0.05, delay: 0.05}\n"
+      "  drive: {type: reaction-wheel, of: control, hinge: axle}\n"
+      "  torque: {type: input, hinge: turn}\n");
+  text.replace(text.find("outputs: {"), 10, "outputs: {felt: {type: reaction, hinge: root}, ");
+  const Prepared felt = scene_of(text);
+  const Response r = response(at_start(felt), {"control", "", {}, {}, 50, {}});
+  ASSERT_TRUE(r.margins.has_value());
+  const LinearModel closed = linear_model(at_start(felt), {{"torque"}, {"turn"}});
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const std::complex<double> pole : poles(closed.system))
+    nearest = std::min(nearest, std::abs(exponent_of(closed.system, pole).real() - r.margins->growth));
+  EXPECT_LT(nearest, 1e-6);
+}
+
+TEST(Loop, OfACommandThatSampledLoadsMeasureAsWellIsRefused) {
+  const Prepared prepared =
+      scene_of(bus_with_wheel("  control: {type: pid, of: back, to: nothing, proportional: 4, sample: 0.05}\n"
+                              "  drive: {type: actuator, of: control, hinge: axle, frequency: 20}\n"
+                              "  mean: {type: moving-average, of: control, hinge: turn, window: 0.1, sample: 0.05}\n"));
+  try {
+    static_cast<void>(response(at_start(prepared), {"control", "", {}, {}, 50, {}}));
+    FAIL() << "the loop has two ways";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("sampled ones measure its command as well"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace
