@@ -24,4 +24,16 @@ inline Eigen::MatrixXd at_equal_particles(const Eigen::MatrixXd& coefficients, d
   return values;
 }
 
+/// The same by two particles for each function but the constant one, as far on the one side of the fields' means as on
+/// the other: 2 (count − 1) particles. Their third moments about the mean vanish, as those of what is symmetric do, and
+/// a mirror image of the mass has a mirror image of them. Loads that are not linear in place feel these.
+inline Eigen::MatrixXd at_particle_pairs(const Eigen::MatrixXd& coefficients, double mass) {
+  const Eigen::Index pairs = coefficients.rows() - 1;
+  const Eigen::MatrixXd away = std::sqrt(static_cast<double>(pairs) / mass) * coefficients.bottomRows(pairs);
+  const Eigen::RowVectorXd mean = coefficients.row(0) / std::sqrt(mass);
+  Eigen::MatrixXd values(2 * pairs, coefficients.cols());
+  values << away.rowwise() + mean, (-away).rowwise() + mean;
+  return values;
+}
+
 }  // namespace withy

@@ -253,7 +253,7 @@ class Plate final : public Body {
     MatrixXd R = qr.matrixQR().topRows(fields.cols()).triangularView<Eigen::Upper>();
     if (R(0, 0) < 0) R.row(0) *= -1;
     const double mass = R(0, 0) * R(0, 0);
-    const MatrixXd values = at_equal_particles(R, mass);
+    const MatrixXd values = at_particle_pairs(R, mass);
     for (Eigen::Index i = 0; i < values.rows(); ++i) {
       PointExpansion e = PointExpansion::rigid(Vector3(values(i, 1), values(i, 2), 0), count());
       e.phi.row(2) = values.row(i).segment(3, count());

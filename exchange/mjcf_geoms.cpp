@@ -55,8 +55,9 @@ std::optional<MassProperties> mass_of_geom(const Element& geom, const MjcfAngles
   const std::string type = given != nullptr ? *given : geom.find("mesh") != nullptr ? "mesh" : "sphere";
   if (type == "plane" || type == "hfield" || a.number("mass", 1) == 0) return {};
   const bool round = type == "capsule" || type == "cylinder";
-  const std::size_t count = type == "sphere" || (round && geom.find("fromto") != nullptr) ? 1 : round ? 2 : 3;
-  if (count == 3 && type != "box" && type != "ellipsoid") {
+  const bool has_length = round || type == "box" || type == "ellipsoid";  // which `fromto` may give
+  const std::size_t count = type == "sphere" || (has_length && geom.find("fromto") != nullptr) ? 1 : round ? 2 : 3;
+  if (type != "sphere" && !has_length) {
     a.error("type",
             fmt::format("got {}, whose mass is not in this file; give the body an <inertial>", in_quotes(type)));
     return {};
@@ -69,19 +70,20 @@ std::optional<MassProperties> mass_of_geom(const Element& geom, const MjcfAngles
   }
   MassProperties m{0, a.vector("pos", Vector3::Zero()), Matrix3::Zero()};
   Matrix3 R = angles.rotation(geom, diagnostics);
-  double half = count > 1 ? (*size)[1] : 0;
-  if (const auto ends = a.numbers("fromto", 6, 6); ends && round) {
+  const double r = (*size)[0];
+  const double across = count == 3 ? (*size)[1] : r;
+  double half = count == 3 ? (*size)[2] : count == 2 ? (*size)[1] : 0;
+  if (const auto ends = a.numbers("fromto", 6, 6); ends && has_length) {
     const Vector3 from((*ends)[0], (*ends)[1], (*ends)[2]), to((*ends)[3], (*ends)[4], (*ends)[5]);
     m.center = (from + to) / 2;
     half = (to - from).norm() / 2;
     R = rotation_between(Vector3::UnitZ(), to - from);
   }
-  const double r = (*size)[0];
   const Solid solid = type == "sphere"     ? ellipsoid(r, r, r)
                       : type == "capsule"  ? capsule(r, half)
                       : type == "cylinder" ? cylinder(r, half)
-                      : type == "box"      ? box(r, half, (*size)[2])
-                                           : ellipsoid(r, half, (*size)[2]);
+                      : type == "box"      ? box(r, across, half)
+                                           : ellipsoid(r, across, half);
   const double density = geom.find("mass") != nullptr ? a.number("mass", 0) / solid.volume : a.number("density", 1000);
   m.mass = density * solid.volume;
   m.inertia = turned(R, density * solid.moments.asDiagonal().toDenseMatrix());

@@ -328,7 +328,7 @@ void Dynamics::remember(Memory& memory) {
   memory(jump_);
   if (!memory.reading()) return;
   // Clocks stand before their next instant, also where the state has passed it without an update.
-  clocks_.go_on_after(std::isfinite(instant) ? std::nextafter(instant, -infinity) : state_.time);
+  if (std::isfinite(instant)) clocks_.go_on_with(instant);
   changed();
 }
 

@@ -8,6 +8,7 @@
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/held_numbers.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/core/simulation/same_instant.hpp"
 
 namespace withy {
 namespace {
@@ -53,8 +54,13 @@ void Clocks::begin(State& state) {
   go_on_after(state.time);
 }
 
-void Clocks::go_on_after(double time) {
-  constexpr double counted = 0x1p53;  // beyond, an index and the next are the same number
+void Clocks::go_on_after(double time) { set_next(time, false); }
+
+void Clocks::go_on_with(double time) { set_next(time, true); }
+
+void Clocks::set_next(double time, bool with_time) {
+  constexpr double counted = 0x1p50;  // beyond, an index and the next are the same instant
+  const auto has_been = [&](double instant) { return same_instant(instant, time) ? !with_time : instant < time; };
   for (Clock& clock : clocks_) {
     clock.index = std::floor(time / clock.period);
     if (!(std::abs(clock.index) < counted))
@@ -62,8 +68,8 @@ void Clocks::go_on_after(double time) {
                                   model_.loads()[clock.slot.load].name + "', " + brief(clock.period) +
                                   " s, is below the resolution of time");
     // The quotient is rounded; an instant is the product.
-    while (clock.index * clock.period > time) clock.index -= 1;
-    while (clock.index * clock.period <= time) clock.index += 1;
+    clock.index -= 1;
+    while (has_been(clock.index * clock.period)) clock.index += 1;
   }
 }
 
@@ -73,10 +79,21 @@ double Clocks::next() const {
   return first;
 }
 
+bool Clocks::due(double time) const {
+  const double first = next();
+  return first <= time || same_instant(first, time);
+}
+
 void Clocks::renew(State& state, Renewal& renewal) {
   renewal.at(state);
-  for (const Clock& clock : clocks_)
-    if (clock.index * clock.period == state.time) renewal(state, clock.slot, {});
+  const double now = state.time;
+  for (const Clock& clock : clocks_) {
+    const double instant = clock.index * clock.period;
+    if (!same_instant(instant, now)) continue;
+    state.time = instant;  // what a load is told does not depend on the clocks of others
+    renewal(state, clock.slot, {});
+  }
+  state.time = now;
 }
 
 void Clocks::renew(State& state, const LoadSlot& slot, const Crossing& crossing) {

@@ -25,7 +25,8 @@ bool has_switches(const Model& model);
 /// stay, instants up to that time having been.
 State begun(const Model& model, const EquationsOfMotion& equations, State state);
 
-/// Renews discrete states by their loads' clocks.
+/// Renews discrete states by their loads' clocks. Instants that rounding alone tells apart are one: 0.3 and the third
+/// multiple of 0.1.
 class Clocks {
  public:
   /// The model and its equations must outlive the clocks.
@@ -34,8 +35,12 @@ class Clocks {
   void begin(State& state);
   /// Goes on from a state whose instants up to its time have been.
   void go_on_after(double time);
+  /// Goes on with the instants from a time [s] on, that at the time itself among them.
+  void go_on_with(double time);
   /// The next instant [s] of any clock; infinity where there is none.
   [[nodiscard]] double next() const;
+  /// Whether the next instant is at this time [s], or was before it.
+  [[nodiscard]] bool due(double time) const;
   /// Renews what is due at the state's time.
   void renew(State& state) { renew(state, renewal_); }
   /// The same, of a state of other equations of the model.
@@ -53,6 +58,9 @@ class Clocks {
     double period;
     double index;  ///< of the next instant; whole
   };
+  /// Sets the clocks to their first instants after `time` [s]; with_time: or at it.
+  void set_next(double time, bool with_time);
+
   const Model& model_;
   std::vector<Clock> clocks_;
   Renewal renewal_;

@@ -41,7 +41,7 @@ SteppingEnd Stepping::run(SteppingObserver& observer) {
     const double landing = jumps ? *jump : end_;
     while (state().time < landing) {
       if (!to(std::min(landing, next_instant()), true)) return ended_;
-      if (state().time >= clocks_.next()) {
+      if (clocks_.due(state().time)) {
         if (!renew_clocks()) return ended_;
         if (!happened_.empty() && !act(std::vector<std::size_t>(happened_))) return ended_;
       }

@@ -152,25 +152,30 @@ class Noise final : public ControlBlock {
 
 enum class Sum { integral, mean, rms, least, greatest };
 
-/// Over the time since it began. States: the sum, or the extreme; and when it began.
+/// Over the time since it began. States: the sum, or the extreme; when it began; and of a mean what the signal, of a
+/// root mean square its size, was then: over no time at all these are the limit, and zero would be a jump at the start.
 class OverTime final : public ControlBlock {
  public:
   explicit OverTime(Sum sum) : sum_(sum) {}
   std::size_t inputs() const override { return 1; }
-  std::vector<std::string> states() const override { return {"sum", "begun"}; }
+  std::vector<std::string> states() const override {
+    return averages() ? std::vector<std::string>{"sum", "begun", "first"} : std::vector<std::string>{"sum", "begun"};
+  }
   std::string unit_of_output() const override { return sum_ == Sum::integral ? "(signal) s" : "signal"; }
   std::string unit_of_state(std::size_t state) const override {
     if (state == 1) return "s";
+    if (state == 2) return "signal";
     return extreme() ? "signal" : sum_ == Sum::rms ? "(signal)^2 s" : "(signal) s";
   }
   void begin(double t, std::span<const double> w, std::span<double> z) const noexcept override {
     z[0] = extreme() ? w[0] : 0;
     z[1] = t;
+    if (averages()) z[2] = sum_ == Sum::rms ? std::abs(w[0]) : w[0];
   }
   void rates(double /*t*/, std::span<const double> w, std::span<const double> /*z*/,
              std::span<double> rates) const noexcept override {
     rates[0] = added(w[0]);
-    rates[1] = 0;
+    std::fill(rates.begin() + 1, rates.end(), 0.0);
   }
   void output(double t, std::span<const double> w, std::span<const double> z,
               std::span<double> v) const noexcept override {
@@ -180,10 +185,10 @@ class OverTime final : public ControlBlock {
         v[0] = z[0];
         break;
       case Sum::mean:
-        v[0] = span > 0 ? z[0] / span : 0;
+        v[0] = span > 0 ? z[0] / span : z[2];
         break;
       case Sum::rms:
-        v[0] = span > 0 ? std::sqrt(z[0] / span) : 0;
+        v[0] = span > 0 ? std::sqrt(z[0] / span) : z[2];
         break;
       case Sum::least:
         v[0] = std::min(z[0], w[0]);
@@ -194,7 +199,7 @@ class OverTime final : public ControlBlock {
     }
   }
   bool feeds_through(std::size_t /*input*/) const override { return extreme(); }
-  bool changes_gain() const override { return sum_ == Sum::mean || sum_ == Sum::rms; }
+  bool changes_gain() const override { return averages(); }
   void set_sample(double period) override { period_ = period; }
   void advance(double /*t*/, std::span<const double> w, std::span<double> z) const noexcept override {
     if (sum_ == Sum::least) z[0] = std::min(z[0], w[0]);
@@ -203,6 +208,7 @@ class OverTime final : public ControlBlock {
   }
 
  private:
+  [[nodiscard]] bool averages() const noexcept { return sum_ == Sum::mean || sum_ == Sum::rms; }
   [[nodiscard]] bool extreme() const noexcept { return sum_ == Sum::least || sum_ == Sum::greatest; }
   [[nodiscard]] double added(double w) const noexcept { return sum_ == Sum::rms ? w * w : w; }
   Sum sum_;

@@ -92,5 +92,25 @@ TEST(Mjcf, OrientationsInEveryFormAreTheSame) {
   EXPECT_NEAR(scene(xyaxes.str()), want, 1e-12);
 }
 
+// By its ends a geom of any form has its length along z from one to the other and its first size across.
+TEST(Mjcf, AGeomGivenByItsEndsHasTheMassOfTheSameOneGivenByItsFrame) {
+  const auto scene = [](const std::string& geom) {
+    const Scratch file(".xml",
+                       "<mujoco><compiler angle='radian'/><worldbody><body name='b'><joint name='j' axis='1 2 3'/>"
+                       "<geom pos='0.3 0 0.1' size='0.1'/><geom " +
+                           geom + "/></body></worldbody></mujoco>");
+    host::Equations f(scene_of({file.file(), {}, false, 0, 0}));
+    return accelerations(f, f.y0()).at("j.rate");
+  };
+  for (const std::string form : {"box", "ellipsoid", "capsule", "cylinder"}) {
+    const bool round = form == "capsule" || form == "cylinder";
+    const double want =
+        scene("type='" + form + "' pos='0.2 0.5 0.1' zaxis='0 1 0' size='0.05 " + (round ? "0.4" : "0.05 0.4") + "'");
+    EXPECT_NEAR(scene("type='" + form + "' fromto='0.2 0.1 0.1 0.2 0.9 0.1' size='0.05'"), want, 1e-12) << form;
+    EXPECT_NEAR(scene("type='" + form + "' fromto='0.2 0.1 0.1 0.2 0.9 0.1' size='0.05 0.07 0.07'"), want, 1e-12)
+        << form;
+  }
+}
+
 }  // namespace
 }  // namespace withy::exchange

@@ -104,12 +104,34 @@ loads:
   rms: {type: over-time, of: wave, what: rms}
 )",
                 {"time.output=0.5", "time.end=7"});
+  EXPECT_EQ(s["mean.command"][0], 1) << "over no time it is the signal";
+  EXPECT_EQ(s["rms.command"][0], 1);
   for (std::size_t k = 1; k < s.times.size(); ++k) {
     const double t = s.times[k], area = t + 3 * (1 - std::cos(t));
     const double square = t + 6 * (1 - std::cos(t)) + 9 * (t / 2 - std::sin(2 * t) / 4);
     ASSERT_NEAR(s["area.command"][k], area, 1e-8);
     ASSERT_NEAR(s["mean.command"][k], area / t, 1e-8);
     ASSERT_NEAR(s["rms.command"][k], std::sqrt(square / t), 1e-8);
+  }
+}
+
+// A mean that began at zero would jump at the start: the first stage of a fixed step would see another effort than all
+// others do, an error of first order.
+TEST(OverTime, MeansThatActDoNotJumpWhereTheyBegin) {
+  for (const std::string what : {"mean", "rms"}) {
+    const auto end = [&](const std::string& integrator) {
+      const Shown s(
+          test::turntable +
+              "outputs: {seen: {type: hinge, hinge: axle}}\nloads:\n  past: {type: over-time, of: "
+              "axle, what: " +
+              what + "}\n  push: {type: expression, hinge: axle, value: -4 * past}\n",
+          {"time.output=1", "time.end=1", "initial.hinges={axle: {position: [0.5]}}", "integrator=" + integrator});
+      return s["seen.position"].back();
+    };
+    const double exact = end("{name: dop853, rtol: 1e-12, atol: 1e-14}");
+    const double coarse = end("{name: rk4, step: 0.05}") - exact, fine = end("{name: rk4, step: 0.025}") - exact;
+    EXPECT_LT(std::abs(coarse), 1e-3) << what;
+    EXPECT_LT(std::abs(fine), std::abs(coarse) / 3.5) << what;
   }
 }
 

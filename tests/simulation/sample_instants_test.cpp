@@ -1,0 +1,74 @@
+/// \file
+/// When controllers take their samples: at one instant where times are apart by rounding alone, and once.
+#include <gtest/gtest.h>
+
+#include "acted_run.hpp"
+#include "withy/core/simulation/session.hpp"
+
+namespace withy {
+namespace {
+
+using test::ActedRun;
+using test::Made;
+
+std::string wheel(const std::string& rest) {
+  return R"(format: withy/1
+bodies: {wheel: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}
+)" + rest;
+}
+
+/// A decimal number, not a product.
+std::string tenths(int count) { return std::to_string(count / 10) + "." + std::to_string(count % 10); }
+
+// What it measured a sample ago acts: none of the effort of the first sample may come within its own period.
+TEST(SampleInstants, a_run_that_begins_at_one_samples_there_once) {
+  const auto moved = [](int start) {
+    return ActedRun(wheel("time: {output: 10, end: " + tenths(start + 10) + "5}\ninitial: {time: " + tenths(start) +
+                          "}\nloads:\n  servo: {type: pid, hinge: axle, proportional: 2, integral: 5, derivative: 1, "
+                          "reference: 1, sample: 0.1, delay: 0.1}\n"));
+  };
+  const ActedRun first = moved(0);
+  const double from_zero = first.position("axle", first.summary.final);
+  EXPECT_GT(from_zero, 0.1);
+  for (int start = 1; start < 30; ++start) {
+    const ActedRun later = moved(start);
+    EXPECT_NEAR(later.position("axle", later.summary.final), from_zero, 1e-9) << tenths(start) << " s";
+  }
+}
+
+// Both samples come at once, and the second controller sees the effort that was held until then.
+TEST(SampleInstants, controllers_of_two_periods_see_what_was_until_then_wherever_their_samples_meet) {
+  for (int meeting = 3; meeting <= 30; meeting += 3) {
+    const ActedRun run(wheel("time: {output: 10, end: " + tenths(meeting) + R"(5}
+outputs: {effort: {type: effort, hinge: axle}}
+loads:
+  push: {type: expression, hinge: axle, value: t, sample: 0.3}
+  seen: {type: quantizer, of: effort, step: 0.001, range: 10, sample: 0.1}
+)"));
+    const LoadNode& seen = run.scene.model->loads()[1];
+    EXPECT_NEAR(seen.discrete(std::span(run.summary.final.y)).back(), 0.1 * (meeting - 3), 1e-9)
+        << tenths(meeting) << " s";
+  }
+}
+
+// As the table's last row and a host see it: what is from the sample on.
+TEST(SampleInstants, a_run_and_a_session_that_end_at_one_have_taken_it) {
+  const auto controlled = [](int end) {
+    return wheel("time: {output: 10, end: " + tenths(end) +
+                 "}\nloads: {law: {type: expression, hinge: axle, value: t, sample: 0.1}}\n");
+  };
+  const Made made(controlled(30));
+  Session session(*made.scene.model, *made.equations, *made.scene.integrator, made.scene.initial, {});
+  const LoadNode& law = made.scene.model->loads()[0];
+  for (int k = 1; k < 30; ++k) {
+    const ActedRun run(controlled(k));
+    EXPECT_NEAR(law.discrete(std::span(run.summary.final.y)).back(), 0.1 * k, 1e-12) << tenths(k) << " s";
+    EXPECT_EQ(run.summary.final.time, std::stod(tenths(k)));
+    ASSERT_TRUE(session.advance(std::stod(tenths(k)), false).reached);
+    EXPECT_NEAR(law.discrete(std::span(session.state().y)).back(), 0.1 * k, 1e-12) << tenths(k) << " s, a session";
+  }
+}
+
+}  // namespace
+}  // namespace withy
