@@ -121,6 +121,8 @@ class Scaler {
       }
       case text:
         if (value.kind() == Value::Kind::number) return value.number() * gauge_.factor(spec.unit);
+        if (value.kind() == Value::Kind::map && spec.refers == ParameterSpec::Refers::motion)
+          return members(value, registry_.find<Motion>(value.text_at("type"))->parameters);
         if (value.kind() == Value::Kind::map)
           return members(value, registry_.find<ModeFamily>(value.text_at("name"))->parameters);
         if (spec.key == "file") return file(value.text());
