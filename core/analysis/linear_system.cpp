@@ -167,8 +167,11 @@ ZerosAndGain zeros(LinearSystem s) {
     through = std::abs(s.D(0, 0));
   }
   const double d = s.D(0, 0);
-  const Eigen::MatrixXd left = s.A - s.B * s.C / d;
-  return {s.sampled() ? eigenvalues(left) : eigenvalues_with_zeros(left), product * d};
+  Eigen::MatrixXd left = s.A - s.B * s.C / d;
+  if (!s.sampled()) return {eigenvalues_with_zeros(left), product * d};
+  // As of poles: what the loop neither sees nor moves rests between samples, and stands at 1 with what else is there.
+  left.diagonal().array() -= 1;
+  return {eigenvalues_with_zeros(left).array() + 1, product * d};
 }
 
 TransferFunction::TransferFunction(LinearSystem system) : given_(std::move(system)), of_(given_) {

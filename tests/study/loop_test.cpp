@@ -335,6 +335,29 @@ TEST(Loop, OfASampledControllerBehindADriveGrowsAsTheClosedSystemDoesWhereItMeas
   EXPECT_LT(nearest, 1e-6);
 }
 
+/// The wheel turns freely, which the loop neither sees nor moves: two poles at z = 1, and of the zeros there a third
+/// one, since a rate is measured. By itself rounding moves a threefold zero by 1e-5.
+TEST(Loop, BehindADelayIsAsStableAsTheClosedSystemWhateverItsOrder) {
+  for (const double gain : {3.0, 60.0})
+    for (const double time : {0.07, 0.19})
+      for (int order = 1; order <= 6; ++order) {
+        const Prepared prepared = scene_of(bus_with_wheel(
+            fmt::format("  control: {{type: pid, of: back, to: nothing, proportional: {}, sample: 0.05}}\n"
+                        "  drive: {{type: delay, of: control, hinge: axle, time: {}, order: {}}}\n",
+                        gain, time, order)));
+        const Response r = response(at_start(prepared), {"control", "", {}, {}, 50, {}});
+        ASSERT_TRUE(r.margins.has_value());
+        const LinearModel closed = linear_model(at_start(prepared), {{"axle"}, {"turn"}});
+        double growth = -std::numeric_limits<double>::infinity();
+        for (const std::complex<double> pole : poles(closed.system)) {
+          const std::complex<double> s = exponent_of(closed.system, pole);
+          if (std::abs(s) > 1e-3) growth = std::max(growth, s.real());  // all but the wheel's
+        }
+        EXPECT_EQ(r.margins->stable, growth < 0) << gain << ", " << time << " s, order " << order;
+        EXPECT_NEAR(r.margins->growth, growth, 1e-6) << gain << ", " << time << " s, order " << order;
+      }
+}
+
 TEST(Loop, OfACommandThatSampledLoadsMeasureAsWellIsRefused) {
   const Prepared prepared =
       scene_of(bus_with_wheel("  control: {type: pid, of: back, to: nothing, proportional: 4, sample: 0.05}\n"
