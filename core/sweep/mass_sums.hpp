@@ -78,6 +78,33 @@ inline typename Space::Group product(const typename Space::Group* f, const typen
   return sum;
 }
 
+/// Adds row i of fields Γ_ij, j ≥ i, of which `width` numbers stand together: to P what Γq is, to `bend` q̇ᵀΓq̇, of which
+/// what stands right of the diagonal counts twice. \return Γ of the next row
+template <int width, class Group, class Scalar>
+inline const Group* add_row(const Group* g, int i, int n, const Scalar* q, const Scalar* q_dot, Group* P, Group* bend) {
+  const Group qi = spread(q[i]), rate = spread(q_dot[i]), twice = rate + rate;
+  Group own[width], right[width];
+  for (int c = 0; c < width; ++c) {
+    own[c] = P[i * width + c] + g[c] * qi;
+    bend[c] += g[c] * (rate * rate);
+    right[c] = spread(Scalar(0));
+  }
+  g += width;
+  for (int j = i + 1; j < n; ++j, g += width) {
+    const Group qj = spread(q[j]), rate_j = spread(q_dot[j]);
+    for (int c = 0; c < width; ++c) {
+      own[c] += g[c] * qj;
+      P[j * width + c] += g[c] * qi;
+      right[c] += g[c] * rate_j;
+    }
+  }
+  for (int c = 0; c < width; ++c) {
+    P[i * width + c] = own[c];
+    bend[c] += right[c] * twice;
+  }
+  return g;
+}
+
 /// Products of A rows of `length` groups with B others, those of the lower triangle added to G.
 template <class Scalar, int A, int B, class Group>
 inline void add_tile(const Group* rows, int length, int i, int j, int n, Scalar* G) {

@@ -73,7 +73,7 @@ struct ParticleMotion {
           }
         } else {
           // Row by row: products of rates would be found anew for each group.
-          g = add_row(g, i, n, q, q_dot, P);
+          g = add_row<L>(g, i, n, q, q_dot, P, a);
         }
       }
     }
@@ -85,32 +85,6 @@ struct ParticleMotion {
         v[c] += P[i * L + c] * rate;
       }
     }
-  }
-
- private:
-  /// What Γ_ij, j ≥ i, adds to P and a. \return Γ_jj of the next row
-  const Group* add_row(const Group* g, int i, int n, const Scalar* q, const Scalar* q_dot, Group* P) {
-    const Group qi = spread(q[i]), rate = spread(q_dot[i]), twice = rate + rate;
-    Group own[L], right[L];
-    for (int c = 0; c < L; ++c) {
-      own[c] = P[i * L + c] + g[c] * qi;
-      a[c] += g[c] * (rate * rate);
-      right[c] = spread(Scalar(0));
-    }
-    g += L;
-    for (int j = i + 1; j < n; ++j, g += L) {
-      const Group qj = spread(q[j]), rate_j = spread(q_dot[j]);
-      for (int c = 0; c < L; ++c) {
-        own[c] += g[c] * qj;
-        P[j * L + c] += g[c] * qi;
-        right[c] += g[c] * rate_j;
-      }
-    }
-    for (int c = 0; c < L; ++c) {
-      P[i * L + c] = own[c];
-      a[c] += right[c] * twice;
-    }
-    return g;
   }
 };
 

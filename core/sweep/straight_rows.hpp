@@ -29,7 +29,7 @@ struct StraightBlock {
     }
     g += B;
     for (int i = 0; i < n * B; ++i) P[i] = spread(Scalar(0));
-    for (int i = 0; i < n; ++i) g = add_row(g, i, n, q, q_dot, P);
+    for (int i = 0; i < n; ++i) g = add_row<B>(g, i, n, q, q_dot, P, bend);
     for (int i = 0; i < n; ++i) {
       const Group half = spread(0.5 * q[i]), speed = spread(q_dot[i]);
       for (int b = 0; b < B; ++b) {
@@ -37,32 +37,6 @@ struct StraightBlock {
         rate[b] += P[i * B + b] * speed;
       }
     }
-  }
-
- private:
-  /// As that of ParticleMotion.
-  const Group* add_row(const Group* g, int i, int n, const Scalar* q, const Scalar* q_dot, Group* P) {
-    const Group qi = spread(q[i]), speed = spread(q_dot[i]), twice = speed + speed;
-    Group own[B], right[B];
-    for (int b = 0; b < B; ++b) {
-      own[b] = P[i * B + b] + g[b] * qi;
-      bend[b] += g[b] * (speed * speed);
-      right[b] = spread(Scalar(0));
-    }
-    g += B;
-    for (int j = i + 1; j < n; ++j, g += B) {
-      const Group qj = spread(q[j]), speed_j = spread(q_dot[j]);
-      for (int b = 0; b < B; ++b) {
-        own[b] += g[b] * qj;
-        P[j * B + b] += g[b] * qi;
-        right[b] += g[b] * speed_j;
-      }
-    }
-    for (int b = 0; b < B; ++b) {
-      P[i * B + b] = own[b];
-      bend[b] += right[b] * twice;
-    }
-    return g;
   }
 };
 
