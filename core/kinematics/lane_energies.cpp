@@ -60,7 +60,7 @@ auto structure(const Node<Space>& n) {
   const sweep::JointData<Space>& j = n.joint;
   return std::tuple(n.parent, n.parent_station, n.root_station, n.modes, n.mode_position, n.mode_speed, n.first_station,
                     j.kind, j.direction, j.position, j.speed, n.base.empty, n.mass.straight, n.mass.rank,
-                    n.mass.second_order, n.rotary.sections, n.rotary.second_order, n.stations.size());
+                    n.mass.second_order, n.rotary.sections, n.stations.size());
 }
 template <class Space>
 auto structure(const Station<Space>& s) {
@@ -69,7 +69,7 @@ auto structure(const Station<Space>& s) {
 
 template <class Space, class Many>
 bool alike(const Node<Space>& a, const Node<Many>& b) {
-  return structure(a) == structure(b) &&
+  return structure(a) == structure(b) && a.mass.runs == b.mass.runs && a.rotary.runs == b.rotary.runs &&
          std::equal(a.stations.begin(), a.stations.end(), b.stations.begin(),
                     [](const auto& s, const auto& t) { return structure(s) == structure(t); });
 }

@@ -60,8 +60,7 @@ inline void add_mass(const sweep::MassTable<Space>& table, int modes, const type
                      PartMomentum<Space>& part) {
   typename Space::Group m = constant_function(table.root_mass);
   for (std::size_t k = 0; k < table.packs; ++k) {
-    const sweep::ParticleMotion<Space, N> x(table.data.data() + k * table.stride, table.second_order, modes, q, q_dot,
-                                            P);
+    const sweep::ParticleMotion<Space, N> x(table, k, modes, q, q_dot, P);
     add_particles<Space>(V, m, x.r, x.v, part);
     m = spread(typename Space::Scalar(0));
   }
@@ -103,27 +102,24 @@ inline void add_turning(const Pack& J, const sweep::PackVector& t, const sweep::
   part.h.w += Triple(sum(roll * t[0]), sum(roll * t[1]), sum(roll * t[2]));
 }
 
-/// θ = Ψq + ½qᵀΘq and θ̇ of a group of sections, `A` components each.
-template <int A, class Group, class S>
-inline void section_angles(const Group* psi, bool second_order, int n, const S* q, const S* q_dot, Group* theta,
-                           Group* rate) {
+/// θ = Ψq + ½qᵀΘq and θ̇ of group k of sections.
+template <class Space, class S>
+inline void section_angles(const sweep::RotaryTable<Space>& table, std::size_t k, int n, const S* q, const S* q_dot,
+                           typename Space::Group* theta, typename Space::Group* rate) {
+  constexpr int A = Space::angular;
+  const typename Space::Group* field = table.fields.data() + k * table.stride;
   for (int c = 0; c < A; ++c) theta[c] = rate[c] = spread(S(0));
   for (int i = 0; i < n; ++i) {
-    for (int c = 0; c < A; ++c) {
-      theta[c] += psi[A * i + c] * spread(q[i]);
-      rate[c] += psi[A * i + c] * spread(q_dot[i]);
+    for (int c = 0; c < A; ++c, ++field) {
+      theta[c] += *field * spread(q[i]);
+      rate[c] += *field * spread(q_dot[i]);
     }
   }
-  if (!second_order) return;
-  const Group* second = psi + A * n;
-  for (int i = 0; i < n; ++i) {
-    for (int j = i; j < n; ++j, second += A) {
-      const Group product = spread((i == j ? 0.5 : 1.0) * q[i] * q[j]);
-      const Group change = spread(i == j ? q[i] * q_dot[i] : q_dot[i] * q[j] + q[i] * q_dot[j]);
-      for (int c = 0; c < A; ++c) {
-        theta[c] += second[c] * product;
-        rate[c] += second[c] * change;
-      }
+  for (const sweep::FieldRun& run : table.runs) {
+    const int i = run.row;
+    for (int j = run.first; j < run.last; ++j, ++field) {
+      theta[run.component] += *field * spread((i == j ? 0.5 : 1.0) * q[i] * q[j]);
+      rate[run.component] += *field * spread(i == j ? q[i] * q_dot[i] : q_dot[i] * q[j] + q[i] * q_dot[j]);
     }
   }
 }
@@ -133,7 +129,7 @@ inline void add_sections(const sweep::RotaryTable<PlanarOf<S>>& table, int modes
                          const typename PlanarOf<S>::Twist& V, PartMomentum<PlanarOf<S>>& part) {
   for (std::size_t k = 0; k < table.packs; ++k) {
     GroupOf<S> theta, rate;
-    section_angles<1>(table.fields.data() + k * table.stride, table.second_order, modes, q, q_dot, &theta, &rate);
+    section_angles(table, k, modes, q, q_dot, &theta, &rate);
     rate += spread(V.w);
     const GroupOf<S> roll = table.axes[k].J * rate;
     part.kinetic += 0.5 * sum(roll * rate);
@@ -145,18 +141,23 @@ inline void add_sections(const sweep::RotaryTable<Spatial>& table, int modes, co
                          const Spatial::Twist& V, PartMomentum<Spatial>& part) {
   using sweep::PackVector;
   const auto times = [](const PackVector& v, const Pack& s) { return PackVector{v[0] * s, v[1] * s, v[2] * s}; };
+  const bool apart = table.frame.apart;
+  const Spatial::Twist V_here = apart ? Spatial::to_child(table.frame.X, V) : V;
+  PartMomentum<Spatial> sections;
   for (std::size_t k = 0; k < table.packs; ++k) {
     PackVector theta, rate;
-    section_angles<3>(table.fields.data() + k * table.stride, table.second_order, modes, q, q_dot, theta.c, rate.c);
+    section_angles(table, k, modes, q, q_dot, theta.c, rate.c);
     const sweep::PackExponential e(theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2]);
     const PackVector x = cross(theta, rate);
     const PackVector omega = rate + times(x, e.b) + times(cross(theta, x), e.c);
     for (std::size_t j = 0; j < table.axes_each; ++j) {
       const auto& axis = table.axes[k * table.axes_each + j];
       const PackVector fixed{axis.e[0], axis.e[1], axis.e[2]}, y = cross(theta, fixed);
-      add_turning(axis.J, fixed + times(y, e.a) + times(cross(theta, y), e.b), omega, V, part);
+      add_turning(axis.J, fixed + times(y, e.a) + times(cross(theta, y), e.b), omega, V_here, sections);
     }
   }
+  part.kinetic += sections.kinetic;
+  part.h += apart ? Spatial::to_parent(table.frame.X, sections.h) : sections.h;
 }
 
 /// A rod at the state that `work` holds.

@@ -78,37 +78,10 @@ inline typename Space::Group product(const typename Space::Group* f, const typen
   return sum;
 }
 
-/// Adds row i of fields Γ_ij, j ≥ i, of which `width` numbers stand together: to P what Γq is, to `bend` q̇ᵀΓq̇, of which
-/// what stands right of the diagonal counts twice. \return Γ of the next row
-template <int width, class Group, class Scalar>
-inline const Group* add_row(const Group* g, int i, int n, const Scalar* q, const Scalar* q_dot, Group* P, Group* bend) {
-  const Group qi = spread(q[i]), rate = spread(q_dot[i]), twice = rate + rate;
-  Group own[width], right[width];
-  for (int c = 0; c < width; ++c) {
-    own[c] = P[i * width + c] + g[c] * qi;
-    bend[c] += g[c] * (rate * rate);
-    right[c] = spread(Scalar(0));
-  }
-  g += width;
-  for (int j = i + 1; j < n; ++j, g += width) {
-    const Group qj = spread(q[j]), rate_j = spread(q_dot[j]);
-    for (int c = 0; c < width; ++c) {
-      own[c] += g[c] * qj;
-      P[j * width + c] += g[c] * qi;
-      right[c] += g[c] * rate_j;
-    }
-  }
-  for (int c = 0; c < width; ++c) {
-    P[i * width + c] = own[c];
-    bend[c] += right[c] * twice;
-  }
-  return g;
-}
-
 /// Products of A rows of `length` groups with B others, those of the lower triangle added to G.
 template <class Scalar, int A, int B, class Group>
-inline void add_tile(const Group* rows, int length, int i, int j, int n, Scalar* G) {
-  const Group *left = rows + i * length, *right = rows + j * length;
+inline void add_tile(const Group* left, const Group* right, int length, int i, int j, int n, Scalar* G) {
+  left += i * length, right += j * length;
   Group sums[A][B];
   for (auto& of_row : sums)
     for (Group& s : of_row) s = spread(Scalar(0));
@@ -122,15 +95,16 @@ inline void add_tile(const Group* rows, int length, int i, int j, int n, Scalar*
       if (j + b <= i + a) G[(i + a) * n + j + b] += sum(sums[a][b]);
 }
 
-/// Adds the products of n rows of `length` groups with each other to the lower triangle of G. Eight sums at a time: as
-/// many as the processor adds to before the first is done, with what they read in the registers that are left.
+/// Adds the products of n rows of `length` groups on the left with as many on the right to the lower triangle of G.
+/// Eight sums at a time: as many as the processor adds to before the first is done, with what they read in the
+/// registers that are left.
 template <class Scalar, class Group>
-[[gnu::noinline]] inline void add_gram(const Group* rows, int length, int n, Scalar* G) {
+[[gnu::noinline]] inline void add_gram(const Group* left, const Group* right, int length, int n, Scalar* G) {
   const auto tiles = [&](auto tall, int i) {
     constexpr int A = decltype(tall)::value;
     int j = 0;
-    for (; j + 2 <= i + A; j += 2) add_tile<Scalar, A, 2>(rows, length, i, j, n, G);
-    if (j < i + A) add_tile<Scalar, A, 1>(rows, length, i, j, n, G);
+    for (; j + 2 <= i + A; j += 2) add_tile<Scalar, A, 2>(left, right, length, i, j, n, G);
+    if (j < i + A) add_tile<Scalar, A, 1>(left, right, length, i, j, n, G);
   };
   int i = 0;
   for (; i + 4 <= n; i += 4) tiles(std::integral_constant<int, 4>{}, i);
@@ -169,7 +143,7 @@ inline void add_rows(const typename Space::Group* r, const typename Space::Group
     put_moment<Space>(r_P, C[i]);
     h[i] += sum(P_a);
   }
-  add_gram<Scalar>(P, L * groups, n, G);
+  add_gram<Scalar>(P, P, L * groups, n, G);
 }
 
 }  // namespace withy::sweep

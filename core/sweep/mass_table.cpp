@@ -48,6 +48,19 @@ bool lies_straight(const Eigen::Ref<const Eigen::MatrixXd>& fields, Eigen::Index
   return true;
 }
 
+/// Fields of a shape, whose first column is the constant and the others vectors, X first, seen from a frame.
+void place(const Pose& frame, Eigen::MatrixXd& fields) {
+  for (Eigen::Index at = 1; at < fields.cols(); at += 3)
+    fields.middleCols<3>(at) = (fields.middleCols<3>(at) * frame.R.transpose()).eval();
+  fields.middleCols<3>(1) += fields.col(0) * frame.p.transpose();
+}
+
+/// Makes modes in [first, last) part of a range.
+void extend(ModeRange& range, int first, int last) {
+  range =
+      range.last == 0 ? ModeRange{first, last} : ModeRange{std::min(range.first, first), std::max(range.last, last)};
+}
+
 /// Coefficients of the last bodies: the sweep and the observations of one model want them of the same fields, and so do
 /// cases of a sweep that differ in other numbers. For all threads.
 class LastCoefficients {
@@ -82,17 +95,24 @@ class LastCoefficients {
 }  // namespace
 
 template <class Space>
-MassTable<Space>::MassTable(const NodeSpec& node) {
+TableFrame<Space>::TableFrame(const NodeSpec& node) {
+  apart = Space::angular == 3 && static_cast<int>(node.modes) > modes_known && node.mass.turned();
+  if (apart) X = Space::make(node.mass.placement());
+}
+
+template <class Space>
+MassTable<Space>::MassTable(const NodeSpec& node) : frame(node) {
   constexpr Eigen::Index L = Space::linear;
   const auto n = static_cast<Eigen::Index>(node.modes);
   modes = static_cast<int>(n);
-  if (node.mass.size() == 0) return;
-  const auto rows = static_cast<Eigen::Index>(node.mass.size());
+  const PlacedMass mass = frame.mass(node);
+  if (mass.size() == 0) return;
+  const auto rows = static_cast<Eigen::Index>(mass.size());
   const Eigen::Index columns = 1 + L * (1 + n + n * (n + 1) / 2);
   Eigen::MatrixXd fields(rows, columns);
   for (Eigen::Index k = 0; k < rows; ++k) {
-    const PlacedPoint at = node.mass.point(static_cast<std::size_t>(k));
-    const double root = std::sqrt(node.mass.mass(static_cast<std::size_t>(k)));
+    const PlacedPoint at = mass.point(static_cast<std::size_t>(k));
+    const double root = std::sqrt(mass.mass(static_cast<std::size_t>(k)));
     Eigen::Index column = 0;
     fields(k, column++) = root;
     const auto put = [&](const Vector3& a) {
@@ -109,11 +129,14 @@ MassTable<Space>::MassTable(const NodeSpec& node) {
     }
   }
   static LastCoefficients last;
-  const Eigen::MatrixXd R = last.of(std::move(fields));
+  Eigen::MatrixXd R = last.of(std::move(fields));
   root_mass = R(0, 0);
   rank = static_cast<std::size_t>(R.rows());
   packs = (rank + lanes - 1) / lanes;
   stride = static_cast<std::size_t>(columns - 1);
+  straight = second_order && lies_straight<Space>(R.rightCols(columns - 1), n);
+  if (modes > modes_known && !straight) lay_blocks(R.rightCols(columns - 1));
+  if (frame.apart) place(node.mass.placement(), R);
   std::vector<typename Space::Group> numbers(packs * stride, spread(0.0));
   for (Eigen::Index k = 0; k < R.rows(); ++k) {
     const auto row = static_cast<std::size_t>(k);
@@ -122,8 +145,41 @@ MassTable<Space>::MassTable(const NodeSpec& node) {
     }
   }
   data = std::move(numbers);
-  straight = second_order && lies_straight<Space>(R.rightCols(columns - 1), n);
-  if (straight && modes > modes_known) lay_straight();
+  runs = runs_of<L>(R.rightCols(L * (n * (n + 1) / 2)), modes);
+  if (modes > modes_known && straight) lay_straight();
+}
+
+template <class Space>
+void MassTable<Space>::lay_blocks(const Eigen::MatrixXd& fields) {
+  constexpr int L = Space::linear;
+  const auto column = [](int vector, int component) { return L * vector + component; };
+  block_runs = runs_of<L>(fields.rightCols(fields.cols() - column(1 + modes, 0)), modes);
+  for (int c = 0; c < L; ++c) {
+    for (int i = 0; i < modes; ++i)
+      if (!fields.col(column(1 + i, c)).isZero(0)) extend(with_phi[c], i, i + 1);
+    with_partial[c] = with_phi[c];
+  }
+  for (const FieldRun& run : block_runs) {
+    extend(with_partial[run.component], run.row, run.row + 1);
+    extend(with_partial[run.component], run.first, run.last);
+  }
+  std::vector<typename Space::Group> numbers;
+  for (std::size_t k = 0; k < packs; k += block) {
+    const std::size_t end = std::min(packs, k + block);
+    const auto put = [&](int at) {
+      for (std::size_t pack = k; pack < end; ++pack) {
+        numbers.push_back(spread(0.0));
+        for (std::size_t lane = 0; lane < std::min(lanes, rank - lanes * pack); ++lane)
+          set_lane(numbers.back(), lane, fields(static_cast<Eigen::Index>(lanes * pack + lane), at));
+      }
+    };
+    for (int c = 0; c < L; ++c) put(column(0, c));
+    for (int c = 0; c < L; ++c)
+      for (int i = with_phi[c].first; i < with_phi[c].last; ++i) put(column(1 + i, c));
+    for (const FieldRun& run : block_runs)
+      for (int j = run.first; j < run.last; ++j) put(column(1 + modes + pair_at(run.row, j, modes), run.component));
+  }
+  blocks = std::move(numbers);
 }
 
 template <class Space>
@@ -134,19 +190,21 @@ void MassTable<Space>::lay_straight() {
   const auto column = [&](std::size_t pack, std::size_t vector, std::size_t component) {
     return data[pack * stride + 2 * vector + component];
   };
-  std::vector<typename Space::Group> blocks, rows;
+  std::vector<typename Space::Group> groups, rows;
   for (std::size_t k = 0; k < packs; k += block) {
     const std::size_t end = std::min(packs, k + block);
     for (std::size_t i = 0; i < 1 + pairs; ++i)
-      for (std::size_t pack = k; pack < end; ++pack) blocks.push_back(column(pack, i == 0 ? 0 : n + i, 0));
+      for (std::size_t pack = k; pack < end; ++pack) groups.push_back(column(pack, i == 0 ? 0 : n + i, 0));
   }
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t pack = 0; pack < packs; ++pack) rows.push_back(column(pack, 1 + i, 1));
   std::vector<double> products_of_rows(n * n, 0.0);
-  add_gram<double>(rows.data(), static_cast<int>(packs), modes, products_of_rows.data());
-  along = std::move(blocks), across = std::move(rows), across_products = std::move(products_of_rows);
+  add_gram<double>(rows.data(), rows.data(), static_cast<int>(packs), modes, products_of_rows.data());
+  along = std::move(groups), across = std::move(rows), across_products = std::move(products_of_rows);
 }
 
+template struct TableFrame<Spatial>;
+template struct TableFrame<Planar>;
 template struct MassTable<Spatial>;
 template struct MassTable<Planar>;
 

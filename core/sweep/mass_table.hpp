@@ -5,10 +5,30 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "withy/core/sweep/field_runs.hpp"
 #include "withy/core/sweep/mass_sums.hpp"
 #include "withy/core/sweep/node.hpp"
 
 namespace withy::sweep {
+
+/// Modes in [first, last).
+struct ModeRange {
+  int first = 0, last = 0;
+};
+
+/// The frame in which a node's fields are tabulated: that of the node, or of the body's shape where its axes are
+/// others, in which fewer fields are there.
+template <class Space>
+struct TableFrame {
+  bool apart = false;
+  typename Space::Frame X = {};  ///< of the shape's frame in the node's
+
+  TableFrame() = default;
+  /// Of a node of one case.
+  explicit TableFrame(const NodeSpec& node);
+  /// The mass, seen from that frame.
+  [[nodiscard]] PlacedMass mass(const NodeSpec& node) const { return apart ? node.mass.unmoved() : node.mass; }
+};
 
 /// Every integral of the equations of motion is bilinear in the fields 1, X, Φ_i, Γ_ij over the mass. An orthonormal
 /// basis of the functions that these fields span therefore replaces the particles exactly: fields become the vectors of
@@ -23,22 +43,32 @@ struct MassTable {
   typename Space::Scalar root_mass = 0;  ///< √mass; 0: no particles
   /// For each pack: X (linear), then Φ_i (n·linear), then Γ_ij for i ≤ j (pairs·linear), components innermost.
   SharedNumbers<typename Space::Group> data;
-  std::size_t stride = 0;  ///< packs of `data` for each pack of particles
+  std::size_t stride = 0;      ///< packs of `data` for each pack of particles
+  std::vector<FieldRun> runs;  ///< of Γ, by component and then by row: all that are not zero
   /// In a plane, with some Γ: X and Γ lie along the first axis, Φ along the second. An unbent beam along that axis.
   bool straight = false;
   /// Of several cases, straight ones of few modes, in the place of `data`: StraightMass.
   SharedNumbers<typename Space::Scalar> products;
-  /// Of one case, straight: X, then Γ_ij for i ≤ j, of `block` packs at once, which stand innermost, and of what is
-  /// left over; Φ_i across, of all packs each; products of these, n rows of n. See straight_rows.hpp.
+  /// Of one case with more modes than known, `block` packs at once, which stand innermost, and of what is left over.
   static constexpr int block = 4;
+  /// Straight: X, then Γ_ij for i ≤ j; Φ_i across, of all packs each; products of these, n rows of n. See
+  /// straight_rows.hpp.
   SharedNumbers<typename Space::Group> along, across;
   SharedNumbers<typename Space::Scalar> across_products;
+  /// Not straight, in `frame`: X; of each component the Φ_i that are not zero; the Γ_ij of `block_runs`. See
+  /// block_rows.hpp.
+  SharedNumbers<typename Space::Group> blocks;
+  TableFrame<Space> frame;
+  std::vector<FieldRun> block_runs;
+  ModeRange with_phi[Space::linear];      ///< the modes that have a Φ of a component
+  ModeRange with_partial[Space::linear];  ///< the modes that have a Φ or a Γ of it
 
   MassTable() = default;
   explicit MassTable(const NodeSpec& node);
 
  private:
   void lay_straight();
+  void lay_blocks(const Eigen::MatrixXd& fields);
 };
 
 /// The generalized particles of one pack at q, q̇: positions r, velocities ṙ, acceleration terms q̇ᵀΓq̇ and partial
@@ -50,18 +80,19 @@ struct ParticleMotion {
   using Group = typename Space::Group;
   Group r[L], v[L], a[L];
 
-  ParticleMotion(const Group* field, bool second_order, int n, const Scalar* q, const Scalar* q_dot, Group* P) {
-    const Group* phi = field + L;
+  ParticleMotion(const MassTable<Space>& table, std::size_t pack, int n, const Scalar* q, const Scalar* q_dot,
+                 Group* P) {
+    const Group *field = table.data.data() + pack * table.stride, *phi = field + L;
     for (int i = 0; i < n * L; ++i) P[i] = phi[i];
     for (int c = 0; c < L; ++c) {
       r[c] = field[c];
       v[c] = a[c] = spread(Scalar(0));
     }
-    if (second_order) {
-      const Group* g = phi + n * L;
-      for (int i = 0; i < n; ++i) {
-        const Group qi = spread(q[i]);
-        if constexpr (N >= 0) {
+    if constexpr (N >= 0) {
+      if (table.second_order) {
+        const Group* g = phi + n * L;
+        for (int i = 0; i < n; ++i) {
+          const Group qi = spread(q[i]);
           for (int j = i; j < n; ++j, g += L) {
             const Group qj = spread(q[j]);
             const Group rates = spread((i == j ? 1.0 : 2.0) * q_dot[i] * q_dot[j]);
@@ -71,10 +102,12 @@ struct ParticleMotion {
               a[c] += g[c] * rates;
             }
           }
-        } else {
-          // Row by row: products of rates would be found anew for each group.
-          g = add_row<L>(g, i, n, q, q_dot, P, a);
         }
+      }
+    } else {
+      for (const FieldRun& run : table.runs) {
+        const Group* g = phi + (n + pair_at(run.row, run.first, n)) * L + run.component;
+        add_run<1>(g, L, run.row, run.first, run.last, q, q_dot, P + run.component, L, a + run.component);
       }
     }
     for (int i = 0; i < n; ++i) {
@@ -187,13 +220,20 @@ requires(Space::angular == 3) inline void add_constant(typename Space::Scalar m,
   for (int i = 0; i < n; ++i) C[i].v += Triple(first(P(i, 0)), first(P(i, 1)), first(P(i, 2))) * m;
 }
 
-/// From so many on a body of any number of modes has its products by rows; with fewer that takes longer.
-constexpr std::size_t many_groups = 6;
+/// Calls action(std::integral_constant<int, B>{}, first) for `block` packs at a time, four, and for what is left over.
+template <int block, class Action>
+requires(block == 4) inline void in_blocks(int packs, const Action& action) {
+  int k = 0;
+  for (; k + 4 <= packs; k += 4) action(std::integral_constant<int, 4>{}, k);
+  if (packs - k == 3) action(std::integral_constant<int, 3>{}, k);
+  if (packs - k == 2) action(std::integral_constant<int, 2>{}, k);
+  if (packs - k == 1) action(std::integral_constant<int, 1>{}, k);
+}
 
-/// Groups of scratch that `integrate` needs.
+/// Groups of scratch that `integrate` needs, and what takes its place.
 template <class Space>
 std::size_t mass_scratch(const MassTable<Space>& table, std::size_t modes) {
-  return Space::linear * (modes + (modes + 2) * table.packs);
+  return Space::linear * std::max(modes, (modes + 2) * table.packs);
 }
 
 /// Adds the particles' integrals at q, q̇ and twist V of the node's frame:
@@ -201,7 +241,7 @@ std::size_t mass_scratch(const MassTable<Space>& table, std::size_t modes) {
 ///   particles exert F = I A + C q̈ + p and Q = Cᵀ A + G q̈ + h.
 /// With r = X + Φq + ½qᵀΓq, P = Φ + Γq, a = ω×v + ω×(ω×r) + 2 ω×ṙ + q̇ᵀΓq̇:
 ///   C_i = ∫ (r×P_i; P_i), G_ij = ∫ P_i·P_j, p = ∫ (r×a; a), h_i = ∫ P_i·a.
-/// \param P scratch: of N modes N·linear groups, otherwise mass_scratch
+/// \param P scratch: N·linear groups
 template <class Space, int N>
 inline void integrate(const MassTable<Space>& table, int modes, const typename Space::Scalar* q,
                       const typename Space::Scalar* q_dot, const typename Space::Twist& V, typename Space::Group* P,
@@ -209,30 +249,14 @@ inline void integrate(const MassTable<Space>& table, int modes, const typename S
                       typename Space::Twist& p, typename Space::Scalar* h) {
   constexpr int L = Space::linear;
   const int n = count<N>(modes);
-  const auto particles = [&](std::size_t k, const auto& then) {
-    ParticleMotion<Space, N> x(table.data.data() + k * table.stride, table.second_order, n, q, q_dot, P);
+  for (std::size_t k = 0; k < table.packs; ++k) {
+    ParticleMotion<Space, N> x(table, k, n, q, q_dot, P);
     add_turning<Space>(V, x.r, x.v, x.a);
     if (k == 0) {
       const auto partial = [&](int i, int c) { return P[i * L + c]; };
       add_constant<Space>(table.root_mass, V, x.r, x.a, partial, n, I, C, p);
     }
-    then(x);
-  };
-  if (N >= 0 || table.packs < many_groups) {
-    for (std::size_t k = 0; k < table.packs; ++k)
-      particles(k, [&](const auto& x) { add_products<Space, N>(x.r, x.a, P, n, I, C, G, p, h); });
-  } else {
-    auto *r = P + n * L, *a = r + L * table.packs, *rows = a + L * table.packs;
-    for (std::size_t k = 0; k < table.packs; ++k) {
-      particles(k, [&](const auto& x) {
-        for (std::size_t c = 0; c < L; ++c) {
-          r[c * table.packs + k] = x.r[c];
-          a[c * table.packs + k] = x.a[c];
-        }
-        for (std::size_t i = 0; i < static_cast<std::size_t>(n) * L; ++i) rows[i * table.packs + k] = P[i];
-      });
-    }
-    add_rows<Space>(r, a, rows, static_cast<int>(table.packs), n, I, C, G, p, h);
+    add_products<Space, N>(x.r, x.a, P, n, I, C, G, p, h);
   }
 }
 

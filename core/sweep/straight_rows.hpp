@@ -9,12 +9,12 @@
 
 namespace withy::sweep {
 
-/// Whether a node of N modes may have them; see MassTable::along.
-template <class Space, int N>
-constexpr bool has_straight_rows = Space::angular == 1 && !in_lanes<Space> && N < 0;
+/// Whether nodes may have them; see MassTable::along.
+template <class Space>
+constexpr bool has_straight_rows = Space::angular == 1;
 
-/// What moves along the beam in a block of B packs of particles: x = X + ½ qᵀΓq, its rate, q̇ᵀΓq̇, and P = Γq with the
-/// packs of mode i at i·B. Several packs at once, since sums along a row wait for each other.
+/// What moves along the beam in a block of B packs of particles: x = X + ½ qᵀΓq, its rate, q̇ᵀΓq̇, and P = Γq, of mode i
+/// at i·packs. Several packs at once, since sums along a row wait for each other.
 template <class Space, int B>
 struct StraightBlock {
   using Group = typename Space::Group;
@@ -22,39 +22,42 @@ struct StraightBlock {
   Group x[B], rate[B], bend[B];
 
   /// \param g X, then Γ_ij for i ≤ j, of the block's packs
-  StraightBlock(const Group* g, int n, const Scalar* q, const Scalar* q_dot, Group* P) {
+  StraightBlock(const Group* g, int n, const Scalar* q, const Scalar* q_dot, Group* P, int packs) {
     for (int b = 0; b < B; ++b) {
       x[b] = g[b];
       rate[b] = bend[b] = spread(Scalar(0));
     }
     g += B;
-    for (int i = 0; i < n * B; ++i) P[i] = spread(Scalar(0));
-    for (int i = 0; i < n; ++i) g = add_row<B>(g, i, n, q, q_dot, P, bend);
+    for (int i = 0; i < n; ++i)
+      for (int b = 0; b < B; ++b) P[i * packs + b] = spread(Scalar(0));
+    for (int i = 0; i < n; g += (n - i) * B, ++i) add_run<B>(g, B, i, i, n, q, q_dot, P, packs, bend);
     for (int i = 0; i < n; ++i) {
       const Group half = spread(0.5 * q[i]), speed = spread(q_dot[i]);
       for (int b = 0; b < B; ++b) {
-        x[b] += P[i * B + b] * half;
-        rate[b] += P[i * B + b] * speed;
+        x[b] += P[i * packs + b] * half;
+        rate[b] += P[i * packs + b] * speed;
       }
     }
   }
 };
 
-/// `integrate` of mass_table.hpp. \param P scratch: mass_scratch
+/// `integrate` of mass_table.hpp. \param scratch mass_scratch
 template <class Space>
 inline void integrate_straight_rows(const MassTable<Space>& table, const typename Space::Scalar* q,
                                     const typename Space::Scalar* q_dot, const typename Space::Twist& V,
-                                    typename Space::Group* P, typename Space::Inertia& I, typename Space::Twist* C,
-                                    typename Space::Scalar* G, typename Space::Twist& p, typename Space::Scalar* h) {
+                                    typename Space::Group* scratch, typename Space::Inertia& I,
+                                    typename Space::Twist* C, typename Space::Scalar* G, typename Space::Twist& p,
+                                    typename Space::Scalar* h) {
   using Group = typename Space::Group;
   using Scalar = typename Space::Scalar;
   constexpr int block = MassTable<Space>::block;
   const int n = table.modes, packs = static_cast<int>(table.packs);
-  Group *r = P + n * block, *a = r + 2 * packs, *rows = a + 2 * packs;
+  Group *r = scratch, *a = r + 2 * packs, *rows = a + 2 * packs;
   const Group* across = table.across.data();
   const auto sweep_block = [&](auto packs_here, int first_pack) {
     constexpr int B = decltype(packs_here)::value;
-    const StraightBlock<Space, B> along(table.along.data() + first_pack * (1 + n * (n + 1) / 2), n, q, q_dot, P);
+    const StraightBlock<Space, B> along(table.along.data() + first_pack * (1 + n * (n + 1) / 2), n, q, q_dot,
+                                        rows + first_pack, packs);
     for (int b = 0; b < B; ++b) {
       const int k = first_pack + b;
       Group here[2] = {along.x[b], spread(Scalar(0))}, rate[2] = {along.rate[b], here[1]},
@@ -63,11 +66,10 @@ inline void integrate_straight_rows(const MassTable<Space>& table, const typenam
         const Group phi = across[i * packs + k];
         here[1] += phi * spread(q[i]);
         rate[1] += phi * spread(q_dot[i]);
-        rows[i * packs + k] = P[i * B + b];
       }
       add_turning<Space>(V, here, rate, bend);
       if (k == 0) {
-        const auto partial = [&](int i, int c) { return c == 0 ? P[i * B] : across[i * packs]; };
+        const auto partial = [&](int i, int c) { return (c == 0 ? rows : across)[i * packs]; };
         add_constant<Space>(table.root_mass, V, here, bend, partial, n, I, C, p);
       }
       for (int c = 0; c < 2; ++c) {
@@ -76,14 +78,10 @@ inline void integrate_straight_rows(const MassTable<Space>& table, const typenam
       }
     }
   };
-  int k = 0;
-  for (; k + block <= packs; k += block) sweep_block(std::integral_constant<int, block>{}, k);
-  if (packs - k == 3) sweep_block(std::integral_constant<int, 3>{}, k);
-  if (packs - k == 2) sweep_block(std::integral_constant<int, 2>{}, k);
-  if (packs - k == 1) sweep_block(std::integral_constant<int, 1>{}, k);
+  in_blocks<block>(packs, sweep_block);
 
   Group r_r = spread(Scalar(0)), r_a = r_r;
-  for (k = 0; k < packs; ++k) {
+  for (int k = 0; k < packs; ++k) {
     add_squares<Space>(r + k, packs, &r_r);
     add_moment<Space>(r + k, a + k, packs, &r_a);
   }
@@ -92,7 +90,7 @@ inline void integrate_straight_rows(const MassTable<Space>& table, const typenam
   for (int i = 0; i < n; ++i) {
     const Group *Pi = rows + i * packs, *phi = across + i * packs;
     Group r_P = spread(Scalar(0)), P_a = r_P;
-    for (k = 0; k < packs; ++k) {
+    for (int k = 0; k < packs; ++k) {
       r_P += r[k] * phi[k] - r[packs + k] * Pi[k];
       P_a += Pi[k] * a[k] + phi[k] * a[packs + k];
     }
@@ -100,7 +98,7 @@ inline void integrate_straight_rows(const MassTable<Space>& table, const typenam
     h[i] += sum(P_a);
     for (int j = 0; j <= i; ++j) G[i * n + j] += table.across_products[static_cast<std::size_t>(i * n + j)];
   }
-  add_gram<Scalar>(rows, packs, n, G);
+  add_gram<Scalar>(rows, rows, packs, n, G);
 }
 
 }  // namespace withy::sweep

@@ -1,5 +1,6 @@
 #include "withy/core/tree/placed_mass.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 #include "withy/core/tree/tree.hpp"
@@ -21,6 +22,22 @@ PointExpansion PlacedMass::placed(const PointExpansion& e) const {
   for (const FrameMove& move : moves_) result = moved(result, move.AB);
   if (linear_) drop_second_order(result);
   return result;
+}
+
+bool PlacedMass::turned() const {
+  return std::any_of(moves_.begin(), moves_.end(), [](const FrameMove& move) { return move.turns; });
+}
+
+Pose PlacedMass::placement() const {
+  Pose all;
+  for (const FrameMove& move : moves_) all = move.AB * all;
+  return all;
+}
+
+PlacedMass PlacedMass::unmoved() const {
+  PlacedMass own = *this;
+  own.moves_.clear();
+  return own;
 }
 
 void PlacedMass::move(const Pose& AB) {

@@ -73,6 +73,13 @@ class PlacedMass {
   /// All sections, likewise.
   [[nodiscard]] std::vector<Section> sections() const;
 
+  /// Whether its axes are others than those of the shape itself.
+  [[nodiscard]] bool turned() const;
+  /// X_AB of the frame B of the shape itself in the present one.
+  [[nodiscard]] Pose placement() const;
+  /// The same mass, seen from the frame of the shape itself.
+  [[nodiscard]] PlacedMass unmoved() const;
+
   /// From now on seen from frame A, X_AB the pose of the present frame B in it.
   void move(const Pose& AB);
   /// Drops Γ and Θ.

@@ -17,7 +17,9 @@ struct SceneWish {
   bool any_root = false;    ///< beams may be held at their tip
   bool any_family = false;  ///< beams may bend in any mode family, those whose root moves too
   bool floating = true;     ///< a free hinge to the world is possible
-  int modes = 0;            ///< in bending_y of every beam; 0: one to three
+  int modes = 0;            ///< in bending_y of every beam, half of them in bending_z and torsion; 0: one to three
+  bool aligned = false;     ///< hinges are along axes of coordinates, frames are not turned
+  bool rotary = false;      ///< sections have inertia in bending
 };
 
 /// Text of a random scene; the same seed gives the same text.
@@ -68,8 +70,11 @@ class RandomScene {
                               "{name: clamped-loaded, tip_mass: 0.7}"};
     return std::string(", family: ") + families[whole(0, 8)];
   }
+  [[nodiscard]] std::string rotary() const { return wish_.rotary ? ", rotary_inertia: 0.002" : ""; }
   std::string direction() {
     if (wish_.planar) return "[0, 0, 1]";
+    const char* axes[] = {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"};
+    if (wish_.aligned) return axes[whole(0, 2)];
     std::ostringstream s;
     s << "[" << number(0.1, 1) << ", " << number(-1, 1) << ", " << number(-1, 1) << "]";
     return s.str();
@@ -78,7 +83,8 @@ class RandomScene {
     std::ostringstream s;
     s.precision(17);
     double w = number(0.3, 1), x = number(-1, 1), y = number(-1, 1), z = number(-1, 1);
-    if (wish_.planar) x = y = 0;
+    if (wish_.planar || wish_.aligned) x = y = 0;
+    if (wish_.aligned) z = 0;
     const double norm = std::sqrt(w * w + x * x + y * y + z * z);
     s << "position: [" << number(-0.3, 0.3) << ", " << number(-0.3, 0.3) << ", " << number(-0.3, 0.3)
       << "], orientation: [" << w / norm << ", " << x / norm << ", " << y / norm << ", " << z / norm << "]";
@@ -90,15 +96,18 @@ class RandomScene {
     const std::string name = "b" + std::to_string(b);
     text_ << "  " << name << ":\n";
     if (beam) {
+      const int half = wish_.modes / 2;
       text_ << "    type: beam\n    length: " << number(0.5, 2) << "\n    mass_per_length: " << number(0.5, 2) << "\n"
             << "    damping_ratio: 0.01\n    bending_y: {stiffness: " << number(20, 90)
-            << ", modes: " << (wish_.modes > 0 ? wish_.modes : whole(1, 3)) << family() << "}\n";
+            << ", modes: " << (wish_.modes > 0 ? wish_.modes : whole(1, 3)) << family() << rotary() << "}\n";
       if (!wish_.planar && chance(0.7)) {
-        text_ << "    bending_z: {stiffness: " << number(20, 90) << ", modes: " << whole(1, 2) << family() << "}\n";
+        text_ << "    bending_z: {stiffness: " << number(20, 90) << ", modes: " << (half > 0 ? half : whole(1, 2))
+              << family() << rotary() << "}\n";
       }
       // Always, so that no hinge can spin a beam about an axis without inertia.
       if (!wish_.planar) {
-        text_ << "    torsion: {stiffness: " << number(20, 90) << ", inertia: 0.003, modes: " << whole(0, 2)
+        text_ << "    torsion: {stiffness: " << number(20, 90)
+              << ", inertia: 0.003, modes: " << (half > 0 ? half : whole(0, 2))
               << (wish_.any_family && chance(0.5) ? ", family: free-free" : "") << "}\n";
       }
       text_ << "    frames: {a: {at: tip, " << pose() << "}, m: {at: 0.31, " << pose() << "}, r: {at: root, " << pose()

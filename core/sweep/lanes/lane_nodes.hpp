@@ -100,7 +100,7 @@ void put(std::size_t lane, const MassTable<Space>& from, MassTable<Many>& to) {
   to.modes = from.modes;
   to.rank = to.packs = from.rank;
   to.second_order = from.second_order, to.straight = from.straight;
-  to.stride = from.stride;
+  to.stride = from.stride, to.runs = from.runs;
   put(lane, from.root_mass, to.root_mass);
   if constexpr (has_straight_mass<Many, 2>) {
     const auto put_products = [&](const auto& all) {
@@ -117,7 +117,7 @@ void put(std::size_t lane, const MassTable<Space>& from, MassTable<Many>& to) {
 
 inline void put(std::size_t lane, const RotaryTable<Planar>& from, RotaryTable<PlanarOf<Lanes>>& to) {
   to.sections = to.packs = from.sections;
-  to.second_order = from.second_order;
+  to.runs = from.runs;
   to.stride = from.stride;
   put(lane, from.fields, from.stride, from.sections, to.fields);
   to.axes.edit([&](auto& axes) {
@@ -172,7 +172,7 @@ auto structure(const SymmetricNode<Space>& n) {
   return std::tuple(n.body, n.parent, n.parent_station, n.root_station, n.modes, n.flavor, n.leaf, n.has_children,
                     n.mode_position, n.mode_speed, j.kind, j.direction, j.driven, j.pose_matters, j.position,
                     j.positions, j.speed, j.speeds, n.own->mass.straight, n.own->mass.rank, n.own->mass.second_order,
-                    n.own->rotary.sections, n.own->rotary.second_order, n.own->factor.size());
+                    n.own->rotary.sections, n.own->factor.size());
 }
 template <class Space>
 auto structure(const SymmetricStation<Space>& s) {
@@ -182,7 +182,8 @@ auto structure(const SymmetricStation<Space>& s) {
 /// Whether two nodes, of one case or of several, differ in numbers only.
 template <class Space, class Many>
 bool alike(const SymmetricNode<Space>& a, const SymmetricNode<Many>& b) {
-  return structure(a) == structure(b) &&
+  return structure(a) == structure(b) && a.own->mass.runs == b.own->mass.runs &&
+         a.own->rotary.runs == b.own->rotary.runs &&
          std::equal(a.own->stations.begin(), a.own->stations.end(), b.own->stations.begin(), b.own->stations.end(),
                     [](const auto& s, const auto& t) { return structure(s) == structure(t); });
 }

@@ -9,12 +9,14 @@
 /// integrated, as RodTable says.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "withy/core/deformation/rod_table.hpp"
 #include "withy/core/sweep/mass_table.hpp"
 #include "withy/core/sweep/rod/rod_rotation.hpp"
+#include "withy/core/sweep/rod/rotary_table.hpp"
 
 namespace withy::sweep {
 
@@ -180,8 +182,12 @@ std::size_t rod_work(const RodKinematics<Space>& rod, int modes) {
 
 /// Packs of scratch that the integrals over its mass need.
 template <class Space>
-std::size_t rod_scratch(const RodKinematics<Space>& rod) {
-  return Space::linear * static_cast<std::size_t>(rod.integrals.packs);
+std::size_t rod_scratch(const RodKinematics<Space>& rod, int modes) {
+  int rotary = 0;
+  if constexpr (Space::angular == 3) {
+    if (!rod.inertia.empty()) rotary = 3 * rod.integrals.packs + rotary_scratch(rod.integrals.packs, modes);
+  }
+  return static_cast<std::size_t>(std::max(Space::linear * rod.integrals.packs, rotary));
 }
 
 template <class Space>

@@ -26,24 +26,22 @@ inline void put_linear(const double* P, Spatial::Twist& C) { C.v += Triple(P[0],
 inline Planar::Position carried(const Planar::Twist& V) { return {-V.w * V.y, V.w * V.x}; }
 inline Triple carried(const Spatial::Twist& V) { return cross(V.w, V.v); }
 
-/// What the rotary inertia of a rod's sections adds to `integrate`.
+/// What the rotary inertia of a rod's sections adds to `integrate`. \param scratch of rod_scratch
 template <int N>
 inline void integrate_rotary(const RodKinematics<Spatial>& rod, const RodWork& work, int modes, const double* q_dot,
-                             const Spatial::Twist& V, Spatial::Inertia& I, Spatial::Twist* C, double* G,
+                             const Spatial::Twist& V, Pack* scratch, Spatial::Inertia& I, Spatial::Twist* C, double* G,
                              Spatial::Twist& p, double* h) {
   using Rod = RodKinematics<Spatial>;
   const int n = count<N>(modes), packs = rod.integrals.packs;
-  for (int k = 0; k < packs; ++k) {
-    const Pack* y = work.value + k;
-    const Pack* t = work.slope + Rod::axis(n) * packs + k;
-    PackVector omega = PackVector::zero();
-    for (int i = 0; i < n; ++i) {
-      for (int c = 0; c < 3; ++c) omega[c] += y[(Rod::w + 3 * i + c) * packs] * spread(q_dot[i]);
-    }
-    const Pack* b = y + Rod::b(n) * packs;
-    add_rotary<N>(rod.inertia[static_cast<std::size_t>(k)], {t[0], t[packs], t[2 * packs]}, omega,
-                  {b[0], b[packs], b[2 * packs]}, y + Rod::w * packs, packs, V.w, n, I, C, G, p, h);
+  const Pack* w = work.value + Rod::w * packs;
+  for (int k = 0; k < 3 * packs; ++k) scratch[k] = spread(0.0);
+  for (int i = 0; i < n; ++i) {
+    const Pack rate = spread(q_dot[i]);
+    for (int k = 0; k < 3 * packs; ++k) scratch[k] += w[3 * i * packs + k] * rate;
   }
+  const TurningSections sections{
+      packs, w, scratch, work.value + Rod::b(n) * packs, work.slope + Rod::axis(n) * packs, rod.inertia.data()};
+  add_rotary<N>(sections, V.w, n, scratch + 3 * packs, I, C, G, p, h);
 }
 
 /// `integrate` of mass_table.hpp over the rod's nodes. r, P_i and a in the work memory become those times root masses,
@@ -96,7 +94,7 @@ inline void integrate(const RodKinematics<Space>& rod, const RodWork& work, int 
   put_linear(rod.integrals.mass, of_r, of_a, I, p);
   add_rows<Space>(r, a, P, packs, n, I, C, G, p, h);
   if constexpr (Space::angular == 3) {
-    if (!rod.inertia.empty()) integrate_rotary<N>(rod, work, n, q_dot, V, I, C, G, p, h);
+    if (!rod.inertia.empty()) integrate_rotary<N>(rod, work, n, q_dot, V, v, I, C, G, p, h);
   }
 }
 

@@ -5,22 +5,29 @@
 namespace withy::sweep {
 
 template <class Space>
-RotaryTable<Space>::RotaryTable(const NodeSpec& node) {
+RotaryTable<Space>::RotaryTable(const NodeSpec& node) : frame(node) {
   constexpr std::size_t A = Space::angular;
   const auto n = static_cast<Eigen::Index>(node.modes);
   const auto angle = [](const Vector3& v, std::size_t c) { return v[A == 1 ? 2 : static_cast<Eigen::Index>(c)]; };
   std::vector<const Section*> turning;
-  const std::vector<Section> all = node.mass.sections();
+  const std::vector<Section> all = frame.mass(node).sections();
   for (const Section& s : all) {
     if (A == 1 ? s.inertia(2, 2) != 0 : !s.inertia.isZero(0)) turning.push_back(&s);
   }
   sections = turning.size();
   packs = (sections + lanes - 1) / lanes;
   if (packs == 0) return;
-  const auto modes = static_cast<std::size_t>(n), pairs = modes * (modes + 1) / 2;
-  for (const Section* s : turning)
-    second_order = second_order || !s->at.theta[0].isZero(0) || !s->at.theta[1].isZero(0) || !s->at.theta[2].isZero(0);
-  stride = A * (modes + (second_order ? pairs : 0));
+  const auto modes = static_cast<std::size_t>(n);
+  Eigen::MatrixXd second(turning.size(), A * (modes * (modes + 1) / 2));
+  for (std::size_t s = 0; s < sections; ++s) {
+    for (Eigen::Index i = 0, column = 0; i < n; ++i)
+      for (Eigen::Index j = i; j < n; ++j)
+        for (std::size_t c = 0; c < A; ++c)
+          second(static_cast<Eigen::Index>(s), column++) = turning[s]->at.theta[A == 1 ? 2 : c](i, j);
+  }
+  runs = runs_of<static_cast<int>(A)>(second, static_cast<int>(n));
+  stride = A * modes;
+  for (const FieldRun& run : runs) stride += static_cast<std::size_t>(run.last - run.first);
   std::vector<Pack> angles(packs * stride, spread(0.0));
   // Principal axes, those with inertia first.
   std::vector<Eigen::SelfAdjointEigenSolver<Matrix3>> principal;
@@ -50,10 +57,11 @@ RotaryTable<Space>::RotaryTable(const NodeSpec& node) {
     for (Eigen::Index i = 0; i < n; ++i) {
       for (std::size_t c = 0; c < A; ++c) set_lane(*field++, lane, angle(at.psi.col(i), c));
     }
-    for (Eigen::Index i = 0; second_order && i < n; ++i) {
-      for (Eigen::Index j = i; j < n; ++j) {
-        const Vector3 theta(at.theta[0](i, j), at.theta[1](i, j), at.theta[2](i, j));
-        for (std::size_t c = 0; c < A; ++c) set_lane(*field++, lane, angle(theta, c));
+    for (const FieldRun& run : runs) {
+      for (int j = run.first; j < run.last; ++j) {
+        const auto column =
+            static_cast<Eigen::Index>(static_cast<int>(A) * pair_at(run.row, j, static_cast<int>(n)) + run.component);
+        set_lane(*field++, lane, second(static_cast<Eigen::Index>(s), column));
       }
     }
   }

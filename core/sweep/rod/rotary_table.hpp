@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "withy/core/sweep/node.hpp"
+#include "withy/core/sweep/mass_table.hpp"
 
 namespace withy::sweep {
 
@@ -18,16 +18,28 @@ struct RotaryTable {
     typename Space::Group J, e[3];
   };
 
+  TableFrame<Space> frame;
   std::size_t sections = 0, packs = 0;
-  bool second_order = false;  ///< some Θ is there
-  std::size_t axes_each = 0;  ///< axes of each pack, the greatest number that one of its sections has
+  std::vector<FieldRun> runs;  ///< of Θ, by component and then by row: all that are not zero
+  std::size_t axes_each = 0;   ///< axes of each pack, the greatest number that one of its sections has
   SharedNumbers<Axis> axes;
-  /// For each pack: Ψ_i (n·angular), then, of second order, Θ_ij for i ≤ j (pairs·angular), components innermost.
+  /// For each pack: Ψ_i (n·angular), components innermost, then the Θ_ij of `runs`.
   SharedNumbers<typename Space::Group> fields;
   std::size_t stride = 0;  ///< packs of `fields` for each pack of sections
 
   RotaryTable() = default;
   explicit RotaryTable(const NodeSpec& node);
 };
+
+/// Packs of scratch that the terms of `packs` packs of sections of a body need; see add_rotary.
+constexpr int rotary_scratch(int packs, int modes) { return (3 + 2 * modes) * packs; }
+
+/// Groups of scratch that `collect_sections` needs.
+template <class Space>
+std::size_t section_scratch(const RotaryTable<Space>& table, std::size_t modes) {
+  if constexpr (Space::angular == 1) return (1 + 2 * modes) * table.packs;
+  const int packs = static_cast<int>(table.packs), n = static_cast<int>(modes);
+  return static_cast<std::size_t>((6 + 3 * n) * packs + rotary_scratch(packs, n)) + 3 * table.axes_each * table.packs;
+}
 
 }  // namespace withy::sweep

@@ -21,10 +21,7 @@ constexpr bool has_straight_mass = Space::angular == 1 && in_lanes<Space> && (N 
 template <int N>
 struct StraightMass {
   /// The pair (i, j) of `of`; of modes, or of pairs of these.
-  static constexpr int pair(int i, int j, int of) {
-    const int least = std::min(i, j);
-    return least * of - least * (least - 1) / 2 + std::max(i, j) - least;
-  }
+  static constexpr int pair(int i, int j, int of) { return pair_at(std::min(i, j), std::max(i, j), of); }
   static constexpr int pairs = N * (N + 1) / 2;
   static constexpr int m = 0, X = 1, X_X = 2, phi = 3, X_phi = phi + N, phi_phi = X_phi + N, gamma = phi_phi + pairs,
                        X_gamma = gamma + pairs, gamma_phi = X_gamma + pairs, gamma_gamma = gamma_phi + pairs * N,

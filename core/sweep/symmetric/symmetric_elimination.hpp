@@ -4,9 +4,11 @@
 
 #include <algorithm>
 
+#include "withy/core/sweep/block_rows.hpp"
 #include "withy/core/sweep/straight_rows.hpp"
 #include "withy/core/sweep/symmetric/straight_mass.hpp"
 #include "withy/core/sweep/symmetric/symmetric_motion.hpp"
+#include "withy/core/sweep/with_modes.hpp"
 
 namespace withy::sweep {
 
@@ -33,7 +35,7 @@ inline void integrate_mass(const SymmetricNode<Space>& node, const SymmetricStat
     const auto* q_dot = s.speeds + node.mode_speed;
     using Group = typename Space::Group;
     Group P_here[N > 0 ? N * Space::linear : 1];
-    Group* P = N > 0 ? P_here : at<Group>(s.work, node.work_P);
+    Group *const scratch = at<Group>(s.work, node.work_P), *const P = N > 0 ? P_here : scratch;
     const auto clear = [&] {
       for (int i = 0; i < n; ++i) {
         C[i] = Space::Twist::zero();
@@ -41,27 +43,35 @@ inline void integrate_mass(const SymmetricNode<Space>& node, const SymmetricStat
       }
       for (int i = 0; i < n * n; ++i) G[i] = 0;
     };
+    const auto add_sections = [&](const typename Space::Twist& V_here, typename Space::Inertia& I_here,
+                                  typename Space::Twist& p_here) {
+      if constexpr (has_sections<Space>)
+        collect_sections<Space, N>(node.own->rotary, n, q, q_dot, V_here, scratch, I_here, C, G, p_here, h);
+    };
+    const MassTable<Space>& mass = node.own->mass;
     const auto sum_particles = [&] {
       clear();
-      integrate<Space, N>(node.own->mass, n, q, q_dot, V, P, I, C, G, p, h);
+      integrate<Space, N>(mass, n, q, q_dot, V, P, I, C, G, p, h);
+      add_sections(V, I, p);
     };
-    if constexpr (has_straight_mass<Space, N>) {
-      if (node.own->mass.straight) {
-        integrate_straight<Space, N>(node.own->mass.products.data(), q, q_dot, V, I, C, G, p, h);
-      } else {
-        sum_particles();
-      }
-    } else if constexpr (has_straight_rows<Space, N>) {
-      if (!node.own->mass.along.empty()) {
-        clear();
-        integrate_straight_rows<Space>(node.own->mass, q, q_dot, V, P, I, C, G, p, h);
-      } else {
-        sum_particles();
-      }
+    if constexpr (has_block_rows<Space, N>) {
+      // Passes that know no number of modes go over nodes of few as well.
+      if (n <= modes_known) return sum_particles();
+      clear();
+      in_frame(mass.frame, n, V, I, C, p, [&](const auto& V_here, auto& I_here, auto& p_here) {
+        if constexpr (has_straight_rows<Space>) {
+          if (!mass.along.empty()) integrate_straight_rows(mass, q, q_dot, V_here, scratch, I_here, C, G, p_here, h);
+        }
+        if (!mass.blocks.empty()) integrate_block_rows(mass, q, q_dot, V_here, scratch, I_here, C, G, p_here, h);
+        add_sections(V_here, I_here, p_here);
+      });
+    } else if constexpr (has_straight_mass<Space, N>) {
+      if (!mass.straight) return sum_particles();
+      integrate_straight<Space, N>(mass.products.data(), q, q_dot, V, I, C, G, p, h);
+      add_sections(V, I, p);
     } else {
       sum_particles();
     }
-    if constexpr (has_sections<Space>) collect_sections<Space, N>(node.own->rotary, n, q, q_dot, V, P, I, C, G, p, h);
   }
 }
 

@@ -103,10 +103,11 @@ std::size_t lay_out(std::vector<SymmetricNode<Space>>& nodes, std::span<const st
     const auto modes = static_cast<std::size_t>(node.modes);
     most = std::max(most, modes);
     most_P = std::max(most_P, mass_scratch(node.own->mass, modes));
+    if constexpr (has_sections<Space>) most_P = std::max(most_P, section_scratch(node.own->rotary, modes));
     if constexpr (has_rods<Space>) {
       if (node.own->rod.empty()) continue;
       most_rod = std::max(most_rod, rod_work(*node.own->rod, node.modes));
-      most_P = std::max(most_P, rod_scratch(*node.own->rod));
+      most_P = std::max(most_P, rod_scratch(*node.own->rod, node.modes));
     }
   }
   std::vector<std::size_t> shared_h, shared_P, shared_rod;
