@@ -26,6 +26,7 @@ class Reader {
     add("extension", Vector3::UnitX(), elongation, mass, "", material);
     add("shear_y", Vector3::UnitY(), elongation, mass, "", material);
     add("shear_z", Vector3::UnitZ(), elongation, mass, "", material);
+    if (p_.has("twist")) material.twist = twist();
     if (!good_) return nullptr;
     return make_beam_body(material, std::move(strains_));
   }
@@ -36,6 +37,24 @@ class Reader {
     const auto read = Profile::read(value, p_.number_at("length"), context_.diagnostics);
     good_ = good_ && read.has_value();
     return read.value_or(Profile(1));
+  }
+
+  /// Turned sections: what is softer in one plane bends in the other as well, so both are to be known.
+  BeamTwist twist() {
+    for (const auto& [one, other] : {std::pair("bending_y", "bending_z"), std::pair("shear_y", "shear_z")}) {
+      if (p_.has(one) == p_.has(other)) continue;
+      const char *there = p_.has(one) ? one : other, *missing = p_.has(one) ? other : one;
+      context_.diagnostics.error(
+          p_.at("twist").place(),
+          fmt::format("turns what {} is of out of its plane; need {} too (with `modes: 0` where it is not to move)",
+                      there, missing));
+      good_ = false;
+    }
+    const auto stiffness = [&](const char* key) {
+      return good_ && p_.has(key) ? profile(p_.at(key).at("stiffness")) : Profile(0);
+    };
+    const Profile angle = profile(p_.at("twist"));
+    return {angle, stiffness("bending_y"), stiffness("bending_z"), stiffness("shear_y"), stiffness("shear_z")};
   }
 
   /// The strain a scene asks for under `key`. Families know a beam by its means: `mass` per length or, in torsion, the
@@ -109,6 +128,10 @@ std::vector<ParameterSpec> make_parameters() {
   std::vector<ParameterSpec> specs = {
       number("length", "m", "length, undeformed").above(0),
       number("mass_per_length", "kg/m", "mass per length").above(0).or_table("m"),
+      number("twist", "rad",
+             "angle about x from the body's y to that of the section's own axes, which stiffness and inertia are of")
+          .or_table("m")
+          .optional(),
       map("bending_y", bending("EI_z, for deflection along y", "rotary inertia of the sections per length, rho I_z"),
           "bending with deflection along y")
           .optional(),

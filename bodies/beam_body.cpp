@@ -12,7 +12,9 @@
 /// for the complete second order; another strain kinematics gives other slopes (StrainKinematics). Along x this is the
 /// foreshortening −½∫(v′² + w′²) of Padilla & von Flotow, across it the coupling of bending and twist. The sections'
 /// inertia is ρI_p about x, and in bending ρI where a scene gives it (Rayleigh's beam). Mass, stiffness and inertias
-/// may vary along the beam; the assumed modes are then Ritz functions, K and M their integrals.
+/// may vary along the beam; the assumed modes are then Ritz functions, K and M their integrals. Of a twisted beam the
+/// sections' axes are turned by β(x) about x, stiffness and inertia are T C_s Tᵀ with T the turn, and bending in the
+/// two planes is coupled; the axis is straight, and strains are resolved in axes that do not turn.
 #include "beam_body.hpp"
 
 #include <algorithm>
@@ -30,7 +32,7 @@ class Beam final : public Body, private Rod {
       : material_(material),
         length_(material.length),
         strains_(std::move(strains)),
-        quadrature_(material.length, wave_number(strains_), kinks(material, strains_)) {
+        quadrature_(material.length, wave_number(material, strains_), kinks(material, strains_)) {
     shape_.length = length_;
     for (const auto& [axis, inertia] : material.inertias) bending_inertia_ |= axis != Vector3::UnitX();
     for (const BeamStrain& s : strains_) {
@@ -59,7 +61,12 @@ class Beam final : public Body, private Rod {
       const double mass = w * material.mass_per_length(x[k]);
       if (!rigid) shape_.particles[k].mass = mass;
       add_products(mass, f.phi, gram);
-      add_stiffness(w, f, x[k]);
+      if (material.twist) {
+        add_products(w * bending_stiffness(x[k]), f.psi_slope, shape_.stiffness);
+        add_products(w * elongation_stiffness(x[k]), f.gamma, shape_.stiffness);
+      } else {
+        add_stiffness(w, f, x[k]);
+      }
     }
     if (!material.inertias.empty()) add_sections(gram);
     shape_.damping = material.damping.matrix(shape_.stiffness, gram);
@@ -103,25 +110,21 @@ class Beam final : public Body, private Rod {
     BodyCut cut;
     cut.at = *at;
     cut.curvature = linear_fields(strains_, x).psi_slope;
-    for (const BeamStrain& s : strains_) {
-      if (s.kind != BeamData::Strain::elongation) cut.stiffness += s.stiffness(x) * s.direction.cwiseAbs();
-    }
+    cut.stiffness = bending_stiffness(x);
     if (!(x < length_)) return cut;
     std::vector<double> beyond;
     for (const double kink : kinks(material_, strains_)) {
       if (kink > x && kink < length_) beyond.push_back(kink - x);
     }
-    const BeamQuadrature mass(length_ - x, wave_number(strains_), beyond);
+    const BeamQuadrature mass(length_ - x, wave_number(material_, strains_), beyond);
     for (std::size_t k = 0; k < mass.nodes().size(); ++k) {
       const double s = x + mass.nodes()[k];
       cut.particles.push_back({mass.weights()[k] * material_.mass_per_length(s), *station(s)});
     }
-    const SectionQuadrature along(length_ - x, wave_number(strains_), beyond);
+    const SectionQuadrature along(length_ - x, wave_number(material_, strains_), beyond);
     for (std::size_t k = 0; k < along.nodes().size(); ++k) {
       const double s = x + along.nodes()[k];
-      Matrix3 inertia = Matrix3::Zero();
-      for (const auto& [axis, per_length] : material_.inertias)
-        inertia += along.weights()[k] * per_length(s) * axis * axis.transpose();
+      const Matrix3 inertia = section_inertia(along.weights()[k], s);
       if (!inertia.isZero(0)) cut.sections.push_back({inertia, *station(s)});
     }
     return cut;
@@ -145,8 +148,8 @@ class Beam final : public Body, private Rod {
   }
   Eigen::Index modes() const override { return shape_.modes(); }
   double length() const override { return length_; }
-  double wave_number() const override { return wave_number(strains_); }
-  std::vector<double> kinks() const override {
+  double wave_number() const override { return of_strains(strains_); }
+  std::vector<double> mass_kinks() const override {
     std::vector<double> x = kinks(material_, {});
     std::sort(x.begin(), x.end());
     x.erase(std::unique(x.begin(), x.end()), x.end());
@@ -160,10 +163,14 @@ class Beam final : public Body, private Rod {
     return {std::move(f.psi_slope), std::move(f.psi), std::move(f.phi), material_.mass_per_length(x), inertia};
   }
 
-  static double wave_number(const std::vector<BeamStrain>& strains) {
+  static double of_strains(const std::vector<BeamStrain>& strains) {
     double beta = 0;
     for (const BeamStrain& s : strains) beta = std::max(beta, s.functions->wave_number());
     return beta;
+  }
+  /// Of functions whose products are integrated: stiffness and inertia of a twisted beam go like cos 2β.
+  static double wave_number(const BeamMaterial& material, const std::vector<BeamStrain>& strains) {
+    return of_strains(strains) + (material.twist ? material.twist->angle.greatest_slope() : 0);
   }
 
   static std::vector<double> kinks(const BeamMaterial& material, const std::vector<BeamStrain>& strains) {
@@ -174,18 +181,55 @@ class Beam final : public Body, private Rod {
     };
     for (const auto& [axis, inertia] : material.inertias) add(inertia);
     for (const BeamStrain& s : strains) add(s.stiffness);
+    if (!material.twist || strains.empty()) return x;
+    const BeamTwist& t = *material.twist;
+    for (const Profile* p : {&t.angle, &t.EI_y, &t.EI_z, &t.shear_y, &t.shear_z}) add(*p);
     return x;
+  }
+
+  /// Axes of the section at x in those of the body, as columns.
+  [[nodiscard]] Matrix3 section_axes(double x) const {
+    const double beta = material_.twist->angle(x), c = std::cos(beta), s = std::sin(beta);
+    Matrix3 axes;
+    axes << 1, 0, 0, 0, c, -s, 0, s, c;
+    return axes;
+  }
+  /// C of the section at x, given about its own axes, in those of the body.
+  [[nodiscard]] Matrix3 turned(const Vector3& own, double x) const {
+    if (!material_.twist) return own.asDiagonal();
+    const Matrix3 T = section_axes(x);
+    return T * own.asDiagonal() * T.transpose();
+  }
+  /// GJ, EI_y, EI_z at x [N m²], zero where the body has no such strain.
+  [[nodiscard]] Matrix3 bending_stiffness(double x) const {
+    Vector3 own = Vector3::Zero();
+    for (const BeamStrain& s : strains_)
+      if (s.kind != BeamData::Strain::elongation) own += s.stiffness(x) * s.direction.cwiseAbs();
+    if (const std::optional<BeamTwist>& t = material_.twist) own.tail<2>() << t->EI_y(x), t->EI_z(x);
+    return turned(own, x);
+  }
+  /// EA, kGA_y, kGA_z at x [N] of a twisted beam.
+  [[nodiscard]] Matrix3 elongation_stiffness(double x) const {
+    Vector3 own(0, material_.twist->shear_y(x), material_.twist->shear_z(x));
+    for (const BeamStrain& s : strains_)
+      if (s.kind == BeamData::Strain::elongation && s.direction == Vector3::UnitX()) own.x() = s.stiffness(x);
+    return turned(own, x);
+  }
+  /// Rotary inertia of a length at x [kg m²].
+  [[nodiscard]] Matrix3 section_inertia(double piece, double x) const {
+    Matrix3 own = Matrix3::Zero();
+    for (const auto& [axis, per_length] : material_.inertias) own += piece * per_length(x) * axis * axis.transpose();
+    if (!material_.twist) return own;
+    const Matrix3 T = section_axes(x);
+    return T * own * T.transpose();
   }
 
   /// The sections that have rotary inertia, and what they add to the modal mass.
   void add_sections(Eigen::MatrixXd& gram) {
-    const SectionQuadrature along(length_, wave_number(strains_), kinks(material_, strains_));
+    const SectionQuadrature along(length_, wave_number(material_, strains_), kinks(material_, strains_));
     for (std::size_t k = 0; k < along.nodes().size(); ++k) {
       const double at = along.nodes()[k];
-      Matrix3 inertia = Matrix3::Zero();
-      for (const auto& [axis, per_length] : material_.inertias) {
-        inertia += along.weights()[k] * per_length(at) * axis * axis.transpose();
-      }
+      const Matrix3 inertia = section_inertia(along.weights()[k], at);
       if (inertia.isZero(0)) continue;
       const LinearFields f = linear_fields(strains_, at);
       shape_.sections.push_back({inertia, expansion_at(at, f)});

@@ -117,7 +117,7 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
     SectionLoad load{.inner = reactions_.of_section(index)};
     for (Eigen::Index i = 0; i < body.modes; ++i)
       load.curvature += cut.curvature.col(i) * state_->y[body.modal.position + static_cast<std::size_t>(i)];
-    load.elastic = Vector3::Zero() - cut.stiffness.cwiseProduct(load.curvature);  // no −0
+    load.elastic = Vector3::Zero() - cut.stiffness * load.curvature;  // no −0
     return load;
   }
   double given(std::size_t load, std::size_t number, std::span<const double> y) noexcept override {

@@ -85,7 +85,7 @@ struct CutPlan {
   std::size_t first_point = 0;
   bool inboard = false;  ///< the body's own hinge holds the part beyond
   Matrix3X curvature;    ///< as BodyCut
-  Vector3 stiffness;     ///< as BodyCut
+  Matrix3 stiffness;     ///< as BodyCut
 };
 
 /// One a body of the model, in its order.

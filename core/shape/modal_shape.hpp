@@ -71,7 +71,9 @@ struct BodyCut {
   std::vector<Particle> particles;  ///< quadrature of the mass beyond
   std::vector<Section> sections;    ///< rotary inertia beyond
   Matrix3X curvature;               ///< κ of each coordinate [1/m], section axes: twist rate, then the two curvatures
-  Vector3 stiffness = Vector3::Zero();  ///< GJ, EI_y, EI_z [N m²]; zero where the body has no such strain
+  /// Moment of a curvature [N m²], section axes: GJ, EI_y, EI_z on the diagonal; zero where the body has no such
+  /// strain.
+  Matrix3 stiffness = Matrix3::Zero();
 };
 
 }  // namespace withy

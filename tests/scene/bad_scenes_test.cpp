@@ -120,6 +120,10 @@ const BadScene bad_scenes[] = {
      "m"},
     {"table_with_a_value_out_of_range", "mass_per_length: 1.3", "mass_per_length: [[0, 1.3], [0.9, 0]]",
      "14:39: /bodies/boom/mass_per_length/1/1: got 0; need finite > 0 [kg/m]"},
+    {"twist_of_one_plane", "mass_per_length: 1.3", "mass_per_length: 1.3\n    twist: 10 deg",
+     "15:12: /bodies/boom/twist: turns what bending_y is of out of its plane; need bending_z too (with `modes: 0` "
+     "where "
+     "it is not to move)"},
     {"mode_family_with_unknown_option", "family: clamped-free", "family: {name: clamped-loaded, tip_mas: 2}",
      R"(15:74: /bodies/boom/bending_y/family/tip_mas: unknown key "tip_mas"; did you mean 'tip_mass'?)"},
     {"mode_family_with_bad_option", "family: clamped-free", "family: {name: clamped-loaded, tip_mass: -2 kg}",
