@@ -146,7 +146,7 @@ class Beam final : public Body, private Rod {
   Eigen::Index modes() const override { return shape_.modes(); }
   double length() const override { return length_; }
   double wave_number() const override { return wave_number(strains_); }
-  std::vector<double> kinks() const override {
+  std::vector<double> mass_kinks() const override {
     std::vector<double> x = kinks(material_, {});
     std::sort(x.begin(), x.end());
     x.erase(std::unique(x.begin(), x.end()), x.end());
