@@ -24,10 +24,8 @@ std::vector<MassPoint> mass_points(const Body& body) {
   if (const Rod* rod = body.rod()) {
     const RodTable table(*rod);
     for (std::size_t k = 0; k < table.sections.size(); ++k) {
-      const double weight = table.quadrature.weights()[k];
-      const Matrix3 inertia = Vector3(weight * table.sections[k].inertia_per_length, 0, 0).asDiagonal();
-      points.push_back({weight * table.sections[k].mass_per_length, second_moment(inertia),
-                        body.station(table.quadrature.nodes()[k]).value()});
+      const Matrix3 inertia = Vector3(table.inertias[k], 0, 0).asDiagonal();
+      points.push_back({table.masses[k], second_moment(inertia), body.station(table.quadrature.nodes()[k]).value()});
     }
     return points;
   }
@@ -56,14 +54,9 @@ std::vector<MassPoint> mass_points(const std::vector<Particle>& particles, const
 }
 
 std::vector<double> mass_beyond(const Body& body, double x) {
-  std::vector<double> shares;
   const Rod* rod = body.rod();
-  if (rod == nullptr) return shares;
-  const RodTable table(*rod);
-  const Eigen::RowVectorXd before = table.quadrature.weights_to(x);
-  for (std::size_t k = 0; k < table.sections.size(); ++k)
-    shares.push_back(1 - before[static_cast<Eigen::Index>(k)] / table.quadrature.weights()[k]);
-  return shares;
+  if (rod == nullptr) return {};
+  return RodTable(*rod).beyond(x).of_mass;
 }
 
 FieldLoad::FieldLoad(const Model& model) {

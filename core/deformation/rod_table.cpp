@@ -2,19 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace withy {
 
 namespace {
 
-/// Equal panels between two kinks, no more than 4.75 wave-number lengths each.
-std::vector<double> panel_edges(const Rod& rod) {
-  std::vector<double> ends = rod.kinks();
+/// Wave-number lengths that a panel spans at most where no mass changes abruptly in it, and where it may.
+constexpr double panel_span = 4.75, over_kinks = panel_span / 2;
+
+std::vector<double> together(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> all;
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(all));
+  return all;
+}
+
+/// Equal panels between two of these points, none longer than it may be.
+std::vector<double> panel_edges(const Rod& rod, std::vector<double> ends, double span) {
   ends.push_back(rod.length());
   std::vector<double> edges{0};
   for (const double end : ends) {
     const double from = edges.back(), length = end - from;
-    const long panels = std::max(1L, std::lround(std::ceil(rod.wave_number() * length / 4.75)));
+    const long panels = std::max(1L, std::lround(std::ceil(rod.wave_number() * length / span)));
     for (long p = 1; p < panels; ++p)
       edges.push_back(from + length * static_cast<double>(p) / static_cast<double>(panels));
     edges.push_back(end);
@@ -22,15 +31,96 @@ std::vector<double> panel_edges(const Rod& rod) {
   return edges;
 }
 
+/// The polynomials of least degree that are one at a node and zero at the others, at x.
+std::vector<double> lagrange(const double* nodes, double x) {
+  std::vector<double> values(RodTable::order, 1.0);
+  for (std::size_t j = 0; j < values.size(); ++j)
+    for (std::size_t m = 0; m < values.size(); ++m)
+      if (m != j) values[j] *= (x - nodes[m]) / (nodes[j] - nodes[m]);
+  return values;
+}
+
+/// Masses and inertias of a rod beyond a point of it, at the nodes of panels that go over kinks of these.
+struct SpreadMass {
+  std::vector<double> masses, inertias;
+
+  /// \param edges of the panels of `quadrature`
+  SpreadMass(const Rod& rod, const PanelQuadrature& quadrature, const std::vector<double>& edges, double from)
+      : masses(quadrature.nodes().size()), inertias(masses.size()) {
+    std::vector<double> pieces = together(edges, rod.mass_kinks());
+    std::erase_if(pieces, [from](double x) { return x <= from; });
+    if (pieces.empty()) return;
+    pieces.insert(pieces.begin(), from);
+    // Rows of a table are straight between kinks: products with polynomials of degree 15 are integrated exactly.
+    const PanelQuadrature fine(pieces, RodTable::order);
+    std::size_t panel = 0;
+    for (std::size_t k = 0; k < fine.nodes().size(); ++k) {
+      const double x = fine.nodes()[k], weight = fine.weights()[k];
+      while (x > edges[panel + 1]) ++panel;
+      const std::size_t first = panel * RodTable::order;
+      const std::vector<double> part = lagrange(quadrature.nodes().data() + first, x);
+      const RodSection section = rod.section(x);
+      for (std::size_t j = 0; j < part.size(); ++j) {
+        masses[first + j] += weight * part[j] * section.mass_per_length;
+        inertias[first + j] += weight * part[j] * section.inertia_per_length;
+      }
+    }
+  }
+  [[nodiscard]] bool possible() const {
+    return std::all_of(masses.begin(), masses.end(), [](double m) { return m > 0; }) &&
+           std::all_of(inertias.begin(), inertias.end(), [](double J) { return J >= 0; });
+  }
+};
+
 }  // namespace
 
-RodTable::RodTable(const Rod& given) : rod(&given), quadrature(panel_edges(given), order), turn(1.0, 1, turn_order) {
+RodTable::RodTable(const Rod& given)
+    : rod(&given),
+      quadrature(panel_edges(given, together(given.kinks(), given.mass_kinks()), panel_span), order),
+      turn(1.0, 1, turn_order) {
+  if (!given.mass_kinks().empty()) {
+    const std::vector<double> edges = panel_edges(given, given.kinks(), over_kinks);
+    if (static_cast<Eigen::Index>(edges.size()) <= quadrature.panels()) {
+      const PanelQuadrature over(edges, order);
+      SpreadMass spread(given, over, edges, 0);
+      if (spread.possible()) {
+        quadrature = over, over_ = edges;
+        masses = std::move(spread.masses), inertias = std::move(spread.inertias);
+      }
+    }
+  }
+  add_sections();
+}
+
+void RodTable::add_sections() {
   double before = 0;
-  for (const double x : quadrature.nodes()) {
+  for (std::size_t k = 0; k < quadrature.nodes().size(); ++k) {
+    const double x = quadrature.nodes()[k], weight = quadrature.weights()[k];
     sections.push_back(rod->section(x));
     to_node.push_back(strains_between(before, x));
     before = x;
+    if (!over_.empty()) continue;
+    masses.push_back(weight * sections.back().mass_per_length);
+    inertias.push_back(weight * sections.back().inertia_per_length);
   }
+}
+
+RodTable::Shares RodTable::beyond(double x) const {
+  Shares shares;
+  const std::size_t nodes = masses.size();
+  if (over_.empty()) {
+    const Eigen::RowVectorXd before = quadrature.weights_to(x);
+    for (std::size_t k = 0; k < nodes; ++k)
+      shares.of_mass.push_back(1 - before[static_cast<Eigen::Index>(k)] / quadrature.weights()[k]);
+    shares.of_inertia = shares.of_mass;
+    return shares;
+  }
+  const SpreadMass rest(*rod, quadrature, over_, x);
+  for (std::size_t k = 0; k < nodes; ++k) {
+    shares.of_mass.push_back(rest.masses[k] / masses[k]);
+    shares.of_inertia.push_back(inertias[k] > 0 ? rest.inertias[k] / inertias[k] : 0);
+  }
+  return shares;
 }
 
 Eigen::MatrixXd RodTable::strains_between(double from, double to) const {

@@ -17,6 +17,11 @@ namespace withy {
 /// product of two, which has an angle for a factor. Products of two strains' integrals are integrated over the panel to
 /// rounding, of four, k = 9.5, to (ke/32)³² ≈ 1e-3,
 /// with angles to the fourth power for amplitude.
+///
+/// Where the rows of a mass table would make more panels, panels go over them and span half as much: a node's mass is
+/// then ∫ μ ℓ over the panel, ℓ the polynomial of degree 15 that is one there and zero at its other nodes. A product of
+/// two functions, k = 2.4, is so integrated as a strain is interpolated. Masses that change abruptly could become
+/// negative so: then panels end at the rows.
 struct RodTable {
   static constexpr Eigen::Index order = 16;
   static constexpr Eigen::Index turn_order = 8;
@@ -28,8 +33,20 @@ struct RodTable {
   const Rod* rod;
   PanelQuadrature quadrature;
   std::vector<RodSection> sections;      ///< at the nodes
+  std::vector<double> masses, inertias;  ///< of the nodes [kg], about their axis [kg m²]
   PanelQuadrature turn;                  ///< on [0, 1], for the rotation between two nodes
   std::vector<Eigen::MatrixXd> to_node;  ///< strains_between the node before, or the root, and each node
+
+  /// Of the nodes' masses and inertias the shares that are beyond x in [0, length].
+  struct Shares {
+    std::vector<double> of_mass, of_inertia;
+  };
+  [[nodiscard]] Shares beyond(double x) const;
+
+ private:
+  void add_sections();
+
+  std::vector<double> over_;  ///< edges of panels that go over kinks of the mass; empty: none does
 };
 
 }  // namespace withy

@@ -69,10 +69,7 @@ void Plan::add_cut(const SectionPlace& place) {
   beyond.particles = given->particles;
   beyond.sections = given->sections;
   if (body.rod != nullptr) {
-    const RodTable table(*node.body->rod());
-    const Eigen::RowVectorXd before = table.quadrature.weights_to(place.x);
-    for (std::size_t k = 0; k < table.quadrature.weights().size(); ++k)
-      cut.rod_share.push_back(1 - before[static_cast<Eigen::Index>(k)] / table.quadrature.weights()[k]);
+    cut.rod_shares = RodTable(*node.body->rod()).beyond(place.x);
   } else if (body.modes > 0) {
     cut.points = points_of(beyond, body.order);
     for (const Section& s : beyond.sections) cut.rotary.push_back({s.inertia, {s.at, true}});

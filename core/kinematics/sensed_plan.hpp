@@ -76,7 +76,7 @@ struct CutPlan {
   RigidInertia rigid;               ///< of a rigid body
   std::vector<PointFields> points;  ///< mass of a flexible one
   std::vector<RotarySection> rotary;
-  std::vector<double> rod_share;    ///< of a rod: the share of each node's mass
+  RodTable::Shares rod_shares;      ///< of a rod: the part of each node
   std::vector<std::size_t> hinges;  ///< that hang on the part
   std::vector<double> frames;       ///< of the body: the share that the part has of what acts there
   /// Where loads on distributed mass act on the part, of a body that is no rod: their frames are the body's from

@@ -105,10 +105,14 @@ void each_rod_node(Pass<S>& pass, const BodyPlan& body, Of&& of) {
   }
 }
 
-/// The share of a rod's node that belongs to a part.
-inline double share_of(const BodyPlan&, int, std::size_t) { return 1; }
-inline double share_of(const CutPlan& cut, int pack, std::size_t lane) {
-  return cut.rod_share[lanes * static_cast<std::size_t>(pack) + lane];
+/// The shares of a rod's node that belong to a part.
+struct NodeShare {
+  double mass = 1, inertia = 1;
+};
+inline NodeShare share_of(const BodyPlan&, int, std::size_t) { return {}; }
+inline NodeShare share_of(const CutPlan& cut, int pack, std::size_t lane) {
+  const std::size_t k = lanes * static_cast<std::size_t>(pack) + lane;
+  return {cut.rod_shares.of_mass[k], cut.rod_shares.of_inertia[k]};
 }
 
 template <class S, class Mass>
@@ -118,7 +122,7 @@ MassMoment<S> mass_moment(Pass<S>& pass, const BodyPlan& body, const Mass& part)
   if constexpr (!std::is_same_v<S, Second>) {
     if (body.rod != nullptr) {
       each_rod_node(pass, body, [&](double c, const V3<S>& r, const V3<S>&, int k, std::size_t lane) {
-        const double share = share_of(part, k, lane);
+        const double share = share_of(part, k, lane).mass;
         m.mass += c * c * share;
         m.moment += r * S(c * share);
       });
@@ -191,10 +195,11 @@ MomentumOf<S> own_momentum(Pass<S>& pass, std::size_t index, const BodyPlan& bod
   if constexpr (std::is_same_v<S, First>) {
     if (body.rod != nullptr) {
       each_rod_node(pass, body, [&](double c, const V3<S>& r, const V3<S>& v, int k, std::size_t lane) {
-        const S share(share_of(part, k, lane));
+        const NodeShare share = share_of(part, k, lane);
+        const S of_mass(share.mass), of_inertia(share.inertia);
         const MomentumOf<S> own = of_point(c, r, v, V), turning = rod_turning(pass, body, k, lane, V);
-        sum.h += TwistOf<S>{V3<S>(own.h.w + turning.h.w) * share, own.h.v * share};
-        sum.along += (own.along + turning.along) * share;
+        sum.h += TwistOf<S>{own.h.w * of_mass + turning.h.w * of_inertia, own.h.v * of_mass};
+        sum.along += own.along * of_mass + turning.along * of_inertia;
       });
       return sum;
     }

@@ -30,9 +30,11 @@ class Rod {
   [[nodiscard]] virtual double length() const = 0;  ///< [m]
   /// Greatest wave number [1/m] of the strains: the quadrature is chosen by it.
   [[nodiscard]] virtual double wave_number() const = 0;
-  /// Where sections change without being smooth, as at the rows of a table, between 0 and the length, increasing: the
-  /// quadrature has its panels between them.
+  /// Where sections change without being smooth, between 0 and the length, increasing: the quadrature has its panels
+  /// between them.
   [[nodiscard]] virtual std::vector<double> kinks() const { return {}; }
+  /// The same where mass and inertia per length alone do, as at the rows of a table: panels may go over them.
+  [[nodiscard]] virtual std::vector<double> mass_kinks() const { return {}; }
   /// The section at x in [0, length].
   [[nodiscard]] virtual RodSection section(double x) const = 0;
 };

@@ -173,11 +173,9 @@ class ReferenceTree {
       if (rods_[b]) {
         const RodTable& rod = *terms_[b].rod;
         for (std::size_t k = 0; k < rod.sections.size(); ++k) {
-          const double w = rod.quadrature.weights()[k];
           const WorldMotion<S> A = outward<S>(bodies_[b], rods_[b]->at_node(k), first_mode_[b]);
-          particle(w * rod.sections[k].mass_per_length, A);
-          section_of(Matrix3(w * rod.sections[k].inertia_per_length * Vector3::UnitX() * Vector3::UnitX().transpose()),
-                     A);
+          particle(rod.masses[k], A);
+          section_of(Matrix3(rod.inertias[k] * Vector3::UnitX() * Vector3::UnitX().transpose()), A);
         }
         return;
       }

@@ -262,13 +262,11 @@ typename Recursion<S>::Load Recursion<S>::own_load(std::size_t b) const {
         return rods_[b]->at_node(k);
       };
       for (std::size_t k = 0; k < state.rod->sections.size(); ++k) {
-        const double weight = state.rod->quadrature.weights()[k];
-        const RodSection& s = state.rod->sections[k];
+        const double inertia = state.rod->inertias[k];
         const PointMotionOf<S> m = node(k);
-        add_particle(load, B, m, weight * s.mass_per_length, state.q_ddot);
-        if (s.inertia_per_length == 0) continue;
-        add_section(load, B, m, weight * s.inertia_per_length * Vector3::UnitX() * Vector3::UnitX().transpose(),
-                    state.q_ddot);
+        add_particle(load, B, m, state.rod->masses[k], state.q_ddot);
+        if (inertia == 0) continue;
+        add_section(load, B, m, inertia * Vector3::UnitX() * Vector3::UnitX().transpose(), state.q_ddot);
       }
       return load;
     }

@@ -194,5 +194,92 @@ TEST(Statics, end_force_bends_a_cantilever_as_the_elastica) {
   EXPECT_NEAR(r.y(), 0.8106090, 1e-4);
 }
 
+/// Two planes and twist, 61.5 m long, masses and inertias in many rows.
+std::unique_ptr<Body> blade_with(const std::vector<std::pair<double, double>>& mass) {
+  Registry registry;
+  enroll_static_plugins(registry);
+  std::vector<Value> masses, inertias;
+  for (const auto& [x, m] : mass) {
+    masses.push_back(Value::list({Value(x), Value(m)}));
+    inertias.push_back(Value::list({Value(x), Value(0.02 * m * (2 + std::cos(x)))}));
+  }
+  return make_plugin<Body>(registry, "beam",
+                           {{"length", Value(61.5)},
+                            {"mass_per_length", Value::list(std::move(masses))},
+                            {"bending_y", strain(4e9, 3)},
+                            {"bending_z", strain(1e9, 3)},
+                            {"torsion", Value::map({{"stiffness", Value(1e9)},
+                                                    {"modes", Value(2.0)},
+                                                    {"family", Value(std::string("orthogonal-polynomials"))},
+                                                    {"inertia", Value::list(std::move(inertias))}})}});
+}
+
+/// ∫ 1, x, Φᵀ Φ, Ψᵀ Ψ of what is beyond x, over mass and over inertia, one after the other.
+Eigen::VectorXd integrals(const std::vector<Particle>& particles, const std::vector<withy::Section>& sections) {
+  const Eigen::Index n = particles.front().at.phi.cols();
+  double mass = 0, moment = 0, inertia = 0;
+  Eigen::MatrixXd translation = Eigen::MatrixXd::Zero(n, n), rotation = translation;
+  for (const Particle& p : particles) {
+    mass += p.mass, moment += p.mass * p.at.X.x();
+    translation += p.mass * p.at.phi.transpose() * p.at.phi;
+  }
+  for (const withy::Section& s : sections) {
+    inertia += s.inertia(0, 0);
+    rotation += s.inertia(0, 0) * s.at.psi.row(0).transpose() * s.at.psi.row(0);
+  }
+  Eigen::VectorXd all(3 + 2 * n * n);
+  all << mass, moment, inertia, translation.reshaped(), rotation.reshaped();
+  return all;
+}
+
+/// The same of a rod's nodes, with these shares of them.
+Eigen::VectorXd integrals(const Body& body, const RodTable& table, const RodTable::Shares& shares) {
+  std::vector<Particle> particles;
+  std::vector<withy::Section> sections;
+  for (std::size_t k = 0; k < table.masses.size(); ++k) {
+    const PointExpansion at = *body.station(table.quadrature.nodes()[k]);
+    particles.push_back({table.masses[k] * shares.of_mass[k], at});
+    const double inertia = table.inertias[k] * shares.of_inertia[k];
+    sections.push_back({Matrix3(Vector3(inertia, 0, 0).asDiagonal()), at});
+  }
+  return integrals(particles, sections);
+}
+
+/// Masses of a table that changes gently are integrated into the nodes of fewer panels than it has rows; where they
+/// change abruptly, and a node's mass would be negative, panels end at the rows. Either way the integrals are those of
+/// the table, of the whole beam and of what is beyond a section: to 1e-10 of the greatest, as the nodes interpolate.
+TEST(RodMass, of_a_table_with_many_rows_is_that_of_the_table_however_few_the_panels) {
+  std::vector<std::pair<double, double>> gentle, abrupt;
+  for (int i = 0; i <= 24; ++i) {
+    const double x = 61.5 * i / 24;
+    gentle.emplace_back(x, 700 * std::exp(-x / 20) * (1 + 0.1 * std::sin(5.0 * i)));
+    abrupt.emplace_back(x, 1);
+    // A lump of 500 kg within 0.2 m.
+    if (i == 11) abrupt.insert(abrupt.end(), {{28.9, 1.0}, {29.0, 5000.0}, {29.1, 1.0}});
+  }
+  for (const auto& [rows, over] : {std::pair{&gentle, true}, std::pair{&abrupt, false}}) {
+    const auto body = blade_with(*rows);
+    const RodTable table(*body->rod());
+    if (over) {
+      EXPECT_LT(table.quadrature.panels(), 10);
+    } else {
+      EXPECT_EQ(table.quadrature.panels(), 27);
+    }
+    for (const double m : table.masses) EXPECT_GT(m, 0);
+    for (const double x : {0.0, 0.7, 23.1, 28.97, 30.75, 60.9}) {
+      const BodyCut cut = *body->cut(x);
+      const Eigen::VectorXd expected = integrals(cut.particles, cut.sections);
+      const Eigen::VectorXd found = integrals(*body, table, table.beyond(x));
+      const Eigen::Index n = body->shape().modes(), square = n * n;
+      for (const auto& [first, count] :
+           {std::pair<Eigen::Index, Eigen::Index>{0, 1}, {1, 1}, {2, 1}, {3, square}, {3 + square, square}}) {
+        const double size = expected.segment(first, count).cwiseAbs().maxCoeff();
+        EXPECT_LT((found - expected).segment(first, count).cwiseAbs().maxCoeff(), 1e-10 * size)
+            << "beyond " << x << " m, integrals from " << first;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace withy::test

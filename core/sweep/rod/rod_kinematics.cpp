@@ -61,9 +61,8 @@ RodIntegrals::RodIntegrals(const RodTable& table, const std::vector<double>& alo
   scale = std::move(lengths);
   std::vector<double> root(nodes);
   for (std::size_t k = 0; k < nodes; ++k) {
-    const double m = quadrature.weights()[k] * table.sections[k].mass_per_length;
-    root[k] = std::sqrt(m);
-    mass += m;
+    root[k] = std::sqrt(table.masses[k]);
+    mass += table.masses[k];
   }
   root_mass = packed(root.data(), nodes);
   for (const double x : station_x) stations.push_back(packed(quadrature.weights_to(x).data(), nodes));
@@ -183,7 +182,6 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
   const std::vector<double>& nodes = table.quadrature.nodes();
   std::vector<Pack> places(static_cast<std::size_t>(integrals.packs) * 3);
   std::vector<Pack> linear(static_cast<std::size_t>(integrals.packs) * n * 12);
-  std::vector<double> section_inertia(nodes.size());
   bool rotary = false;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const RodSection& section = table.sections[k];
@@ -199,12 +197,11 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
       for (std::size_t c = 0; c < 12; ++c)
         set_lane(linear[((k / lanes) * n + i) * 12 + c], k % lanes, fields.data()[c]);
     }
-    section_inertia[k] = table.quadrature.weights()[k] * section.inertia_per_length;
-    rotary = rotary || section_inertia[k] > 0;
+    rotary = rotary || table.inertias[k] > 0;
   }
   X = std::move(places);
   first = std::move(linear);
-  if (rotary) inertia = packed(section_inertia.data(), nodes.size());
+  if (rotary) inertia = packed(table.inertias.data(), nodes.size());
   for (const double at : x) stations.push_back(rod_station<Spatial>(frame, at, spec.rod->section(at)));
 
   first_station = nodes.size();
