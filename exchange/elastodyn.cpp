@@ -115,7 +115,8 @@ class ElastoDynReader {
       beam_.mass_per_length.push_back((*numbers)[mass]);
       beam_.along_y.push_back((*numbers)[y]);
       beam_.along_z.push_back((*numbers)[z]);
-      if (!beam_.tower) beam_.twist.push_back((*numbers)[twist] * std::numbers::pi / 180);
+      // Towards feather: the trailing edge turns downwind, from z to y.
+      if (!beam_.tower) beam_.twist.push_back((0.0 - (*numbers)[twist]) * std::numbers::pi / 180);  // no −0
       check_row(i, static_cast<int>(line) + 1);
     }
     if (beam_.fraction.front() != 0 || std::abs(beam_.fraction.back() - 1) > 1e-9)
@@ -160,12 +161,6 @@ class ElastoDynReader {
       if (key.find("StTunr") != std::string::npos && keyed.value != 1)
         beam_.remarks.push_back(
             fmt::format("{} = {} on line {} is left out: it tunes a single mode.", key, keyed.value, keyed.line));
-    const auto [least, most] = std::minmax_element(beam_.twist.begin(), beam_.twist.end());
-    if (!beam_.twist.empty() && *most != *least)
-      beam_.remarks.push_back(
-          fmt::format("Structural twist from {:.4g} to {:.4g} deg is left out: the sections bend flapwise and edgewise "
-                      "throughout, as at zero twist.",
-                      beam_.twist.front() * 180 / std::numbers::pi, beam_.twist.back() * 180 / std::numbers::pi));
   }
 
   Diagnostics& diagnostics_;
@@ -209,6 +204,8 @@ std::string scene_text(const ElastoDynBeam& beam, double length, double tip_mass
   out += fmt::format(
       "time: {{end: 10, output: 0.01}}\n\nbodies:\n  {}:\n    type: beam\n    length: {}\n    mass_per_length:{}", name,
       length, rows_text(beam, beam.mass_per_length, length, "      "));
+  if (std::any_of(beam.twist.begin(), beam.twist.end(), [](double angle) { return angle != 0; }))
+    out += "    twist:   # rad" + rows_text(beam, beam.twist, length, "      ");
   out += fmt::format("    damping_ratio: {}   # of the first mode {}; {}: {}\n", beam.damping_y,
                      beam.tower ? "fore-aft" : "flapwise", beam.tower ? "side to side" : "edgewise", beam.damping_z);
   for (const bool y : {true, false})

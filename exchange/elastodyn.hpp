@@ -18,7 +18,7 @@ struct ElastoDynBeam {
   std::vector<double> fraction;          ///< of the length, from 0 to 1
   std::vector<double> mass_per_length;   ///< [kg/m]
   std::vector<double> along_y, along_z;  ///< bending stiffness of deflections along y and z [N m²]
-  std::vector<double> twist;             ///< structural twist [rad]; empty for a tower
+  std::vector<double> twist;             ///< of the sections about x [rad], less than zero towards feather; tower: none
   double damping_y = 0, damping_z = 0;   ///< of critical, in the first mode of each direction
   std::vector<std::string> remarks;      ///< what has no place in a beam, a sentence each
 };
