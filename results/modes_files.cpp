@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "withy/results/blade_branches.hpp"
 #include "withy/results/json_text.hpp"
 #include "withy/results/output_file.hpp"
 #include "withy/results/report/modes_page.hpp"
@@ -198,10 +198,7 @@ Json modes_study_json(const std::string& scene, const study::Sweep& sweep, const
 }
 
 bool sees_blades(const std::vector<study::ModesOf>& runs) {
-  return std::any_of(runs.begin(), runs.end(), [](const study::ModesOf& run) {
-    return std::any_of(run.points.begin(), run.points.end(),
-                       [](const study::ModesAt& at) { return at.turn && at.turn->blades; });
-  });
+  return std::any_of(runs.begin(), runs.end(), [](const study::ModesOf& run) { return blades_seen(run) > 0; });
 }
 
 std::string blades_csv(const std::vector<study::ModesOf>& runs, const std::string& label) {
@@ -229,23 +226,16 @@ std::string blades_picture(const std::vector<study::ModesOf>& runs, const std::s
   std::size_t blades = 0;
   double fastest = 0;
   for (const study::ModesOf& run : runs) {
-    std::map<std::string, Curve> curves;  // of the modes of one name the n-th at each value
-    for (const study::ModesAt& at : run.points) {
-      fastest = std::max(fastest, at.value);
-      if (!at.turn || !at.turn->blades) continue;
-      blades = at.turn->blades->blades.size();
-      std::map<std::string, int> met;
-      std::size_t shown = 0;
-      for (const study::NamedMode& m : at.turn->blades->modes) {
-        if (!(m.exponent.imag() > 0) || shown++ >= count) continue;
-        const int nth = ++met[m.dominated_by];
-        Curve& curve = curves[m.dominated_by + (nth > 1 ? fmt::format(" ({})", nth) : "")];
-        curve.x.push_back(at.value);
-        curve.y.push_back(m.exponent.imag());
+    for (const study::ModesAt& at : run.points) fastest = std::max(fastest, at.value);
+    blades = std::max(blades, blades_seen(run));
+    for (const auto& [name, seen] : blade_branches(run, count)) {
+      Curve curve;
+      for (std::size_t k = 0; k < seen.size(); ++k) {
+        if (seen[k] == nullptr) continue;
+        curve.x.push_back(run.points[k].value);
+        curve.y.push_back(seen[k]->exponent.imag());
         frequencies.y_range.second = std::max(frequencies.y_range.second, curve.y.back());
       }
-    }
-    for (auto& [name, curve] : curves) {
       curve.pen = legend.size();
       curve.points = curve.x.size() == 1;
       legend.push_back(runs.size() > 1 ? run.formulation + ", " + name : name);

@@ -41,14 +41,19 @@ Json roots_json(const LinearSystem& system, const Eigen::VectorXcd& roots) {
   return list;
 }
 
+Json phase_json(const PhaseMargin& p) {
+  return {{"hertz", in_hertz(p.omega)}, {"degrees", p.angle * 180 / std::numbers::pi}, {"delay", p.delay}};
+}
+
 Json margins_json(const Margins& m) {
   Json j{{"stable", m.stable}, {"growth", finite_json(m.growth)}, {"gains", Json::array()}, {"phases", Json::array()}};
   for (const GainMargin& g : m.gains)
     j["gains"].push_back(
         {{"hertz", finite_json(in_hertz(g.omega))}, {"factor", g.factor}, {"decibels", 20 * std::log10(g.factor)}});
-  for (const PhaseMargin& p : m.phases)
-    j["phases"].push_back(
-        {{"hertz", in_hertz(p.omega)}, {"degrees", p.angle * 180 / std::numbers::pi}, {"delay", p.delay}});
+  for (const PhaseMargin& p : m.phases) j["phases"].push_back(phase_json(p));
+  j["lag"] = m.lag() != nullptr ? phase_json(*m.lag()) : Json();
+  j["lead"] = m.lead() != nullptr ? phase_json(*m.lead()) : Json();
+  j["delay"] = m.delay() != nullptr ? phase_json(*m.delay()) : Json();
   return j;
 }
 

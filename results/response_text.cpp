@@ -24,24 +24,35 @@ std::string gain_words(const GainMargin& g) {
                      20 * std::log10(g.factor), hertz_text(g.omega));
 }
 
+std::string angle_words(double angle) { return fmt::format("{:.1f}°", std::abs(angle) * 180 / std::numbers::pi); }
+
+/// Of a stable loop: the phase either way, and the delay, which need not be reached at the same frequency.
+std::string phase_words(const Margins& m, bool sampled) {
+  std::string text;
+  if (m.lag() != nullptr)
+    text = fmt::format(", the phase may lag by {} at {}", angle_words(m.lag()->angle), hertz_text(m.lag()->omega));
+  if (m.lead() != nullptr)
+    text += fmt::format("{} lead by {} at {}", m.lag() != nullptr ? " or" : ", the phase may",
+                        angle_words(m.lead()->angle), hertz_text(m.lead()->omega));
+  if (m.delay() != nullptr)
+    text +=
+        fmt::format(", the delay may grow by {:.3g} ms at {}", 1e3 * m.delay()->delay, hertz_text(m.delay()->omega));
+  if (!sampled && m.last >= 1)
+    text += fmt::format(", no delay at all: the loop's gain at infinite frequency is {:.4g}, not below 1", m.last);
+  return text;
+}
+
 /// "stable: …", or what grows.
-std::string loop_words(const Margins& m) {
+std::string loop_words(const Margins& m, bool sampled) {
   if (!m.stable)
     return std::isfinite(m.growth) && m.growth > 0 ? fmt::format("unstable, growing at {:.4g}/s", m.growth)
                                                    : "on the edge of stability";
-  std::string text = "stable";
-  const char* join = ": ";
-  const auto add = [&](const std::string& words) {
-    text += join + words;
-    join = ", ";
-  };
-  if (m.upper() != nullptr) add(gain_words(*m.upper()));
-  if (m.lower() != nullptr) add(gain_words(*m.lower()));
-  if (m.phase() != nullptr)
-    add(fmt::format("phase margin {:.1f}° ({:.3g} ms of delay) at {}", m.phase()->angle * 180 / std::numbers::pi,
-                    1e3 * m.phase()->delay, hertz_text(m.phase()->omega)));
-  if (m.upper() == nullptr && m.lower() == nullptr) add("any gain from this one on");
-  return text;
+  std::string text;
+  if (m.upper() != nullptr) text += ", " + gain_words(*m.upper());
+  if (m.lower() != nullptr) text += ", " + gain_words(*m.lower());
+  text += phase_words(m, sampled);
+  const bool any = m.upper() == nullptr && m.lower() == nullptr;
+  return (any ? "stable at any gain" : "stable") + (text.empty() ? "" : ": " + text.substr(2));
 }
 
 std::string unit_of(const study::Response& r) {
@@ -111,8 +122,8 @@ std::string margin_rows(const Margins& m) {
   for (const GainMargin& g : m.gains)
     text += fmt::format("  gain {:.6g} ({:+.2f} dB) at {}\n", g.factor, 20 * std::log10(g.factor), hertz_text(g.omega));
   for (const PhaseMargin& p : m.phases)
-    text += fmt::format("  phase {:.2f}° (delay {:.4g} s) at {}\n", p.angle * 180 / std::numbers::pi, p.delay,
-                        hertz_text(p.omega));
+    text += fmt::format("  {} {:.2f}° (delay {:.4g} s) at {}\n", p.angle < 0 ? "lead" : "lag",
+                        std::abs(p.angle) * 180 / std::numbers::pi, p.delay, hertz_text(p.omega));
   return text;
 }
 
@@ -123,7 +134,7 @@ std::string response_text(const study::Configuration& c, const study::Response& 
   std::string text;
   if (r.opened)
     text = fmt::format("{} opened: {}\n", r.model.inputs[0].name,
-                       r.margins ? loop_words(*r.margins) : "the closed loop is not well posed");
+                       r.margins ? loop_words(*r.margins, s.sampled()) : "the closed loop is not well posed");
   else
     text = fmt::format("{} to {}: {}, {}\n", r.model.inputs[0].name, r.model.outputs[0].name, peak_words(r),
                        static_words(r));
@@ -140,7 +151,7 @@ std::string response_text(const study::Configuration& c, const study::Response& 
                         hidden == 1 ? "one pole" : fmt::format("{} poles", hidden));
   if (r.margins) {
     text += fmt::format("\nLoop closed by {} = -k {}, at k = 1: {}\n", r.model.inputs[0].name,
-                        r.opened ? "answer" : r.model.outputs[0].name, loop_words(*r.margins));
+                        r.opened ? "answer" : r.model.outputs[0].name, loop_words(*r.margins, s.sampled()));
     text += margin_rows(*r.margins);
   }
   if (r.reduction)

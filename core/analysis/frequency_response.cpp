@@ -85,17 +85,16 @@ Eigen::VectorXcd without(const LinearSystem& system, const Eigen::VectorXcd& val
   return Eigen::Map<const Eigen::VectorXcd>(left.data(), static_cast<Eigen::Index>(left.size()));
 }
 
-/// The gains at the ends of the frequencies, where G is real.
-void add_gains_at_ends(const TransferFunction& G, std::optional<double> static_gain, Margins& margins) {
+/// The gains at the ends of the frequencies, where G is real, and the size of the last.
+void look_at_ends(const TransferFunction& G, std::optional<double> static_gain, Margins& margins) {
   const auto add = [&](double omega, Complex value) {
     if (finite(value) && value.real() < 0) margins.gains.push_back({omega, -1 / value.real()});
   };
   const LinearSystem& s = G.system();
   if (static_gain) add(0, *static_gain);
-  if (s.sampled())
-    add(pi / s.period, G(-1.0)(0, 0));
-  else
-    add(std::numeric_limits<double>::infinity(), s.D(0, 0));
+  const Complex last = s.sampled() ? G(-1.0)(0, 0) : Complex(s.D(0, 0));
+  add(s.sampled() ? pi / s.period : std::numeric_limits<double>::infinity(), last);
+  margins.last = std::abs(last);
 }
 
 /// What is left of an angle in (−π, π].
@@ -182,7 +181,7 @@ LinearSystem closed_loop(const LinearSystem& s, double k) {
 Margins margins(const TransferFunction& G, const std::vector<ResponseAt>& response, const Eigen::VectorXcd& hidden,
                 std::optional<double> static_gain) {
   Margins m;
-  add_gains_at_ends(G, static_gain, m);
+  look_at_ends(G, static_gain, m);
   const auto above = [&](double omega) { return G.at_frequency(omega).imag() > 0; };
   const auto beyond_one = [&](double omega) { return std::abs(G.at_frequency(omega)) > 1; };
   const auto rounding = [](Complex x) { return std::abs(x.imag()) <= 1e-11 * std::abs(x); };
@@ -228,10 +227,23 @@ const GainMargin* Margins::lower() const {
       [](const GainMargin& a, const GainMargin& b) { return a.factor > b.factor; });
 }
 
-const PhaseMargin* Margins::phase() const {
+// From a stable loop on, the first pole that reaches the edge is the one that makes it unstable, in each direction.
+const PhaseMargin* Margins::lag() const {
   return best(
-      phases, [](const PhaseMargin&) { return true; },
-      [](const PhaseMargin& a, const PhaseMargin& b) { return std::abs(a.angle) < std::abs(b.angle); });
+      phases, [this](const PhaseMargin& p) { return stable && p.angle > 0; },
+      [](const PhaseMargin& a, const PhaseMargin& b) { return a.angle < b.angle; });
+}
+
+const PhaseMargin* Margins::lead() const {
+  return best(
+      phases, [this](const PhaseMargin& p) { return stable && p.angle < 0; },
+      [](const PhaseMargin& a, const PhaseMargin& b) { return a.angle > b.angle; });
+}
+
+const PhaseMargin* Margins::delay() const {
+  return best(
+      phases, [this](const PhaseMargin&) { return stable && last < 1; },
+      [](const PhaseMargin& a, const PhaseMargin& b) { return a.delay < b.delay; });
 }
 
 }  // namespace withy

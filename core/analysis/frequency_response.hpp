@@ -44,26 +44,31 @@ struct Peak {
 std::vector<Peak> peaks(const TransferFunction& G, const std::vector<ResponseAt>& response,
                         const Eigen::VectorXcd& poles);
 
-/// A gain k, or a lag, at which the loop v = −k y of a transfer function y = G v is on the edge of stability.
+/// A gain k, or a phase, at which the loop v = −k y of a transfer function y = G v has a pole on the edge of stability.
 struct GainMargin {
   double omega = 0;   ///< [rad/s] where G is real and negative; infinite: at v's own frequencies without bound
   double factor = 0;  ///< k > 0; above 1 the gain may grow by it, below 1 it may fall to it
 };
 struct PhaseMargin {
   double omega = 0;  ///< [rad/s] where |G| is 1
-  double angle = 0;  ///< [rad] lag that may be added, −π to π; negative where lead is wanted
-  double delay = 0;  ///< [s] of dead time with that lag, without negative ones: angle mod 2π over ω
+  double angle = 0;  ///< [rad] lag that brings the pole there, −π to π; negative: lead
+  double delay = 0;  ///< [s] dead time that brings it there: angle mod 2π over ω
 };
 struct Margins {
   std::vector<GainMargin> gains;    ///< in the order of frequency
   std::vector<PhaseMargin> phases;  ///< in the order of frequency
   bool stable = false;              ///< whether all poles of the loop closed with k = 1 decay
   double growth = 0;                ///< [1/s] of its pole that decays least
-  /// Of `gains` and `phases` the nearest to what there is, null where there is none: the least of the factors above 1,
-  /// the greatest below 1, the least |angle|.
+  double last = 0;                  ///< |G| at the last frequency: infinity, or half the rate of a sampled system
+  /// The nearest of `gains` to k = 1: the least of the factors above, the greatest below; null where there is none.
   [[nodiscard]] const GainMargin* upper() const;
   [[nodiscard]] const GainMargin* lower() const;
-  [[nodiscard]] const PhaseMargin* phase() const;
+  /// Of a stable loop what makes it unstable: the least lag and the least lead below 180° that do, and the least dead
+  /// time, at a frequency of its own. Null where none does, and of a loop that is not stable. Null too is the dead time
+  /// where `last` is not below 1: in continuous time any is too much then.
+  [[nodiscard]] const PhaseMargin* lag() const;
+  [[nodiscard]] const PhaseMargin* lead() const;
+  [[nodiscard]] const PhaseMargin* delay() const;
 };
 /// From the crossings of G with the negative real axis and the unit circle between the values of the response, found by
 /// bisection, and from the ends of the frequencies: 0, and half the rate or infinity.

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 
+#include "withy/results/blade_branches.hpp"
 #include "withy/scene/units.hpp"
 
 namespace withy {
@@ -18,6 +19,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_shares = 8;
 constexpr std::size_t least_branches = 10;
+/// Growth of this part of |λ| is that of rounding.
+constexpr double rounding = 1e-9;
 
 /// A shape in which equal numbers are equal kinetic energies.
 Eigen::VectorXcd weighted(const study::ModesAt& at, const Mode& mode) {
@@ -70,6 +73,30 @@ Json branch_json(const study::ModesOf& run, std::size_t branch) {
   return {{"at", std::move(values)}};
 }
 
+/// Equal blades seen from where the rotor does not turn; null where none were.
+Json blades_json(const study::ModesOf& run, std::size_t count) {
+  Json branches = Json::array();
+  for (const BladeBranch& branch : blade_branches(run, std::max(count, least_branches))) {
+    Json values = Json::array();
+    for (std::size_t k = 0; k < branch.at.size(); ++k) {
+      if (branch.at[k] == nullptr) {
+        values.push_back(nullptr);
+        continue;
+      }
+      const study::NamedMode& m = *branch.at[k];
+      values.push_back({{"value", run.points[k].value},
+                        {"hertz", m.exponent.imag() / (2 * std::numbers::pi)},
+                        {"damping_ratio", -m.exponent.real() / std::abs(m.exponent)},
+                        {"growth", m.exponent.real()},
+                        {"unstable", m.exponent.real() > rounding * std::abs(m.exponent)},
+                        {"dominated_by", branch.name}});
+    }
+    branches.push_back({{"at", std::move(values)}});
+  }
+  const std::size_t blades = blades_seen(run);
+  return blades == 0 ? Json() : Json{{"count", blades}, {"branches", std::move(branches)}};
+}
+
 /// Branches are followed from the first value; those of rigid motion alone are left out.
 Json run_json(const study::ModesOf& run, std::size_t count) {
   Json branches = Json::array();
@@ -80,24 +107,35 @@ Json run_json(const study::ModesOf& run, std::size_t count) {
                                    [b](const study::ModesAt& at) { return b < at.modes.size() && !at.modes[b].rigid; });
     if (moves) branches.push_back(branch_json(run, b));
   }
-  return {{"formulation", run.formulation}, {"branches", std::move(branches)}};
+  return {{"formulation", run.formulation}, {"branches", std::move(branches)}, {"blades", blades_json(run, count)}};
 }
 
-/// What must be known to read the picture, each once.
-Json remarks_json(const std::vector<study::ModesOf>& runs) {
+/// Each text once, without empty ones.
+Json once(const std::vector<std::string>& texts) {
   std::set<std::string> said;
-  Json remarks = Json::array();
-  const auto say = [&](const std::string& text) {
-    if (!text.empty() && said.insert(text).second) remarks.push_back(text);
-  };
+  Json list = Json::array();
+  for (const std::string& text : texts)
+    if (!text.empty() && said.insert(text).second) list.push_back(text);
+  return list;
+}
+
+/// What must be known to read the picture.
+Json remarks_json(const std::vector<study::ModesOf>& runs) {
+  std::vector<std::string> texts;
+  for (const study::ModesOf& run : runs)
+    for (const study::ModesAt& at : run.points)
+      if (!at.problem.empty()) texts.push_back(fmt::format("{}: {}", run.formulation, at.problem));
+  return once(texts);
+}
+
+/// That modes are those of one angle of what turns, and what that does not tell.
+Json frozen_json(const std::vector<study::ModesOf>& runs) {
+  std::vector<std::string> texts;
   for (const study::ModesOf& run : runs) {
-    for (const study::ModesAt& at : run.points) {
-      if (!at.problem.empty()) say(fmt::format("{}: {}", run.formulation, at.problem));
-    }
     const auto frozen = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return at.frozen(); });
-    if (frozen != run.points.end()) say(study::turn_text(*frozen->turn));
+    if (frozen != run.points.end()) texts.push_back(study::turn_text(*frozen->turn));
   }
-  return remarks;
+  return once(texts);
 }
 
 }  // namespace
@@ -116,8 +154,13 @@ Json modes_page(const std::vector<study::ModesOf>& runs, const study::Sweep& swe
     rate = 1.0;
     if (!sweep.unit.empty()) rate = read_any_quantity("1 " + sweep.unit).value.value_or(0);
   }
-  return {{"points", runs.front().points.size()}, {"label", swept_label(sweep)},   {"rate", std::move(rate)},
-          {"values", std::move(values)},          {"remarks", remarks_json(runs)}, {"runs", std::move(all)}};
+  return {{"points", runs.front().points.size()},
+          {"label", swept_label(sweep)},
+          {"rate", std::move(rate)},
+          {"values", std::move(values)},
+          {"remarks", remarks_json(runs)},
+          {"frozen", frozen_json(runs)},
+          {"runs", std::move(all)}};
 }
 
 }  // namespace withy

@@ -116,6 +116,11 @@ TEST(Turning, ASweepOfARotorsRateFromRestLeavesWhatTheTowerSees) {
   ASSERT_EQ(seen.size(), at.size());
   for (std::size_t i = 0; i < at.size(); ++i)
     EXPECT_NEAR(seen.at(std::to_string(i + 1)), at[i].at("exponent")[1].get<double>(), 1e-6);
+  // The page has them too, at each value but that of rest.
+  if (const std::string page = folder.read("campbell/report.html"); !page.empty()) {
+    EXPECT_THAT(page, HasSubstr("\"dominated_by\":\"blade1.bending_z[1] forward\""));
+    EXPECT_THAT(page, HasSubstr("\"blades\":{\"count\":3,\"branches\":[{\"at\":[null,{"));
+  }
   // A turn that is no sweep's beginning is asked for in vain, and a value is named.
   EXPECT_EQ(withy(folder, {"modes", "three.yaml", "--floquet"}).status, 1);
   const Finished idle = withy(folder, {"modes", "three.yaml", "--sweep", "gravity.2=-9:0:2", "--blades", "auto"});

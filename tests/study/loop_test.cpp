@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -38,8 +39,8 @@ TEST(Loop, OfAControllerOnAWheelHasTheTextbooksMargins) {
   // L = (8 + 4 s)/(2 s²): |L| = 1 at ω⁴ = 4 ω² + 16, phase margin atan(ω/2).
   const double omega = std::sqrt(2 + std::sqrt(20.0));
   ASSERT_EQ(r.margins->phases.size(), 1U);
-  EXPECT_NEAR(r.margins->phase()->omega, omega, 1e-9);
-  EXPECT_NEAR(r.margins->phase()->angle, std::atan(omega / 2), 1e-9);
+  EXPECT_NEAR(r.margins->lag()->omega, omega, 1e-9);
+  EXPECT_NEAR(r.margins->lag()->angle, std::atan(omega / 2), 1e-9);
 }
 
 TEST(Loop, OfASampledDamperIsUnstableAtTwiceTheInertiaOverTheDamping) {
@@ -72,10 +73,10 @@ TEST(Loop, OfAChainOfIntegratorsHasItsMarginsWhateverEffortStands) {
   EXPECT_NEAR(r.margins->lower()->omega, std::sqrt(2000. / 630), 1e-8);
   EXPECT_NEAR(r.margins->lower()->factor, 45 * 2000 / (630. * 4500), 1e-9);
   ASSERT_EQ(r.margins->phases.size(), 1U);
-  const std::complex<double> s(0, r.margins->phase()->omega);
+  const std::complex<double> s(0, r.margins->lag()->omega);
   const std::complex<double> L = (630. * s * s + 4500. * s + 2000.) / (45. * s * s * s);
   EXPECT_NEAR(std::abs(L), 1, 1e-8);
-  EXPECT_NEAR(r.margins->phase()->angle, pi + std::arg(L), 1e-8);
+  EXPECT_NEAR(r.margins->lag()->angle, pi + std::arg(L), 1e-8);
 }
 
 TEST(Loop, OfASampledChainOfIntegratorsWithADelayHasItsMargins) {
@@ -97,8 +98,8 @@ TEST(Loop, OfASampledChainOfIntegratorsWithADelayHasItsMargins) {
     EXPECT_NEAR(L(g->omega).imag(), 0, 1e-6 / g->factor);
   }
   ASSERT_EQ(r.margins->phases.size(), 1U);
-  EXPECT_NEAR(std::abs(L(r.margins->phase()->omega)), 1, 1e-6);
-  EXPECT_NEAR(r.margins->phase()->angle, pi + std::arg(L(r.margins->phase()->omega)), 1e-6);
+  EXPECT_NEAR(std::abs(L(r.margins->lag()->omega)), 1, 1e-6);
+  EXPECT_NEAR(r.margins->lag()->angle, pi + std::arg(L(r.margins->lag()->omega)), 1e-6);
 }
 
 TEST(Loop, OfAControllerAtItsLimitIsSaidToBeOpen) {
@@ -109,6 +110,89 @@ TEST(Loop, OfAControllerAtItsLimitIsSaidToBeOpen) {
   } catch (const std::exception& e) {
     EXPECT_NE(std::string(e.what()).find("it is at a limit"), std::string::npos) << e.what();
   }
+}
+
+/// A wheel on a spring whose rate is fed back with the wrong sign of its angle, which the spring outweighs: stable, and
+/// nearer to instability by a lead than by a lag. `command` says where the controller's effort goes.
+std::string lead_is_least(const std::string& command) {
+  return R"(
+bodies: {wheel: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}
+outputs:
+  turn: {type: hinge, hinge: axle}
+  back: {type: expression, value: turn.rate - 0.5 * turn.position}
+loads:
+  spring: {type: hinge-spring, hinge: axle, stiffness: 1, damping: 0.1}
+  control: {type: pid, of: back, proportional: 1, )" +
+         command + "}\n";
+}
+
+/// The fastest growth [1/s] of what oscillates with positive frequency in the loop v = −e^{−i lag} y.
+double growth_with_lag(const LinearSystem& s, double lag) {
+  const std::complex<double> k = std::polar(1.0, -lag);
+  const Eigen::MatrixXcd A = s.A - s.B * s.C * (k / (1.0 + k * s.D(0, 0)));
+  double growth = -std::numeric_limits<double>::infinity();
+  for (const std::complex<double> pole : Eigen::ComplexEigenSolver<Eigen::MatrixXcd>(A, false).eigenvalues())
+    if (pole.imag() > 0) growth = std::max(growth, pole.real());
+  return growth;
+}
+
+TEST(Loop, ThatIsStableNamesTheLagAndTheLeadThatMakeItUnstable) {
+  const Response r = response(at_start(scene_of(lead_is_least("hinge: axle"))), {"control", "", {}, {}, 50, {}});
+  ASSERT_TRUE(r.margins && r.margins->stable && r.margins->lag() && r.margins->lead());
+  const double lag = r.margins->lag()->angle, lead = -r.margins->lead()->angle;
+  EXPECT_GT(lag, lead);
+  EXPECT_GT(lead, 0);
+  for (int i = 0; i < 50; ++i)
+    EXPECT_LT(growth_with_lag(r.model.system, -lead + (lag + lead) * (i + 0.5) / 50), 0) << i;
+  EXPECT_NEAR(growth_with_lag(r.model.system, lag), 0, 1e-9);
+  EXPECT_NEAR(growth_with_lag(r.model.system, -lead), 0, 1e-9);
+  EXPECT_GT(growth_with_lag(r.model.system, lag + 0.01), 1e-4);
+  EXPECT_GT(growth_with_lag(r.model.system, -lead - 0.01), 1e-4);
+}
+
+TEST(Loop, BecomesUnstableAtTheDelayThatItsMarginSays) {
+  const Response r = response(at_start(scene_of(lead_is_least("hinge: axle"))), {"control", "", {}, {}, 50, {}});
+  ASSERT_TRUE(r.margins && r.margins->delay());
+  const double delay = r.margins->delay()->delay;
+  for (const double part : {0.2, 0.5, 0.8, 0.99, 1.01}) {
+    const std::string drive =
+        fmt::format("  late: {{type: delay, of: control, hinge: axle, time: {}, order: 8}}\n", part * delay);
+    const Response late =
+        response(at_start(scene_of(lead_is_least("to: nothing") + drive)), {"late", "", {}, {}, 50, {}});
+    ASSERT_TRUE(late.margins);
+    EXPECT_EQ(late.margins->stable, part < 1) << part << " of " << delay << " s: growth " << late.margins->growth;
+  }
+}
+
+TEST(Loop, MayTakeTheLeastOfTheDelaysAlthoughItsLeastLagHasAGreaterOne) {
+  const Response r =
+      response(at_start(prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/pd-arm.yaml"), plugins())),
+               {"control.shoulder", "", {}, {}, 50, {}});
+  ASSERT_TRUE(r.margins && r.margins->stable && r.margins->lag() && r.margins->delay());
+  for (const PhaseMargin& p : r.margins->phases) EXPECT_LE(r.margins->delay()->delay, p.delay);
+  EXPECT_LT(r.margins->delay()->delay, r.margins->lag()->delay / 100);
+}
+
+TEST(Loop, WhoseGainStaysAboveOneTakesNoDelayAndOneThatIsUnstableHasNoMargin) {
+  const auto margins_of = [](double D, double pole) {
+    LinearSystem s;
+    s.A = Eigen::MatrixXd::Constant(1, 1, pole);
+    s.B = s.C = Eigen::MatrixXd::Constant(1, 1, 3);
+    s.D = Eigen::MatrixXd::Constant(1, 1, D);
+    const TransferFunction G(s);
+    return margins(G, frequency_response(G, 1e-2, 1e3, 50, {}), {}, G(0.0)(0, 0).real());
+  };
+  // 1.5 + 9/(s + 1), and 0.5 + 9/(s + 1): |G| falls to 1.5, and below 1.
+  EXPECT_TRUE(margins_of(1.5, -1).stable);
+  EXPECT_EQ(margins_of(1.5, -1).delay(), nullptr);
+  ASSERT_NE(margins_of(0.5, -1).delay(), nullptr);
+  // 0.5 + 9/(s − 10) closed has the pole at 10 − 9/1.5.
+  const Margins unstable = margins_of(0.5, 10);
+  EXPECT_NEAR(unstable.growth, 4, 1e-12);
+  EXPECT_EQ(unstable.lag(), nullptr);
+  EXPECT_EQ(unstable.lead(), nullptr);
+  EXPECT_EQ(unstable.delay(), nullptr);
 }
 
 /// A wheel of 0.01 kg m² times `scale` behind a controller with an integral, all efforts as small.
@@ -127,10 +211,10 @@ TEST(Loop, OfAControllerIsThatWithoutItsLimitHoweverSmallTheLimitIs) {
   for (const char* sample : {"", ", sample: 0.01"}) {
     for (const double scale : {1.0, 1e-3, 1e-6}) {
       const Response free = of_small_wheel(scale, sample, 0), bounded = of_small_wheel(scale, sample, 1e-3);
-      ASSERT_TRUE(free.margins && bounded.margins && free.margins->phase() && bounded.margins->phase());
+      ASSERT_TRUE(free.margins && bounded.margins && free.margins->lag() && bounded.margins->lag());
       EXPECT_TRUE(bounded.margins->stable) << scale << sample;
-      EXPECT_NEAR(bounded.margins->phase()->omega, free.margins->phase()->omega, 1e-7) << scale << sample;
-      EXPECT_NEAR(bounded.margins->phase()->angle, free.margins->phase()->angle, 1e-7) << scale << sample;
+      EXPECT_NEAR(bounded.margins->lag()->omega, free.margins->lag()->omega, 1e-7) << scale << sample;
+      EXPECT_NEAR(bounded.margins->lag()->angle, free.margins->lag()->angle, 1e-7) << scale << sample;
     }
   }
 }
@@ -140,10 +224,10 @@ TEST(Loop, OfAWheelIsTheSameWhateverItsSize) {
     const Response wheel = of_small_wheel(1, sample, 0);
     for (const double scale : {1e12, 1e-6, 1e-12, 1e-18}) {
       const Response small = of_small_wheel(scale, sample, 0);
-      ASSERT_TRUE(small.margins && small.margins->phase()) << scale << sample;
+      ASSERT_TRUE(small.margins && small.margins->lag()) << scale << sample;
       EXPECT_TRUE(small.margins->stable) << scale << sample;
-      EXPECT_NEAR(small.margins->phase()->omega, wheel.margins->phase()->omega, 1e-7) << scale << sample;
-      EXPECT_NEAR(small.margins->phase()->angle, wheel.margins->phase()->angle, 1e-7) << scale << sample;
+      EXPECT_NEAR(small.margins->lag()->omega, wheel.margins->lag()->omega, 1e-7) << scale << sample;
+      EXPECT_NEAR(small.margins->lag()->angle, wheel.margins->lag()->angle, 1e-7) << scale << sample;
     }
   }
 }
@@ -297,12 +381,12 @@ TEST(Loop, OfASampledControllerThatActsThroughAContinuousLoadIsThatOfOneThatActs
   const Response itself = loop("  control: {" + law + ", hinge: axle}\n");
   const Response through =
       loop("  control: {" + law + ", to: nothing}\n  drive: {type: reaction-wheel, of: control, hinge: axle}\n");
-  ASSERT_TRUE(itself.margins && through.margins && itself.margins->phase() && itself.margins->upper());
+  ASSERT_TRUE(itself.margins && through.margins && itself.margins->lag() && itself.margins->upper());
   EXPECT_TRUE(through.opened);
   EXPECT_EQ(through.margins->stable, itself.margins->stable);
   EXPECT_NEAR(through.margins->growth, itself.margins->growth, 1e-9);
-  ASSERT_NE(through.margins->phase(), nullptr);
-  EXPECT_NEAR(through.margins->phase()->angle, itself.margins->phase()->angle, 1e-8);
+  ASSERT_NE(through.margins->lag(), nullptr);
+  EXPECT_NEAR(through.margins->lag()->angle, itself.margins->lag()->angle, 1e-8);
   ASSERT_NE(through.margins->upper(), nullptr);
   EXPECT_NEAR(through.margins->upper()->factor, itself.margins->upper()->factor, 1e-8);
   ASSERT_EQ(through.values.size(), itself.values.size());

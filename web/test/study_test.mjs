@@ -85,6 +85,32 @@ async function check_modes(browser, folder, run, troubles) {
   await single.close();
 }
 
+// What stands beside a rotor sees the frequencies of blades.csv and the passing of blades; the other view is of one angle.
+async function check_blades(browser, folder, run, troubles) {
+  const scene = join(folder, 'turbine.yaml'), out = join(folder, 'blades');
+  run('new', 'turbine', scene);
+  run('modes', scene, '--blades', 'auto', '--sweep', 'spin.shaft=0:12 rpm:4', '--set', 'motions={}', '--set', 'loads={}', '--count', '8', '--out', out);
+  const [{ blades, branches }] = page_data(join(out, 'report.html')).runs;
+  assert.equal(blades.count, 3);
+  const told = readFileSync(join(out, 'blades.csv'), 'utf8').trim().split('\n').slice(1).map(line => line.split(','));
+  for (const m of blades.branches.flatMap(b => b.at).filter(Boolean)) {
+    assert.ok(told.some(row => +row[1] === m.value && m.dominated_by.startsWith(row[3]) && Math.abs(row[5] - m.hertz) <= 1e-9 * m.hertz), `${m.dominated_by} at ${m.value}`);
+  }
+  assert.ok(blades.branches.every(b => b.at[0] === null), 'at rest nothing turns');
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
+  const marks = () => page.locator('#campbell .mark').count();
+  assert.equal(await marks(), blades.branches.flatMap(b => b.at).filter(Boolean).length);
+  assert.match(await text(page, '#campbell'), /1 per turn[^]*3 per turn[^]*6 per turn/);
+  assert.match(await text(page, '#mode'), /forward|backward|collective/);
+  assert.doesNotMatch(await text(page, '.answer'), /one frozen angle/);
+  await shot(page, 'blades-light');
+  await page.selectOption('select[aria-label="Seen from"]', 'the blades, at one angle');
+  assert.equal(await marks(), branches.flatMap(b => b.at).filter(Boolean).length);
+  assert.match(await text(page, '#mode'), /kinetic energy/);
+  assert.match(await text(page, '.answer'), /one frozen angle/);
+  await page.close();
+}
+
 function write_plan(folder, name, text) {
   const file = join(folder, name);
   writeFileSync(file, `format: withy-sweep/1\nscene: ${join(scenes, 'two-link-slew.yaml')}\nset: {time.end: 1, integrator.rtol: 1e-5}\nseed: 7\nkeep: {final: [shoulder, elbow], peak: [link1.tip.deflection_y], history: {of: [elbow, link1.tip.deflection_y], every: 0.05 s}}\n${text}`);
@@ -206,7 +232,7 @@ async function check_inverse(browser, folder, run, troubles) {
 
 await in_browser(withy, chromium, async (browser, folder, run) => {
   const troubles = [];
-  for (const check of [check_inverse, check_trade, check_modes, check_sweep, check_indices, check_figures]) await check(browser, folder, run, troubles);
+  for (const check of [check_inverse, check_trade, check_modes, check_blades, check_sweep, check_indices, check_figures]) await check(browser, folder, run, troubles);
   assert.deepEqual(troubles, []);
   console.log('the pages of studies show what their files say');
 });

@@ -6,27 +6,43 @@ import { Figure, draw, legend, number, table_of } from './figure.js';
 
 const hertz = m => m.hertz;
 const radians = m => 2 * Math.PI * m.hertz;
+// Equal blades have modes as what does not turn sees them, and those of the equations at one angle.
+const standing = 'where the rotor does not turn', turning = 'the blades, at one angle';
 
 export class Modes {
   constructor(holder, data) {
-    Object.assign(this, { data, unit: 'Hz', chosen: null, harmonics: data.rate ? 4 : 0 });
+    const blades = Math.max(...data.runs.map(run => run.blades?.count ?? 0));
+    Object.assign(this, { data, blades, seen_from: blades ? standing : turning, unit: 'Hz', chosen: null, harmonics: data.rate ? 4 : 0 });
     this.swept = data.points > 1;
-    this.branches = data.runs.flatMap((run, r) => run.branches.map((branch, i) => ({ ...branch, run, r, index: i, name: this.name_of(branch, run) })));
     this.tools = element('div', null, { class: 'bar' });
     this.names = element('div');
     this.figures = element('div', null, { class: 'figures' });
     this.card = element('aside', null, { class: 'card', id: 'mode', 'aria-live': 'polite' });
     const beside = element('div', null, { class: 'beside' }), left = element('div');
-    left.append(...(this.swept ? [this.tools, this.names, this.figures] : [this.table()]));
+    left.append(this.tools, this.names, this.figures);
     beside.append(left, this.card);
     const said = element('div', null, { class: 'answer' });
     for (const remark of data.remarks) said.append(element('p', remark));
-    said.append(element('p', this.swept ? 'Branches are followed by shape: a name is of the coordinate that holds most of the kinetic energy, at the beginning and, where it becomes another, at the end. Triangles mark motions that grow. Click a mark for its shape.'
-      : 'A mode is named after the coordinate that holds most of its kinetic energy. Click a row for its shape.', { class: 'soft' }));
+    this.meaning = element('div');
+    said.append(this.meaning);
     holder.append(said, beside);
     this.set_up();
+    this.see();
+  }
+
+  // Takes the branches that are seen from where it is chosen.
+  see() {
+    const stands = this.seen_from === standing, of = run => (stands ? run.blades?.branches ?? [] : run.branches);
+    this.branches = this.data.runs.flatMap((run, r) => of(run).map((branch, i) => ({ ...branch, run, r, index: i, name: this.name_of(branch, run) })));
+    this.meaning.replaceChildren(...(stands ? [] : this.data.frozen).map(text => element('p', text)), element('p', this.words(stands), { class: 'soft' }));
     const first = this.branches[0];
     if (first) this.choose(first, first.at.find(Boolean));
+  }
+
+  words(stands) {
+    if (stands) return 'Modes of equal blades by the multi-blade transform: frequencies that an instrument on what does not turn sees, named after the blades\' coordinate and the way its pattern runs round. Modes of one name are branches in the order of frequency.';
+    return this.swept ? 'Branches are followed by shape: a name is of the coordinate that holds most of the kinetic energy, at the beginning and, where it becomes another, at the end. Triangles mark motions that grow. Click a mark for its shape.'
+      : 'A mode is named after the coordinate that holds most of its kinetic energy. Click a row for its shape.';
   }
 
   name_of(branch, run) {
@@ -44,7 +60,8 @@ export class Modes {
       holder.append(select);
       this.tools.append(holder);
     };
-    add('Frequencies in', ['Hz', 'rad/s'], 'Hz', v => { this.unit = v; });
+    if (this.blades) add('Seen from', [standing, turning], standing, v => { this.seen_from = v; this.see(); });
+    if (this.swept) add('Frequencies in', ['Hz', 'rad/s'], 'Hz', v => { this.unit = v; });
     if (this.swept && this.data.rate) add('Lines of the rate up to', [0, 1, 2, 3, 4, 6, 8, 12], this.harmonics, v => { this.harmonics = +v; });
   }
 
@@ -56,7 +73,7 @@ export class Modes {
       b.dash = several ? dashes[b.index % dashes.length].join(' ') : '';
     }
     this.names.replaceChildren(this.swept ? legend(this.branches, () => this.paint(colours)) : '');
-    this.figures.replaceChildren(...(this.swept ? [this.campbell(), this.damping(), this.growth()].filter(Boolean) : []));
+    this.figures.replaceChildren(...(this.swept ? [this.campbell(), this.damping(), this.growth()].filter(Boolean) : [this.table()]));
     if (this.chosen) this.choose(...this.chosen);
   }
 
@@ -86,10 +103,16 @@ export class Modes {
     return figure.element;
   }
 
+  // Multiples of the rate, the highest first: what does not turn meets those of the blades that pass.
+  multiples() {
+    if (this.seen_from === standing && this.harmonics) return [2 * this.blades, this.blades, 1];
+    return Array.from({ length: this.harmonics }, (_, k) => this.harmonics - k);
+  }
+
   // n times the rate: where a branch crosses one, n impulses a turn meet it.
   per_rev(figure) {
     const { values, rate } = this.data, last = values.at(-1), top = figure.y.high;
-    for (let n = this.harmonics; n > 0; --n) {
+    for (const n of this.multiples()) {
       const at = v => n * Math.abs(v) * rate / (this.unit === 'Hz' ? 2 * Math.PI : 1);
       const end = at(last) > top ? last * top / at(last) : last;
       if (at(last) === 0) continue;
@@ -134,6 +157,7 @@ export class Modes {
     this.chosen = [b, m];
     this.card.replaceChildren(element('h2', 'Mode'));
     for (const text of this.about(b, m)) this.card.append(element('div', text));
+    if (!m.shape) return;
     if (this.swept) this.card.append(element('div', `like the branch's first shape (MAC): ${m.mac.toFixed(3)}`, { class: 'soft' }));
     this.card.append(element('p', 'Shares of the kinetic energy, and phases', { class: 'soft' }));
     const bars = element('table', null, { class: 'bars' });
@@ -152,7 +176,7 @@ export class Modes {
     const rows = this.branches.map(b => ({ b, m: b.at.find(Boolean) }));
     const several = this.data.runs.length > 1 ? [['formulation', r => r.b.run.formulation]] : [];
     const table = table_of([...several, ['mode', r => r.b.index + 1], ['frequency [Hz]', r => hertz(r.m), r => number(hertz(r.m))], ['[rad/s]', r => radians(r.m), r => number(radians(r.m))],
-      ['damping ratio [%]', r => r.m.damping_ratio == null ? null : 100 * r.m.damping_ratio, r => r.m.damping_ratio == null ? '–' : number(100 * r.m.damping_ratio)], ['mostly', r => r.m.dominated_by], ['state', r => r.m.state]], rows, r => this.choose(r.b, r.m));
+      ['damping ratio [%]', r => r.m.damping_ratio == null ? null : 100 * r.m.damping_ratio, r => r.m.damping_ratio == null ? '–' : number(100 * r.m.damping_ratio)], ['mostly', r => r.m.dominated_by], ['state', r => r.m.state ?? '–']], rows, r => this.choose(r.b, r.m));
     const frame = element('div', null, { class: 'scroll' });
     frame.append(table);
     return frame;
