@@ -25,6 +25,7 @@ class EqualSteps : public OneStep {
       const Evaluation evaluation = attempt(t_new - t);
       if (evaluation.ok() && solved_ && finite(next_, next_slope_)) break;
       ++statistics_.rejected;
+      if (evaluation.ok() && !solved_) ++unsolved_;
       const double half = t + (t_new - t) / 2;
       if (halvings == most_halvings() || !(half > t && half < t_new)) {
         if (evaluation.ok() && !solved_) return {StepResult::Outcome::step_underflow, -1};
@@ -60,6 +61,18 @@ class EqualSteps : public OneStep {
   [[nodiscard]] std::span<const double> ends_of(double h) const {
     if (h != ends_.at[next_end_] - state_.time) return {};
     return std::span(ends_.at).first(ends_.count).subspan(next_end_);
+  }
+  void remember(Memory& memory) override {
+    OneStep::remember(memory);
+    memory(unsolved_);
+  }
+  /// What an implicit method says of its Jacobian, and of its steps.
+  [[nodiscard]] std::vector<std::string> with_unsolved(std::vector<std::string> remarks) const {
+    if (unsolved_ > 0)
+      remarks.push_back(std::to_string(unsolved_) + (unsolved_ > 1 ? " steps were" : " step was") +
+                        " halved where the iteration did not converge, as where something is far too fast for the "
+                        "step: then its vibration is one of the steps and not its own");
+    return remarks;
   }
   /// How often a step that fails is halved.
   [[nodiscard]] virtual int most_halvings() const { return 0; }
@@ -101,6 +114,7 @@ class EqualSteps : public OneStep {
   bool solved_ = true;        ///< the equations of the implicit step being tried
   Ends ends_;                 ///< of the next steps to the limit where each is accepted; `from` goes with the steps
   std::size_t next_end_ = 0;  ///< in ends_
+  std::size_t unsolved_ = 0;  ///< attempts whose equations were not solved
 };
 
 inline ParameterSpec step_parameter() {

@@ -27,7 +27,7 @@ class GaussStepper final : public EqualSteps {
     sizes_.forget();
     lost_.setZero();
   }
-  [[nodiscard]] std::vector<std::string> remarks() const override { return jacobian_.remarks(); }
+  [[nodiscard]] std::vector<std::string> remarks() const override { return with_unsolved(jacobian_.remarks()); }
 
  private:
   static constexpr int most_iterations = 50;

@@ -28,6 +28,40 @@ std::optional<FastestPole> pole_at(const Prepared& prepared, const State& state)
   return {};
 }
 
+/// Rates below this [rad/s, m/s] may be those of an integrator that goes to and fro about rest.
+constexpr double creeping = 1e-6;
+
+/// Dry friction is steep within its scale of rates alone. Where that is below what the integrator resolves, its states
+/// step over it, to and fro, and about none of them the pole is seen that makes it do so.
+std::optional<State> with_what_creeps_at_rest(const Model& model, const State& state) {
+  State resting = state;
+  bool any = false;
+  const Layout& layout = model.layout();
+  for (std::size_t i = layout.positions; i < layout.positions + layout.speeds; ++i)
+    if (double& rate = resting.y[i]; rate != 0 && std::abs(rate) < creeping) {
+      rate = 0;
+      any = true;
+    }
+  return any ? std::optional(resting) : std::nullopt;
+}
+
+std::optional<TooStiff> too_stiff_at(const Prepared& prepared, const State& state, std::size_t most_steps,
+                                     const std::string& introduction) {
+  const Scene& scene = prepared.scene;
+  const std::optional<double> limit = scene.integrator->stability_limit();
+  if (!limit || !std::isfinite(*limit) || !scene.end) return {};
+  const std::optional<FastestPole> pole = pole_at(prepared, state);
+  if (!pole) return {};
+  TooStiff found{*limit / std::abs(pole->value), (*scene.end - state.time) * std::abs(pole->value) / *limit, {}};
+  if (!(found.steps > static_cast<double>(most_steps))) return {};
+  found.text = fmt::format(
+      "{} is stable to steps of about {:.1g} s, of which the run would need about {:.1g} where {:g} are "
+      "allowed; {} {}",
+      scene.integrator_name, found.step, found.steps, static_cast<double>(most_steps), introduction,
+      describe(*pole, prepared.model().layout()));
+  return found;
+}
+
 /// Where no pole is known the fastest mode stays.
 void find_fastest(const Prepared& prepared, const RunSummary& summary, StepLimit& s) {
   if (s.mean == 0) return;
@@ -77,19 +111,13 @@ StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Regist
 }
 
 std::optional<TooStiff> too_stiff(const Prepared& prepared, const State& state, std::size_t most_steps) {
-  const Scene& scene = prepared.scene;
-  const std::optional<double> limit = scene.integrator->stability_limit();
-  if (!limit || !std::isfinite(*limit) || !scene.end) return {};
-  const std::optional<FastestPole> pole = pole_at(prepared, state);
-  if (!pole) return {};
-  TooStiff found{*limit / std::abs(pole->value), (*scene.end - state.time) * std::abs(pole->value) / *limit, {}};
-  if (!(found.steps > static_cast<double>(most_steps))) return {};
-  found.text = fmt::format(
-      "{} is stable to steps of about {:.1g} s, of which the run would need about {:.1g} where {:g} are "
-      "allowed; its fastest motion is {}",
-      scene.integrator_name, found.step, found.steps, static_cast<double>(most_steps),
-      describe(*pole, prepared.model().layout()));
-  return found;
+  std::optional<TooStiff> found = too_stiff_at(prepared, state, most_steps, "its fastest motion is");
+  if (found) return found;
+  if (const std::optional<State> resting = with_what_creeps_at_rest(prepared.model(), state))
+    return too_stiff_at(
+        prepared, *resting, most_steps,
+        fmt::format("what creeps slower than {:g} rad/s or m/s taken as at rest, its fastest motion is", creeping));
+  return {};
 }
 
 namespace {

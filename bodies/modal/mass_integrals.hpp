@@ -50,9 +50,10 @@ struct SidReport {
 /// \throws std::domain_error where no mass has these integrals: what() says which of them contradict each other.
 MassIntegrals integrals_of(const sid::Data& data, SidReport& report);
 
-/// Particles of equal mass that have these integrals, to rounding: as many as the fields have dimensions. Γ is the
-/// smallest there is with its integrals: linear over the mass, Γ = a + Bᵀ X.
-/// The largest relative difference that is left (Γ may ask for an extent the body does not have) is added to `defect`.
+/// Particles of equal mass that have these integrals, to rounding: two for each dimension of the fields but the
+/// constant one, in pairs about the mean, so that a mirror image of the body has the mirror image of them. Γ is the
+/// smallest there is with its integrals: linear over the mass, Γ = a + Bᵀ X. The largest relative difference that is
+/// left (Γ may ask for an extent the body does not have) is added to `defect`.
 std::vector<Particle> particles_of(const MassIntegrals& integrals, double& defect);
 
 /// The integrals as matrices of Standard Input Data: mass, mdCM to Oe.

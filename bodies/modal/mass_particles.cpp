@@ -50,14 +50,14 @@ std::vector<Particle> particles_of(const MassIntegrals& m, double& defect) {
   const auto at_particles = [&](const MatrixXd& rigid_coefficients) {
     MatrixXd padded = MatrixXd::Zero(count, rigid_coefficients.cols());
     padded.topRows<4>() = rigid_coefficients;
-    return at_equal_particles(padded, m.mass);
+    return at_particle_pairs(padded, m.mass);
   };
   const MatrixXd X = at_particles(basis.position());
-  const MatrixXd phi = at_equal_particles(all, m.mass);
-  std::vector<Particle> particles(static_cast<std::size_t>(count));
-  for (Eigen::Index i = 0; i < count; ++i) {
+  const MatrixXd phi = at_particle_pairs(all, m.mass);
+  std::vector<Particle> particles(static_cast<std::size_t>(phi.rows()));
+  for (Eigen::Index i = 0; i < phi.rows(); ++i) {
     Particle& p = particles[static_cast<std::size_t>(i)];
-    p.mass = m.mass / static_cast<double>(count);
+    p.mass = m.mass / static_cast<double>(phi.rows());
     p.at = PointExpansion::rigid(X.row(i).transpose(), n);
     for (Eigen::Index k = 0; k < n; ++k) p.at.phi.col(k) = phi.block<1, 3>(i, 3 * k).transpose();
   }
@@ -67,7 +67,7 @@ std::vector<Particle> particles_of(const MassIntegrals& m, double& defect) {
       const std::size_t at = m.pair(k, l);
       const MatrixXd g = at_particles(basis.coefficients(m.gamma[at], m.x_gamma[at], left));
       size = std::max({size, m.x_gamma[at].cwiseAbs().maxCoeff(), m.phi_phi[at].cwiseAbs().maxCoeff()});
-      for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index i = 0; i < phi.rows(); ++i) {
         for (Eigen::Index c = 0; c < 3; ++c) {
           particles[static_cast<std::size_t>(i)].at.gamma[static_cast<std::size_t>(c)](k, l) = g(i, c);
         }

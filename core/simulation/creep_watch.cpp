@@ -7,22 +7,14 @@
 namespace withy {
 
 CreepWatch::CreepWatch(const EquationsOfMotion& equations, State initial, bool own_energy)
-    : equations_(equations), initial_(std::move(initial)), own_energy_(own_energy), half_time_(initial_.time) {}
+    : equations_(equations), initial_(std::move(initial)), own_energy_(own_energy) {}
 
-std::string CreepWatch::fault(const Stepper& stepper) {
-  if (!own_energy_ || !creeps(stepper) || !without_inertia(stepper.state())) return {};
-  return "the steps come to nothing: half of the " + std::to_string(stepper.statistics().accepted) +
-         " made have gained less than a hundredth of the time";
-}
-
-bool CreepWatch::creeps(const Stepper& stepper) {
+std::string CreepWatch::fault(const TwoHalves& steps, const State& state) const {
   constexpr double next_to_nothing = 0.01;
-  const std::size_t made = stepper.statistics().accepted;
-  if (made < 2 * half_) return false;
-  const double t = stepper.state().time, before = half_time_;
-  half_ = made;
-  half_time_ = t;
-  return t - before < next_to_nothing * (before - initial_.time);
+  const bool creeps = steps.now - steps.middle < next_to_nothing * (steps.middle - steps.begun);
+  if (!own_energy_ || !creeps || !without_inertia(state)) return {};
+  return "the steps come to nothing: half of the " + std::to_string(steps.made) +
+         " made have gained less than a hundredth of the time";
 }
 
 bool CreepWatch::without_inertia(const State& state) const {
@@ -30,11 +22,6 @@ bool CreepWatch::without_inertia(const State& state) const {
   MassMatrixHistory history = examine(equations_, initial_, state, {});
   compare_inertia(history);
   return history.nearly_singular() || history.has_negative_inertia();
-}
-
-void CreepWatch::remember(Memory& memory) {
-  memory(half_);
-  memory(half_time_);
 }
 
 }  // namespace withy

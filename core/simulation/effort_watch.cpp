@@ -44,6 +44,22 @@ void EffortWatch::raise(const Sample& sample) {
   raise_by(motions_, sample.motions);
 }
 
+/// Of the sample between the last three those efforts that they resolve.
+void EffortWatch::raise_resolved() {
+  // Three states of a vibration that all have less than a tenth of its peak are fewer than two a period.
+  constexpr double far = 10;
+  const auto cut = [&](std::vector<double> Sample::*efforts) {
+    for (std::size_t i = 0; i < (between_.*efforts).size(); ++i) {
+      double greatest = 0;
+      for (const Sample& seen : samples_) greatest = std::max(greatest, std::abs((seen.*efforts)[i]));
+      if (double& effort = (between_.*efforts)[i]; greatest > 0 && std::abs(effort) > far * greatest) effort = 0;
+    }
+  };
+  cut(&Sample::loads);
+  cut(&Sample::motions);
+  raise(between_);
+}
+
 void EffortWatch::begin_at(const State& state) {
   if (idle()) return;
   count_ = 1;
@@ -120,7 +136,7 @@ void EffortWatch::look_between(const Sample& before, const Sample& after) {
     for (std::size_t i = positions_; i < moving; ++i) between_.state.y[i] = (1 - s) * x[i] + s * y[i];
     equations_.normalize(between_.state.y);
     evaluate(between_);
-    raise(between_);
+    raise_resolved();
   }
 }
 

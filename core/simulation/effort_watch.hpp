@@ -12,7 +12,8 @@ namespace withy {
 
 /// Watches the efforts of a run from its start on; the greatest |efforts| go to its summary. It looks at each accepted
 /// state, at what the last evaluation there has found; where three states in a row say that an effort has its greatest
-/// value between them, it looks there too. What it finds does not depend on the outputs.
+/// value between them, it looks there too; what is far beyond all three there is of a motion that the steps do not
+/// resolve, as a stiff spring's under long implicit ones, and no effort. What it finds does not depend on the outputs.
 class EffortWatch {
  public:
   /// \param span of the run [s]: steps longer than a fiftieth of it are looked into
@@ -34,6 +35,7 @@ class EffortWatch {
   void push(const Stepper& stepper);
   void evaluate(Sample& sample);
   void raise(const Sample& sample);
+  void raise_resolved();
   [[nodiscard]] bool hides_a_peak() const;
   void look_between(const Sample& before, const Sample& after);
 

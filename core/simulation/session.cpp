@@ -28,6 +28,7 @@ Session::Session(const Model& model, const EquationsOfMotion& equations, const I
             {.end = initial.time, .output = infinity, .events = actions_.watched(), .actions = &actions_}),
       monitor_(model, equations, loop_.state(), options_.deflection_limit, infinity, nullptr, summary_),
       loops_(equations, loop_.state()),
+      halves_(initial_.time),
       creep_(equations, initial_, options_.own_energy),
       with_inputs_(loop_.state()) {
   for (std::size_t l = 0; l < model.loads().size(); ++l)
@@ -142,8 +143,9 @@ SessionEnd Session::bad_end(Stop stop) {
 bool Session::before_step(const Stepper& stepper) {
   if (options_.interrupted && options_.interrupted()) {
     stop_ = {RunStatus::interrupted, "interrupted", false};
-  } else if (std::string why = creep_.fault(stepper); !why.empty()) {
-    stop_ = {RunStatus::singular, std::move(why)};
+  } else if (const std::optional<TwoHalves> halves = halves_.look(stepper)) {
+    if (std::string why = creep_.fault(*halves, stepper.state()); !why.empty())
+      stop_ = {RunStatus::singular, std::move(why)};
   }
   return stop_.status == RunStatus::completed;
 }
@@ -171,7 +173,7 @@ void Session::remember(Memory& memory) {
   monitor_.remember(memory);
   loop_.remember(memory);
   loops_.remember(memory);
-  creep_.remember(memory);
+  halves_.remember(memory);
   for (Setting& s : settings_) {
     memory(s.waiting);
     memory(s.value);

@@ -93,6 +93,7 @@ class Session final : private SteppingObserver {
   Stepping loop_;
   Monitor monitor_;
   LoopWatch loops_;
+  LaterHalf halves_;
   CreepWatch creep_;
   std::vector<Setting> settings_;
   State with_inputs_;

@@ -1,7 +1,6 @@
 #include "withy/core/simulation/simulate.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -34,7 +33,6 @@ class Run final : public SteppingObserver {
         output_(output),
         watch_(watch),
         summary_(summary),
-        start_(initial.time),
         hand_overs_(options.changing != nullptr ? options.changing->hand_overs() : std::vector<double>()),
         actions_(model, equations, options.events),
         loop_(model, equations, integrator.start(equations, begun(model, equations, initial)),
@@ -42,6 +40,7 @@ class Run final : public SteppingObserver {
         monitor_(model, equations, loop_.state(), options.deflection_limit, options.end - initial.time, options.seen,
                  summary, attention),
         loops_(equations, loop_.state()),
+        halves_(initial.time),
         creep_(equations, initial, options.own_energy) {
     if (attention == Attention::whole) validity_.emplace(model, equations, options.beyond, summary.validity);
     if (options.own_energy) monitor_.use_own_energy(loop_.state());
@@ -92,11 +91,8 @@ class Run final : public SteppingObserver {
                false};
     } else if (options_.most_seconds > 0 && seconds() > options_.most_seconds) {
       stop_ = {RunStatus::interrupted, "stopped after the " + brief(options_.most_seconds) + " s allowed", false};
-    } else if (std::string fault = creep_.fault(stepper); !fault.empty()) {
-      stop_ = {RunStatus::singular, std::move(fault)};
-    } else if (out_of_reach(stepper)) {
-      if (std::string why = options_.too_stiff(stepper.state()); !why.empty())
-        stop_ = {RunStatus::too_stiff, std::move(why), false};
+    } else if (const std::optional<TwoHalves> halves = halves_.look(stepper)) {
+      look_at_pace(*halves, stepper.state());
     }
     return stop_.status == RunStatus::completed;
   }
@@ -155,13 +151,23 @@ class Run final : public SteppingObserver {
     return accepted <= first || accepted % interval == 0;
   }
   /// Whether the steps allowed are too few for the end at the mean of those made: looked at after 2¹⁸ of them, a second
-  /// or so, and each time that they have doubled.
-  [[nodiscard]] bool out_of_reach(const Stepper& stepper) const {
-    constexpr std::size_t first_look = std::size_t{1} << 18U;
-    const std::size_t made = stepper.statistics().accepted;
-    if (made < first_look || !std::has_single_bit(made) || !options_.too_stiff) return false;
-    const double t = stepper.state().time;
-    return (options_.end - t) * static_cast<double>(made) > static_cast<double>(options_.most_steps) * (t - start_);
+  /// or so, and each time that they have doubled. After 2²⁴ at the mean of the later half: what moved at first and is
+  /// held since, as by dry friction, crawls from there on. A phase that passes is shorter.
+  [[nodiscard]] bool out_of_reach(const TwoHalves& steps) const {
+    constexpr std::size_t first_look = std::size_t{1} << 18U, look_at_later = std::size_t{1} << 24U;
+    if (steps.made < first_look) return false;
+    const bool later = steps.made >= look_at_later;
+    const auto made = static_cast<double>(later ? steps.later : steps.made);
+    const double gained = steps.now - (later ? steps.middle : steps.begun);
+    return (options_.end - steps.now) * made > static_cast<double>(options_.most_steps) * gained;
+  }
+  void look_at_pace(const TwoHalves& steps, const State& state) {
+    if (std::string fault = creep_.fault(steps, state); !fault.empty()) {
+      stop_ = {RunStatus::singular, std::move(fault)};
+    } else if (options_.too_stiff && out_of_reach(steps)) {
+      if (std::string why = options_.too_stiff(state); !why.empty())
+        stop_ = {RunStatus::too_stiff, std::move(why), false};
+    }
   }
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
@@ -192,7 +198,7 @@ class Run final : public SteppingObserver {
     loops_.remember(memory);
     if (watch_ != nullptr) watch_->remember(memory);
     memory(emitted_);
-    creep_.remember(memory);
+    halves_.remember(memory);
     memory(summary_.switchings);
     std::size_t count = summary_.events.size();
     memory(count);
@@ -218,13 +224,13 @@ class Run final : public SteppingObserver {
   const std::function<void(const State&)>& output_;
   StepWatch* watch_;  ///< null: there is none
   RunSummary& summary_;
-  double start_;                    ///< [s]
   std::vector<double> hand_overs_;  ///< increasing
   EventActions actions_;
   Stepping loop_;
   Monitor monitor_;
   std::optional<ValidityWatch> validity_;  ///< nothing where nobody asks
   LoopWatch loops_;
+  LaterHalf halves_;
   CreepWatch creep_;
   double emitted_ = 0;  ///< time of the last output
   Stop stop_;           ///< why this observer has ended the stepping

@@ -58,8 +58,9 @@ struct RunOptions {
   /// Motion with no speed above this [m/s, rad/s] is rounding, and its energy balances or not.
   double least_speed = 1e-12;
   std::size_t most_steps = 100'000'000;
-  /// Asked now and then where at the pace of the steps so far `most_steps` are too few to come to the end: why they are
-  /// from this state on as well, in a clause without a full stop, which ends the run; empty: it goes on.
+  /// Asked now and then where at the pace of the steps so far, or of the later half of very many, `most_steps` are too
+  /// few to come to the end: why they are from this state on as well, in a clause without a full stop, which ends the
+  /// run; empty: it goes on.
   std::function<std::string(const State&)> too_stiff;
   /// Asked of a run that came to its end with more drift of energy than any stable integration leaves, where the
   /// formulation need not conserve it and no elastic mode says why: what of its motion is too fast for steps of this

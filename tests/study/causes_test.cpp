@@ -9,6 +9,7 @@
 
 #include "withy/study/plausibility.hpp"
 #include "withy/study/run.hpp"
+#include "withy/study/step_limit.hpp"
 #include "withy/tests/study/plugins.hpp"
 
 namespace withy::study {
@@ -129,6 +130,91 @@ loads: {drag: {type: hinge-spring, hinge: pin, stiffness: 1, damping: 1500}}
   ASSERT_EQ(remarks.size(), 1U);
   EXPECT_THAT(remarks[0].text, HasSubstr("its fastest motion is -1.5e+12/s"));
   EXPECT_EQ(run_of(values.set_text("integrator=radau", "the test")).status, RunStatus::completed);
+}
+
+/// A wheel that dry friction brings to rest at 2 s and holds there against a push.
+std::string held_by_friction(const std::string& scale) {
+  return R"(time: {end: 3}
+bodies: {wheel: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}}
+initial: {hinges: {axle: {rate: [1]}}}
+loads:
+  friction: {type: hinge-friction, hinge: axle, effort: 1, rate_scale: )" +
+         scale + R"(}
+  push: {type: hinge-effort, hinge: axle, law: constant, value: 0.5}
+)";
+}
+
+/// Two thirds of the time go by in a hundred steps, the last third in none: the pace is that of the later half.
+TEST(Causes, DryFrictionThatHoldsAfterAMotionWithNextToNoScaleOfItsRate) {
+  const RunSummary s = run_of_text(held_by_friction("1.0e-9"));
+  EXPECT_EQ(s.status, RunStatus::too_stiff);
+  EXPECT_LE(s.steps.accepted, std::size_t{1} << 24U);
+  EXPECT_THAT(s.message, HasSubstr("damping of load 'friction' on axle"));
+  SceneValues values = SceneValues::parse("format: withy/1\n" + held_by_friction("1.0e-9"), "planted.yaml");
+  EXPECT_EQ(run_of(values.set_text("integrator=radau", "the test")).status, RunStatus::completed);
+}
+
+/// Steps go to and fro about rest beyond the scale of the rate, where friction has no derivative.
+TEST(Causes, DryFrictionIsNamedWhereItsScaleIsBelowWhatTheStepsResolve) {
+  const std::string head = "format: withy/1\nintegrator: {name: dopri5, rtol: 1e-6, atol: 1e-9}\n";
+  const Prepared prepared = prepare(SceneValues::parse(head + held_by_friction("1.0e-12"), "planted.yaml"), plugins());
+  State state = prepared.scene.initial;
+  state.time = 2.01;
+  for (const double rate : {0.0, 1e-9, -1e-9}) {
+    state.y[prepared.model().layout().positions] = rate;
+    const std::optional<TooStiff> found = too_stiff(prepared, state);
+    ASSERT_TRUE(found) << rate;
+    EXPECT_NEAR(number_after(found->text, "its fastest motion is "), -1e12, 1e9) << found->text;
+    EXPECT_THAT(found->text, HasSubstr("damping of load 'friction' on axle")) << rate;
+  }
+  state.y[prepared.model().layout().positions] = 0.01;
+  EXPECT_FALSE(too_stiff(prepared, state)) << "while it slides nothing is fast";
+}
+
+/// A boom at rest, held by a spring that is far too stiff for steps of 10 ms, and falling.
+RunSummary held_by_spring(const std::string& stiffness, const std::string& integrator) {
+  return run_of(SceneValues::parse(
+      "format: withy/1\ntime: {end: 2}\ngravity: [0, -9.81, 0]\nintegrator: {name: " + integrator + R"(, step: 0.01}
+bodies: {boom: {type: beam, length: 2, mass_per_length: 1, bending_y: {stiffness: 50, modes: 2}}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: boom}}
+loads: {spring: {type: hinge-spring, hinge: axle, stiffness: )" +
+          stiffness + "}}\n",
+      "planted.yaml"));
+}
+
+TEST(Causes, StepsThatAreHalvedSinceTheirIterationDoesNotConvergeAreCounted) {
+  const RunSummary halved = held_by_spring("1.0e+14", "generalized-alpha");
+  EXPECT_EQ(halved.status, RunStatus::completed);
+  EXPECT_GT(halved.steps.rejected, 0U);
+  EXPECT_EQ(number_after(halved.message, "The integrator: "), static_cast<double>(halved.steps.rejected));
+  EXPECT_THAT(halved.message, HasSubstr("steps were halved where the iteration did not converge"));
+  EXPECT_THAT(held_by_spring("1.0e+4", "generalized-alpha").message, Not(HasSubstr("halved")));
+}
+
+/// Two bodies that a spring holds together, falling about an axle: with 2.25 kg m² and a weight of 9.81 N at 0.5 m the
+/// second, of 1 kg m², takes 2.18 N m, and the spring, at first without any, goes to and fro up to 4.36. Between states
+/// the cubic through positions and rates that steps of 10 ms do not resolve is off by 1e-6 rad, times 1e14 N m/rad.
+TEST(Causes, PeaksOfEffortsAreNotThoseOfAnInterpolationThatTheStepsDoNotResolve) {
+  for (const char* integrator : {"gauss", "generalized-alpha"}) {
+    for (const char* stiffness : {"1.0e+10", "1.0e+14"}) {
+      const RunSummary s =
+          run_of(SceneValues::parse(std::string("format: withy/1\ntime: {end: 2}\ngravity: [0, -9.81, 0]\n") +
+                                        "integrator: {name: " + integrator + R"(, step: 0.01}
+bodies:
+  arm: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], center_of_mass: [0.5, 0, 0]}
+  tip: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: arm}
+  joint: {type: revolute, axis: [0, 0, 1], parent: arm, child: tip}
+initial: {hinges: {axle: {rate: [1]}}}
+loads: {spring: {type: hinge-spring, hinge: joint, stiffness: )" +
+                                        stiffness + "}}\n",
+                                    "planted.yaml"));
+      EXPECT_EQ(s.status, RunStatus::completed) << integrator;
+      EXPECT_NEAR(s.peak_effort[1], 4.36, 0.15) << integrator << ' ' << stiffness;
+    }
+  }
 }
 
 TEST(Causes, AMassMatrixThatTurnsIndefinite) {
