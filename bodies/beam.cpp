@@ -18,14 +18,13 @@ class Reader {
 
   std::unique_ptr<Body> make() {
     BeamMaterial material{p_.number_at("length"), profile(p_.at("mass_per_length")), {}, BodyDamping::read(p_)};
-    const double mass = material.mass_per_length.mean();
     using enum BeamData::Strain;
-    add("bending_y", Vector3::UnitZ(), bending, mass, "rotary_inertia", material);
-    add("bending_z", -Vector3::UnitY(), bending, mass, "rotary_inertia", material);
-    add("torsion", Vector3::UnitX(), torsion, 0, "inertia", material);
-    add("extension", Vector3::UnitX(), elongation, mass, "", material);
-    add("shear_y", Vector3::UnitY(), elongation, mass, "", material);
-    add("shear_z", Vector3::UnitZ(), elongation, mass, "", material);
+    add("bending_y", Vector3::UnitZ(), bending, "rotary_inertia", material);
+    add("bending_z", -Vector3::UnitY(), bending, "rotary_inertia", material);
+    add("torsion", Vector3::UnitX(), torsion, "inertia", material);
+    add("extension", Vector3::UnitX(), elongation, "", material);
+    add("shear_y", Vector3::UnitY(), elongation, "", material);
+    add("shear_z", Vector3::UnitZ(), elongation, "", material);
     if (p_.has("twist")) material.twist = twist();
     if (!good_) return nullptr;
     return make_beam_body(material, std::move(strains_));
@@ -57,9 +56,8 @@ class Reader {
     return {angle, stiffness("bending_y"), stiffness("bending_z"), stiffness("shear_y"), stiffness("shear_z")};
   }
 
-  /// The strain a scene asks for under `key`. Families know a beam by its means: `mass` per length or, in torsion, the
-  /// inertia. A section's inertia stays where the strain has no modes.
-  void add(const char* key, const Vector3& direction, BeamData::Strain kind, double mass, const char* inertia_key,
+  /// The strain a scene asks for under `key`. A section's inertia stays where the strain has no modes.
+  void add(const char* key, const Vector3& direction, BeamData::Strain kind, const char* inertia_key,
            BeamMaterial& material) {
     if (!p_.has(key)) return;
     const Value& given = p_.at(key);
@@ -69,14 +67,25 @@ class Reader {
     if (given.count_at("modes") == 0)
       material.remarks.push_back(fmt::format("{} has no modes: the body is rigid to it, whatever its stiffness", key));
     if (given.count_at("modes") == 0 || !good_) return;
-    const BeamData beam = {kind, material.length, kind == BeamData::Strain::torsion ? inertia.mean() : mass,
-                           stiffness.mean()};
+    const BeamData beam = beam_data(kind, material.length,
+                                    kind == BeamData::Strain::torsion ? inertia : material.mass_per_length, stiffness);
     auto functions = make_shape_functions(given.at("family"), given.at("modes"), beam, context_);
     if (functions == nullptr || !can_join(*functions, given.at("family"), kind, material.length)) {
       good_ = false;
     } else {
       strains_.push_back({key, direction, kind, stiffness, std::move(functions)});
     }
+  }
+
+  /// What families know of the beam, with its sections where they vary.
+  static BeamData beam_data(BeamData::Strain kind, double length, const Profile& inertia, const Profile& stiffness) {
+    BeamData beam{kind, length, inertia.mean(), stiffness.mean()};
+    beam.kinks = inertia.knots();
+    const std::vector<double> more = stiffness.knots();
+    beam.kinks.insert(beam.kinks.end(), more.begin(), more.end());
+    if (beam.kinks.empty()) return beam;
+    beam.section = [inertia, stiffness](double x) { return BeamData::Section{inertia(x), stiffness(x)}; };
+    return beam;
   }
 
   /// Segments pass moments on to each other, so functions that have no strain at an end leave each of them too stiff,

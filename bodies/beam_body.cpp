@@ -149,13 +149,8 @@ class Beam final : public Body, private Rod {
   Eigen::Index modes() const override { return shape_.modes(); }
   double length() const override { return length_; }
   double wave_number() const override { return of_strains(strains_); }
-  std::vector<double> mass_kinks() const override {
-    std::vector<double> x = kinks(material_, {});
-    std::sort(x.begin(), x.end());
-    x.erase(std::unique(x.begin(), x.end()), x.end());
-    std::erase_if(x, [this](double at) { return at <= 0 || at >= length_; });
-    return x;
-  }
+  std::vector<double> kinks() const override { return inside(of_functions(strains_)); }
+  std::vector<double> mass_kinks() const override { return inside(kinks(material_, {})); }
   RodSection section(double x) const override {
     LinearFields f = linear_fields(strains_, x);
     double inertia = 0;
@@ -173,8 +168,25 @@ class Beam final : public Body, private Rod {
     return of_strains(strains) + (material.twist ? material.twist->angle.greatest_slope() : 0);
   }
 
+  /// Points inside the beam, increasing.
+  [[nodiscard]] std::vector<double> inside(std::vector<double> x) const {
+    std::sort(x.begin(), x.end());
+    x.erase(std::unique(x.begin(), x.end()), x.end());
+    std::erase_if(x, [this](double at) { return at <= 0 || at >= length_; });
+    return x;
+  }
+  static std::vector<double> of_functions(const std::vector<BeamStrain>& strains) {
+    std::vector<double> x;
+    for (const BeamStrain& s : strains) {
+      const std::vector<double> more = s.functions->kinks();
+      x.insert(x.end(), more.begin(), more.end());
+    }
+    return x;
+  }
   static std::vector<double> kinks(const BeamMaterial& material, const std::vector<BeamStrain>& strains) {
-    std::vector<double> x = material.mass_per_length.knots();
+    std::vector<double> x = of_functions(strains);
+    const std::vector<double> masses = material.mass_per_length.knots();
+    x.insert(x.end(), masses.begin(), masses.end());
     const auto add = [&](const Profile& p) {
       const std::vector<double> more = p.knots();
       x.insert(x.end(), more.begin(), more.end());

@@ -156,7 +156,9 @@ class ElastoDynReader {
     for (double& x : beam_.along_z) x *= z;
     beam_.damping_y = keyed(t ? "TwrFADmp(1)" : "BldFlDmp(1)", 0) / 100;
     beam_.damping_z = keyed(t ? "TwrSSDmp(1)" : "BldEdDmp(1)", 0) / 100;
-    beam_.remarks.emplace_back("The file's mode shapes are left out: polynomials take their place, as many as wanted.");
+    beam_.remarks.emplace_back(
+        "The file's mode shapes are left out: modes of vibration found from the table take their place, as many as "
+        "wanted.");
     for (const auto& [key, keyed] : keyed_)
       if (key.find("StTunr") != std::string::npos && keyed.value != 1)
         beam_.remarks.push_back(
@@ -208,11 +210,12 @@ std::string scene_text(const ElastoDynBeam& beam, double length, double tip_mass
     out += "    twist:   # rad" + rows_text(beam, beam.twist, length, "      ");
   out += fmt::format("    damping_ratio: {}   # of the first mode {}; {}: {}\n", beam.damping_y,
                      beam.tower ? "fore-aft" : "flapwise", beam.tower ? "side to side" : "edgewise", beam.damping_z);
+  const std::string family =
+      tip_mass > 0 ? fmt::format("{{name: vibration-modes, tip_mass: {}}}", tip_mass) : "vibration-modes";
   for (const bool y : {true, false})
-    out +=
-        fmt::format("    bending_{}:   # {}\n      modes: 4\n      family: orthogonal-polynomials\n      stiffness:{}",
-                    y ? 'y' : 'z', beam.tower ? (y ? "fore-aft" : "side to side") : (y ? "flapwise" : "edgewise"),
-                    rows_text(beam, y ? beam.along_y : beam.along_z, length, "        "));
+    out += fmt::format("    bending_{}:   # {}\n      modes: 3\n      family: {}\n      stiffness:{}", y ? 'y' : 'z',
+                       beam.tower ? (y ? "fore-aft" : "side to side") : (y ? "flapwise" : "edgewise"), family,
+                       rows_text(beam, y ? beam.along_y : beam.along_z, length, "        "));
   if (tip_mass > 0)
     out += fmt::format("  top: {{type: rigid, mass: {}}}   # what the tip carries, as a point\n", tip_mass);
   out += fmt::format("\nhinges:\n  root: {{type: weld, parent: world, child: {}{}}}\n", name,

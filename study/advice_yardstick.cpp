@@ -80,7 +80,7 @@ class YardstickSearch {
 ReferenceGoal YardstickSearch::goal() {
   const bool modal = candidates_.modes.back() > 0;
   ReferenceGoal goal;
-  ReferenceFamilies families = reference_families(candidates_, evaluator_.base().model());
+  ReferenceFamilies families = reference_families(candidates_, evaluator_.base());
   goal.families = std::move(families.others);
   goal.first = {"",
                 std::move(families.first),

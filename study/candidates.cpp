@@ -62,6 +62,21 @@ bool loaded_somewhere(const Scene& scene) {
   return false;
 }
 
+/// Whether a body with modes has a property that is a table along it.
+bool varies_somewhere(const Scene& scene) {
+  return std::any_of(scene.modes.begin(), scene.modes.end(),
+                     [&](const BodyModes& body) { return varies(scene, body.body); });
+}
+
+/// Families that may need fewer modes than the scene's own, where they mean the same beams.
+std::vector<const char*> other_families(const Scene& scene) {
+  const bool loaded = loaded_somewhere(scene);
+  std::vector<const char*> others{loaded ? static_shapes : polynomials};
+  if (loaded || varies_somewhere(scene)) others.push_back(vibration_modes);
+  if (loaded) others.push_back(loaded_modes);
+  return others;
+}
+
 /// The id that a family's value names.
 std::string id_of(const Value& family) {
   return family.kind() == Value::Kind::text ? family.text() : family.text_at("name");
@@ -111,15 +126,14 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes ask
   check(c, registry);
   const Scene& scene = prepared.scene;
   if (!flexible(prepared.model())) c.formulations = {plain_formulation};  // without modes all are the same
-  const bool loaded = loaded_somewhere(scene);
-  const char* const complete = loaded ? static_shapes : polynomials;
-  bool any = false, complete_already = true, loaded_already = true;
+  bool any = false;
+  std::vector<const char*> others = other_families(scene), had = others;
   for_each_family(scene, registry, [&](const ModeCount& count, const Value& family) {
     if (count.family_path.empty() && !spans_cantilevers(family, registry)) return;
     any = true;
-    complete_already = complete_already && id_of(family) == complete;
-    loaded_already = loaded_already && id_of(family) == loaded_modes;
+    std::erase_if(had, [&](const char* other) { return id_of(family) != other; });
   });
+  std::erase_if(others, [&](const char* other) { return std::find(had.begin(), had.end(), other) != had.end(); });
   if (scene.modes.empty()) {
     c.modes = {0};
     c.more_modes.clear();
@@ -128,24 +142,25 @@ Candidates candidates_for(const Prepared& prepared, Registry& registry, Axes ask
   if (!any) c.families = {""};
   if (c.families.empty()) {
     c.families = {""};
-    if (families_are_exchangeable(scene, registry)) {
-      if (!complete_already) c.families.emplace_back(complete);
-      if (!loaded_already && loaded) c.families.emplace_back(loaded_modes);
-    }
+    if (families_are_exchangeable(scene, registry)) c.families.insert(c.families.end(), others.begin(), others.end());
   }
   std::sort(c.tolerances.begin(), c.tolerances.end(), std::greater<>());
   std::sort(c.modes.begin(), c.modes.end());
   return c;
 }
 
-ReferenceFamilies reference_families(const Candidates& candidates, const Model& model) {
+ReferenceFamilies reference_families(const Candidates& candidates, const Prepared& prepared) {
   const auto& all = candidates.families;
   const auto among = [&](const char* family) { return std::find(all.begin(), all.end(), family) != all.end(); };
+  const Model& model = prepared.model();
   const bool loaded = std::any_of(model.hinges().begin(), model.hinges().end(), [&](const HingeNode& hinge) {
     return hinge.parent >= 0 && model.bodies()[static_cast<std::size_t>(hinge.parent)].body->shape().modes() > 0;
   });
   std::vector<std::string> others = all;
-  if (loaded) std::erase_if(others, [](const std::string& family) { return family != loaded_modes; });
+  if (loaded) {
+    const char* const knows = varies_somewhere(prepared.scene) ? vibration_modes : loaded_modes;
+    std::erase_if(others, [&](const std::string& family) { return family != knows; });
+  }
   const char* const first = among(static_shapes) ? static_shapes : among(polynomials) ? polynomials : "";
   return {first, std::move(others)};
 }

@@ -35,8 +35,9 @@ struct ReferenceFamilies {
 };
 
 /// Where they mean the same beams polynomials, or where a tip carries something its static shapes: eigenfunctions of
-/// the bare beam begin well and go on badly there. Those that know the load may do better, elsewhere all others.
-ReferenceFamilies reference_families(const Candidates& candidates, const Model& model);
+/// the bare beam begin well and go on badly there. Those that know the load may do better, and where beams vary those
+/// that know how; elsewhere all others.
+ReferenceFamilies reference_families(const Candidates& candidates, const Prepared& prepared);
 
 /// Names of the scene's bodies that have modes, in its order; a beam in segments is one.
 std::vector<std::string> flexible_bodies(const Scene& scene);

@@ -11,6 +11,9 @@ namespace {
 
 /// Times what the first family has: less is another one's merit, more may be chance.
 constexpr double clearly_less = 0.5;
+/// Times an evaluation with the first family in the highest rung: where another one's takes longer, levels there stay
+/// with the first. What that rung adds hardly depends on the functions.
+constexpr double dear_evaluation = 2;
 /// Times the modes of one look at families: those of the next.
 constexpr double until_next_look = 1.5;
 /// Of the time that is left: what the richest run of each family may be expected to cost, and what it may cost.
@@ -23,12 +26,21 @@ void FamilyChoice::begin(const Point& first) {
   if (goal_.families.empty() || first.modes == 0) return;
   std::optional<double> least = first_change(first, first.family);
   for (const std::string& family : goal_.families) {
-    if (family == first.family) continue;
+    if (family == first.family || dear(first, family)) continue;
     const std::optional<double> change = first_change(first, family);
     if (!change || (least && *change > clearly_less * *least)) continue;
     least = change;
     family_ = family;
   }
+}
+
+/// Whether functions cost much more in the highest rung, as those whose strains have kinks do in `exact`.
+bool FamilyChoice::dear(Point first, const std::string& family) {
+  first.formulation = reference_formulations(registry_).front();
+  Point other = first;
+  other.family = family;
+  const ModelAt &one = model_at_(first), &another = model_at_(other);
+  return !one.refused() && !another.refused() && another.seconds > dear_evaluation * one.seconds;
 }
 
 /// Whether modes have grown by half since the last look, and another would not cost much.

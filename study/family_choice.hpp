@@ -28,7 +28,8 @@ class FamilyChoice {
         steps_(steps),
         series_(outputs, goal.kinds) {}
 
-  /// Chooses the one whose series begins best: whose third mode changes clearly less.
+  /// Chooses the one whose series begins best: whose third mode changes clearly less, and whose evaluations in the
+  /// highest rung do not take much longer.
   void begin(const Point& first);
   /// Looks at all again, by how well it is known where the series of each leads to, now and then as modes grow and
   /// where that costs a small part of the time that is left. True where another one than so far is known clearly
@@ -46,6 +47,7 @@ class FamilyChoice {
 
  private:
   [[nodiscard]] Point in_lowest(Point point) const;
+  [[nodiscard]] bool dear(Point first, const std::string& family);
   [[nodiscard]] std::optional<double> first_change(Point point, const std::string& family);
   [[nodiscard]] std::optional<double> known_in(const std::string& family, Point point);
   [[nodiscard]] bool worth_a_look(const Reference& richest);

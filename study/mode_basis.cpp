@@ -60,6 +60,15 @@ double length_along(const Body& body) {
   return tip->X.x();
 }
 
+/// Whether a value is a table, or one below it is.
+bool has_table(const Value& value) {
+  if (value.kind() == Value::Kind::map)
+    return std::any_of(value.members().begin(), value.members().end(),
+                       [](const Value::Member& member) { return has_table(member.second); });
+  return value.kind() == Value::Kind::list && !value.items().empty() &&
+         value.items().front().kind() == Value::Kind::list;
+}
+
 }  // namespace
 
 bool spans_cantilevers(const Value& family, Registry& registry) {
@@ -83,6 +92,11 @@ std::string family_path(const Scene& scene, const std::string& body, const ModeC
 
 const Value* family_at(const Scene& scene, const std::string& body, const std::string& path) {
   return path.empty() ? nullptr : value_below(scene.source, "bodies." + body + '.' + path);
+}
+
+bool varies(const Scene& scene, const std::string& body) {
+  const Value* given = value_below(scene.source, "bodies." + body);
+  return given != nullptr && has_table(*given);
 }
 
 std::shared_ptr<const Body> body_with(const Scene& scene, const std::string& body,

@@ -24,6 +24,9 @@ std::string family_path(const Scene& scene, const std::string& body, const ModeC
 /// The family that stands there, defaults filled in; null where there is none.
 const Value* family_at(const Scene& scene, const std::string& body, const std::string& path);
 
+/// Whether a property of a body is a table, as those of beams that vary along themselves are.
+bool varies(const Scene& scene, const std::string& body);
+
 /// A body of the scene with other values at paths below it. Null where it cannot be made.
 std::shared_ptr<const Body> body_with(const Scene& scene, const std::string& body,
                                       const std::vector<std::pair<std::string, Value>>& values, Registry& registry);

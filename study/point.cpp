@@ -39,14 +39,16 @@ struct NewFamily {
   std::vector<Matrix6> loads;  ///< of each body of the model, where the family knows of them
 
   NewFamily(std::string family, const Scene& scene) : name(std::move(family)) {
-    if (name == loaded_modes) loads = tip_loads(*scene.model, scene.initial);
+    if (knows_loads()) loads = tip_loads(*scene.model, scene.initial);
   }
+  [[nodiscard]] bool knows_loads() const { return name == vibration_modes || name == loaded_modes; }
   /// What a body's value says; nothing where the family does not fit. Segments have none of their own names.
   [[nodiscard]] std::optional<Value> of(const Scene& scene, const std::string& body, const std::string& strain) const {
     if (name.empty()) return {};
-    if (name != loaded_modes) return Value(name);
+    if (!knows_loads()) return Value(name);
     const int index = scene.model->body(body);
-    return index < 0 ? std::nullopt : loaded_family(loads[static_cast<std::size_t>(index)], strain);
+    if (index < 0) return {};
+    return loaded_family(loads[static_cast<std::size_t>(index)], strain, name, varies(scene, body));
   }
 };
 

@@ -96,6 +96,10 @@ class ReferenceSearch {
   void begin_in_family() {
     const double left = goal_.left ? goal_.left() : most;
     if (coarse_->walk.seconds > level_share * left) return;
+    Point there = coarse_->point;
+    there.family = families_.family();
+    const ModelAt &now = model_at_(coarse_->point), &then = model_at_(there);
+    if (then.refused() || coarse_->walk.seconds * then.seconds > longest_level * left * now.seconds) return;
     ModeSeries anew(outputs_, goal_.kinds);
     std::optional<Reference> coarse, fine;
     for (const int modes : steps_.upper_half(coarse_->point.modes)) {

@@ -92,7 +92,8 @@ std::vector<Matrix6> tip_loads(const Model& model, const State& state) {
   return loads;
 }
 
-std::optional<Value> loaded_family(const Matrix6& I, const std::string& strain) {
+std::optional<Value> loaded_family(const Matrix6& I, const std::string& strain, const std::string& family,
+                                   bool varies) {
   std::optional<RigidLoad> load = in_direction(I, strain);
   if (!load) return {};
   const double least_mass = least_part * I.bottomRightCorner<3, 3>().diagonal().maxCoeff(),
@@ -100,11 +101,13 @@ std::optional<Value> loaded_family(const Matrix6& I, const std::string& strain) 
   const bool mass = load->mass > least_mass;
   const double offset = mass ? load->moment / load->mass : 0, central = load->inertia - load->moment * offset;
   const bool inertia = central > least_inertia;
-  if (!mass && !inertia) return Value(std::string("clamped-free"));
-  return Value::map({{"name", Value(std::string(loaded_modes))},
-                     {"tip_mass", Value(mass ? rounded(load->mass) : 0.0)},
-                     {"tip_inertia", Value(inertia ? rounded(central) : 0.0)},
-                     {"tip_offset", Value(rounded(offset) + 0.0)}});  // no -0
+  if (!mass && !inertia) return Value(varies && family == vibration_modes ? family : std::string("clamped-free"));
+  std::vector<Value::Member> members{{"name", Value(family)},
+                                     {"tip_mass", Value(mass ? rounded(load->mass) : 0.0)},
+                                     {"tip_inertia", Value(inertia ? rounded(central) : 0.0)},
+                                     {"tip_offset", Value(rounded(offset) + 0.0)}};  // no -0
+  if (family == vibration_modes) members.emplace_back("static", Value(1.0));
+  return Value::map(std::move(members));
 }
 
 }  // namespace withy::study

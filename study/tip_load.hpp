@@ -11,7 +11,9 @@
 
 namespace withy::study {
 
-/// The family of functions that loaded_family() gives, where a point names it.
+/// The families of functions that know of a load, where a point names them: the beam's own modes with it and a static
+/// shape of the tip, and those of the uniform beam alone.
+inline constexpr const char* vibration_modes = "vibration-modes";
 inline constexpr const char* loaded_modes = "clamped-loaded";
 
 /// The articulated inertia of what hangs at the tip of each body, in the order of the model's: a symmetric map of
@@ -23,11 +25,15 @@ inline constexpr const char* loaded_modes = "clamped-loaded";
 /// \param state of the model
 std::vector<Matrix6> tip_loads(const Model& model, const State& state);
 
-/// The value of a beam's `family` for one of its strains: `clamped-loaded` with the load's mass, inertia and offset in
-/// the direction of that strain, to six digits; `clamped-free` where the load has none of them. Nothing where the
+/// The value of a beam's `family` for one of its strains: one of these two with the load's mass, inertia and offset in
+/// the direction of that strain, to six digits. Where the load has none of them `clamped-free`, but `vibration-modes`
+/// where the beam varies: a free tip gives way to no force, and static shapes would only be fast. Nothing where the
 /// strain is not one of a beam.
 /// \param load of the beam, as tip_loads() gives it
 /// \param strain "bending_y", "bending_z", "torsion", "extension", "shear_y", "shear_z"
-std::optional<Value> loaded_family(const Matrix6& load, const std::string& strain);
+/// \param family vibration_modes or loaded_modes
+/// \param varies whether the beam's properties vary along it
+std::optional<Value> loaded_family(const Matrix6& load, const std::string& strain, const std::string& family,
+                                   bool varies);
 
 }  // namespace withy::study

@@ -104,10 +104,11 @@ void TradeStudy::find_reference_for(const Point& point) {
   if (known_.contains(key)) return;
   ReferenceGoal goal;
   // Of all that mean the same, whatever families are compared.
-  ReferenceFamilies families = reference_families(candidates_for(base_, registry_, usual_axes()), base_.model());
+  ReferenceFamilies families = reference_families(candidates_for(base_, registry_, usual_axes()), base_);
   goal.families = std::move(families.others);
   // Static shapes do not depend on what the scene says of bodies at tips, which may be gone over.
   std::erase(goal.families, loaded_modes);
+  if (!point.over.empty()) std::erase(goal.families, vibration_modes);
   goal.first = {"", std::move(families.first), 0, "dop853", 1e-6, point.over};
   for (const Point& p : points_) {
     goal.first.modes = std::max(goal.first.modes, p.modes);

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace withy {
 
@@ -17,8 +19,16 @@ struct BeamData {
   enum class Strain { bending, torsion, elongation };
   Strain strain = Strain::bending;
   double length = 0;     ///< [m]
-  double inertia = 0;    ///< mass per length [kg/m], or in torsion polar inertia per length ρI_p [kg m]
-  double stiffness = 0;  ///< EI, GJ [N m²], or EA, kGA [N]
+  double inertia = 0;    ///< mass per length [kg/m], or in torsion polar inertia per length ρI_p [kg m]; its mean
+  double stiffness = 0;  ///< EI, GJ [N m²], or EA, kGA [N]; its mean
+  /// The same of one section.
+  struct Section {
+    double inertia = 0, stiffness = 0;
+  };
+  /// The section at x [m], where they vary along the beam; empty: they do not. Of a twisted beam about the section's
+  /// own axes.
+  std::function<Section(double x)> section = {};
+  std::vector<double> kinks = {};  ///< where `section` may have kinks [m], in any order
 };
 
 /// Shape functions φ_i(x), i = 0 … count−1, 0 ≤ x ≤ L: deflections normalized ∫₀ᴸ φ_i² dx = L, twists and
@@ -31,6 +41,8 @@ class ShapeFunctions {
   [[nodiscard]] virtual std::size_t count() const = 0;
   /// Greatest wave number β [1/m] among the functions: bodies choose their quadrature by it.
   [[nodiscard]] virtual double wave_number() const = 0;
+  /// Where a strain, φ″ in bending and else φ′, may have a kink or a step, between 0 and L, increasing.
+  [[nodiscard]] virtual std::vector<double> kinks() const { return {}; }
   /// φ_i, φ_i′ [1/m] and φ_i″ [1/m²] of every function at x [m]; each span has count() elements.
   virtual void evaluate(double x, std::span<double> phi, std::span<double> slope,
                         std::span<double> curvature) const = 0;
@@ -45,7 +57,8 @@ class ModeFamily {
   /// Whether enough of its functions describe any bending of a beam that is clamped at its root and free at its tip:
   /// studies may take one such family in place of another.
   [[nodiscard]] virtual bool spans_cantilevers() const { return false; }
-  /// The first `count` ≤ most() functions of the beam; null where the family has none for this strain.
+  /// `count` ≤ most() functions of the beam, the first of them the same however many are asked for; null where the
+  /// family has none for this strain.
   [[nodiscard]] virtual std::unique_ptr<ShapeFunctions> functions(const BeamData& beam, std::size_t count) const = 0;
 };
 

@@ -13,6 +13,7 @@ void enroll_free_free(Enrollment& enrollment);
 void enroll_craig_bampton(Enrollment& enrollment);
 void enroll_orthogonal_polynomials(Enrollment& enrollment);
 void enroll_clamped_loaded(Enrollment& enrollment);
+void enroll_vibration_modes(Enrollment& enrollment);
 
 namespace {
 
@@ -26,6 +27,7 @@ void enroll(Enrollment& enrollment) {
   enroll_craig_bampton(enrollment);
   enroll_orthogonal_polynomials(enrollment);
   enroll_clamped_loaded(enrollment);
+  enroll_vibration_modes(enrollment);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Which family of modes a reference has.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,7 +18,7 @@ using test::plugins;
 TEST(FindReference, EigenfunctionsAreTakenForABareBeamWhereTheyConvergeFaster) {
   SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/spinning-beam.yaml");
   const Prepared beam = prepare(values.set("time.end", Value(0.5), "the test"), plugins());
-  EXPECT_FALSE(reference_families(candidates_for(beam, plugins(), usual_axes()), beam.model()).others.empty());
+  EXPECT_FALSE(reference_families(candidates_for(beam, plugins(), usual_axes()), beam).others.empty());
   const Outputs outputs = Outputs::all(beam.model());
   Evaluator evaluator(beam, plugins(), outputs, {});
   const auto family = [&](std::vector<std::string> families) {
@@ -91,7 +92,7 @@ Prepared arm_for(double seconds) {
 
 TEST(FindReference, WhereATipCarriesABodyItsStaticShapesAreTakenOrFunctionsThatKnowTheBody) {
   const Prepared arm = arm_for(0.5);
-  const ReferenceFamilies families = reference_families(candidates_for(arm, plugins(), usual_axes()), arm.model());
+  const ReferenceFamilies families = reference_families(candidates_for(arm, plugins(), usual_axes()), arm);
   EXPECT_EQ(families.first, "craig-bampton");
   EXPECT_EQ(families.others, std::vector<std::string>{"clamped-loaded"});
 }
@@ -117,6 +118,28 @@ TEST(FindReference, UnderALoadedTipStaticShapesAreNearerTheTruthThanAsManyPolyno
     EXPECT_LT(error(shapes), error(polynomials)) << modes;
     EXPECT_LT(shapes.walk.evaluations, polynomials.walk.evaluations) << modes;
   }
+}
+
+/// A blade's stiffness goes over five decades, and its curvature has the kinks of that.
+TEST(FindReference, WhereABeamVariesItsOwnModesAreNearerTheTruthThanAsManyPolynomials) {
+  SceneValues values = SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/wind-turbine-blade.yaml");
+  for (const char* strain : {"bending_y", "bending_z"})
+    values.set(std::string("bodies.blade.") + strain + ".family", Value(std::string("clamped-free")), "the test");
+  const Prepared blade = prepare(values.set("time.end", Value(0.3), "the test"), plugins());
+  const ReferenceFamilies families = reference_families(candidates_for(blade, plugins(), usual_axes()), blade);
+  EXPECT_EQ(families.first, "orthogonal-polynomials");
+  EXPECT_TRUE(std::count(families.others.begin(), families.others.end(), "vibration-modes"));
+  const Outputs outputs = Outputs::all(blade.model());
+  Evaluator evaluator(blade, plugins(), outputs, {});
+  const auto at = [&](const Point& p) -> const ModelAt& { return evaluator.model(p); };
+  ReferenceGoal goal;
+  goal.first = {"", "vibration-modes", 5, "dop853", 1e-7, {}, {}};
+  const Reference truth = *find_reference(at, plugins(), outputs, goal, {}).reference;
+  const Yardstick yardstick{truth, truth.scales};
+  const auto off = [&](const char* name) {
+    return evaluator.run({truth.point.formulation, name, 3, "dop853", 1e-7, {}, {}}, yardstick).use;
+  };
+  EXPECT_LT(off("vibration-modes"), 0.2 * off("orthogonal-polynomials"));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ Prepared boom(const std::string& hinge, const std::string& more = "") {
 
 Value family(const Prepared& scene, const std::string& strain) {
   const auto b = static_cast<std::size_t>(scene.model().body("boom"));
-  return *loaded_family(tip_loads(scene.model(), scene.scene.initial)[b], strain);
+  return *loaded_family(tip_loads(scene.model(), scene.scene.initial)[b], strain, vibration_modes, false);
 }
 
 void expect_load(const Value& family, double mass_of, double offset, double central) {
@@ -47,7 +47,7 @@ TEST(TipLoad, AWeldedBodyIsThere) {
   expect_load(family(scene, "bending_z"), mass, arm, inertia);
   expect_load(family(scene, "torsion"), 0, 0, 0.01);
   expect_load(family(scene, "extension"), mass, 0, 0);
-  EXPECT_FALSE(loaded_family(Matrix6::Identity(), "breathing")) << "not a strain of a beam";
+  EXPECT_FALSE(loaded_family(Matrix6::Identity(), "breathing", vibration_modes, false)) << "not a strain of a beam";
 }
 
 /// A body on a pin acts along its arm with its whole mass, across with m J/(J + m c²), and takes no moment.
@@ -79,16 +79,19 @@ TEST(TipLoad, ABeamThatCarriesNothingKeepsAFreeTip) {
       prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/gallery/spinning-beam.yaml"), plugins());
   for (const Matrix6& load : tip_loads(scene.model(), scene.scene.initial)) {
     EXPECT_TRUE(load.isZero(0));
-    EXPECT_EQ(loaded_family(load, "bending_y")->text(), "clamped-free");
+    for (const char* name : {loaded_modes, vibration_modes})
+      EXPECT_EQ(loaded_family(load, "bending_y", name, false)->text(), "clamped-free");
+    EXPECT_EQ(loaded_family(load, "bending_y", vibration_modes, true)->text(), vibration_modes);
   }
-  for (const std::string& name : candidates_for(scene, plugins(), usual_axes()).families) EXPECT_NE(name, loaded_modes);
+  for (const std::string& name : candidates_for(scene, plugins(), usual_axes()).families)
+    EXPECT_NE(name, vibration_modes);
 }
 
 /// Chains hang on from tip to tip: the first link carries what lies beyond its elbow.
 TEST(TipLoad, EachBodyOfASceneGetsItsOwn) {
   const Prepared arm = prepare(SceneValues::read(std::string(WITHY_SOURCES) + "/scenes/two-link-slew.yaml"), plugins());
   std::map<std::string, double> masses;
-  for (const Change& change : changes_at(arm.scene, {"quadratic", loaded_modes, 2, "", 0, {}, {}}, plugins()))
+  for (const Change& change : changes_at(arm.scene, {"quadratic", vibration_modes, 2, "", 0, {}, {}}, plugins()))
     if (change.path.ends_with("family")) masses[change.path] = change.value.number_at("tip_mass");
   ASSERT_EQ(masses.size(), 2U);
   EXPECT_DOUBLE_EQ(masses.at("bodies.link2.bending_y.family"), 2) << "the payload";
