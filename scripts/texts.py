@@ -152,18 +152,18 @@ def figures():
         return [abs(m["eigenvalue"][1]) for m in modes]
 
     blade = "scenes/gallery/wind-turbine-blade.yaml"
-    polynomials = ["--set", "bodies.blade.bending_y.modes=6", "--set", "bodies.blade.bending_z.modes=6"]
+    six = ["--set", "bodies.blade.bending_y.modes=6", "--set", "bodies.blade.bending_z.modes=6"]
     def most_deflected(formulation):
-        program.run("run", blade, "--formulation", formulation, *polynomials, "--out", work / "blade", "--force")
+        program.run("run", blade, "--formulation", formulation, *six, "--out", work / "blade", "--force")
         rows = list(csv.DictReader(open(work / "blade" / "results.csv")))
         return max(abs(float(r["blade.tip.deflection_z[m]"])) for r in rows)
 
-    hertz = [f / math.tau for f in frequencies(blade, "--as-is", *polynomials, "--set", "gravity=[0, 0, 0]", "--set", "motions.turn.rate=0", "--set", "loads={}")]
+    hertz = [f / math.tau for f in frequencies(blade, "--as-is", *six, "--set", "gravity=[0, 0, 0]", "--set", "motions.turn.rate=0", "--set", "loads={}")]
     spinning = "scenes/gallery/spinning-beam.yaml"
     frozen, full = (frequencies(spinning, "--formulations", f) for f in ("ruthless", "quadratic"))
     record("figures", [
         ["what", "how much"],
-        *([f"blade of the wind turbine, six polynomials, mode {i + 1}", f"{hertz[i]:.3f} Hz"] for i in range(3)),
+        *([f"blade of the wind turbine, six functions, mode {i + 1}", f"{hertz[i]:.3f} Hz"] for i in range(3)),
         *([f"its tip out of the plane at most, `{f}`", f"{most_deflected(f):.2f} m"] for f in ("linear", "quadratic")),
         ["spinning beam, `ruthless`", f"{frozen[0]:.2f} rad/s"],
         *([f"spinning beam, `quadratic`, mode {i + 1}", f"{full[i]:.2f} rad/s"] for i in range(2)),
