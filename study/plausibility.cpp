@@ -15,6 +15,7 @@
 #include "withy/core/simulation/tips.hpp"
 #include "withy/study/step_limit.hpp"
 #include "withy/study/tip_moments.hpp"
+#include "withy/study/varying_sections.hpp"
 
 namespace withy::study {
 namespace {
@@ -260,6 +261,7 @@ std::vector<Remark> implausible(const Prepared& prepared, Registry& registry) {
   std::vector<Remark> all;
   look_at_bodies(prepared, all);
   look_at_tip_moments(prepared, registry, all);
+  look_at_varying_sections(prepared, registry, all);
   look_at_servos(prepared, all);
   look_at_steps(prepared, all);
   look_at_frames(prepared, all);

@@ -276,6 +276,13 @@ TEST(Check, SaysWhatIsHardlyMeant) {
                                                 "bodies.right_boom.bending_z.family=orthogonal-polynomials"};
   EXPECT_THAT(said(polynomials, "scenes/spacecraft.yaml"), Not(HasSubstr("/bodies/right_boom")));
   EXPECT_THAT(said({}, "scenes/rotating-blade.yaml"), Not(HasSubstr("clamped-free"))) << "it carries nothing";
+  // Functions of an even beam on a blade, and the remedy.
+  const std::string blade = "scenes/gallery/wind-turbine-blade.yaml";
+  EXPECT_THAT(said({}, blade), Not(HasSubstr("/bodies/blade")));
+  EXPECT_THAT(said({"bodies.blade.bending_z.family=clamped-free"}, blade),
+              HasSubstr("/bodies/blade: 3 bending_z modes of clamped-free vibrate first at 0.6"));
+  EXPECT_THAT(said({"bodies.blade.bending_z.family=clamped-free", "bodies.blade.bending_z.modes=9"}, blade),
+              Not(HasSubstr("/bodies/blade")));
 }
 
 TEST(Check, SaysWhatManyBodiesShareOnce) {
