@@ -22,6 +22,14 @@ Registry& registry() {
   return plugins;
 }
 
+/// "gravity" of "gravity.1"; empty where the parameter is no element of a vector.
+std::string_view vector_of(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos || name.find_first_not_of("0123456789", dot + 1) != std::string_view::npos)
+    return {};
+  return name.substr(0, dot);
+}
+
 }  // namespace
 
 Instance::Instance(Kind kind, std::string name, std::string_view token, const std::string& resources, Log log)
@@ -100,9 +108,22 @@ void Instance::set_experiment(std::optional<double> tolerance, double start) {
 /// The scene with the parameters and the tolerance that were set.
 std::shared_ptr<const study::Prepared> Instance::with_parameters() const {
   SceneValues values = values_;
-  for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    const Variable& v = variables_.all[variables_.parameter(i)];
-    if (parameters_[i] != v.start) values.set(v.name, Value(parameters_[i]), "parameter '" + v.name + "'");
+  const auto parameter = [&](std::size_t i) -> const Variable& { return variables_.all[variables_.parameter(i)]; };
+  for (std::size_t i = 0; i < parameters_.size();) {
+    const std::string_view vector = vector_of(parameter(i).name);
+    std::size_t end = i + 1;
+    while (!vector.empty() && end < parameters_.size() && vector_of(parameter(end).name) == vector) ++end;
+    std::size_t other = i;
+    while (other < end && parameters_[other] == parameter(other).start) ++other;
+    if (other < end) {
+      const std::string origin = "parameter '" + parameter(other).name + "'";
+      // Whole vectors: the file may have none, or an orientation as an axis and an angle.
+      if (vector.empty())
+        values.set(parameter(i).name, Value(parameters_[i]), origin);
+      else
+        values.set(vector, Value::list(std::vector<Value>(&parameters_[i], &parameters_[i] + (end - i))), origin);
+    }
+    i = end;
   }
   const Value* rtol = values.find("integrator.rtol");
   if (tolerance_ && variables_.parameters > 0) {

@@ -118,5 +118,33 @@ TEST(FmuParameters, AreTunedAtEventsOfModelExchange) {
   EXPECT_THAT(i.heard.last, testing::HasSubstr("is a tunable parameter"));
 }
 
+/// Numbers of vectors that the file has not, or has in another form, are parameters as others are.
+TEST(FmuParameters, AreElementsOfVectorsThatTheFileLeavesOut) {
+  const std::filesystem::path file = scratch() / "plain.yaml";
+  std::ofstream(file) << R"(format: withy/1
+time: {end: 1, output: 0.05}
+bodies: {rod: {type: rigid, mass: 2, inertia: [0.1, 0.1, 0.1, 0, 0, 0], frames: {tip: {position: [1, 0, 0]}}}}
+hinges:
+  axle:
+    {type: revolute, axis: [0, 0, 1], parent: world, child: rod, offset: {orientation: {axis: [0, 0, 1], angle: 0}}}
+)";
+  const Unpacked& fmu = exported(file.string(), 3);
+  Instance3 i(fmu, true);
+  const auto set = [&](const std::string& name, double value) {
+    EXPECT_EQ(i.set(fmu.reference(name), value), fmi3OK) << i.heard.last;
+  };
+  set("gravity.1", -10);
+  set("bodies.rod.center_of_mass.0", 0.5);
+  set("hinges.axle.offset.position.2", 3);
+  set("hinges.axle.offset.orientation.0", 0.6);  // a quaternion about z: cos ψ = 0.36 − 0.64, sin ψ = 0.96
+  set("hinges.axle.offset.orientation.3", 0.8);
+  i.initialize();
+  EXPECT_NEAR(i.get(fmu.reference("rod.tip.x")), -0.28, 1e-15);
+  EXPECT_NEAR(i.get(fmu.reference("rod.tip.y")), 0.96, 1e-15);
+  EXPECT_EQ(i.get(fmu.reference("rod.tip.z")), 3);
+  // −m g l cos ψ over the inertia about the hinge, 0.1 + 2 · 0.25.
+  EXPECT_NEAR(i.get(fmu.reference("der(axle.rate)")), 2 * 10 * 0.5 * 0.28 / 0.6, 1e-13);
+}
+
 }  // namespace
 }  // namespace withy::test
