@@ -91,6 +91,7 @@ class Dynamics {
   void differences(std::span<const double> along_states, std::span<const std::size_t> inputs,
                    std::span<const double> along_inputs, std::span<const std::size_t> columns,
                    std::span<double> values);
+  [[nodiscard]] std::vector<double> seen_along(std::span<const double> along_states) const;
   State moved(double h, std::span<const double> along_states, std::span<const std::size_t> inputs,
               std::span<const double> along_inputs);
   bool switch_where_passed(EventUpdate& update);
