@@ -131,6 +131,7 @@ static void misuse(withy_library* library, withy_scene* scene) {
   withy_equations* equations = NULL;
   withy_library_options old;
   withy_library* other = NULL;
+  const char* const no_folder = NULL;
   double y[SIZE] = {0};
   size_t i;
   EXPECT(withy_scene_read(NULL, "x", &none) == WITHY_BAD_USE, library);
@@ -168,6 +169,11 @@ static void misuse(withy_library* library, withy_scene* scene) {
   withy_free(equations);
 
   memset(&old, 0, sizeof old);
+  EXPECT(withy_library_create(&old, &other) == WITHY_BAD_USE && other == NULL, library);
+  old.size = sizeof old;
+  old.plugin_count = 1;
+  EXPECT(withy_library_create(&old, &other) == WITHY_BAD_USE && other == NULL, library);
+  old.plugins = &no_folder;
   EXPECT(withy_library_create(&old, &other) == WITHY_BAD_USE && other == NULL, library);
   withy_free(NULL);
 }
