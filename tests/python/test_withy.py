@@ -288,6 +288,10 @@ def test_studies_give_what_the_program_prints(slew):
     assert scene.advise("10%", **axes)["advice"]["formulation"] == "ruthless"
     with pytest.raises(withy.SceneError):
         scene.advise("3 kg")
+    # A single name is no list of its letters.
+    assert scene.compare("linear", outputs="elbow")["runs"][0]["outputs"][0]["output"] == "elbow"
+    assert scene.modes("shoulder") == scene.modes(["shoulder"])
+    assert scene.linearize(inputs="all")["inputs"] == scene.linearize(inputs=["all"])["inputs"]
 
 
 def test_results_are_drawn(slew, tmp_path):
