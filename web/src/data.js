@@ -129,7 +129,9 @@ export function quantities(run) {
     else if (unit === 'rad' && told.has(name)) continue;
     else if (unit === 'rad' && column.data.some(v => Math.abs(v) > 20 * Math.PI)) add('Turns', name, 'turns', run.time, () => column.data.map(v => v / 2 / Math.PI));
     else if (unit === 'rad') add('Angles', name, 'deg', run.time, () => column.data.map(v => v * degrees));
-    else if (unit === '' || unit === '1') add('Modal coordinates', name, '1', run.time, data);
+    else if (unit === '') add('Modal coordinates', name, '1', run.time, data);
+    // Of outputs: a strain, a formula.
+    else if (unit === '1') add('Numbers without a unit', name, '1', run.time, data);
     else if (name.includes('.')) add(`${name.slice(0, -last.length - 1)}, ${unit}`, name, unit, run.time, data);
     else add(unit === 'm' ? 'Travel of hinges' : `${name}, ${unit}`, name, unit, run.time, data);
   }
