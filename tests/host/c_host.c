@@ -162,6 +162,9 @@ static void misuse(withy_library* library, withy_scene* scene) {
   EXPECT(withy_equations_create(scene, "quadratc", &equations) == WITHY_BAD_INPUT, scene);
   EXPECT(withy_equations_create(scene, NULL, &equations) == WITHY_OK, scene);
   EXPECT(withy_equations_derivatives(equations, 0, y, y, 1) == WITHY_BAD_USE, equations);
+  EXPECT(withy_equations_derivatives(equations, NAN, y, y + SIZE / 2, withy_equations_size(equations)) == WITHY_STOPPED,
+         equations);
+  EXPECT(strstr(withy_error(equations), "the time is not finite") != NULL, equations);
   for (i = 0; i < SIZE / 2; ++i) y[i] = NAN;
   EXPECT(withy_equations_derivatives(equations, 0, y, y + SIZE / 2, withy_equations_size(equations)) == WITHY_STOPPED,
          equations);
