@@ -96,6 +96,14 @@ void Dynamics::set_state(std::size_t index, double value) {
   changed();
 }
 
+void Dynamics::begin_loads(std::span<const std::size_t> states) {
+  if (states.empty()) return;
+  State begun = seen();
+  model().begin_continuous(begun);
+  for (const std::size_t i : states) state_.y[i] = begun.y[i];
+  changed();
+}
+
 void Dynamics::show(const State& state) {
   state_ = state;
   jump_ = infinity;

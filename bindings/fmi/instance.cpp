@@ -147,9 +147,18 @@ void Instance::remake() {
     if (is_started_[i] != 0) made->set_state(i, starts_[i]);
   for (std::size_t i = 0; i < inputs_.size(); ++i)
     if (is_input_set_[i] != 0) made->set_input(variables_.all[variables_.input(i)].index, inputs_[i]);
+  begin_loads(*made);
   made->begin();
   dynamics_ = std::move(made);
   stale_ = false;
+}
+
+/// A filter begins at what it measures, wherever the host begins: as in a run from there.
+void Instance::begin_loads(Dynamics& dynamics) const {
+  std::vector<std::size_t> states;
+  for (std::size_t i = 0; i < variables_.states; ++i)
+    if (variables_.all[variables_.state(i)].begun && is_started_[i] == 0) states.push_back(i);
+  dynamics.begin_loads(states);
 }
 
 /// Goes on from where it stands with other parameters. \param before those up to now, which stay where it throws
@@ -310,6 +319,7 @@ void Instance::set(std::span<const std::uint32_t> references, const double* valu
   set_those(true);
   if (parameters_ != before && is_in(Mode::event | Mode::step)) retune(before);
   set_those(false);
+  if (!stale_ && is_in(Mode::instantiated | Mode::initialization)) begin_loads(*dynamics_);
 }
 
 void Instance::give(std::span<const double> numbers, double* array, std::size_t count) const {

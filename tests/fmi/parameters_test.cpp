@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
 
+#include "withy/host/simulation.hpp"
 #include "withy/tests/fmi/importer.hpp"
 
 namespace withy::test {
@@ -116,6 +118,41 @@ TEST(FmuParameters, AreTunedAtEventsOfModelExchange) {
   ASSERT_EQ(i.fmi.EnterContinuousTimeMode(i.c), fmi2OK);
   EXPECT_EQ(i.set(stiffness, 3), fmi2Error);  // not between events
   EXPECT_THAT(i.heard.last, testing::HasSubstr("is a tunable parameter"));
+}
+
+/// A controller whose filter begins elsewhere than at what it measures kicks: with other start values, or at another
+/// time, an FMU begins as the scene does that says the same.
+TEST(FmuParameters, StartValuesAndTimesBeginTheStatesOfLoads) {
+  const std::string file = SCENES "/manipulator-pid.yaml";
+  for (const int version : {2, 3}) {
+    const Unpacked& fmu = exported(file, version);
+    const auto check = [&](auto& i, double start, const std::function<void(double)>& initialize) {
+      i.set(fmu.reference("shoulder"), 0.65);
+      i.set(fmu.reference("hold_wrist.integral"), 0.01);
+      initialize(start);
+      host::Scene scene = host::Scene::read(library(), file);
+      scene.set("initial.time", start).set("initial.hinges.shoulder.position", "[0.65]");
+      scene.set("initial.loads", "{hold_wrist: {integral: 0.01}}");
+      const host::Simulation simulation(scene);
+      for (const host::Port& port : simulation.outputs()) {
+        if (port.name == "work") continue;
+        EXPECT_EQ(i.get(fmu.reference(port.name)), simulation.output(port.name)) << port.name << " at " << start;
+      }
+      EXPECT_EQ(i.get(fmu.reference("hold_wrist.integral")), 0.01);
+    };
+    for (const double start : {0.0, 0.4}) {
+      if (version == 2) {
+        Instance2 i(fmu, fmi2CoSimulation);
+        check(i, start, [&](double t) { i.initialize(t); });
+      } else {
+        Instance3 i(fmu, true);
+        check(i, start, [&](double t) {
+          EXPECT_EQ(i.fmi.EnterInitializationMode(i.c, false, 0, t, false, 0), fmi3OK) << i.heard.last;
+          EXPECT_EQ(i.fmi.ExitInitializationMode(i.c), fmi3OK) << i.heard.last;
+        });
+      }
+    }
+  }
 }
 
 /// Numbers of vectors that the file has not, or has in another form, are parameters as others are.
