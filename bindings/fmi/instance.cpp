@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "withy/bindings/fmi/resources.hpp"
+#include "withy/core/model/closing.hpp"
+#include "withy/core/simulation/assembly.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 
@@ -161,6 +163,30 @@ void Instance::begin_loads(Dynamics& dynamics) const {
   dynamics.begin_loads(states);
 }
 
+/// Closes loops that start values have opened, as a scene does that says the same: what was set stays.
+/// \throws std::invalid_argument where they cannot be closed so
+void Instance::close_loops(Dynamics& dynamics) const {
+  const Model& model = dynamics.model();
+  const std::vector<const LoopClosure*> loops = loops_of(model);
+  const Layout& layout = model.layout();
+  if (loops.empty() || std::find(is_started_.begin(), is_started_.end(), 1) == is_started_.end()) return;
+  GivenState given{std::vector<bool>(layout.speeds, false), std::vector<bool>(layout.speeds, false)};
+  const auto note = [&](const Slot& slot) {
+    for (std::size_t i = 0; i < slot.positions; ++i)
+      for (std::size_t k = 0; is_started_[slot.position + i] != 0 && k < slot.speeds; ++k)
+        if (slot.positions != slot.speeds || k == i) given.positions[slot.speed + k] = true;
+    for (std::size_t k = 0; k < slot.speeds; ++k)
+      given.rates[slot.speed + k] = is_started_[layout.positions + slot.speed + k] != 0;
+  };
+  std::for_each(layout.hinges.begin(), layout.hinges.end(), note);
+  std::for_each(layout.bodies.begin(), layout.bodies.end(), note);
+  State state = dynamics.state();
+  const Assembly closed = assemble(model, *dynamics.prepared().equations, given, state);
+  if (!closed.fault.empty())
+    throw std::invalid_argument("constraint '" + loops[closed.loop]->name() + "': " + closed.fault);
+  dynamics.set_moving(std::span(state.y).first(dynamics.states()));
+}
+
 /// Goes on from where it stands with other parameters. \param before those up to now, which stay where it throws
 void Instance::retune(const std::vector<double>& before) {
   std::unique_ptr<Session> old_session;
@@ -203,6 +229,8 @@ void Instance::enter_initialization() {
 
 void Instance::exit_initialization() {
   Dynamics& d = dynamics();
+  close_loops(d);
+  begin_loads(d);
   d.begin();
   if (kind_ == Kind::co_simulation) {
     make_session();

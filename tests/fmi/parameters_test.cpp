@@ -155,6 +155,30 @@ TEST(FmuParameters, StartValuesAndTimesBeginTheStatesOfLoads) {
   }
 }
 
+/// A loop is closed around the start values that a host sets, as around those of a scene.
+TEST(FmuParameters, StartValuesCloseLoops) {
+  const std::string file = SCENES "/gallery/four-bar.yaml";
+  host::Scene scene = host::Scene::read(library(), file);
+  const std::filesystem::path out = scratch() / "four-bar.fmu";
+  static_cast<void>(fmi::export_fmu(*scene.prepare(), {}, library().registry(), {3, false, true, out}));
+  const Unpacked fmu = unpack(out, 3);
+  Instance3 i(fmu, true);
+  i.set(fmu.reference("motor"), 1.2);
+  i.set(fmu.reference("motor.rate"), 5);
+  i.initialize();
+  EXPECT_EQ(i.get(fmu.reference("motor")), 1.2);
+  EXPECT_EQ(i.get(fmu.reference("motor.rate")), 5);
+  const double pivot = i.get(fmu.reference("pivot"));
+  EXPECT_NEAR(i.get(fmu.reference("coupler.tip.x")), 0.9 + 0.8 * std::cos(pivot), 1e-12);
+  EXPECT_NEAR(i.get(fmu.reference("coupler.tip.y")), 0.8 * std::sin(pivot), 1e-12);
+  // Where every hinge is set, no way is left.
+  Instance3 torn(fmu, true);
+  for (const char* hinge : {"motor", "elbow", "pivot"}) torn.set(fmu.reference(hinge), 0);
+  EXPECT_EQ(torn.fmi.EnterInitializationMode(torn.c, false, 0, 0, false, 0), fmi3OK);
+  EXPECT_EQ(torn.fmi.ExitInitializationMode(torn.c), fmi3Error);
+  EXPECT_THAT(torn.heard.last, testing::HasSubstr("constraint 'loop'"));
+}
+
 /// Numbers of vectors that the file has not, or has in another form, are parameters as others are.
 TEST(FmuParameters, AreElementsOfVectorsThatTheFileLeavesOut) {
   const std::filesystem::path file = scratch() / "plain.yaml";
