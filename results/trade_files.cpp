@@ -150,6 +150,7 @@ Json trade_page(const study::Prepared& prepared, Json trade, const std::vector<s
   for (std::size_t i = 0; i < results.size(); ++i) {
     std::string command = "withy run " + prepared.scene.file + " --formulation " + results[i].point.formulation;
     for (const std::string& setting : prepared.scene.settings) command += " --set " + one_word(setting);
+    for (const std::string& over : results[i].point.over) command += " --set " + one_word(over);
     for (const study::Change& change : study::changes_at(prepared.scene, results[i].point, registry))
       command += " --set " + one_word(change.text());
     trade["points"].at(i)["command"] = command;

@@ -77,12 +77,13 @@ TEST(Trade, FailuresAreRowsWithTheirReason) {
 // What the trade was asked for is part of each run.
 TEST(Trade, ThePageGivesTheCommandsOfItsPoints) {
   const Folder folder;
-  const Finished f = trade(folder, {"--set", "name=it's slewed", "--formulations", "quadratic"});
+  const Finished f = trade(
+      folder, {"--set", "name=it's slewed", "--formulations", "quadratic", "--over", "loads.slew.time_scale=1,1.5"});
   ASSERT_EQ(f.status, 0) << f.err;
   const std::string page = folder.read("out/report.html");
   if (page.empty()) GTEST_SKIP() << "built without the page of reports";
   EXPECT_THAT(page, HasSubstr(R"(--formulation quadratic --set 'time.end=0.3' --set 'name=it'\\''s slewed' --set )"
-                              R"('integrator={name: dopri5)"));
+                              R"('loads.slew.time_scale=1.5' --set 'integrator={name: dopri5)"));
 }
 
 // Distances from the reference as `compare` measures them.
