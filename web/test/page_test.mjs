@@ -44,6 +44,13 @@ function check_ticks() {
   assert.equal(labels(6000, 6020), '6000 6020');
 }
 
+// Runs lie over each other in the same unit, also where an angle turns far in one of them alone.
+function check_turns() {
+  const run = end => ({ table: { columns: [{ name: 't', unit: 's', data: [0, 1] }, { name: 'axle', unit: 'rad', data: [0, end] }] }, validity: [], time: [0, 1] });
+  const groups = grouped([run(Math.PI), run(100 * Math.PI)]);
+  assert.deepEqual(groups.map(g => [g.title, g.series[0].of.map(({ y }) => y[1])]), [['Turns', [0.5, 50]]]);
+}
+
 // An output without a unit is no modal coordinate.
 function check_groups() {
   const columns = [['t', 's'], ['boom.bending_y.1', ''], ['root.strain_y', '1'], ['boom.bending_y.1.rate', '']].map(([name, unit]) => ({ name, unit, data: [0, 1] }));
@@ -293,6 +300,7 @@ function check_looks(file) {
 
 check_ticks();
 check_groups();
+check_turns();
 check_common_scale();
 await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   [folder, run] = [own_folder, own_run];
