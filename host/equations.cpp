@@ -66,6 +66,11 @@ std::shared_ptr<const study::Prepared> continuous(const Scene& scene, const std:
 
 }  // namespace
 
+namespace {
+/// Tables of loads would give numbers at a time that is not finite, as if it lay beyond their end.
+constexpr Evaluation no_instant = {Evaluation::Outcome::nonfinite};
+}  // namespace
+
 struct Equations::Parts {
   /// Equations with lanes, and what each lane works in.
   struct InLanes {
@@ -106,6 +111,7 @@ struct Equations::Parts {
   Evaluation evaluate(double t, std::span<const double> y) {
     expect(y.size(), size, "y");
     std::copy(y.begin(), y.end(), full.begin());
+    if (!std::isfinite(t)) return no_instant;
     return equations.derivatives(t, full, full_dot, work);
   }
   [[nodiscard]] const LoadNode& load_of_input(std::size_t index) const {
@@ -180,6 +186,7 @@ EvaluatedRows Equations::derivatives_many(double t, std::span<const double> y, s
   const std::size_t n = p.size, count = n == 0 ? 0 : y.size() / n;
   Parts::expect(y.size(), count * n, "y");
   Parts::expect(y_dot.size(), y.size(), "y_dot");
+  if (count > 0 && !std::isfinite(t)) return {0, no_instant};
   if (!p.in_lanes) p.in_lanes.emplace(p.equations);
   const std::span<Parts::InLanes::One> lanes = p.in_lanes->lanes;
   if (lanes.empty()) {
@@ -215,7 +222,9 @@ void Equations::jacobian(double t, std::span<const double> y, std::span<double> 
   Parts::expect(jacobian.size(), p.size * p.size, "jacobian");
   const Linearization* linearization = p.equations.linearization();
   if (linearization == nullptr)
-    throw study::InputError("formulation '" + p.prepared->scene.formulation_name + "' has no derivatives");
+    throw study::InputError(dynamic_cast<const ClosedLoops*>(&p.equations) != nullptr
+                                ? "equations whose constraints close loops have no derivatives: take differences"
+                                : "formulation '" + p.prepared->scene.formulation_name + "' has no derivatives");
   Evaluation evaluation = p.evaluate(t, y);
   if (evaluation.ok()) evaluation = linearization->jacobian(t, p.full, p.full_dot, jacobian);
   if (!evaluation.ok()) throw SimulationStopped("singular", reason(t, evaluation), t);

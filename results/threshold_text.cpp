@@ -30,7 +30,7 @@ std::string crossings_text(const std::vector<study::Threshold>& rows, const stud
 }  // namespace
 
 std::string threshold_title(const std::string& scene, bool frequencies, double limit) {
-  return fmt::format("{}: where the error of {} passes {:g} %", scene, frequencies ? "frequencies" : "hinges or tips",
+  return fmt::format("{}: where the error of {} passes {:g} %", scene, frequencies ? "frequencies" : "the worst output",
                      100 * limit);
 }
 

@@ -134,12 +134,25 @@ std::string trade_picture(const std::string& title, const std::vector<study::Tra
   return svg_plot(title, legend, panels);
 }
 
+namespace {
+
+/// As a POSIX shell takes it for one word.
+std::string one_word(const std::string& text) {
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+  return word + '\'';
+}
+
+}  // namespace
+
 Json trade_page(const study::Prepared& prepared, Json trade, const std::vector<study::TradeResult>& results,
                 Registry& registry) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     std::string command = "withy run " + prepared.scene.file + " --formulation " + results[i].point.formulation;
+    for (const std::string& setting : prepared.scene.settings) command += " --set " + one_word(setting);
+    for (const std::string& over : results[i].point.over) command += " --set " + one_word(over);
     for (const study::Change& change : study::changes_at(prepared.scene, results[i].point, registry))
-      command += " --set '" + change.text() + '\'';
+      command += " --set " + one_word(change.text());
     trade["points"].at(i)["command"] = command;
   }
   return trade;

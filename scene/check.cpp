@@ -19,6 +19,16 @@
 namespace withy {
 namespace {
 constexpr double most_exact_integer = 9007199254740992.0;  // 2^53
+
+/// True for what `--set gravity.1=-9.81` makes where the file has no `gravity`. A file itself gives the whole list.
+bool are_set_elements(const Value& value, const ParameterSpec& spec) {
+  return spec.kind == ParameterSpec::Kind::vector && spec.fallback && spec.fallback->kind() == Value::Kind::list &&
+         value.kind() == Value::Kind::map && value.place().line < 0 && !value.members().empty() &&
+         std::all_of(value.members().begin(), value.members().end(), [](const auto& member) {
+           return std::all_of(member.first.begin(), member.first.end(), [](char c) { return c >= '0' && c <= '9'; });
+         });
+}
+
 }  // namespace
 
 bool Checker::in_range(double x, const ParameterSpec& spec) {
@@ -204,6 +214,21 @@ bool Checker::read_members(const Value& value, std::initializer_list<const std::
   return good;
 }
 
+/// The default of a vector with the elements that operations have set in it; null after reporting.
+Value Checker::default_with(const Value& elements, const Value& fallback) const {
+  Value whole = placed(fallback, elements.place());
+  for (const auto& [key, element] : elements.members()) {
+    const auto index = list_index(key, whole.items().size());
+    if (!index) {
+      diagnostics_.error(elements.place(),
+                         fmt::format("got index {}; need 0 to {}", in_quotes(key), whole.items().size() - 1));
+      return {};
+    }
+    whole.items()[*index] = element;
+  }
+  return whole;
+}
+
 /// The member of a specification, or its default.
 bool Checker::read_member(const Value& value, const ParameterSpec& spec, Value& result) const {
   const auto path = [&] { return value.place().path + "/" + spec.key; };
@@ -212,6 +237,12 @@ bool Checker::read_member(const Value& value, const ParameterSpec& spec, Value& 
   if (member == nullptr && spec.fallback) {
     fallback = placed(*spec.fallback, {value.place().line, value.place().column, path()});
     member = &fallback;
+  }
+  Value whole;
+  if (member != nullptr && are_set_elements(*member, spec)) {
+    whole = default_with(*member, *spec.fallback);
+    if (whole.kind() == Value::Kind::null) return false;
+    member = &whole;
   }
   if (member == nullptr) {
     if (!spec.required) return true;

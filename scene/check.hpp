@@ -108,6 +108,7 @@ class Checker {
   }
 
  private:
+  Value default_with(const Value& elements, const Value& fallback) const;
   bool read_member(const Value& value, const ParameterSpec& spec, Value& result) const;
   std::optional<Value> number(const Value& value, const ParameterSpec& spec, const std::string& unit) const;
   std::optional<Value> text(const Value& value, const ParameterSpec& spec) const;

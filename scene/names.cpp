@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 
 #include "withy/core/plugin/value.hpp"
 
@@ -87,6 +88,13 @@ std::string in_quotes(std::string_view text) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
   }
   return fmt::format("\"{}{}\"", shown, text.size() > most ? "…" : "");
+}
+
+std::optional<std::size_t> list_index(std::string_view key, std::size_t count) {
+  std::size_t index = 0;
+  const auto [end, problem] = std::from_chars(key.data(), key.data() + key.size(), index);
+  if (problem != std::errc() || end != key.data() + key.size() || index >= count) return {};
+  return index;
 }
 
 bool mentions(const Value& value, const std::set<std::string>& names) {

@@ -2,6 +2,8 @@
 /// Names in scenes: what they may be, and the nearest known one for messages.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -23,6 +25,9 @@ std::string listed(const std::vector<std::string>& names);
 
 /// Text for a message: quoted, control characters replaced, cut at 60 bytes.
 std::string in_quotes(std::string_view text);
+
+/// The place in a list of `count` items that a key of a path names, as "1" of "gravity.1"; none where it is no such.
+std::optional<std::size_t> list_index(std::string_view key, std::size_t count);
 
 /// Whether a text in a value holds one of the names, whole.
 bool mentions(const Value& value, const std::set<std::string>& names);

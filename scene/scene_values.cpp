@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
-#include <optional>
 #include <utility>
 
 #include "withy/scene/asked_outputs.hpp"
@@ -67,13 +65,6 @@ std::string joined(const std::vector<std::string>& keys) {
   return path;
 }
 
-std::optional<std::size_t> index_of(const std::string& key, std::size_t count) {
-  std::size_t index = 0;
-  const auto [end, problem] = std::from_chars(key.data(), key.data() + key.size(), index);
-  if (problem != std::errc() || end != key.data() + key.size() || index >= count) return {};
-  return index;
-}
-
 /// What is wrong with a path; empty where it is right.
 std::string path_problem(const std::vector<std::string>& keys) {
   if (keys.empty()) return "need a path of keys with dots between them, as time.end=2";
@@ -118,7 +109,7 @@ Value* SceneValues::target(const std::vector<std::string>& keys, int line) {
     const std::string& key = keys[i];
     if (at->kind() == Value::Kind::null) *at = Value::map({}, {line, 0, path});
     if (at->kind() == Value::Kind::list) {
-      const auto index = index_of(key, at->items().size());
+      const auto index = list_index(key, at->items().size());
       if (!index) {
         error(path,
               fmt::format("got index {}; need 0 to {}", in_quotes(key), static_cast<long>(at->items().size()) - 1));
@@ -270,7 +261,7 @@ const Value* SceneValues::find(std::string_view path) const {
   const Value* at = keys.empty() ? nullptr : &document_.root;
   for (std::size_t i = 0; i < keys.size() && at != nullptr; ++i) {
     if (at->kind() == Value::Kind::list) {
-      const auto index = index_of(keys[i], at->items().size());
+      const auto index = list_index(keys[i], at->items().size());
       at = index ? &at->items()[*index] : nullptr;
     } else {
       at = at->find(keys[i]);

@@ -28,7 +28,8 @@ class SceneValues {
   static SceneValues parse(std::string_view text, const std::string& name);
 
   /// Puts a value at a path of keys with dots between them, as "bodies.link1.length" or "gravity.1", and makes the maps
-  /// on the way that are missing. Bodies, hinges, loads, motions and frames have to be there.
+  /// on the way that are missing. An element of a vector that is not there is put into its default. Bodies, hinges,
+  /// loads, motions and frames have to be there.
   SceneValues& set(std::string_view path, Value value, const std::string& origin);
   /// For a copy of `base` on which nothing was done but to set some paths, none of them within another, to numbers: the
   /// same paths are going to be set again, in the same order, to other numbers. What comes of that is as if `base` had

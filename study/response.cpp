@@ -28,13 +28,21 @@ LinearModel one_of(LinearModel model, const ResponseQuestion& question) {
   return model;
 }
 
+/// A hinge of one coordinate is that coordinate, as in every other study, and not its rate as well.
+std::string coordinate_of(const Model& model, const std::string& name) {
+  const auto& hinges = model.layout().hinges;
+  const auto found = std::find_if(hinges.begin(), hinges.end(), [&](const Slot& hinge) { return hinge.name == name; });
+  return found != hinges.end() && found->speeds == 1 ? name + ".0" : name;
+}
+
 LinearModel model_for(const Configuration& c, const ResponseQuestion& question, bool& opened) {
   opened = feeds_back(c.prepared().model(), question.input);
   if (!opened) {
     if (question.output.empty())
       throw OptionError("output",
                         "needs a name: an output of the scene, or a coordinate or tip that 'withy linearize' lists");
-    return one_of(linear_model(c, {{question.input}, {question.output}}), question);
+    return one_of(linear_model(c, {{question.input}, {coordinate_of(c.prepared().model(), question.output)}}),
+                  question);
   }
   if (!question.output.empty())
     throw OptionError("output", "'" + question.input +

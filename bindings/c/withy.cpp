@@ -177,7 +177,12 @@ void withy_free(void* handle) { delete static_cast<Handle*>(handle); }
 withy_status withy_library_create(const withy_library_options* options, withy_library** library) {
   if (library == nullptr) return WITHY_BAD_USE;
   *library = nullptr;
-  if (options != nullptr && options->size < sizeof(withy_library_options)) return WITHY_BAD_USE;
+  if (options != nullptr) {
+    if (options->size < sizeof(withy_library_options)) return WITHY_BAD_USE;
+    if (options->plugin_count > 0 && options->plugins == nullptr) return WITHY_BAD_USE;
+    for (std::size_t i = 0; i < options->plugin_count; ++i)
+      if (options->plugins[i] == nullptr) return WITHY_BAD_USE;
+  }
   try {
     host::LibraryOptions own;
     if (options != nullptr) {

@@ -38,7 +38,8 @@ typedef struct withy_simulation withy_simulation; /**< a simulation in steps */
 typedef struct withy_snapshot withy_snapshot;     /**< where a simulation can go back to */
 typedef struct withy_equations withy_equations;   /**< equations of motion for an integrator of the host's */
 
-/** A number that goes in or comes out. */
+/** A number that goes in or comes out. Modal coordinates are called "link1.bending_y[1]"; where a name is asked for,
+ * "link1.bending_y.1", as results.csv has it, will do. */
 typedef struct withy_port {
   const char* name;
   const char* unit; /**< SI; empty for modal coordinates */

@@ -6,6 +6,7 @@
 
 #include "withy/core/model/held_numbers.hpp"
 #include "withy/core/model/hosted_motion.hpp"
+#include "withy/core/plugin/central_difference.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/tangents/refined_difference.hpp"
 
@@ -95,6 +96,14 @@ void Dynamics::set_state(std::size_t index, double value) {
   changed();
 }
 
+void Dynamics::begin_loads(std::span<const std::size_t> states) {
+  if (states.empty()) return;
+  State begun = seen();
+  model().begin_continuous(begun);
+  for (const std::size_t i : states) state_.y[i] = begun.y[i];
+  changed();
+}
+
 void Dynamics::show(const State& state) {
   state_ = state;
   jump_ = infinity;
@@ -159,6 +168,29 @@ const std::vector<double>& Dynamics::outputs() {
   return row;
 }
 
+/// Where the state as seen goes where that of the host goes along a direction: a quaternion of any length along the
+/// unit sphere.
+std::vector<double> Dynamics::seen_along(std::span<const double> along_states) const {
+  std::vector<double> along(along_states.begin(), along_states.end());
+  if (along.empty()) return along;
+  for (std::size_t h = 0; h < model().hinges().size(); ++h) {
+    const Slot& slot = model().layout().hinges[h];
+    const auto count = static_cast<Eigen::Index>(slot.positions);
+    if (slot.positions == slot.speeds) continue;
+    const Eigen::Map<const Eigen::VectorXd> x(&state_.y[slot.position], count);
+    Eigen::Map<Eigen::VectorXd> v(&along[slot.position], count);
+    const double length = v.norm();
+    if (length == 0) continue;
+    const auto scaled = [&](double step) {
+      Eigen::VectorXd y = x + step * v;
+      model().hinges()[h].hinge->normalize({y.data(), slot.positions});
+      return y;
+    };
+    v = central_difference(scaled, 0.01 / length).eval();
+  }
+  return along;
+}
+
 State Dynamics::moved(double h, std::span<const double> along_states, std::span<const std::size_t> inputs,
                       std::span<const double> along_inputs) {
   State state = seen();
@@ -200,6 +232,8 @@ void Dynamics::differences(std::span<const double> along_states, std::span<const
 void Dynamics::sensitivity(std::span<const double> along_states, std::span<const std::size_t> inputs,
                            std::span<const double> along_inputs, std::span<double> derivatives,
                            std::span<const std::size_t> columns, std::span<double> values) {
+  const std::vector<double> along = seen_along(along_states);
+  along_states = along;
   if (!columns.empty()) differences(along_states, inputs, along_inputs, columns, values);
   if (derivatives.empty()) return;
   std::fill(derivatives.begin(), derivatives.end(), 0.0);

@@ -49,6 +49,8 @@ class Dynamics {
   void set_time(double t);
   void set_moving(std::span<const double> y);
   void set_state(std::size_t index, double value);
+  /// Begins states of loads, those of these indices, as the loads say where all else stands as it does.
+  void begin_loads(std::span<const std::size_t> states);
   /// Goes to a state of a simulation, which deals with what jumps by itself.
   void show(const State& state);
   [[nodiscard]] double input(std::size_t load) const;
@@ -91,6 +93,7 @@ class Dynamics {
   void differences(std::span<const double> along_states, std::span<const std::size_t> inputs,
                    std::span<const double> along_inputs, std::span<const std::size_t> columns,
                    std::span<double> values);
+  [[nodiscard]] std::vector<double> seen_along(std::span<const double> along_states) const;
   State moved(double h, std::span<const double> along_states, std::span<const std::size_t> inputs,
               std::span<const double> along_inputs);
   bool switch_where_passed(EventUpdate& update);

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "withy/bindings/fmi/resources.hpp"
+#include "withy/core/model/closing.hpp"
+#include "withy/core/simulation/assembly.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/plugins/host/static_plugins.hpp"
 
@@ -20,6 +22,14 @@ Registry& registry() {
     return all;
   }();
   return plugins;
+}
+
+/// "gravity" of "gravity.1"; empty where the parameter is no element of a vector.
+std::string_view vector_of(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos || name.find_first_not_of("0123456789", dot + 1) != std::string_view::npos)
+    return {};
+  return name.substr(0, dot);
 }
 
 }  // namespace
@@ -100,9 +110,22 @@ void Instance::set_experiment(std::optional<double> tolerance, double start) {
 /// The scene with the parameters and the tolerance that were set.
 std::shared_ptr<const study::Prepared> Instance::with_parameters() const {
   SceneValues values = values_;
-  for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    const Variable& v = variables_.all[variables_.parameter(i)];
-    if (parameters_[i] != v.start) values.set(v.name, Value(parameters_[i]), "parameter '" + v.name + "'");
+  const auto parameter = [&](std::size_t i) -> const Variable& { return variables_.all[variables_.parameter(i)]; };
+  for (std::size_t i = 0; i < parameters_.size();) {
+    const std::string_view vector = vector_of(parameter(i).name);
+    std::size_t end = i + 1;
+    while (!vector.empty() && end < parameters_.size() && vector_of(parameter(end).name) == vector) ++end;
+    std::size_t other = i;
+    while (other < end && parameters_[other] == parameter(other).start) ++other;
+    if (other < end) {
+      const std::string origin = "parameter '" + parameter(other).name + "'";
+      // Whole vectors: the file may have none, or an orientation as an axis and an angle.
+      if (vector.empty())
+        values.set(parameter(i).name, Value(parameters_[i]), origin);
+      else
+        values.set(vector, Value::list(std::vector<Value>(&parameters_[i], &parameters_[i] + (end - i))), origin);
+    }
+    i = end;
   }
   const Value* rtol = values.find("integrator.rtol");
   if (tolerance_ && variables_.parameters > 0) {
@@ -126,9 +149,42 @@ void Instance::remake() {
     if (is_started_[i] != 0) made->set_state(i, starts_[i]);
   for (std::size_t i = 0; i < inputs_.size(); ++i)
     if (is_input_set_[i] != 0) made->set_input(variables_.all[variables_.input(i)].index, inputs_[i]);
+  begin_loads(*made);
   made->begin();
   dynamics_ = std::move(made);
   stale_ = false;
+}
+
+/// A filter begins at what it measures, wherever the host begins: as in a run from there.
+void Instance::begin_loads(Dynamics& dynamics) const {
+  std::vector<std::size_t> states;
+  for (std::size_t i = 0; i < variables_.states; ++i)
+    if (variables_.all[variables_.state(i)].begun && is_started_[i] == 0) states.push_back(i);
+  dynamics.begin_loads(states);
+}
+
+/// Closes loops that start values have opened, as a scene does that says the same: what was set stays.
+/// \throws std::invalid_argument where they cannot be closed so
+void Instance::close_loops(Dynamics& dynamics) const {
+  const Model& model = dynamics.model();
+  const std::vector<const LoopClosure*> loops = loops_of(model);
+  const Layout& layout = model.layout();
+  if (loops.empty() || std::find(is_started_.begin(), is_started_.end(), 1) == is_started_.end()) return;
+  GivenState given{std::vector<bool>(layout.speeds, false), std::vector<bool>(layout.speeds, false)};
+  const auto note = [&](const Slot& slot) {
+    for (std::size_t i = 0; i < slot.positions; ++i)
+      for (std::size_t k = 0; is_started_[slot.position + i] != 0 && k < slot.speeds; ++k)
+        if (slot.positions != slot.speeds || k == i) given.positions[slot.speed + k] = true;
+    for (std::size_t k = 0; k < slot.speeds; ++k)
+      given.rates[slot.speed + k] = is_started_[layout.positions + slot.speed + k] != 0;
+  };
+  std::for_each(layout.hinges.begin(), layout.hinges.end(), note);
+  std::for_each(layout.bodies.begin(), layout.bodies.end(), note);
+  State state = dynamics.state();
+  const Assembly closed = assemble(model, *dynamics.prepared().equations, given, state);
+  if (!closed.fault.empty())
+    throw std::invalid_argument("constraint '" + loops[closed.loop]->name() + "': " + closed.fault);
+  dynamics.set_moving(std::span(state.y).first(dynamics.states()));
 }
 
 /// Goes on from where it stands with other parameters. \param before those up to now, which stay where it throws
@@ -173,6 +229,8 @@ void Instance::enter_initialization() {
 
 void Instance::exit_initialization() {
   Dynamics& d = dynamics();
+  close_loops(d);
+  begin_loads(d);
   d.begin();
   if (kind_ == Kind::co_simulation) {
     make_session();
@@ -289,6 +347,7 @@ void Instance::set(std::span<const std::uint32_t> references, const double* valu
   set_those(true);
   if (parameters_ != before && is_in(Mode::event | Mode::step)) retune(before);
   set_those(false);
+  if (!stale_ && is_in(Mode::instantiated | Mode::initialization)) begin_loads(*dynamics_);
 }
 
 void Instance::give(std::span<const double> numbers, double* array, std::size_t count) const {

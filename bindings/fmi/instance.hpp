@@ -128,6 +128,8 @@ class Instance {
  private:
   [[nodiscard]] std::shared_ptr<const study::Prepared> with_parameters() const;
   void remake();
+  void begin_loads(Dynamics& dynamics) const;
+  void close_loops(Dynamics& dynamics) const;
   void retune(const std::vector<double>& before);
   void make_session();
   void remember(Memory& memory);

@@ -48,8 +48,12 @@ std::string per_second(const std::string& unit) {
 void add_states(Variables& v, const Model& model, const State& initial) {
   const std::vector<Column> columns = state_columns(model);
   v.states = columns.size();
-  for (std::size_t i = 0; i < v.states; ++i)
+  State begun = initial;
+  model.begin_continuous(begun);
+  for (std::size_t i = 0; i < v.states; ++i) {
     v.all.push_back({Kind::state, i, columns[i].name, columns[i].unit, {}, initial.y[i]});
+    v.all.back().begun = i >= v.states - model.layout().continuous && begun.y[i] == initial.y[i];
+  }
   for (std::size_t i = 0; i < v.states; ++i)
     v.all.push_back({Kind::derivative, i, "der(" + columns[i].name + ")", per_second(columns[i].unit), {}});
 }

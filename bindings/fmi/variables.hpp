@@ -31,6 +31,8 @@ struct Variable {
   std::string description = {};  ///< may be empty
   double start = 0;
   std::optional<double> minimum = {}, maximum = {};
+  /// Of states: that of a load, which says where it begins at what else the start is, until it is set itself.
+  bool begun = false;
   /// Of outputs: the state alone decides them; else the inputs may as well.
   bool of_state_alone = false;
   /// Of parameters: may be set between the steps of a simulation; else they are fixed.

@@ -74,6 +74,18 @@ TEST(Trade, FailuresAreRowsWithTheirReason) {
   EXPECT_THAT(trade(folder, {}).out, HasSubstr("the determinant of the mass matrix changed its sign"));
 }
 
+// What the trade was asked for is part of each run.
+TEST(Trade, ThePageGivesTheCommandsOfItsPoints) {
+  const Folder folder;
+  const Finished f = trade(
+      folder, {"--set", "name=it's slewed", "--formulations", "quadratic", "--over", "loads.slew.time_scale=1,1.5"});
+  ASSERT_EQ(f.status, 0) << f.err;
+  const std::string page = folder.read("out/report.html");
+  if (page.empty()) GTEST_SKIP() << "built without the page of reports";
+  EXPECT_THAT(page, HasSubstr(R"(--formulation quadratic --set 'time.end=0.3' --set 'name=it'\\''s slewed' --set )"
+                              R"('loads.slew.time_scale=1.5' --set 'integrator={name: dopri5)"));
+}
+
 // Distances from the reference as `compare` measures them.
 TEST(Trade, ErrorsAreThoseThatCompareMeasures) {
   const Folder folder;
@@ -218,6 +230,10 @@ TEST(TradeLimit, OfRunsIsWhereTheTradeHasThatError) {
   const json t = thresholds(f).at("ruthless ");
   ASSERT_EQ(t.at("outcome"), "passes") << t;
   const double value = t.at("value");
+  // The worst output decides, here a deflection: no error of hinges or places is that large.
+  std::vector<std::string> shown(same.begin(), same.end() - 1);
+  shown.insert(shown.end(), {"--limit", "10%", "--over", "loads.slew.time_scale=0.5:3:4"});
+  EXPECT_THAT(withy(folder, shown).out, HasSubstr(": where the error of the worst output passes 10 %\n"));
   for (const double side : {-0.02, 0.02}) {
     const Finished at = with({"--over", "loads.slew.time_scale=" + std::to_string(value + side)});
     const double error = json::parse(at.out).at("points").at(0).at("relative_error");

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
 
+#include "withy/host/simulation.hpp"
 #include "withy/tests/fmi/importer.hpp"
 
 namespace withy::test {
@@ -116,6 +118,93 @@ TEST(FmuParameters, AreTunedAtEventsOfModelExchange) {
   ASSERT_EQ(i.fmi.EnterContinuousTimeMode(i.c), fmi2OK);
   EXPECT_EQ(i.set(stiffness, 3), fmi2Error);  // not between events
   EXPECT_THAT(i.heard.last, testing::HasSubstr("is a tunable parameter"));
+}
+
+/// A controller whose filter begins elsewhere than at what it measures kicks: with other start values, or at another
+/// time, an FMU begins as the scene does that says the same.
+TEST(FmuParameters, StartValuesAndTimesBeginTheStatesOfLoads) {
+  const std::string file = SCENES "/manipulator-pid.yaml";
+  for (const int version : {2, 3}) {
+    const Unpacked& fmu = exported(file, version);
+    const auto check = [&](auto& i, double start, const std::function<void(double)>& initialize) {
+      i.set(fmu.reference("shoulder"), 0.65);
+      i.set(fmu.reference("hold_wrist.integral"), 0.01);
+      initialize(start);
+      host::Scene scene = host::Scene::read(library(), file);
+      scene.set("initial.time", start).set("initial.hinges.shoulder.position", "[0.65]");
+      scene.set("initial.loads", "{hold_wrist: {integral: 0.01}}");
+      const host::Simulation simulation(scene);
+      for (const host::Port& port : simulation.outputs()) {
+        if (port.name == "work") continue;
+        EXPECT_EQ(i.get(fmu.reference(port.name)), simulation.output(port.name)) << port.name << " at " << start;
+      }
+      EXPECT_EQ(i.get(fmu.reference("hold_wrist.integral")), 0.01);
+    };
+    for (const double start : {0.0, 0.4}) {
+      if (version == 2) {
+        Instance2 i(fmu, fmi2CoSimulation);
+        check(i, start, [&](double t) { i.initialize(t); });
+      } else {
+        Instance3 i(fmu, true);
+        check(i, start, [&](double t) {
+          EXPECT_EQ(i.fmi.EnterInitializationMode(i.c, false, 0, t, false, 0), fmi3OK) << i.heard.last;
+          EXPECT_EQ(i.fmi.ExitInitializationMode(i.c), fmi3OK) << i.heard.last;
+        });
+      }
+    }
+  }
+}
+
+/// A loop is closed around the start values that a host sets, as around those of a scene.
+TEST(FmuParameters, StartValuesCloseLoops) {
+  const std::string file = SCENES "/gallery/four-bar.yaml";
+  host::Scene scene = host::Scene::read(library(), file);
+  const std::filesystem::path out = scratch() / "four-bar.fmu";
+  static_cast<void>(fmi::export_fmu(*scene.prepare(), {}, library().registry(), {3, false, true, out}));
+  const Unpacked fmu = unpack(out, 3);
+  Instance3 i(fmu, true);
+  i.set(fmu.reference("motor"), 1.2);
+  i.set(fmu.reference("motor.rate"), 5);
+  i.initialize();
+  EXPECT_EQ(i.get(fmu.reference("motor")), 1.2);
+  EXPECT_EQ(i.get(fmu.reference("motor.rate")), 5);
+  const double pivot = i.get(fmu.reference("pivot"));
+  EXPECT_NEAR(i.get(fmu.reference("coupler.tip.x")), 0.9 + 0.8 * std::cos(pivot), 1e-12);
+  EXPECT_NEAR(i.get(fmu.reference("coupler.tip.y")), 0.8 * std::sin(pivot), 1e-12);
+  // Where every hinge is set, no way is left.
+  Instance3 torn(fmu, true);
+  for (const char* hinge : {"motor", "elbow", "pivot"}) torn.set(fmu.reference(hinge), 0);
+  EXPECT_EQ(torn.fmi.EnterInitializationMode(torn.c, false, 0, 0, false, 0), fmi3OK);
+  EXPECT_EQ(torn.fmi.ExitInitializationMode(torn.c), fmi3Error);
+  EXPECT_THAT(torn.heard.last, testing::HasSubstr("constraint 'loop'"));
+}
+
+/// Numbers of vectors that the file has not, or has in another form, are parameters as others are.
+TEST(FmuParameters, AreElementsOfVectorsThatTheFileLeavesOut) {
+  const std::filesystem::path file = scratch() / "plain.yaml";
+  std::ofstream(file) << R"(format: withy/1
+time: {end: 1, output: 0.05}
+bodies: {rod: {type: rigid, mass: 2, inertia: [0.1, 0.1, 0.1, 0, 0, 0], frames: {tip: {position: [1, 0, 0]}}}}
+hinges:
+  axle:
+    {type: revolute, axis: [0, 0, 1], parent: world, child: rod, offset: {orientation: {axis: [0, 0, 1], angle: 0}}}
+)";
+  const Unpacked& fmu = exported(file.string(), 3);
+  Instance3 i(fmu, true);
+  const auto set = [&](const std::string& name, double value) {
+    EXPECT_EQ(i.set(fmu.reference(name), value), fmi3OK) << i.heard.last;
+  };
+  set("gravity.1", -10);
+  set("bodies.rod.center_of_mass.0", 0.5);
+  set("hinges.axle.offset.position.2", 3);
+  set("hinges.axle.offset.orientation.0", 0.6);  // a quaternion about z: cos ψ = 0.36 − 0.64, sin ψ = 0.96
+  set("hinges.axle.offset.orientation.3", 0.8);
+  i.initialize();
+  EXPECT_NEAR(i.get(fmu.reference("rod.tip.x")), -0.28, 1e-15);
+  EXPECT_NEAR(i.get(fmu.reference("rod.tip.y")), 0.96, 1e-15);
+  EXPECT_EQ(i.get(fmu.reference("rod.tip.z")), 3);
+  // −m g l cos ψ over the inertia about the hinge, 0.1 + 2 · 0.25.
+  EXPECT_NEAR(i.get(fmu.reference("der(axle.rate)")), 2 * 10 * 0.5 * 0.28 / 0.6, 1e-13);
 }
 
 }  // namespace

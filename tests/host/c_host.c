@@ -131,6 +131,7 @@ static void misuse(withy_library* library, withy_scene* scene) {
   withy_equations* equations = NULL;
   withy_library_options old;
   withy_library* other = NULL;
+  const char* const no_folder = NULL;
   double y[SIZE] = {0};
   size_t i;
   EXPECT(withy_scene_read(NULL, "x", &none) == WITHY_BAD_USE, library);
@@ -161,6 +162,9 @@ static void misuse(withy_library* library, withy_scene* scene) {
   EXPECT(withy_equations_create(scene, "quadratc", &equations) == WITHY_BAD_INPUT, scene);
   EXPECT(withy_equations_create(scene, NULL, &equations) == WITHY_OK, scene);
   EXPECT(withy_equations_derivatives(equations, 0, y, y, 1) == WITHY_BAD_USE, equations);
+  EXPECT(withy_equations_derivatives(equations, NAN, y, y + SIZE / 2, withy_equations_size(equations)) == WITHY_STOPPED,
+         equations);
+  EXPECT(strstr(withy_error(equations), "the time is not finite") != NULL, equations);
   for (i = 0; i < SIZE / 2; ++i) y[i] = NAN;
   EXPECT(withy_equations_derivatives(equations, 0, y, y + SIZE / 2, withy_equations_size(equations)) == WITHY_STOPPED,
          equations);
@@ -168,6 +172,11 @@ static void misuse(withy_library* library, withy_scene* scene) {
   withy_free(equations);
 
   memset(&old, 0, sizeof old);
+  EXPECT(withy_library_create(&old, &other) == WITHY_BAD_USE && other == NULL, library);
+  old.size = sizeof old;
+  old.plugin_count = 1;
+  EXPECT(withy_library_create(&old, &other) == WITHY_BAD_USE && other == NULL, library);
+  old.plugins = &no_folder;
   EXPECT(withy_library_create(&old, &other) == WITHY_BAD_USE && other == NULL, library);
   withy_free(NULL);
 }

@@ -17,6 +17,7 @@ namespace {
 
 using host::Equations;
 using host::Scene;
+using test::library;
 using test::smooth_arm;
 using testing::HasSubstr;
 
@@ -168,6 +169,40 @@ TEST(HostedEquations, refuse_what_they_do_not_know) {
             "t = 0 s: the state is not finite: '" + equations.states()[7].name + "' is nan.");
   y[7] = std::numeric_limits<double>::infinity();
   EXPECT_THAT(equations.reason(0, equations.derivatives(0, y, y_dot)), HasSubstr("is infinite."));
+}
+
+TEST(HostedEquations, have_no_values_at_a_time_that_is_none) {
+  Equations equations(smooth_arm());
+  const std::vector<double> y = equations.y0();
+  std::vector<double> y_dot(y.size());
+  const double none = std::nan("");
+  const Evaluation evaluation = equations.derivatives(none, y, y_dot);
+  EXPECT_FALSE(evaluation.ok());
+  EXPECT_EQ(equations.reason(none, evaluation), "t = nan s: the time is not finite.");
+  const host::EvaluatedRows done = equations.derivatives_many(none, y, y_dot);
+  EXPECT_EQ(done.rows, 0U);
+  EXPECT_FALSE(done.evaluation.ok());
+}
+
+TEST(HostedEquations, whose_loops_are_closed_say_that_they_have_no_jacobian) {
+  Equations equations(Scene::parse(library(), R"(format: withy/1
+bodies:
+  left: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0], frames: {end: {position: [1, 0, 0]}}}
+  right: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+hinges:
+  a: {type: planar, parent: world, child: left}
+  b: {type: planar, parent: world, child: right}
+constraints:
+  pin: {type: hinge, hinge: revolute, axis: [0, 0, 1], a: left.end, b: right}
+initial: {guess: {hinges: {b: {position: [0, 1, 0]}}}}
+)"));
+  std::vector<double> jacobian(equations.size() * equations.size());
+  try {
+    equations.jacobian(0, equations.y0(), jacobian);
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("close loops"));
+  }
 }
 
 }  // namespace

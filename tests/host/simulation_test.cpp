@@ -237,6 +237,12 @@ TEST(HostedSimulation, that_is_interrupted_goes_on) {
   EXPECT_EQ(simulation.time(), 1);
 }
 
+TEST(HostedSimulation, finds_modal_coordinates_as_the_table_in_csv_names_them_too) {
+  const Simulation simulation(test::smooth_arm());
+  EXPECT_EQ(simulation.output_index("boom.bending_y.2.rate"), simulation.output_index("boom.bending_y[2].rate"));
+  EXPECT_THROW(static_cast<void>(simulation.output_index("boom.bending_y.3")), std::out_of_range);
+}
+
 TEST(HostedSimulation, refuses_bad_use_and_lives_on) {
   Simulation simulation(busy_scene());
   const auto text_of = [](auto&& act) -> std::string {

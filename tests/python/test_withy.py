@@ -49,6 +49,9 @@ def test_a_run_is_a_table_by_names(slew):
     assert result.final["hinges"]["shoulder"]["position"][0] == result["shoulder"][-1]
     assert result.units["shoulder"] == "rad" and "link2.tip.x" in result
     assert numpy.shares_memory(result["shoulder"], result.table)
+    # As results.csv calls it.
+    assert (result["link1.bending_y.1"] == result["link1.bending_y[1]"]).all() and "link1.bending_y.1" not in list(result)
+    assert withy.Simulation(slew).outputs["link1.bending_y.2.rate"] == 0
     assert result.certificate["formulation"]["name"] == "quadratic"
     with pytest.raises(KeyError, match="did you mean 'shoulder'"):
         result["shoulde"]
@@ -285,6 +288,10 @@ def test_studies_give_what_the_program_prints(slew):
     assert scene.advise("10%", **axes)["advice"]["formulation"] == "ruthless"
     with pytest.raises(withy.SceneError):
         scene.advise("3 kg")
+    # A single name is no list of its letters.
+    assert scene.compare("linear", outputs="elbow")["runs"][0]["outputs"][0]["output"] == "elbow"
+    assert scene.modes("shoulder") == scene.modes(["shoulder"])
+    assert scene.linearize(inputs="all")["inputs"] == scene.linearize(inputs=["all"])["inputs"]
 
 
 def test_results_are_drawn(slew, tmp_path):

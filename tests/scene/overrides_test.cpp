@@ -34,6 +34,26 @@ TEST_F(Overrides, AddWhatTheFormatKnowsAndTheFileLeavesOut) {
   EXPECT_NEAR(s.initial.y[0], 0.5235987755982988, 1e-16);  // π/6
 }
 
+TEST_F(Overrides, SetElementsOfVectorsThatTheFileLeavesOut) {
+  const std::string weightless = replaced(good_scene, "gravity: [0, -9.81, 0]\n", "");
+  const auto set = [&](std::vector<std::string> overrides) {
+    return parse_scene(weightless, "s.yaml", registry, {"", "", std::move(overrides)});
+  };
+  EXPECT_EQ(set({"gravity.1=-1.62"}).model->gravity(), Eigen::Vector3d(0, -1.62, 0));
+  EXPECT_EQ(set({"gravity.2=-3", "gravity.0=1 cm/s^2"}).model->gravity(), Eigen::Vector3d(0.01, 0, -3));
+  EXPECT_EQ(
+      set({"bodies.hub.center_of_mass.1=0.2"}).source.at("bodies").at("hub").at("center_of_mass").items()[1].number(),
+      0.2);
+  // Each is checked like any other; without a default, or in a file, it is the whole list that counts.
+  EXPECT_THAT(problems(weightless, registry, {"", "", {"gravity.3=1"}}),
+              "--set 'gravity.3=1': /gravity: got index \"3\"; need 0 to 2");
+  EXPECT_THAT(problems(weightless, registry, {"", "", {"gravity.1=nan"}}),
+              testing::StartsWith("--set 'gravity.1=nan': /gravity/1: got nan"));
+  EXPECT_THAT(problems(replaced(good_scene, "axis: [0, 0, 1], ", ""), registry, {"", "", {"hinges.shoulder.axis.2=1"}}),
+              testing::HasSubstr("/hinges/shoulder/axis: got a map"));
+  EXPECT_THAT(problems(weightless + "gravity: {1: -9.81}\n", registry), testing::HasSubstr("/gravity: got a map"));
+}
+
 TEST_F(Overrides, TakeEffectInTheirOrder) { EXPECT_EQ(read({"time.end=2", "time.end=3"}).end, 3); }
 
 TEST_F(Overrides, MayHaveBlanksAroundTheEquals) {

@@ -52,6 +52,8 @@ loads: {spring: {type: hinge-spring, hinge: slide, stiffness: 30}}
   const Response r = response(at_start(prepared), {"slide", "slide.0", {}, {}, 20, {}});
   EXPECT_NEAR(r.static_gain, 1.0 / 30, 1e-12);
   EXPECT_EQ(linear_model(at_start(prepared), {{"slide"}, {"slide"}}).outputs.size(), 2U) << "the hinge is both";
+  // A transfer function is to one number: to what every other study calls by the hinge's name.
+  EXPECT_EQ(response(at_start(prepared), {"slide", "slide", {}, {}, 20, {}}).static_gain, r.static_gain);
 }
 
 /// One clamped-free mode on a hinge: J = 1/3, coupling ∫xφ = 2/β², modal mass 1, stiffness β⁴.

@@ -103,8 +103,12 @@ function together(run, names) {
   return { t: sampled ? run.animation.times : run.time, values: () => columns.map(c => sampled ? c.samples : c.data) };
 }
 
+// Angles that turn far in any of the runs: they are told in turns in all of them, else their curves could not be compared.
+const far = 20 * Math.PI;
+const turning = runs => new Set(runs.flatMap(run => run.table.columns.filter(c => c.unit === 'rad' && c.data.some(v => Math.abs(v) > far)).map(c => c.name)));
+
 // The quantities of a run: {group, name, unit, t, y, limit?}, groups in the order of the page; y is made when asked for.
-export function quantities(run) {
+export function quantities(run, turns = turning([run])) {
   const out = [];
   const add = (group, name, unit, t, y, more = {}) => out.push(lazy({ group, name, unit, t, ...more }, 'y', y));
   // Angles that say again what a quaternion beside them says.
@@ -127,9 +131,11 @@ export function quantities(run) {
     else if (/\.motion_effort(\.\d+)?$/.test(name)) add(`Effort of motions, ${unit}`, name, unit, run.time, data);
     else if (/\.rate(\.\d+)?$/.test(name)) add(unit === 'rad/s' ? 'Rates of hinges' : unit === 'm/s' ? 'Speeds of hinges' : 'Rates of modal coordinates', name, unit && unit !== '1' ? unit : '1/s', run.time, data);
     else if (unit === 'rad' && told.has(name)) continue;
-    else if (unit === 'rad' && column.data.some(v => Math.abs(v) > 20 * Math.PI)) add('Turns', name, 'turns', run.time, () => column.data.map(v => v / 2 / Math.PI));
+    else if (unit === 'rad' && turns.has(name)) add('Turns', name, 'turns', run.time, () => column.data.map(v => v / 2 / Math.PI));
     else if (unit === 'rad') add('Angles', name, 'deg', run.time, () => column.data.map(v => v * degrees));
-    else if (unit === '' || unit === '1') add('Modal coordinates', name, '1', run.time, data);
+    else if (unit === '') add('Modal coordinates', name, '1', run.time, data);
+    // Of outputs: a strain, a formula.
+    else if (unit === '1') add('Numbers without a unit', name, '1', run.time, data);
     else if (name.includes('.')) add(`${name.slice(0, -last.length - 1)}, ${unit}`, name, unit, run.time, data);
     else add(unit === 'm' ? 'Travel of hinges' : `${name}, ${unit}`, name, unit, run.time, data);
   }
@@ -155,9 +161,9 @@ const rank = title => {
   return b >= 0 ? 100 + b : 50;
 };
 export function grouped(runs) {
-  const groups = new Map();
+  const groups = new Map(), turns = turning(runs);
   for (const run of runs) {
-    for (const q of quantities(run)) {
+    for (const q of quantities(run, turns)) {
       const group = groups.get(q.group) ?? { title: q.group, unit: q.unit, limit: q.limit, series: new Map() };
       groups.set(q.group, group);
       const series = group.series.get(q.name) ?? { name: q.name, of: [] };

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { Vector3 } from 'three';
-import { unpack } from '../src/data.js';
+import { grouped, unpack } from '../src/data.js';
 import { Motion } from '../src/motion.js';
 import { greatest_of, longest_in_words } from '../src/arrows.js';
 import { Pace } from '../src/pace.js';
@@ -42,6 +42,24 @@ function check_ticks() {
   assert.equal(labels(1e6, 1.25e6, 1.5e6), '1.00e+6 1.25e+6 1.50e+6');
   assert.equal(labels(0, 0.25, 0.5), '0 0.25 0.50');
   assert.equal(labels(6000, 6020), '6000 6020');
+}
+
+// Runs lie over each other in the same unit, also where an angle turns far in one of them alone.
+function check_turns() {
+  const run = end => ({ table: { columns: [{ name: 't', unit: 's', data: [0, 1] }, { name: 'axle', unit: 'rad', data: [0, end] }] }, validity: [], time: [0, 1] });
+  const groups = grouped([run(Math.PI), run(100 * Math.PI)]);
+  assert.deepEqual(groups.map(g => [g.title, g.series[0].of.map(({ y }) => y[1])]), [['Turns', [0.5, 50]]]);
+}
+
+// An output without a unit is no modal coordinate.
+function check_groups() {
+  const columns = [['t', 's'], ['boom.bending_y.1', ''], ['root.strain_y', '1'], ['boom.bending_y.1.rate', '']].map(([name, unit]) => ({ name, unit, data: [0, 1] }));
+  const groups = grouped([{ table: { columns }, validity: [], time: [0, 1], animation: { times: [0, 1] } }]);
+  assert.deepEqual(groups.map(g => [g.title, ...g.series.map(s => s.name)]), [
+    ['Numbers without a unit', 'root.strain_y'],
+    ['Modal coordinates', 'boom.bending_y.1'],
+    ['Rates of modal coordinates', 'boom.bending_y.1.rate'],
+  ]);
 }
 
 // Runs on one page are compared: their arrows have one scale, which the page says.
@@ -281,6 +299,8 @@ function check_looks(file) {
 }
 
 check_ticks();
+check_groups();
+check_turns();
 check_common_scale();
 await in_browser(withy, chromium, async (browser, own_folder, own_run) => {
   [folder, run] = [own_folder, own_run];

@@ -17,7 +17,7 @@ from . import _withy
 from ._errors import PluginError, SceneError, SimulationStopped, StoreError
 from ._foreign import python_body, python_load
 from ._parts import Parts, parts, shortcuts
-from ._result import Result, nearest, unknown
+from ._result import Result, nearest, places_of, unknown
 from ._scene import Scene, load, loads
 from ._sweep import SweepResult, sweep
 from ._withy import Snapshot
@@ -43,11 +43,11 @@ class _Names:
 
     def __init__(self, what: str, names: list[str], units: list[str]) -> None:
         self.what = what
-        self.index = {name: i for i, name in enumerate(names)}
+        self.index, self._of_csv = places_of(names)
         self.units = dict(zip(names, units))
 
     def at(self, name: str) -> int:
-        index = self.index.get(name)
+        index = self.index.get(name, self._of_csv.get(name))
         if index is None:
             raise unknown(self.what, name, list(self.index))
         return index

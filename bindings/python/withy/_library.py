@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Sequence
-from typing import Union
+from collections.abc import Iterable, Sequence
+from typing import TypeVar, Union, cast
 
 from . import _withy
+
+_T = TypeVar("_T")
 
 _libraries: dict[tuple[str, ...], _withy.Library] = {}
 
 
+def as_list(several: Iterable[_T]) -> list[_T]:
+    """A text alone is a list of one, and not of its letters."""
+    return [cast(_T, several)] if isinstance(several, str) else list(several)
+
+
 def library(plugins: Sequence[Union[str, "os.PathLike[str]"]]) -> _withy.Library:
     """One for each list of folders, made when it is first needed; remarks are warnings."""
-    key = tuple(os.path.abspath(os.fspath(p)) for p in plugins)
+    key = tuple(os.path.abspath(os.fspath(p)) for p in as_list(plugins))
     if key not in _libraries:
         _libraries[key] = _withy.Library(list(key), lambda remark: warnings.warn(remark, RuntimeWarning, stacklevel=3))
     return _libraries[key]

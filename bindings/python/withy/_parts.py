@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from ._errors import SceneError
-from ._library import library
+from ._library import as_list, library
 from ._result import nearest
 
 SECTIONS = {"bodies": "type", "hinges": "type", "loads": "type", "motions": "type", "outputs": "type",
@@ -28,7 +28,7 @@ _schemas: dict[tuple[str, ...], dict[str, Any]] = {}
 
 def schema(plugins: Sequence[str] = ()) -> dict[str, Any]:
     """The JSON Schema of scenes, of all plugins there are: what ``withy schema`` prints."""
-    key = tuple(plugins)
+    key = tuple(as_list(plugins))
     if key not in _schemas:
         _schemas[key] = json.loads(library(key).schema())
     return _schemas[key]

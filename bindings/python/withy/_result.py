@@ -29,6 +29,13 @@ def unknown(what: str, name: object, known: list[str]) -> KeyError:
     return KeyError(f"no {what} {name!r}" + nearest(name, known))
 
 
+def places_of(names: list[str]) -> tuple[dict[str, int], dict[str, int]]:
+    """The place of each name in a list, and those of modal coordinates as results.csv, where brackets hold units alone,
+    calls them: ``link1.bending_y.1`` of ``link1.bending_y[1]``."""
+    return ({name: i for i, name in enumerate(names)},
+            {name.replace("[", ".").replace("]", ""): i for i, name in enumerate(names) if "[" in name})
+
+
 class Result(Mapping[str, "NDArray[numpy.float64]"]):
     """The table of a run by the names of its columns, those of results.csv: ``result["shoulder"]``.
 
@@ -50,7 +57,7 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
         self.table = table
         self.cause = cause
         self.summary: dict[str, Any] = json.loads(text)
-        self._index = {name: i for i, name in enumerate(names)}
+        self._index, self._of_csv = places_of(names)
 
     @property
     def t(self) -> NDArray[numpy.float64]:
@@ -81,9 +88,13 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
         Raises:
             KeyError: with the nearest name where there is none.
         """
-        if name not in self._index:
+        index = self._at(name)
+        if index is None:
             raise unknown("column", name, list(self._index))
-        return self.table[:, self._index[name]]
+        return self.table[:, index]
+
+    def _at(self, name: str) -> int | None:
+        return self._index.get(name, self._of_csv.get(name))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._index)
@@ -152,7 +163,8 @@ class Result(Mapping[str, "NDArray[numpy.float64]"]):
         chosen = []
         for name in names:
             after = "_" if name.endswith(".deflection") else "."
-            found = [name] if name in self else [n for n in self if n.startswith(name + after)]
+            index = self._at(name)
+            found = [n for n in self if n.startswith(name + after)] if index is None else [list(self)[index]]
             if not found:
                 raise unknown("column", name, list(self))
             chosen += found

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy
 
 from . import _withy
-from ._library import library
+from ._library import as_list, library
 from ._parts import plain
 from ._result import Result, unknown
 from ._yaml import written
@@ -51,7 +51,7 @@ def loads(text: str, name: str = "scene", plugins: Sequence[Path] = (), *, check
 def _checked(made: _withy.Scene, plugins: Sequence[Path], check: bool) -> Scene:
     if check:
         made.check()
-    return Scene._of(made, [os.fspath(p) for p in plugins])
+    return Scene._of(made, [os.fspath(p) for p in as_list(plugins)])
 
 
 def _as_text(value: Any) -> str:
@@ -118,7 +118,7 @@ class Scene:
     """
 
     def __init__(self, *, plugins: Sequence[Path] = (), **values: Any) -> None:
-        self._plugins: tuple[str, ...] = tuple(os.fspath(p) for p in plugins)
+        self._plugins: tuple[str, ...] = tuple(os.fspath(p) for p in as_list(plugins))
         self._name = "scene"
         self._read: _withy.Scene | None = None
         # While it is built in code: what it says. Else the engine's scene knows.
@@ -295,7 +295,7 @@ class Scene:
         Raises:
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        return _read_json(self._made.compare(list(formulations), reference, list(outputs), progress))
+        return _read_json(self._made.compare(as_list(formulations), reference, as_list(outputs), progress))
 
     def trade(self, *, outputs: Sequence[str] = (), formulations: Sequence[str] = (), families: Sequence[str] = (),
               modes: Sequence[int] = (), integrators: Sequence[str] = (), tolerances: Sequence[float] = (),
@@ -309,8 +309,8 @@ class Scene:
         Raises:
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        return _read_json(self._made.trade(list(outputs), list(formulations), list(families), list(modes),
-                                           list(integrators), list(tolerances), jobs, progress))
+        return _read_json(self._made.trade(as_list(outputs), as_list(formulations), as_list(families), as_list(modes),
+                                           as_list(integrators), as_list(tolerances), jobs, progress))
 
     def advise(self, accuracy: str | float, outputs: Sequence[str] = (), *, formulations: Sequence[str] = (),
                families: Sequence[str] = (), modes: Sequence[int] = (), integrators: Sequence[str] = (),
@@ -327,8 +327,8 @@ class Scene:
         Raises:
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        return _read_json(self._made.advise(str(accuracy), list(outputs), list(formulations), list(families),
-                                            list(modes), list(integrators), list(tolerances), seconds, progress))
+        return _read_json(self._made.advise(str(accuracy), as_list(outputs), as_list(formulations), as_list(families),
+                                            as_list(modes), as_list(integrators), as_list(tolerances), seconds, progress))
 
     def modes(self, lock: Sequence[str] = (), *, progress: Progress | None = None) -> dict[str, Any]:
         """Natural modes about the steady state, hinges in ``lock`` held: an element of "runs" of ``withy modes --json``.
@@ -336,7 +336,7 @@ class Scene:
         Raises:
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        return _read_json(self._made.modes(list(lock), progress))
+        return _read_json(self._made.modes(as_list(lock), progress))
 
     def linearize(self, inputs: Sequence[str] = (), outputs: Sequence[str] = (),
                   lock: Sequence[str] = ()) -> dict[str, Any]:
@@ -352,7 +352,7 @@ class Scene:
             SimulationStopped: where the mass matrix of what is free is singular.
             SceneError: where the scene, or what is asked of it, cannot be.
         """
-        linear = _read_json(self._made.linearize(list(inputs), list(outputs), list(lock)))
+        linear = _read_json(self._made.linearize(as_list(inputs), as_list(outputs), as_list(lock)))
         for name, columns in (("A", "states"), ("B", "inputs"), ("C", "states"), ("D", "inputs")):
             linear[name] = numpy.array(linear[name], float).reshape(-1, len(linear[columns]))
         return linear
