@@ -84,16 +84,19 @@ M3<S> turned(const RodTable& table, const M3<S>& R_a, const Eigen::MatrixXd& str
   return R_b;
 }
 
+/// R behind some pieces of the rod.
+template <class S>
+M3<S> turned(const RodTable& table, M3<S> R, const std::vector<RodTable::Piece>& pieces, const VX<S>& q) {
+  for (const RodTable::Piece& piece : pieces) R = turned<S>(table, R, piece.strains, q, piece.to - piece.from);
+  return R;
+}
+
 /// R at every node.
 template <class S>
 std::vector<M3<S>> rotations(const RodTable& table, const VX<S>& q) {
   std::vector<M3<S>> R;
-  double before = 0;
-  for (std::size_t k = 0; k < table.sections.size(); ++k) {
-    const double x = table.quadrature.nodes()[k];
-    R.push_back(turned<S>(table, R.empty() ? M3<S>(M3<S>::Identity()) : R.back(), table.to_node[k], q, x - before));
-    before = x;
-  }
+  for (const std::vector<RodTable::Piece>& pieces : table.to_node)
+    R.push_back(turned<S>(table, R.empty() ? M3<S>(M3<S>::Identity()) : R.back(), pieces, q));
   return R;
 }
 
@@ -188,8 +191,8 @@ PointMotionOf<S> RodMotionOf<S>::at(double x) const {
   const std::vector<double>& nodes = table_.quadrature.nodes();
   const auto next = static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), x) - nodes.begin());
   const double from = next > 0 ? nodes[next - 1] : 0.0;
-  const M3<S> R = turned<S>(table_, next > 0 ? R_[next - 1] : M3<S>(M3<S>::Identity()), table_.strains_between(from, x),
-                            q_, x - from);
+  const M3<S> R =
+      turned<S>(table_, next > 0 ? R_[next - 1] : M3<S>(M3<S>::Identity()), table_.pieces_between(from, x), q_);
   const RowVector integrals =
       by_columns(slopes_, [&](const Eigen::MatrixXd& m) { return table_.quadrature.integral_to(x, m); });
   return motion(R, integrals, x, table_.rod->section(x));

@@ -8,8 +8,9 @@ namespace withy {
 
 namespace {
 
-/// Wave-number lengths that a panel spans at most where no mass changes abruptly in it, and where it may.
-constexpr double panel_span = 4.75, over_kinks = panel_span / 2;
+/// Wave-number lengths that a panel spans at most where no mass changes abruptly in it, and where it may; and one of
+/// few nodes.
+constexpr double panel_span = 4.75, over_kinks = panel_span / 2, short_span = 1.2;
 
 std::vector<double> together(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> all;
@@ -29,6 +30,16 @@ std::vector<double> panel_edges(const Rod& rod, std::vector<double> ends, double
     edges.push_back(end);
   }
   return edges;
+}
+
+/// Panels that end at all kinks.
+PanelQuadrature between_kinks(const Rod& rod) {
+  const std::vector<double> kinks = rod.kinks(),
+                            edges = panel_edges(rod, together(kinks, rod.mass_kinks()), panel_span);
+  double longest = 0;
+  for (std::size_t i = 1; i < edges.size(); ++i) longest = std::max(longest, edges[i] - edges[i - 1]);
+  const bool few = !kinks.empty() && rod.wave_number() * longest <= short_span;
+  return {edges, few ? RodTable::short_order : RodTable::order};
 }
 
 /// The polynomials of least degree that are one at a node and zero at the others, at x.
@@ -75,12 +86,10 @@ struct SpreadMass {
 }  // namespace
 
 RodTable::RodTable(const Rod& given)
-    : rod(&given),
-      quadrature(panel_edges(given, together(given.kinks(), given.mass_kinks()), panel_span), order),
-      turn(1.0, 1, turn_order) {
+    : rod(&given), quadrature(between_kinks(given)), turn(1.0, 1, turn_order), kinks_(given.kinks()) {
   if (!given.mass_kinks().empty()) {
     const std::vector<double> edges = panel_edges(given, given.kinks(), over_kinks);
-    if (static_cast<Eigen::Index>(edges.size()) <= quadrature.panels()) {
+    if (edges.size() * static_cast<std::size_t>(order) <= quadrature.nodes().size()) {
       const PanelQuadrature over(edges, order);
       SpreadMass spread(given, over, edges, 0);
       if (spread.possible()) {
@@ -97,7 +106,7 @@ void RodTable::add_sections() {
   for (std::size_t k = 0; k < quadrature.nodes().size(); ++k) {
     const double x = quadrature.nodes()[k], weight = quadrature.weights()[k];
     sections.push_back(rod->section(x));
-    to_node.push_back(strains_between(before, x));
+    to_node.push_back(pieces_between(before, x));
     before = x;
     if (!over_.empty()) continue;
     masses.push_back(weight * sections.back().mass_per_length);
@@ -121,6 +130,17 @@ RodTable::Shares RodTable::beyond(double x) const {
     shares.of_inertia.push_back(inertias[k] > 0 ? rest.inertias[k] / inertias[k] : 0);
   }
   return shares;
+}
+
+std::vector<RodTable::Piece> RodTable::pieces_between(double from, double to) const {
+  std::vector<Piece> pieces;
+  for (const double kink : kinks_) {
+    if (kink <= from || kink >= to) continue;
+    pieces.push_back({from, kink, strains_between(from, kink)});
+    from = kink;
+  }
+  pieces.push_back({from, to, strains_between(from, to)});
+  return pieces;
 }
 
 Eigen::MatrixXd RodTable::strains_between(double from, double to) const {

@@ -18,24 +18,35 @@ namespace withy {
 /// rounding, of four, k = 9.5, to (ke/32)³² ≈ 1e-3,
 /// with angles to the fourth power for amplitude.
 ///
+/// Strains with kinks, as functions of a beam with a stiffness table have, end panels there. Where none then spans more
+/// than 1.2 wave-number lengths, a panel has 8 nodes: a strain is interpolated to k⁸/(2⁷ 8!), at k = 0.6 to 3e-9.
+///
 /// Where the rows of a mass table would make more panels, panels go over them and span half as much: a node's mass is
 /// then ∫ μ ℓ over the panel, ℓ the polynomial of degree 15 that is one there and zero at its other nodes. A product of
 /// two functions, k = 2.4, is so integrated as a strain is interpolated. Masses that change abruptly could become
 /// negative so: then panels end at the rows.
 struct RodTable {
-  static constexpr Eigen::Index order = 16;
+  static constexpr Eigen::Index order = 16, short_order = 8;
   static constexpr Eigen::Index turn_order = 8;
 
+  /// A piece of the rod in which strains are smooth.
+  struct Piece {
+    double from, to;
+    Eigen::MatrixXd strains;  ///< at the nodes of `turn` scaled to it: row 3j + c holds component c at node j
+  };
+
   explicit RodTable(const Rod& rod);
-  /// Strains at the nodes of `turn` scaled to [from, to]: row 3j + c holds component c at node j, one column a mode.
+  /// Strains along a piece, one column a mode.
   [[nodiscard]] Eigen::MatrixXd strains_between(double from, double to) const;
+  /// What lies between two points of the rod, cut where strains have kinks.
+  [[nodiscard]] std::vector<Piece> pieces_between(double from, double to) const;
 
   const Rod* rod;
   PanelQuadrature quadrature;
-  std::vector<RodSection> sections;      ///< at the nodes
-  std::vector<double> masses, inertias;  ///< of the nodes [kg], about their axis [kg m²]
-  PanelQuadrature turn;                  ///< on [0, 1], for the rotation between two nodes
-  std::vector<Eigen::MatrixXd> to_node;  ///< strains_between the node before, or the root, and each node
+  std::vector<RodSection> sections;         ///< at the nodes
+  std::vector<double> masses, inertias;     ///< of the nodes [kg], about their axis [kg m²]
+  PanelQuadrature turn;                     ///< on [0, 1], for the rotation between two nodes
+  std::vector<std::vector<Piece>> to_node;  ///< pieces_between the node before, or the root, and each node
 
   /// Of the nodes' masses and inertias the shares that are beyond x in [0, length].
   struct Shares {
@@ -46,7 +57,8 @@ struct RodTable {
  private:
   void add_sections();
 
-  std::vector<double> over_;  ///< edges of panels that go over kinks of the mass; empty: none does
+  std::vector<double> kinks_;  ///< of the strains
+  std::vector<double> over_;   ///< edges of panels that go over kinks of the mass; empty: none does
 };
 
 }  // namespace withy

@@ -281,5 +281,61 @@ TEST(RodMass, of_a_table_with_many_rows_is_that_of_the_table_however_few_the_pan
   }
 }
 
+/// The same rod as if its strains were finer, for more panels.
+class FinelyCutRod final : public Rod {
+ public:
+  explicit FinelyCutRod(const Rod& rod) : rod_(rod) {}
+  Eigen::Index modes() const override { return rod_.modes(); }
+  double length() const override { return rod_.length(); }
+  double wave_number() const override { return 6 * rod_.wave_number(); }
+  std::vector<double> kinks() const override { return rod_.kinks(); }
+  std::vector<double> mass_kinks() const override { return rod_.mass_kinks(); }
+  RodSection section(double x) const override { return rod_.section(x); }
+
+ private:
+  const Rod& rod_;
+};
+
+/// Between the rows of a stiffness table panels are short, and eight nodes do for each: bent by a third of its length,
+/// a blade in its own modes goes where it does on many more panels of sixteen, to 1e-8 of its length.
+TEST(Rod, eight_nodes_between_the_rows_of_a_stiffness_table_are_enough) {
+  const double L = 40;
+  const auto table = [](double root, double steepness) {
+    std::vector<Value> rows;
+    for (int i = 0; i <= 16; ++i) {
+      const double x = 40.0 * i / 16, value = root * std::exp(-steepness * x / 40) * (1 + 0.1 * std::sin(5.0 * i));
+      rows.push_back(Value::list({Value(x), Value(value)}));
+    }
+    return Value::list(std::move(rows));
+  };
+  const auto bending = [&](double root) {
+    return Value::map(
+        {{"stiffness", table(root, 6)}, {"modes", Value(3.0)}, {"family", Value(std::string("vibration-modes"))}});
+  };
+  Registry registry;
+  enroll_static_plugins(registry);
+  const auto body = make_plugin<Body>(registry, "beam",
+                                      {{"length", Value(L)},
+                                       {"mass_per_length", table(600, 3)},
+                                       {"bending_y", bending(9e9)},
+                                       {"bending_z", bending(4e9)}});
+  const FinelyCutRod fine(*body->rod());
+  const RodTable few(*body->rod()), many(fine);
+  ASSERT_EQ(few.quadrature.order(), RodTable::short_order);
+  ASSERT_EQ(many.quadrature.order(), RodTable::order);
+  Eigen::VectorXd q(6), q_dot(6);
+  q << 5, 0.6, -0.2, 3, -0.8, 0.1;
+  q_dot << 1, -2, 0.7, 2, 1, -0.5;
+  const RodMotion coarse(few, q, q_dot), truth(many, q, q_dot);
+  EXPECT_GT((truth.at(L).r - Vector3(L, 0, 0)).norm(), L / 3);
+  for (const double x : {7.0, 21.3, 36.0, L}) {
+    const PointMotionOf<double> a = coarse.at(x), b = truth.at(x);
+    EXPECT_LT((a.r - b.r).norm(), 1e-8 * L) << x;
+    EXPECT_LT((a.R - b.R).norm(), 1e-8) << x;
+    EXPECT_LT((a.P - b.P).norm(), 1e-8 * b.P.norm()) << x;
+    EXPECT_LT((a.r_bias - b.r_bias).norm(), 1e-8 * truth.at(L).r_bias.norm()) << x;
+  }
+}
+
 }  // namespace
 }  // namespace withy::test

@@ -40,12 +40,14 @@ RodStation<Space> rod_station(const Pose& frame, double x, const RodSection& sec
 RodIntegrals::RodIntegrals(const RodTable& table, const std::vector<double>& along) : station_x(along) {
   const PanelQuadrature& quadrature = table.quadrature;
   const std::size_t nodes = quadrature.nodes().size();
+  const int order = static_cast<int>(quadrature.order()), half = order / 2;
   packs = static_cast<int>(nodes / lanes);
+  packs_per_panel = order / static_cast<int>(lanes);
   const Eigen::MatrixXd& to_nodes = quadrature.running();
   std::vector<double> even, odd;
   for (int j = 0; j < half; ++j) {
-    const int mirror = 2 * half - 1 - j;
-    for (int i = half; i < 2 * half; ++i) {
+    const int mirror = order - 1 - j;
+    for (int i = half; i < order; ++i) {
       const double own = to_nodes(i, j), other = to_nodes(i, mirror),
                    weight = quadrature.weights()[static_cast<std::size_t>(j)];
       even.push_back(0.5 * (own + other - weight));
@@ -54,9 +56,9 @@ RodIntegrals::RodIntegrals(const RodTable& table, const std::vector<double>& alo
   }
   from_even = packed(even.data(), even.size());
   from_odd = packed(odd.data(), odd.size());
-  weights = packed(quadrature.weights().data(), half);
+  weights = packed(quadrature.weights().data(), static_cast<std::size_t>(half));
   std::vector<double> lengths;
-  for (std::size_t k = 0; k < nodes; k += RodTable::order)
+  for (std::size_t k = 0; k < nodes; k += static_cast<std::size_t>(order))
     lengths.push_back(quadrature.weights()[k] / quadrature.weights()[0]);
   scale = std::move(lengths);
   std::vector<double> root(nodes);
@@ -109,16 +111,23 @@ struct Turns {
 /// radian between two nodes, Newton's and Euler's laws close to 5e-10; at 0.16 to 2e-8, with one step a turn to 6e-7.
 constexpr double longest_step = 0.09;
 
-Turns turns_between(const std::vector<double>& nodes, const std::vector<double>& stations, double wave_number) {
+Turns turns_between(const RodTable& table, const std::vector<double>& stations) {
+  const std::vector<double>& nodes = table.quadrature.nodes();
+  const double wave_number = table.rod->wave_number();
   Turns turns;
   std::vector<std::pair<double, double>> before_last;
   const auto add = [&](double from, double to, int after) {
-    const double count = std::clamp(std::ceil(wave_number * (to - from) / longest_step), 1.0, 8.0);
-    const auto at = [&](double k) { return from + (to - from) * k / count; };
-    for (double k = 1; k < count; ++k) before_last.emplace_back(at(k - 1), at(k));
-    turns.steps.emplace_back(at(count - 1), to);
+    std::vector<std::pair<double, double>> steps;
+    for (const RodTable::Piece& piece : table.pieces_between(from, to)) {
+      const double length = piece.to - piece.from,
+                   count = std::clamp(std::ceil(wave_number * length / longest_step), 1.0, 8.0);
+      const auto at = [&](double k) { return piece.from + length * k / count; };
+      for (double k = 1; k <= count; ++k) steps.emplace_back(at(k - 1), k < count ? at(k) : piece.to);
+    }
+    before_last.insert(before_last.end(), steps.begin(), steps.end() - 1);
+    turns.steps.push_back(steps.back());
     turns.after.push_back(after);
-    turns.pieces.push_back(static_cast<int>(count) - 1);
+    turns.pieces.push_back(static_cast<int>(steps.size()) - 1);
   };
   for (std::size_t k = 0; k < nodes.size(); ++k) add(k > 0 ? nodes[k - 1] : 0.0, nodes[k], static_cast<int>(k) - 1);
   for (const double at : stations) {
@@ -205,7 +214,7 @@ RodKinematics<Spatial>::RodKinematics(const NodeSpec& spec) {
   for (const double at : x) stations.push_back(rod_station<Spatial>(frame, at, spec.rod->section(at)));
 
   first_station = nodes.size();
-  Turns turns = turns_between(nodes, x, spec.rod->wave_number());
+  Turns turns = turns_between(table, x);
   step = turn_moments(spec, table, turns);
   steps = turns.steps.size();
   after = std::move(turns.after);

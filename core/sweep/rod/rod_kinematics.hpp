@@ -28,11 +28,9 @@ namespace withy::sweep {
 ///   y, y′ = ½ T + Σ M_j o_j ± Σ D_j e_j,   M_j = ½ (S_j′ − S_j),   D_j = ½ (S_j + S_j′ − w_j),
 /// with S_j what node j gives to the upper one: half of the products that S takes.
 struct RodIntegrals {
-  static constexpr int packs_per_panel = RodTable::order / static_cast<int>(lanes);
-  static constexpr int half = static_cast<int>(RodTable::order) / 2;
-
   int packs = 0;                              ///< nodes / 4; 0: no rod
-  SharedNumbers<Pack> from_even;              ///< of the first panel, j·2 + k: D_j of pack k of the upper half
+  int packs_per_panel = 0;                    ///< 4 or 2
+  SharedNumbers<Pack> from_even;              ///< of the first panel, D_j of the packs of the upper half, j after j
   SharedNumbers<Pack> from_odd;               ///< the same of M_j
   SharedNumbers<Pack> weights;                ///< of the first panel's lower half
   SharedNumbers<double> scale;                ///< lengths of the panels over that of the first
@@ -46,25 +44,35 @@ struct RodIntegrals {
 
   /// y = ∫₀ˣ f at the nodes.
   void integrate(const Pack* f, Pack* y, int functions) const {
-    int function = 0;
-    for (; function + 2 <= functions; function += 2) integrate<2>(f + function * packs, y + function * packs);
-    if (function < functions) integrate<1>(f + function * packs, y + function * packs);
+    if (packs_per_panel == RodTable::order / static_cast<int>(lanes)) {
+      integrate_over<RodTable::order / static_cast<int>(lanes)>(f, y, functions);
+    } else {
+      integrate_over<RodTable::short_order / static_cast<int>(lanes)>(f, y, functions);
+    }
   }
 
  private:
+  /// Over panels of so many packs.
+  template <int m>
+  void integrate_over(const Pack* f, Pack* y, int functions) const {
+    int function = 0;
+    for (; function + 2 <= functions; function += 2) integrate<2, m>(f + function * packs, y + function * packs);
+    if (function < functions) integrate<1, m>(f + function * packs, y + function * packs);
+  }
+
   /// Of so many functions at once, which share what is read of D and M.
-  template <int count>
+  template <int count, int m>
   void integrate(const Pack* f, Pack* y) const {
-    constexpr int m = packs_per_panel;
+    constexpr int h = m / 2, half = h * static_cast<int>(lanes);  // packs and nodes of half a panel
     double before[count] = {};
     for (int panel = 0; panel < packs; panel += m) {
       const Pack length = spread(scale[static_cast<std::size_t>(panel / m)]);
       double even[count][half], odd[count][half];
-      Pack sums[count][2], differences[count][2];
+      Pack sums[count][h], differences[count][h];
       for (int i = 0; i < count; ++i) {
         const Pack* at = f + i * packs + panel;
         Pack all = spread(0.0);
-        for (int k = 0; k < 2; ++k) {
+        for (int k = 0; k < h; ++k) {
           const Pack lower = at[k] * length, upper = mirrored(at[m - 1 - k]) * length;
           const Pack e = lower + upper;
           all += weights[static_cast<std::size_t>(k)] * e;
@@ -77,10 +85,10 @@ struct RodIntegrals {
         before[i] += total;
       }
       const Pack *D = from_even.data(), *M = from_odd.data();
-      for (int j = 0; j < half; ++j, D += 2, M += 2) {
+      for (int j = 0; j < half; ++j, D += h, M += h) {
         for (int i = 0; i < count; ++i) {
           const Pack e = spread(even[i][j]), o = spread(odd[i][j]);
-          for (int k = 0; k < 2; ++k) {
+          for (int k = 0; k < h; ++k) {
             differences[i][k] += D[k] * e;
             sums[i][k] += M[k] * o;
           }
@@ -88,9 +96,9 @@ struct RodIntegrals {
       }
       for (int i = 0; i < count; ++i) {
         Pack* at = y + i * packs + panel;
-        for (int k = 0; k < 2; ++k) {
-          at[2 + k] = sums[i][k] + differences[i][k];
-          at[1 - k] = mirrored(sums[i][k] - differences[i][k]);
+        for (int k = 0; k < h; ++k) {
+          at[h + k] = sums[i][k] + differences[i][k];
+          at[h - 1 - k] = mirrored(sums[i][k] - differences[i][k]);
         }
       }
     }
