@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 
 #include "beam_body.hpp"
+#include "magnitude.hpp"
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/plugin/segments.hpp"
 
@@ -18,6 +19,7 @@ class Reader {
 
   std::unique_ptr<Body> make() {
     BeamMaterial material{p_.number_at("length"), profile(p_.at("mass_per_length")), {}, BodyDamping::read(p_)};
+    good_ = good_ && masses_are_held(material.mass_per_length.mean(), material.length);
     using enum BeamData::Strain;
     add("bending_y", Vector3::UnitZ(), bending, "rotary_inertia", material);
     add("bending_z", -Vector3::UnitY(), bending, "rotary_inertia", material);
@@ -64,6 +66,7 @@ class Reader {
     const Profile stiffness = profile(given.at("stiffness"));
     const Profile inertia = given.has(inertia_key) ? profile(given.at(inertia_key)) : Profile(0);
     if (given.has(inertia_key)) material.inertias.emplace_back(direction, inertia);
+    good_ = good_ && strain_is_held(given, kind, stiffness.mean(), inertia_key, inertia.mean(), material);
     if (given.count_at("modes") == 0)
       material.remarks.push_back(fmt::format("{} has no modes: the body is rigid to it, whatever its stiffness", key));
     if (given.count_at("modes") == 0 || !good_) return;
@@ -86,6 +89,30 @@ class Reader {
     if (beam.kinks.empty()) return beam;
     beam.section = [inertia, stiffness](double x) { return BeamData::Section{inertia(x), stiffness(x)}; };
     return beam;
+  }
+
+  bool masses_are_held(double mass_per_length, double length) {
+    const Factor mass{"mass_per_length", &p_.at("mass_per_length"), mass_per_length};
+    const auto to = [&](int power) { return Factor{"length", &p_.at("length"), length, power}; };
+    return held("the inertia", {mass, to(3)}, context_.diagnostics) &&
+           held("the mass", {mass, to(1)}, context_.diagnostics);
+  }
+
+  /// Its stiffness, its section's inertia where there is one, and the square of its frequencies.
+  bool strain_is_held(const Value& given, BeamData::Strain kind, double stiffness, const char* inertia_key,
+                      double inertia, const BeamMaterial& material) {
+    const bool bends = kind == BeamData::Strain::bending;
+    const Factor stiff{"stiffness", &given.at("stiffness"), stiffness};
+    const auto to = [&](int power) { return Factor{"length", &p_.at("length"), material.length, power}; };
+    Factor moved{"mass_per_length", &p_.at("mass_per_length"), material.mass_per_length.mean(), -1};
+    if (inertia > 0) {
+      Factor turned{inertia_key, &given.at(inertia_key), inertia};
+      if (!held("the inertia of its sections", {turned, to(1)}, context_.diagnostics)) return false;
+      turned.power = -1;
+      if (kind == BeamData::Strain::torsion) moved = turned;
+    }
+    return held("the square of a frequency", {stiff, moved, to(bends ? -4 : -2)}, context_.diagnostics) &&
+           held("the stiffness", {stiff, to(bends ? -3 : -1)}, context_.diagnostics);
   }
 
   /// Segments pass moments on to each other, so functions that have no strain at an end leave each of them too stiff,

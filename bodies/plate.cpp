@@ -21,6 +21,7 @@
 #include "beam_quadrature.hpp"
 #include "damping.hpp"
 #include "equal_particles.hpp"
+#include "magnitude.hpp"
 #include "withy/core/plugin/body.hpp"
 #include "withy/core/plugin/mode_family.hpp"
 #include "withy/core/plugin/registry.hpp"
@@ -278,6 +279,18 @@ class Plate final : public Body {
 std::unique_ptr<Body> make_plate(const Value& p, const MakeContext& context) {
   const Sheet sheet{p.number_at("length"),    p.number_at("width"),         p.number_at("mass_per_area"),
                     p.number_at("stiffness"), p.number_at("poisson_ratio"), BodyDamping::read(p)};
+  const auto number = [&](const char* key, double value, int power = 1) {
+    return Factor{key, &p.at(key), value, power};
+  };
+  const Factor mass = number("mass_per_area", sheet.mass_per_area), stiff = number("stiffness", sheet.stiffness);
+  const auto length = [&](int power) { return number("length", sheet.length, power); };
+  const auto width = [&](int power) { return number("width", sheet.width, power); };
+  Diagnostics& told = context.diagnostics;
+  if (!held("the mass", {mass, length(1), width(1)}, told) || !held("the inertia", {mass, length(3), width(1)}, told) ||
+      !held("the inertia", {mass, length(1), width(3)}, told) ||
+      !held("the stiffness along", {stiff, length(-3), width(1)}, told) ||
+      !held("the stiffness across", {stiff, length(1), width(-3)}, told))
+    return nullptr;
   const auto functions = [&](const char* family, const char* count, double length) {
     return make_shape_functions(Value(std::string(family), p.at(count).place()), p.at(count),
                                 {BeamData::Strain::bending, length, sheet.mass_per_area, sheet.stiffness}, context);

@@ -221,10 +221,7 @@ void Equations::jacobian(double t, std::span<const double> y, std::span<double> 
   Parts& p = *parts_;
   Parts::expect(jacobian.size(), p.size * p.size, "jacobian");
   const Linearization* linearization = p.equations.linearization();
-  if (linearization == nullptr)
-    throw study::InputError(dynamic_cast<const ClosedLoops*>(&p.equations) != nullptr
-                                ? "equations whose constraints close loops have no derivatives: take differences"
-                                : "formulation '" + p.prepared->scene.formulation_name + "' has no derivatives");
+  if (linearization == nullptr) throw study::InputError(study::why_no_derivatives(*p.prepared));
   Evaluation evaluation = p.evaluate(t, y);
   if (evaluation.ok()) evaluation = linearization->jacobian(t, p.full, p.full_dot, jacobian);
   if (!evaluation.ok()) throw SimulationStopped("singular", reason(t, evaluation), t);

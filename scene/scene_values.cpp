@@ -33,10 +33,20 @@ void lengthen_choices(Value& root) {
   lengthen_choice(root, "integrator");
 }
 
-/// True where members are things with names of the user's: an operation changes them but makes no new ones.
+/// True where members are things with names of the user's: an operation on one of their values makes no new ones.
 bool holds_user_names(const std::vector<std::string>& path, std::size_t depth) {
   if (depth == 1) return path[0] == "bodies" || path[0] == "hinges" || path[0] == "loads" || path[0] == "motions";
   return depth == 3 && path[0] == "bodies" && path[2] == "frames";
+}
+
+/// Whether a value is all of a thing with a name: a map that says of what type it is, or of a frame any map.
+bool defines(const std::vector<std::string>& path, const Value& value) {
+  return value.kind() == Value::Kind::map && (path.size() > 2 || value.has("type"));
+}
+
+/// How a thing with a name is made, in a clause behind others.
+std::string how_to_add(const std::vector<std::string>& path) {
+  return fmt::format("; to add it, give all of it, as {}", path.size() > 2 ? "{position: [1, 0, 0]}" : "{type: …}");
 }
 
 /// The keys of "bodies.hub.mass"; none where one is empty or too long.
@@ -99,7 +109,7 @@ int SceneValues::add_origin(std::string origin) {
 }
 
 /// The value a path leads to, made where it is missing; null after reporting.
-Value* SceneValues::target(const std::vector<std::string>& keys, int line) {
+Value* SceneValues::target(const std::vector<std::string>& keys, int line, const Value& value) {
   const auto error = [&](const std::string& path, std::string message) {
     diagnostics_.error({line, 0, path}, std::move(message));
   };
@@ -124,8 +134,9 @@ Value* SceneValues::target(const std::vector<std::string>& keys, int line) {
       return nullptr;
     }
     if (!at->has(key)) {
-      if (holds_user_names(keys, i)) {
-        error(path, fmt::format("no {} here to change{}", in_quotes(key), suggestion(key, keys_of(*at))));
+      if (holds_user_names(keys, i) && !(i + 1 == keys.size() && defines(keys, value))) {
+        error(path, fmt::format("no {} here to change{}{}", in_quotes(key), suggestion(key, keys_of(*at)),
+                                i + 1 == keys.size() ? how_to_add(keys) : ""));
         return nullptr;
       }
       at->set(key, Value());
@@ -157,7 +168,7 @@ void SceneValues::put(const std::vector<std::string>& keys, Document read, int l
     }
     return;
   }
-  Value* at = target(keys, line);
+  Value* at = target(keys, line, read.root);
   if (at == nullptr) return;
   const std::string path = joined(keys);
   const bool holds_keys = !std::as_const(*at).members().empty() || !std::as_const(*at).items().empty();

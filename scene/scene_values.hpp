@@ -29,7 +29,8 @@ class SceneValues {
 
   /// Puts a value at a path of keys with dots between them, as "bodies.link1.length" or "gravity.1", and makes the maps
   /// on the way that are missing. An element of a vector that is not there is put into its default. Bodies, hinges,
-  /// loads, motions and frames have to be there.
+  /// loads, motions and frames have to be there where the path leads into them, or the value is not all of one: a map,
+  /// with `type` but for frames.
   SceneValues& set(std::string_view path, Value value, const std::string& origin);
   /// For a copy of `base` on which nothing was done but to set some paths, none of them within another, to numbers: the
   /// same paths are going to be set again, in the same order, to other numbers. What comes of that is as if `base` had
@@ -74,7 +75,8 @@ class SceneValues {
  private:
   SceneValues() = default;
   int add_origin(std::string origin);
-  Value* target(const std::vector<std::string>& keys, int line);
+  /// \param value what is to be put there
+  Value* target(const std::vector<std::string>& keys, int line, const Value& value);
   void put(const std::vector<std::string>& keys, Document read, int line);
   void put_choice(const char* key, Value choice, const std::string& origin);
   void choose(const char* key, const std::string& id, const std::string& origin);

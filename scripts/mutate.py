@@ -63,7 +63,7 @@ def prepare(mutants):
     # As the release, so that ccache has what is not changed; the sweeps for one instruction set alone.
     configured = command(["cmake", "-S", str(source), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                           "-DWITHY_BENCH=OFF", "-DWITHY_KNOWS_X86_64_V3=OFF",
-                          "-DWITHY_TEST_ROOMS=bodies;loads;dynamics;analysis;simulation;integrators;plugins;reference",
+                          "-DWITHY_TEST_ROOMS=bodies;loads;dynamics;analysis;simulation;integrators;plugins;reference;study;campaign",
                           *launcher])
     if configured.returncode != 0:
         sys.exit(configured.stdout)
@@ -137,11 +137,11 @@ def main():
     prepare(mutants)
     # No more than is run.
     needed = {t for m in mutants if arguments.only in m[0] for t in m[4]} if arguments.named_only else set(programs)
-    base = compile_tests([p for p in programs if p in needed], arguments.jobs)
+    base = compile_tests(sorted(needed), arguments.jobs)
     if base.returncode != 0:
         sys.exit(base.stdout)
     # A program that fails without a fault would kill every one of them.
-    healthy = first_failure([p for p in programs if p in needed], arguments.jobs, arguments.limit)
+    healthy = first_failure(sorted(needed, key=lambda p: (programs + [p]).index(p)), arguments.jobs, arguments.limit)
     if healthy is not None:
         sys.exit(f"the tests fail without any fault: {healthy}")
     done = {name: line[1] for name, line in read_report().items()}

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "withy/core/model/event_plan.hpp"
+#include "withy/core/plugin/closed_loops.hpp"
 #include "withy/core/plugin/floating_point.hpp"
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/plugin/formulation_ladder.hpp"
@@ -202,6 +203,12 @@ std::optional<std::string> next_rung(Registry& registry, const std::string& form
   for (const RankedFormulation& rung : formulation_rungs(registry))
     if (rung.standing.rank > rank) return rung.id;
   return {};
+}
+
+std::string why_no_derivatives(const Prepared& prepared) {
+  if (dynamic_cast<const ClosedLoops*>(prepared.equations.get()) != nullptr)
+    return "equations whose constraints close loops have no derivatives: take differences";
+  return "formulation '" + prepared.scene.formulation_name + "' has no derivatives: take differences";
 }
 
 bool flexible(const Model& model) { return std::any_of(model.bodies().begin(), model.bodies().end(), has_modes); }

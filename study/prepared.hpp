@@ -76,6 +76,9 @@ std::optional<Beyond> next_model_up(const Prepared& prepared, Registry& registry
 /// The least rung of `auto` above a formulation; nothing where there is none. \throws InputError
 std::optional<std::string> next_rung(Registry& registry, const std::string& formulation);
 
+/// Why these equations have no Jacobian; only where EquationsOfMotion::linearization gives none.
+std::string why_no_derivatives(const Prepared& prepared);
+
 /// Whether any body has modes.
 bool flexible(const Model& model);
 

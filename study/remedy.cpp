@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "withy/core/simulation/stop.hpp"
+#include "withy/study/fast_course.hpp"
+#include "withy/study/step_limit.hpp"
 
 namespace withy::study {
 namespace {
@@ -57,6 +59,20 @@ std::string motion_remedy(const Prepared& prepared, const NonfiniteMotion& motio
       placed_name(prepared, "motions", motion.name), 0.99 * motion.time);
 }
 
+/// Of what is too fast for the steps allowed.
+std::string stiff_remedy(const Prepared& prepared, const RunSummary& summary) {
+  if (summary.final.y.size() == prepared.equations->size() && !too_stiff(prepared, summary.final))
+    if (const std::optional<FastCourse> course = fast_course(prepared, summary.final))
+      return fmt::format(
+          " What to do: give {} {} the time that is meant, in seconds; where it is as fast as that indeed, what it "
+          "does "
+          "in the mean; or the run an earlier end (time.end).",
+          course->of_motion ? "motion" : "load",
+          placed_name(prepared, course->of_motion ? "motions" : "loads", course->name));
+  return " What to do: run it with --integrator radau, whose steps no fast motion limits; or slow down what is named "
+         "above: less damping or stiffness, or the inertia that it lacks (a motor has a rotor).";
+}
+
 }  // namespace
 
 std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
@@ -68,9 +84,7 @@ std::string remedy_text(const Prepared& prepared, const RunSummary& summary) {
     case RunStatus::load_failed:  // its law has said why: the engine has nothing to add
       return {};
     case RunStatus::too_stiff:
-      return " What to do: run it with --integrator radau, whose steps no fast motion limits; or slow down what is "
-             "named "
-             "above: less damping or stiffness, or the inertia that it lacks (a motor has a rotor).";
+      return stiff_remedy(prepared, summary);
     case RunStatus::inaccurate:
       return " What to do: take shorter steps (a smaller 'step', or 'rtol' of an integrator that controls its error), "
              "or one that no vibration limits, as radau.";

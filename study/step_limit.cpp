@@ -9,6 +9,7 @@
 #include "withy/core/analysis/fastest_pole.hpp"
 #include "withy/core/model/closing.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
+#include "withy/study/fast_course.hpp"
 
 namespace withy::study {
 namespace {
@@ -150,7 +151,9 @@ std::string too_fast(const Prepared& prepared, const RunSummary& summary, double
 void watch_poles(const Prepared& prepared, RunOptions& options) {
   options.too_stiff = [&prepared](const State& state) {
     const std::optional<TooStiff> found = too_stiff(prepared, state);
-    return found ? found->text : std::string();
+    if (found) return found->text;
+    const std::optional<FastCourse> course = fast_course(prepared, state);
+    return course ? course->text : std::string();
   };
   options.too_fast = [&prepared](const RunSummary& summary, double step) { return too_fast(prepared, summary, step); };
 }

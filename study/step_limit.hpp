@@ -43,7 +43,8 @@ struct TooStiff {
 /// the run. Nothing where they are not, or where it is not known: of more than 200 speeds, with closed loops.
 std::optional<TooStiff> too_stiff(const Prepared& prepared, const State& state,
                                   std::size_t most_steps = RunOptions().most_steps);
-/// Gives runs of a scene, which must outlive them, what they ask of its poles: RunOptions::too_stiff and too_fast.
+/// Gives runs of a scene, which must outlive them, what they ask of its poles, and of the course of its
+/// loads and motions in time: RunOptions::too_stiff and too_fast.
 void watch_poles(const Prepared& prepared, RunOptions& options);
 
 }  // namespace withy::study

@@ -239,8 +239,7 @@ void Dynamics::sensitivity(std::span<const double> along_states, std::span<const
   std::fill(derivatives.begin(), derivatives.end(), 0.0);
   if (!along_states.empty()) {
     const Linearization* linearization = equations_.linearization();
-    if (linearization == nullptr)
-      throw std::invalid_argument("formulation '" + prepared_->scene.formulation_name + "' has no derivatives");
+    if (linearization == nullptr) throw std::invalid_argument(study::why_no_derivatives(*prepared_));
     static_cast<void>(this->derivatives());
     if (!jacobian_is_now_ && !linearization->jacobian(state_.time, seen().y, y_dot_, jacobian_).ok())
       throw Discarded("t = " + brief(state_.time) + " s: the mass matrix cannot be solved");

@@ -6,11 +6,64 @@
 #include <cstring>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "withy/core/sweep/with_modes.hpp"
 
 namespace withy::sweep {
 namespace {
+
+constexpr double negligible = 1e-9;  ///< of a column's norm
+
+/// Coefficients of columns, none longer than 1, in an orthonormal basis of their span.
+Eigen::MatrixXd pivoted_coefficients(const Eigen::MatrixXd& columns) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+  Eigen::Index rank = 0;
+  while (rank < qr.matrixR().diagonal().size() && std::abs(qr.matrixR()(rank, rank)) > negligible) ++rank;
+  const Eigen::MatrixXd upper = qr.matrixR().topRows(rank).template triangularView<Eigen::Upper>();
+  return upper * qr.colsPermutation().transpose();
+}
+
+/// The same where the span has few dimensions for the numbers there are, as of products of many modes: only as many
+/// columns are made part of the basis, columns of zeros are left out, and what is left of all others is formed when its
+/// norms, known from the coefficients, have lost half of their digits.
+Eigen::MatrixXd coefficients_of_many(const Eigen::MatrixXd& columns) {
+  std::vector<Eigen::Index> at;
+  for (Eigen::Index c = 0; c < columns.cols(); ++c)
+    if (!columns.col(c).isZero(0)) at.push_back(c);
+  Eigen::MatrixXd left = columns(Eigen::all, at);
+  const Eigen::Index most = std::min(left.rows(), left.cols());
+  Eigen::MatrixXd basis(left.rows(), most), found(most, left.cols());
+  Eigen::Index rank = 0, formed = 0;
+  const auto form = [&] {
+    left.noalias() -= basis.middleCols(formed, rank - formed) * found.middleRows(formed, rank - formed);
+    formed = rank;
+  };
+  while (rank < most) {
+    Eigen::RowVectorXd squares = left.colwise().squaredNorm();
+    Eigen::Index longest = 0;
+    const double begun = squares.maxCoeff(&longest);
+    if (!(begun > negligible * negligible)) break;
+    // Squares lose as many digits as they have become smaller.
+    for (double square = begun; rank < most && square > std::max(1e-8 * begun, negligible * negligible);
+         square = squares.maxCoeff(&longest)) {
+      auto direction = basis.col(rank);
+      direction = left.col(longest) -
+                  basis.middleCols(formed, rank - formed) * found.col(longest).segment(formed, rank - formed);
+      for (int pass = 0; pass < 2; ++pass)
+        direction -= (basis.leftCols(rank) * (basis.leftCols(rank).transpose() * direction)).eval();
+      direction.normalize();
+      found.row(rank).noalias() = direction.transpose() * left;
+      squares -= found.row(rank).cwiseAbs2();
+      squares[longest] = 0;
+      ++rank;
+    }
+    form();
+  }
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rank, columns.cols());
+  all(Eigen::all, at) = found.topRows(rank);
+  return all;
+}
 
 /// Coefficients of the columns of `fields` in an orthonormal basis of their span whose first function is column 0: a
 /// matrix R with Rᵀ R = fieldsᵀ fields. What is dropped has at most 1e-9 of a column's norm, so that dot products lose
@@ -27,13 +80,12 @@ Eigen::MatrixXd orthonormal_coefficients(const Eigen::MatrixXd& fields) {
   Eigen::RowVectorXd scale = fields.rightCols(rest.cols()).colwise().norm();
   for (double& s : scale) s = s > 0 ? s : 1.0;
   const Eigen::MatrixXd scaled = rest * scale.cwiseInverse().asDiagonal();
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
-  Eigen::Index rank = 0;
-  while (rank < qr.matrixR().diagonal().size() && std::abs(qr.matrixR()(rank, rank)) > 1e-9) ++rank;
-  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(1 + rank, fields.cols());
+  constexpr Eigen::Index many = 1 << 19;
+  const Eigen::MatrixXd of_rest = scaled.size() > many ? coefficients_of_many(scaled) : pivoted_coefficients(scaled);
+  Eigen::MatrixXd R(1 + of_rest.rows(), fields.cols());
   R.row(0) = first;
-  const Eigen::MatrixXd upper = qr.matrixR().topRows(rank).template triangularView<Eigen::Upper>();
-  R.bottomRightCorner(rank, rest.cols()) = upper * qr.colsPermutation().transpose() * scale.asDiagonal();
+  R.col(0).tail(of_rest.rows()).setZero();
+  R.bottomRightCorner(of_rest.rows(), rest.cols()) = of_rest * scale.asDiagonal();
   return R;
 }
 

@@ -106,6 +106,12 @@ TEST(MassProducts, of_any_number_of_modes_are_those_of_the_dense_equations) {
   }
 }
 
+/// Of so many modes the products span few dimensions for their number, and their basis is found in another way.
+TEST(MassProducts, of_very_many_modes_are_those_of_the_dense_equations) {
+  const SceneWish wish{.bodies = 2, .planar = true, .modes = 40};
+  expect_solves(Case(3, wish, "quadratic"), "40 modes");
+}
+
 /// Inverse dynamics undoes forward dynamics' equations: M u̇ − f and M a against the assembled M, f.
 TEST_P(RandomTrees, inverse_dynamics_and_mass_products_are_those_of_the_dense_equations) {
   for (unsigned seed = 1; seed <= 30; ++seed) {

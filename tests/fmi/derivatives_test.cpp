@@ -1,5 +1,7 @@
 /// \file
 /// Directional and adjoint derivatives against differences of what the FMU itself gives.
+#include <gmock/gmock.h>
+
 #include <cmath>
 #include <functional>
 #include <random>
@@ -84,6 +86,22 @@ TEST(Derivatives, DirectionalOnesAreThoseOfDifferencesAndAdjointOnesTheirTranspo
     }
     EXPECT_NEAR(left, right, 1e-7 * scale);
   }
+}
+
+/// Closed loops have no Jacobian: the description offers none, and a host that asks all the same is told why.
+TEST(Derivatives, OfClosedLoopsAreRefusedForWhatClosesThem) {
+  host::Scene scene = host::Scene::read(library(), SCENES "/gallery/four-bar.yaml");
+  const std::filesystem::path out = scratch() / "closed.fmu";
+  static_cast<void>(fmi::export_fmu(*scene.prepare(), {}, library().registry(), {3, false, true, out}));
+  const Unpacked fmu = unpack(out, 3);
+  EXPECT_EQ(attributes_of(fmu.xml.get_child("CoSimulation")).count("providesDirectionalDerivatives"), 0U);
+  Instance3 i(fmu, true);
+  i.initialize();
+  const std::uint32_t unknown = fmu.derivatives.at(0), known = fmu.states.at(0);
+  const double along = 1;
+  double got = 0;
+  EXPECT_EQ(i.fmi.GetDirectionalDerivative(i.c, &unknown, 1, &known, 1, &along, 1, &got, 1), fmi3Error);
+  EXPECT_THAT(i.heard.last, testing::HasSubstr("constraints close loops"));
 }
 
 }  // namespace withy::test

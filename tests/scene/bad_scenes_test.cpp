@@ -140,6 +140,17 @@ const BadScene bad_scenes[] = {
     {"mode_family_without_functions_for_torsion", "bending_y: {stiffness: 112, modes: 2, family: clamped-free}",
      "torsion: {stiffness: 112, inertia: 1, family: pinned-free}",
      "15:51: /bodies/boom/torsion/family: mode family 'pinned-free' has no functions for torsion"},
+    {"length_whose_powers_underflow", "length: 0.9", "length: 1.0e-300",
+     "13:13: /bodies/boom/length: got 1e-300, with which the inertia, mass_per_length length^3, is about 1e-900, and "
+     "its square is outside of the range of doubles; need at least about 1e-50 with the other numbers"},
+    {"stiffness_that_is_next_to_nothing", "stiffness: 112", "stiffness: 1.0e-320",
+     "15:28: /bodies/boom/bending_y/stiffness: got 1e-320, with which the square of a frequency, stiffness "
+     "mass_per_length^-1 length^-4, is about 1e-320"},
+    {"width_whose_powers_underflow",
+     "type: beam\n    length: 0.9\n    mass_per_length: 1.3\n    bending_y: {stiffness: 112, modes: 2, family: "
+     "clamped-free}",
+     "type: plate\n    length: 1\n    width: 1.0e-100\n    mass_per_area: 1\n    stiffness: 1",
+     "14:12: /bodies/boom/width: got 1e-100, with which the inertia, mass_per_area length width^3, is about 1e-300"},
     {"unknown_body_plugin", "type: beam", "type: beem",
      R"(12:11: /bodies/boom/type: no body plugin "beem"; did you mean 'beam'?; available: beam, modal, plate, rigid)"},
     {"unknown_hinge_plugin", "type: weld", "type: wled",

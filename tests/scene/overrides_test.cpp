@@ -84,7 +84,32 @@ TEST_F(Overrides, AreNamedAsThePlaceOfTheirErrors) {
             "--set 'time.end={a: 1, a: 2}': /time/end: got a map; need finite >= 0 [s]");
 }
 
-TEST_F(Overrides, MakeNoNewBodiesHingesLoadsOrFrames) {
+TEST_F(Overrides, AddWhatIsGivenAsAWhole) {
+  const Scene s = read({"loads.push={type: force, frame: boom.tip, value: [0, 1, 0]}",
+                        "bodies.hub.frames.rim={position: [0, 0.1, 0]}", "bodies.plumb={type: rigid, mass: 1}",
+                        "hinges.hang={type: weld, parent: hub.rim, child: plumb}"});
+  EXPECT_TRUE(s.source.at("loads").has("push"));
+  EXPECT_TRUE(s.source.at("loads").has("motor"));
+  EXPECT_GE(s.model->body("plumb"), 0);
+  // Also where there is none of its kind.
+  const std::string bare =
+      "format: withy/1\nformulation: quadratic\nintegrator: dopri5\ntime: {end: 1}\n"
+      "bodies: {b: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}\n"
+      "hinges: {h: {type: revolute, axis: [0, 0, 1], parent: world, child: b}}\n";
+  EXPECT_EQ(
+      parse_scene(bare, "s.yaml", registry, {"", "", {"loads.push={type: force, frame: b.root, value: [0, 1, 0]}"}})
+          .model->loads()
+          .size(),
+      1U);
+  // What is added is checked as a file's is, and not taken for what it does not say it is.
+  EXPECT_THAT(problem("loads.push={type: force, frame: boom.tipp, value: [0, 1, 0]}"),
+              testing::HasSubstr("/loads/push/frame: no frame \"boom.tipp\"; did you mean 'boom.tip'?"));
+  EXPECT_THAT(problem("loads.moter={period: 1}"),
+              testing::HasSubstr("no \"moter\" here to change; did you mean 'motor'?; to add it, give all of it, as "
+                                 "{type: …}"));
+}
+
+TEST_F(Overrides, MakeNothingNewOfAValueWithinIt) {
   EXPECT_EQ(problem("bodies.hubb.mass=1"),
             "--set 'bodies.hubb.mass=1': /bodies: no \"hubb\" here to change; did you mean 'hub'?");
   EXPECT_EQ(problem("loads.moter.period=1"),

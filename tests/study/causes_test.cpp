@@ -7,6 +7,7 @@
 #include <numbers>
 #include <regex>
 
+#include "withy/study/fast_course.hpp"
 #include "withy/study/plausibility.hpp"
 #include "withy/study/run.hpp"
 #include "withy/study/step_limit.hpp"
@@ -170,6 +171,40 @@ TEST(Causes, DryFrictionIsNamedWhereItsScaleIsBelowWhatTheStepsResolve) {
   }
   state.y[prepared.model().layout().positions] = 0.01;
   EXPECT_FALSE(too_stiff(prepared, state)) << "while it slides nothing is fast";
+}
+
+/// No steps that are allowed follow a load that goes to and fro 1e9 times a second for seconds, implicit ones as
+/// little. Its period is counted in eight periods or more, to an eighth.
+TEST(Causes, ALoadOrMotionThatIsFasterByItselfThanTheStepsAllowed) {
+  const std::string bodies = R"(time: {end: 10}
+bodies: {wheel: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}, arm: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}}
+hinges:
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: wheel}
+  pin: {type: revolute, axis: [0, 0, 1], parent: wheel, child: arm}
+)";
+  const std::string sine = bodies +
+                           "loads:\n  slow: {type: hinge-effort, hinge: axle, law: sine, amplitude: 2, period: 5}\n"
+                           "  buzz: {type: hinge-effort, hinge: pin, law: sine, amplitude: 1, period: 1.0e-9}\n";
+  const RunSummary s = run_of_text(sine);
+  EXPECT_EQ(s.status, RunStatus::too_stiff) << s.message;
+  EXPECT_LE(s.steps.accepted, std::size_t{1} << 18U) << "it stops at its first look";
+  EXPECT_NEAR(number_after(s.message, "load 'buzz' goes to and fro every "), 1e-9, 0.125e-9) << s.message;
+  EXPECT_NEAR(number_after(s.message, "about "), 1e10, 0.2e10) << s.message;
+  EXPECT_THAT(s.message, HasSubstr("What to do: give load 'buzz' (line 11 of the scene) the time that is meant"));
+  const auto course = [&](const std::string& text) {
+    const Prepared prepared = prepare(SceneValues::parse("format: withy/1\n" + text, "planted.yaml"), plugins());
+    const std::optional<FastCourse> found = fast_course(prepared, prepared.scene.initial);
+    return found ? found->text : "nothing";
+  };
+  EXPECT_THAT(course(bodies + "motions: {shake: {type: sine, hinge: axle, amplitude: 1, period: 1.0e-8}}\n"),
+              HasSubstr("motion 'shake' goes to and fro every "));
+  EXPECT_THAT(course(bodies + "loads: {hold: {type: pd-controller, law: constant, hinges: {axle: {stiffness: 1, "
+                              "damping: 1}}, sample: 2.0e-8}}\n"),
+              HasSubstr("load 'hold' is sampled every 2e-08 s"));
+  // A hundred thousand periods are followed.
+  EXPECT_EQ(
+      course(bodies + "loads: {hum: {type: hinge-effort, hinge: pin, law: sine, amplitude: 1, period: 1.0e-4}}\n"),
+      "nothing");
 }
 
 /// A boom at rest, held by a spring that is far too stiff for steps of 10 ms, and falling.
