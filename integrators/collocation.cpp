@@ -96,6 +96,10 @@ void CollocationStages::predict(double h) {
   for (int i = 0; i < 3; ++i) z_.col(i).noalias() = before_ * (weights_at(1 + method_.c[i] * h / last_) - end);
 }
 
+void CollocationStages::predict_along(double h, const Eigen::ArrayXd& slope) {
+  z_.noalias() = h * slope.head(jacobian_.size()).matrix() * method_.c.transpose();
+}
+
 Eigen::Vector3d CollocationStages::weights_at(double theta) const {
   Eigen::Vector3d weights;
   for (int i = 0; i < 3; ++i) {

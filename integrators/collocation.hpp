@@ -45,6 +45,8 @@ class CollocationStages {
 
   /// First guess: the last step's polynomial, extrapolated; zero where there is none.
   void predict(double h);
+  /// First guess: straight on along the slope where the step begins.
+  void predict_along(double h, const Eigen::ArrayXd& slope);
   /// z at fraction theta of the step is Σ weight_i z_i.
   [[nodiscard]] Eigen::Vector3d weights_at(double theta) const;
 

@@ -69,6 +69,12 @@ class RadauStepper final : public AdaptiveStepper {
       stages_.factorize(h);
       stages_.predict(h);
       r = stages_.solve(t, h, y(), tolerance_, most_iterations, rates);
+      // Where the run begins, what is guessed to stay may be far from any motion, in steps however short: a mean since
+      // the start is the quotient of a sum and a time, which are zero there together.
+      if (first_ && r.end == CollocationStages::End::slow) {
+        stages_.predict_along(h, slope_);
+        r = stages_.solve(t, h, y(), tolerance_, most_iterations, rates);
+      }
       if (r.end == CollocationStages::End::converged) break;
       stages_.accept(0);  // what these stages are predicts nothing
       if (r.end == CollocationStages::End::failed && fresh_) return {r.evaluation};
