@@ -77,9 +77,8 @@ void add_advise(Options& o, AdviseArguments& a) {
   o.list("--formulations,--formulation", a.axes.formulations, "ID,...",
          "Formulations to choose from; default: all that take part in studies, plugins' too");
   o.list("--families,--family", a.axes.families, "ID,...",
-         "Mode families of bending to choose from; default: the scene's, and where they are the same beams "
-         "orthogonal-polynomials, vibration-modes where they vary, or of those that carry something craig-bampton, "
-         "vibration-modes and clamped-loaded with that load");
+         "Mode families of bending to choose from; default: the scene's and, of orthogonal-polynomials, craig-bampton, "
+         "clamped-loaded with what is carried and vibration-modes, those that suit the same beams");
   o.list("--modes", a.axes.modes, "N,...",
          "Modes of each family of a beam to choose from; default: 1,2,3,4 and, where these will not do, to 8");
   o.list("--integrators", a.axes.integrators, "ID,...",
