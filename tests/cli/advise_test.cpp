@@ -144,41 +144,6 @@ TEST(Advise, NothingCheaperAmongItsProbesPasses) {
   }
 }
 
-/// The cheapest formulation is off by more than a twelfth of the ranges and by less than three fifths.
-TEST(Advise, AskedForLessItGivesAModelThatLeavesOutMore) {
-  const Folder folder;
-  const auto formulation = [&](const char* accuracy) {
-    return json::parse(advise(folder, {"--accuracy", accuracy, "--modes", "1,2", "--json"}).out)
-        .at("advice")
-        .at("formulation")
-        .get<std::string>();
-  };
-  EXPECT_EQ(formulation("60%"), "ruthless");
-  EXPECT_NE(formulation("8%"), "ruthless");
-}
-
-/// A blade that spins up needs stiffening, an idle mast with many coordinates nothing at all.
-TEST(Advise, ABodyThatNeedsLessIsRuthlessAlone) {
-  const Folder folder;
-  std::string text = folder.read("scenes/spin-up.yaml");
-  text.insert(
-      text.find("hinges:"),
-      "  mast: {type: beam, length: 3.0, mass_per_length: 0.5, bending_y: {stiffness: 900, modes: 2}, bending_z: "
-      "{stiffness: 900, modes: 2}, torsion: {stiffness: 300, inertia: 0.01, modes: 2}}\n\n");
-  text.insert(text.find("motions:"), "  foot: {type: weld, parent: world, child: mast}\n\n");
-  folder.write("masted.yaml", text);
-  const Finished f =
-      advise(folder,
-             {"--accuracy", "20mm", "--formulations", "ruthless,quadratic", "--modes", "2", "--integrators", "dop853",
-              "--families", "clamped-free", "--output", "blade.tip", "--json"},
-             {"advise", "masted.yaml"});
-  ASSERT_EQ(f.status, 0) << f.err;
-  const json advice = json::parse(f.out).at("advice");
-  EXPECT_NE(advice.at("formulation"), "ruthless");
-  EXPECT_EQ(advice.at("bodies"), (json{{"mast", "ruthless"}}));
-  EXPECT_THAT(advice.at("scene_lines").get<std::string>(), HasSubstr("ruthless"));
-}
-
 /// A plate's modes are chosen as those of beams are; without any it would be another scene.
 TEST(Advise, PlatesKeepModes) {
   const Folder folder;

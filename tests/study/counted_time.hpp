@@ -20,9 +20,11 @@ class CountedTime final : public study::SearchTime {
     for (std::size_t b = 0; b < layout.modes_of.size(); ++b) {
       const Slot* slot = layout.modes(b);
       const double modes = slot != nullptr ? static_cast<double>(slot->speeds) : 0;
-      seconds += 1e-7 + 2e-8 * modes + 1e-8 * modes * modes;
+      // Bodies that have a formulation of their own are ruthless.
+      const std::string& formulation = model.model().bodies()[b].terms ? "ruthless" : model.scene.formulation_name;
+      seconds += (1e-7 + 2e-8 * modes + 1e-8 * modes * modes) * beside_quadratic(formulation);
     }
-    return seconds * beside_quadratic(model.scene.formulation_name);
+    return seconds;
   }
   void evaluated(const study::Prepared& model, std::size_t count) override {
     seconds_ += static_cast<double>(count) * of_evaluation(model);
