@@ -77,31 +77,23 @@ Course accelerations_of(const Motion& motion) {
   return [&motion](double t) { return Eigen::VectorXd::Constant(1, motion.at(t).acceleration); };
 }
 
-}  // namespace
+/// What is told of a course, after what it does and how often.
+using Rest = std::function<std::string(double period)>;
 
-std::optional<FastCourse> fast_course(const Prepared& prepared, const State& state, std::size_t most_steps) {
-  if (!prepared.scene.end) return {};
+FastCourse told(bool of_motion, const std::string& name, double period, const char* does, const Rest& rest) {
+  return {of_motion, name, period,
+          fmt::format("{} '{}' {} every {:.2g} s, whatever moves, {}", of_motion ? "motion" : "load", name, does,
+                      period, rest(period))};
+}
+
+/// The first motion, else load, that goes to and fro in about `longest` [s] or less.
+std::optional<FastCourse> swinging(const Prepared& prepared, const State& state, double longest, const Rest& rest) {
   const Model& model = prepared.model();
-  const double left = *prepared.scene.end - state.time, allowed = static_cast<double>(most_steps);
-  if (!(left > 0)) return {};
-  const auto found = [&](bool of_motion, const std::string& name, double period, const char* does) {
-    return FastCourse{of_motion, name, period,
-                      fmt::format("{} '{}' {} every {:.2g} s, whatever moves, about {:.1g} times up to the end of the "
-                                  "run, where {:g} steps are allowed",
-                                  of_motion ? "motion" : "load", name, does, period, left / period, allowed)};
-  };
-  for (const LoadNode& node : model.loads())
-    if (const DiscretePart* part = node.load->discrete();
-        part != nullptr && left / allowed > part->period() && part->period() > 0)
-      return found(false, node.name, part->period(), "is sampled");
-  // Adaptive steps of the usual tolerances, some ten in a period, are more than those allowed.
-  constexpr double steps_in_a_period = 10;
-  const double longest = steps_in_a_period * left / allowed;
   constexpr const char* swings = "goes to and fro";
   for (const MotionNode& node : model.motions())
     if (!node.motion->locks())
       if (const Found f = fastest_period(accelerations_of(*node.motion), state.time, longest); f.period > 0)
-        return found(true, node.name, f.period, swings);
+        return told(true, node.name, f.period, swings, rest);
   if (model.loads().empty()) return {};
   Work work = prepared.equations->make_work();
   const Found of_all =
@@ -111,8 +103,58 @@ std::optional<FastCourse> fast_course(const Prepared& prepared, const State& sta
     if (const double period =
             period_in(efforts_of(prepared, state, static_cast<int>(l), work), state.time, of_all.apart);
         period > 0)
-      return found(false, model.loads()[l].name, period, swings);
+      return told(false, model.loads()[l].name, period, swings, rest);
   return {};
+}
+
+/// Whether a motion or load may go to and fro in less than some steps of this size [s], by a few samples: those of
+/// either distance see what returns to the same at each of the other.
+bool may_swing(const Prepared& prepared, const State& state, double step) {
+  const auto swings = [&](const Course& course) {
+    return period_in(course, state.time, 0.0773 * step) > 0 || period_in(course, state.time, 0.0618 * step) > 0;
+  };
+  const Model& model = prepared.model();
+  for (const MotionNode& node : model.motions())
+    if (!node.motion->locks() && swings(accelerations_of(*node.motion))) return true;
+  if (model.loads().empty()) return false;
+  Work work = prepared.equations->make_work();
+  return swings(efforts_of(prepared, state, EquationsOfMotion::all_loads, work));
+}
+
+}  // namespace
+
+std::optional<FastCourse> fast_course(const Prepared& prepared, const State& state, std::size_t most_steps) {
+  if (!prepared.scene.end) return {};
+  const double left = *prepared.scene.end - state.time, allowed = static_cast<double>(most_steps);
+  if (!(left > 0)) return {};
+  const Rest rest = [&](double period) {
+    return fmt::format("about {:.1g} times up to the end of the run, where {:g} steps are allowed", left / period,
+                       allowed);
+  };
+  for (const LoadNode& node : prepared.model().loads())
+    if (const DiscretePart* part = node.load->discrete();
+        part != nullptr && left / allowed > part->period() && part->period() > 0)
+      return told(false, node.name, part->period(), "is sampled", rest);
+  // Adaptive steps of the usual tolerances, some ten in a period, are more than those allowed.
+  constexpr double steps_in_a_period = 10;
+  return swinging(prepared, state, steps_in_a_period * left / allowed, rest);
+}
+
+std::optional<FastCourse> unseen_course(const Prepared& prepared, const State& state) {
+  const Value& integrator = prepared.scene.source.at("integrator");
+  const Value* given = integrator.find("step");
+  if (given == nullptr || integrator.find("rtol") != nullptr) return {};
+  // A longer step than the run ends with it.
+  const double left = prepared.scene.end ? *prepared.scene.end - state.time : std::numeric_limits<double>::infinity();
+  const double step = std::min(given->number(), left);
+  if (!(step > 0) || !std::isfinite(step) || !may_swing(prepared, state, step)) return {};
+  constexpr double enough = 2, good = 20;  // steps in a period
+  std::optional<FastCourse> course = swinging(prepared, state, enough * step, [&](double period) {
+    return fmt::format("and steps of {:.2g} s do not follow it: take {:.1g} s, or an integrator with 'rtol'", step,
+                       period / good);
+  });
+  if (course && course->period > enough * step) return {};
+  return course;
 }
 
 }  // namespace withy::study

@@ -22,4 +22,9 @@ struct FastCourse {
 std::optional<FastCourse> fast_course(const Prepared& prepared, const State& state,
                                       std::size_t most_steps = RunOptions().most_steps);
 
+/// What changes with time by itself, whatever moves, in less than two steps of an integrator that nothing tells of
+/// errors: it is read at points within a step that may miss it, or take it for something slower. Nothing where there is
+/// no such load or motion, or the integrator controls its error.
+std::optional<FastCourse> unseen_course(const Prepared& prepared, const State& state);
+
 }  // namespace withy::study

@@ -13,6 +13,7 @@
 #include "withy/core/model/hinge_rates.hpp"
 #include "withy/core/simulation/diagnosis.hpp"
 #include "withy/core/simulation/tips.hpp"
+#include "withy/study/fast_course.hpp"
 #include "withy/study/step_limit.hpp"
 #include "withy/study/tip_moments.hpp"
 #include "withy/study/varying_sections.hpp"
@@ -143,13 +144,14 @@ void look_at_servos(const Prepared& prepared, std::vector<Remark>& all) {
   }
 }
 
-/// A motion that the integrator chosen does not follow to the end of the run.
+/// A motion that the integrator chosen does not follow to the end of the run; a load that its steps do not see.
 void look_at_steps(const Prepared& prepared, std::vector<Remark>& all) {
-  const std::optional<TooStiff> found = too_stiff(prepared, prepared.scene.initial);
-  if (!found) return;
   const Value* chosen = prepared.scene.source.find("integrator");
-  all.push_back({chosen != nullptr ? chosen->place() : prepared.scene.source.place(),
-                 found->text + "; use radau, or give the inertia that is missing"});
+  const Place place = chosen != nullptr ? chosen->place() : prepared.scene.source.place();
+  if (const std::optional<TooStiff> found = too_stiff(prepared, prepared.scene.initial))
+    all.push_back({place, found->text + "; use radau, or give the inertia that is missing"});
+  if (const std::optional<FastCourse> unseen = unseen_course(prepared, prepared.scene.initial))
+    all.push_back({place, unseen->text});
 }
 
 /// Every text of a value but the names of members.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <optional>
 
@@ -13,6 +14,7 @@
 #include "withy/core/simulation/instants.hpp"
 #include "withy/core/simulation/run_times.hpp"
 #include "withy/study/accuracy.hpp"
+#include "withy/study/fast_course.hpp"
 #include "withy/study/growth.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/output_reader.hpp"
@@ -194,6 +196,15 @@ MoreModesOutcome more_modes(const Prepared& prepared, Registry& registry, const 
   return with_one_mode_more(prepared, registry, summary.final.time, settings.control.interrupted);
 }
 
+/// What steps of a fixed size did not see, as a sentence of its own.
+void add_unseen(const Prepared& prepared, RunSummary& summary) {
+  const std::optional<FastCourse> unseen = unseen_course(prepared, prepared.scene.initial);
+  if (!unseen) return;
+  std::string text = unseen->text;
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  summary.message += (summary.message.empty() ? "" : " ") + text + ".";
+}
+
 bool wanted(Estimate estimate, const Beyond& beyond) {
   return estimate == Estimate::always || (estimate == Estimate::automatic && !beyond.highest);
 }
@@ -216,6 +227,7 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
   if (prepared.escalates()) {
     RungPlan plan = plan_rungs(prepared, registry, asked_accuracy(prepared.scene), settings.control);
     result.summary = run_planned(prepared, settings, plan);
+    add_unseen(prepared, result.summary);
     // What is inaccurate here is the choice, and nothing grows.
     if (result.summary.status != RunStatus::inaccurate)
       result.summary.message += growth_text(prepared, result.summary) + remedy_text(prepared, result.summary);
@@ -229,6 +241,7 @@ CertifiedRun run(const Prepared& prepared, Registry& registry, const RunSettings
   result.summary = run_plainly(prepared, settings, beyond ? beyond->equations.get() : nullptr);
   if (const Value* closing = prepared.scene.source.find("closing"))
     result.summary.message += (result.summary.message.empty() ? "" : " ") + closing->text();
+  add_unseen(prepared, result.summary);
   result.summary.message += growth_text(prepared, result.summary) + remedy_text(prepared, result.summary);
   EstimateOutcome estimate;
   const bool comparable = !has_switches(prepared.model()) && result.summary.status != RunStatus::interrupted &&

@@ -20,6 +20,7 @@ struct SceneWish {
   int modes = 0;            ///< in bending_y of every beam, half of them in bending_z and torsion; 0: one to three
   bool aligned = false;     ///< hinges are along x and z, frames are not turned
   bool rotary = false;      ///< sections have inertia in bending
+  bool varying = false;     ///< beams vary along their length, and have modes of their own: strains with kinks
 };
 
 /// Text of a random scene; the same seed gives the same text.
@@ -58,6 +59,7 @@ class RandomScene {
   bool chance(double p) { return number(0, 1) < p; }
 
   std::string family() {
+    if (wish_.varying) return ", family: vibration-modes";
     if (!wish_.any_family) return "";
     const char* families[] = {"clamped-free",
                               "clamped-clamped",
@@ -69,6 +71,20 @@ class RandomScene {
                               "orthogonal-polynomials",
                               "{name: clamped-loaded, tip_mass: 0.7}"};
     return std::string(", family: ") + families[whole(0, 8)];
+  }
+  /// A property of a beam: a number, or a table over its length.
+  std::string along(double low, double high, double length) {
+    std::ostringstream s;
+    if (!wish_.varying) {
+      s << number(low, high);
+      return s.str();
+    }
+    s.precision(17);
+    s << "[";
+    for (const double part : {0.0, 0.3, 0.7, 1.0})
+      s << (part > 0 ? ", [" : "[") << part * length << ", " << number(low, high) << "]";
+    s << "]";
+    return s.str();
   }
   [[nodiscard]] std::string rotary() const { return wish_.rotary ? ", rotary_inertia: 0.002" : ""; }
   std::string direction() {
@@ -96,18 +112,24 @@ class RandomScene {
     text_ << "  " << name << ":\n";
     if (beam) {
       const int half = wish_.modes / 2;
-      text_ << "    type: beam\n    length: " << number(0.5, 2) << "\n    mass_per_length: " << number(0.5, 2) << "\n"
-            << "    damping_ratio: 0.01\n    bending_y: {stiffness: " << number(20, 90)
+      std::ostringstream written;  // tables end where the beam does, to the digit
+      written << number(0.5, 2);
+      const double length = std::stod(written.str());
+      text_ << "    type: beam\n    length: " << length << "\n    mass_per_length: " << along(0.5, 2, length) << "\n"
+            << "    damping_ratio: 0.01\n    bending_y: {stiffness: " << along(20, 90, length)
             << ", modes: " << (wish_.modes > 0 ? wish_.modes : whole(1, 3)) << family() << rotary() << "}\n";
       if (!wish_.planar && chance(0.7)) {
-        text_ << "    bending_z: {stiffness: " << number(20, 90) << ", modes: " << (half > 0 ? half : whole(1, 2))
-              << family() << rotary() << "}\n";
+        text_ << "    bending_z: {stiffness: " << along(20, 90, length)
+              << ", modes: " << (half > 0 ? half : whole(1, 2)) << family() << rotary() << "}\n";
       }
       // Always, so that no hinge can spin a beam about an axis without inertia.
       if (!wish_.planar) {
-        text_ << "    torsion: {stiffness: " << number(20, 90)
+        text_ << "    torsion: {stiffness: " << along(20, 90, length)
               << ", inertia: 0.003, modes: " << (half > 0 ? half : whole(0, 2))
-              << (wish_.any_family && chance(0.5) ? ", family: free-free" : "") << "}\n";
+              << (wish_.varying                     ? family()
+                  : wish_.any_family && chance(0.5) ? ", family: free-free"
+                                                    : "")
+              << "}\n";
       }
       text_ << "    frames: {a: {at: tip, " << pose() << "}, m: {at: 0.31, " << pose() << "}, r: {at: root, " << pose()
             << "}}\n";

@@ -87,6 +87,16 @@ TEST_P(RandomTrees, sweep_solves_the_dense_equations_in_every_mode_family) {
   }
 }
 
+/// Of beams that vary strains have kinks, at which `exact` cuts its integrals along a rod.
+TEST_P(RandomTrees, sweep_solves_the_dense_equations_where_beams_vary) {
+  for (unsigned seed = 1; seed <= 25; ++seed) {
+    const SceneWish wish{.bodies = 2 + static_cast<int>(seed % 5), .planar = seed % 3 == 0, .varying = true};
+    const Case c(seed, wish, GetParam());
+    if (c.scene.model->layout().speeds == 0) continue;
+    expect_solves(c, "seed " + std::to_string(seed), wish.planar ? 1e-11 : tolerance());
+  }
+}
+
 /// Products of modes are summed in tiles, of which what is left over has a size of its own: in these formulations.
 TEST(MassProducts, of_any_number_of_modes_are_those_of_the_dense_equations) {
   // Rods of `exact` have no inertia of their sections in bending.
