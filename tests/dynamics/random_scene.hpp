@@ -36,15 +36,16 @@ class RandomScene {
   }
   [[nodiscard]] std::string text() const { return text_.str(); }
 
-  /// Moderate deflections and rates about the initial state; quaternions of unit length.
+  /// Moderate deflections (large ones where beams vary) and rates about the initial state; quaternions of unit length.
   State state(const Model& model, State s) {
     const Layout& layout = model.layout();
     for (std::size_t i = 0; i < layout.speeds; ++i) s.y[layout.positions + i] = number(-1, 1);
     for (const Slot& h : layout.hinges) {
       for (std::size_t i = 0; i < h.positions; ++i) s.y[h.position + i] = number(-1, 1);
     }
+    const double bent = wish_.varying ? 0.2 : 0.02;  // what kinks do is of second order
     for (const Slot& b : layout.bodies) {
-      for (std::size_t i = 0; i < b.positions; ++i) s.y[b.position + i] = number(-0.02, 0.02);
+      for (std::size_t i = 0; i < b.positions; ++i) s.y[b.position + i] = number(-bent, bent);
     }
     for (std::size_t h = 0; h < layout.hinges.size(); ++h) {
       const Slot& slot = layout.hinges[h];

@@ -87,13 +87,14 @@ TEST_P(RandomTrees, sweep_solves_the_dense_equations_in_every_mode_family) {
   }
 }
 
-/// Of beams that vary strains have kinks, at which `exact` cuts its integrals along a rod.
+/// Of beams that vary strains have kinks, at which `exact` cuts the turns of a rod: these are 6e-11 off here, and
+/// 4e-10 where the sweeps leave the cuts out.
 TEST_P(RandomTrees, sweep_solves_the_dense_equations_where_beams_vary) {
   for (unsigned seed = 1; seed <= 25; ++seed) {
     const SceneWish wish{.bodies = 2 + static_cast<int>(seed % 5), .planar = seed % 3 == 0, .varying = true};
     const Case c(seed, wish, GetParam());
     if (c.scene.model->layout().speeds == 0) continue;
-    expect_solves(c, "seed " + std::to_string(seed), wish.planar ? 1e-11 : tolerance());
+    expect_solves(c, "seed " + std::to_string(seed), GetParam() == "exact" ? 2e-10 : 1e-11);
   }
 }
 
