@@ -104,19 +104,23 @@ const FieldLoad* acting_field(const LoadNode& node, std::span<const double> y) n
   return switched == nullptr ? nullptr : dynamic_cast<const FieldLoad*>(switched->acting(node.discrete(y)));
 }
 
-Vector3 field_acceleration(const Model& model, double t, std::span<const double> y,
-                           const FrameMotion& motion) noexcept {
-  Vector3 sum = Vector3::Zero();
+ActingFields::ActingFields(const Model& model) {
   for (const LoadNode& node : model.loads())
-    if (const FieldLoad* field = acting_field(node, y)) sum += field->acceleration(t, motion);
+    if (acts_on_mass(node)) loads_.push_back(&node);
+}
+
+Vector3 ActingFields::acceleration(double t, std::span<const double> y, const FrameMotion& motion) const noexcept {
+  Vector3 sum = Vector3::Zero();
+  for (const LoadNode* node : loads_)
+    if (const FieldLoad* field = acting_field(*node, y)) sum += field->acceleration(t, motion);
   return sum;
 }
 
-Wrench field_wrench(const Model& model, double t, std::span<const double> y, const MassPoint& point,
-                    const FrameMotion& motion) noexcept {
+Wrench ActingFields::wrench(double t, std::span<const double> y, const MassPoint& point,
+                            const FrameMotion& motion) const noexcept {
   Wrench sum;
-  for (const LoadNode& node : model.loads()) {
-    const FieldLoad* field = acting_field(node, y);
+  for (const LoadNode* node : loads_) {
+    const FieldLoad* field = acting_field(*node, y);
     if (field == nullptr) continue;
     const Wrench own = field->wrench(t, point, motion);
     sum.moment += own.moment;

@@ -78,12 +78,21 @@ bool acts_on_mass(const LoadNode& node);
 /// The load on distributed mass that a load is at y, as State::y; null where it is none then.
 const FieldLoad* acting_field(const LoadNode& node, std::span<const double> y) noexcept;
 
-/// What all of these loads of a model give mass that moves so, at (t, y) as of State: an acceleration [m/s²], world
-/// axes.
-Vector3 field_acceleration(const Model& model, double t, std::span<const double> y, const FrameMotion& motion) noexcept;
-/// What they exert there on a mass point that moves so.
-Wrench field_wrench(const Model& model, double t, std::span<const double> y, const MassPoint& point,
-                    const FrameMotion& motion) noexcept;
+/// All of these loads of a model, found once: what a load is takes longer to ask than what it gives.
+class ActingFields {
+ public:
+  ActingFields() = default;  ///< none
+  /// \param model must outlive this
+  explicit ActingFields(const Model& model);
+  /// What they give mass that moves so, at (t, y) as of State: an acceleration [m/s²], world axes.
+  [[nodiscard]] Vector3 acceleration(double t, std::span<const double> y, const FrameMotion& motion) const noexcept;
+  /// What they exert there on a mass point that moves so.
+  [[nodiscard]] Wrench wrench(double t, std::span<const double> y, const MassPoint& point,
+                              const FrameMotion& motion) const noexcept;
+
+ private:
+  std::vector<const LoadNode*> loads_;
+};
 
 /// Where a frame or, under a load on distributed mass, a mass point is fixed: at `pose` in a section of its body.
 struct FramePlace {

@@ -115,7 +115,7 @@ void SensedReactions::find_on_parts(const State& state) noexcept {
       const sensed::StepOf<double> at = shown_->pass.frame(cut.body, cut.first_point + k);
       const Matrix3 R = WB.R * at.X.R;
       const FrameMotion motion{R, WB.p + WB.R * at.X.p, R * at.V.w, R * at.V.v};
-      *wrench = field_wrench(plan_.model, state.time, state.y, cut.mass[k], motion);
+      *wrench = plan_.fields.wrench(state.time, state.y, cut.mass[k], motion);
     }
   }
 }

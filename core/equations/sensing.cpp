@@ -71,7 +71,7 @@ class Sensing final : public SensedState, public SensedLoops, public SensedLoads
   Vector3 gravity() const noexcept override { return plan_->model.gravity(); }
 
   Vector3 field(FrameIndex frame) noexcept override {
-    return field_acceleration(plan_->model, state_->time, state_->y, motion(frame));
+    return plan_->fields.acceleration(state_->time, state_->y, motion(frame));
   }
 
   FrameMotion motion(FrameIndex frame) noexcept override {

@@ -45,7 +45,7 @@ std::vector<PointFields> points_of(const ModalShape& shape, StrainOrder order) {
 }  // namespace
 
 Plan::Plan(const Model& m, Terms terms, std::span<const SectionPlace> places)
-    : model(m), products_of_speeds(terms.products_of_speeds) {
+    : model(m), fields(m), products_of_speeds(terms.products_of_speeds) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) add_body(b, terms);
   for (const SectionPlace& place : places) add_cut(place);
   add_rods();

@@ -95,6 +95,7 @@ struct Plan {
   Plan(const Model& model, Terms terms, std::span<const SectionPlace> sections);
 
   const Model& model;
+  ActingFields fields;  ///< that the model has
   bool products_of_speeds;
   Truncation truncation = Truncation::none;  ///< of the flexible bodies that are not ruthless
   std::vector<BodyPlan> bodies;

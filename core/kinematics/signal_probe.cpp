@@ -13,6 +13,7 @@ void Signals::choose_readings(const Model& model, const Terms& terms) {
   const auto is_sensor = [](const Source& s) { return !s.element && s.load == nullptr; };
   if (std::any_of(sources_.begin(), sources_.end(), is_sensor)) {
     model_ = std::make_shared<const Model>(model);
+    fields_ = ActingFields(*model_);
     for (const SensorNode& node : *model.measured()) {
       if (node.sensor == nullptr) continue;
       const std::size_t count = node.sensor->columns().size();

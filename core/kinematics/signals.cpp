@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/model/signal_source.hpp"
 #include "withy/core/plugin/sensed_fields.hpp"
 
@@ -43,7 +42,7 @@ class Signals::Seen final : public SensedState, public SensedFields {
   Vector3 gravity() const noexcept override { return signals_.model_->gravity(); }
   Vector3 field(FrameIndex frame) noexcept override {
     if (asked_ != nullptr) return Vector3::Zero();
-    return field_acceleration(*signals_.model_, view_.t, view_.y, motion(frame));
+    return signals_.fields_.acceleration(view_.t, view_.y, motion(frame));
   }
   FrameMotion motion(FrameIndex frame) noexcept override {
     const std::size_t i = place_of(frame);

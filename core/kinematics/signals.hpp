@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "withy/core/deformation/mass_points.hpp"
 #include "withy/core/kinematics/frame_paths.hpp"
 #include "withy/core/plugin/sensor.hpp"
 
@@ -87,6 +88,7 @@ class [[gnu::visibility("default")]] Signals {
   std::vector<Reading> readings_;
   std::size_t numbers_ = 0;             ///< of all measured sensors
   std::shared_ptr<const Model> model_;  ///< that `paths_` refer to
+  ActingFields fields_;                 ///< of that model
   std::vector<FrameIndex> frames_;
   std::unique_ptr<const FramePaths> paths_;  ///< null: no frame is asked for
   std::vector<double> zeros_;                ///< one a speed

@@ -23,7 +23,8 @@ Matrix3 gradient_of(const Model& model, const State& state, const FrameMotion& a
 }
 
 /// What fields exert on all mass of a body [N], its points to first order in the elastic coordinates.
-Vector3 force_on(const Model& model, std::size_t body, const State& state, const FrameMotion& frame) {
+Vector3 force_on(const Model& model, const ActingFields& fields, std::size_t body, const State& state,
+                 const FrameMotion& frame) {
   const FieldLoad& points = *field_of(model);
   const Layout& layout = model.layout();
   const Slot* slot = layout.modes(body);
@@ -39,7 +40,7 @@ Vector3 force_on(const Model& model, std::size_t body, const State& state, const
     const Vector3 arm = frame.R * r;
     m.position += arm;
     m.velocity += frame.angular_velocity.cross(arm) + frame.R * r_rate;
-    force += point.mass * field_acceleration(model, state.time, state.y, m);
+    force += point.mass * fields.acceleration(state.time, state.y, m);
   }
   return force;
 }
@@ -50,15 +51,16 @@ std::vector<BodyMotion> felt_motions(const Model& model, const EquationsOfMotion
                                      const std::vector<BodyMotion>& motions) {
   std::vector<BodyMotion> felt = motions;
   if (field_of(model) == nullptr) return felt;
+  const ActingFields fields(model);
   const auto seen = equations.make_observation();
   seen->observe(state.y);
   std::vector<Vector3> forces(felt.size(), Vector3::Zero());  // that fields exert on all that hangs on a hinge
   for (std::size_t b = felt.size(); b-- > 0;) {
     BodyMotion& B = felt[b];
     const FrameMotion frame{B.R, B.p, B.rate, vector_of(seen->frame_velocity(static_cast<int>(b), 0).linear)};
-    B.acceleration -= field_acceleration(model, state.time, state.y, frame);
+    B.acceleration -= fields.acceleration(state.time, state.y, frame);
     B.gradient = gradient_of(model, state, frame);
-    forces[b] += force_on(model, b, state, frame);
+    forces[b] += force_on(model, fields, b, state, frame);
     B.force -= forces[b];
     if (const int parent = model.hinges()[b].parent; parent >= 0) forces[static_cast<std::size_t>(parent)] += forces[b];
   }
