@@ -22,6 +22,8 @@ class ContinuousControl : public BoundControl, public ContinuousPart {
         signals_(model, terms, names()),
         states_(this->block().states()) {
     for (std::size_t i = 0; i < signals_.size(); ++i) along_.push_back(speed_along(model, signals_.element(i)));
+    for (std::size_t i = 0; i < this->block().inputs(); ++i) commands_at_once_ |= this->block().feeds_through(i);
+    for (const InputPlace& place : places()) acts_on_speeds_ |= place.speed >= 0;
     follow_accelerations();
   }
 
@@ -42,7 +44,9 @@ class ContinuousControl : public BoundControl, public ContinuousPart {
   void rates(const LoadView& view, std::span<double> rates) const noexcept override {
     block().rates(view.t, measure(view), view.continuous, rates);
   }
-  void add(const LoadView& view, std::span<double> efforts) const noexcept override { act(command(view), efforts); }
+  void add(const LoadView& view, std::span<double> efforts) const noexcept override {
+    if (acts_on_speeds_) act(command(view), efforts);
+  }
   void add_wrenches(const LoadView& view, std::span<const FrameMotion> motions,
                     std::span<Wrench> wrenches) const noexcept override {
     act_at_frames(command(view), motions, wrenches);
@@ -95,8 +99,14 @@ class ContinuousControl : public BoundControl, public ContinuousPart {
     return w;
   }
   [[nodiscard]] std::span<const double> command(const LoadView& view) const noexcept {
-    const std::span<double> v = view.scratch.subspan(block().inputs(), block().outputs());
-    block().output(view.t, measure(view), view.continuous, v);
+    const std::span<double> w = view.scratch.first(block().inputs()),
+                            v = view.scratch.subspan(block().inputs(), block().outputs());
+    if (commands_at_once_) {
+      measure(view);
+    } else {
+      std::fill(w.begin(), w.end(), 0.0);  // measuring may take longer than all else, and these change nothing
+    }
+    block().output(view.t, w, view.continuous, v);
     return v;
   }
   /// The speed that a signal is, or along which alone it changes; −1 where there is no such one.
@@ -135,6 +145,8 @@ class ContinuousControl : public BoundControl, public ContinuousPart {
   std::vector<std::string> states_;
   std::vector<int> along_;              ///< one a signal
   bool follows_accelerations_ = false;  ///< what it commands does, at once
+  bool commands_at_once_ = false;       ///< what it commands depends on what is measured then, not on states alone
+  bool acts_on_speeds_ = false;         ///< not at frames alone
 };
 
 /// The same with a law that is not the engine's own. It has no discrete states to fail in.
