@@ -357,5 +357,41 @@ TEST(Control, AManipulatorHoldsItsPose) {
   EXPECT_LE(peak, 80);
 }
 
+/// What a law commands may be a matter of its states alone, and is then found without measuring; outputs measure
+/// always.
+TEST(Control, WhatActsIsWhatIsShown) {
+  const std::vector<std::pair<std::string, std::string>> laws = {
+      {"lag", "transfer-function, of: axle.rate, numerator: [-0.5], denominator: [1, 2]"},
+      {"at_once", "transfer-function, of: axle.rate, numerator: [-0.1, -0.5], denominator: [1, 2]"},
+      {"space", "state-space, of: [axle, axle.rate], A: [[-1]], B: [[1, 0.5]], C: [[-0.2]]"},
+      {"pid", "pid, of: axle, proportional: 1, integral: 0.5, derivative: 0.1, filter: 0.05"},
+      {"drive", "actuator, of: wave, frequency: 20, limit: 0.15"},
+      {"motor", "dc-motor, of: wave, resistance: 1, inductance: 0.1, torque_constant: 0.2"},
+      {"no_coil", "dc-motor, of: wave, resistance: 1, torque_constant: 0.2"},
+      {"low", "filter, of: axle.rate, cutoff: 2 Hz, order: 3"},
+      {"late", "delay, of: axle, time: 0.1"},
+      {"wheel", "reaction-wheel, of: wave, time_constant: 0.1, viscous: 0.01"},
+      {"sum", "over-time, of: axle, what: integral"},
+      {"formula", "expression, value: -0.2 * axle"}};
+  std::string outputs = "outputs:\n",
+              loads = "loads:\n  wave: {type: expression, value: 0.2 * sin(5 * t), to: nothing}\n";
+  for (const auto& [name, law] : laws) {
+    outputs += "  " + name + "_shown: {type: control, of: " + name + ", show: command}\n";
+    loads += "  " + name + ": {type: " + law + ", hinge: axle}\n";
+  }
+  LoadedScene s(test::turntable + outputs + loads, {"time.output=0.1", "initial.hinges.axle.position=0.3"});
+  SensorReader reader(s.scene.outputs, *s.equations);
+  std::vector<double> row(reader.columns().size()), efforts(1);
+  Work work = s.equations->make_work();
+  for (const State& state : s.run()) {
+    ASSERT_TRUE(reader.read(state, row));
+    for (std::size_t i = 0; i < laws.size(); ++i) {
+      s.equations->load_efforts(state.time, state.y, static_cast<int>(i + 1), efforts, work);
+      EXPECT_EQ(s.scene.model->loads()[i + 1].name, laws[i].first);
+      EXPECT_DOUBLE_EQ(efforts[0], row[i]) << laws[i].first << " at " << state.time;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace withy
