@@ -34,6 +34,16 @@ TextTable hinge_table(const study::Configuration& c, const SteadyState& steady) 
   return table;
 }
 
+/// The continuous states of loads.
+TextTable state_table(const study::Configuration& c, const SteadyState& steady) {
+  TextTable table({"<state of a load", "value"});
+  const Layout& layout = c.layout();
+  for (std::size_t i = 0; i < layout.continuous; ++i)
+    table.add(
+        {layout.continuous_names[i], fmt::format("{:.6g}", steady.state.y[layout.positions + layout.speeds + i])});
+  return table;
+}
+
 TextTable deflection_table(const study::Equilibrium& found) {
   TextTable table({"<tip", "deflection x\n[mm]", "y\n[mm]", "z\n[mm]"});
   for (const auto& [name, d] : found.deflections) {
@@ -67,6 +77,7 @@ std::string equilibrium_text(const study::Configuration& c, const study::Equilib
   std::string text = fmt::format("{} in {}: {} after {} steps of Newton's method\n\n{}", scene.file,
                                  scene.formulation_name, found.passing.empty() ? "steady" : "balanced at this instant",
                                  found.steady.iterations, hinge_table(c, found.steady).str());
+  if (c.layout().continuous > 0) text += '\n' + state_table(c, found.steady).str();
   if (!found.deflections.empty()) text += '\n' + deflection_table(found).str();
   if (const std::string words = study::against_next_text(found.against, "deflections"); !words.empty())
     text += '\n' + words + '\n';

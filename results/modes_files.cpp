@@ -82,6 +82,11 @@ Json steady_json(const Model& model, const SteadyState& steady, const Held& held
   j["iterations"] = steady.iterations;
   j["residual"] = left;
   j["efforts"] = std::move(efforts);
+  if (model.layout().continuous > 0) {
+    j["state_rates"] = Json::object();
+    for (std::size_t i = 0; i < model.layout().continuous; ++i)
+      j["state_rates"][model.layout().continuous_names[i]] = steady.rates[static_cast<Eigen::Index>(i)];
+  }
   j["state"] = Json::parse(write_state(model, steady.state));
   return j;
 }
@@ -99,13 +104,15 @@ Json modes_json(const study::ModesOf& run) {
   Json points = Json::array();
   for (const study::ModesAt& at : run.points) {
     Json modes = Json::array();
-    for (const Mode& m : at.modes) {
+    for (std::size_t i = 0; i < at.modes.size(); ++i) {
+      const Mode& m = at.modes[i];
       Json shape = Json::object();
       for (std::size_t s = 0; s < at.names.size(); ++s) {
         const std::complex<double> x = m.shape[static_cast<Eigen::Index>(s)];
         shape[at.names[s]] = {x.real(), x.imag()};
       }
       Json j;
+      j["branch"] = at.branches[i] + 1;
       j["eigenvalue"] = {m.eigenvalue.real(), m.eigenvalue.imag()};
       j["partner"] = {m.partner.real(), m.partner.imag()};
       j["frequency"] = m.frequency();
@@ -138,7 +145,7 @@ std::string modes_csv(const std::vector<study::ModesOf>& runs, const std::string
     for (const study::ModesAt& at : run.points) {
       for (std::size_t i = 0; i < at.modes.size(); ++i) {
         const Mode& m = at.modes[i];
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", run.formulation, at.value, i + 1,
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", run.formulation, at.value, at.branches[i] + 1,
                             study::dominating(at, m), m.frequency(), hertz(m), m.squared_frequency(),
                             m.rigid ? std::string() : fmt::format("{}", m.damping_ratio()), m.eigenvalue.real(),
                             m.eigenvalue.imag(), study::behaviour(at, m));
@@ -160,14 +167,14 @@ std::string modes_picture(const std::vector<study::ModesOf>& runs, const std::st
       Curve frequency, growth;
       frequency.pen = growth.pen = runs.size() > 1 ? r : i;
       if (runs.size() == 1) {
-        const auto named = std::find_if(runs[r].points.begin(), runs[r].points.end(),
-                                        [i](const study::ModesAt& at) { return i < at.modes.size(); });
-        if (named == runs[r].points.end()) continue;
-        legend.push_back(study::dominating(*named, named->modes[i]));
+        const std::string name = runs[r].name(i);
+        if (name.empty()) continue;
+        legend.push_back(name);
       }
       for (const study::ModesAt& at : runs[r].points) {
-        if (i >= at.modes.size()) continue;
-        const Mode& m = at.modes[i];
+        const Mode* mode = at.on(i);
+        if (mode == nullptr) continue;
+        const Mode& m = *mode;
         frequency.x.push_back(at.value);
         frequency.y.push_back(m.eigenvalue.imag());
         growth.x.push_back(at.value);

@@ -14,6 +14,7 @@ std::string run_of_modes_text(const study::ModesOf& run, const std::optional<stu
     text += '\n' + (sweep.none() ? modes_text(run, count) : sweep_text(run, sweep.path, count));
   if (const std::string words = study::against_next_text(
           against, !against || against->compared == 1 ? "the lowest frequency"
+                   : against->compared == 0           ? "the lowest frequencies"
                                                       : fmt::format("the {} lowest frequencies", against->compared));
       !words.empty())
     text += '\n' + words + '\n';

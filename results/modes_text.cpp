@@ -19,6 +19,13 @@ std::string component(const std::complex<double>& x) {
   return fmt::format("{:.4f}∠{:.0f}°", std::abs(x), std::arg(x) * 180 / std::numbers::pi);
 }
 
+/// A state of a load, in whatever dimensions.
+std::string of_load(const std::complex<double>& x) {
+  if (std::abs(x) < 1e-12) return "·";
+  if (std::abs(x.imag()) < 5e-4 * std::abs(x)) return fmt::format("{:.3g}", x.real());
+  return fmt::format("{:.3g}∠{:.0f}°", std::abs(x), std::arg(x) * 180 / std::numbers::pi);
+}
+
 }  // namespace
 
 std::string modes_text(const study::ModesOf& run, std::size_t count) {
@@ -43,6 +50,7 @@ std::string modes_text(const study::ModesOf& run, std::size_t count) {
     if (!at.modes[i].rigid) head.push_back(std::to_string(i + 1));
   if (head.size() == 1) return text;
   TextTable shapes(head);
+  const std::size_t speeds = at.model->layout().speeds;
   for (std::size_t s = 0; s < at.names.size(); ++s) {
     std::vector<std::string> cells = {at.names[s]};
     bool moves = false;
@@ -50,7 +58,7 @@ std::string modes_text(const study::ModesOf& run, std::size_t count) {
       if (at.modes[i].rigid) continue;
       const std::complex<double> x = at.modes[i].shape[static_cast<Eigen::Index>(s)];
       moves = moves || x != 0.0;
-      cells.push_back(component(x));
+      cells.push_back(s < speeds ? component(x) : of_load(x));
     }
     if (moves) shapes.add(std::move(cells));
   }
@@ -58,31 +66,23 @@ std::string modes_text(const study::ModesOf& run, std::size_t count) {
 }
 
 std::string sweep_text(const study::ModesOf& run, const std::string& label, std::size_t count) {
-  std::size_t most = 0;
-  const study::ModesAt* named = nullptr;
-  for (const study::ModesAt& at : run.points) {
-    if (named == nullptr && !at.modes.empty()) named = &at;
-    most = std::max(most, at.modes.size());
-  }
-  count = std::min(count, most);
+  count = std::min(count, run.branches());
   std::vector<std::string> head = {label};
-  for (std::size_t i = 0; i < count; ++i)
-    head.push_back((i < named->modes.size() ? study::dominating(*named, named->modes[i]) : std::string("-")) +
-                   "\n[rad/s]");
+  for (std::size_t i = 0; i < count; ++i) head.push_back(run.name(i) + "\n[rad/s]");
   TextTable table(head);
   bool any_unstable = false;
   std::string problems;
   for (const study::ModesAt& at : run.points) {
     std::vector<std::string> cells = {fmt::format("{:.6g}", at.value)};
     for (std::size_t i = 0; i < count; ++i) {
-      if (i >= at.modes.size()) {
+      const Mode* m = at.on(i);
+      if (m == nullptr) {
         cells.emplace_back("-");
         continue;
       }
-      const Mode& m = at.modes[i];
-      const bool grows = study::unstable(at, m);
+      const bool grows = study::unstable(at, *m);
       any_unstable = any_unstable || grows;
-      cells.push_back(grows ? fmt::format("+{:.6g}/s", m.growth()) : fmt::format("{:.6g}", m.frequency()));
+      cells.push_back(grows ? fmt::format("+{:.6g}/s", m->growth()) : fmt::format("{:.6g}", m->frequency()));
     }
     table.add(std::move(cells));
     if (!at.problem.empty()) problems += fmt::format("{} = {:.6g}: {}\n", label, at.value, at.problem);
@@ -100,7 +100,7 @@ std::string poles_text(const study::ModesAt& at) {
   std::vector<Row> rows;
   for (const Mode& m : at.modes) {
     rows.push_back({m.eigenvalue, study::dominating(at, m)});
-    if (m.eigenvalue.imag() == 0 && !m.rigid)
+    if (m.eigenvalue.imag() == 0 && !m.rigid && !m.single)
       rows.push_back({m.partner, at.names[static_cast<std::size_t>(m.partner_dominant)]});
   }
   std::stable_sort(rows.begin(), rows.end(),

@@ -39,14 +39,21 @@ std::optional<AgainstNext> frequencies_against_next(const ModesOf& run, const Sc
   const ModesOf next =
       sweep_modes(values_in(prepared, beyond->formulation), registry, start, holding, {}, as_is, {}, control);
   const ModesAt &ours = run.points.front(), &theirs = next.points.front();
-  if (!theirs.problem.empty() || theirs.modes.size() != ours.modes.size()) {
+  const auto vibrating = [](const ModesAt& at) {
+    std::vector<const Mode*> modes;
+    for (const Mode& m : at.modes)
+      if (!m.rigid) modes.push_back(&m);
+    return modes;
+  };
+  const std::vector<const Mode*> of_ours = vibrating(ours), of_theirs = vibrating(theirs);
+  if (!theirs.problem.empty() || of_theirs.size() != of_ours.size()) {
     against.problem = theirs.problem.empty() ? "it has another number of modes" : theirs.problem;
     return against;
   }
-  for (std::size_t i = 0; i < std::min(count, ours.modes.size()); ++i) {
-    const double frequency = theirs.modes[i].frequency();
-    if (ours.modes[i].rigid || theirs.modes[i].rigid || !(frequency > 0)) continue;
-    raise(against, std::abs(ours.modes[i].frequency() - frequency) / frequency, dominating(ours, ours.modes[i]));
+  for (std::size_t i = 0; i < std::min(count, of_ours.size()); ++i) {
+    const double frequency = of_theirs[i]->frequency();
+    if (!(frequency > 0)) continue;
+    raise(against, std::abs(of_ours[i]->frequency() - frequency) / frequency, dominating(ours, *of_ours[i]));
   }
   return against;
 }

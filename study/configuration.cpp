@@ -7,8 +7,10 @@
 
 #include "withy/core/model/event_plan.hpp"
 #include "withy/core/model/hinge_rates.hpp"
+#include "withy/core/model/limit_sensor.hpp"
 #include "withy/core/plugin/foreign_law.hpp"
 #include "withy/core/simulation/instants.hpp"
+#include "withy/core/simulation/sensor_reader.hpp"
 #include "withy/scene/units.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/trees_alone.hpp"
@@ -106,6 +108,7 @@ void Configuration::begin_at(const State& state) {
   };
   for (const Slot& slot : order.hinges) take(slot);
   for (const Slot& slot : order.bodies) take(slot);
+  for (std::size_t i = order.positions + order.speeds; i < order.moving(); ++i) state_.y[i] = state.y[i];
 }
 
 std::vector<std::size_t> speeds_of(const Model& model, const std::string& name, const std::string& what) {
@@ -163,6 +166,24 @@ Holding read_holding(const Model& model, const std::vector<std::string>& lock, c
   return holding;
 }
 
+namespace {
+
+/// Names of the loads that are at a limit at a state: what a controller does there does not depend on what it measures.
+std::vector<std::string> at_limits(const Configuration& c, const State& state) {
+  const Model& model = c.prepared().model();
+  std::vector<std::string> names;
+  for (std::size_t l = 0; l < model.loads().size(); ++l) {
+    const std::shared_ptr<const BoundSensor> sensor = limit_sensor(model, l);
+    if (sensor == nullptr) continue;
+    SensorReader reader({{model.loads()[l].name, sensor}}, *c.prepared().equations);
+    double beyond = 0;
+    if (reader.read(state, {&beyond, 1}) && beyond >= 0) names.push_back(model.loads()[l].name);
+  }
+  return names;
+}
+
+}  // namespace
+
 std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
   if (steady.converged) return {};
   std::string text = fmt::format("no steady state was found: after {} steps of Newton's method ", steady.iterations);
@@ -175,7 +196,18 @@ std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
     worst = s;
   }
   text += fmt::format("{:.3g} are left over on {}", left, c.layout().speed_names[worst]);
-  if (steady.neutral.size() > 0) {
+  if (Eigen::Index state = 0; steady.rates.size() > 0) {
+    const double rate = steady.rates.cwiseAbs().maxCoeff(&state);
+    if (rate > 0)
+      text += fmt::format(", and {} changes by {:.3g} a second",
+                          c.layout().continuous_names[static_cast<std::size_t>(state)], rate);
+  }
+  if (const std::vector<std::string> limited = at_limits(c, steady.state); !limited.empty()) {
+    text += fmt::format(
+        "; '{}' {} at a limit there: start from a state nearer to a steady one (--at), as the run.json of "
+        "a run that settles",
+        fmt::join(limited, "', '"), limited.size() > 1 ? "are" : "is");
+  } else if (steady.neutral.size() > 0) {
     Eigen::Index weakest = 0;
     steady.neutral.cwiseAbs().maxCoeff(&weakest);
     text += fmt::format("; nothing holds {}: lock its hinge, give it a spring, or start from another state",

@@ -43,7 +43,7 @@ class Configuration {
 
   /// Gives a speed a rate and holds it. \throws InputError where a motion drives it already.
   void spin(const Spin& spin);
-  /// Takes the free coordinates from another state of the same model.
+  /// Takes the free coordinates, and the continuous states of loads, from another state of the same model.
   void begin_at(const State& state);
   void set_state(State state) { state_ = std::move(state); }
 

@@ -2,13 +2,11 @@
 
 #include "withy/core/simulation/tips.hpp"
 #include "withy/study/bent.hpp"
-#include "withy/study/continuous_states.hpp"
 #include "withy/study/turning.hpp"
 
 namespace withy::study {
 
 Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Registry& registry) {
-  refuse_continuous_states(c.prepared(), "'withy equilibrium'");
   Equilibrium found;
   found.steady = find_steady_state(c.dynamics(), c.state(), c.held());
   const State& state = found.steady.state;

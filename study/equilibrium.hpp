@@ -25,7 +25,7 @@ struct Equilibrium {
   std::optional<AgainstNext> against;  ///< of these, in the next model up
 };
 
-/// \throws InputError where a load has continuous states; SceneError, PluginError
+/// \throws SceneError, PluginError
 Equilibrium find_equilibrium(const Configuration& configuration, const Holding& holding, Registry& registry);
 
 }  // namespace withy::study

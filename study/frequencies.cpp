@@ -14,7 +14,8 @@ namespace {
 
 /// Share of a speed in Σ |δ_i|² M_ii.
 double share(const Mode& mode, const Eigen::VectorXd& masses, Eigen::Index speed) {
-  return std::norm(mode.shape[speed]) * masses[speed] / mode.shape.cwiseAbs2().dot(masses);
+  const double all = mode.shape.cwiseAbs2().dot(masses);
+  return all > 0 ? std::norm(mode.shape[speed]) * masses[speed] / all : 0.0;
 }
 
 /// Of the mode that bears the name; nothing where it is rigid or grows.

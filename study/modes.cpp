@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "withy/study/bent.hpp"
-#include "withy/study/continuous_states.hpp"
 
 namespace withy::study {
 namespace {
@@ -25,9 +24,9 @@ std::string Sweep::text(double value) const {
 }
 
 ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
-  refuse_continuous_states(c.prepared(), "'withy modes'");
   ModesAt at;
   at.names = c.layout().speed_names;
+  at.names.insert(at.names.end(), c.layout().continuous_names.begin(), c.layout().continuous_names.end());
   at.model = c.prepared().scene.model;
   State state = c.state();
   if (!as_is) {
@@ -40,7 +39,8 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
   try {
     const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
     at.modes = natural_modes(tangents, c.held());
-    at.masses = tangents.mass.diagonal().cwiseAbs();
+    at.masses = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.names.size()));
+    at.masses.head(tangents.mass.rows()) = tangents.mass.diagonal().cwiseAbs();
     if (!as_is) {
       at.steady->stays = stays_steady(c.dynamics(), tangents, state, c.held());
       at.steady->derivatives = derivatives_text(tangents);
@@ -73,11 +73,35 @@ ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartSt
     ModesAt& at = run.points.back();
     at.value = value;
     if (at.steady && at.steady->steady.converged) last = at.steady->steady.state;
-    if (at.problem.empty()) at.modes = tracker.follow(std::move(at.modes), at.masses);
+    if (at.problem.empty()) {
+      BranchedModes followed =
+          tracker.follow(std::move(at.modes), at.masses,
+                         c->layout().continuous > 0 ? Closeness::of_eigenvalues : Closeness::of_squares);
+      at.modes = std::move(followed.modes), at.branches = std::move(followed.branches);
+    }
     control.tell(static_cast<double>(k + 1), static_cast<double>(sweep.values.size()));
   }
   if (c) run.formulation = c->prepared().scene.formulation_name;
   return run;
+}
+
+const Mode* ModesAt::on(std::size_t branch) const {
+  const auto found = std::lower_bound(branches.begin(), branches.end(), branch);
+  return found == branches.end() || *found != branch ? nullptr
+                                                     : &modes[static_cast<std::size_t>(found - branches.begin())];
+}
+
+std::size_t ModesOf::branches() const {
+  std::size_t count = 0;
+  for (const ModesAt& at : points)
+    if (!at.branches.empty()) count = std::max(count, at.branches.back() + 1);
+  return count;
+}
+
+std::string ModesOf::name(std::size_t branch) const {
+  for (const ModesAt& at : points)
+    if (const Mode* mode = at.on(branch)) return dominating(at, *mode);
+  return {};
 }
 
 std::string dominating(const ModesAt& at, const Mode& mode) {
@@ -95,6 +119,7 @@ std::string behaviour(const ModesAt& at, const Mode& mode) {
   if (mode.rigid) return "rigid";
   if (at.frozen()) return unstable(at, mode) ? "grows here" : "decays here";
   if (unstable(at, mode)) return mode.eigenvalue.imag() == 0 ? "diverges" : "flutters";
+  if (mode.single) return "decays";
   return mode.eigenvalue.imag() == 0 ? "overdamped" : "stable";
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "withy/core/analysis/modes.hpp"
+#include "withy/core/analysis/mode_branches.hpp"
 #include "withy/study/configuration.hpp"
 #include "withy/study/control.hpp"
 #include "withy/study/turning.hpp"
@@ -42,14 +42,17 @@ struct SteadyFound {
 struct ModesAt {
   double value = 0;  ///< of what is swept
   std::vector<Mode> modes;
-  std::vector<std::string> names;     ///< of the speeds
-  Eigen::VectorXd masses;             ///< M_ii, one a speed; empty where there are no modes
+  std::vector<std::size_t> branches;  ///< of a sweep, of each mode: they ascend, with gaps where branches have ended
+  std::vector<std::string> names;     ///< of the speeds, then of the continuous states of loads
+  Eigen::VectorXd masses;             ///< M_ii, one a speed, zero for states; empty where there are no modes
   std::string problem;                ///< why there are none; empty where there are
   std::string bent;                   ///< how far the steady state is bent and by what, where that is far; else empty
   std::optional<SteadyFound> steady;  ///< none where the state was taken as it is
   std::shared_ptr<const Model> model;
   std::optional<TurningModes> turn;  ///< none where there are no modes
 
+  /// The mode on a branch; null where there is none.
+  [[nodiscard]] const Mode* on(std::size_t branch) const;
   /// Whether these are modes of equations that change as the hinges turn, frozen at one angle: they tell no stability.
   [[nodiscard]] bool frozen() const { return turn && turn->check.periodic(); }
 };
@@ -58,6 +61,11 @@ struct ModesAt {
 struct ModesOf {
   std::string formulation;
   std::vector<ModesAt> points;
+
+  /// How many branches there are at all values together.
+  [[nodiscard]] std::size_t branches() const;
+  /// What dominates a branch where it begins; empty where there is none.
+  [[nodiscard]] std::string name(std::size_t branch) const;
 };
 
 /// Modes about the configuration's steady state, or where `as_is` about its state.
@@ -75,7 +83,8 @@ std::string dominating(const ModesAt& at, const Mode& mode);
 double resolved_growth(const ModesAt& at, const Mode& mode);
 /// Whether it grows, beyond that.
 bool unstable(const ModesAt& at, const Mode& mode);
-/// "rigid", "diverges", "flutters", "overdamped" or "stable"; of a frozen angle "grows here" and "decays here".
+/// "rigid", "diverges", "flutters", "overdamped", "decays" (a real eigenvalue by itself) or "stable"; of a frozen angle
+/// "grows here" and "decays here".
 std::string behaviour(const ModesAt& at, const Mode& mode);
 
 }  // namespace withy::study

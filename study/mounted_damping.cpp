@@ -11,6 +11,7 @@
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/shape/vibrations.hpp"
 #include "withy/scene/units.hpp"
+#include "withy/study/continuous_states.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
@@ -168,6 +169,7 @@ std::vector<double> reached_ratios(const Configuration& c, Registry& registry, c
 }  // namespace
 
 MountedDamping mounted_damping(const Configuration& c, Registry& registry, const std::vector<double>& ratios) {
+  refuse_continuous_states(c.prepared(), "--damp");
   std::vector<Damped> bodies = damped_bodies(c.prepared(), registry);
   Index most = 0, all = 0;
   for (const Damped& d : bodies) {

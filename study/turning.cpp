@@ -29,7 +29,8 @@ BladeModes blades_of(const TurningForm& form, const Configuration& c, const std:
   std::string why = "there are no three equal blades on one body; name them: --blades NAME,NAME,NAME";
   for (const Blades& group : groups) {
     try {
-      const MultibladeForm seen = multiblade_form(form, c.held(), c.layout().speed_names, group);
+      const MultibladeForm seen =
+          multiblade_form(form, c.held(), c.layout().speed_names, c.layout().continuous_names, group);
       BladeModes found{seen.blades.names, {}, seen.A.change()};
       for (const CharacteristicMode& mode : constant_modes(seen.A.mean(), seen.masses))
         found.modes.push_back(named(mode, pattern(seen, mode)));

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "withy/core/analysis/linear_system.hpp"
 #include "withy/core/analysis/modes.hpp"
 
 namespace withy {
@@ -202,7 +203,12 @@ TurningForm turning_form(const TangentDynamics& dynamics, const State& start, co
   for (Eigen::Index count = 15;; count = 2 * count + 1) {
     Turn turn = find_turn(dynamics, start, held, turning, count);
     std::vector<Eigen::MatrixXd> samples;
-    for (const Tangents& t : turn.points) samples.push_back(first_order_form(t, held).A);
+    Eigen::VectorXd units;
+    for (const Tangents& t : turn.points) {
+      Eigen::MatrixXd A = whole_first_order_form(t, held).A;
+      if (samples.empty()) units = balance_of_states(A, 2 * static_cast<Eigen::Index>(free.size()));
+      samples.push_back(units.cwiseInverse().asDiagonal() * A * units.asDiagonal());
+    }
     PeriodicMatrix A(samples, turning.period);
     if (A.tail() > 1e-11 && count < 127) continue;
     Eigen::VectorXd masses = turn.points[0].mass.diagonal()(free).cwiseAbs();

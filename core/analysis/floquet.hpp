@@ -61,7 +61,7 @@ FloquetAnalysis floquet(const PeriodicMatrix& A, const Eigen::VectorXd& masses);
 
 /// A of small motions about a periodic motion, of the free speeds, and the inertias M_ii of their displacements.
 struct TurningForm {
-  PeriodicMatrix A;
+  PeriodicMatrix A;  ///< of displacements, rates and the continuous states of loads, these in units that balance them
   Eigen::VectorXd masses;
   Turn turn;
 };

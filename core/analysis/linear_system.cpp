@@ -80,24 +80,31 @@ LinearSystem LinearSystem::between(Eigen::Index input, Eigen::Index output) cons
   return {A, B.col(input), C.row(output), D.block(output, input, 1, 1), period};
 }
 
-Eigen::VectorXd balance(LinearSystem& s) {
-  const Eigen::Index n = s.A.rows();
+Eigen::VectorXd balance_of_states(Eigen::MatrixXd A, Eigen::Index first) {
+  const Eigen::Index n = A.rows();
   Eigen::VectorXd units = Eigen::VectorXd::Ones(n);
   bool better = true;
   for (int round = 0; better && round < 100; ++round) {
     better = false;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double own = std::abs(s.A(i, i));
-      const double column = s.A.col(i).lpNorm<1>() - own, row = s.A.row(i).lpNorm<1>() - own;
+    for (Eigen::Index i = first; i < n; ++i) {
+      const double own = std::abs(A(i, i));
+      const double column = A.col(i).lpNorm<1>() - own, row = A.row(i).lpNorm<1>() - own;
       if (!(column > 0) || !(row > 0)) continue;
       const double f = std::exp2(std::round(0.5 * std::log2(row / column)));
       if (column * f + row / f > 0.95 * (column + row)) continue;
-      s.A.col(i) *= f;
-      s.A.row(i) /= f;
+      A.col(i) *= f;
+      A.row(i) /= f;
       units[i] *= f;
       better = true;
     }
   }
+  return units;
+}
+
+Eigen::VectorXd balance(LinearSystem& s) {
+  const Eigen::VectorXd units = balance_of_states(s.A);
+  // Powers of two: nothing is rounded.
+  s.A = (units.cwiseInverse().asDiagonal() * s.A * units.asDiagonal()).eval();
   s.B = units.cwiseInverse().asDiagonal() * s.B;
   s.C = s.C * units.asDiagonal();
   return units;

@@ -28,6 +28,9 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> hold(const Eigen::MatrixXd& A, const
 /// that nothing is rounded. \returns the units: z = units · balanced z
 Eigen::VectorXd balance(LinearSystem& system);
 
+/// The units that it finds for a matrix by itself, of states from `first` on: units⁻¹ A units is balanced in these.
+Eigen::VectorXd balance_of_states(Eigen::MatrixXd A, Eigen::Index first = 0);
+
 /// Eigenvalues of A, complex pairs side by side. Those at zero, of a sampled system those at one, are found by rank,
 /// not as numbers near by: rigid motions and integrators are chains of them. \throws std::domain_error where A is not
 /// finite

@@ -6,6 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "withy/core/analysis/coupled_modes.hpp"
+#include "withy/core/analysis/linear_system.hpp"
+
 namespace withy {
 namespace {
 
@@ -124,6 +127,7 @@ double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b, con
 }
 
 std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
+  if (tangents.by_state.cols() > 0) return modes_with_states(tangents, held);
   const std::vector<Eigen::Index> free = free_speeds(held);
   if (free.empty()) return {};
   const Scaled s(tangents, free);
@@ -155,6 +159,11 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
     if (second->value.real() > first->value.real()) std::swap(first, second);
     modes.push_back(mode_of(*first, *second, s, free, tangents));
   }
+  sort_modes(modes);
+  return modes;
+}
+
+void sort_modes(std::vector<Mode>& modes) {
   double greatest = 0;
   for (const Mode& m : modes) greatest = std::max({greatest, std::abs(m.eigenvalue), std::abs(m.partner)});
   const auto key = [&](const Mode& m) {
@@ -162,47 +171,6 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
     return std::pair(m.growth() <= 1e-10 * greatest, modulus);
   };
   std::stable_sort(modes.begin(), modes.end(), [&](const Mode& a, const Mode& b) { return key(a) < key(b); });
-  return modes;
-}
-
-std::vector<Mode> BranchTracker::follow(std::vector<Mode> modes, const Eigen::VectorXd& weights) {
-  const std::size_t n = modes.size();
-  const bool same = last_.size() == n && n > 0 && last_.front().shape.size() == modes.front().shape.size();
-  std::vector<double> expected;
-  if (same) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const double now = last_[i].squared_frequency();
-      expected.push_back(before_last_.empty() ? now : 2 * now - before_last_[i]);
-    }
-    // All pairs of branch and mode, the best first. Likeness decides; where shapes mix, the frequency.
-    struct Pair {
-      std::size_t branch, mode;
-      double cost;
-    };
-    std::vector<Pair> pairs;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < n; ++k) {
-        const double found = modes[k].squared_frequency();
-        const double apart = std::abs(found - expected[i]) / (std::abs(found) + std::abs(expected[i]) + 1e-300);
-        pairs.push_back({i, k, 1 - modal_assurance(last_[i].shape, modes[k].shape, weights) + apart});
-      }
-    }
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.cost < b.cost; });
-    std::vector<bool> led(n, false), taken(n, false);
-    std::vector<Mode> ordered(n);
-    for (const Pair& p : pairs) {
-      if (led[p.branch] || taken[p.mode]) continue;
-      led[p.branch] = taken[p.mode] = true;
-      ordered[p.branch] = modes[p.mode];
-    }
-    modes = std::move(ordered);
-    before_last_.clear();
-    for (const Mode& m : last_) before_last_.push_back(m.squared_frequency());
-  } else {
-    before_last_.clear();
-  }
-  last_ = modes;
-  return modes;
 }
 
 FirstOrderForm first_order_form(const Tangents& tangents, const Held& held) {
@@ -242,12 +210,15 @@ FirstOrderForm whole_first_order_form(const Tangents& tangents, const Held& held
 
 Eigen::VectorXd balancing_units(const Eigen::MatrixXd& A, const Eigen::VectorXd& masses) {
   const Eigen::Index m = masses.size();
-  Eigen::VectorXd units(2 * m);
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(A.rows());
   const Eigen::VectorXd root = masses.cwiseMax(1e-300).cwiseSqrt();
-  const double stiffest =
-      (root.asDiagonal() * A.bottomLeftCorner(m, m) * root.cwiseInverse().asDiagonal()).cwiseAbs().maxCoeff();
-  units << root, root / std::sqrt(std::max(1.0, stiffest));
-  return units;
+  if (m > 0) {
+    const double stiffest =
+        (root.asDiagonal() * A.block(m, 0, m, m) * root.cwiseInverse().asDiagonal()).cwiseAbs().maxCoeff();
+    units.head(2 * m) << root, root / std::sqrt(std::max(1.0, stiffest));
+  }
+  if (A.rows() == 2 * m) return units;
+  return units.cwiseQuotient(balance_of_states(units.asDiagonal() * A * units.cwiseInverse().asDiagonal()));
 }
 
 }  // namespace withy

@@ -4,20 +4,25 @@
 #pragma once
 
 #include <complex>
-#include <optional>
 #include <vector>
 
 #include "withy/core/analysis/steady_state.hpp"
 
 namespace withy {
 
-/// A pair of eigenvalues λ of motions e^{λt}: conjugate, or two real ones with the same shape.
+/// A pair of eigenvalues λ of motions e^{λt}: conjugate, or two real ones with the same shape. Where loads have
+/// continuous states a real eigenvalue is a mode by itself: there is no telling which two belong together.
 struct Mode {
   std::complex<double> eigenvalue;  ///< [1/s] the one with the greater real part; imaginary part ≥ 0
-  std::complex<double> partner;     ///< its conjugate, or the other real eigenvalue
-  /// Displacements δ, one a speed, zero where held; the component that dominates is 1. Dimensions of the coordinates.
+  std::complex<double> partner;     ///< its conjugate, or the other real eigenvalue; of one by itself the same
+  bool single = false;              ///< a real eigenvalue by itself
+  /// Displacements δ, one a speed, zero where held, then the continuous states of loads; the component that dominates
+  /// is 1. Dimensions of the coordinates and states.
   Eigen::VectorXcd shape;
-  Eigen::Index dominant = 0;  ///< speed with the greatest |δ_i|² M_ii
+  /// Speed with the greatest |δ_i|² M_ii. With continuous states of loads, which come behind the speeds, what takes
+  /// part most: the greatest |w_i z_i|, w the left and z the right eigenvector of the first-order form (participation
+  /// factors of Pérez-Arriaga, Verghese & Schweppe 1982), of a displacement with that of its rate.
+  Eigen::Index dominant = 0;
   /// The same for a partner that is real: its motion has a shape of its own.
   Eigen::Index partner_dominant = 0;
   bool rigid = false;  ///< zero but for rounding: a motion that nothing holds back
@@ -31,26 +36,14 @@ struct Mode {
   [[nodiscard]] double damping_ratio() const { return -eigenvalue.real() / std::abs(eigenvalue); }
 };
 
-/// All modes of the free speeds, those that grow first, then in the order of the smaller |λ| of each pair.
+/// All modes of the free speeds and of the continuous states of loads, those that grow first, then in the order of the
+/// smaller |λ| of each pair.
 /// \throws std::domain_error where the mass matrix of the free speeds is singular or anything is not finite.
 std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held);
 
 /// Likeness of two shapes, |aᴴ W b|²/(aᴴ W a · bᴴ W b), W diagonal: 1 where they are proportional (modal assurance
 /// criterion).
 double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b, const Eigen::VectorXd& weights);
-
-/// Follows modes through a sweep: the same branch keeps its index although others cross it.
-class BranchTracker {
- public:
-  /// The modes in the order of their branches, by likeness of shape and by closeness to the squared frequency that the
-  /// last two values of each branch lead to. `weights` as for modal_assurance. Where the number of modes has changed,
-  /// branches begin anew in the order given.
-  std::vector<Mode> follow(std::vector<Mode> modes, const Eigen::VectorXd& weights);
-
- private:
-  std::vector<Mode> last_;
-  std::vector<double> before_last_;  ///< squared frequencies
-};
 
 /// First-order form of small motions, z = (δ, δu) of the free speeds: ż = A z + B τ with efforts τ on all speeds.
 struct FirstOrderForm {
@@ -65,7 +58,8 @@ FirstOrderForm first_order_form(const Tangents& tangents, const Held& held);
 /// \throws std::domain_error as natural_modes.
 FirstOrderForm whole_first_order_form(const Tangents& tangents, const Held& held);
 
-/// Units of z in which inertias are one and both halves of A are alike: eigenvalues are then found as well as can be.
+/// Units of z in which inertias are one and both halves of A are alike, and the continuous states of loads, where A has
+/// rows for them, like the others: eigenvalues of units A units⁻¹ are found as well as can be.
 Eigen::VectorXd balancing_units(const Eigen::MatrixXd& A, const Eigen::VectorXd& masses);
 
 }  // namespace withy

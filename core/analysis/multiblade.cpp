@@ -8,7 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "withy/core/analysis/modes.hpp"
+#include "withy/core/analysis/coupled_modes.hpp"
 
 namespace withy {
 namespace {
@@ -95,9 +95,10 @@ std::vector<std::vector<Eigen::Index>> places(const Blades& blades, const Held& 
 }
 
 /// Whether the rotor after 1/B of a turn is the rotor with each blade in the place of the next one.
-bool follows(const PeriodicMatrix& A, const std::vector<std::vector<Eigen::Index>>& blades, double tolerance) {
-  const Eigen::Index m = A.rows() / 2, count = static_cast<Eigen::Index>(blades.size());
-  Eigen::VectorX<Eigen::Index> next(2 * m);
+bool follows(const PeriodicMatrix& A, Eigen::Index m, const std::vector<std::vector<Eigen::Index>>& blades,
+             double tolerance) {
+  const Eigen::Index count = static_cast<Eigen::Index>(blades.size());
+  Eigen::VectorX<Eigen::Index> next(A.rows());
   std::iota(next.begin(), next.end(), Eigen::Index{0});
   for (std::size_t k = 0; k < blades.size(); ++k) {
     const std::vector<Eigen::Index>& after = blades[(k + 1) % blades.size()];
@@ -114,7 +115,7 @@ bool follows(const PeriodicMatrix& A, const std::vector<std::vector<Eigen::Index
 }
 
 /// The blades in an order that `follows`; throws where there is none.
-Blades ordered(const PeriodicMatrix& A, Blades blades, const Held& held) {
+Blades ordered(const PeriodicMatrix& A, Eigen::Index m, Blades blades, const Held& held) {
   if (blades.speeds[0].empty()) throw std::domain_error("the blades do not move");
   for (const auto& speeds : places(blades, held)) {
     if (speeds.size() != places(blades, held)[0].size())
@@ -129,12 +130,13 @@ Blades ordered(const PeriodicMatrix& A, Blades blades, const Held& held) {
       trial.speeds.push_back(blades.speeds[k]);
       trial.names.push_back(blades.names[k]);
     }
-    if (follows(A, places(trial, held), tolerance)) return trial;
+    if (follows(A, m, places(trial, held), tolerance)) return trial;
   } while (std::next_permutation(order.begin() + 1, order.end()));
   std::string names;
   for (const std::string& name : blades.names) names += (names.empty() ? "" : ", ") + name;
   throw std::domain_error("after 1/" + std::to_string(blades.count()) + " of a turn the rotor is not the same with " +
-                          names + " exchanged: they are not equal, not equally spaced, or not all of the blades");
+                          names + " exchanged: they are not equal, not equally spaced, or not all of the blades" +
+                          (A.rows() > 2 * m ? ", or each has a controller of its own" : ""));
 }
 
 /// Columns of the transform of one coordinate of B blades at angle ψ, and their derivatives with respect to ψ.
@@ -156,11 +158,12 @@ Columns columns_at(Eigen::Index count, double angle) {
   return c;
 }
 
-Eigen::MatrixXd transformed(const PeriodicMatrix& A, double t, const std::vector<std::vector<Eigen::Index>>& blades) {
-  const Eigen::Index m = A.rows() / 2, count = static_cast<Eigen::Index>(blades.size());
+Eigen::MatrixXd transformed(const PeriodicMatrix& A, Eigen::Index m, double t,
+                            const std::vector<std::vector<Eigen::Index>>& blades) {
+  const Eigen::Index count = static_cast<Eigen::Index>(blades.size());
   const double rate = full_turn / A.period();
   const Columns c = columns_at(count, rate * t);
-  Eigen::MatrixXd T = Eigen::MatrixXd::Identity(2 * m, 2 * m), T_dot = Eigen::MatrixXd::Zero(2 * m, 2 * m);
+  Eigen::MatrixXd T = Eigen::MatrixXd::Identity(A.rows(), A.rows()), T_dot = Eigen::MatrixXd::Zero(A.rows(), A.rows());
   for (std::size_t i = 0; i < blades[0].size(); ++i) {
     for (const Eigen::Index half : {Eigen::Index{0}, m}) {
       for (Eigen::Index k = 0; k < count; ++k) {
@@ -218,14 +221,16 @@ std::vector<Blades> equal_branches(const Model& model, const std::vector<std::st
 }
 
 MultibladeForm multiblade_form(const TurningForm& form, const Held& held, const std::vector<std::string>& speed_names,
-                               const Blades& branches) {
-  Blades blades = ordered(form.A, branches, held);
+                               const std::vector<std::string>& state_names, const Blades& branches) {
+  const Eigen::Index m = form.masses.size();
+  Blades blades = ordered(form.A, m, branches, held);
   const auto at = places(blades, held);
   // The transform adds harmonics.
   const auto samples = 2 * static_cast<int>(form.turn.points.size()) + 1;
   std::vector<Eigen::MatrixXd> A;
-  for (int k = 0; k < samples; ++k) A.push_back(transformed(form.A, form.A.period() * k / samples, at));
+  for (int k = 0; k < samples; ++k) A.push_back(transformed(form.A, m, form.A.period() * k / samples, at));
   std::vector<MultibladeCoordinate> coordinates = coordinates_of(held, speed_names, at);
+  for (const std::string& name : state_names) coordinates.push_back({MultibladeCoordinate::Kind::fixed, 0, name, -1});
   Eigen::VectorXd masses = form.masses;
   for (Eigen::Index i = 0; i < masses.size(); ++i) {
     using Kind = MultibladeCoordinate::Kind;
@@ -245,12 +250,21 @@ std::vector<CharacteristicMode> constant_modes(const Eigen::MatrixXd& A, const E
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(balanced);
   if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
   std::vector<CharacteristicMode> modes;
-  for (Eigen::Index i = 0; i < 2 * m; ++i) {
+  const Eigen::Index states = A.rows() - 2 * m;
+  Eigen::MatrixXcd left;
+  if (states > 0) left = left_vectors(balanced, solver.eigenvalues());
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
     CharacteristicMode mode;
     mode.exponent = solver.eigenvalues()[i];
     if (mode.exponent.imag() < 0) continue;
-    mode.shape = units.head(m).cwiseInverse().cast<Complex>().cwiseProduct(solver.eigenvectors().col(i).head(m));
-    mode.shape.cwiseAbs2().cwiseProduct(masses).maxCoeff(&mode.dominant);
+    const Eigen::VectorXcd right = solver.eigenvectors().col(i),
+                           z = units.cwiseInverse().cast<Complex>().cwiseProduct(right);
+    mode.shape.resize(m + states);
+    mode.shape << z.head(m), z.tail(states);
+    if (states > 0)
+      mode.dominant = most_taking_part(left.col(i), right, m);
+    else
+      mode.shape.cwiseAbs2().cwiseProduct(masses).maxCoeff(&mode.dominant);
     if (mode.shape[mode.dominant] != 0.0) mode.shape /= Complex(mode.shape[mode.dominant]);
     modes.push_back(std::move(mode));
   }

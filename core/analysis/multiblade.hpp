@@ -37,19 +37,21 @@ struct MultibladeCoordinate {
 /// ẇ = T⁻¹ (A T − Ṫ) w, which has the characteristic exponents of A.
 struct MultibladeForm {
   PeriodicMatrix A;  ///< constant where support and rotor are alike in all directions, or the blades see no weight
-  Eigen::VectorXd masses;  ///< of the new coordinates
-  std::vector<MultibladeCoordinate> coordinates;
-  Blades blades;  ///< in their order
+  Eigen::VectorXd masses;                         ///< of the new coordinates
+  std::vector<MultibladeCoordinate> coordinates;  ///< of displacements, then of the states of loads
+  Blades blades;                                  ///< in their order
 };
 
 /// Orders the blades so that A over 1/B of a turn is A with the blades exchanged, and transforms it.
-/// \param form its period is one turn of the rotor
+/// \param form its period is one turn of the rotor; continuous states of loads stay as they are
+/// \param state_names of these
 /// \throws std::domain_error where no order does: the blades are not equal, or not equally spaced, or do not turn.
 MultibladeForm multiblade_form(const TurningForm& form, const Held& held, const std::vector<std::string>& speed_names,
-                               const Blades& branches);
+                               const std::vector<std::string>& state_names, const Blades& branches);
 
 /// The modes of a constant first-order form: eigenvalues λ with Im λ ≥ 0, in the order of |λ|.
-/// Shapes are of the upper half of z.
+/// Shapes are of the displacements, then of the states of loads, which A may have rows for; what dominates is then what
+/// takes part most.
 std::vector<CharacteristicMode> constant_modes(const Eigen::MatrixXd& A, const Eigen::VectorXd& masses);
 
 /// What dominates a mode: "blade1.bending_z[1] forward" (the pattern runs around with the rotor), "… backward", "…

@@ -15,43 +15,116 @@ constexpr double singular_share = 1e-12;
 
 using Solver = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
 
+double greatest(const Eigen::VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0; }
+
+/// What balances at a steady state: forces on the free speeds, and rates of the continuous states of loads.
+struct Imbalance {
+  Eigen::VectorXd forces;  ///< the residual, one a speed
+  Eigen::VectorXd rates;
+};
+
+/// A change of the free coordinates, spread over all speeds, and of those states.
+struct Change {
+  Eigen::VectorXd moved, states;
+  [[nodiscard]] bool finite() const { return moved.allFinite() && states.allFinite(); }
+};
+
+/// Units in which what is free and the states of loads are measured alike, and the linear problem in them.
+class Scaled {
+ public:
+  /// \param mass M_ii of the free speeds
+  explicit Scaled(const Eigen::VectorXd& mass) : of_free_(mass.cwiseAbs().cwiseSqrt()) {
+    for (double& s : of_free_) s = s > 0 ? 1 / s : 1.0;
+  }
+
+  /// K of the free coordinates with what states do to them and they to rates. A state's unit is what forces as much as
+  /// the stiffest coordinate does; a rate's row is as large as that.
+  Eigen::MatrixXd matrix(const Stiffness& t, const std::vector<Eigen::Index>& free) {
+    const Eigen::Index m = of_free_.size(), k = t.by_state.cols();
+    const auto scale = of_free_.asDiagonal();
+    Eigen::MatrixXd J(m + k, m + k);
+    J.topLeftCorner(m, m) = scale * t.by_position(free, free) * scale;
+    of_states_.setOnes(k), of_rates_.setOnes(k);
+    if (k == 0) return J;
+    J.topRightCorner(m, k) = scale * t.by_state(free, Eigen::all);
+    J.bottomLeftCorner(k, m) = t.rate_by_position(Eigen::all, free) * scale;
+    J.bottomRightCorner(k, k) = t.rate_by_state;
+    const double stiffest = m > 0 ? J.topLeftCorner(m, m).cwiseAbs().maxCoeff() : 0.0;
+    const double like = stiffest > 0 ? stiffest : 1.0;
+    for (Eigen::Index j = 0; j < k; ++j) {
+      const double force = m > 0 ? J.col(m + j).head(m).cwiseAbs().maxCoeff() : 0.0;
+      const double felt = force > 0 ? force : J.col(m + j).tail(k).cwiseAbs().maxCoeff();
+      if (felt > 0) of_states_[j] = like / felt;
+    }
+    J.rightCols(k) *= of_states_.asDiagonal();
+    for (Eigen::Index i = 0; i < k; ++i)
+      if (const double size = J.row(m + i).cwiseAbs().maxCoeff(); size > 0) of_rates_[i] = like / size;
+    J.bottomRows(k) = of_rates_.asDiagonal() * J.bottomRows(k);
+    return J;
+  }
+
+  [[nodiscard]] Eigen::VectorXd right(const Imbalance& left, const std::vector<Eigen::Index>& free) const {
+    Eigen::VectorXd all(of_free_.size() + of_rates_.size());
+    all << of_free_.cwiseProduct(left.forces(free)), of_rates_.cwiseProduct(left.rates);
+    return all;
+  }
+  [[nodiscard]] Change change(const Eigen::VectorXd& scaled, const std::vector<Eigen::Index>& free,
+                              Eigen::Index speeds) const {
+    Change c{Eigen::VectorXd::Zero(speeds), of_states_.cwiseProduct(scaled.tail(of_states_.size()))};
+    c.moved(free) = of_free_.cwiseProduct(scaled.head(of_free_.size()));
+    return c;
+  }
+  [[nodiscard]] double norm(const Change& c, const std::vector<Eigen::Index>& free) const {
+    Eigen::VectorXd all(of_free_.size() + of_states_.size());
+    all << c.moved(free).cwiseQuotient(of_free_), c.states.cwiseQuotient(of_states_);
+    return all.norm();
+  }
+  /// What forces as much as a displacement of that size.
+  [[nodiscard]] Eigen::VectorXd states_like(double displacement) const {
+    return of_states_ * (displacement / (of_free_.size() > 0 ? of_free_.minCoeff() : 1.0));
+  }
+
+ private:
+  Eigen::VectorXd of_free_, of_states_, of_rates_;
+};
+
 class Newton {
  public:
   Newton(const TangentDynamics& dynamics, const State& start, const Held& held)
-      : dynamics_(dynamics), free_(free_speeds(held)), n_(static_cast<Eigen::Index>(held.size())) {
-    state_ = start;
-    const Layout& layout = dynamics.model().layout();
-    for (const Slot& slot : layout.bodies) {
-      for (std::size_t i = 0; i < slot.speeds; ++i) state_.y[layout.positions + slot.speed + i] = 0;
-    }
-    rest_ = dynamics.steady_accelerations(start.time);
-    set_scale();
-  }
+      : dynamics_(dynamics),
+        free_(free_speeds(held)),
+        n_(static_cast<Eigen::Index>(held.size())),
+        state_(at_rest(dynamics.model().layout(), start)),
+        rest_(dynamics.steady_accelerations(start.time)),
+        scaled_(dynamics.mass_diagonal(state_.time, state_.y)(free_)) {}
 
   SteadyState solve() {
     SteadyState result;
     double moved = 0;
+    Eigen::VectorXd changed = Eigen::VectorXd::Zero(states().size());
     for (; result.iterations < most_iterations; ++result.iterations) {
       const Stiffness t = dynamics_.stiffness(state_.time, state_.y, rest_);
-      result.efforts = t.residual;
+      const Imbalance left{t.residual, dynamics_.rates(state_.time, state_.y, rest_)};
+      result.efforts = left.forces, result.rates = left.rates;
       result.step = rest_ * 0;
-      // Nothing is free to move.
-      if (free_.empty()) {
-        result.converged = t.residual.allFinite();
+      // Nothing is free to change.
+      if (free_.empty() && left.rates.size() == 0) {
+        result.converged = left.forces.allFinite();
         break;
       }
       if (!factorize(t)) break;
-      const Eigen::VectorXd step = solve_for(t.residual);
-      result.step = spread(step);
-      if (!step.allFinite()) break;
-      if (step.size() == 0 || greatest(step) <= converged_step * (moved + size())) {
+      const Change step = solve_for(left);
+      result.step = step.moved;
+      if (!step.finite()) break;
+      if (settled(step, converged_step, moved, changed)) {
         // The least-squares step may be zero where the residual is not: nothing can balance it.
-        result.converged = balanced(t);
+        result.converged = balanced(left);
         break;
       }
       const double length = advance(step);
       if (length == 0) break;
-      moved += length * greatest(step);
+      moved += length * greatest(step.moved);
+      changed += length * step.states.cwiseAbs();
     }
     result.state = state_;
     if (singular_) result.neutral = neutral_;
@@ -59,60 +132,72 @@ class Newton {
   }
 
  private:
-  /// Coordinates are scaled by √M_ii at the start, so that angles and modes are measured alike.
-  void set_scale() {
-    const Eigen::VectorXd mass = dynamics_.mass_diagonal(state_.time, state_.y);
-    scale_ = mass(free_).cwiseAbs().cwiseSqrt();
-    for (double& s : scale_) s = s > 0 ? 1 / s : 1.0;
+  /// No mode moves.
+  static State at_rest(const Layout& layout, State state) {
+    for (const Slot& slot : layout.bodies) {
+      for (std::size_t i = 0; i < slot.speeds; ++i) state.y[layout.positions + slot.speed + i] = 0;
+    }
+    return state;
+  }
+  [[nodiscard]] Eigen::Map<const Eigen::VectorXd> states() const {
+    const Layout& layout = dynamics_.model().layout();
+    return {state_.y.data() + layout.positions + layout.speeds, static_cast<Eigen::Index>(layout.continuous)};
   }
   bool factorize(const Stiffness& t) {
     const auto m = static_cast<Eigen::Index>(free_.size());
-    const Eigen::MatrixXd K = scale_.asDiagonal() * t.by_position(free_, free_) * scale_.asDiagonal();
-    if (!K.allFinite()) return false;
+    matrix_ = scaled_.matrix(t, free_);
+    if (!matrix_.allFinite()) return false;
     solver_.setThreshold(singular_share);
-    solver_.compute(K);
-    singular_ = m > 0 && solver_.rank() < m;
-    if (singular_) {
-      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(K, Eigen::ComputeFullV);
-      neutral_ = spread(scale_.cwiseProduct(svd.matrixV().col(m - 1))).normalized();
+    solver_.compute(matrix_);
+    singular_ = solver_.rank() < matrix_.rows();
+    if (singular_ && m > 0) {
+      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix_, Eigen::ComputeFullV);
+      neutral_ = scaled_.change(svd.matrixV().rightCols<1>(), free_, n_).moved;
+      const double size = neutral_.norm();
+      if (size > 0)
+        neutral_ /= size;
+      else
+        neutral_.resize(0);  // a state of a load alone
     }
-    matrix_ = K;
     return true;
   }
-  [[nodiscard]] Eigen::VectorXd solve_for(const Eigen::VectorXd& residual) const {
-    const Eigen::VectorXd scaled = scale_.cwiseProduct(residual(free_)), least = solver_.solve(scaled);
-    return -scale_.cwiseProduct(least);
+  [[nodiscard]] Change solve_for(const Imbalance& left) const {
+    const Eigen::VectorXd least = solver_.solve(scaled_.right(left, free_));
+    return scaled_.change(-least, free_, n_);
+  }
+  /// Whether a step is such a share of the coordinates and what they have moved, and of the states likewise.
+  [[nodiscard]] bool settled(const Change& step, double share, double moved, const Eigen::VectorXd& changed) const {
+    if (greatest(step.moved) > share * (moved + size())) return false;
+    const Eigen::VectorXd sizes = states().cwiseAbs() + changed + scaled_.states_like(size());
+    return (step.states.array().abs() <= share * sizes.array()).all();
   }
   /// Whether what is left over is rounding of the terms in it.
-  [[nodiscard]] bool balanced(const Stiffness& t) const {
-    if (free_.empty()) return true;
-    const Eigen::VectorXd left = scale_.cwiseProduct(t.residual(free_));
-    if (!singular_) return left.allFinite();
+  [[nodiscard]] bool balanced(const Imbalance& left) const {
+    const Eigen::VectorXd scaled = scaled_.right(left, free_);
+    if (!singular_) return scaled.allFinite();
     const double stiffness = matrix_.cwiseAbs().maxCoeff();
-    return left.cwiseAbs().maxCoeff() <= 1e-9 * std::max(stiffness, t.residual.cwiseAbs().maxCoeff());
+    return greatest(scaled) <= 1e-9 * std::max(stiffness, greatest(left.forces));
   }
   /// The part of the step that is taken: 0 where none makes the next one smaller.
-  double advance(const Eigen::VectorXd& step) {
-    const double size = step.cwiseQuotient(scale_).norm();
+  double advance(const Change& step) {
+    const double size = scaled_.norm(step, free_);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(step.states.size());
     for (double part = 1; part > 1e-8; part *= 0.5) {
       State trial = state_;
-      dynamics_.displace(trial.y, spread(part * step));
-      const Eigen::VectorXd next = solve_for(dynamics_.residual(trial.time, trial.y, rest_));
-      const double next_size = next.cwiseQuotient(scale_).norm();
+      dynamics_.displace(trial.y, part * step.moved);
+      const Layout& layout = dynamics_.model().layout();
+      for (Eigen::Index k = 0; k < step.states.size(); ++k)
+        trial.y[layout.positions + layout.speeds + static_cast<std::size_t>(k)] += part * step.states[k];
+      const Change next =
+          solve_for({dynamics_.residual(trial.time, trial.y, rest_), dynamics_.rates(trial.time, trial.y, rest_)});
       // At rounding a full step cannot improve any more; the test of convergence follows.
-      if (next_size <= (1 - 0.25 * part) * size || (part == 1 && greatest(step) < 1e-9 * this->size())) {
+      if (scaled_.norm(next, free_) <= (1 - 0.25 * part) * size || (part == 1 && settled(step, 1e-9, 0, none))) {
         state_ = std::move(trial);
         return part;
       }
     }
     return 0;
   }
-  [[nodiscard]] Eigen::VectorXd spread(const Eigen::VectorXd& of_free) const {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(n_);
-    all(free_) = of_free;
-    return all;
-  }
-  static double greatest(const Eigen::VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0; }
   /// Of the coordinates; not less than what no drawing shows.
   [[nodiscard]] double size() const {
     const Layout& layout = dynamics_.model().layout();
@@ -125,7 +210,9 @@ class Newton {
   std::vector<Eigen::Index> free_;
   Eigen::Index n_;
   State state_;
-  Eigen::VectorXd rest_, scale_, neutral_;
+  Eigen::VectorXd rest_;
+  Scaled scaled_;
+  Eigen::VectorXd neutral_;
   Eigen::MatrixXd matrix_;
   Solver solver_;
   bool singular_ = false;
@@ -165,7 +252,13 @@ bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, con
   const Eigen::VectorXd change = tangents.by_position * u;
   const double terms = (tangents.by_position.cwiseAbs() * u.cwiseAbs()).maxCoeff() +
                        tangents.by_position.cwiseAbs().maxCoeff() * u.cwiseAbs().maxCoeff();
-  return change(free).cwiseAbs().maxCoeff() <= 1e-9 * terms;
+  if (change(free).cwiseAbs().maxCoeff() > 1e-9 * terms) return false;
+  // What loads measure must not change either.
+  const Eigen::MatrixXd& measured = tangents.rate_by_position;
+  if (measured.size() == 0) return true;
+  const double rates =
+      (measured.cwiseAbs() * u.cwiseAbs()).maxCoeff() + measured.cwiseAbs().maxCoeff() * u.cwiseAbs().maxCoeff();
+  return (measured * u).cwiseAbs().maxCoeff() <= 1e-9 * rates;
 }
 
 }  // namespace withy

@@ -25,12 +25,14 @@ struct SteadyState {
   bool converged = false;
   int iterations = 0;       ///< of Newton's method
   Eigen::VectorXd efforts;  ///< [N m, N] that held speeds need beside the loads; of the free ones what is left over
+  Eigen::VectorXd rates;    ///< of the continuous states of loads: what is left over
   Eigen::VectorXd step;     ///< what Newton's method would still change, one a speed; it measures the error
   /// Direction of least stiffness: unit vector of displacements, empty unless the tangent stiffness is singular.
   Eigen::VectorXd neutral;
 };
 
-/// Displaces the free coordinates until their accelerations vanish, with the accelerations that motions prescribe, all
+/// Displaces the free coordinates, and changes the continuous states of loads, until accelerations and the rates of
+/// these states vanish, with the accelerations that motions prescribe, all
 /// speeds constant: those of modes zero, those of hinges as `start` has them. Newton's method with exact derivatives,
 /// its steps shortened until the next simplified step is smaller (the affine-invariant test of Deuflhard 2004,
 /// section 3.3); where the stiffness is singular, the shortest step in the least-squares sense, so that neutral

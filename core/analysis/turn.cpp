@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "withy/core/analysis/linear_system.hpp"
 #include "withy/core/analysis/modes.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 
@@ -61,9 +62,20 @@ void add_rate(Turning& turning, double rate, bool angular, const std::string& na
 struct Balance {
   Eigen::VectorXd residual;  ///< of the free speeds
   double terms = 0;          ///< size of what cancels in it
+  Eigen::VectorXd rates;     ///< of the continuous states of loads
+  double measured = 0;       ///< size of what they are made of
+
+  /// Whether what is left over here is another than there, beyond rounding.
+  [[nodiscard]] bool differs(const Balance& there) const {
+    const auto greatest = [](const Eigen::VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0; };
+    return greatest(residual - there.residual) > balanced_share * std::max(terms, there.terms) ||
+           greatest(rates - there.rates) > balanced_share * std::max(measured, there.measured);
+  }
 };
 
-Balance balance_of(const Tangents& t, const State& state, const Layout& layout, const std::vector<Eigen::Index>& free) {
+Balance balance_of(const TangentDynamics& dynamics, const Tangents& t, const State& state,
+                   const std::vector<Eigen::Index>& free) {
+  const Layout& layout = dynamics.model().layout();
   Eigen::VectorXd scale = t.mass.diagonal().cwiseAbs().cwiseSqrt();
   double position = least_displacement * scale(free).maxCoeff();
   for (const Slot& slot : layout.bodies) {
@@ -77,6 +89,9 @@ Balance balance_of(const Tangents& t, const State& state, const Layout& layout, 
   b.residual = all(free);
   const Eigen::MatrixXd K = scale.asDiagonal() * t.by_position * scale.asDiagonal();
   b.terms = all.cwiseAbs().maxCoeff() + K.cwiseAbs().maxCoeff() * position;
+  if (layout.continuous == 0) return b;
+  b.rates = dynamics.rates(state.time, state.y, dynamics.steady_accelerations(state.time));
+  b.measured = b.rates.cwiseAbs().maxCoeff() + t.rate_by_position.cwiseAbs().maxCoeff() * least_displacement;
   return b;
 }
 
@@ -206,16 +221,17 @@ class Collocation {
   Turn turn_;
 };
 
-/// A in coordinates scaled to unit inertia, rates by the scale that makes both halves alike.
+/// A in coordinates scaled to unit inertia, rates by the scale that makes both halves alike; the continuous states of
+/// loads as they are.
 Eigen::MatrixXd scaled_form(const Tangents& t, const Held& held, const std::vector<Eigen::Index>& free) {
-  Eigen::MatrixXd A = first_order_form(t, held).A;
+  Eigen::MatrixXd A = whole_first_order_form(t, held).A;
   const auto m = static_cast<Eigen::Index>(free.size());
-  Eigen::VectorXd scale(2 * m);
-  scale << t.mass.diagonal()(free).cwiseAbs().cwiseSqrt(), t.mass.diagonal()(free).cwiseAbs().cwiseSqrt();
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(A.rows());
+  scale.head(2 * m) << t.mass.diagonal()(free).cwiseAbs().cwiseSqrt(), t.mass.diagonal()(free).cwiseAbs().cwiseSqrt();
   A = scale.asDiagonal() * A * scale.cwiseInverse().asDiagonal();
-  const double unit = std::sqrt(std::max(1.0, A.bottomLeftCorner(m, m).cwiseAbs().maxCoeff()));
-  A.topRightCorner(m, m) *= unit;
-  A.bottomLeftCorner(m, m) /= unit;
+  const double unit = std::sqrt(std::max(1.0, A.block(m, 0, m, m).cwiseAbs().maxCoeff()));
+  A.middleCols(m, m) *= unit;
+  A.middleRows(m, m) /= unit;
   return A;
 }
 
@@ -278,22 +294,24 @@ TurnCheck check_turn(const TangentDynamics& dynamics, const State& steady, const
   const std::vector<Eigen::Index> free = free_speeds(held);
   if (check.turning.period == 0 || free.empty()) return check;
   Eigen::MatrixXd first;
+  Eigen::VectorXd units;  // of states of loads beside the others; empty: there are none
   Balance start;
   double greatest = 0;
   for (Eigen::Index k = 0; k < compared_angles; ++k) {
     const State state = carried(dynamics.model(), check.turning, steady,
                                 check.turning.period * static_cast<double>(k) / static_cast<double>(compared_angles));
     const Tangents t = dynamics.tangents(state.time, state.y, dynamics.steady_accelerations(state.time));
-    const Balance b = balance_of(t, state, dynamics.model().layout(), free);
-    const Eigen::MatrixXd A = scaled_form(t, held, free);
+    const Balance b = balance_of(dynamics, t, state, free);
+    Eigen::MatrixXd A = scaled_form(t, held, free);
     if (k == 0) {
-      first = A;
+      if (dynamics.model().layout().continuous > 0) units = balance_of_states(A);
       start = b;
     }
+    if (units.size() > 0) A = (units.cwiseInverse().asDiagonal() * A * units.asDiagonal()).eval();
+    if (k == 0) first = A;
     greatest = std::max(greatest, A.cwiseAbs().maxCoeff());
     check.change = std::max(check.change, (A - first).cwiseAbs().maxCoeff());
-    const double left = (b.residual - start.residual).cwiseAbs().maxCoeff();
-    if (left > balanced_share * std::max(b.terms, start.terms)) check.steady = false;
+    if (b.differs(start)) check.steady = false;
   }
   if (greatest > 0) check.change /= greatest;
   return check;
@@ -310,9 +328,15 @@ Turn find_turn(const TangentDynamics& dynamics, const State& start, const Held& 
     const State& state = turn.states.back();
     turn.points.push_back(dynamics.tangents(state.time, state.y, dynamics.steady_accelerations(state.time)));
     if (free.empty()) continue;
-    const Balance b = balance_of(turn.points.back(), state, dynamics.model().layout(), free);
-    if (b.residual.cwiseAbs().maxCoeff() > balanced_share * b.terms)
-      return Collocation(dynamics, start, held, turning, count).solve();
+    const Balance b = balance_of(dynamics, turn.points.back(), state, free);
+    Balance nothing = b;
+    nothing.residual.setZero(), nothing.rates.setZero();
+    if (!b.differs(nothing)) continue;
+    if (dynamics.model().layout().continuous > 0)
+      throw std::domain_error(
+          "the free coordinates are not balanced over a turn, and no periodic motion is sought where loads have "
+          "differential equations of their own");
+    return Collocation(dynamics, start, held, turning, count).solve();
   }
   return turn;
 }

@@ -1,5 +1,6 @@
 #include "withy/core/tangents/tangent_dynamics.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "withy/core/tangents/first_order_recursion.hpp"
@@ -122,6 +123,16 @@ Eigen::VectorXd TangentDynamics::residual(double t, std::span<const double> y, c
   return efforts<double>(t, y, a, {}) + elastic(y) - load_efforts(t, y);
 }
 
+Eigen::VectorXd TangentDynamics::rates(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
+  const Layout& layout = model_->layout();
+  std::vector<double> y_dot(layout.size()), scratch(model_->load_scratch());
+  std::copy_n(a.data(), a.size(), y_dot.begin() + static_cast<std::ptrdiff_t>(layout.positions));
+  // Of states that are not finite the rates are not finite.
+  static_cast<void>(model_->continuous_rates(t, y, y_dot, scratch));
+  return Eigen::Map<const Eigen::VectorXd>(y_dot.data() + layout.positions + layout.speeds,
+                                           static_cast<Eigen::Index>(layout.continuous));
+}
+
 Eigen::VectorXd TangentDynamics::differentiate(double t, std::span<const double> y, const Eigen::VectorXd& a,
                                                std::size_t from, Eigen::Ref<Eigen::MatrixXd> columns,
                                                std::vector<bool>* differenced) const {
@@ -146,7 +157,8 @@ Stiffness TangentDynamics::stiffness(double t, std::span<const double> y, const 
   result.residual = differentiate(t, y, a, 0, result.by_position, nullptr);
   add_elastic(result);
   add_loads(t, y, a, result);
-  return {std::move(result.residual), std::move(result.by_position)};
+  return {std::move(result.residual), std::move(result.by_position), std::move(result.by_state),
+          std::move(result.rate_by_position), std::move(result.rate_by_state)};
 }
 
 Eigen::VectorXd TangentDynamics::mass_diagonal(double t, std::span<const double> y) const {

@@ -43,6 +43,7 @@ struct Tangents {
 struct Stiffness {
   Eigen::VectorXd residual;
   Eigen::MatrixXd by_position;
+  Eigen::MatrixXd by_state, rate_by_position, rate_by_state;  ///< empty where no load has continuous states
 };
 
 /// Position of a frame with its derivatives.
@@ -68,10 +69,12 @@ class TangentDynamics {
   [[nodiscard]] Eigen::VectorXd steady_accelerations(double t) const;
   /// r at time t, y as in State, a one number a speed.
   [[nodiscard]] Eigen::VectorXd residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
+  /// g of Tangents: rates of the continuous states of loads.
+  [[nodiscard]] Eigen::VectorXd rates(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
   [[nodiscard]] Tangents tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
   /// M_ii, one a speed.
   [[nodiscard]] Eigen::VectorXd mass_diagonal(double t, std::span<const double> y) const;
-  /// The residual and ∂r/∂δ alone, at a third of the cost.
+  /// What depends on speeds and accelerations left out, at a third of the cost.
   [[nodiscard]] Stiffness stiffness(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
   /// In the formulation's strain kinematics without truncation, as results show them.
   [[nodiscard]] FrameTangent frame(std::span<const double> y, int body, int frame) const;

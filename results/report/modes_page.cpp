@@ -40,6 +40,7 @@ Json shares_json(const study::ModesAt& at, const Eigen::VectorXcd& shape) {
                    [&](Eigen::Index a, Eigen::Index b) { return std::norm(shape[a]) > std::norm(shape[b]); });
   const double all = shape.squaredNorm();
   Json list = Json::array();
+  if (!(all > 0)) return list;  // nothing moves: a state of a load alone
   for (std::size_t k = 0; k < std::min(order.size(), most_shares); ++k) {
     const double share = std::norm(shape[order[k]]) / all;
     if (k > 0 && !(share > 1e-3)) break;
@@ -53,11 +54,12 @@ Json branch_json(const study::ModesOf& run, std::size_t branch) {
   Json values = Json::array();
   Eigen::VectorXcd first;
   for (const study::ModesAt& at : run.points) {
-    if (branch >= at.modes.size()) {
+    const Mode* on = at.on(branch);
+    if (on == nullptr) {
       values.push_back(nullptr);
       continue;
     }
-    const Mode& m = at.modes[branch];
+    const Mode& m = *on;
     const Eigen::VectorXcd shape = weighted(at, m);
     if (first.size() == 0) first = shape;
     values.push_back({{"value", at.value},
@@ -100,11 +102,9 @@ Json blades_json(const study::ModesOf& run, std::size_t count) {
 /// Branches are followed from the first value; those of rigid motion alone are left out.
 Json run_json(const study::ModesOf& run, std::size_t count) {
   Json branches = Json::array();
-  std::size_t modes = 0;
-  for (const study::ModesAt& at : run.points) modes = std::max(modes, at.modes.size());
-  for (std::size_t b = 0; b < modes && branches.size() < std::max(count, least_branches); ++b) {
+  for (std::size_t b = 0; b < run.branches() && branches.size() < std::max(count, least_branches); ++b) {
     const bool moves = std::any_of(run.points.begin(), run.points.end(),
-                                   [b](const study::ModesAt& at) { return b < at.modes.size() && !at.modes[b].rigid; });
+                                   [b](const study::ModesAt& at) { return at.on(b) != nullptr && !at.on(b)->rigid; });
     if (moves) branches.push_back(branch_json(run, b));
   }
   return {{"formulation", run.formulation}, {"branches", std::move(branches)}, {"blades", blades_json(run, count)}};
@@ -149,6 +149,9 @@ Json modes_page(const std::vector<study::ModesOf>& runs, const study::Sweep& swe
   Json values = Json::array(), all = Json::array();
   for (const study::ModesAt& at : runs.front().points) values.push_back(at.value);
   for (const study::ModesOf& run : runs) all.push_back(run_json(run, count));
+  const bool loops = std::any_of(runs.front().points.begin(), runs.front().points.end(), [](const study::ModesAt& at) {
+    return at.model != nullptr && at.model->layout().continuous > 0;
+  });
   Json rate;  // of a rotor: rad/s in one unit of what is swept
   if (!sweep.spun().empty()) {
     rate = 1.0;
@@ -157,6 +160,7 @@ Json modes_page(const std::vector<study::ModesOf>& runs, const study::Sweep& swe
   return {{"points", runs.front().points.size()},
           {"label", swept_label(sweep)},
           {"rate", std::move(rate)},
+          {"loops", loops},
           {"values", std::move(values)},
           {"remarks", remarks_json(runs)},
           {"frozen", frozen_json(runs)},

@@ -182,7 +182,7 @@ TEST(ThreeBlades, coleman_is_floquet) {
   EXPECT_TRUE(form.turn.constant);
   const auto branches = equal_branches(*t.scene.scene.model, {});
   ASSERT_EQ(branches.size(), 1U);
-  const MultibladeForm seen = multiblade_form(form, t.held, t.scene.layout().speed_names, branches[0]);
+  const MultibladeForm seen = multiblade_form(form, t.held, t.scene.layout().speed_names, {}, branches[0]);
   EXPECT_LT(seen.A.change(), 1e-12);
   const auto modes = constant_modes(seen.A.mean(), seen.masses);
   const FloquetAnalysis f = floquet(form.A, form.masses);
@@ -203,6 +203,43 @@ TEST(ThreeBlades, coleman_is_floquet) {
   EXPECT_EQ(pattern(seen, modes[5]), "blade1.bending_z[1] forward");
 }
 
+/// A yaw drive with an integral and a filter turns with no blade: the transform leaves its states as they are, and the
+/// eigenvalues are Floquet's exponents again, those of the drive among them.
+TEST(ThreeBlades, with_a_yaw_drive_coleman_is_floquet) {
+  std::string text = rotor(3, R"(loads:
+  drive: {type: pid, hinge: yaw, proportional: 4.0e+8, integral: 1.0e+8, derivative: 2.0e+8, filter: 0.2}
+)");
+  text.replace(text.find("yaw: {type: weld"), 16, "yaw: {type: revolute, axis: [0, 0, 1]");
+  AnalysedScene c(text, "quadratic");
+  const Held held = hold(c, {"shaft"});
+  c.spin("shaft", twelve_rpm);
+  const SteadyState steady = find_steady_state(*c.dynamics, c.state, held);
+  ASSERT_TRUE(steady.converged);
+  const TurnCheck check = check_turn(*c.dynamics, steady.state, held);
+  EXPECT_TRUE(check.periodic());
+  EXPECT_TRUE(check.steady);
+  const TurningForm form = turning_form(*c.dynamics, steady.state, held, check.turning);
+  ASSERT_EQ(form.A.rows(), 2 * form.masses.size() + 2);
+  const MultibladeForm seen = multiblade_form(form, held, c.layout().speed_names, c.layout().continuous_names,
+                                              equal_branches(*c.scene.model, {})[0]);
+  EXPECT_LT(seen.A.change(), 1e-12);
+  const auto modes = constant_modes(seen.A.mean(), seen.masses);
+  const FloquetAnalysis f = floquet(form.A, form.masses);
+  ASSERT_EQ(modes.size(), f.modes.size());
+  bool driven = false;
+  for (const CharacteristicMode& mode : modes) {
+    double nearest = 1;
+    for (const CharacteristicMode& other : f.modes) {
+      const double turns = (mode.exponent.imag() - other.exponent.imag()) / twelve_rpm;
+      nearest = std::min(
+          nearest, std::hypot(mode.exponent.real() - other.exponent.real(), twelve_rpm * (turns - std::round(turns))));
+    }
+    EXPECT_LT(nearest, 1e-7) << mode.exponent;
+    driven = driven || pattern(seen, mode).starts_with("drive.");
+  }
+  EXPECT_TRUE(driven);
+}
+
 /// Weight turns in the blades: the motion is periodic, the transform leaves 0.3 % of A changing, and the averaged
 /// equations have Floquet's exponents to 1e-4.
 TEST(ThreeBlades, under_weight_are_nearly_constant_to_the_transform) {
@@ -211,7 +248,7 @@ TEST(ThreeBlades, under_weight_are_nearly_constant_to_the_transform) {
   const TurningForm form = t.form();
   EXPECT_FALSE(form.turn.constant);
   const MultibladeForm seen =
-      multiblade_form(form, t.held, t.scene.layout().speed_names, equal_branches(*t.scene.scene.model, {})[0]);
+      multiblade_form(form, t.held, t.scene.layout().speed_names, {}, equal_branches(*t.scene.scene.model, {})[0]);
   EXPECT_GT(seen.A.change(), 1e-3);
   EXPECT_LT(seen.A.change(), 1e-2);
   const FloquetAnalysis f = floquet(form.A, form.masses);
@@ -243,7 +280,7 @@ TEST(Multiblade, refuses_what_is_not_equal) {
   c.spin("shaft", twelve_rpm);
   const TurningForm form = turning_form(*c.dynamics, c.state, held, turning(*c.scene.model, c.state));
   const auto branches = equal_branches(*c.scene.model, {"root1", "root2", "root3"});
-  EXPECT_THROW((void)multiblade_form(form, held, c.layout().speed_names, branches[0]), std::domain_error);
+  EXPECT_THROW((void)multiblade_form(form, held, c.layout().speed_names, {}, branches[0]), std::domain_error);
 }
 
 /// Periods of several rates, and why there is none.

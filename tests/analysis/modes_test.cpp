@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "blade.hpp"
+#include "withy/core/analysis/mode_branches.hpp"
 
 namespace withy::test {
 namespace {
@@ -214,7 +215,7 @@ TEST(Branches, keep_their_shape_where_they_cross) {
     AnalysedScene c(blade(1, 1), "quadratic", {"bodies.blade.bending_z.stiffness=" + std::to_string(0.505 + 0.05 * k)});
     const Held held = hold(c, {"axle"});
     const Tangents t = c.dynamics->tangents(0, c.state.y, Eigen::VectorXd::Zero(c.speeds()));
-    const auto modes = tracker.follow(natural_modes(t, held), t.mass.diagonal());
+    const auto modes = tracker.follow(natural_modes(t, held), t.mass.diagonal()).modes;
     EXPECT_EQ(c.layout().speed_names[static_cast<std::size_t>(modes[0].dominant)], "blade.bending_z[1]") << k;
     EXPECT_NEAR(modes[1].frequency(), 3.5160152685, 1e-7);
   }

@@ -85,6 +85,30 @@ async function check_modes(browser, folder, run, troubles) {
   await single.close();
 }
 
+// The locus of a loop has a mark for each eigenvalue of its branches, and branches that end leave gaps.
+async function check_loops(browser, folder, run, troubles) {
+  const out = join(folder, 'loops');
+  run('modes', join(scenes, 'manipulator-pid.yaml'), '--sweep', 'loads.hold_wrist.derivative=0.3:1:8', '--count', '12', '--out', out);
+  const { runs, loops } = page_data(join(out, 'report.html')), points = JSON.parse(readFileSync(join(out, 'modes.json'))).runs[0].points;
+  assert.equal(loops, true);
+  let shown = 0;
+  runs[0].branches.forEach((b, i) => b.at.forEach((m, k) => {
+    const exact = points[k].modes.find(mode => mode.branch === i + 1);
+    assert.equal(m === null, exact === undefined);
+    if (!m) return;
+    close(m.growth, exact.eigenvalue[0]);
+    close(m.hertz, exact.eigenvalue[1] / 2 / Math.PI);
+    ++shown;
+  }));
+  assert.ok(runs[0].branches.some(b => b.at.includes(null)), 'a pair parts');
+  const page = await opened(browser, join(out, 'report.html'), 'theme=light', troubles);
+  assert.equal(await page.locator('#locus .mark').count(), shown);
+  await page.locator('#locus .mark').first().click({ force: true });
+  await says(page, '#mode', /hold_elbow\.integral[^]*growth -2\./);
+  await shot(page, 'modes-loops');
+  await page.close();
+}
+
 // What stands beside a rotor sees the frequencies of blades.csv and the passing of blades; the other view is of one angle.
 async function check_blades(browser, folder, run, troubles) {
   const scene = join(folder, 'turbine.yaml'), out = join(folder, 'blades');
@@ -232,7 +256,7 @@ async function check_inverse(browser, folder, run, troubles) {
 
 await in_browser(withy, chromium, async (browser, folder, run) => {
   const troubles = [];
-  for (const check of [check_inverse, check_trade, check_modes, check_blades, check_sweep, check_indices, check_figures]) await check(browser, folder, run, troubles);
+  for (const check of [check_inverse, check_trade, check_modes, check_loops, check_blades, check_sweep, check_indices, check_figures]) await check(browser, folder, run, troubles);
   assert.deepEqual(troubles, []);
   console.log('the pages of studies show what their files say');
 });

@@ -41,8 +41,9 @@ export class Modes {
 
   words(stands) {
     if (stands) return 'Modes of equal blades by the multi-blade transform: frequencies that an instrument on what does not turn sees, named after the blades\' coordinate and the way its pattern runs round. Modes of one name are branches in the order of frequency.';
-    return this.swept ? 'Branches are followed by shape: a name is of the coordinate that holds most of the kinetic energy, at the beginning and, where it becomes another, at the end. Triangles mark motions that grow. Click a mark for its shape.'
-      : 'A mode is named after the coordinate that holds most of its kinetic energy. Click a row for its shape.';
+    const most = this.data.loops ? 'what takes part most, a coordinate or a state of a load' : 'the coordinate that holds most of the kinetic energy';
+    return this.swept ? `Branches are followed by shape: a name is of ${most}, at the beginning and, where it becomes another, at the end. Triangles mark motions that grow. Click a mark for its shape.`
+      : `A mode is named after ${most}. Click a row for its shape.`;
   }
 
   name_of(branch, run) {
@@ -73,7 +74,7 @@ export class Modes {
       b.dash = several ? dashes[b.index % dashes.length].join(' ') : '';
     }
     this.names.replaceChildren(this.swept ? legend(this.branches, () => this.paint(colours)) : '');
-    this.figures.replaceChildren(...(this.swept ? [this.campbell(), this.damping(), this.growth()].filter(Boolean) : [this.table()]));
+    this.figures.replaceChildren(...(this.swept ? [this.campbell(), this.data.loops && this.seen_from !== standing ? this.locus() : null, this.damping(), this.growth()].filter(Boolean) : [this.table()]));
     if (this.chosen) this.choose(...this.chosen);
   }
 
@@ -100,6 +101,23 @@ export class Modes {
     this.per_rev(figure);
     this.label(figure, of);
     figure.element.id = 'campbell';
+    return figure.element;
+  }
+
+  // Of loops the eigenvalues in their plane, upper half, along the sweep: what lies right of zero grows. A larger mark is where a branch begins.
+  locus() {
+    const of = this.unit === 'Hz' ? hertz : radians;
+    const curves = this.branches.filter(b => !b.hidden).map(b => ({ b, points: b.at.map(m => (m ? [m.growth, of(m), m] : [null, null])) }));
+    const all = k => curves.flatMap(c => c.points.map(p => p[k])).filter(v => v != null);
+    const figure = new Figure({ height: 420, x: { label: 'growth [1/s]', values: all(0), include: [0] }, y: { label: `frequency [${this.unit}]`, values: all(1), include: [0] } });
+    for (const { b, points } of curves) {
+      figure.line(points, { stroke: b.color, 'stroke-width': 1.2, 'stroke-dasharray': b.dash });
+      const first = points.findIndex(p => p[2]);
+      points.forEach(([x, y, m], i) => {
+        if (m) figure.mark(x, y, m.unstable ? 2 : 0, { fill: m.unstable ? 'var(--bad)' : b.color, small: !m.unstable && i !== first }, () => this.about(b, m), () => this.choose(b, m));
+      });
+    }
+    figure.element.id = 'locus';
     return figure.element;
   }
 
@@ -149,7 +167,7 @@ export class Modes {
   }
 
   about(b, m) {
-    return [b.name, this.swept ? `${this.data.label} ${number(m.value)}` : '', `${number(hertz(m))} Hz, ${number(radians(m))} rad/s`, m.damping_ratio == null ? '' : `damping ratio ${number(100 * m.damping_ratio)} %`, m.state].filter(Boolean);
+    return [b.name, this.swept ? `${this.data.label} ${number(m.value)}` : '', m.hertz === 0 && m.growth ? `growth ${number(m.growth)}/s` : `${number(hertz(m))} Hz, ${number(radians(m))} rad/s`, m.damping_ratio == null ? '' : `damping ratio ${number(100 * m.damping_ratio)} %`, m.state].filter(Boolean);
   }
 
   // Where the kinetic energy of the shape is, and how like the first shape of the branch it is.

@@ -1,0 +1,197 @@
+#include "withy/core/analysis/coupled_modes.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "withy/core/analysis/linear_system.hpp"
+
+namespace withy {
+namespace {
+
+using Complex = std::complex<double>;
+using Solver = Eigen::EigenSolver<Eigen::MatrixXd>;
+
+Solver decomposed(const Eigen::MatrixXd& A) {
+  if (!A.allFinite()) throw std::domain_error("the derivatives at this state are not finite");
+  Solver solver(A);
+  if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
+  return solver;
+}
+
+/// An eigenvalue with its vectors.
+struct Root {
+  Complex value;
+  Eigen::VectorXcd right, left;
+};
+
+/// Roots of A but for so many at zero, in the order of |λ|.
+std::vector<Root> roots_beside_zeros(const Eigen::MatrixXd& A, std::size_t zeros) {
+  const Solver solver = decomposed(A);
+  const Eigen::MatrixXcd z = solver.eigenvectors(), w = left_vectors(A, solver.eigenvalues());
+  std::vector<Root> roots;
+  for (Eigen::Index i = 0; i < A.rows(); ++i) roots.push_back({solver.eigenvalues()[i], z.col(i), w.col(i)});
+  std::stable_sort(roots.begin(), roots.end(),
+                   [](const Root& a, const Root& b) { return std::abs(a.value) < std::abs(b.value); });
+  roots.erase(roots.begin(), roots.begin() + static_cast<std::ptrdiff_t>(zeros));
+  return roots;
+}
+
+/// The number of eigenvalues of A at zero, by rank: rounding spreads chains of them.
+std::size_t zeros_of(const Eigen::MatrixXd& A) {
+  const Eigen::VectorXcd exact =
+      poles({A, Eigen::MatrixXd::Zero(A.rows(), 0), Eigen::MatrixXd::Zero(0, A.rows()), Eigen::MatrixXd()});
+  return static_cast<std::size_t>((exact.array() == Complex(0)).count());
+}
+
+/// Columns that span the same, such that each has a row, that of its greatest element, in which all others are zero.
+struct Apart {
+  Eigen::MatrixXd columns;
+  std::vector<Eigen::Index> rows;
+
+  /// \param others whose rows are to be zero too; null: none
+  explicit Apart(Eigen::MatrixXd given, const Apart* others = nullptr) : columns(std::move(given)) {
+    if (others != nullptr) {
+      for (std::size_t k = 0; k < others->rows.size(); ++k)
+        columns -= (others->columns.col(static_cast<Eigen::Index>(k)) * columns.row(others->rows[k])).eval();
+    }
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+      Eigen::Index row = 0, column = 0;
+      columns.rightCols(columns.cols() - k).cwiseAbs().maxCoeff(&row, &column);
+      if (column > 0) columns.col(k).swap(columns.col(k + column));
+      columns.col(k) /= double(columns(row, k));
+      for (Eigen::Index j = 0; j < columns.cols(); ++j)
+        if (j != k) columns.col(j) -= double(columns(row, j)) * columns.col(k);
+      rows.push_back(row);
+    }
+  }
+};
+
+/// What nothing holds: directions that A takes to nothing, to what derivatives are known to at the worst. Those that A
+/// itself leads to are ends of chains, two zeros each: they go on at any rate.
+struct Unheld {
+  std::vector<Eigen::VectorXd> directions;
+  std::vector<Eigen::Index> rows;  ///< in which the direction alone moves
+  std::size_t pairs = 0;           ///< the first ones: of two zeros
+
+  explicit Unheld(const Eigen::MatrixXd& A) {
+    if (A.rows() == 0) return;
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::VectorXd& values = svd.singularValues();
+    const Eigen::Index count = (values.array() <= 1e-11 * values[0]).count();
+    if (count == 0) return;
+    const Eigen::MatrixXd N = svd.matrixV().rightCols(count);
+    // What A leads to is seen by no left direction.
+    const Eigen::JacobiSVD<Eigen::MatrixXd> seen(svd.matrixU().rightCols(count).transpose() * N, Eigen::ComputeFullV);
+    const Eigen::Index alone = (seen.singularValues().array() > 1e-6).count();
+    const Apart chained(N * seen.matrixV().rightCols(count - alone));
+    add(chained);
+    pairs = directions.size();
+    add(Apart(N * seen.matrixV().leftCols(alone), &chained));
+  }
+  [[nodiscard]] std::size_t zeros() const { return directions.size() + pairs; }
+
+ private:
+  void add(const Apart& found) {
+    for (std::size_t k = 0; k < found.rows.size(); ++k) {
+      directions.emplace_back(found.columns.col(static_cast<Eigen::Index>(k)));
+      rows.push_back(found.rows[k]);
+    }
+  }
+};
+
+/// Makes modes of eigenvectors.
+class Naming {
+ public:
+  /// \param units of z: what the vectors are times these
+  Naming(const Tangents& tangents, const Held& held, Eigen::VectorXd units)
+      : free_(free_speeds(held)),
+        m_(static_cast<Eigen::Index>(free_.size())),
+        speeds_(tangents.mass.rows()),
+        states_(tangents.by_state.cols()),
+        units_(std::move(units)) {}
+
+  [[nodiscard]] Mode mode(const Root& root) const {
+    Mode mode = of(root.value, root.right, most_taking_part(root.left, root.right, m_));
+    mode.single = root.value.imag() == 0;
+    mode.partner = mode.single ? root.value : std::conj(root.value);
+    return mode;
+  }
+  /// \param row of z that moves
+  [[nodiscard]] Mode unheld(const Eigen::VectorXd& direction, Eigen::Index row, bool single) const {
+    Mode mode = of(0, direction.cast<Complex>(), row < m_ ? row : std::max(row - m_, m_));
+    mode.rigid = true;
+    mode.single = single;
+    return mode;
+  }
+
+ private:
+  /// \param dominant among the free displacements, then the states
+  [[nodiscard]] Mode of(Complex value, const Eigen::VectorXcd& vector, Eigen::Index dominant) const {
+    Mode mode;
+    mode.eigenvalue = mode.partner = value;
+    const Eigen::VectorXcd z = units_.cast<Complex>().cwiseProduct(vector);
+    mode.shape = Eigen::VectorXcd::Zero(speeds_ + states_);
+    mode.shape(free_) = z.head(m_);
+    mode.shape.tail(states_) = z.tail(states_);
+    mode.dominant = dominant < m_ ? free_[static_cast<std::size_t>(dominant)] : speeds_ + dominant - m_;
+    mode.partner_dominant = mode.dominant;
+    if (const Complex most = mode.shape[mode.dominant]; most != 0.0) mode.shape /= most;
+    return mode;
+  }
+
+  std::vector<Eigen::Index> free_;
+  Eigen::Index m_, speeds_, states_;
+  Eigen::VectorXd units_;
+};
+
+}  // namespace
+
+Eigen::MatrixXcd left_vectors(const Eigen::MatrixXd& A, const Eigen::VectorXcd& values) {
+  const Solver solver = decomposed(A.transpose());
+  const Eigen::MatrixXcd all = solver.eigenvectors();
+  Eigen::MatrixXcd left(A.rows(), values.size());
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    Eigen::Index nearest = 0;
+    (solver.eigenvalues().array() - values[i]).abs().minCoeff(&nearest);
+    left.col(i) = all.col(nearest);
+  }
+  return left;
+}
+
+Eigen::Index most_taking_part(const Eigen::VectorXcd& left, const Eigen::VectorXcd& right, Eigen::Index displacements) {
+  const Eigen::VectorXd each = left.cwiseProduct(right).cwiseAbs();
+  Eigen::VectorXd part(each.size() - displacements);
+  part << each.head(displacements) + each.segment(displacements, displacements),
+      each.tail(each.size() - 2 * displacements);
+  Eigen::Index most = 0;
+  part.maxCoeff(&most);
+  return most;
+}
+
+std::vector<Mode> modes_with_states(const Tangents& tangents, const Held& held) {
+  const std::vector<Eigen::Index> free = free_speeds(held);
+  const Eigen::MatrixXd A = whole_first_order_form(tangents, held).A;
+  if (!A.allFinite()) throw std::domain_error("the derivatives at this state are not finite");
+  const Eigen::VectorXd units = balancing_units(A, tangents.mass.diagonal()(free).cwiseAbs());
+  const Eigen::MatrixXd balanced = units.asDiagonal() * A * units.cwiseInverse().asDiagonal();
+  const Unheld unheld(balanced);
+  const Naming naming(tangents, held, units.cwiseInverse());
+  std::vector<Mode> modes;
+  for (std::size_t i = 0; i < unheld.rows.size(); ++i)
+    modes.push_back(naming.unheld(unheld.directions[i], unheld.rows[i], i >= unheld.pairs));
+  // Chains of more than two, as of the integral of a free coordinate, have more zeros, which show nothing else.
+  const std::size_t zeros = modes.empty() ? 0 : std::max(unheld.zeros(), zeros_of(balanced));
+  for (std::size_t i = unheld.zeros(); i < zeros; ++i) {
+    modes.push_back(modes.back());
+    modes.back().single = true;
+  }
+  for (const Root& root : roots_beside_zeros(balanced, zeros))
+    if (!(root.value.imag() < 0)) modes.push_back(naming.mode(root));
+  sort_modes(modes);
+  return modes;
+}
+
+}  // namespace withy
