@@ -150,9 +150,35 @@ Value* SceneValues::target(const std::vector<std::string>& keys, int line, const
   return at;
 }
 
+/// Takes away what is at the path, so that it is as if the scene had never said it.
+void SceneValues::take_away(const std::vector<std::string>& keys, int line) {
+  Value* at = &document_.root;
+  std::string path;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto found = std::find_if(at->members().begin(), at->members().end(),
+                                    [&](const auto& member) { return member.first == keys[i]; });
+    if (found == at->members().end()) {
+      diagnostics_.error(
+          {line, 0, path},
+          at->kind() == Value::Kind::list
+              ? "an element of a list cannot be taken away; give the whole list without it"
+              : fmt::format("no {} here to take away{}", in_quotes(keys[i]), suggestion(keys[i], keys_of(*at))));
+      return;
+    }
+    path += "/" + keys[i];
+    if (i + 1 == keys.size())
+      at->members().erase(found);
+    else
+      at = &found->second;
+  }
+  std::erase_if(document_.keys,
+                [&](const auto& entry) { return entry.first == path || entry.first.starts_with(path + "/"); });
+}
+
 /// Puts the document read in the place of what is at the path.
 void SceneValues::put(const std::vector<std::string>& keys, Document read, int line) {
   if (document_.root.kind() != Value::Kind::map) return;  // make_scene says what the scene has to be
+  if (read.root.kind() == Value::Kind::null) return take_away(keys, line);
   if (keys.size() == 1 && keys[0] == "outputs" && is_names(read.root)) {
     const std::vector<Value> one{read.root};
     for (const Value& name : read.root.items().empty() ? one : read.root.items()) {

@@ -30,7 +30,7 @@ class SceneValues {
   /// Puts a value at a path of keys with dots between them, as "bodies.link1.length" or "gravity.1", and makes the maps
   /// on the way that are missing. An element of a vector that is not there is put into its default. Bodies, hinges,
   /// loads, motions and frames have to be there where the path leads into them, or the value is not all of one: a map,
-  /// with `type` but for frames.
+  /// with `type` but for frames. A null takes away what is there: the default holds, or there is no such part.
   SceneValues& set(std::string_view path, Value value, const std::string& origin);
   /// For a copy of `base` on which nothing was done but to set some paths, none of them within another, to numbers: the
   /// same paths are going to be set again, in the same order, to other numbers. What comes of that is as if `base` had
@@ -77,6 +77,7 @@ class SceneValues {
   int add_origin(std::string origin);
   /// \param value what is to be put there
   Value* target(const std::vector<std::string>& keys, int line, const Value& value);
+  void take_away(const std::vector<std::string>& keys, int line);
   void put(const std::vector<std::string>& keys, Document read, int line);
   void put_choice(const char* key, Value choice, const std::string& origin);
   void choose(const char* key, const std::string& id, const std::string& origin);

@@ -46,7 +46,9 @@ void require_continuous(const std::string& file, const Model& model, const LoadS
   if (sampling == Sampling::kept && !switches) return;
   throw InputError(file + ": load '" + node.name + "' changes at instants (" + (switches ? "a relay" : "sampled") +
                    "); linear analyses need loads that are continuous in time: leave out " +
-                   (switches ? "the load" : "its 'sample'; 'withy linearize' and 'withy response' take it as it is"));
+                   (switches ? "the load (--set loads." + node.name + "=null)"
+                             : "its 'sample' or the load (--set loads." + node.name +
+                                   ".sample=null or =null); 'withy linearize' and 'withy response' take it as it is"));
 }
 
 }  // namespace

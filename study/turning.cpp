@@ -94,7 +94,8 @@ TurningModes turning_modes(const Configuration& c, const State& steady, const Tu
     }
     if (const std::string load = not_repeating(c, steady, turning); !load.empty()) {
       result.problem = fmt::format(
-          "load '{}' acts otherwise {:.6g} s later, and no turn is like the next: take it away (--set loads={{}}), or "
+          "load '{0}' acts otherwise {1:.6g} s later, and no turn is like the next: take it away (--set "
+          "loads.{0}=null), or "
           "give the period after which everything repeats (--period)",
           load, turning.period);
       return result;

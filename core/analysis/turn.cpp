@@ -91,7 +91,10 @@ Balance balance_of(const TangentDynamics& dynamics, const Tangents& t, const Sta
   b.terms = all.cwiseAbs().maxCoeff() + K.cwiseAbs().maxCoeff() * position;
   if (layout.continuous == 0) return b;
   b.rates = dynamics.rates(state.time, state.y, dynamics.steady_accelerations(state.time));
-  b.measured = b.rates.cwiseAbs().maxCoeff() + t.rate_by_position.cwiseAbs().maxCoeff() * least_displacement;
+  const auto n = static_cast<Eigen::Index>(layout.speeds), k = static_cast<Eigen::Index>(layout.continuous);
+  const Eigen::Map<const Eigen::VectorXd> u(state.y.data() + layout.positions, n), z(u.data() + n, k);
+  b.measured = (t.rate_by_state.cwiseAbs() * z.cwiseAbs() + t.rate_by_speed.cwiseAbs() * u.cwiseAbs()).maxCoeff() +
+               t.rate_by_position.cwiseAbs().maxCoeff() * least_displacement + b.rates.cwiseAbs().maxCoeff();
   return b;
 }
 

@@ -54,6 +54,20 @@ TEST_F(Overrides, SetElementsOfVectorsThatTheFileLeavesOut) {
   EXPECT_THAT(problems(weightless + "gravity: {1: -9.81}\n", registry), testing::HasSubstr("/gravity: got a map"));
 }
 
+TEST_F(Overrides, TakeAwayWhatTheySetToNull) {
+  ASSERT_EQ(read({}).model->loads().size(), 1U);
+  EXPECT_EQ(read({"loads.motor=null"}).model->loads().size(), 0U);
+  EXPECT_EQ(read({"loads=~"}).model->loads().size(), 0U);
+  EXPECT_EQ(read({"gravity=null"}).model->gravity(), Eigen::Vector3d(0, 0, 0)) << "the default";
+  EXPECT_EQ(read({"bodies.boom.damping_ratio=null"}).source.at("bodies").at("boom").number_at("damping_ratio"), 0);
+  EXPECT_EQ(read({"time.end=null", "time.end=3"}).end, 3) << "in their order";
+  EXPECT_THAT(problem("loads.moter=null"),
+              "--set 'loads.moter=null': /loads: no \"moter\" here to take away; did you mean 'motor'?");
+  EXPECT_THAT(problem("gravity.1=null"), testing::HasSubstr("an element of a list cannot be taken away"));
+  EXPECT_THAT(problem("bodies.hub=null"), testing::HasSubstr("hub")) << "what named it is told";
+  EXPECT_THAT(problem("bodies.boom.length=null"), testing::HasSubstr("missing"));
+}
+
 TEST_F(Overrides, TakeEffectInTheirOrder) { EXPECT_EQ(read({"time.end=2", "time.end=3"}).end, 3); }
 
 TEST_F(Overrides, MayHaveBlanksAroundTheEquals) {

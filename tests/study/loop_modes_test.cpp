@@ -184,6 +184,40 @@ TEST(LoopEquilibrium, OfAnIntegralIsThatOfALockedHinge) {
   EXPECT_GT(std::abs(integral), 10);
 }
 
+/// A turbine whose generator measures the rate of a shaft that turns freely: coordinates grow, what is measured stays.
+/// What does not turn sees Floquet's exponents, and the loops by their own names.
+TEST(LoopModes, OfATurbineAreThoseOfAWholeTurn) {
+  SceneValues values = scene("gallery/turbine-control");
+  for (const char* change :
+       {"gravity=null", "loads.gust=null", "loads.rotor.value=4.0e6 - 2.0e6 * (shaft.rate - 1.2)", "loads.noisy=null",
+        "loads.read=null", "loads.torque.of=speed", "loads.torque.sample=null"})
+    values.set_text(change);
+  const Prepared prepared = prepare(std::move(values), plugins());
+  TurningWish wish;
+  wish.floquet = wish.blades = true;
+  const ModesAt at = modes_at(at_start(prepared), false, wish);
+  ASSERT_EQ(at.problem, "");
+  ASSERT_TRUE(at.turn && at.turn->floquet && at.turn->blades) << at.turn->problem;
+  EXPECT_LT(at.turn->blades->change, 1e-9) << "of the accelerometer's loop derivatives are known to ten digits";
+  const double rate = 1.2;
+  std::vector<std::string> names;
+  for (const NamedMode& mode : at.turn->blades->modes) {
+    double nearest = 1;
+    for (const NamedMode& other : at.turn->floquet->modes) {
+      // A mode of the whole turn says its frequency but for whole turns, and its sign.
+      for (const double sign : {-1.0, 1.0}) {
+        const double turns = (mode.exponent.imag() - sign * other.exponent.imag()) / rate;
+        nearest = std::min(
+            nearest, std::hypot(mode.exponent.real() - other.exponent.real(), rate * (turns - std::round(turns))));
+      }
+    }
+    EXPECT_LT(nearest, 1e-6) << mode.dominated_by;
+    names.push_back(mode.dominated_by);
+  }
+  EXPECT_THAT(names, testing::IsSupersetOf({"shaft.0", "sway.x0", "speed.x1", "tower.bending_z[1]",
+                                            "blade1.bending_z[1] backward", "blade1.bending_z[1] forward"}));
+}
+
 /// What time integration comes to, which knows nothing of Newton's method.
 TEST(LoopEquilibrium, IsWhereTheMotionSettles) {
   const Prepared prepared =

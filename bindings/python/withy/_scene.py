@@ -201,7 +201,7 @@ class Scene:
 
         Args:
             path: keys with dots between them, as ``"loads.slew.time_scale"`` or ``"gravity.1"``.
-            value: a number in SI units, a text as in a file (``"25 mm"``), a list, a dict, a NumPy array, or None.
+            value: a number in SI units, a text as in a file (``"25 mm"``), a list, a dict, a NumPy array, or None, which takes it away.
 
         Returns:
             The scene itself, so that calls can follow each other.
