@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "withy/study/continuous_states.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/reference.hpp"
 
@@ -14,8 +15,7 @@ namespace {
 
 /// Share of a speed in Σ |δ_i|² M_ii.
 double share(const Mode& mode, const Eigen::VectorXd& masses, Eigen::Index speed) {
-  const double all = mode.shape.cwiseAbs2().dot(masses);
-  return all > 0 ? std::norm(mode.shape[speed]) * masses[speed] / all : 0.0;
+  return std::norm(mode.shape[speed]) * masses[speed] / mode.shape.cwiseAbs2().dot(masses);
 }
 
 /// Of the mode that bears the name; nothing where it is rigid or grows.
@@ -33,6 +33,8 @@ std::optional<double> frequency_of(const ModesAt& at, const std::string& name) {
 
 FrequencyStudy::FrequencyStudy(const Prepared& base, Registry& registry, FrequencyQuestion question)
     : base_(base), registry_(registry), question_(std::move(question)), reference_(question_.points.front()) {
+  // Modes are found again by what moves in them, which does not tell those of a loop from each other.
+  refuse_continuous_states(base_, "a trade of frequencies");
   reference_.family.clear();
   for (const Point& p : question_.points) reference_.modes = std::max(reference_.modes, p.modes);
   ++reference_.modes;

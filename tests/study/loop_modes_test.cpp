@@ -8,6 +8,7 @@
 
 #include "withy/study/effective_mass.hpp"
 #include "withy/study/equilibrium.hpp"
+#include "withy/study/frequencies.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/linear_model.hpp"
 #include "withy/study/modes.hpp"
@@ -273,9 +274,12 @@ TEST(LoopEquilibrium, SaysWhatIsAtALimit) {
   EXPECT_THAT(found.problem, HasSubstr("'servo' is at a limit there"));
 }
 
-TEST(LoopModes, AreNoEffectiveMasses) {
-  const Configuration c = at_start(scene_of(servo_beam));
-  EXPECT_THROW((void)effective_masses(c), InputError);
+/// What knows of bodies alone says so.
+TEST(LoopModes, AreRefusedWhereBodiesAloneAreMeant) {
+  const Prepared prepared = scene_of(servo_beam);
+  EXPECT_THROW((void)effective_masses(at_start(prepared)), InputError);
+  FrequencyQuestion question{{{}}, parse_sweep("loads.servo.derivative=50:60:2", "over"), {}};
+  EXPECT_THROW(FrequencyStudy(prepared, plugins(), question), InputError);
 }
 
 }  // namespace
