@@ -221,5 +221,31 @@ TEST(Branches, keep_their_shape_where_they_cross) {
   }
 }
 
+/// A pole of a filter passes a vibration of the same modulus; both move the one coordinate there is.
+TEST(Branches, of_loops_keep_poles_apart_that_have_one_modulus) {
+  const auto mode = [](std::complex<double> eigenvalue) {
+    Mode m;
+    m.eigenvalue = eigenvalue;
+    m.single = eigenvalue.imag() == 0;
+    m.partner = std::conj(eigenvalue);
+    m.shape = Eigen::VectorXcd::Ones(1);
+    return m;
+  };
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
+  BranchTracker tracker;
+  static_cast<void>(tracker.follow({mode(-9), mode({-1, 10})}, one, Closeness::of_eigenvalues));
+  const BranchedModes next = tracker.follow({mode(-10.05), mode({-1.2, 10.2})}, one, Closeness::of_eigenvalues);
+  EXPECT_EQ(next.modes[0].eigenvalue, -10.05);
+  EXPECT_EQ(next.modes[1].eigenvalue, std::complex<double>(-1.2, 10.2));
+  // A pair becomes two real ones, of which one goes on; then they are one again.
+  const BranchedModes parted = tracker.follow({mode(-10.2), mode(-7), mode(-8)}, one, Closeness::of_eigenvalues);
+  EXPECT_EQ(parted.branches, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(parted.modes[0].eigenvalue, -10.2);
+  const BranchedModes met = tracker.follow({mode(-10.3), mode({-7.5, 0.1})}, one, Closeness::of_eigenvalues);
+  ASSERT_EQ(met.modes.size(), 2U);
+  EXPECT_EQ(met.branches[0], 0U);
+  EXPECT_GT(met.branches[1], 0U);
+}
+
 }  // namespace
 }  // namespace withy::test

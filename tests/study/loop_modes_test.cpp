@@ -102,6 +102,27 @@ loads:
   expect_same(eigenvalues(modes_at(at_start(felt), false).modes), A.eigenvalues(), 1e-9);
 }
 
+/// A fast filter follows a slow one, a thousand times as large: the slow pole is the slow filter's although the other
+/// moves most in it.
+TEST(LoopModes, BearTheNameOfWhatTakesPartAndNotOfWhatMovesMost) {
+  const ModesAt at = modes_at(at_start(scene_of(R"(
+bodies: {table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}}
+loads:
+  spring: {type: hinge-spring, hinge: axle, stiffness: 20}
+  slow: {type: transfer-function, of: axle, to: nothing, numerator: [1], denominator: [1, 1]}
+  fast: {type: state-space, of: slow, to: nothing, A: [[-10]], B: [[10000]], C: [[1]]}
+)")),
+                              true);
+  const auto name_at = [&](double pole) {
+    for (const Mode& m : at.modes)
+      if (std::abs(m.eigenvalue - pole) < 1e-9) return dominating(at, m);
+    return std::string("none");
+  };
+  EXPECT_EQ(name_at(-1), "slow.x0");
+  EXPECT_EQ(name_at(-10), "fast.x0");
+}
+
 /// The poles of the linear model come from the same derivatives by another algorithm, without vectors.
 TEST(LoopModes, AreThePolesOfTheLinearModelInEveryFormulation) {
   for (const std::string formulation : {"ruthless", "consistent", "symmetric", "quadratic", "exact"}) {
@@ -217,6 +238,26 @@ TEST(LoopModes, OfATurbineAreThoseOfAWholeTurn) {
   }
   EXPECT_THAT(names, testing::IsSupersetOf({"shaft.0", "sway.x0", "speed.x1", "tower.bending_z[1]",
                                             "blade1.bending_z[1] backward", "blade1.bending_z[1] forward"}));
+}
+
+/// A heavy hub and a beam whose vibrations are a million times faster than anything else: a newton metre of the
+/// integral is nothing beside them, and is found all the same.
+TEST(LoopEquilibrium, IsFoundWhateverTheSizesAre) {
+  const Prepared prepared = scene_of(R"(
+gravity: [0, 0, -9.81]
+bodies:
+  hub: {type: rigid, mass: 1.0e6, inertia: [1.0e8, 1.0e8, 1.0e8, 0, 0, 0]}
+  beam: {type: beam, length: 2, mass_per_length: 1, bending_z: {stiffness: 1.0e+10, modes: 6}}
+hinges:
+  root: {type: revolute, axis: [0, 1, 0], parent: world, child: hub}
+  weld: {type: weld, parent: hub, child: beam}
+loads: {servo: {type: pid, hinge: root, proportional: 300, integral: 200, derivative: 60, filter: 0.02}}
+)");
+  const Configuration c = at_start(prepared);
+  const Equilibrium found = find_equilibrium(c, {}, plugins());
+  ASSERT_EQ(found.problem, "");
+  const double integral = found.steady.state.y[c.layout().positions + c.layout().speeds];
+  EXPECT_NEAR(std::abs(integral), 9.81 * 2 * 1, 1e-6);
 }
 
 /// What time integration comes to, which knows nothing of Newton's method.
