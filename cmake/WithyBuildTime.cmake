@@ -55,12 +55,15 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     -Wno-error=invalid-pch)
 endif()
 
-if(precompile)
-  # The decompositions and products that the headers declare as compiled elsewhere: hidden in each library that has them.
-  add_library(withy-eigen-instances STATIC ${PROJECT_SOURCE_DIR}/cmake/precompiled/eigen_instances.cpp)
-  target_link_libraries(withy-eigen-instances PRIVATE Eigen3::Eigen withy-options)
-  target_compile_features(withy-eigen-instances PRIVATE cxx_std_20)
+# The decompositions and products that the headers declare as compiled elsewhere: hidden in each library that has them.
+# Without precompiled headers there are none to link, and clang-tidy alone reads the source.
+set(eigen_instances withy-eigen-instances)
+if(NOT precompile)
+  set(eigen_instances withy-eigen-instances-read)
 endif()
+add_library(${eigen_instances} STATIC EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/cmake/precompiled/eigen_instances.cpp)
+target_link_libraries(${eigen_instances} PRIVATE Eigen3::Eigen withy-options)
+target_compile_features(${eigen_instances} PRIVATE cxx_std_20)
 
 # withy_unite(TARGET [COUNT]): compiles its sources twelve (COUNT) at a time.
 function(withy_unite target)
