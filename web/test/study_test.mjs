@@ -214,7 +214,7 @@ async function check_figures(browser, folder, run, troubles) {
   run('response', join(scenes, 'pd-arm.yaml'), '--input', 'control.elbow', '--out', join(folder, 'response'));
   run('advise', join(scenes, 'pendulum.yaml'), '--accuracy', '1%', '--out', join(folder, 'advise'));
   const expected = {
-    terms: [/rms %/, 2], tune: [/center_of_mass/, 1], response: [/margin/, 3], advise: [/advice/, 1],
+    terms: [/rms %/, 2], tune: [/center_of_mass/, 1], response: [/phase may lag by/, 3], advise: [/advice/, 1],
   };
   for (const [name, [words, figures]] of Object.entries(expected)) {
     const page = await opened(browser, join(folder, name, 'report.html'), 'theme=light', troubles);
