@@ -26,8 +26,11 @@ async function check_trade(browser, folder, run, troubles) {
     if (q.cpu_seconds > 1.05 * p.cpu_seconds) assert.ok(at[j][0] > at[i][0], 'dearer is further to the right');
     if (q.relative_error > 1.05 * p.relative_error && p.relative_error > 1e-13) assert.ok(at[j][1] < at[i][1], 'worse is higher');
   }));
-  await marks.nth(0).hover({ force: true });
-  await says(page, '#note', /error .* %, CPU time .* ms/);
+  for (const which of [p => p.pareto, p => !p.pareto]) {  // full and hollow marks
+    await page.mouse.move(0, 0);
+    await marks.nth(done.findIndex(which)).hover({ force: true });
+    await says(page, '#note:not([hidden])', /error .* %, CPU time .* ms/);
+  }
   await page.click('table.rows tbody tr:nth-child(2)');
   assert.match(await text(page, '#model'), new RegExp(`${points[1].formulation}[^]*withy run .*driven-arm.yaml`));
   await page.click('table.rows th:nth-child(2) button');

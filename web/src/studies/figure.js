@@ -100,7 +100,7 @@ export class Figure {
   }
   // A mark of a shape around a place; `about` is what the pointer is told, `chosen` what a click does.
   mark(x, y, shape, { small = false, ...attributes }, about, chosen) {
-    const e = draw('path', { d: shapes[shape % shapes.length], transform: `translate(${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)})${small ? ' scale(0.62)' : ''}`, class: 'mark', tabindex: chosen ? 0 : null, role: chosen ? 'button' : null, 'aria-label': chosen ? about().join(', ') : null, ...attributes });
+    const e = draw('path', { d: shapes[shape % shapes.length], transform: `translate(${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)})${small ? ' scale(0.62)' : ''}`, class: 'mark', tabindex: chosen ? 0 : null, role: chosen ? 'button' : null, 'aria-label': chosen ? about().join(', ') : null, 'pointer-events': about ? 'all' : null, ...attributes });  // hollow ones too
     this.marks.append(e);
     answers(e, about, chosen);
     return e;
