@@ -115,7 +115,7 @@ std::string Scene::modes(const std::vector<std::string>& lock, const Follow& fol
 std::string Scene::linearize(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs,
                              const std::vector<std::string>& lock) const {
   const std::shared_ptr<const study::Prepared> base = with_outputs(*this, outputs);
-  const study::Configuration at(*base, base->scene.initial, {lock, {}}, study::Sampling::kept);
+  const study::Configuration at(*base, base->scene.initial, {lock, {}});
   try {
     return linear_model_json(at, study::linear_model(at, {inputs, outputs})).dump();
   } catch (const std::domain_error& e) {

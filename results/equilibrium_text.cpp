@@ -34,13 +34,19 @@ TextTable hinge_table(const study::Configuration& c, const SteadyState& steady) 
   return table;
 }
 
-/// The continuous states of loads.
+/// The continuous states of loads, and what sampled ones hold.
 TextTable state_table(const study::Configuration& c, const SteadyState& steady) {
   TextTable table({"<state of a load", "value"});
   const Layout& layout = c.layout();
   for (std::size_t i = 0; i < layout.continuous; ++i)
     table.add(
         {layout.continuous_names[i], fmt::format("{:.6g}", steady.state.y[layout.positions + layout.speeds + i])});
+  const Model& model = c.prepared().model();
+  const std::vector<std::string> names = study::sampled_names(model);
+  std::size_t next = 0;
+  for (const LoadSlot& slot : study::sampled_slots(model))
+    for (std::size_t i = slot.first; i < slot.first + slot.count; ++i)
+      table.add({names[next++], fmt::format("{:.6g}", steady.state.y[i])});
   return table;
 }
 
@@ -77,7 +83,7 @@ std::string equilibrium_text(const study::Configuration& c, const study::Equilib
   std::string text = fmt::format("{} in {}: {} after {} steps of Newton's method\n\n{}", scene.file,
                                  scene.formulation_name, found.passing.empty() ? "steady" : "balanced at this instant",
                                  found.steady.iterations, hinge_table(c, found.steady).str());
-  if (c.layout().continuous > 0) text += '\n' + state_table(c, found.steady).str();
+  if (c.layout().continuous > 0 || c.sampled()) text += '\n' + state_table(c, found.steady).str();
   if (!found.deflections.empty()) text += '\n' + deflection_table(found).str();
   if (const std::string words = study::against_next_text(found.against, "deflections"); !words.empty())
     text += '\n' + words + '\n';

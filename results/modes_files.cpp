@@ -87,6 +87,11 @@ Json steady_json(const Model& model, const SteadyState& steady, const Held& held
     for (std::size_t i = 0; i < model.layout().continuous; ++i)
       j["state_rates"][model.layout().continuous_names[i]] = steady.rates[static_cast<Eigen::Index>(i)];
   }
+  if (steady.renewed.size() > 0) {
+    const std::vector<std::string> held_names = study::sampled_names(model);
+    for (std::size_t i = 0; i < held_names.size(); ++i)
+      j["changed_by_a_sample"][held_names[i]] = steady.renewed[static_cast<Eigen::Index>(i)];
+  }
   j["state"] = Json::parse(write_state(model, steady.state));
   return j;
 }
@@ -115,6 +120,10 @@ Json modes_json(const study::ModesOf& run) {
       j["branch"] = at.branches[i] + 1;
       j["eigenvalue"] = {m.eigenvalue.real(), m.eigenvalue.imag()};
       j["partner"] = {m.partner.real(), m.partner.imag()};
+      if (at.period > 0) {
+        const std::complex<double> multiplier = std::exp(m.eigenvalue * at.period);
+        j["multiplier"] = {multiplier.real(), multiplier.imag()};
+      }
       j["frequency"] = m.frequency();
       j["hertz"] = hertz(m);
       j["squared_frequency"] = m.squared_frequency();
@@ -129,6 +138,7 @@ Json modes_json(const study::ModesOf& run) {
     point["value"] = at.value;
     point["steady"] = at.steady ? found_json(at) : Json();
     point["turn"] = at.turn ? turn_json(*at.turn) : Json();
+    if (at.period > 0) point["period"] = at.period, point["forgotten"] = at.forgotten;
     point["problem"] = at.problem;
     point["bent"] = at.bent;
     point["modes"] = std::move(modes);

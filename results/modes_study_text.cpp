@@ -18,6 +18,7 @@ std::string run_of_modes_text(const study::ModesOf& run, const std::optional<stu
                                                       : fmt::format("the {} lowest frequencies", against->compared));
       !words.empty())
     text += '\n' + words + '\n';
+  if (const std::string words = study::sampling_text(run); !words.empty()) text += '\n' + words + '\n';
   const auto bent = std::find_if(run.points.begin(), run.points.end(), [](const auto& at) { return !at.bent.empty(); });
   if (bent != run.points.end())
     text +=

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "withy/core/simulation/tips.hpp"
+#include "withy/study/sampled_steady.hpp"
 
 namespace withy::study {
 namespace {
@@ -67,7 +68,7 @@ std::optional<AgainstNext> deflections_against_next(const Configuration& configu
   const Prepared up = prepare(values_in(prepared, beyond->formulation), registry);
   Configuration there(up, configuration.state(), holding);
   there.begin_at(steady.state);
-  const SteadyState found = find_steady_state(there.dynamics(), there.state(), there.held());
+  const SteadyState found = steady_state_of(there);
   if (!found.converged) {
     against.problem = no_steady_state(there, found);
     return against;

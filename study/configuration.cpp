@@ -33,7 +33,7 @@ std::size_t hinge_of(const Layout& layout, std::size_t speed) {
 }
 
 /// \throws InputError where a load's discrete part has no place in a linear analysis.
-void require_continuous(const std::string& file, const Model& model, const LoadSlot& slot, Sampling sampling) {
+void require_no_switches(const std::string& file, const Model& model, const LoadSlot& slot) {
   const LoadNode& node = model.loads()[slot.load];
   if (node.load->input() != nullptr) return;
   const DiscretePart& part = *node.load->discrete();
@@ -42,27 +42,25 @@ void require_continuous(const std::string& file, const Model& model, const LoadS
   if (dynamic_cast<const ForeignLaw*>(node.load.get()) != nullptr)
     throw InputError(file + ": load '" + node.name +
                      "' has a law that is not withy's own, of which there is no linear model: leave it out");
-  const bool switches = part.switches() > 0;
-  if (sampling == Sampling::kept && !switches) return;
-  throw InputError(file + ": load '" + node.name + "' changes at instants (" + (switches ? "a relay" : "sampled") +
-                   "); linear analyses need loads that are continuous in time: leave out " +
-                   (switches ? "the load (--set loads." + node.name + "=null)"
-                             : "its 'sample' or the load (--set loads." + node.name +
-                                   ".sample=null or =null); 'withy linearize' and 'withy response' take it as it is"));
+  if (part.switches() > 0)
+    throw InputError(file + ": load '" + node.name +
+                     "' changes at instants (a relay); linear analyses need loads that do not: leave it out (--set "
+                     "loads." +
+                     node.name + "=null)");
 }
 
 }  // namespace
 
-Configuration::Configuration(const Prepared& prepared, State state, const Holding& holding, Sampling sampling)
+Configuration::Configuration(const Prepared& prepared, State state, const Holding& holding)
     : prepared_(prepared),
       dynamics_(prepared.scene.model, prepared.scene.formulation->terms()),
       state_(std::move(state)),
       held_(layout().speeds, false) {
   refuse_loops(prepared, "what linearizes a scene (modes, equilibrium, linearize, response)");
   const Model& model = prepared_.model();
-  for (const LoadSlot& slot : layout().discrete_slots) require_continuous(prepared.scene.file, model, slot, sampling);
+  for (const LoadSlot& slot : layout().discrete_slots) require_no_switches(prepared.scene.file, model, slot);
   model.prescribe(state_);
-  if (sampling == Sampling::kept) state_ = begun(model, *prepared_.equations, std::move(state_));
+  state_ = begun(model, *prepared_.equations, std::move(state_));
   for (const MotionNode& motion : model.motions()) {
     const Slot& slot = layout().hinges[static_cast<std::size_t>(motion.hinge)];
     for (std::size_t i = 0; i < slot.speeds; ++i) held_[slot.speed + i] = true;
@@ -111,6 +109,25 @@ void Configuration::begin_at(const State& state) {
   for (const Slot& slot : order.hinges) take(slot);
   for (const Slot& slot : order.bodies) take(slot);
   for (std::size_t i = order.positions + order.speeds; i < order.moving(); ++i) state_.y[i] = state.y[i];
+  for (const LoadSlot& slot : sampled_slots(prepared_.model()))
+    for (std::size_t i = slot.first; i < slot.first + slot.count; ++i) state_.y[i] = state.y[i];
+}
+
+bool Configuration::sampled() const { return !sampled_slots(prepared_.model()).empty(); }
+
+std::vector<LoadSlot> sampled_slots(const Model& model) {
+  std::vector<LoadSlot> slots;
+  for (const LoadSlot& slot : model.layout().discrete_slots)
+    if (model.loads()[slot.load].load->discrete()->period() > 0) slots.push_back(slot);
+  return slots;
+}
+
+std::vector<std::string> sampled_names(const Model& model) {
+  std::vector<std::string> names;
+  for (const LoadSlot& slot : sampled_slots(model))
+    for (std::size_t i = 0; i < slot.count; ++i)
+      names.push_back(fmt::format("{}.held[{}]", model.loads()[slot.load].name, i));
+  return names;
 }
 
 std::vector<std::size_t> speeds_of(const Model& model, const std::string& name, const std::string& what) {
@@ -203,6 +220,12 @@ std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
     if (rate > 0)
       text += fmt::format(", and {} changes by {:.3g} a second",
                           c.layout().continuous_names[static_cast<std::size_t>(state)], rate);
+  }
+  if (Eigen::Index number = 0; steady.renewed.size() > 0) {
+    const double change = steady.renewed.cwiseAbs().maxCoeff(&number);
+    if (change > 0)
+      text += fmt::format(", and {} changes by {:.3g} with a sample",
+                          sampled_names(c.prepared().model())[static_cast<std::size_t>(number)], change);
   }
   if (const std::vector<std::string> limited = at_limits(c, steady.state); !limited.empty()) {
     text += fmt::format(

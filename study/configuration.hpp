@@ -22,16 +22,11 @@ struct Holding {
   std::vector<Spin> spun;
 };
 
-/// What becomes of loads that are sampled.
-enum class Sampling {
-  refused,
-  kept  ///< they hold what they give at the state
-};
-
 class Configuration {
  public:
-  /// \throws InputError where a load switches, or is sampled and that is refused, or there is no such hinge.
-  Configuration(const Prepared& prepared, State state, const Holding& holding, Sampling sampling = Sampling::refused);
+  /// Sampled loads that have not begun hold what they give at the state.
+  /// \throws InputError where a load switches, or there is no such hinge.
+  Configuration(const Prepared& prepared, State state, const Holding& holding);
 
   [[nodiscard]] const Prepared& prepared() const { return prepared_; }
   [[nodiscard]] const Layout& layout() const { return prepared_.model().layout(); }
@@ -43,7 +38,9 @@ class Configuration {
 
   /// Gives a speed a rate and holds it. \throws InputError where a motion drives it already.
   void spin(const Spin& spin);
-  /// Takes the free coordinates, and the continuous states of loads, from another state of the same model.
+  /// Whether loads are sampled.
+  [[nodiscard]] bool sampled() const;
+  /// Takes the free coordinates, and the states of continuous and sampled loads, from another state of the same model.
   void begin_at(const State& state);
   void set_state(State state) { state_ = std::move(state); }
 
@@ -53,6 +50,11 @@ class Configuration {
   State state_;
   Held held_;
 };
+
+/// Where a state has what the sampled loads of a model hold.
+std::vector<LoadSlot> sampled_slots(const Model& model);
+/// Its names, as "control.held[0]".
+std::vector<std::string> sampled_names(const Model& model);
 
 /// Speeds of a hinge, or the one speed of that name. \throws InputError naming `what` they were wanted for
 std::vector<std::size_t> speeds_of(const Model& model, const std::string& name, const std::string& what);

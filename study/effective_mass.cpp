@@ -5,12 +5,12 @@
 #include <stdexcept>
 
 #include "withy/core/plugin/equations.hpp"
-#include "withy/study/continuous_states.hpp"
+#include "withy/study/states_of_loads.hpp"
 
 namespace withy::study {
 
 EffectiveMasses effective_masses(const Configuration& c) {
-  refuse_continuous_states(c.prepared(), "--effective-mass");
+  refuse_states_of_loads(c.prepared(), "--effective-mass");
   EffectiveMasses result;
   for (const BodyNode& body : c.prepared().model().bodies())
     for (const Particle& p : body.body->shape().particles) result.total += p.mass;

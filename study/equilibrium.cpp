@@ -2,13 +2,14 @@
 
 #include "withy/core/simulation/tips.hpp"
 #include "withy/study/bent.hpp"
+#include "withy/study/sampled_steady.hpp"
 #include "withy/study/turning.hpp"
 
 namespace withy::study {
 
 Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Registry& registry) {
   Equilibrium found;
-  found.steady = find_steady_state(c.dynamics(), c.state(), c.held());
+  found.steady = steady_state_of(c);
   const State& state = found.steady.state;
   const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
   found.derivatives = derivatives_text(tangents);

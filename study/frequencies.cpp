@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "withy/study/continuous_states.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/reference.hpp"
+#include "withy/study/states_of_loads.hpp"
 
 namespace withy::study {
 namespace {
@@ -34,7 +34,7 @@ std::optional<double> frequency_of(const ModesAt& at, const std::string& name) {
 FrequencyStudy::FrequencyStudy(const Prepared& base, Registry& registry, FrequencyQuestion question)
     : base_(base), registry_(registry), question_(std::move(question)), reference_(question_.points.front()) {
   // Modes are found again by what moves in them, which does not tell those of a loop from each other.
-  refuse_continuous_states(base_, "a trade of frequencies");
+  refuse_states_of_loads(base_, "a trade of frequencies");
   reference_.family.clear();
   for (const Point& p : question_.points) reference_.modes = std::max(reference_.modes, p.modes);
   ++reference_.modes;

@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
+#include "withy/core/analysis/coupled_modes.hpp"
 #include "withy/study/bent.hpp"
+#include "withy/study/input_error.hpp"
+#include "withy/study/sampled_loads.hpp"
+#include "withy/study/sampled_steady.hpp"
 
 namespace withy::study {
 namespace {
@@ -15,6 +20,26 @@ double greatest_eigenvalue(const ModesAt& at) {
   double g = 0;
   for (const Mode& m : at.modes) g = std::max({g, std::abs(m.eigenvalue), std::abs(m.partner)});
   return g;
+}
+
+/// The modes of the map from one common sample to the next.
+void find_sampled_modes(const Configuration& c, const Tangents& tangents, ModesAt& at) {
+  const SmallMotions motions(c, {});
+  const SampledLoads sampled(motions);
+  const SampledLoads::Held held{
+      motions.A(), sampled.moved(sampled.efforts()), Eigen::MatrixXd::Zero(motions.size(), 0), {}, {}};
+  const Eigen::VectorXd masses = tangents.mass.diagonal()(motions.free()).cwiseAbs();
+  const auto between = [&](const Eigen::MatrixXcd& columns) {
+    SampledLoads::Course course = sampled.course(held, columns);
+    for (Eigen::MatrixXcd& motion : course.motions) motion = motion.topRows(masses.size()).eval();
+    return MotionOverPeriod{course.fastest, std::move(course.times), std::move(course.weights),
+                            std::move(course.motions)};
+  };
+  MapModes found = modes_of_map(
+      {sampled.map(held).first, sampled.period(), balancing_units(motions.A(), masses), masses, between}, c.held());
+  at.modes = std::move(found.modes);
+  at.forgotten = found.gone;
+  at.period = sampled.period();
 }
 
 }  // namespace
@@ -27,10 +52,16 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
   ModesAt at;
   at.names = c.layout().speed_names;
   at.names.insert(at.names.end(), c.layout().continuous_names.begin(), c.layout().continuous_names.end());
+  const std::vector<std::string> held = sampled_names(c.prepared().model());
+  at.names.insert(at.names.end(), held.begin(), held.end());
+  if (c.sampled() && (wish.floquet || wish.blades))
+    throw InputError(
+        "--floquet and --blades are of motions that are continuous in time, and loads are sampled: take "
+        "their 'sample' away (--set loads.NAME.sample=null) or the loads");
   at.model = c.prepared().scene.model;
   State state = c.state();
   if (!as_is) {
-    at.steady = SteadyFound{find_steady_state(c.dynamics(), c.state(), c.held()), c.held(), {}, {}};
+    at.steady = SteadyFound{steady_state_of(c), c.held(), {}, {}};
     at.problem = no_steady_state(c, at.steady->steady);
     if (!at.steady->steady.converged) return at;
     state = at.steady->steady.state;
@@ -38,7 +69,13 @@ ModesAt modes_at(const Configuration& c, bool as_is, const TurningWish& wish) {
   }
   try {
     const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
-    at.modes = natural_modes(tangents, c.held());
+    if (c.sampled()) {
+      Configuration about = c;
+      about.set_state(state);
+      find_sampled_modes(about, tangents, at);
+    } else {
+      at.modes = natural_modes(tangents, c.held());
+    }
     at.masses = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(at.names.size()));
     at.masses.head(tangents.mass.rows()) = tangents.mass.diagonal().cwiseAbs();
     if (!as_is) {
@@ -74,9 +111,9 @@ ModesOf sweep_modes(const SceneValues& values, Registry& registry, const StartSt
     at.value = value;
     if (at.steady && at.steady->steady.converged) last = at.steady->steady.state;
     if (at.problem.empty()) {
-      BranchedModes followed =
-          tracker.follow(std::move(at.modes), at.masses,
-                         c->layout().continuous > 0 ? Closeness::of_eigenvalues : Closeness::of_squares);
+      BranchedModes followed = tracker.follow(
+          std::move(at.modes), at.masses,
+          c->layout().continuous > 0 || c->sampled() ? Closeness::of_eigenvalues : Closeness::of_squares);
       at.modes = std::move(followed.modes), at.branches = std::move(followed.branches);
     }
     control.tell(static_cast<double>(k + 1), static_cast<double>(sweep.values.size()));
@@ -119,8 +156,23 @@ std::string behaviour(const ModesAt& at, const Mode& mode) {
   if (mode.rigid) return "rigid";
   if (at.frozen()) return unstable(at, mode) ? "grows here" : "decays here";
   if (unstable(at, mode)) return mode.eigenvalue.imag() == 0 ? "diverges" : "flutters";
-  if (mode.single) return "decays";
+  const double alternating = at.period > 0 ? std::numbers::pi / at.period : 0;
+  if (mode.single && mode.eigenvalue.imag() <= alternating)
+    return mode.eigenvalue.imag() == 0 ? "decays" : "alternates";
   return mode.eigenvalue.imag() == 0 ? "overdamped" : "stable";
+}
+
+std::string sampling_text(const ModesOf& run) {
+  const auto of_period = [](const ModesAt& a, const ModesAt& b) { return a.period < b.period; };
+  const auto [least, most] = std::minmax_element(run.points.begin(), run.points.end(), of_period);
+  if (least == run.points.end() || most->period == 0) return {};
+  std::string text = fmt::format(
+      "Loads are sampled every {:g}{} s: modes are those from one sample to the next, shapes "
+      "what there is just before it",
+      least->period, most->period > least->period ? fmt::format(" to {:g}", most->period) : "");
+  if (const std::size_t forgotten = run.points.front().forgotten; run.points.size() == 1 && forgotten > 0)
+    text += fmt::format("; {} more {} forgotten within some samples", forgotten, forgotten > 1 ? "are" : "is");
+  return text + '.';
 }
 
 }  // namespace withy::study

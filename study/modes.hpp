@@ -43,7 +43,10 @@ struct ModesAt {
   double value = 0;  ///< of what is swept
   std::vector<Mode> modes;
   std::vector<std::size_t> branches;  ///< of a sweep, of each mode: they ascend, with gaps where branches have ended
-  std::vector<std::string> names;     ///< of the speeds, then of the continuous states of loads
+  double period = 0;                  ///< [s] of sampled loads, whose modes these are: else 0
+  std::size_t forgotten = 0;          ///< of sampled loads, states that are zero after some samples: no modes
+  /// Of the speeds, then of the continuous states of loads and of what sampled ones hold.
+  std::vector<std::string> names;
   Eigen::VectorXd masses;             ///< M_ii, one a speed, zero for states; empty where there are no modes
   std::string problem;                ///< why there are none; empty where there are
   std::string bent;                   ///< how far the steady state is bent and by what, where that is far; else empty
@@ -68,7 +71,10 @@ struct ModesOf {
   [[nodiscard]] std::string name(std::size_t branch) const;
 };
 
-/// Modes about the configuration's steady state, or where `as_is` about its state.
+/// Modes about the configuration's steady state, or where `as_is` about its state. Where loads are sampled they are
+/// those of the map from just before one common sample to just before the next: λ of the multiplier e^{λT}, its
+/// frequency that of what vibrates between the samples.
+/// \throws InputError where a turn of sampled loads is asked for
 ModesAt modes_at(const Configuration& configuration, bool as_is, const TurningWish& wish = {});
 
 /// Goes through the sweep: each value begins at the steady state of the one before, and modes keep their branches.
@@ -83,8 +89,10 @@ std::string dominating(const ModesAt& at, const Mode& mode);
 double resolved_growth(const ModesAt& at, const Mode& mode);
 /// Whether it grows, beyond that.
 bool unstable(const ModesAt& at, const Mode& mode);
-/// "rigid", "diverges", "flutters", "overdamped", "decays" (a real eigenvalue by itself) or "stable"; of a frozen angle
-/// "grows here" and "decays here".
+/// "rigid", "diverges", "flutters", "overdamped", "decays" (a real eigenvalue by itself), "alternates" (of sampled
+/// loads, on the other side at each sample) or "stable"; of a frozen angle "grows here" and "decays here".
 std::string behaviour(const ModesAt& at, const Mode& mode);
+/// What modes of sampled loads are, in a sentence; empty where none are sampled.
+std::string sampling_text(const ModesOf& run);
 
 }  // namespace withy::study

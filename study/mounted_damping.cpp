@@ -11,8 +11,8 @@
 #include "withy/core/plugin/registry.hpp"
 #include "withy/core/shape/vibrations.hpp"
 #include "withy/scene/units.hpp"
-#include "withy/study/continuous_states.hpp"
 #include "withy/study/input_error.hpp"
+#include "withy/study/states_of_loads.hpp"
 
 namespace withy::study {
 namespace {
@@ -169,7 +169,7 @@ std::vector<double> reached_ratios(const Configuration& c, Registry& registry, c
 }  // namespace
 
 MountedDamping mounted_damping(const Configuration& c, Registry& registry, const std::vector<double>& ratios) {
-  refuse_continuous_states(c.prepared(), "--damp");
+  refuse_states_of_loads(c.prepared(), "--damp");
   std::vector<Damped> bodies = damped_bodies(c.prepared(), registry);
   Index most = 0, all = 0;
   for (const Damped& d : bodies) {

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <limits>
 
 #include "withy/core/plugin/digital_part.hpp"
 #include "withy/study/input_error.hpp"
@@ -26,20 +29,19 @@ const DiscretePart& part_of(const Model& model, const LoadSlot& slot) {
 SampledLoads::SampledLoads(const SmallMotions& motions)
     : motions_(motions), renewal_(motions.model(), motions.equations()) {
   const Model& model = motions.model();
-  for (const LoadSlot& slot : model.layout().discrete_slots) {
-    const double period = part_of(model, slot).period();
-    if (!(period > 0)) continue;
+  names_ = sampled_names(model);
+  efforts_.setZero(motions_.by_effort().cols(), size());
+  Eigen::Index first = 0;
+  for (const LoadSlot& slot : sampled_slots(model)) {
     const auto* digital = dynamic_cast<const DigitalPart*>(&part_of(model, slot));
     if (digital != nullptr && digital->gives_steps())
       throw InputError(fmt::format(
           "load '{}' gives what it measures in steps: it is not linear, and small motions do not show in it; leave it "
           "out for motions of many steps, and let what measures it measure its own 'of'",
           model.loads()[slot.load].name));
-    loads_.push_back({slot, period, size()});
-    for (std::size_t i = 0; i < slot.count; ++i)
-      names_.push_back(fmt::format("{}.held[{}]", model.loads()[slot.load].name, i));
+    loads_.push_back({slot, part_of(model, slot).period(), first});
+    first += static_cast<Eigen::Index>(slot.count);
   }
-  efforts_.setZero(motions_.by_effort().cols(), size());
   own_efforts_ = efforts_;
   rates_.setZero(motions_.size(), size());
   if (none()) return;
@@ -143,11 +145,11 @@ Eigen::MatrixXd SampledLoads::differentiated(const std::vector<bool>& due) {
 
 void SampledLoads::differentiate() {
   const Eigen::VectorXd now = held(motions_.state());
-  const Eigen::VectorXd change = renewed(motions_.state(), motions_.state(), due(0)) - now;
+  change_ = renewed(motions_.state(), motions_.state(), due(0)) - now;
   for (const Part& part : loads_) {
     const auto count = static_cast<Eigen::Index>(part.slot.count);
     const double size_of_held = std::max(1.0, now.segment(part.first, count).cwiseAbs().maxCoeff());
-    if (change.segment(part.first, count).cwiseAbs().maxCoeff() > 1e-9 * size_of_held) steady_ = false;
+    if (change_.segment(part.first, count).cwiseAbs().maxCoeff() > 1e-9 * size_of_held) steady_ = false;
     for (Eigen::Index i = part.first; i < part.first + count; ++i) {
       const auto slope = [&](auto&& of) {
         return adaptive_difference([&](double h) { return of(displaced(h * Eigen::VectorXd::Unit(size(), i))); },
@@ -246,6 +248,30 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> SampledLoads::map(const Held& system
     input.bottomRows(h) = Eigen::MatrixXd::Identity(h, m);
   }
   return {map, input};
+}
+
+SampledLoads::Course SampledLoads::course(const Held& system, const Eigen::MatrixXcd& columns) const {
+  constexpr double steps_a_radian = 2, fewest_steps = 4, most_steps = 1024;
+  const Eigen::Index n = motions_.size();
+  const double fastest = n > 0 ? system.A.eigenvalues().cwiseAbs().maxCoeff() : 0.0;
+  Course course{fastest, {}, {}, {}};
+  Eigen::MatrixXcd at = columns;
+  for (std::size_t k = 0; k < instants_.size(); ++k) {
+    const double length = (k + 1 < instants_.size() ? instants_[k + 1] : period_) - instants_[k];
+    const auto steps =
+        static_cast<int>(std::clamp(std::ceil(steps_a_radian * fastest * length), fewest_steps, most_steps));
+    const double step = length / steps;
+    const auto [Phi, Gamma] = hold(system.A, system.by_held, step);
+    const auto [half, by_held_in_half] = hold(system.A, system.by_held, step / 2);
+    at = (renewal(system, kinds_[k]) * at).eval();
+    for (int i = 0; i < steps; ++i) {
+      course.times.push_back(instants_[k] + (i + 0.5) * step);
+      course.weights.push_back(step / period_);
+      course.motions.emplace_back(half * at.topRows(n) + by_held_in_half * at.bottomRows(size()));
+      at.topRows(n) = (Phi * at.topRows(n) + Gamma * at.bottomRows(size())).eval();
+    }
+  }
+  return course;
 }
 
 }  // namespace withy::study

@@ -23,7 +23,7 @@ class SampledLoads {
 
   [[nodiscard]] bool none() const { return loads_.empty(); }
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(names_.size()); }
-  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  ///< as "control.held[0]"
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  ///< sampled_names
   /// [s] after which all instants fall together again.
   [[nodiscard]] double period() const { return period_; }
   /// The period of one load (index in Model::loads()) [s]; 0: it is not sampled.
@@ -43,6 +43,8 @@ class SampledLoads {
   [[nodiscard]] bool measured_by_others(std::size_t load);
   /// Whether renewing changes what is held where the motion stays at the state.
   [[nodiscard]] bool steady() const { return steady_; }
+  /// By how much it does.
+  [[nodiscard]] const Eigen::VectorXd& change() const { return change_; }
   /// What is held at the state.
   [[nodiscard]] Eigen::VectorXd held_at_state() const { return held(motions_.state()); }
   /// The state with what is held displaced by d.
@@ -62,6 +64,14 @@ class SampledLoads {
   [[nodiscard]] std::pair<Eigen::MatrixXd, Eigen::MatrixXd> map(const Held& system) const;
   /// (x, d) just after the instant at which all are renewed, from (x, d) or (x, d, h) just before.
   [[nodiscard]] Eigen::MatrixXd renewal(const Held& system) const { return renewal(system, 0); }
+  /// x over a common period.
+  struct Course {
+    double fastest = 0;                     ///< greatest frequency of ẋ = A x [rad/s]
+    std::vector<double> times, weights;     ///< [s] from the first instant, and shares of the period
+    std::vector<Eigen::MatrixXcd> motions;  ///< x at those, of each column
+  };
+  /// The small motions that begin with columns of (x, d) just before a common instant, v zero.
+  [[nodiscard]] Course course(const Held& system, const Eigen::MatrixXcd& columns) const;
 
  private:
   struct Part {
@@ -89,6 +99,7 @@ class SampledLoads {
   std::vector<Eigen::MatrixXd> renewals_;  ///< one a kind: R
   double period_ = 0;
   bool steady_ = true;
+  Eigen::VectorXd change_;
   Eigen::MatrixXd efforts_, own_efforts_;
   Eigen::MatrixXd rates_;  ///< Z: zero but for the rows of continuous states
 };

@@ -1,10 +1,10 @@
 #include "withy/apps/withy/configuration.hpp"
 
 namespace withy::app {
-study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments,
-                                      study::Sampling sampling) {
+
+study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments) {
   return {engine.prepared(), engine.state(arguments.state),
-          study::read_holding(engine.model(), arguments.lock, arguments.spin), sampling};
+          study::read_holding(engine.model(), arguments.lock, arguments.spin)};
 }
 
 void add_configuration(Options& o, ConfigurationArguments& a) {

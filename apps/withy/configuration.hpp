@@ -19,7 +19,6 @@ struct ConfigurationArguments : StateArguments {
 void add_configuration(Options& options, ConfigurationArguments& arguments);
 
 /// The configuration of a command line. \throws SceneError, InputError, PluginError
-study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments,
-                                      study::Sampling sampling = study::Sampling::refused);
+study::Configuration configuration_of(const Engine& engine, const ConfigurationArguments& arguments);
 
 }  // namespace withy::app

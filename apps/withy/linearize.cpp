@@ -15,7 +15,7 @@ struct LinearizeArguments : ConfigurationArguments, OutputArguments {
 
 ExitStatus linearize(const LinearizeArguments& arguments) {
   const Engine engine(arguments);
-  const study::Configuration c = configuration_of(engine, arguments, study::Sampling::kept);
+  const study::Configuration c = configuration_of(engine, arguments);
   const auto folder =
       take_folder(arguments, "linearize", provenance_of(engine.scene(), engine.plugins()), linear_model_content());
   try {

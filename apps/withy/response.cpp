@@ -19,7 +19,7 @@ ExitStatus respond(const ResponseArguments& given) {
   ResponseArguments arguments = given;
   arguments.outputs = {arguments.question.output};
   const Engine engine(arguments);
-  const study::Configuration c = configuration_of(engine, arguments, study::Sampling::kept);
+  const study::Configuration c = configuration_of(engine, arguments);
   const auto folder =
       take_folder(arguments, "response", provenance_of(engine.scene(), engine.plugins()), response_content());
   try {

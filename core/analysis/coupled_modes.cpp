@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +14,9 @@ namespace {
 
 using Complex = std::complex<double>;
 using Solver = Eigen::EigenSolver<Eigen::MatrixXd>;
+
+/// Of the greatest multiplier: a pair of smaller ones is found with half of the digits that these have left.
+constexpr double least_multiplier = 1e-7;
 
 Solver decomposed(const Eigen::MatrixXd& A) {
   if (!A.allFinite()) throw std::domain_error("the derivatives at this state are not finite");
@@ -106,16 +110,17 @@ struct Unheld {
 class Naming {
  public:
   /// \param units of z: what the vectors are times these
-  Naming(const Tangents& tangents, const Held& held, Eigen::VectorXd units)
+  Naming(const Held& held, Eigen::VectorXd units)
       : free_(free_speeds(held)),
         m_(static_cast<Eigen::Index>(free_.size())),
-        speeds_(tangents.mass.rows()),
-        states_(tangents.by_state.cols()),
+        speeds_(static_cast<Eigen::Index>(held.size())),
+        states_(units.size() - 2 * m_),
         units_(std::move(units)) {}
 
-  [[nodiscard]] Mode mode(const Root& root) const {
+  /// \param single a real eigenvalue
+  [[nodiscard]] Mode mode(const Root& root, bool single) const {
     Mode mode = of(root.value, root.right, most_taking_part(root.left, root.right, m_));
-    mode.single = root.value.imag() == 0;
+    mode.single = single;
     mode.partner = mode.single ? root.value : std::conj(root.value);
     return mode;
   }
@@ -147,6 +152,49 @@ class Naming {
   Eigen::VectorXd units_;
 };
 
+/// The modes at zero of a balanced matrix.
+struct Zeros {
+  std::vector<Mode> modes;
+  std::size_t count = 0;  ///< of eigenvalues
+
+  Zeros(const Eigen::MatrixXd& balanced, const Naming& naming) {
+    const Unheld unheld(balanced);
+    for (std::size_t i = 0; i < unheld.rows.size(); ++i)
+      modes.push_back(naming.unheld(unheld.directions[i], unheld.rows[i], i >= unheld.pairs));
+    // Chains of more than two, as of the integral of a free coordinate, have more zeros, which show nothing else.
+    count = modes.empty() ? 0 : std::max(unheld.zeros(), zeros_of(balanced));
+    for (std::size_t i = unheld.zeros(); i < count; ++i) {
+      modes.push_back(modes.back());
+      modes.back().single = true;
+    }
+  }
+};
+
+/// Of λ + 2πik/T that in which most of the kinetic energy Σ M |λ δ|² is over a period; δ e^{−λt} is periodic. Of a real
+/// multiplier the lowest one, unless what vibrates in step with the samples has clearly more: what is held between
+/// samples makes a ripple in any motion.
+Complex with_most_energy(Complex lambda, bool single, const MotionOverPeriod& motion, Eigen::Index column,
+                         const PeriodMap& of) {
+  constexpr double clearly = 10;
+  const double round = 2 * std::numbers::pi / of.period;
+  const auto energy = [&](Complex at) {
+    Eigen::VectorXcd part = Eigen::VectorXcd::Zero(of.masses.size());
+    for (std::size_t i = 0; i < motion.times.size(); ++i)
+      part += motion.weights[i] * std::exp(-at * motion.times[i]) * motion.displacements[i].col(column);
+    return std::norm(at) * part.cwiseAbs2().dot(of.masses);
+  };
+  Complex best = lambda;
+  double greatest = (single ? clearly : 1) * energy(lambda);
+  const auto most = static_cast<int>(std::min(std::ceil(motion.fastest / round), motion.times.size() / 4.0));
+  for (int k = single ? 1 : -most; k <= most; ++k) {
+    const Complex at = lambda + Complex(0, k * round);
+    const double there = energy(at);
+    if (there <= greatest) continue;
+    greatest = there, best = at;
+  }
+  return best;
+}
+
 }  // namespace
 
 Eigen::MatrixXcd left_vectors(const Eigen::MatrixXd& A, const Eigen::VectorXcd& values) {
@@ -177,21 +225,53 @@ std::vector<Mode> modes_with_states(const Tangents& tangents, const Held& held) 
   if (!A.allFinite()) throw std::domain_error("the derivatives at this state are not finite");
   const Eigen::VectorXd units = balancing_units(A, tangents.mass.diagonal()(free).cwiseAbs());
   const Eigen::MatrixXd balanced = units.asDiagonal() * A * units.cwiseInverse().asDiagonal();
-  const Unheld unheld(balanced);
-  const Naming naming(tangents, held, units.cwiseInverse());
-  std::vector<Mode> modes;
-  for (std::size_t i = 0; i < unheld.rows.size(); ++i)
-    modes.push_back(naming.unheld(unheld.directions[i], unheld.rows[i], i >= unheld.pairs));
-  // Chains of more than two, as of the integral of a free coordinate, have more zeros, which show nothing else.
-  const std::size_t zeros = modes.empty() ? 0 : std::max(unheld.zeros(), zeros_of(balanced));
-  for (std::size_t i = unheld.zeros(); i < zeros; ++i) {
-    modes.push_back(modes.back());
-    modes.back().single = true;
-  }
-  for (const Root& root : roots_beside_zeros(balanced, zeros))
-    if (!(root.value.imag() < 0)) modes.push_back(naming.mode(root));
+  const Naming naming(held, units.cwiseInverse());
+  Zeros zeros(balanced, naming);
+  std::vector<Mode> modes = std::move(zeros.modes);
+  for (const Root& root : roots_beside_zeros(balanced, zeros.count))
+    if (!(root.value.imag() < 0)) modes.push_back(naming.mode(root, root.value.imag() == 0));
   sort_modes(modes);
   return modes;
+}
+
+MapModes modes_of_map(const PeriodMap& of, const Held& held) {
+  const Eigen::Index n = of.map.rows();
+  if (!of.map.allFinite()) throw std::domain_error("the motion grows beyond all bounds between two samples");
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(n);
+  units.head(of.units.size()) = of.units;
+  const auto in_units = [&](const Eigen::MatrixXd& a) -> Eigen::MatrixXd {
+    return units.asDiagonal() * a * units.cwiseInverse().asDiagonal();
+  };
+  // What stays as it is, e^{λT} = 1, is zero in these rates.
+  const Eigen::MatrixXd rates = (of.map - Eigen::MatrixXd::Identity(n, n)) / of.period;
+  units = units.cwiseQuotient(balance_of_states(in_units(rates))).eval();
+  const Eigen::MatrixXd balanced = in_units(rates);
+  const Naming naming(held, units.cwiseInverse());
+  Zeros zeros(balanced, naming);
+  MapModes found{std::move(zeros.modes), zeros_of(in_units(of.map))};
+
+  std::vector<Root> roots = roots_beside_zeros(balanced, zeros.count);
+  const auto multiplier = [&](const Root& r) { return 1.0 + of.period * r.value; };
+  std::stable_sort(roots.begin(), roots.end(),
+                   [&](const Root& a, const Root& b) { return std::abs(multiplier(a)) > std::abs(multiplier(b)); });
+  roots.resize(roots.size() - std::min(roots.size(), found.gone));
+  const double least = least_multiplier * (roots.empty() ? 1.0 : std::max(1.0, std::abs(multiplier(roots.front()))));
+  found.gone += std::erase_if(roots, [&](const Root& r) { return std::abs(multiplier(r)) < least; });
+  std::erase_if(roots, [](const Root& r) { return r.value.imag() < 0; });
+  Eigen::MatrixXcd motions(n, static_cast<Eigen::Index>(roots.size()));
+  for (std::size_t i = 0; i < roots.size(); ++i)
+    motions.col(static_cast<Eigen::Index>(i)) = units.cwiseInverse().cast<Complex>().cwiseProduct(roots[i].right);
+  const MotionOverPeriod between = of.between(motions);
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    Root root = roots[i];
+    const bool single = root.value.imag() == 0;
+    root.value = std::log(multiplier(root)) / of.period;
+    root.value = with_most_energy(root.value, single, between, static_cast<Eigen::Index>(i), of);
+    if (root.value.imag() < 0) root = {std::conj(root.value), root.right.conjugate(), root.left.conjugate()};
+    found.modes.push_back(naming.mode(root, single));
+  }
+  sort_modes(found.modes);
+  return found;
 }
 
 }  // namespace withy

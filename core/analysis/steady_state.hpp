@@ -26,6 +26,7 @@ struct SteadyState {
   int iterations = 0;       ///< of Newton's method
   Eigen::VectorXd efforts;  ///< [N m, N] that held speeds need beside the loads; of the free ones what is left over
   Eigen::VectorXd rates;    ///< of the continuous states of loads: what is left over
+  Eigen::VectorXd renewed;  ///< of what sampled loads hold: what a sample still changes; empty where none are looked at
   Eigen::VectorXd step;     ///< what Newton's method would still change, one a speed; it measures the error
   /// Direction of least stiffness: unit vector of displacements, empty unless the tangent stiffness is singular.
   Eigen::VectorXd neutral;

@@ -14,6 +14,8 @@ class DigitalPart {
   virtual void pass_idle(std::span<double> discrete) const noexcept = 0;
   /// Whether what it gives moves in steps: it has no derivatives by what it measures.
   [[nodiscard]] virtual bool gives_steps() const = 0;
+  /// Whether it draws numbers: what it holds is another after each sample, whatever it measures.
+  [[nodiscard]] virtual bool draws() const { return false; }
 };
 
 }  // namespace withy

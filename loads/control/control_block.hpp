@@ -48,6 +48,8 @@ class ControlBlock {
   [[nodiscard]] virtual bool feeds_through(std::size_t /*input*/) const { return true; }
   /// Whether v moves in steps, so that it has no derivative by w.
   [[nodiscard]] virtual bool gives_steps() const { return false; }
+  /// Whether numbers are drawn for v.
+  [[nodiscard]] virtual bool draws() const { return false; }
   /// Whether v by w and z depends on t: how much a gain is changes as time goes on.
   [[nodiscard]] virtual bool changes_gain() const { return false; }
   /// Takes z from t [s] to a sample later, w held at what it is at t.

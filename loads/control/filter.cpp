@@ -123,6 +123,7 @@ class Noise final : public ControlBlock {
   std::size_t inputs() const override { return inputs_; }
   std::string unit_of_output() const override { return "signal"; }
   void set_sample(double period) override { period_ = period; }
+  bool draws() const override { return deviation_ > 0; }
   void output(double t, std::span<const double> w, std::span<const double> /*z*/,
               std::span<double> v) const noexcept override {
     v[0] = (w.empty() ? 0 : w[0]) + deviation_ * normal(static_cast<std::uint64_t>(std::llround(t / period_)));

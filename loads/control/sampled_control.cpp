@@ -46,6 +46,7 @@ class SampledControl : public BoundControl, public DiscretePart, public SampledP
     block().sample(t, w, z, queue.last(p));
   }
   bool gives_steps() const override { return block().gives_steps(); }
+  bool draws() const override { return block().draws(); }
   void pass_idle(std::span<double> discrete) const noexcept override {
     const std::span<double> queue = discrete.subspan(1 + count_);
     std::copy(queue.begin() + static_cast<std::ptrdiff_t>(outputs()), queue.end(), queue.begin());

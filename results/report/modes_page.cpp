@@ -125,6 +125,8 @@ Json remarks_json(const std::vector<study::ModesOf>& runs) {
   for (const study::ModesOf& run : runs)
     for (const study::ModesAt& at : run.points)
       if (!at.problem.empty()) texts.push_back(fmt::format("{}: {}", run.formulation, at.problem));
+  for (const study::ModesOf& run : runs)
+    if (const std::string words = study::sampling_text(run); !words.empty()) texts.push_back(words);
   return once(texts);
 }
 
@@ -150,7 +152,7 @@ Json modes_page(const std::vector<study::ModesOf>& runs, const study::Sweep& swe
   for (const study::ModesAt& at : runs.front().points) values.push_back(at.value);
   for (const study::ModesOf& run : runs) all.push_back(run_json(run, count));
   const bool loops = std::any_of(runs.front().points.begin(), runs.front().points.end(), [](const study::ModesAt& at) {
-    return at.model != nullptr && at.model->layout().continuous > 0;
+    return at.period > 0 || (at.model != nullptr && at.model->layout().continuous > 0);
   });
   Json rate;  // of a rotor: rad/s in one unit of what is swept
   if (!sweep.spun().empty()) {

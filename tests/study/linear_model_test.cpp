@@ -107,7 +107,7 @@ initial: {hinges: {slide: {position: [0.1], rate: [0.5]}}}
   const Prepared prepared = prepare(SceneValues::parse("format: withy/1\n" + text, "text"), plugins());
   State rest = prepared.scene.initial;
   std::fill(rest.y.begin(), rest.y.end(), 0.0);
-  const LinearModel m = linear_model({prepared, rest, {}, Sampling::kept}, {{"slide"}, {"slide"}});
+  const LinearModel m = linear_model({prepared, rest, {}}, {{"slide"}, {"slide"}});
   EXPECT_DOUBLE_EQ(m.system.period, 0.06);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(m.system.A.rows());
   z.head(2) << 0.1, 0.5;
@@ -127,7 +127,7 @@ double map_against_run(const std::string& text, double kick) {
                                     plugins());
   State rest = prepared.scene.initial;
   std::fill(rest.y.begin(), rest.y.end(), 0.0);
-  const LinearModel m = linear_model({prepared, rest, {}, Sampling::kept}, {{"kick"}, {"slide"}});
+  const LinearModel m = linear_model({prepared, rest, {}}, {{"kick"}, {"slide"}});
   EXPECT_DOUBLE_EQ(m.system.period, 0.03);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(m.system.A.rows());
   // At its time a row of a table is what is measured already.
@@ -163,7 +163,7 @@ events: {later: {at: 0.9, do: {switch_off: size}}}
   const auto gain = [&](double time) {
     State state = prepared.scene.initial;
     state.time = time;
-    const LinearModel m = linear_model({prepared, state, {}, Sampling::kept}, {{"slide"}, {"slide"}});
+    const LinearModel m = linear_model({prepared, state, {}}, {{"slide"}, {"slide"}});
     EXPECT_EQ(m.changing, (std::vector<std::string>{"mean", "size"}));
     EXPECT_NE(note_of_changing(m, time).find("the gain of 'mean', 'size' changes"), std::string::npos);
     const auto sum = std::find(m.states.begin(), m.states.end(), "mean.sum") - m.states.begin();
@@ -176,7 +176,7 @@ events: {later: {at: 0.9, do: {switch_off: size}}}
   for (const LoadSlot& slot : prepared.model().layout().discrete_slots)
     if (prepared.model().loads()[slot.load].name == "size")
       off.y[SwitchedLoad::place_of_form(slot)] = SwitchedLoad::off;
-  const LinearModel m = linear_model({prepared, off, {}, Sampling::kept}, {{"slide"}, {"slide"}});
+  const LinearModel m = linear_model({prepared, off, {}}, {{"slide"}, {"slide"}});
   EXPECT_EQ(m.changing, std::vector<std::string>{"mean"});
 }
 
@@ -218,7 +218,7 @@ loads: {servo: {type: pid, of: )" +
                     measured + ", hinge: ice, component: 2, proportional: 0.4, sample: 0.01}}\n");
   };
   const auto held = [](const Prepared& prepared) {
-    return Configuration{prepared, prepared.scene.initial, {{"ice.1"}, {}}, Sampling::kept};
+    return Configuration{prepared, prepared.scene.initial, {{"ice.1"}, {}}};
   };
   const Prepared acceleration = scene("imu.y"), rate = scene("turn.z");
   EXPECT_THROW(static_cast<void>(linear_model(held(acceleration), {{"ice.2"}, {"ice.2"}})), InputError);

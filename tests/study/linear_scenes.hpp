@@ -20,10 +20,8 @@ inline Prepared scene_of(const std::string& text, const std::vector<std::string>
   return prepare(std::move(values), test::plugins());
 }
 
-/// Where it begins, its sampled loads as they are.
-inline Configuration at_start(const Prepared& prepared) {
-  return {prepared, prepared.scene.initial, {}, Sampling::kept};
-}
+/// Where it begins.
+inline Configuration at_start(const Prepared& prepared) { return {prepared, prepared.scene.initial, {}}; }
 
 /// Index of a name among columns.
 inline Eigen::Index find(const std::vector<Column>& columns, const std::string& name) {

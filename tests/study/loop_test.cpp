@@ -254,7 +254,7 @@ void confirm(const std::string& text, bool from_below, const Gains& gains) {
   const Prepared prepared = prepare(values, plugins());
   State rest = prepared.scene.initial;
   std::fill(rest.y.begin(), rest.y.end(), 0.0);
-  const Response r = response({prepared, rest, {}, Sampling::kept}, {"control", "", {}, {}, 100, {}});
+  const Response r = response({prepared, rest, {}}, {"control", "", {}, {}, 100, {}});
   ASSERT_TRUE(r.margins && r.margins->stable);
   const GainMargin* margin = from_below ? r.margins->lower() : r.margins->upper();
   ASSERT_NE(margin, nullptr);

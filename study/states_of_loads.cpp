@@ -1,12 +1,13 @@
-#include "withy/study/continuous_states.hpp"
+#include "withy/study/states_of_loads.hpp"
 
 #include <fmt/format.h>
 
+#include "withy/study/configuration.hpp"
 #include "withy/study/input_error.hpp"
 
 namespace withy::study {
 
-void refuse_continuous_states(const Prepared& prepared, const char* analysis) {
+void refuse_states_of_loads(const Prepared& prepared, const char* analysis) {
   const Layout& layout = prepared.model().layout();
   for (const LoadSlot& slot : layout.continuous_slots) {
     if (slot.count == 0) continue;
@@ -16,6 +17,9 @@ void refuse_continuous_states(const Prepared& prepared, const char* analysis) {
                     prepared.scene.file, prepared.model().loads()[slot.load].name,
                     layout.continuous_names[slot.first - layout.positions - layout.speeds], analysis));
   }
+  for (const LoadSlot& slot : sampled_slots(prepared.model()))
+    throw InputError(fmt::format("{}: load '{}' is sampled, which {} knows nothing of: leave it out, or its 'sample'",
+                                 prepared.scene.file, prepared.model().loads()[slot.load].name, analysis));
 }
 
 }  // namespace withy::study
