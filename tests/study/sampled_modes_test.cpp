@@ -277,6 +277,19 @@ TEST(SampledEquilibrium, IsThatOfTheContinuousController) {
   EXPECT_LT(found.steady.renewed.cwiseAbs().maxCoeff(), 1e-9);
 }
 
+/// A run that begins there stays there, sample after sample.
+TEST(SampledEquilibrium, IsWhereARunStays) {
+  Prepared prepared = scene_of(digital_beam, {"loads.servo.sample=0.002"});
+  const Equilibrium found = find_equilibrium(at_start(prepared), {}, plugins());
+  ASSERT_EQ(found.problem, "");
+  prepared.scene.initial = found.steady.state;
+  State last;
+  simulate(prepared, plugins(), [&](const State& s) { last = s; }, {});
+  EXPECT_EQ(last.time, 1);
+  const Layout& layout = prepared.model().layout();
+  for (std::size_t i = 0; i < layout.positions; ++i) EXPECT_NEAR(last.y[i], found.steady.state.y[i], 1e-12) << i;
+}
+
 TEST(SampledEquilibrium, SaysWhatGoesOnChanging) {
   const Prepared prepared = scene_of(digital_beam);
   const Configuration locked(prepared, prepared.scene.initial, {{"root"}, {}});

@@ -110,6 +110,14 @@ async function check_loops(browser, folder, run, troubles) {
   await says(page, '#mode', /hold_elbow\.integral[^]*growth -1\./);
   await shot(page, 'modes-loops');
   await page.close();
+  // Of sampled loops too, with what is sampled said.
+  const sampled = join(folder, 'sampled');
+  run('modes', join(scenes, 'manipulator-pid.yaml'), '--sweep', 'loads.hold_wrist.sample=0.005:0.02:4', '--count', '14', '--out', sampled);
+  const there = await opened(browser, join(sampled, 'report.html'), 'theme=light', troubles);
+  assert.match(await text(there, '.answer'), /sampled every 0\.005 to 0\.02 s/);
+  assert.ok(await there.locator('#locus .mark').count() >= 4 * 12);
+  await shot(there, 'modes-sampled');
+  await there.close();
 }
 
 // What stands beside a rotor sees the frequencies of blades.csv and the passing of blades; the other view is of one angle.
