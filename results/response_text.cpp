@@ -141,7 +141,9 @@ std::string response_text(const study::Configuration& c, const study::Response& 
   text += fmt::format("{} in {}, {}{}{}\n", c.prepared().title(), c.prepared().scene.formulation_name,
                       s.sampled() ? fmt::format("sampled every {:g} s, the input held between samples", s.period)
                                   : "continuous in time",
-                      r.model.equilibrium ? "" : "; the state is no equilibrium: this is the neighbourhood of a motion",
+                      r.model.equilibrium ? ""
+                                          : "; the state is no equilibrium: this is the neighbourhood of a motion "
+                                            "(withy equilibrium --out FILE keeps one for --at)",
                       r.model.output_derivatives == "exact" ? "" : "; output " + r.model.output_derivatives);
   if (const std::string note = study::note_of_changing(r.model, c.state().time); !note.empty()) text += note + '\n';
   if (r.opened) text += static_words(r) + "; " + peak_words(r) + '\n';
