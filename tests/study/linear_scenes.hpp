@@ -44,4 +44,17 @@ outputs:
   place: {type: frame, of: bus, show: position}
 )";
 
+/// A controller with an integral that holds a beam by its heavy hub; the beam vibrates a million times faster than
+/// anything else.
+inline const std::string heavy_hub = R"(
+gravity: [0, 0, -9.81]
+bodies:
+  hub: {type: rigid, mass: 1.0e6, inertia: [1.0e8, 1.0e8, 1.0e8, 0, 0, 0]}
+  beam: {type: beam, length: 2, mass_per_length: 1, bending_z: {stiffness: 1.0e+10, modes: 6}}
+hinges:
+  root: {type: revolute, axis: [0, 1, 0], parent: world, child: hub}
+  weld: {type: weld, parent: hub, child: beam}
+loads: {servo: {type: pid, hinge: root, proportional: 300, integral: 200, derivative: 60, filter: 0.02}}
+)";
+
 }  // namespace withy::study

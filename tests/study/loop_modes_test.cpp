@@ -240,20 +240,9 @@ TEST(LoopModes, OfATurbineAreThoseOfAWholeTurn) {
                                             "blade1.bending_z[1] backward", "blade1.bending_z[1] forward"}));
 }
 
-/// A heavy hub and a beam whose vibrations are a million times faster than anything else: a newton metre of the
-/// integral is nothing beside them, and is found all the same.
+/// A newton metre of the integral is nothing beside the vibrations, and is found all the same.
 TEST(LoopEquilibrium, IsFoundWhateverTheSizesAre) {
-  const Prepared prepared = scene_of(R"(
-gravity: [0, 0, -9.81]
-bodies:
-  hub: {type: rigid, mass: 1.0e6, inertia: [1.0e8, 1.0e8, 1.0e8, 0, 0, 0]}
-  beam: {type: beam, length: 2, mass_per_length: 1, bending_z: {stiffness: 1.0e+10, modes: 6}}
-hinges:
-  root: {type: revolute, axis: [0, 1, 0], parent: world, child: hub}
-  weld: {type: weld, parent: hub, child: beam}
-loads: {servo: {type: pid, hinge: root, proportional: 300, integral: 200, derivative: 60, filter: 0.02}}
-)");
-  const Configuration c = at_start(prepared);
+  const Configuration c = at_start(scene_of(heavy_hub));
   const Equilibrium found = find_equilibrium(c, {}, plugins());
   ASSERT_EQ(found.problem, "");
   const double integral = found.steady.state.y[c.layout().positions + c.layout().speeds];
