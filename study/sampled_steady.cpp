@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "withy/core/analysis/unreached.hpp"
 #include "withy/core/plugin/digital_part.hpp"
 #include "withy/study/input_error.hpp"
 #include "withy/study/sampled_loads.hpp"
@@ -61,7 +62,10 @@ class Balance {
   [[nodiscard]] Eigen::VectorXd change(const Balance& of) const { return -solver_.solve(rows_.cwiseProduct(of.left_)); }
   /// Whether nothing is left over but rounding.
   [[nodiscard]] bool balanced() const {
-    return !singular() || rows_.cwiseProduct(left_).cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, size());
+    if (!singular()) return true;
+    Eigen::VectorXd in_play(J_.rows());
+    in_play << accelerations_in_play(), J_.bottomRows(J_.rows() - m_).cwiseAbs() * sizes();
+    return reaches(scaled(), solver_.rank(), rows_.cwiseProduct(left_), rows_.cwiseProduct(in_play));
   }
   /// Where a change leads to.
   [[nodiscard]] Configuration moved(const Eigen::VectorXd& change) const {
@@ -95,11 +99,11 @@ class Balance {
         all[next++] += std::abs(configuration_.state().y[i]);
     return all;
   }
-  /// Direction of least resistance, a unit vector, one a speed.
+  /// Displacements that nothing holds, a unit vector, one a speed.
   [[nodiscard]] Eigen::VectorXd neutral() const {
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled(), Eigen::ComputeFullV);
+    const Eigen::VectorXd direction = unheld(scaled(), solver_.rank(), rows_.cwiseProduct(left_));
     Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(configuration_.layout().speeds));
-    all(motions_.free()) = (columns_.asDiagonal() * svd.matrixV().rightCols<1>()).head(m_);
+    all(motions_.free()) = columns_.cwiseProduct(direction).head(m_);
     return all.norm() > 0 ? Eigen::VectorXd(all / all.norm()) : Eigen::VectorXd();
   }
 
@@ -109,6 +113,15 @@ class Balance {
     for (std::size_t i = 0; i < configuration_.layout().positions; ++i)
       s = std::max(s, std::abs(configuration_.state().y[i]));
     return s;
+  }
+  /// What the terms of the free accelerations amount to.
+  [[nodiscard]] Eigen::VectorXd accelerations_in_play() const {
+    const State& state = configuration_.state();
+    const TangentDynamics& dynamics = configuration_.dynamics();
+    const Eigen::VectorXd& a = motions_.accelerations();
+    const std::vector<Eigen::Index>& free = motions_.free();
+    const Eigen::MatrixXd mass = dynamics.tangents(state.time, state.y, a).mass(free, free);
+    return mass.inverse().cwiseAbs() * dynamics.terms_in_play(state.time, state.y, a)(free);
   }
   [[nodiscard]] Eigen::MatrixXd scaled() const { return rows_.asDiagonal() * J_ * columns_.asDiagonal(); }
   /// Units as in find_steady_state: displacements in which inertias are one, what forces as much as the stiffest of

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "withy/core/analysis/unreached.hpp"
+
 namespace withy {
 namespace {
 
@@ -79,6 +81,12 @@ class Scaled {
     all << c.moved(free).cwiseQuotient(of_free_), c.states.cwiseQuotient(of_states_);
     return all.norm();
   }
+  /// Displacements of that size and states of these, not less than what forces as much.
+  [[nodiscard]] Eigen::VectorXd sizes(double displacement, const Eigen::VectorXd& states) const {
+    Eigen::VectorXd all(of_free_.size() + of_states_.size());
+    all << displacement * of_free_.cwiseInverse(), (states + states_like(displacement)).cwiseQuotient(of_states_);
+    return all;
+  }
   /// What forces as much as a displacement of that size.
   [[nodiscard]] Eigen::VectorXd states_like(double displacement) const {
     return of_states_ * (displacement / (of_free_.size() > 0 ? of_free_.minCoeff() : 1.0));
@@ -127,7 +135,7 @@ class Newton {
       changed += length * step.states.cwiseAbs();
     }
     result.state = state_;
-    if (singular_) result.neutral = neutral_;
+    if (singular_) result.neutral = neutral({result.efforts, result.rates});
     return result;
   }
 
@@ -144,22 +152,19 @@ class Newton {
     return {state_.y.data() + layout.positions + layout.speeds, static_cast<Eigen::Index>(layout.continuous)};
   }
   bool factorize(const Stiffness& t) {
-    const auto m = static_cast<Eigen::Index>(free_.size());
     matrix_ = scaled_.matrix(t, free_);
+    singular_ = false;
     if (!matrix_.allFinite()) return false;
     solver_.setThreshold(singular_share);
     solver_.compute(matrix_);
     singular_ = solver_.rank() < matrix_.rows();
-    if (singular_ && m > 0) {
-      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix_, Eigen::ComputeFullV);
-      neutral_ = scaled_.change(svd.matrixV().rightCols<1>(), free_, n_).moved;
-      const double size = neutral_.norm();
-      if (size > 0)
-        neutral_ /= size;
-      else
-        neutral_.resize(0);  // a state of a load alone
-    }
     return true;
+  }
+  /// A unit vector of displacements that nothing holds; empty where a state of a load is all that is free.
+  [[nodiscard]] Eigen::VectorXd neutral(const Imbalance& left) const {
+    const Eigen::VectorXd direction = unheld(matrix_, solver_.rank(), scaled_.right(left, free_));
+    const Eigen::VectorXd moved = scaled_.change(direction, free_, n_).moved;
+    return moved.norm() > 0 ? Eigen::VectorXd(moved / moved.norm()) : Eigen::VectorXd();
   }
   [[nodiscard]] Change solve_for(const Imbalance& left) const {
     const Eigen::VectorXd least = solver_.solve(scaled_.right(left, free_));
@@ -175,8 +180,12 @@ class Newton {
   [[nodiscard]] bool balanced(const Imbalance& left) const {
     const Eigen::VectorXd scaled = scaled_.right(left, free_);
     if (!singular_) return scaled.allFinite();
-    const double stiffness = matrix_.cwiseAbs().maxCoeff();
-    return greatest(scaled) <= 1e-9 * std::max(stiffness, greatest(left.forces));
+    Eigen::VectorXd in_play =
+        scaled_.right({dynamics_.terms_in_play(state_.time, state_.y, rest_), 0 * left.rates}, free_);
+    // Of rates that depend on nothing none is small.
+    in_play.tail(left.rates.size()) =
+        matrix_.bottomRows(left.rates.size()).cwiseAbs() * scaled_.sizes(size(), states().cwiseAbs());
+    return reaches(matrix_, solver_.rank(), scaled, in_play);
   }
   /// The part of the step that is taken: 0 where none makes the next one smaller.
   double advance(const Change& step) {
@@ -212,7 +221,6 @@ class Newton {
   State state_;
   Eigen::VectorXd rest_;
   Scaled scaled_;
-  Eigen::VectorXd neutral_;
   Eigen::MatrixXd matrix_;
   Solver solver_;
   bool singular_ = false;

@@ -28,7 +28,8 @@ struct SteadyState {
   Eigen::VectorXd rates;    ///< of the continuous states of loads: what is left over
   Eigen::VectorXd renewed;  ///< of what sampled loads hold: what a sample still changes; empty where none are looked at
   Eigen::VectorXd step;     ///< what Newton's method would still change, one a speed; it measures the error
-  /// Direction of least stiffness: unit vector of displacements, empty unless the tangent stiffness is singular.
+  /// Where the tangent stiffness is singular a direction that nothing holds, along which what is left over pushes: unit
+  /// vector of displacements. Else empty.
   Eigen::VectorXd neutral;
 };
 

@@ -83,6 +83,9 @@ class Recursion {
   /// Σ m Jᵀ (a − g) + Σ J_ωᵀ (I α + ω × I ω): the efforts that the accelerations need beside those of stiffness and
   /// damping, less what the wrenches give.
   [[nodiscard]] VX efforts(const std::vector<AppliedWrench<S>>& wrenches) const;
+  /// What all these forces amount to where each pulls along the partial velocities of the speeds: sums of magnitudes,
+  /// one a speed, against which rounding and imbalance are small or not.
+  [[nodiscard]] VX sizes(const std::vector<AppliedWrench<S>>& wrenches) const requires std::is_same_v<S, double>;
   [[nodiscard]] FrameState<S> frame_state(FrameIndex at) const;
   /// Position of a frame of a body in the world, and the displacement r − X of its section in the body frame.
   [[nodiscard]] std::pair<V3, V3> frame_position(int body, int frame) const;
@@ -112,9 +115,12 @@ class Recursion {
   [[nodiscard]] PointMotionOf<S> section(std::size_t b, const PointExpansion& e) const;
   [[nodiscard]] PointMotionOf<S> relative(int body, int frame, const Pose& offset) const;
   [[nodiscard]] PointMotionOf<S> path(std::size_t b, const PointExpansion& e) const;
-  void add_particle(Load& load, const Frame& B, const PointMotionOf<S>& m, double mass, const VX& q_ddot) const;
-  void add_section(Load& load, const Frame& B, const PointMotionOf<S>& m, const Matrix3& inertia,
-                   const VX& q_ddot) const;
+  /// What a particle needs to move as it does, weight counted, and a section to turn.
+  [[nodiscard]] V3 force_on(const Frame& B, const PointMotionOf<S>& m, double mass, const VX& q_ddot) const;
+  [[nodiscard]] static V3 moment_on(const Frame& B, const PointMotionOf<S>& m, const Matrix3& inertia,
+                                    const VX& q_ddot);
+  template <class OfParticle, class OfSection>
+  void for_mass(std::size_t b, OfParticle&& particle, OfSection&& section) const;
   [[nodiscard]] Load own_load(std::size_t b) const;
 
   const Model& model_;

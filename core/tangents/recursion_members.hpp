@@ -226,33 +226,27 @@ PointMotionOf<S> Recursion<S>::relative(int body, int frame, const Pose& offset)
 }
 
 template <class S>
-void Recursion<S>::add_particle(Load& load, const Frame& B, const PointMotionOf<S>& m, double mass,
-                                const VX& q_ddot) const {
+typename Recursion<S>::V3 Recursion<S>::force_on(const Frame& B, const PointMotionOf<S>& m, double mass,
+                                                 const VX& q_ddot) const {
   const V3 arm = B.R * m.r, rate = B.R * m.r_rate;
   const V3 a = B.a + B.alpha.cross(arm) + B.w.cross(V3(B.w.cross(arm))) + S(2) * B.w.cross(rate) +
                B.R * V3(m.r_bias + m.P * q_ddot);
-  const V3 f = S(mass) * (a - model_.gravity().template cast<S>());
-  load.force += f;
-  load.moment += arm.cross(f);
-  load.modes += m.P.transpose() * V3(B.R.transpose() * f);
+  return S(mass) * (a - model_.gravity().template cast<S>());
 }
 
 template <class S>
-void Recursion<S>::add_section(Load& load, const Frame& B, const PointMotionOf<S>& m, const Matrix3& inertia,
-                               const VX& q_ddot) const {
+typename Recursion<S>::V3 Recursion<S>::moment_on(const Frame& B, const PointMotionOf<S>& m, const Matrix3& inertia,
+                                                  const VX& q_ddot) {
   const Frame A = outward(B, m, q_ddot);
   const M3 I = A.R * inertia.cast<S>() * A.R.transpose();
-  const V3 n = I * A.alpha + A.w.cross(V3(I * A.w));
-  load.moment += n;
-  load.modes += m.W.transpose() * V3(B.R.transpose() * n);
+  return I * A.alpha + A.w.cross(V3(I * A.w));
 }
 
+/// Calls `particle` (motion, mass) and `section` (motion, inertia) for all that a body's mass is.
 template <class S>
-typename Recursion<S>::Load Recursion<S>::own_load(std::size_t b) const {
+template <class OfParticle, class OfSection>
+void Recursion<S>::for_mass(std::size_t b, OfParticle&& particle, OfSection&& section) const {
   const BodyState<S>& state = states_[b];
-  Load load;
-  load.modes = VX::Zero(state.q.size());
-  const Frame& B = frames_[b];
   if constexpr (!truncating) {
     if (state.rod != nullptr) {
       const auto node = [&](std::size_t k) -> PointMotionOf<S> {
@@ -264,16 +258,36 @@ typename Recursion<S>::Load Recursion<S>::own_load(std::size_t b) const {
       for (std::size_t k = 0; k < state.rod->sections.size(); ++k) {
         const double inertia = state.rod->inertias[k];
         const PointMotionOf<S> m = node(k);
-        add_particle(load, B, m, state.rod->masses[k], state.q_ddot);
-        if (inertia == 0) continue;
-        add_section(load, B, m, inertia * Vector3::UnitX() * Vector3::UnitX().transpose(), state.q_ddot);
+        particle(m, state.rod->masses[k]);
+        if (inertia != 0) section(m, inertia * Vector3::UnitX() * Vector3::UnitX().transpose());
       }
-      return load;
+      return;
     }
   }
   const ModalShape& shape = model_.bodies()[b].body->shape();
-  for (const Particle& p : shape.particles) add_particle(load, B, path(b, p.at), p.mass, state.q_ddot);
-  for (const Section& s : shape.sections) add_section(load, B, section(b, s.at), s.inertia, state.q_ddot);
+  for (const Particle& p : shape.particles) particle(path(b, p.at), p.mass);
+  for (const Section& s : shape.sections) section(this->section(b, s.at), s.inertia);
+}
+
+template <class S>
+typename Recursion<S>::Load Recursion<S>::own_load(std::size_t b) const {
+  const VX& q_ddot = states_[b].q_ddot;
+  const Frame& B = frames_[b];
+  Load load;
+  load.modes = VX::Zero(q_ddot.size());
+  for_mass(
+      b,
+      [&](const PointMotionOf<S>& m, double mass) {
+        const V3 f = force_on(B, m, mass, q_ddot);
+        load.force += f;
+        load.moment += V3(B.R * m.r).cross(f);
+        load.modes += m.P.transpose() * V3(B.R.transpose() * f);
+      },
+      [&](const PointMotionOf<S>& m, const Matrix3& inertia) {
+        const V3 n = moment_on(B, m, inertia, q_ddot);
+        load.moment += n;
+        load.modes += m.W.transpose() * V3(B.R.transpose() * n);
+      });
   return load;
 }
 

@@ -123,6 +123,12 @@ Eigen::VectorXd TangentDynamics::residual(double t, std::span<const double> y, c
   return efforts<double>(t, y, a, {}) + elastic(y) - load_efforts(t, y);
 }
 
+Eigen::VectorXd TangentDynamics::terms_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
+  const Builder<double> build{*this, y, a, {}};
+  const Recursion<double> tree(*model_, build.hinges(), build.bodies([](std::size_t) { return false; }));
+  return tree.sizes(wrenches(t, y, tree, nullptr)) + elastic(y).cwiseAbs() + load_sizes(t, y);
+}
+
 Eigen::VectorXd TangentDynamics::rates(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
   const Layout& layout = model_->layout();
   std::vector<double> y_dot(layout.size()), scratch(model_->load_scratch());

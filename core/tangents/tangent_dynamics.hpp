@@ -69,6 +69,9 @@ class TangentDynamics {
   [[nodiscard]] Eigen::VectorXd steady_accelerations(double t) const;
   /// r at time t, y as in State, a one number a speed.
   [[nodiscard]] Eigen::VectorXd residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
+  /// What the terms of the residual amount to, one a speed [N m, N]: what weight, inertia, wrenches, stiffness and each
+  /// load would come to if none made up for another. Against this a residual is small or not.
+  [[nodiscard]] Eigen::VectorXd terms_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
   /// g of Tangents: rates of the continuous states of loads.
   [[nodiscard]] Eigen::VectorXd rates(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
   [[nodiscard]] Tangents tangents(double t, std::span<const double> y, const Eigen::VectorXd& a) const;
@@ -107,6 +110,8 @@ class TangentDynamics {
   void add_loads(double t, std::span<const double> y, const Eigen::VectorXd& a, Tangents& tangents) const;
   void add_continuous(double t, std::span<const double> y, const Eigen::VectorXd& a, Tangents& tangents) const;
   [[nodiscard]] Eigen::VectorXd load_efforts(double t, std::span<const double> y) const;
+  /// Their magnitudes, load by load.
+  [[nodiscard]] Eigen::VectorXd load_sizes(double t, std::span<const double> y) const;
   [[nodiscard]] Eigen::VectorXd elastic(std::span<const double> y) const;
   [[nodiscard]] Eigen::MatrixXd drift(std::span<const double> y) const;
 

@@ -33,6 +33,21 @@ Eigen::VectorXd TangentDynamics::load_efforts(double t, std::span<const double> 
   return Eigen::Map<const Eigen::VectorXd>(efforts.data(), static_cast<Eigen::Index>(efforts.size()));
 }
 
+Eigen::VectorXd TangentDynamics::load_sizes(double t, std::span<const double> y) const {
+  const Layout& layout = model_->layout();
+  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.speeds)), efforts = sizes;
+  std::vector<double> scratch(model_->load_scratch());
+  for (std::size_t l = 0; l < model_->loads().size(); ++l) {
+    efforts.setZero();
+    const std::span<double> own(efforts.data(), layout.speeds);
+    model_->loads()[l].load->add(t, y.first(layout.positions), y.subspan(layout.positions, layout.speeds), own,
+                                 scratch);
+    model_->add_state_efforts(t, y, own, scratch, static_cast<int>(l));
+    sizes += efforts.cwiseAbs();
+  }
+  return sizes;
+}
+
 void TangentDynamics::add_elastic(Tangents& result) const {
   for (std::size_t b = 0; b < slots_.size(); ++b) {
     if (slots_[b] == nullptr) continue;

@@ -1,0 +1,109 @@
+// Whether a state is steady where nothing holds a coordinate: what is left over counts against the forces in play
+// there, not against how stiff something else is. Each scene by itself, and beside a sampled loop on a hinge of its
+// own.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "withy/study/equilibrium.hpp"
+#include "withy/tests/study/linear_scenes.hpp"
+#include "withy/tests/study/scenes.hpp"
+
+namespace withy::study {
+namespace {
+
+using test::plugins;
+using testing::HasSubstr;
+
+/// A craft of 4 kg on a free slide, with a panel whose vibrations are faster than 1e4 rad/s; a table with a servo.
+const std::string craft = R"(
+bodies:
+  hub: {type: rigid, mass: 4, inertia: [1, 1, 1, 0, 0, 0]}
+  panel: {type: beam, length: 1, mass_per_length: 0.1, bending_y: {stiffness: 1e6, modes: 2}}
+  table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}
+hinges:
+  slide: {type: prismatic, axis: [0, 1, 0], parent: world, child: hub}
+  root: {type: weld, parent: hub, child: panel}
+  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: table}
+loads:
+  servo: {type: pid, hinge: axle, proportional: 5, derivative: 1, filter: 0.02}
+)";
+
+/// A heavy body about an axle that leans by so much [rad], and a stiff beam that stands.
+std::string leaning(const std::string& by) {
+  return R"(
+gravity: [0, 0, -9.81]
+bodies:
+  wheel: {type: rigid, mass: 2, center_of_mass: [0.5, 0.3, 0], inertia: [1, 1, 1, 0, 0, 0]}
+  mast: {type: beam, length: 1, mass_per_length: 0.1, bending_y: {stiffness: 1e6, modes: 2}}
+  table: {type: rigid, mass: 1, inertia: [0.1, 0.1, 0.2, 0, 0, 0]}
+hinges:
+  axle: {type: revolute, axis: [)" +
+         by + R"(, 0, 1], parent: world, child: wheel}
+  root: {type: weld, parent: world, child: mast}
+  pivot: {type: revolute, axis: [0, 0, 1], parent: world, child: table}
+loads:
+  servo: {type: pid, hinge: pivot, proportional: 5, derivative: 1, filter: 0.02}
+)";
+}
+
+/// What is said where there is no steady state; by itself, then with samples.
+std::vector<std::string> problems(const std::string& scene, const std::vector<std::string>& loads = {}) {
+  std::vector<std::string> said, sampled = loads;
+  sampled.emplace_back("loads.servo.sample=0.01");
+  for (const std::vector<std::string>& overrides : {loads, sampled})
+    said.push_back(find_equilibrium(at_start(scene_of(scene, overrides)), {}, plugins()).problem);
+  return said;
+}
+
+std::string push(const std::string& name, const std::string& force) {
+  return "loads." + name + "={type: force, frame: hub, law: constant, value: [0, " + force + ", 0]}";
+}
+
+TEST(Balance, IsLostToASmallForceBesideAStiffPanel) {
+  for (const std::string& said : problems(craft)) EXPECT_EQ(said, "");
+  for (const std::string force : {"1e-2", "1e-8", "1e-16"})
+    for (const std::string& said : problems(craft, {push("thrust", force)}))
+      EXPECT_THAT(said, HasSubstr("nothing holds slide")) << force;
+}
+
+TEST(Balance, IsLostToASmallTorqueOnASmallRotor) {
+  const std::vector<std::string> rotor = {
+      "bodies.rotor={type: rigid, mass: 1e-9, inertia: [1e-12, 1e-12, 1e-12, 0, 0, 0]}",
+      "hinges.bearing={type: revolute, axis: [0, 0, 1], parent: world, child: rotor}",
+      "loads.drag={type: torque, frame: rotor, law: constant, value: [0, 0, 1e-16]}"};
+  for (const std::string& said : problems(craft, rotor)) EXPECT_THAT(said, HasSubstr("nothing holds bearing"));
+}
+
+/// 0.1 + 0.2 − 0.3 is 5.6e-17.
+TEST(Balance, IsKeptWhereForcesMakeUpForEachOtherButForRounding) {
+  const std::vector<std::string> three = {push("a", "0.1"), push("b", "0.2"), push("c", "-0.3")};
+  for (const std::string& said : problems(craft, three)) EXPECT_EQ(said, "");
+  for (const std::string& said : problems(craft, {push("a", "0.1"), push("b", "0.2"), push("c", "-0.3000001")}))
+    EXPECT_THAT(said, HasSubstr("nothing holds slide"));
+}
+
+/// Data with ten digits are meant as they are read: an axle is upright that leans by less than 1e-9.
+TEST(Balance, IsKeptByWeightOnAnUprightAxle) {
+  for (const std::string by : {"0", "1e-10"})
+    for (const std::string& said : problems(leaning(by))) EXPECT_EQ(said, "") << by;
+  for (const std::string& said : problems(leaning("1e-7"))) EXPECT_THAT(said, HasSubstr("nothing holds axle"));
+}
+
+/// An integral that nothing feeds back goes on, however slowly.
+TEST(Balance, IsLostWhereAnIntegralGoesOn) {
+  const Holding locked{{"axle"}, {}};
+  for (const std::string reference : {"0", "1e-6"}) {
+    for (const std::string sample : {"", ", sample: 0.01"}) {
+      const Prepared prepared = scene_of(
+          craft, {"loads.servo={type: pid, hinge: axle, integral: 1e-6, reference: " + reference + sample + "}"});
+      const Configuration c(prepared, prepared.scene.initial, locked);
+      EXPECT_EQ(find_equilibrium(c, locked, plugins()).problem.empty(), reference == "0") << reference << sample;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace withy::study
