@@ -3,8 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "withy/core/analysis/linear_system.hpp"
@@ -15,7 +17,11 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr double full_turn = 2 * std::numbers::pi;
-constexpr int fewest_steps = 64, most_steps = 8192;
+constexpr int fewest_steps = 64, most_steps = 1 << 17;
+/// Steps times the cube of rows: some ten seconds.
+constexpr double most_work = 1e9;
+/// What halving the steps may still change of the greatest element.
+constexpr double followed = 1e-6;
 /// Instants of a period at which eigenfunctions are looked at.
 constexpr int instants = 64;
 
@@ -37,11 +43,10 @@ struct Multipliers {
   Eigen::MatrixXcd vectors;
 };
 
-Multipliers multipliers(const Eigen::MatrixXd& product, const Eigen::VectorXd& units) {
-  if (!product.allFinite()) throw std::domain_error("the motion grows beyond all bounds within a turn");
+Multipliers multipliers(const Eigen::MatrixXd& product) {
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(product);
   if (solver.info() != Eigen::Success) throw std::domain_error("the multipliers were not found");
-  return {solver.eigenvalues(), units.cwiseInverse().cast<Complex>().asDiagonal() * solver.eigenvectors()};
+  return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 /// What is seen of the eigenfunctions over a turn: displacements at `instants` equal intervals, and mean frequencies.
@@ -50,17 +55,19 @@ struct Seen {
   Eigen::VectorXd frequency;  ///< [rad/s] mean of Im (δᴴ W δ̇)/(δᴴ W δ): of all harmonics, by share
 };
 
+/// \param units those of A and m
 Seen look(const PeriodicMatrix& A, const Multipliers& m, const Eigen::VectorXcd& exponents,
-          const Eigen::VectorXd& masses, int steps) {
+          const Eigen::VectorXd& masses, const Eigen::VectorXd& units, int steps) {
   const Eigen::Index n = masses.size(), count = exponents.size();
   const double h = A.period() / steps;
   const Eigen::VectorXcd back = (-h * exponents).array().exp();
   Eigen::MatrixXcd x = m.vectors;
   Seen seen;
   Eigen::VectorXd turned = Eigen::VectorXd::Zero(count), size = turned;
-  const Eigen::VectorXcd weights = masses.cast<Complex>();
+  const Eigen::VectorXcd from = units.head(n).cwiseInverse().cast<Complex>(), weights = masses.cast<Complex>();
   for (int k = 0; k < steps; ++k) {
-    const Eigen::MatrixXcd rates = (A.at(k * h) * x).topRows(n), at = x.topRows(n);
+    const Eigen::MatrixXcd rates = from.asDiagonal() * (A.at(k * h) * x).topRows(n),
+                           at = from.asDiagonal() * x.topRows(n);
     for (Eigen::Index c = 0; c < count; ++c) {
       const Eigen::VectorXcd weighted = weights.cwiseProduct(at.col(c));
       turned[c] += weighted.dot(rates.col(c)).imag();
@@ -145,6 +152,14 @@ Eigen::MatrixXd PeriodicMatrix::at(double t) const {
   return a;
 }
 
+PeriodicMatrix PeriodicMatrix::in_units(const Eigen::VectorXd& units) const {
+  PeriodicMatrix scaled = *this;
+  const Eigen::VectorXd inverse = units.cwiseInverse();
+  scaled.mean_ = units.asDiagonal() * mean_ * inverse.asDiagonal();
+  for (auto& [n, c] : scaled.harmonics_) c = (units.asDiagonal() * c * inverse.asDiagonal()).eval();
+  return scaled;
+}
+
 Eigen::MatrixXd monodromy(const PeriodicMatrix& A, int steps) {
   Eigen::MatrixXd product = Eigen::MatrixXd::Identity(A.rows(), A.rows());
   const double h = A.period() / steps;
@@ -152,35 +167,58 @@ Eigen::MatrixXd monodromy(const PeriodicMatrix& A, int steps) {
   return product;
 }
 
+namespace {
+
+struct Integrated {
+  Eigen::MatrixXd product;
+  int steps = fewest_steps;
+  double changed = 1;  ///< by halving the steps, of the greatest element
+};
+
+/// With steps halved until the product stays. \param A in units that balance it
+Integrated integrated(const PeriodicMatrix& A) {
+  constexpr double beyond = std::numeric_limits<double>::infinity();
+  const auto rows = static_cast<double>(A.rows());
+  Integrated whole{monodromy(A, fewest_steps)};
+  double before = 2;
+  // Where halving the step brings nothing more, rounding is all that is left. Steps that are much too long may leave
+  // nothing finite.
+  while (whole.changed > 1e-11 && !(whole.changed < 1e-7 && whole.changed > 0.5 * before)) {
+    if (2 * whole.steps > most_steps || 2 * whole.steps * rows * rows * rows > most_work) break;
+    whole.steps *= 2;
+    Eigen::MatrixXd finer = monodromy(A, whole.steps);
+    before = whole.changed;
+    const double change = (finer - whole.product).cwiseAbs().maxCoeff() / finer.cwiseAbs().maxCoeff();
+    whole.changed = std::isfinite(change) ? change : beyond;
+    whole.product = std::move(finer);
+  }
+  if (whole.changed <= followed) return whole;
+  const double turns = A.mean().eigenvalues().imag().cwiseAbs().maxCoeff() * A.period() / full_turn;
+  throw std::domain_error("the fastest vibration goes to and fro " + std::to_string(std::llround(turns)) +
+                          " times within it, and small motions are not followed through all of them in " +
+                          std::to_string(whole.steps) + " steps: take fewer modes");
+}
+
+}  // namespace
+
 FloquetAnalysis floquet(const PeriodicMatrix& A, const Eigen::VectorXd& masses) {
   FloquetAnalysis result;
   result.period = A.period();
   if (masses.size() == 0) return result;
+  // Elsewhere fast vibrations make exponentials of numbers beyond all bounds on their way.
   const Eigen::VectorXd units = balancing_units(A.mean(), masses);
-  const auto in_units = [&](int steps) -> Eigen::MatrixXd {
-    return units.asDiagonal() * monodromy(A, steps) * units.cwiseInverse().asDiagonal();
-  };
-  int steps = fewest_steps;
-  Eigen::MatrixXd product = in_units(steps);
-  double changed = 1, before = 2;
-  // Where halving the step brings nothing more, rounding is all that is left.
-  while (changed > 1e-11 && steps < most_steps && !(changed < 1e-7 && changed > 0.5 * before)) {
-    steps *= 2;
-    Eigen::MatrixXd finer = in_units(steps);
-    before = changed;
-    changed = (finer - product).cwiseAbs().maxCoeff() / finer.cwiseAbs().maxCoeff();
-    product = std::move(finer);
-  }
-  result.steps = steps;
-  const Multipliers m = multipliers(product, units);
+  const PeriodicMatrix balanced = A.in_units(units);
+  const Integrated whole = integrated(balanced);
+  result.steps = whole.steps;
+  const Multipliers m = multipliers(whole.product);
   const double greatest = std::max(1.0, m.values.cwiseAbs().maxCoeff());
   // What a double multiplier without two eigenvectors, as of a motion that nothing holds back, is found to.
-  result.resolution = std::max(changed, 1e-7) / A.period();
+  result.resolution = std::max(whole.changed, 1e-7) / A.period();
 
   const Eigen::Index count = m.values.size();
   Eigen::VectorXcd exponents(count);
   for (Eigen::Index i = 0; i < count; ++i) exponents[i] = std::log(m.values[i] + 1e-300) / A.period();
-  const Seen seen = look(A, m, exponents, masses, steps);
+  const Seen seen = look(balanced, m, exponents, masses, units, whole.steps);
   for (Eigen::Index i = 0; i < count; ++i) {
     CharacteristicMode mode;
     mode.multiplier = m.values[i];
@@ -191,9 +229,15 @@ FloquetAnalysis floquet(const PeriodicMatrix& A, const Eigen::VectorXd& masses) 
     if (mode.exponent.imag() < 0) conjugate(mode);
     result.modes.push_back(std::move(mode));
   }
-  std::stable_sort(
-      result.modes.begin(), result.modes.end(),
-      [](const CharacteristicMode& a, const CharacteristicMode& b) { return a.exponent.real() > b.exponent.real(); });
+  // Of those that neither grow nor decay as far as can be told the slowest first.
+  const auto growth = [&](const CharacteristicMode& mode) {
+    return std::abs(mode.exponent.real()) <= result.resolution ? 0.0 : mode.exponent.real();
+  };
+  std::stable_sort(result.modes.begin(), result.modes.end(),
+                   [&](const CharacteristicMode& a, const CharacteristicMode& b) {
+                     const double of_a = growth(a), of_b = growth(b);
+                     return of_a != of_b ? of_a > of_b : a.exponent.imag() < b.exponent.imag();
+                   });
   return result;
 }
 

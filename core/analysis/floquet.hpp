@@ -18,6 +18,8 @@ class PeriodicMatrix {
   [[nodiscard]] Eigen::Index rows() const { return mean_.rows(); }
   [[nodiscard]] const Eigen::MatrixXd& mean() const { return mean_; }
   [[nodiscard]] Eigen::MatrixXd at(double t) const;
+  /// The same with z in other units: u A u⁻¹, u one a row.
+  [[nodiscard]] PeriodicMatrix in_units(const Eigen::VectorXd& units) const;
   /// Greatest element of the upper third of the harmonics, of the greatest of all: what more samples may change.
   [[nodiscard]] double tail() const { return tail_; }
   /// Greatest element of all harmonics but the mean, of the greatest of all.

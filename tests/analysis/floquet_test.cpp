@@ -74,6 +74,54 @@ TEST(Floquet, of_constant_coefficients_is_the_eigenvalue) {
   EXPECT_NEAR(f.modes[0].share, 1, 1e-12);
 }
 
+/// Mathieu's equation beside two vibrations of these frequencies [rad/s], in coordinates that mix the three; what
+/// varies couples all of them.
+PeriodicMatrix mathieu_beside(double a, double q, double second, double third) {
+  Eigen::Matrix3d mix;
+  mix << 1, 0.5, -0.25, -0.5, 1, 0.125, 0.25, 0.375, 1;
+  const Eigen::Matrix3d back = mix.inverse();
+  const Eigen::Vector3d shares(1, 100, 110);
+  std::vector<Eigen::MatrixXd> samples;
+  for (int k = 0; k < 5; ++k) {
+    Eigen::Matrix3d stiffness = Eigen::Vector3d(a, second * second, third * third).asDiagonal();
+    stiffness -= 2 * q * std::cos(2 * std::numbers::pi * k / 5) * shares * shares.transpose();
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(6, 6);
+    A.topRightCorner(3, 3).setIdentity();
+    A.bottomLeftCorner(3, 3) = -mix * stiffness * back;
+    samples.push_back(A);
+  }
+  return {samples, std::numbers::pi};
+}
+
+/// Ten thousand vibrations within the period, on which steps were thrown that are right for constant coefficients
+/// alone: they were said to be unstable, with a growth of nan.
+TEST(Floquet, follows_vibrations_that_are_fast_beside_what_turns) {
+  const double a = 2.5, q = 0.8;
+  const CharacteristicMode slow = floquet(mathieu(a, q), Eigen::VectorXd::Ones(1)).modes[0];
+  for (const double fast : {2000.3, 20000.3}) {
+    const FloquetAnalysis f = floquet(mathieu_beside(a, q, fast, 1.1 * fast), Eigen::Vector3d::Ones());
+    ASSERT_EQ(f.modes.size(), 3U);
+    EXPECT_TRUE(f.stable()) << fast;
+    // What they do to the slow motion while it pushes them: (160/fast)² of its stiffness.
+    EXPECT_NEAR(f.modes[0].exponent.imag(), slow.exponent.imag(), std::pow(160 / fast, 2)) << fast;
+    // But for multiples of the turn's rate, by which they are modulated; and for what they do to each other.
+    const double together = std::pow(1.76e4 / (2 * fast), 2) / (0.1 * fast);
+    EXPECT_NEAR(std::remainder(f.modes[1].exponent.imag() - fast, 2), 0, together) << fast;
+    EXPECT_NEAR(std::remainder(f.modes[2].exponent.imag() - 1.1 * fast, 2), 0, together) << fast;
+    EXPECT_NEAR(f.modes[1].exponent.imag(), fast, 4) << fast;
+  }
+}
+
+/// Where they are too fast for any number of steps that is to be waited for, that is said.
+TEST(Floquet, says_where_vibrations_are_too_fast) {
+  try {
+    (void)floquet(mathieu_beside(1.2, 0.8, 1e7, 1.1e7), Eigen::Vector3d::Ones());
+    ADD_FAILURE() << "followed";
+  } catch (const std::domain_error& e) {
+    EXPECT_NE(std::string(e.what()).find("take fewer modes"), std::string::npos) << e.what();
+  }
+}
+
 struct Turbine {
   AnalysedScene scene;
   Held held;
