@@ -13,7 +13,8 @@ Equilibrium find_equilibrium(const Configuration& c, const Holding& holding, Reg
   const State& state = found.steady.state;
   const Tangents tangents = c.dynamics().tangents(state.time, state.y, c.dynamics().steady_accelerations(state.time));
   found.derivatives = derivatives_text(tangents);
-  found.stays = stays_steady(c.dynamics(), tangents, state, c.held());
+  // The rate of change at this angle may vanish where weight is at its greatest: a turn tells.
+  found.stays = stays_steady(c.dynamics(), tangents, state, c.held()) && turning_modes(c, state, {}).check.steady;
   found.problem = no_steady_state(c, found.steady);
   for (const Tip& tip : tips(c.prepared().model())) {
     if (tip.flexible)

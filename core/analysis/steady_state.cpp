@@ -258,9 +258,11 @@ bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, con
   if (free.empty()) return true;
   const Eigen::Map<const Eigen::VectorXd> u(state.y.data() + dynamics.model().layout().positions, n);
   const Eigen::VectorXd change = tangents.by_position * u;
-  const double terms = (tangents.by_position.cwiseAbs() * u.cwiseAbs()).maxCoeff() +
-                       tangents.by_position.cwiseAbs().maxCoeff() * u.cwiseAbs().maxCoeff();
-  if (change(free).cwiseAbs().maxCoeff() > 1e-9 * terms) return false;
+  const Eigen::VectorXd in_play =
+      dynamics.terms_in_play(state.time, state.y, dynamics.steady_accelerations(state.time));
+  const Eigen::VectorXd terms = tangents.by_position.cwiseAbs() * u.cwiseAbs() + u.cwiseAbs().maxCoeff() * in_play;
+  for (const Eigen::Index i : free)
+    if (std::abs(change[i]) > 1e-9 * terms[i]) return false;
   // What loads measure must not change either.
   const Eigen::MatrixXd& measured = tangents.rate_by_position;
   if (measured.size() == 0) return true;

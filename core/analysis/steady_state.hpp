@@ -41,8 +41,8 @@ struct SteadyState {
 /// coordinates stay where they are.
 SteadyState find_steady_state(const TangentDynamics& dynamics, const State& start, const Held& held);
 
-/// Whether what the free speeds feel stays the same while the hinges turn with the state's rates; not so where gravity
-/// or a load turns in the rotating frame: the state is then steady at this angle alone.
+/// Whether what the free speeds feel begins to change as the hinges turn with the state's rates: it does where gravity
+/// or a load turns in the rotating frame, but where these are at their greatest; check_turn looks at a whole turn.
 bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, const State& state, const Held& held);
 
 }  // namespace withy

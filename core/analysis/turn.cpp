@@ -58,17 +58,18 @@ void add_rate(Turning& turning, double rate, bool angular, const std::string& na
   }
 }
 
-/// Of a model at a state, with the free speeds' rows in the scale in which their own inertias are one.
+/// Of a model at a state.
 struct Balance {
   Eigen::VectorXd residual;  ///< of the free speeds
-  double terms = 0;          ///< size of what cancels in it
+  Eigen::VectorXd terms;     ///< size of what cancels in it
   Eigen::VectorXd rates;     ///< of the continuous states of loads
   double measured = 0;       ///< size of what they are made of
 
   /// Whether what is left over here is another than there, beyond rounding.
   [[nodiscard]] bool differs(const Balance& there) const {
     const auto greatest = [](const Eigen::VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0; };
-    return greatest(residual - there.residual) > balanced_share * std::max(terms, there.terms) ||
+    const Eigen::ArrayXd terms_of_both = terms.cwiseMax(there.terms).array();
+    return ((residual - there.residual).array().abs() > balanced_share * terms_of_both).any() ||
            greatest(rates - there.rates) > balanced_share * std::max(measured, there.measured);
   }
 };
@@ -76,26 +77,40 @@ struct Balance {
 Balance balance_of(const TangentDynamics& dynamics, const Tangents& t, const State& state,
                    const std::vector<Eigen::Index>& free) {
   const Layout& layout = dynamics.model().layout();
-  Eigen::VectorXd scale = t.mass.diagonal().cwiseAbs().cwiseSqrt();
-  double position = least_displacement * scale(free).maxCoeff();
-  for (const Slot& slot : layout.bodies) {
-    for (std::size_t i = 0; i < slot.speeds; ++i)
-      position =
-          std::max(position, std::abs(state.y[slot.position + i]) * scale[static_cast<Eigen::Index>(slot.speed + i)]);
-  }
-  for (Eigen::Index i = 0; i < scale.size(); ++i) scale[i] = scale[i] > 0 ? 1 / scale[i] : 1.0;
+  const Eigen::VectorXd rest = dynamics.steady_accelerations(state.time);
   Balance b;
-  const Eigen::VectorXd all = scale.cwiseProduct(t.residual);
-  b.residual = all(free);
-  const Eigen::MatrixXd K = scale.asDiagonal() * t.by_position * scale.asDiagonal();
-  b.terms = all.cwiseAbs().maxCoeff() + K.cwiseAbs().maxCoeff() * position;
+  b.residual = t.residual(free);
+  b.terms = dynamics.terms_in_play(state.time, state.y, rest)(free);
   if (layout.continuous == 0) return b;
-  b.rates = dynamics.rates(state.time, state.y, dynamics.steady_accelerations(state.time));
+  b.rates = dynamics.rates(state.time, state.y, rest);
   const auto n = static_cast<Eigen::Index>(layout.speeds), k = static_cast<Eigen::Index>(layout.continuous);
   const Eigen::Map<const Eigen::VectorXd> u(state.y.data() + layout.positions, n), z(u.data() + n, k);
   b.measured = (t.rate_by_state.cwiseAbs() * z.cwiseAbs() + t.rate_by_speed.cwiseAbs() * u.cwiseAbs()).maxCoeff() +
                t.rate_by_position.cwiseAbs().maxCoeff() * least_displacement + b.rates.cwiseAbs().maxCoeff();
   return b;
+}
+
+/// Whether mass, stiffness and what depends on speeds are the same here and there, each element against the diagonal:
+/// beside vibrations that are a million times stiffer what weight does to a slow motion is nothing in A.
+bool alike(const Tangents& here, const Tangents& there, const Balance& balance, double rate,
+           const std::vector<Eigen::Index>& free) {
+  constexpr double share = 1e-8;
+  const auto m = static_cast<Eigen::Index>(free.size());
+  for (Eigen::Index i = 0; i < m; ++i) {
+    for (Eigen::Index j = 0; j < m; ++j) {
+      const Eigen::Index a = free[static_cast<std::size_t>(i)], b = free[static_cast<std::size_t>(j)];
+      const double mass = std::sqrt(std::abs(here.mass(a, a) * here.mass(b, b)));
+      const double stiffness = std::sqrt((std::abs(here.by_position(a, a)) + balance.terms[i]) *
+                                         (std::abs(here.by_position(b, b)) + balance.terms[j]));
+      const auto changed = [&](const Eigen::MatrixXd& now, const Eigen::MatrixXd& first, double size) {
+        return std::abs(now(a, b) - first(a, b)) > share * (std::abs(now(a, b)) + size);
+      };
+      if (changed(here.mass, there.mass, mass) || changed(here.by_position, there.by_position, stiffness) ||
+          changed(here.by_speed, there.by_speed, mass * rate))
+        return false;
+    }
+  }
+  return true;
 }
 
 /// d/dt at `count` equal intervals of a period, of the trigonometric polynomial through the values there (count odd).
@@ -296,6 +311,7 @@ TurnCheck check_turn(const TangentDynamics& dynamics, const State& steady, const
   check.turning = turning(dynamics.model(), steady, period);
   const std::vector<Eigen::Index> free = free_speeds(held);
   if (check.turning.period == 0 || free.empty()) return check;
+  Tangents at_start;
   Eigen::MatrixXd first;
   Eigen::VectorXd units;  // of states of loads beside the others; empty: there are none
   Balance start;
@@ -309,12 +325,14 @@ TurnCheck check_turn(const TangentDynamics& dynamics, const State& steady, const
     if (k == 0) {
       if (dynamics.model().layout().continuous > 0) units = balance_of_states(A);
       start = b;
+      at_start = t;
     }
     if (units.size() > 0) A = (units.cwiseInverse().asDiagonal() * A * units.asDiagonal()).eval();
     if (k == 0) first = A;
     greatest = std::max(greatest, A.cwiseAbs().maxCoeff());
     check.change = std::max(check.change, (A - first).cwiseAbs().maxCoeff());
     if (b.differs(start)) check.steady = false;
+    if (!alike(t, at_start, b, full_turn / check.turning.period, free)) check.constant = false;
   }
   if (greatest > 0) check.change /= greatest;
   return check;

@@ -31,10 +31,11 @@ struct TurnCheck {
   Turning turning;
   /// Greatest change of an element of A (FirstOrderForm), of the greatest element, coordinates scaled to unit inertia.
   double change = 0;
-  bool steady = true;  ///< the free coordinates stay balanced at every angle
+  bool steady = true;    ///< the free coordinates stay balanced at every angle
+  bool constant = true;  ///< masses, stiffnesses and what depends on speeds are the same at every angle, each by itself
 
   /// Whether the linearization is periodic and not constant. Meaningless where the turning has a problem.
-  [[nodiscard]] bool periodic() const { return turning.period > 0 && (change > 1e-8 || !steady); }
+  [[nodiscard]] bool periodic() const { return turning.period > 0 && (change > 1e-8 || !steady || !constant); }
 };
 
 /// Compares the linearization at eleven angles of a turn, the free coordinates as in `steady`.

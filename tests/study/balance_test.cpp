@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "withy/study/equilibrium.hpp"
+#include "withy/study/modes.hpp"
 #include "withy/tests/study/linear_scenes.hpp"
 #include "withy/tests/study/scenes.hpp"
 
@@ -103,6 +104,63 @@ TEST(Balance, IsLostWhereAnIntegralGoesOn) {
       EXPECT_EQ(find_equilibrium(c, locked, plugins()).problem.empty(), reference == "0") << reference << sample;
     }
   }
+}
+
+/// A blade that turns at 2 rad/s, and whose weight bends it or does not; so stiff that it is bent by less than a
+/// micrometre.
+struct TurningBlade {
+  Equilibrium equilibrium;
+  ModesAt modes;
+};
+
+TurningBlade turning_blade(const std::string& gravity, const std::string& stiffness, const std::string& modes) {
+  const Prepared prepared = scene_of("gravity: " + gravity + R"(
+bodies: {blade: {type: beam, length: 1, mass_per_length: 0.5, bending_z: {stiffness: )" +
+                                     stiffness + ", modes: " + modes + R"(}}}
+hinges: {axle: {type: revolute, axis: [0, 1, 0], parent: world, child: blade}}
+)");
+  const Holding holding{{}, {{"axle", 2}}};
+  const Configuration c(prepared, prepared.scene.initial, holding);
+  return {find_equilibrium(c, holding, plugins()), modes_at(c, false)};
+}
+
+TEST(Balance, TurnsWithWeightHoweverStiffABladeIs) {
+  for (const std::string stiffness : {"200", "2e6", "2e10"}) {
+    for (const std::string modes : {"2", "16"}) {
+      const TurningBlade under_weight = turning_blade("[0, 0, -9.81]", stiffness, modes);
+      EXPECT_EQ(under_weight.equilibrium.problem, "");
+      EXPECT_FALSE(under_weight.equilibrium.stays) << stiffness << ' ' << modes;
+      EXPECT_FALSE(under_weight.modes.steady->stays.value());
+      EXPECT_FALSE(under_weight.modes.turn->check.steady);
+      EXPECT_TRUE(under_weight.modes.turn->check.periodic());
+      for (const std::string gravity : {"[0, 0, 0]", "[0, -9.81, 0]"}) {
+        const TurningBlade even = turning_blade(gravity, stiffness, modes);
+        EXPECT_TRUE(even.equilibrium.stays) << stiffness << ' ' << modes << ' ' << gravity;
+        EXPECT_TRUE(even.modes.steady->stays.value());
+        EXPECT_FALSE(even.modes.turn->check.periodic()) << even.modes.turn->check.change;
+      }
+    }
+  }
+}
+
+/// A pendulum on a wheel beside a mast that is a million times stiffer: what the turn does to it is seen.
+TEST(Balance, OfASlowMotionIsSeenToTurnBesideFastOnes) {
+  const Prepared prepared = scene_of(R"(
+gravity: [0, 0, -9.81]
+bodies:
+  wheel: {type: rigid, mass: 1, inertia: [1, 1, 1, 0, 0, 0]}
+  bob: {type: rigid, mass: 1, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.3, 0.3, 0, 0, 0]}
+  mast: {type: beam, length: 0.3, mass_per_length: 1, bending_y: {stiffness: 1e8, modes: 8}}
+hinges:
+  axle: {type: revolute, axis: [0, 1, 0], parent: world, child: wheel}
+  pin: {type: revolute, axis: [0, 0, 1], parent: wheel, child: bob}
+  root: {type: weld, parent: wheel, child: mast}
+)");
+  const Configuration c(prepared, prepared.scene.initial, Holding{{}, {{"axle", 3}}});
+  const ModesAt at = modes_at(c, false);
+  EXPECT_LT(at.turn->check.change, 1e-8) << "of the greatest element";
+  EXPECT_TRUE(at.turn->check.steady);
+  EXPECT_TRUE(at.turn->check.periodic()) << "weight holds the pin, then lets it go";
 }
 
 }  // namespace
