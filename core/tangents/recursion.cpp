@@ -32,14 +32,15 @@ typename Recursion<S>::VX Recursion<S>::sizes(
   std::vector<Size> all(frames_.size());
   for (std::size_t b = 0; b < frames_.size(); ++b) {
     const VX& q_ddot = states_[b].q_ddot;
+    const Turning t = turning(b);
     all[b].modes = VX::Zero(q_ddot.size());
     for_mass(
         b,
         [&](const PointMotionOf<S>& m, double mass) {
-          all[b].add(force_on(frames_[b], m, mass, q_ddot).norm(), 0, m.r.norm(), m);
+          all[b].add(force_on(t, m, mass, q_ddot).norm(), 0, m.r.norm(), m);
         },
         [&](const PointMotionOf<S>& m, const Matrix3& inertia) {
-          all[b].add(0, moment_on(frames_[b], m, inertia, q_ddot).norm(), 0, m);
+          all[b].add(0, moment_on(t, m, inertia, q_ddot).norm(), 0, m);
         });
   }
   for (const AppliedWrench<S>& w : wrenches) {

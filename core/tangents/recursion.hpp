@@ -7,12 +7,14 @@
 /// origin: the residual of the modes Σ Pᵀ f + Wᵀ n, that of the hinge Hᵀ (n, f), the rest to the parent.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "withy/core/deformation/rod_motion.hpp"
 #include "withy/core/model/model.hpp"
+#include "withy/core/tangents/body_integrals.hpp"
 
 namespace withy::analysis {
 
@@ -67,6 +69,16 @@ struct AppliedWrench {
   Eigen::Matrix<S, 3, 1> moment, force;
 };
 
+/// What is known of a body whose q, q̇ carry no derivatives, in plain numbers T: for all directions once.
+template <class T>
+struct PlainBody {
+  std::optional<RodMotionOf<double>> rod;  ///< of a body in exact kinematics
+  std::optional<BodyIntegrals<T>> integrals;
+};
+/// One a body.
+template <class T>
+using PlainBodies = std::vector<PlainBody<T>>;
+
 /// The recursion of one state. Members are defined in recursion_members.hpp and instantiated in files of their own:
 /// numbers that carry derivatives take a compiler long.
 template <class S>
@@ -76,8 +88,12 @@ class Recursion {
   using M3 = Eigen::Matrix<S, 3, 3>;
   using VX = Eigen::Matrix<S, Eigen::Dynamic, 1>;
 
-  /// One state a hinge and a body, in the model's order.
-  Recursion(const Model& model, std::vector<HingeState<S>> hinges, std::vector<BodyState<S>> bodies);
+  using Plain = typename PlainScalar<S>::Type;
+
+  /// One state a hinge and a body, in the model's order. \param known of the bodies in plain numbers, at the same q, q̇
+  /// for all recursions that share it: what one has found the next ones know
+  Recursion(const Model& model, std::vector<HingeState<S>> hinges, std::vector<BodyState<S>> bodies,
+            std::shared_ptr<PlainBodies<Plain>> known = nullptr);
   ~Recursion();
 
   /// Σ m Jᵀ (a − g) + Σ J_ωᵀ (I α + ω × I ω): the efforts that the accelerations need beside those of stiffness and
@@ -103,34 +119,44 @@ class Recursion {
     VX modes;
   };
 
-  using Plain = typename PlainScalar<S>::Type;
   static constexpr bool has_plain = !std::is_same_v<S, Plain>;
   using PlainVector = Eigen::Matrix<Plain, Eigen::Dynamic, 1>;
 
   /// The frame that moves as `m` in B.
   static Frame outward(const Frame& B, const PointMotionOf<S>& m, const VX& q_ddot);
+  /// A frame that stands in B at `arm` (world axes) with axes R there; no derivatives of R, nor of `arm` where it is
+  /// zero.
+  static Frame carried(const Frame& B, const M3& R, const V3& arm);
   /// The body frame whose frame M moves as `m` in it.
   static Frame inward(const Frame& M, const PointMotionOf<S>& m, const VX& q_ddot);
   static Frame across(const Frame& F, const HingeState<S>& h);
   [[nodiscard]] PointMotionOf<S> section(std::size_t b, const PointExpansion& e) const;
   [[nodiscard]] PointMotionOf<S> relative(int body, int frame, const Pose& offset) const;
-  [[nodiscard]] PointMotionOf<S> path(std::size_t b, const PointExpansion& e) const;
-  /// What a particle needs to move as it does, weight counted, and a section to turn.
-  [[nodiscard]] V3 force_on(const Frame& B, const PointMotionOf<S>& m, double mass, const VX& q_ddot) const;
-  [[nodiscard]] static V3 moment_on(const Frame& B, const PointMotionOf<S>& m, const Matrix3& inertia,
-                                    const VX& q_ddot);
+  /// Motion of a body frame in its own axes: a point fixed to the body at r accelerates by a + turn r less gravity, one
+  /// that moves at ṙ in it by twice ṙ = 2 ω × ṙ more.
+  struct Turning {
+    V3 w, alpha, a;
+    M3 ww, turn, twice;  ///< ω ωᵀ
+  };
+  [[nodiscard]] Turning turning(std::size_t b) const;
+  /// What a particle needs to move as it does, weight counted, and a section to turn; body axes.
+  static V3 force_on(const Turning& t, const PointMotionOf<S>& m, double mass, const VX& q_ddot);
+  static V3 moment_on(const Turning& t, const PointMotionOf<S>& m, const Matrix3& inertia, const VX& q_ddot);
   template <class OfParticle, class OfSection>
   void for_mass(std::size_t b, OfParticle&& particle, OfSection&& section) const;
   [[nodiscard]] Load own_load(std::size_t b) const;
+  /// The same by integrals, where q, q̇ carry no derivatives.
+  [[nodiscard]] Load plain_load(std::size_t b) const requires has_plain;
+  [[nodiscard]] const BodyIntegrals<Plain>& integrals(std::size_t b) const requires has_plain;
 
   const Model& model_;
   std::vector<HingeState<S>> hinges_;
   std::vector<BodyState<S>> states_;
   std::vector<std::optional<RodMotionOf<std::conditional_t<truncating, double, S>>>> rods_;
-  std::vector<std::optional<RodMotionOf<double>>> plain_rods_;  ///< of bodies in plain numbers
-  std::vector<PlainVector> plain_q_, plain_q_dot_;              ///< of these
-  std::vector<PointMotionOf<S>> parent_, child_;                ///< of each hinge: F in the parent, M in the child
-  std::vector<Frame> hinge_frames_, frames_;                    ///< M of each hinge, B of each body
+  std::shared_ptr<PlainBodies<Plain>> known_;       ///< of bodies in plain numbers
+  std::vector<PlainVector> plain_q_, plain_q_dot_;  ///< of these
+  std::vector<PointMotionOf<S>> parent_, child_;    ///< of each hinge: F in the parent, M in the child
+  std::vector<Frame> hinge_frames_, frames_;        ///< M of each hinge, B of each body
 };
 
 extern template class Recursion<double>;

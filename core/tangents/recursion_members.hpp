@@ -28,15 +28,13 @@ void lift_matrix(const From& from, To& to) {
   }
 }
 
-/// `rotation`: whether what turns is to be had as well.
 template <class S, class T>
-PointMotionOf<S> lifted(const PointMotionOf<T>& m, bool rotation) {
+PointMotionOf<S> lifted(const PointMotionOf<T>& m) {
   PointMotionOf<S> n;
   lift_matrix(m.r, n.r);
   lift_matrix(m.r_rate, n.r_rate);
   lift_matrix(m.r_bias, n.r_bias);
   lift_matrix(m.P, n.P);
-  if (!rotation) return n;
   lift_matrix(m.R, n.R);
   lift_matrix(m.W, n.W);
   lift_matrix(m.w_rate, n.w_rate);
@@ -44,14 +42,59 @@ PointMotionOf<S> lifted(const PointMotionOf<T>& m, bool rotation) {
   return n;
 }
 
+/// x by a number without its derivatives.
+inline Jet scaled(const Jet& x, double by) { return x * by; }
+inline Dual<Jet> scaled(const Dual<Jet>& x, const Dual<double>& by) {
+  Dual<Jet> y(x.value() * by.value());
+  y.derivatives()[0] = x.derivatives()[0] * by.value() + x.value() * by.derivatives()[0];
+  return y;
+}
+/// A x.
+template <class S, class Matrix>
+Eigen::Matrix<S, 3, 1> scaled(const Matrix& A, const Eigen::Matrix<S, 3, 1>& x) {
+  Eigen::Matrix<S, 3, 1> y;
+  for (Eigen::Index i = 0; i < 3; ++i) y[i] = scaled(x[0], A(i, 0)) + scaled(x[1], A(i, 1)) + scaled(x[2], A(i, 2));
+  return y;
+}
+/// A x, the derivatives being the matrix's.
+template <class S, class Vector>
+Eigen::Matrix<S, 3, 1> scaled_by(const Eigen::Matrix<S, 3, 3>& A, const Vector& x) {
+  Eigen::Matrix<S, 3, 1> y;
+  for (Eigen::Index i = 0; i < 3; ++i) y[i] = scaled(A(i, 0), x[0]) + scaled(A(i, 1), x[1]) + scaled(A(i, 2), x[2]);
+  return y;
+}
+/// Σ A_ij B_ij.
+template <class S, class Matrix>
+S contracted(const Eigen::Matrix<S, 3, 3>& A, const Matrix& B) {
+  S sum(0.0);
+  for (Eigen::Index j = 0; j < 3; ++j)
+    for (Eigen::Index i = 0; i < 3; ++i) sum += scaled(A(i, j), B(i, j));
+  return sum;
+}
+template <class S, class Vector>
+S dotted(const Eigen::Matrix<S, 3, 1>& a, const Vector& b) {
+  return scaled(a[0], b[0]) + scaled(a[1], b[1]) + scaled(a[2], b[2]);
+}
+/// Numbers of plain ones.
+template <class S, class From>
+auto lifted_matrix(const From& from) {
+  Eigen::Matrix<S, From::RowsAtCompileTime, From::ColsAtCompileTime> to;
+  lift_matrix(from, to);
+  return to;
+}
+
 template <class S>
-Recursion<S>::Recursion(const Model& model, std::vector<HingeState<S>> hinges, std::vector<BodyState<S>> bodies)
-    : model_(model), hinges_(std::move(hinges)), states_(std::move(bodies)) {
+Recursion<S>::Recursion(const Model& model, std::vector<HingeState<S>> hinges, std::vector<BodyState<S>> bodies,
+                        std::shared_ptr<PlainBodies<Plain>> known)
+    : model_(model), hinges_(std::move(hinges)), states_(std::move(bodies)), known_(std::move(known)) {
+  if constexpr (has_plain) {
+    if (known_ == nullptr) known_ = std::make_shared<PlainBodies<Plain>>();
+    known_->resize(model.bodies().size());
+  }
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const HingeNode& h = model.hinges()[b];
     const BodyState<S>& state = states_[b];
     rods_.emplace_back();
-    plain_rods_.emplace_back();
     plain_q_.emplace_back();
     plain_q_dot_.emplace_back();
     if constexpr (has_plain) {
@@ -64,9 +107,10 @@ Recursion<S>::Recursion(const Model& model, std::vector<HingeState<S>> hinges, s
     if constexpr (!truncating) {
       if (state.rod != nullptr) {
         if constexpr (has_plain) {
-          if (state.plain) plain_rods_.back().emplace(*state.rod, plain_q_.back(), plain_q_dot_.back());
+          if (state.plain && !(*known_)[b].rod)
+            (*known_)[b].rod.emplace(*state.rod, plain_q_.back(), plain_q_dot_.back());
         }
-        if (!plain_rods_.back()) rods_.back().emplace(*state.rod, state.q, state.q_dot);
+        if (!state.plain) rods_.back().emplace(*state.rod, state.q, state.q_dot);
       }
     }
     Frame F;
@@ -150,6 +194,7 @@ std::pair<typename Recursion<S>::V3, typename Recursion<S>::V3> Recursion<S>::fr
 
 template <class S>
 typename Recursion<S>::Frame Recursion<S>::outward(const Frame& B, const PointMotionOf<S>& m, const VX& q_ddot) {
+  if (m.P.cols() == 0) return carried(B, m.R, B.R * m.r);
   Frame A;
   const V3 arm = B.R * m.r, rate = B.R * m.r_rate, spin = B.R * m.w_rate;
   A.R = B.R * m.R;
@@ -163,7 +208,22 @@ typename Recursion<S>::Frame Recursion<S>::outward(const Frame& B, const PointMo
 }
 
 template <class S>
+typename Recursion<S>::Frame Recursion<S>::carried(const Frame& B, const M3& R, const V3& arm) {
+  Frame A = B;
+  if (R != M3::Identity()) A.R = B.R * R;
+  if (arm == V3::Zero()) return A;
+  A.p = B.p + arm;
+  A.v = B.v + B.w.cross(arm);
+  A.a = B.a + B.alpha.cross(arm) + B.w.cross(V3(B.w.cross(arm)));
+  return A;
+}
+
+template <class S>
 typename Recursion<S>::Frame Recursion<S>::inward(const Frame& M, const PointMotionOf<S>& m, const VX& q_ddot) {
+  if (m.P.cols() == 0) {
+    const M3 R = m.R.transpose();
+    return carried(M, R, M.R * V3(R * V3(-m.r)));
+  }
   Frame B;
   B.R = M.R * m.R.transpose();
   const V3 arm = B.R * m.r, rate = B.R * m.r_rate, spin = B.R * m.w_rate;
@@ -197,25 +257,14 @@ template <class S>
 PointMotionOf<S> Recursion<S>::section(std::size_t b, const PointExpansion& e) const {
   if constexpr (has_plain) {
     if constexpr (!truncating) {
-      if (plain_rods_[b]) return lifted<S>(plain_rods_[b]->at(e.X.x()), true);
+      if (states_[b].plain && states_[b].rod != nullptr) return lifted<S>((*known_)[b].rod->at(e.X.x()));
     }
-    if (states_[b].plain)
-      return lifted<S>(point_motion<Plain>(e, states_[b].order, plain_q_[b], plain_q_dot_[b]), true);
+    if (states_[b].plain) return lifted<S>(point_motion<Plain>(e, states_[b].order, plain_q_[b], plain_q_dot_[b]));
   }
   if constexpr (!truncating) {
     if (rods_[b]) return rods_[b]->at(e.X.x());
   }
   return point_motion<S>(e, states_[b].order, states_[b].q, states_[b].q_dot);
-}
-
-/// A particle's motion, which has no rotation.
-template <class S>
-PointMotionOf<S> Recursion<S>::path(std::size_t b, const PointExpansion& e) const {
-  const BodyState<S>& state = states_[b];
-  if constexpr (has_plain) {
-    if (state.plain) return lifted<S>(path_motion<Plain>(e, state.order, plain_q_[b], plain_q_dot_[b]), false);
-  }
-  return path_motion<S>(e, state.order, state.q, state.q_dot);
 }
 
 template <class S>
@@ -226,20 +275,33 @@ PointMotionOf<S> Recursion<S>::relative(int body, int frame, const Pose& offset)
 }
 
 template <class S>
-typename Recursion<S>::V3 Recursion<S>::force_on(const Frame& B, const PointMotionOf<S>& m, double mass,
-                                                 const VX& q_ddot) const {
-  const V3 arm = B.R * m.r, rate = B.R * m.r_rate;
-  const V3 a = B.a + B.alpha.cross(arm) + B.w.cross(V3(B.w.cross(arm))) + S(2) * B.w.cross(rate) +
-               B.R * V3(m.r_bias + m.P * q_ddot);
-  return S(mass) * (a - model_.gravity().template cast<S>());
+typename Recursion<S>::Turning Recursion<S>::turning(std::size_t b) const {
+  const Frame& B = frames_[b];
+  const M3 to_body = B.R.transpose();
+  Turning t;
+  t.w = to_body * B.w;
+  t.alpha = to_body * B.alpha;
+  t.a = to_body * V3(B.a - model_.gravity().template cast<S>());
+  t.ww = t.w.lazyProduct(t.w.transpose());
+  t.turn = skew<S>(t.alpha) + t.ww;
+  const S square = t.w.squaredNorm();
+  for (Eigen::Index i = 0; i < 3; ++i) t.turn(i, i) -= square;
+  t.twice = S(2) * skew<S>(t.w);
+  return t;
 }
 
 template <class S>
-typename Recursion<S>::V3 Recursion<S>::moment_on(const Frame& B, const PointMotionOf<S>& m, const Matrix3& inertia,
+typename Recursion<S>::V3 Recursion<S>::force_on(const Turning& t, const PointMotionOf<S>& m, double mass,
+                                                 const VX& q_ddot) {
+  return S(mass) * (t.a + t.turn * m.r + t.twice * m.r_rate + m.r_bias + m.P * q_ddot);
+}
+
+template <class S>
+typename Recursion<S>::V3 Recursion<S>::moment_on(const Turning& t, const PointMotionOf<S>& m, const Matrix3& inertia,
                                                   const VX& q_ddot) {
-  const Frame A = outward(B, m, q_ddot);
-  const M3 I = A.R * inertia.cast<S>() * A.R.transpose();
-  return I * A.alpha + A.w.cross(V3(I * A.w));
+  const M3 I = m.R * inertia.cast<S>() * m.R.transpose();
+  const V3 w = t.w + m.w_rate;
+  return I * V3(t.alpha + t.w.cross(m.w_rate) + m.w_bias + m.W * q_ddot) + w.cross(V3(I * w));
 }
 
 /// Calls `particle` (motion, mass) and `section` (motion, inertia) for all that a body's mass is.
@@ -249,15 +311,9 @@ void Recursion<S>::for_mass(std::size_t b, OfParticle&& particle, OfSection&& se
   const BodyState<S>& state = states_[b];
   if constexpr (!truncating) {
     if (state.rod != nullptr) {
-      const auto node = [&](std::size_t k) -> PointMotionOf<S> {
-        if constexpr (has_plain) {
-          if (plain_rods_[b]) return lifted<S>(plain_rods_[b]->at_node(k), true);
-        }
-        return rods_[b]->at_node(k);
-      };
       for (std::size_t k = 0; k < state.rod->sections.size(); ++k) {
         const double inertia = state.rod->inertias[k];
-        const PointMotionOf<S> m = node(k);
+        const PointMotionOf<S> m = rods_[b]->at_node(k);
         particle(m, state.rod->masses[k]);
         if (inertia != 0) section(m, inertia * Vector3::UnitX() * Vector3::UnitX().transpose());
       }
@@ -265,29 +321,98 @@ void Recursion<S>::for_mass(std::size_t b, OfParticle&& particle, OfSection&& se
     }
   }
   const ModalShape& shape = model_.bodies()[b].body->shape();
-  for (const Particle& p : shape.particles) particle(path(b, p.at), p.mass);
+  for (const Particle& p : shape.particles) particle(path_motion<S>(p.at, state.order, state.q, state.q_dot), p.mass);
   for (const Section& s : shape.sections) section(this->section(b, s.at), s.inertia);
 }
 
 template <class S>
-typename Recursion<S>::Load Recursion<S>::own_load(std::size_t b) const {
+const BodyIntegrals<typename Recursion<S>::Plain>& Recursion<S>::integrals(std::size_t b) const requires has_plain {
+  std::optional<BodyIntegrals<Plain>>& found = (*known_)[b].integrals;
+  if (found) return *found;
+  const BodyState<S>& state = states_[b];
+  const PlainVector &q = plain_q_[b], &q_dot = plain_q_dot_[b];
+  BodyIntegrals<Plain>& sums = found.emplace(q.size());
+  if constexpr (!truncating) {
+    if (state.rod != nullptr) {
+      for (std::size_t k = 0; k < state.rod->sections.size(); ++k) {
+        const PointMotionOf<Plain> m = (*known_)[b].rod->at_node(k);
+        sums.add_particle(m, state.rod->masses[k]);
+        if (const double inertia = state.rod->inertias[k]; inertia != 0)
+          sums.add_section(m, inertia * Vector3::UnitX() * Vector3::UnitX().transpose());
+      }
+      return sums;
+    }
+  }
+  const ModalShape& shape = model_.bodies()[b].body->shape();
+  for (const Particle& p : shape.particles) sums.add_particle(path_motion<Plain>(p.at, state.order, q, q_dot), p.mass);
+  for (const Section& s : shape.sections) sums.add_section(point_motion<Plain>(s.at, state.order, q, q_dot), s.inertia);
+  return sums;
+}
+
+template <class S>
+typename Recursion<S>::Load Recursion<S>::plain_load(std::size_t b) const requires has_plain {
+  const BodyIntegrals<Plain>& sums = integrals(b);
   const VX& q_ddot = states_[b].q_ddot;
-  const Frame& B = frames_[b];
+  const auto [w, alpha, a, ww, turn, twice] = turning(b);
+  V3 f = a * S(sums.mass) + scaled_by<S>(turn, sums.r) + scaled_by<S>(twice, sums.r_rate) + lifted_matrix<S>(sums.bias);
+  V3 n = lifted_matrix<S>(sums.r_bias);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    // (Σ m r × …)_i of what is linear in r and ṙ.
+    const Eigen::Index j = (i + 1) % 3, k = (i + 2) % 3;
+    n[i] += scaled(a[k], sums.r[j]) - scaled(a[j], sums.r[k]);
+    for (Eigen::Index d = 0; d < 3; ++d)
+      n[i] += scaled(turn(k, d), sums.rr(d, j)) - scaled(turn(j, d), sums.rr(d, k)) +
+              scaled(twice(k, d), sums.r_r_rate(j, d)) - scaled(twice(j, d), sums.r_r_rate(k, d));
+  }
+  if (sums.turns) {
+    n += scaled<S>(sums.J, alpha) + w.cross(V3(scaled<S>(sums.J, w) + lifted_matrix<S>(sums.h))) +
+         scaled<S>(sums.G, w) + lifted_matrix<S>(sums.k);
+  }
+  Load load;
+  load.modes = lifted_matrix<S>(sums.P_bias);
+  for (Eigen::Index i = 0; i < q_ddot.size(); ++i) {
+    const auto mode = static_cast<std::size_t>(i);
+    S& own = load.modes[i];
+    own +=
+        dotted<S>(a, sums.P.col(i)) + contracted<S>(turn, sums.P_r[mode]) + contracted<S>(twice, sums.P_r_rate[mode]);
+    for (Eigen::Index j = 0; j < q_ddot.size(); ++j) own += scaled(q_ddot[j], sums.PP(i, j));
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      f[c] += scaled(q_ddot[i], sums.P(c, i));
+      n[c] += scaled(q_ddot[i], sums.r_P(c, i));
+    }
+    if (!sums.turns) continue;
+    own += dotted<S>(alpha, sums.F.col(i)) + contracted<S>(ww, sums.W_J[mode]) + dotted<S>(w, sums.W_G.col(i));
+    for (Eigen::Index c = 0; c < 3; ++c) n[c] += scaled(q_ddot[i], sums.F(c, i));
+  }
+  load.force = frames_[b].R * f;
+  load.moment = frames_[b].R * n;
+  return load;
+}
+
+template <class S>
+typename Recursion<S>::Load Recursion<S>::own_load(std::size_t b) const {
+  if constexpr (has_plain) {
+    if (states_[b].plain) return plain_load(b);
+  }
+  const VX& q_ddot = states_[b].q_ddot;
+  const Turning t = turning(b);
   Load load;
   load.modes = VX::Zero(q_ddot.size());
   for_mass(
       b,
       [&](const PointMotionOf<S>& m, double mass) {
-        const V3 f = force_on(B, m, mass, q_ddot);
+        const V3 f = force_on(t, m, mass, q_ddot);
         load.force += f;
-        load.moment += V3(B.R * m.r).cross(f);
-        load.modes += m.P.transpose() * V3(B.R.transpose() * f);
+        load.moment += m.r.cross(f);
+        load.modes += m.P.transpose() * f;
       },
       [&](const PointMotionOf<S>& m, const Matrix3& inertia) {
-        const V3 n = moment_on(B, m, inertia, q_ddot);
+        const V3 n = moment_on(t, m, inertia, q_ddot);
         load.moment += n;
-        load.modes += m.W.transpose() * V3(B.R.transpose() * n);
+        load.modes += m.W.transpose() * n;
       });
+  load.force = (frames_[b].R * load.force).eval();
+  load.moment = (frames_[b].R * load.moment).eval();
   return load;
 }
 

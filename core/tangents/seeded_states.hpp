@@ -2,6 +2,8 @@
 /// States of hinges and bodies in numbers that carry derivatives: what the passes of TangentDynamics start from.
 #pragma once
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "withy/core/tangents/recursion.hpp"
@@ -9,13 +11,19 @@
 
 namespace withy {
 
-/// Which directions the derivatives of one pass are along: 8 from `first`, where directions 0 … n−1 are displacements,
-/// then speeds, then accelerations.
+/// Which directions the derivatives of one pass are along, at most 8: directions 0 … n−1 are displacements, then
+/// speeds, then accelerations.
 struct TangentDynamics::Seeds {
-  std::size_t first = 0;
+  std::span<const std::size_t> directions;
+  /// Of the derivatives the one along a direction; the count of them where it is not among them.
+  [[nodiscard]] std::size_t place(std::size_t direction) const {
+    const auto found = std::find(directions.begin(), directions.end(), direction);
+    return static_cast<std::size_t>(found - directions.begin());
+  }
   /// Whether any of `count` directions from `from` on is among them.
   [[nodiscard]] bool meet(std::size_t from, std::size_t count) const {
-    return from < first + 8 && first < from + count;
+    return std::any_of(directions.begin(), directions.end(),
+                       [&](std::size_t d) { return d >= from && d < from + count; });
   }
 };
 
@@ -32,8 +40,7 @@ struct TangentDynamics::Builder {
   [[nodiscard]] T seeded(double value, std::size_t direction) const {
     T x(value);
     if constexpr (std::is_same_v<T, Jet>) {
-      if (const std::size_t i = direction - seeds.first; direction >= seeds.first && i < jet_directions)
-        x.derivatives()[i] = 1;
+      if (const std::size_t i = seeds.place(direction); i < seeds.directions.size()) x.derivatives()[i] = 1;
     }
     return x;
   }
@@ -70,7 +77,7 @@ struct TangentDynamics::Builder {
                      const HingeMotion& m, analysis::HingeState<Jet>& s) const {
     const std::size_t n = slot.speeds;
     for (std::size_t k = 0; k < n; ++k) {
-      if (const std::size_t i = slot.speed + k - seeds.first; slot.speed + k >= seeds.first && i < 8) {
+      if (const std::size_t i = seeds.place(slot.speed + k); i < seeds.directions.size()) {
         const auto set = [&](auto& target, const auto& derivative) {
           for (Eigen::Index e = 0; e < target.size(); ++e) target(e).derivatives()[i] = derivative(e);
         };
@@ -82,8 +89,7 @@ struct TangentDynamics::Builder {
         set(s.H, derivative.H);
         set(s.bias, derivative.bias);
       }
-      if (const std::size_t i = speeds() + slot.speed + k - seeds.first;
-          speeds() + slot.speed + k >= seeds.first && i < 8) {
+      if (const std::size_t i = seeds.place(speeds() + slot.speed + k); i < seeds.directions.size()) {
         // The bias is a quadratic form of the rates, b(u, u): its derivative is 2 b(u, e) = b(u+e, u+e) − b(u, u) −
         // b(e, e).
         std::vector<double> unit(n, 0.0), sum(rates.begin(), rates.end());

@@ -1,7 +1,9 @@
 #include "withy/core/tangents/tangent_dynamics.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
+#include <type_traits>
 
 #include "withy/core/tangents/first_order_recursion.hpp"
 #include "withy/core/tangents/load_wrenches.hpp"
@@ -22,6 +24,27 @@ template <class S>
 using VX = Eigen::Matrix<S, Eigen::Dynamic, 1>;
 
 }  // namespace
+
+/// Of each of the trees that efforts are made of, by what its bodies' q, q̇ are.
+struct TangentDynamics::Plain {
+  template <class T>
+  using Known = std::shared_ptr<analysis::PlainBodies<T>>;
+  template <class T>
+  static Known<T> none() {
+    return std::make_shared<analysis::PlainBodies<T>>();
+  }
+  Known<double> shown = none<double>(), at_rest = none<double>(), undeformed = none<double>();
+  Known<Dual<double>> first_order = none<Dual<double>>();
+
+  /// Of numbers that carry no derivatives nothing is known beforehand.
+  template <class S, class T>
+  static Known<typename Recursion<S>::Plain> of(const Known<T>& known) {
+    if constexpr (std::is_same_v<typename Recursion<S>::Plain, T> && !std::is_same_v<S, T>)
+      return known;
+    else
+      return nullptr;
+  }
+};
 
 TangentDynamics::TangentDynamics(std::shared_ptr<const Model> model, Terms terms)
     : model_(Model::in_kinematics(std::move(model), terms)), products_of_speeds_(terms.products_of_speeds) {
@@ -61,15 +84,15 @@ std::vector<AppliedWrench<T>> TangentDynamics::wrenches(double t, std::span<cons
 }
 
 template <class T>
-VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen::VectorXd& a, Seeds seeds,
+VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen::VectorXd& a, Seeds seeds, Plain& plain,
                                std::vector<bool>* differenced, std::span<const double> seen) const {
   const Builder<T> build{*this, y, a, seeds};
   const auto ruthless = [&](std::size_t b) { return terms_[b].truncation == Truncation::ruthless; };
-  const Recursion<T> shown(*model_, build.hinges(), build.bodies(ruthless));
+  const Recursion<T> shown(*model_, build.hinges(), build.bodies(ruthless), Plain::of<T>(plain.shown));
   const std::vector<AppliedWrench<T>> wrenches = this->wrenches(t, seen.empty() ? y : seen, shown, differenced);
   if (!products_of_speeds_) {
     const Builder<T> still{*this, y, a, seeds, true};
-    return Recursion<T>(*model_, still.hinges(), still.bodies(ruthless)).efforts(wrenches);
+    return Recursion<T>(*model_, still.hinges(), still.bodies(ruthless), Plain::of<T>(plain.at_rest)).efforts(wrenches);
   }
   if (symmetric_)
     return analysis::FirstOrderRecursion<T>(*model_, build.hinges(), build.bodies(ruthless)).efforts(wrenches);
@@ -77,7 +100,7 @@ VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen:
 
   // Theory (3): the undeformed tree with q̈, and the part of first order in ε of the tree with εq, εq̇ and without q̈.
   const auto all = [](std::size_t) { return true; };
-  VX<T> r = Recursion<T>(*model_, build.hinges(), build.bodies(all)).efforts(wrenches);
+  VX<T> r = Recursion<T>(*model_, build.hinges(), build.bodies(all), Plain::of<T>(plain.undeformed)).efforts(wrenches);
   using D = Dual<T>;
   std::vector<HingeState<D>> hinges;
   for (const HingeState<T>& h : build.hinges()) {
@@ -102,7 +125,8 @@ VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen:
   std::vector<AppliedWrench<D>> constant;
   for (const AppliedWrench<T>& w : wrenches)
     constant.push_back({w.at, w.moment.template cast<D>(), w.force.template cast<D>()});
-  const VX<D> first = Recursion<D>(*model_, std::move(hinges), std::move(bodies)).efforts(constant);
+  const VX<D> first =
+      Recursion<D>(*model_, std::move(hinges), std::move(bodies), Plain::of<D>(plain.first_order)).efforts(constant);
   for (Eigen::Index i = 0; i < r.size(); ++i) r[i] += first[i].derivatives()[0];
   return r;
 }
@@ -110,7 +134,8 @@ VX<T> TangentDynamics::efforts(double t, std::span<const double> y, const Eigen:
 Eigen::VectorXd TangentDynamics::frame_load_efforts(double t, std::span<const double> y,
                                                     std::span<const double> seen) const {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model_->layout().speeds));
-  return -efforts<double>(t, y, none, {}, nullptr, seen);
+  Plain plain;
+  return -efforts<double>(t, y, none, {}, plain, nullptr, seen);
 }
 
 Eigen::VectorXd TangentDynamics::steady_accelerations(double t) const {
@@ -120,7 +145,8 @@ Eigen::VectorXd TangentDynamics::steady_accelerations(double t) const {
 }
 
 Eigen::VectorXd TangentDynamics::residual(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
-  return efforts<double>(t, y, a, {}) + elastic(y) - load_efforts(t, y);
+  Plain plain;
+  return efforts<double>(t, y, a, {}, plain) + elastic(y) - load_efforts(t, y);
 }
 
 Eigen::VectorXd TangentDynamics::terms_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
@@ -139,17 +165,37 @@ Eigen::VectorXd TangentDynamics::rates(double t, std::span<const double> y, cons
                                            static_cast<Eigen::Index>(layout.continuous));
 }
 
+std::vector<std::size_t> TangentDynamics::directions(std::size_t from, std::size_t count) const {
+  const Layout& layout = model_->layout();
+  std::vector<std::size_t> all;
+  const auto add = [&](const std::vector<Slot>& slots, std::size_t kind) {
+    for (const Slot& slot : slots) {
+      for (std::size_t i = 0; i < slot.speeds; ++i)
+        if (const std::size_t d = kind * layout.speeds + slot.speed + i; d >= from && d < from + count)
+          all.push_back(d);
+    }
+  };
+  for (const Slot& slot : layout.bodies)
+    for (const std::size_t kind : {0, 1}) add({slot}, kind);
+  for (const std::size_t kind : {0, 1, 2}) add(layout.hinges, kind);
+  add(layout.bodies, 2);
+  return all;
+}
+
 Eigen::VectorXd TangentDynamics::differentiate(double t, std::span<const double> y, const Eigen::VectorXd& a,
                                                std::size_t from, Eigen::Ref<Eigen::MatrixXd> columns,
                                                std::vector<bool>* differenced) const {
   const Eigen::Index n = columns.rows();
   Eigen::VectorXd values = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index first = 0; first < columns.cols(); first += 8) {
-    const VX<Jet> r = efforts<Jet>(t, y, a, {from + static_cast<std::size_t>(first)}, differenced);
-    const Eigen::Index count = std::min<Eigen::Index>(8, columns.cols() - first);
+  Plain plain;
+  const std::vector<std::size_t> all = directions(from, static_cast<std::size_t>(columns.cols()));
+  for (std::size_t first = 0; first < all.size(); first += jet_directions) {
+    const Seeds seeds{std::span(all).subspan(first, std::min(jet_directions, all.size() - first))};
+    const VX<Jet> r = efforts<Jet>(t, y, a, seeds, plain, differenced);
     for (Eigen::Index i = 0; i < n; ++i) {
       values[i] = r[i].value();
-      columns.block(i, first, 1, count) = derivatives_of(r[i]).head(count).transpose();
+      for (std::size_t k = 0; k < seeds.directions.size(); ++k)
+        columns(i, static_cast<Eigen::Index>(seeds.directions[k] - from)) = r[i].derivatives()[k];
     }
   }
   return values + elastic(y) - load_efforts(t, y);
@@ -198,11 +244,14 @@ FrameTangent TangentDynamics::frame(std::span<const double> y, int body, int fra
   FrameTangent result;
   result.by_position.resize(3, n);
   result.deflection_by_position.resize(3, n);
+  std::vector<std::size_t> all(static_cast<std::size_t>(n));
+  std::iota(all.begin(), all.end(), std::size_t{0});
   for (Eigen::Index first = 0; first < n; first += 8) {
-    const Builder<Jet> build{*this, y, rest, {static_cast<std::size_t>(first)}};
+    const Eigen::Index count = std::min<Eigen::Index>(8, n - first);
+    const Seeds seeds{std::span(all).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count))};
+    const Builder<Jet> build{*this, y, rest, seeds};
     const auto none = [](std::size_t) { return false; };
     const auto [p, d] = Recursion<Jet>(*model_, build.hinges(), build.bodies(none)).frame_position(body, frame);
-    const Eigen::Index count = std::min<Eigen::Index>(8, n - first);
     for (Eigen::Index i = 0; i < 3; ++i) {
       result.position[i] = p[i].value();
       result.by_position.block(i, first, 1, count) = derivatives_of(p[i]).head(count).transpose();

@@ -86,6 +86,7 @@ class TangentDynamics {
 
  private:
   struct Seeds;
+  struct Plain;
   template <class T>
   struct Builder;
   /// Wrenches of the loads at frames, `shown` being the tree at the deformation that the truncations keep.
@@ -93,12 +94,15 @@ class TangentDynamics {
   std::vector<analysis::AppliedWrench<T>> wrenches(double t, std::span<const double> y,
                                                    const analysis::Recursion<T>& shown,
                                                    std::vector<bool>* differenced) const;
+  /// \param plain what passes over the same y know of bodies without derivatives
   /// \param seen the state that wrenches of loads see, y where it is empty
   template <class T>
   [[nodiscard]] Eigen::Matrix<T, Eigen::Dynamic, 1> efforts(double t, std::span<const double> y,
-                                                            const Eigen::VectorXd& a, Seeds seeds,
+                                                            const Eigen::VectorXd& a, Seeds seeds, Plain& plain,
                                                             std::vector<bool>* differenced = nullptr,
                                                             std::span<const double> seen = {}) const;
+  /// Directions, those of one body's modes next to each other: what all others are is found without derivatives.
+  [[nodiscard]] std::vector<std::size_t> directions(std::size_t from, std::size_t count) const;
   /// Minus the residual without stiffness and accelerations: the efforts of wrenches at frames and those of speeds.
   /// \param seen the state that the wrenches see
   [[nodiscard]] Eigen::VectorXd frame_load_efforts(double t, std::span<const double> y,
