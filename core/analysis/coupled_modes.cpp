@@ -43,13 +43,6 @@ std::vector<Root> roots_beside_zeros(const Eigen::MatrixXd& A, std::size_t zeros
   return roots;
 }
 
-/// The number of eigenvalues of A at zero, by rank: rounding spreads chains of them.
-std::size_t zeros_of(const Eigen::MatrixXd& A) {
-  const Eigen::VectorXcd exact =
-      poles({A, Eigen::MatrixXd::Zero(A.rows(), 0), Eigen::MatrixXd::Zero(0, A.rows()), Eigen::MatrixXd()});
-  return static_cast<std::size_t>((exact.array() == Complex(0)).count());
-}
-
 /// Columns that span the same, such that each has a row, that of its greatest element, in which all others are zero.
 struct Apart {
   Eigen::MatrixXd columns;

@@ -156,6 +156,19 @@ Eigen::VectorXcd poles(const LinearSystem& system) {
   return eigenvalues_with_zeros(s.A).array() + 1;
 }
 
+std::size_t zeros_of(const Eigen::MatrixXd& A) {
+  const Eigen::VectorXcd exact =
+      poles({A, Eigen::MatrixXd::Zero(A.rows(), 0), Eigen::MatrixXd::Zero(0, A.rows()), Eigen::MatrixXd()});
+  return static_cast<std::size_t>((exact.array() == Complex(0)).count());
+}
+
+double unit_of_rates(const Eigen::MatrixXd& K, const Eigen::MatrixXd& G) {
+  const double stiffest = K.size() > 0 ? K.cwiseAbs().maxCoeff() : 0.0;
+  if (stiffest > 0) return std::sqrt(stiffest);
+  const double fastest = G.size() > 0 ? G.cwiseAbs().maxCoeff() : 0.0;
+  return fastest > 0 ? fastest : 1.0;
+}
+
 ZerosAndGain zeros(LinearSystem s) {
   balance_with_ends(s);
   const double output = s.C.norm(), input = s.B.norm(), direct = std::abs(s.D(0, 0));

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <cstddef>
 #include <utility>
 
 namespace withy {
@@ -35,6 +36,12 @@ Eigen::VectorXd balance_of_states(Eigen::MatrixXd A, Eigen::Index first = 0);
 /// not as numbers near by: rigid motions and integrators are chains of them. \throws std::domain_error where A is not
 /// finite
 Eigen::VectorXcd poles(const LinearSystem& system);
+
+/// How many eigenvalues of A are zero, by rank as in `poles`.
+std::size_t zeros_of(const Eigen::MatrixXd& A);
+
+/// What rates are to be divided by in a first-order form (δ̇ = u, u̇ = −K δ − G u) for both halves to be of one size.
+double unit_of_rates(const Eigen::MatrixXd& K, const Eigen::MatrixXd& G);
 
 /// What G(s) = C (s − A)⁻¹ B + D is: gain · ∏ (s − zero) / ∏ (s − pole) of one input and one output.
 struct ZerosAndGain {

@@ -62,14 +62,15 @@ std::vector<Root> roots_at_rest(const Scaled& s) {
   return roots;
 }
 
-std::vector<Root> roots_in_motion(const Scaled& s) {
+/// \param zeros becomes the number of zeros: motions that nothing holds are chains of them where there is spin
+std::vector<Root> roots_in_motion(const Scaled& s, std::size_t& zeros) {
   const Eigen::Index n = s.M.rows();
   Eigen::MatrixXd A(2 * n, 2 * n);
   A << s.C, Eigen::MatrixXd::Identity(n, n), -solve_mass(s.M, s.K), -solve_mass(s.M, s.G);
-  // Speeds in units of √‖A‖ times displacements: one norm for both halves.
-  const double unit = std::sqrt(std::max(1.0, A.bottomLeftCorner(n, n).cwiseAbs().maxCoeff()));
+  const double unit = unit_of_rates(A.bottomLeftCorner(n, n), A.bottomRightCorner(n, n));
   A.topRightCorner(n, n) *= unit;
   A.bottomLeftCorner(n, n) /= unit;
+  zeros = zeros_of(A);
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
   if (solver.info() != Eigen::Success) throw std::domain_error("the eigenvalues were not found");
   std::vector<Root> roots;
@@ -85,16 +86,14 @@ Eigen::Index nullity(const Eigen::MatrixXd& K) {
   return (values.array() <= 1e-11 * std::max(values[0], 1e-300)).count();
 }
 
-/// Sets eigenvalues to zero that are so but for rounding: as many as free directions allow, of those that are small.
-void clear_zeros(std::vector<Root>& roots, Eigen::Index free_directions) {
+/// Sets eigenvalues to zero that are so but for rounding: so many, of those that are this share of the greatest.
+void clear_zeros(std::vector<Root>& roots, std::size_t zeros, double share) {
   double greatest = 0;
   for (const Root& r : roots) greatest = std::max(greatest, std::abs(r.value));
   std::sort(roots.begin(), roots.end(),
             [](const Root& a, const Root& b) { return std::abs(a.value) < std::abs(b.value); });
-  // A double eigenvalue without two eigenvectors is found to the square root of rounding.
-  for (std::size_t i = 0; i < roots.size() && i < 2 * static_cast<std::size_t>(free_directions); ++i) {
-    if (std::abs(roots[i].value) <= 1e-6 * greatest) roots[i].value = 0;
-  }
+  for (std::size_t i = 0; i < roots.size() && i < zeros; ++i)
+    if (std::abs(roots[i].value) <= share * greatest) roots[i].value = 0;
 }
 
 Mode mode_of(const Root& first, const Root& partner, const Scaled& s, const std::vector<Eigen::Index>& free,
@@ -132,9 +131,12 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
   if (free.empty()) return {};
   const Scaled s(tangents, free);
   const bool at_rest = s.G.isZero(0) && s.C.isZero(0);
-  std::vector<Root> roots = at_rest ? roots_at_rest(s) : roots_in_motion(s);
-  // Constant displacements, u = −C δ, that ask for no acceleration.
-  clear_zeros(roots, nullity(s.K - s.G * s.C));
+  std::size_t zeros = 0;
+  std::vector<Root> roots = at_rest ? roots_at_rest(s) : roots_in_motion(s, zeros);
+  // A chain of zeros is found to a root of rounding.
+  clear_zeros(roots, zeros, 1e-3);
+  // Constant displacements, u = −C δ, that ask for no acceleration, to what differences leave of it: two zeros each.
+  clear_zeros(roots, 2 * static_cast<std::size_t>(nullity(s.K - s.G * s.C)), 1e-6);
 
   std::vector<Mode> modes;
   std::vector<const Root*> real;
@@ -156,6 +158,14 @@ std::vector<Mode> natural_modes(const Tangents& tangents, const Held& held) {
                                         [&](const Root* a, const Root* b) { return likeness(a) < likeness(b); });
     const Root* second = *other;
     real.erase(other);
+    if ((first->value == 0.0) != (second->value == 0.0)) {
+      // What nothing holds and something brakes: it stays anywhere, and comes to rest.
+      for (const Root* r : {first, second}) {
+        modes.push_back(mode_of(*r, *r, s, free, tangents));
+        modes.back().single = true;
+      }
+      continue;
+    }
     if (second->value.real() > first->value.real()) std::swap(first, second);
     modes.push_back(mode_of(*first, *second, s, free, tangents));
   }
@@ -213,9 +223,11 @@ Eigen::VectorXd balancing_units(const Eigen::MatrixXd& A, const Eigen::VectorXd&
   Eigen::VectorXd units = Eigen::VectorXd::Ones(A.rows());
   const Eigen::VectorXd root = masses.cwiseMax(1e-300).cwiseSqrt();
   if (m > 0) {
-    const double stiffest =
-        (root.asDiagonal() * A.block(m, 0, m, m) * root.cwiseInverse().asDiagonal()).cwiseAbs().maxCoeff();
-    units.head(2 * m) << root, root / std::sqrt(std::max(1.0, stiffest));
+    const auto scaled = [&](const auto& block) -> Eigen::MatrixXd {
+      return root.asDiagonal() * block * root.cwiseInverse().asDiagonal();
+    };
+    const double unit = unit_of_rates(scaled(A.block(m, 0, m, m)), scaled(A.block(m, m, m, m)));
+    units.head(2 * m) << root, root / unit;
   }
   if (A.rows() == 2 * m) return units;
   return units.cwiseQuotient(balance_of_states(units.asDiagonal() * A * units.cwiseInverse().asDiagonal()));

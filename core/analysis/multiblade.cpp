@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "withy/core/analysis/coupled_modes.hpp"
+#include "withy/core/analysis/linear_system.hpp"
 
 namespace withy {
 namespace {
@@ -271,6 +272,13 @@ std::vector<CharacteristicMode> constant_modes(const Eigen::MatrixXd& A, const E
   std::stable_sort(modes.begin(), modes.end(), [](const CharacteristicMode& a, const CharacteristicMode& b) {
     return std::abs(a.exponent) < std::abs(b.exponent);
   });
+  std::size_t zeros = zeros_of(balanced);
+  for (CharacteristicMode& mode : modes) {
+    const std::size_t values = mode.exponent.imag() == 0 ? 1 : 2;
+    if (values > zeros) break;
+    zeros -= values;
+    mode.exponent = 0;
+  }
   return modes;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "withy/core/analysis/unreached.hpp"
+#include "withy/core/model/hinge_rates.hpp"
 
 namespace withy {
 namespace {
@@ -252,6 +253,22 @@ SteadyState find_steady_state(const TangentDynamics& dynamics, const State& star
   return Newton(dynamics, start, held).solve();
 }
 
+namespace {
+
+double greatest_angular_rate(const Model& model, const Eigen::VectorXd& speeds) {
+  double rate = 0;
+  for (std::size_t h = 0; h < model.hinges().size(); ++h) {
+    std::size_t s = model.layout().hinges[h].speed;
+    for (const HingeRate& r : hinge_rates(*model.hinges()[h].hinge)) {
+      if (r.angular) rate = std::max(rate, std::abs(speeds[static_cast<Eigen::Index>(s)]));
+      ++s;
+    }
+  }
+  return rate;
+}
+
+}  // namespace
+
 bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, const State& state, const Held& held) {
   const auto n = static_cast<Eigen::Index>(held.size());
   const auto free = free_speeds(held);
@@ -260,7 +277,8 @@ bool stays_steady(const TangentDynamics& dynamics, const Tangents& tangents, con
   const Eigen::VectorXd change = tangents.by_position * u;
   const Eigen::VectorXd in_play =
       dynamics.terms_in_play(state.time, state.y, dynamics.steady_accelerations(state.time));
-  const Eigen::VectorXd terms = tangents.by_position.cwiseAbs() * u.cwiseAbs() + u.cwiseAbs().maxCoeff() * in_play;
+  const Eigen::VectorXd terms =
+      tangents.by_position.cwiseAbs() * u.cwiseAbs() + greatest_angular_rate(dynamics.model(), u) * in_play;
   for (const Eigen::Index i : free)
     if (std::abs(change[i]) > 1e-9 * terms[i]) return false;
   // What loads measure must not change either.

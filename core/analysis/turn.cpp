@@ -247,7 +247,7 @@ Eigen::MatrixXd scaled_form(const Tangents& t, const Held& held, const std::vect
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(A.rows());
   scale.head(2 * m) << t.mass.diagonal()(free).cwiseAbs().cwiseSqrt(), t.mass.diagonal()(free).cwiseAbs().cwiseSqrt();
   A = scale.asDiagonal() * A * scale.cwiseInverse().asDiagonal();
-  const double unit = std::sqrt(std::max(1.0, A.block(m, 0, m, m).cwiseAbs().maxCoeff()));
+  const double unit = unit_of_rates(A.block(m, 0, m, m), A.block(m, m, m, m));
   A.middleCols(m, m) *= unit;
   A.middleRows(m, m) /= unit;
   return A;

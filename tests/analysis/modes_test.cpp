@@ -86,6 +86,27 @@ loads: {spring: {type: hinge-spring, hinge: axle, stiffness: 8, damping: CCC, fr
   EXPECT_NEAR(slow.partner.real(), -5 - std::sqrt(21.0), 1e-12);
 }
 
+/// A disk that is braked and not held stays anywhere and comes to rest, λ = 0 and −c/J: two motions, of which only one
+/// has a damping ratio.
+TEST(DampedDisk, that_nothing_holds_stays_anywhere_and_comes_to_rest) {
+  AnalysedScene c(R"(format: withy/1
+time: {end: 1}
+bodies: {disk: {type: rigid, mass: 1, inertia: [1, 1, 2, 0, 0, 0]}}
+hinges: {axle: {type: revolute, axis: [0, 0, 1], parent: world, child: disk}}
+loads: {brake: {type: hinge-spring, hinge: axle, stiffness: 0, damping: 4}}
+)",
+                  "quadratic");
+  const std::vector<Mode> modes = steady_modes(c, {});
+  ASSERT_EQ(modes.size(), 2U);
+  EXPECT_TRUE(modes[0].rigid);
+  EXPECT_TRUE(modes[0].single);
+  EXPECT_EQ(modes[0].eigenvalue, 0.0);
+  EXPECT_FALSE(modes[1].rigid);
+  EXPECT_TRUE(modes[1].single);
+  EXPECT_NEAR(modes[1].eigenvalue.real(), -2, 1e-12);
+  EXPECT_NEAR(modes[1].damping_ratio(), 1, 1e-12);
+}
+
 /// Tip load P = m g on a light cantilever, P L²/EI = 1 and 2: the elastica's tip is 0.30172 L, 0.49346 L lower and
 /// 0.05643 L, 0.16064 L nearer (Bisshopp & Drucker, Quart. Appl. Math. 3, 1945).
 TEST(SteadyState, of_exact_kinematics_is_the_elastica) {

@@ -121,6 +121,7 @@ void reversal(Campaign&);
 void chains(Campaign&);
 void rotations(Campaign&);
 void units(Campaign&);
+void units_of_analysis(Campaign&);
 void invariance(Campaign&);
 void failures(Campaign&);
 void jumps(Campaign&);

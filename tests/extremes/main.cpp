@@ -28,6 +28,7 @@ const std::vector<Extreme>& extremes() {
       {"chains", "Long chains", &chains},
       {"rotations", "Rotations", &rotations},
       {"units", "Units by powers of two", &units},
+      {"units-of-analysis", "Units of linear analyses", &units_of_analysis},
       {"invariance", "Invariance", &invariance},
       {"failures", "Numbers that are none", &failures},
       {"jumps", "Jumps of the right-hand side", &jumps},
