@@ -24,46 +24,46 @@ struct Size {
 
 }  // namespace
 
-template <class S>
-typename Recursion<S>::VX Recursion<S>::sizes(
-    const std::vector<AppliedWrench<S>>& wrenches) const requires std::is_same_v<S, double> {
-  const Layout& layout = model_.layout();
-  VX result = VX::Zero(static_cast<Eigen::Index>(layout.speeds));
-  std::vector<Size> all(frames_.size());
-  for (std::size_t b = 0; b < frames_.size(); ++b) {
-    const VX& q_ddot = states_[b].q_ddot;
-    const Turning t = turning(b);
-    all[b].modes = VX::Zero(q_ddot.size());
-    for_mass(
+Eigen::VectorXd sizes_of(const Recursion<double>& tree, const std::vector<AppliedWrench<double>>& wrenches) {
+  const Layout& layout = tree.model_.layout();
+  const auto& frames = tree.frames_;
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.speeds));
+  std::vector<Size> all(frames.size());
+  for (std::size_t b = 0; b < frames.size(); ++b) {
+    const Eigen::VectorXd& q_ddot = tree.states_[b].q_ddot;
+    const Turning<double> t = tree.turning(b);
+    all[b].modes = Eigen::VectorXd::Zero(q_ddot.size());
+    tree.for_mass(
         b,
-        [&](const PointMotionOf<S>& m, double mass) {
-          all[b].add(force_on(t, m, mass, q_ddot).norm(), 0, m.r.norm(), m);
+        [&](const PointMotionOf<double>& m, double mass) {
+          all[b].add(Recursion<double>::force_on(t, m, mass, q_ddot).norm(), 0, m.r.norm(), m);
         },
-        [&](const PointMotionOf<S>& m, const Matrix3& inertia) {
-          all[b].add(0, moment_on(t, m, inertia, q_ddot).norm(), 0, m);
+        [&](const PointMotionOf<double>& m, const Matrix3& inertia) {
+          all[b].add(0, Recursion<double>::moment_on(t, m, inertia, q_ddot).norm(), 0, m);
         });
   }
-  for (const AppliedWrench<S>& w : wrenches) {
-    const PointMotionOf<S> m = relative(w.at.body, w.at.frame, Pose{});
+  for (const AppliedWrench<double>& w : wrenches) {
+    const PointMotionOf<double> m = tree.relative(w.at.body, w.at.frame, Pose{});
     all[static_cast<std::size_t>(w.at.body)].add(w.force.norm(), w.moment.norm(), m.r.norm(), m);
   }
-  for (std::size_t b = frames_.size(); b-- > 0;) {
+  for (std::size_t b = frames.size(); b-- > 0;) {
     Size& size = all[b];
-    const double moment = size.moment + (hinge_frames_[b].p - frames_[b].p).norm() * size.force;
-    size.act(size.force, moment, child_[b]);
+    const Vector3& at = tree.hinge_frames_[b].p;
+    const double moment = size.moment + (at - frames[b].p).norm() * size.force;
+    size.act(size.force, moment, tree.child_[b]);
     if (size.modes.size() > 0)
       result.segment(static_cast<Eigen::Index>(layout.modes(b)->speed), size.modes.size()) = size.modes;
     const Slot& slot = layout.hinges[b];
-    const Eigen::Matrix<double, 6, Eigen::Dynamic>& H = hinges_[b].H;
+    const Eigen::Matrix<double, 6, Eigen::Dynamic>& H = tree.hinges_[b].H;
     result.segment(static_cast<Eigen::Index>(slot.speed), static_cast<Eigen::Index>(slot.speeds)) =
         moment * H.topRows<3>().colwise().norm().transpose() +
         size.force * H.bottomRows<3>().colwise().norm().transpose();
-    const HingeNode& h = model_.hinges()[b];
+    const HingeNode& h = tree.model_.hinges()[b];
     if (h.parent < 0) continue;
     const auto p = static_cast<std::size_t>(h.parent);
-    const V3 arm = frames_[p].R * parent_[b].r;
-    const double about_outer = moment + (hinge_frames_[b].p - frames_[p].p - arm).norm() * size.force;
-    all[p].add(size.force, about_outer, arm.norm(), parent_[b]);
+    const Vector3 arm = frames[p].R * tree.parent_[b].r;
+    const double about_outer = moment + (at - frames[p].p - arm).norm() * size.force;
+    all[p].add(size.force, about_outer, arm.norm(), tree.parent_[b]);
   }
   return result;
 }

@@ -79,6 +79,21 @@ struct PlainBody {
 template <class T>
 using PlainBodies = std::vector<PlainBody<T>>;
 
+/// Motion of a body frame in its own axes: a point fixed to the body at r accelerates by a + turn r less gravity, one
+/// that moves at ṙ in it by twice ṙ = 2 ω × ṙ more.
+template <class S>
+struct Turning {
+  Eigen::Matrix<S, 3, 1> w, alpha, a;
+  Eigen::Matrix<S, 3, 3> ww, turn, twice;  ///< ww = ω ωᵀ
+};
+
+/// What a body needs to move as it does, about its frame's origin, and on its modes.
+template <class S>
+struct BodyLoad {
+  Eigen::Matrix<S, 3, 1> force = Eigen::Matrix<S, 3, 1>::Zero(), moment = force;
+  Eigen::Matrix<S, Eigen::Dynamic, 1> modes;
+};
+
 /// The recursion of one state. Members are defined in recursion_members.hpp and instantiated in files of their own:
 /// numbers that carry derivatives take a compiler long.
 template <class S>
@@ -99,12 +114,11 @@ class Recursion {
   /// Σ m Jᵀ (a − g) + Σ J_ωᵀ (I α + ω × I ω): the efforts that the accelerations need beside those of stiffness and
   /// damping, less what the wrenches give.
   [[nodiscard]] VX efforts(const std::vector<AppliedWrench<S>>& wrenches) const;
-  /// What all these forces amount to where each pulls along the partial velocities of the speeds: sums of magnitudes,
-  /// one a speed, against which rounding and imbalance are small or not.
-  [[nodiscard]] VX sizes(const std::vector<AppliedWrench<S>>& wrenches) const requires std::is_same_v<S, double>;
   [[nodiscard]] FrameState<S> frame_state(FrameIndex at) const;
   /// Position of a frame of a body in the world, and the displacement r − X of its section in the body frame.
   [[nodiscard]] std::pair<V3, V3> frame_position(int body, int frame) const;
+
+  friend Eigen::VectorXd sizes_of(const Recursion<double>& tree, const std::vector<AppliedWrench<double>>& wrenches);
 
  private:
   static constexpr bool truncating = !std::is_same_v<S, double> && !std::is_same_v<S, Jet>;
@@ -113,11 +127,7 @@ class Recursion {
     M3 R = M3::Identity();
     V3 p = V3::Zero(), w = V3::Zero(), v = V3::Zero(), alpha = V3::Zero(), a = V3::Zero();
   };
-  /// What a body needs to move as it does, at its frame's origin, and on its modes.
-  struct Load {
-    V3 force = V3::Zero(), moment = V3::Zero();
-    VX modes;
-  };
+  using Load = BodyLoad<S>;
 
   static constexpr bool has_plain = !std::is_same_v<S, Plain>;
   using PlainVector = Eigen::Matrix<Plain, Eigen::Dynamic, 1>;
@@ -132,22 +142,15 @@ class Recursion {
   static Frame across(const Frame& F, const HingeState<S>& h);
   [[nodiscard]] PointMotionOf<S> section(std::size_t b, const PointExpansion& e) const;
   [[nodiscard]] PointMotionOf<S> relative(int body, int frame, const Pose& offset) const;
-  /// Motion of a body frame in its own axes: a point fixed to the body at r accelerates by a + turn r less gravity, one
-  /// that moves at ṙ in it by twice ṙ = 2 ω × ṙ more.
-  struct Turning {
-    V3 w, alpha, a;
-    M3 ww, turn, twice;  ///< ω ωᵀ
-  };
-  [[nodiscard]] Turning turning(std::size_t b) const;
+  [[nodiscard]] Turning<S> turning(std::size_t b) const;
   /// What a particle needs to move as it does, weight counted, and a section to turn; body axes.
-  static V3 force_on(const Turning& t, const PointMotionOf<S>& m, double mass, const VX& q_ddot);
-  static V3 moment_on(const Turning& t, const PointMotionOf<S>& m, const Matrix3& inertia, const VX& q_ddot);
+  static V3 force_on(const Turning<S>& t, const PointMotionOf<S>& m, double mass, const VX& q_ddot);
+  static V3 moment_on(const Turning<S>& t, const PointMotionOf<S>& m, const Matrix3& inertia, const VX& q_ddot);
   template <class OfParticle, class OfSection>
   void for_mass(std::size_t b, OfParticle&& particle, OfSection&& section) const;
   [[nodiscard]] Load own_load(std::size_t b) const;
-  /// The same by integrals, where q, q̇ carry no derivatives.
-  [[nodiscard]] Load plain_load(std::size_t b) const requires has_plain;
-  [[nodiscard]] const BodyIntegrals<Plain>& integrals(std::size_t b) const requires has_plain;
+  /// Of a body whose q, q̇ carry no derivatives.
+  [[nodiscard]] const BodyIntegrals<Plain>& integrals(std::size_t b) const;
 
   const Model& model_;
   std::vector<HingeState<S>> hinges_;
@@ -158,6 +161,10 @@ class Recursion {
   std::vector<PointMotionOf<S>> parent_, child_;    ///< of each hinge: F in the parent, M in the child
   std::vector<Frame> hinge_frames_, frames_;        ///< M of each hinge, B of each body
 };
+
+/// What the efforts are made of amounts to where each force pulls along the partial velocities of the speeds: sums of
+/// magnitudes, one a speed, against which rounding and imbalance are small or not.
+Eigen::VectorXd sizes_of(const Recursion<double>& tree, const std::vector<AppliedWrench<double>>& wrenches);
 
 extern template class Recursion<double>;
 extern template class Recursion<Jet>;

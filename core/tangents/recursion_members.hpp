@@ -83,6 +83,47 @@ auto lifted_matrix(const From& from) {
   return to;
 }
 
+/// What a body needs in its own axes, by its integrals.
+template <class S, class T>
+BodyLoad<S> load_of(const BodyIntegrals<T>& sums, const Turning<S>& t,
+                    const Eigen::Matrix<S, Eigen::Dynamic, 1>& q_ddot) {
+  using V3 = Eigen::Matrix<S, 3, 1>;
+  const auto& [w, alpha, a, ww, turn, twice] = t;
+  V3 f = a * S(sums.mass) + scaled_by<S>(turn, sums.r) + scaled_by<S>(twice, sums.r_rate) + lifted_matrix<S>(sums.bias);
+  V3 n = lifted_matrix<S>(sums.r_bias);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    // (Σ m r × …)_i of what is linear in r and ṙ.
+    const Eigen::Index j = (i + 1) % 3, k = (i + 2) % 3;
+    n[i] += scaled(a[k], sums.r[j]) - scaled(a[j], sums.r[k]);
+    for (Eigen::Index d = 0; d < 3; ++d)
+      n[i] += scaled(turn(k, d), sums.rr(d, j)) - scaled(turn(j, d), sums.rr(d, k)) +
+              scaled(twice(k, d), sums.r_r_rate(j, d)) - scaled(twice(j, d), sums.r_r_rate(k, d));
+  }
+  if (sums.turns) {
+    n += scaled<S>(sums.J, alpha) + w.cross(V3(scaled<S>(sums.J, w) + lifted_matrix<S>(sums.h))) +
+         scaled<S>(sums.G, w) + lifted_matrix<S>(sums.k);
+  }
+  BodyLoad<S> load;
+  load.modes = lifted_matrix<S>(sums.P_bias);
+  for (Eigen::Index i = 0; i < q_ddot.size(); ++i) {
+    const auto mode = static_cast<std::size_t>(i);
+    S& own = load.modes[i];
+    own +=
+        dotted<S>(a, sums.P.col(i)) + contracted<S>(turn, sums.P_r[mode]) + contracted<S>(twice, sums.P_r_rate[mode]);
+    for (Eigen::Index j = 0; j < q_ddot.size(); ++j) own += scaled(q_ddot[j], sums.PP(i, j));
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      f[c] += scaled(q_ddot[i], sums.P(c, i));
+      n[c] += scaled(q_ddot[i], sums.r_P(c, i));
+    }
+    if (!sums.turns) continue;
+    own += dotted<S>(alpha, sums.F.col(i)) + contracted<S>(ww, sums.W_J[mode]) + dotted<S>(w, sums.W_G.col(i));
+    for (Eigen::Index c = 0; c < 3; ++c) n[c] += scaled(q_ddot[i], sums.F(c, i));
+  }
+  load.force = f;
+  load.moment = n;
+  return load;
+}
+
 template <class S>
 Recursion<S>::Recursion(const Model& model, std::vector<HingeState<S>> hinges, std::vector<BodyState<S>> bodies,
                         std::shared_ptr<PlainBodies<Plain>> known)
@@ -275,10 +316,10 @@ PointMotionOf<S> Recursion<S>::relative(int body, int frame, const Pose& offset)
 }
 
 template <class S>
-typename Recursion<S>::Turning Recursion<S>::turning(std::size_t b) const {
+Turning<S> Recursion<S>::turning(std::size_t b) const {
   const Frame& B = frames_[b];
   const M3 to_body = B.R.transpose();
-  Turning t;
+  Turning<S> t;
   t.w = to_body * B.w;
   t.alpha = to_body * B.alpha;
   t.a = to_body * V3(B.a - model_.gravity().template cast<S>());
@@ -291,14 +332,14 @@ typename Recursion<S>::Turning Recursion<S>::turning(std::size_t b) const {
 }
 
 template <class S>
-typename Recursion<S>::V3 Recursion<S>::force_on(const Turning& t, const PointMotionOf<S>& m, double mass,
+typename Recursion<S>::V3 Recursion<S>::force_on(const Turning<S>& t, const PointMotionOf<S>& m, double mass,
                                                  const VX& q_ddot) {
   return S(mass) * (t.a + t.turn * m.r + t.twice * m.r_rate + m.r_bias + m.P * q_ddot);
 }
 
 template <class S>
-typename Recursion<S>::V3 Recursion<S>::moment_on(const Turning& t, const PointMotionOf<S>& m, const Matrix3& inertia,
-                                                  const VX& q_ddot) {
+typename Recursion<S>::V3 Recursion<S>::moment_on(const Turning<S>& t, const PointMotionOf<S>& m,
+                                                  const Matrix3& inertia, const VX& q_ddot) {
   const M3 I = m.R * inertia.cast<S>() * m.R.transpose();
   const V3 w = t.w + m.w_rate;
   return I * V3(t.alpha + t.w.cross(m.w_rate) + m.w_bias + m.W * q_ddot) + w.cross(V3(I * w));
@@ -326,7 +367,7 @@ void Recursion<S>::for_mass(std::size_t b, OfParticle&& particle, OfSection&& se
 }
 
 template <class S>
-const BodyIntegrals<typename Recursion<S>::Plain>& Recursion<S>::integrals(std::size_t b) const requires has_plain {
+const BodyIntegrals<typename Recursion<S>::Plain>& Recursion<S>::integrals(std::size_t b) const {
   std::optional<BodyIntegrals<Plain>>& found = (*known_)[b].integrals;
   if (found) return *found;
   const BodyState<S>& state = states_[b];
@@ -350,52 +391,17 @@ const BodyIntegrals<typename Recursion<S>::Plain>& Recursion<S>::integrals(std::
 }
 
 template <class S>
-typename Recursion<S>::Load Recursion<S>::plain_load(std::size_t b) const requires has_plain {
-  const BodyIntegrals<Plain>& sums = integrals(b);
-  const VX& q_ddot = states_[b].q_ddot;
-  const auto [w, alpha, a, ww, turn, twice] = turning(b);
-  V3 f = a * S(sums.mass) + scaled_by<S>(turn, sums.r) + scaled_by<S>(twice, sums.r_rate) + lifted_matrix<S>(sums.bias);
-  V3 n = lifted_matrix<S>(sums.r_bias);
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    // (Σ m r × …)_i of what is linear in r and ṙ.
-    const Eigen::Index j = (i + 1) % 3, k = (i + 2) % 3;
-    n[i] += scaled(a[k], sums.r[j]) - scaled(a[j], sums.r[k]);
-    for (Eigen::Index d = 0; d < 3; ++d)
-      n[i] += scaled(turn(k, d), sums.rr(d, j)) - scaled(turn(j, d), sums.rr(d, k)) +
-              scaled(twice(k, d), sums.r_r_rate(j, d)) - scaled(twice(j, d), sums.r_r_rate(k, d));
-  }
-  if (sums.turns) {
-    n += scaled<S>(sums.J, alpha) + w.cross(V3(scaled<S>(sums.J, w) + lifted_matrix<S>(sums.h))) +
-         scaled<S>(sums.G, w) + lifted_matrix<S>(sums.k);
-  }
-  Load load;
-  load.modes = lifted_matrix<S>(sums.P_bias);
-  for (Eigen::Index i = 0; i < q_ddot.size(); ++i) {
-    const auto mode = static_cast<std::size_t>(i);
-    S& own = load.modes[i];
-    own +=
-        dotted<S>(a, sums.P.col(i)) + contracted<S>(turn, sums.P_r[mode]) + contracted<S>(twice, sums.P_r_rate[mode]);
-    for (Eigen::Index j = 0; j < q_ddot.size(); ++j) own += scaled(q_ddot[j], sums.PP(i, j));
-    for (Eigen::Index c = 0; c < 3; ++c) {
-      f[c] += scaled(q_ddot[i], sums.P(c, i));
-      n[c] += scaled(q_ddot[i], sums.r_P(c, i));
-    }
-    if (!sums.turns) continue;
-    own += dotted<S>(alpha, sums.F.col(i)) + contracted<S>(ww, sums.W_J[mode]) + dotted<S>(w, sums.W_G.col(i));
-    for (Eigen::Index c = 0; c < 3; ++c) n[c] += scaled(q_ddot[i], sums.F(c, i));
-  }
-  load.force = frames_[b].R * f;
-  load.moment = frames_[b].R * n;
-  return load;
-}
-
-template <class S>
 typename Recursion<S>::Load Recursion<S>::own_load(std::size_t b) const {
-  if constexpr (has_plain) {
-    if (states_[b].plain) return plain_load(b);
-  }
   const VX& q_ddot = states_[b].q_ddot;
-  const Turning t = turning(b);
+  const Turning<S> t = turning(b);
+  const auto in_world = [&](Load load) {
+    load.force = (frames_[b].R * load.force).eval();
+    load.moment = (frames_[b].R * load.moment).eval();
+    return load;
+  };
+  if constexpr (has_plain) {
+    if (states_[b].plain) return in_world(load_of<S>(integrals(b), t, q_ddot));
+  }
   Load load;
   load.modes = VX::Zero(q_ddot.size());
   for_mass(
@@ -411,9 +417,7 @@ typename Recursion<S>::Load Recursion<S>::own_load(std::size_t b) const {
         load.moment += n;
         load.modes += m.W.transpose() * n;
       });
-  load.force = (frames_[b].R * load.force).eval();
-  load.moment = (frames_[b].R * load.moment).eval();
-  return load;
+  return in_world(std::move(load));
 }
 
 }  // namespace withy::analysis

@@ -152,7 +152,7 @@ Eigen::VectorXd TangentDynamics::residual(double t, std::span<const double> y, c
 Eigen::VectorXd TangentDynamics::terms_in_play(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
   const Builder<double> build{*this, y, a, {}};
   const Recursion<double> tree(*model_, build.hinges(), build.bodies([](std::size_t) { return false; }));
-  return tree.sizes(wrenches(t, y, tree, nullptr)) + elastic(y).cwiseAbs() + load_sizes(t, y);
+  return analysis::sizes_of(tree, wrenches(t, y, tree, nullptr)) + elastic(y).cwiseAbs() + load_sizes(t, y);
 }
 
 Eigen::VectorXd TangentDynamics::rates(double t, std::span<const double> y, const Eigen::VectorXd& a) const {
