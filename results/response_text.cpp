@@ -96,7 +96,7 @@ std::string root_rows(const study::Response& r, const Eigen::VectorXcd& roots, b
     const Complex root = exponent_of(s, roots[i]);
     std::vector<std::string> row = {
         fmt::format("{:.5g}", std::abs(root) / (2 * std::numbers::pi)),
-        root == 0.0 || !std::isfinite(root.real()) ? "-" : fmt::format("{:.4g}", -root.real() / std::abs(root)),
+        root == 0.0 || !std::isfinite(root.real()) ? "-" : fmt::format("{:.4g}", -root.real() / std::abs(root) + 0.0),
         fmt::format("{:.5g}{}", root.real(), root.imag() > 0 ? fmt::format(" ± {:.5g}i", root.imag()) : "")};
     if (s.sampled()) row.push_back(fmt::format("{:.6f}", std::abs(roots[i])));
     if (!s.sampled() && poles)
