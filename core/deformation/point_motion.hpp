@@ -10,6 +10,7 @@
 #include "withy/core/deformation/point_kinematics.hpp"
 #include "withy/core/plugin/terms.hpp"
 #include "withy/core/shape/modal_shape.hpp"
+#include "withy/core/spatial/jet.hpp"
 
 namespace withy {
 
@@ -75,6 +76,39 @@ struct ExponentialCoefficients {
 
 }  // namespace detail
 
+/// M x.
+template <class S>
+Eigen::Matrix<S, Eigen::Dynamic, 1> form_times(const Eigen::MatrixXd& M, const Eigen::Matrix<S, Eigen::Dynamic, 1>& x) {
+  Eigen::Matrix<S, Eigen::Dynamic, 1> product(M.rows());
+  for (Eigen::Index i = 0; i < M.rows(); ++i) {
+    product[i] = S(0.0);
+    for (Eigen::Index j = 0; j < M.cols(); ++j)
+      if (M(i, j) != 0) product[i] += x[j] * M(i, j);
+  }
+  return product;
+}
+/// Few of many modes carry derivatives at a time: of those the others count by their values alone.
+inline Eigen::Matrix<Jet, Eigen::Dynamic, 1> form_times(const Eigen::MatrixXd& M,
+                                                        const Eigen::Matrix<Jet, Eigen::Dynamic, 1>& x) {
+  if (x.size() <= static_cast<Eigen::Index>(jet_directions)) return form_times<Jet>(M, x);
+  Eigen::Matrix<double, Eigen::Dynamic, jet_directions> derivatives =
+      Eigen::Matrix<double, Eigen::Dynamic, jet_directions>::Zero(M.rows(), static_cast<Eigen::Index>(jet_directions));
+  Eigen::VectorXd values(x.size());
+  for (Eigen::Index j = 0; j < x.size(); ++j) {
+    values[j] = x[j].value();
+    for (std::size_t k = 0; k < jet_directions; ++k)
+      if (const double of = x[j].derivatives()[k]; of != 0)
+        derivatives.col(static_cast<Eigen::Index>(k)) += of * M.col(j);
+  }
+  values = (M * values).eval();
+  Eigen::Matrix<Jet, Eigen::Dynamic, 1> product(M.rows());
+  for (Eigen::Index i = 0; i < M.rows(); ++i) {
+    product[i] = Jet(values[i]);
+    derivatives_of(product[i]) = derivatives.row(i).transpose();
+  }
+  return product;
+}
+
 /// r, ṙ, P and Ṗ q̇ of point_motion alone: all a particle needs, which has no rotation. R, W and their rates are left
 /// unset.
 template <class S>
@@ -88,16 +122,12 @@ PointMotionOf<S> path_motion(const PointExpansion& e, StrainOrder order, const E
   if (order != StrainOrder::linear && n > 0) {
     for (Eigen::Index c = 0; c < 3; ++c) {
       const Eigen::MatrixXd& gamma = e.gamma[static_cast<std::size_t>(c)];
+      if (gamma.isZero(0)) continue;
+      const Eigen::Matrix<S, Eigen::Dynamic, 1> slope = form_times(gamma, q), slope_rate = form_times(gamma, q_dot);
       for (Eigen::Index i = 0; i < n; ++i) {
-        S slope(0.0), slope_rate(0.0);
-        for (Eigen::Index j = 0; j < n; ++j) {
-          if (gamma(i, j) == 0) continue;
-          slope += q[j] * gamma(i, j);
-          slope_rate += q_dot[j] * gamma(i, j);
-        }
-        m.P(c, i) += slope;
-        m.r[c] += S(0.5) * slope * q[i];
-        m.r_bias[c] += slope_rate * q_dot[i];
+        m.P(c, i) += slope[i];
+        m.r[c] += S(0.5) * slope[i] * q[i];
+        m.r_bias[c] += slope_rate[i] * q_dot[i];
       }
     }
   }
@@ -122,10 +152,9 @@ PointMotionOf<S> point_motion(const PointExpansion& e, StrainOrder order, const 
   m.r = e.X.template cast<S>() + m.P * q;
   if (order != StrainOrder::linear && n > 0) {
     for (Eigen::Index c = 0; c < 3; ++c) {
-      // Lazily: the blocks of great products, in numbers with derivatives, would take seconds to compile.
       const auto add = [&](const Eigen::MatrixXd& second, S& value, auto&& gradient, S& bias) {
-        const auto form = second.template cast<S>().eval();
-        const Eigen::Matrix<S, Eigen::Dynamic, 1> slope = form.lazyProduct(q), rate = form.lazyProduct(q_dot);
+        if (second.isZero(0)) return;
+        const Eigen::Matrix<S, Eigen::Dynamic, 1> slope = form_times(second, q), rate = form_times(second, q_dot);
         value += S(0.5) * q.dot(slope);
         gradient += slope.transpose();
         bias = q_dot.dot(rate);
