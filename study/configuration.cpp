@@ -233,8 +233,11 @@ std::string no_steady_state(const Configuration& c, const SteadyState& steady) {
         "a run that settles",
         fmt::join(limited, "', '"), limited.size() > 1 ? "are" : "is");
   } else if (steady.neutral.size() > 0) {
+    // Where most of the work is done.
+    Eigen::VectorXd works = steady.neutral.cwiseProduct(steady.efforts).cwiseAbs();
+    if (!(works.maxCoeff() > 0)) works = steady.neutral.cwiseAbs();
     Eigen::Index weakest = 0;
-    steady.neutral.cwiseAbs().maxCoeff(&weakest);
+    works.maxCoeff(&weakest);
     text += fmt::format("; nothing holds {}: lock its hinge, give it a spring, or start from another state",
                         c.layout().speed_names[static_cast<std::size_t>(weakest)]);
   } else {
