@@ -18,14 +18,14 @@ double share(const Mode& mode, const Eigen::VectorXd& masses, Eigen::Index speed
   return std::norm(mode.shape[speed]) * masses[speed] / mode.shape.cwiseAbs2().dot(masses);
 }
 
-/// Of the mode that bears the name; nothing where it is rigid or grows.
+/// Of the mode that bears the name; nothing where it is no vibration: rigid, comes to rest or grows.
 std::optional<double> frequency_of(const ModesAt& at, const std::string& name) {
   const Eigen::Index speed = std::find(at.names.begin(), at.names.end(), name) - at.names.begin();
   const Mode* mode = nullptr;
   for (const Mode& m : at.modes) {
     if (mode == nullptr || share(m, at.masses, speed) > share(*mode, at.masses, speed)) mode = &m;
   }
-  if (mode == nullptr || mode->rigid || unstable(at, *mode)) return std::nullopt;
+  if (mode == nullptr || mode->rigid || mode->single || unstable(at, *mode)) return std::nullopt;
   return mode->frequency();
 }
 
@@ -51,7 +51,7 @@ FrequencyStudy::FrequencyStudy(const Prepared& base, Registry& registry, Frequen
   }
   const ModesAt& first = reference_at(value);
   for (const Mode& m : first.modes) {
-    if (m.rigid || names_.size() == question_.count) continue;
+    if (m.rigid || m.single || names_.size() == question_.count) continue;
     const std::string name = dominating(first, m);
     if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
   }

@@ -154,7 +154,7 @@ std::vector<double> reached_ratios(const Configuration& c, Registry& registry, c
   const Tangents t = dynamics.tangents(c.state().time, c.state().y, accelerations(dynamics, c.state(), c.held()));
   std::vector<Mode> modes = natural_modes(t, c.held());
   std::erase_if(modes, [&](const Mode& m) {
-    return m.rigid || std::sqrt(std::abs(m.squared_frequency())) < 1e-4 * frequencies[0];
+    return m.rigid || m.single || std::sqrt(std::abs(m.squared_frequency())) < 1e-4 * frequencies[0];
   });
   std::sort(modes.begin(), modes.end(),
             [](const Mode& a, const Mode& b) { return a.squared_frequency() < b.squared_frequency(); });

@@ -54,6 +54,23 @@ TEST(StudyModes, OfAMountedBeamGetTheDampingRatiosThatAreAsked) {
   EXPECT_THROW(mounted_damping({prepared, prepared.scene.initial, {}}, plugins(), too_many), InputError);
 }
 
+/// What a brake lets come to rest on a hinge that nothing holds is no vibration, and has no ratio of its own.
+TEST(StudyModes, OfABrakedHingeTheVibrationsGetTheDampingRatiosThatAreAsked) {
+  const Prepared prepared =
+      prepare(SceneValues::parse(
+                  "format: withy/1\nbodies:\n"
+                  "  hub: {type: rigid, mass: 2, inertia: [1, 1, 1, 0, 0, 0]}\n"
+                  "  boom: {type: beam, length: 1, mass_per_length: 0.5, bending_y: {stiffness: 200, modes: 3}}\n"
+                  "hinges:\n  axle: {type: revolute, axis: [0, 0, 1], parent: world, child: hub}\n"
+                  "  root: {type: weld, parent: hub, child: boom}\n"
+                  "loads: {brake: {type: hinge-spring, hinge: axle, damping: 1}}\ntime: {end: 1}\n",
+                  "braked"),
+              plugins());
+  const MountedDamping damping = mounted_damping({prepared, prepared.scene.initial, {}}, plugins(), {0.01, 0.02});
+  EXPECT_NEAR(damping.modes[0].reached, 0.01, 1e-4);
+  EXPECT_NEAR(damping.modes[1].reached, 0.02, 2e-4);
+}
+
 /// Both lowest modes of the arm strain its links alike, in phase and against each other: no damping of each link by
 /// itself gives one of them four times the ratio of the other. What is reached is what is reported.
 TEST(StudyModes, DampingThatIsOutOfReachIsReportedAsWhatIsReached) {
