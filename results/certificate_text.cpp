@@ -222,6 +222,7 @@ std::string step_limit_text(const study::StepLimit& s) {
     return fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable at any step", s.cause(), s.product);
   std::string text = fmt::format("limited by {}: mean step times fastest mode {:.2g}, stable to {:.3g}", s.cause(),
                                  s.product, *s.limit);
+  if (s.fastest_rests()) text += ", for what is so fast rests or has just begun";
   if (!s.maker.empty() && s.cause() == "stability") text += "; the fastest pole is " + s.maker;
   if (s.fewer && s.fewer->fastest > 0 && s.fastest > worth_telling * s.fewer->fastest)
     text +=

@@ -133,6 +133,8 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   if (std::isfinite(rounding)) c.rounding = rounding;
   c.samples = summary.validity.samples;
   c.bodies = summary.validity.bodies;
+  for (BodyValidity& b : c.bodies)
+    if (bends_within_tolerance(scene, b, summary)) b.highest.clear();
   if (evidence.beyond != nullptr) c.against = evidence.beyond->formulation;
   c.neglected = summary.validity.neglected;
   c.estimate = std::move(evidence.estimate);

@@ -14,7 +14,8 @@ constexpr double highest_mode_limit = 0.1;
 /// Modes in one direction alone: taken as the plane of rotation.
 bool one_direction(const BodyValidity& body) { return body.highest.size() == 1; }
 
-void add_body(std::vector<Indicator>& all, const BodyValidity& b, const Terms& own, const RunSummary& summary) {
+void add_body(std::vector<Indicator>& all, const Scene& scene, const BodyValidity& b, const Terms& own,
+              const RunSummary& summary) {
   if (!second_order(own)) {
     all.push_back({"rate of '" + b.name + "' over its fundamental frequency", b.rate_ratio,
                    rate_limit(own, one_direction(b)), "frequencies of vibration are 1 % wrong"});
@@ -25,6 +26,7 @@ void add_body(std::vector<Indicator>& all, const BodyValidity& b, const Terms& o
   if (d != summary.peak_deflection_ratio.end() && own.strain != StrainOrder::exact)
     all.push_back({deflection_name(b) + " of '" + b.name + "' over its length", d->second, deflection_limit,
                    "deflections are not small"});
+  if (bends_within_tolerance(scene, b, summary)) return;
   for (const HighestMode& h : b.highest) {
     if (h.modes > 1)
       all.push_back({"energy of the highest " + before_mode(h.family) + "mode of '" + b.name + "'", h.share,
@@ -40,12 +42,21 @@ std::string deflection_name(const BodyValidity& body) {
 
 std::string before_mode(const std::string& family) { return family == "mode" ? "" : family + ' '; }
 
+bool bends_within_tolerance(const Scene& scene, const BodyValidity& body, const RunSummary& summary) {
+  constexpr double of_tolerance = 1e3;
+  const Value* atol = scene.source.at("integrator").find("atol");
+  const auto ratio = summary.peak_deflection_ratio.find(body.name);
+  if (atol == nullptr || ratio == summary.peak_deflection_ratio.end()) return false;
+  const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(body.name))];
+  return ratio->second * node.body->shape().length <= of_tolerance * atol->number();
+}
+
 std::vector<Indicator> indicators(const Scene& scene, const RunSummary& summary, std::optional<Terms> used) {
   const Terms terms = used.value_or(scene.formulation->terms());
   std::vector<Indicator> all;
   for (const BodyValidity& b : summary.validity.bodies) {
     const BodyNode& node = scene.model->bodies()[static_cast<std::size_t>(scene.model->body(b.name))];
-    add_body(all, b, node.terms.value_or(terms), summary);
+    add_body(all, scene, b, node.terms.value_or(terms), summary);
   }
   std::stable_sort(all.begin(), all.end(), [](const Indicator& a, const Indicator& b) { return a.use() > b.use(); });
   return all;

@@ -63,6 +63,8 @@ std::optional<TooStiff> too_stiff_at(const Prepared& prepared, const State& stat
   return found;
 }
 
+bool controlled(const Scene& scene) { return scene.source.at("integrator").find("rtol") != nullptr; }
+
 /// Where no pole is known the fastest mode stays.
 void find_fastest(const Prepared& prepared, const RunSummary& summary, StepLimit& s) {
   if (s.mean == 0) return;
@@ -80,7 +82,13 @@ std::string StepLimit::cause() const {
   // Of the greatest stable step: the mean of steps that go to and fro about it lies above this share.
   constexpr double near_limit = 0.6;
   if (!limit || product == 0) return "unknown";
+  if (fastest_rests()) return "accuracy";
   return product > near_limit * *limit ? "stability" : "accuracy";
+}
+
+bool StepLimit::fastest_rests() const {
+  constexpr double far = 3;
+  return controlled && limit && product > far * *limit;
 }
 
 StepLimit step_limit(const Integrator& integrator, double start, const RunSummary& summary) {
@@ -97,6 +105,7 @@ StepLimit step_limit(const Integrator& integrator, double start, const RunSummar
 StepLimit step_limit(const Prepared& prepared, const RunSummary& summary, Registry& registry) {
   const Scene& scene = prepared.scene;
   StepLimit s = step_limit(*scene.integrator, scene.initial.time, summary);
+  s.controlled = controlled(scene);
   find_fastest(prepared, summary, s);
   if (s.cause() != "stability") return s;
   const EquationsOfMotion& equations = *prepared.equations;
@@ -128,8 +137,7 @@ namespace {
 std::string too_fast(const Prepared& prepared, const RunSummary& summary, double step) {
   const Scene& scene = prepared.scene;
   const std::optional<double> limit = scene.integrator->stability_limit();
-  const bool controlled = scene.source.at("integrator").find("rtol") != nullptr;
-  if (controlled || !limit || !std::isfinite(*limit)) return {};
+  if (controlled(scene) || !limit || !std::isfinite(*limit)) return {};
   std::optional<FastestPole> fastest = pole_at(prepared, summary.final);
   constexpr std::size_t looks = 8;  // the poles of two hundred speeds take a second
   const std::vector<State>& along = summary.validity.along;

@@ -23,9 +23,12 @@ struct StepLimit {
   /// those there are that no vibration limits and that can integrate these equations. Empty where nothing is proposed.
   std::optional<Slowing> fewer;
   std::vector<std::string> unlimited;
+  bool controlled = true;  ///< the integrator chooses its steps
   /// "stability", "accuracy" or "unknown". Error control that meets the limit goes to and fro about it, so the mean
   /// stays a little below.
   [[nodiscard]] std::string cause() const;
+  /// Steps that are chosen go far beyond the limit: what is so fast rests, or began at the end.
+  [[nodiscard]] bool fastest_rests() const;
 };
 
 /// Of a run from a time `start` [s], without proposals.

@@ -144,6 +144,7 @@ class Run final : public SteppingObserver {
   void begin_watches() {
     monitor_.begin_efforts(loop_.state());
     if (watch_ != nullptr) watch_->begin_at(loop_.state());
+    if (validity_) validity_->begin_at(loop_.state());
   }
   /// Energy is looked at after each of the first steps, then after every fourth, whatever the output interval.
   static bool audited(std::size_t accepted) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "withy/core/deformation/mass_points.hpp"
@@ -14,12 +15,16 @@ namespace {
 // Measured (docs/validity.md): what a sample costs in evaluations of `ruthless`, the cheapest to be watched.
 constexpr std::size_t motion_cost = 22;
 constexpr std::size_t comparison_cost = 20;
+constexpr std::size_t look_cost = 3;
 constexpr std::size_t samples_per_cost = 50;  ///< 2 %
 // Short runs are sampled more often, at intervals that grow with the run: a dozen samples by 1000 evaluations.
 constexpr std::size_t growth = 4, least_interval = 20;
 /// A state between samples is one too where a body turns this much faster than in any of them; rates below this share
 /// of ω₁ matter to nobody.
 constexpr double worthwhile = 1.1, least_ratio = 1e-3;
+/// A family with less than this of its body's elastic energy does not take part: what rounding leaves of a motion out
+/// of its plane has no highest mode.
+constexpr double least_energy = 1e-6;
 /// States are kept for what is found by assembled mass matrices.
 constexpr std::size_t most_speeds_along = 300;
 constexpr std::size_t most_along = 64, most_closely = 512;
@@ -29,6 +34,8 @@ std::size_t work_size(const EquationsOfMotion* equations) {
 }
 
 }  // namespace
+
+const std::size_t ValidityWatch::look_interval = look_cost * samples_per_cost;
 
 ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equations, const EquationsOfMotion* beyond,
                              Validity& validity)
@@ -48,7 +55,8 @@ ValidityWatch::ValidityWatch(const Model& model, const EquationsOfMotion& equati
       fastest_(held_),
       excess_(worthwhile),
       along_(beyond != nullptr && model.layout().speeds <= most_speeds_along ? equations.size() : 0, most_along),
-      closely_(beyond != nullptr && equations.linearly_implicit() == nullptr ? equations.size() : 0, most_closely) {
+      closely_(beyond != nullptr && equations.linearly_implicit() == nullptr ? equations.size() : 0, most_closely),
+      busiest_(model.layout().positions, model.layout().speeds, equations.size()) {
   std::unordered_map<const Body*, std::size_t> twins;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const BodyNode& node = model.bodies()[b];
@@ -96,6 +104,11 @@ void ValidityWatch::hold(const State& state, std::size_t evaluations) {
 }
 
 void ValidityWatch::settle() {
+  look_at_busiest(std::numeric_limits<double>::infinity());
+  sample_due();
+}
+
+void ValidityWatch::sample_due() {
   if (excess_ > worthwhile) look_at_motion(fastest_);
   excess_ = worthwhile;
   if (!due_) return;
@@ -135,26 +148,41 @@ void ValidityWatch::sample(const State& state) {
   if (beyond_ != nullptr) compare_accelerations(state);
 }
 
-bool ValidityWatch::look_at_motion(const State& state) {
+bool ValidityWatch::look_at_busiest(double trusted) {
+  const State* const found = busiest_.found();
+  if (found == nullptr || found->time > trusted) return false;
+  look_at_loads(*found);
+  busiest_.look_taken();
+  return true;
+}
+
+bool ValidityWatch::look_at_loads(const State& state) {
   if (!equations_.derivatives(state.time, state.y, rates_, work_).ok()) return false;
   const Layout& layout = model_.layout();
   motion_.update(state.y, std::span<const double>(rates_).subspan(layout.positions, layout.speeds));
   std::vector<BodyMotion> felt;
   if (field_of(model_) != nullptr) felt = felt_motions(model_, equations_, state, motion_.bodies());
   const std::vector<BodyMotion>& motions = felt.empty() ? motion_.bodies() : felt;
-  if (!bodies_.empty()) frequency_.update(state.y, work_);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    Watched& w = bodies_[i];
     BodyValidity& v = validity_.bodies[i];
-    const double rate = motion_.bodies()[w.body].rate.norm();
-    w.sampled = std::max(w.sampled, rate);
-    note_rate(i, rate, state.time);
-    const LoadRatio load = w.stiffness.evaluate(motions);
+    const LoadRatio load = bodies_[i].stiffness.evaluate(motions);
     v.buckling = std::max(v.buckling, -load.least);
     if (load.size() > v.load.size()) {
       v.load = load;
       v.load_time = state.time;
     }
+  }
+  return true;
+}
+
+bool ValidityWatch::look_at_motion(const State& state) {
+  if (!look_at_loads(state)) return false;
+  frequency_.update(state.y, work_);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    Watched& w = bodies_[i];
+    const double rate = motion_.bodies()[w.body].rate.norm();
+    w.sampled = std::max(w.sampled, rate);
+    note_rate(i, rate, state.time);
   }
   return true;
 }
@@ -232,17 +260,23 @@ void ValidityWatch::remember(Memory& memory) {
   memory(excess_);
   along_.remember(memory);
   closely_.remember(memory);
+  busiest_.remember(memory);
+  memory(next_look_);
 }
 
 void ValidityWatch::finish(const State& trusted, bool sampled) {
   if (bodies_.empty()) return;
   due_ = due_ && held_.time <= trusted.time;
-  settle();
+  look_at_busiest(trusted.time);
+  sample_due();
   if (sampled) sample(trusted);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    double least = 0;
+    for (const Energy& energy : bodies_[i].energies) least += least_energy * energy.whole;
     for (std::size_t f = 0; f < bodies_[i].energies.size(); ++f) {
       const Energy& energy = bodies_[i].energies[f];
-      validity_.bodies[i].highest[f].share = energy.whole > 0 ? energy.highest / energy.whole : 0;
+      const double whole = std::max(energy.whole, least);
+      validity_.bodies[i].highest[f].share = whole > 0 ? energy.highest / whole : 0;
     }
   }
   const auto ratio = [](double a, double b) { return b > 0 ? std::sqrt(a / b) : 0; };

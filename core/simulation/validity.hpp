@@ -9,6 +9,7 @@
 
 #include "withy/core/plugin/equations.hpp"
 #include "withy/core/plugin/memory.hpp"
+#include "withy/core/simulation/busiest_state.hpp"
 #include "withy/core/simulation/carried_frequency.hpp"
 #include "withy/core/simulation/motion_stiffness.hpp"
 #include "withy/core/simulation/states_along.hpp"
@@ -23,8 +24,8 @@ struct HighestMode {
   std::size_t modes = 0;
 };
 
-/// Extremes of one flexible body: of its rate over all steps whose energy is looked at, of the rest over the samples of
-/// a run, among them the steps at which bodies turned fastest.
+/// Extremes of one flexible body: of its rate over all steps whose energy is looked at, of its load over the samples of
+/// a run, the steps at which bodies turned fastest, and the busiest of every few steps.
 struct BodyValidity {
   std::string name;
   std::string station;  ///< whose deflection is held against the body's length (Body::measured_station)
@@ -57,7 +58,8 @@ struct Validity {
 
 /// Samples one run. The interval is counted in evaluations of the equations of motion that steps make, which makes the
 /// samples the same on every machine and at every output interval, and is such that samples take about 2 % of a long
-/// run. Allocates nothing after construction.
+/// run. Loads are looked at more often, for as much again: what a body carries may be there for a few steps, as after
+/// an impact. Allocates nothing after construction.
 class ValidityWatch {
  public:
   /// `beyond`: equations of the same model that neglect less, or null.
@@ -70,11 +72,15 @@ class ValidityWatch {
     if (bodies_.empty()) return;
     along_.observe(state);
     closely_.observe(state);
-    if (due_ && held_.time <= trusted) settle();
+    busiest_.observe(state);
+    if (evaluations >= next_look_ && look_at_busiest(trusted)) next_look_ = evaluations + look_interval;
+    if (due_ && held_.time <= trusted) sample_due();
     if (seen != nullptr && state.time <= trusted) follow(state, *seen);
     if (!due_ && evaluations >= next_) hold(state, evaluations);
   }
-  /// Samples what is due: the equations are about to change.
+  /// Where speeds have jumped.
+  void begin_at(const State& state) { busiest_.begin_at(state); }
+  /// Looks at all that is due: the equations are about to change.
   void settle();
   /// At the last state that can be trusted, which is a sample too where its accelerations say something: at the pole of
   /// a singular mass matrix they do not. Sums become ratios.
@@ -103,11 +109,15 @@ class ValidityWatch {
     double sampled = 0;                             ///< greatest rate of the frame in the samples [rad/s]
   };
   static std::vector<Family> families_of(const ModalShape& shape);
+  void sample_due();
   void hold(const State& state, std::size_t evaluations);
   void follow(const State& state, const Observation& seen);
   void note_rate(std::size_t index, double rate, double time);
   /// \returns whether the equations could be evaluated there.
+  bool look_at_loads(const State& state);
   bool look_at_motion(const State& state);
+  /// \returns whether there was one, up to a time that is trusted [s].
+  bool look_at_busiest(double trusted);
   void sample(const State& state);
   void look_at_energies(const State& state, Watched& w) const;
   void compare_accelerations(const State& state);
@@ -129,6 +139,9 @@ class ValidityWatch {
   State fastest_;  ///< since the last sample, where a body turned faster than in any
   double excess_;  ///< by this factor
   StatesAlong along_, closely_;
+  BusiestState busiest_;
+  std::size_t next_look_ = 0;  ///< evaluations at which the next look at it is due
+  static const std::size_t look_interval;
 };
 
 }  // namespace withy
