@@ -7,8 +7,11 @@
 #include "withy/results/report/report_page.hpp"
 
 namespace withy::campaign {
+namespace {
 
 using Json = nlohmann::ordered_json;
+
+}  // namespace
 
 Json outcome_json(const SweepOutcome& outcome, const std::string& store) {
   Json j = {{"cases", outcome.cases},   {"before", outcome.before},   {"ran", outcome.ran},

@@ -16,7 +16,7 @@
 namespace withy::exchange {
 namespace {
 
-constexpr const char* made = "the scene made of it";
+constexpr const char* scene_made = "the scene made of it";
 
 std::string extension_of(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
@@ -44,13 +44,13 @@ std::string origin_of_path(const std::string& path, const Tree& tree, const Flex
 void check_made(const std::string& text, const Tree& tree, const FlexibleLinks& flexible, const std::string& file,
                 Registry& registry) {
   try {
-    static_cast<void>(parse_scene(text, made, registry));
+    static_cast<void>(parse_scene(text, scene_made, registry));
   } catch (const SceneError& e) {
     std::vector<Diagnostic> problems;
     std::vector<std::string> origins;
     for (Diagnostic problem : e.problems()) {
       const std::string origin = origin_of_path(problem.place.path, tree, flexible, file);
-      origins.push_back(origin.empty() ? fmt::format("{}, line {}", made, problem.place.line) : origin);
+      origins.push_back(origin.empty() ? fmt::format("{}, line {}", scene_made, problem.place.line) : origin);
       problem.place.line = -static_cast<int>(origins.size());
       problems.push_back(std::move(problem));
     }

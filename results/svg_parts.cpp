@@ -9,22 +9,22 @@ namespace withy {
 namespace {
 
 // Palette of Okabe and Ito. Thick below thin: curves that coincide stay visible.
-constexpr std::array<Pen, 12> pens{{{"#e69f00", "none", 4.5},
-                                    {"#d55e00", "7 3", 2.4},
-                                    {"#56b4e9", "none", 3.2},
-                                    {"#000000", "2 2", 1.4},
-                                    {"#009e73", "10 3 2 3", 1.8},
-                                    {"#cc79a7", "4 4", 1.6},
-                                    {"#0072b2", "none", 2.0},
-                                    {"#999999", "none", 2.4},
-                                    {"#b8a800", "8 3", 2.0},
-                                    {"#7f3c8d", "12 4", 1.6},
-                                    {"#5d4037", "3 3", 2.0},
-                                    {"#80ba5a", "6 2 2 2", 2.0}}};
+constexpr std::array<Pen, 12> palette{{{"#e69f00", "none", 4.5},
+                                       {"#d55e00", "7 3", 2.4},
+                                       {"#56b4e9", "none", 3.2},
+                                       {"#000000", "2 2", 1.4},
+                                       {"#009e73", "10 3 2 3", 1.8},
+                                       {"#cc79a7", "4 4", 1.6},
+                                       {"#0072b2", "none", 2.0},
+                                       {"#999999", "none", 2.4},
+                                       {"#b8a800", "8 3", 2.0},
+                                       {"#7f3c8d", "12 4", 1.6},
+                                       {"#5d4037", "3 3", 2.0},
+                                       {"#80ba5a", "6 2 2 2", 2.0}}};
 
 }  // namespace
 
-const Pen& pen(std::size_t i) { return pens[i % pens.size()]; }
+const Pen& pen(std::size_t i) { return palette[i % palette.size()]; }
 
 std::string stroke(const Pen& p) {
   return fmt::format(R"(fill="none" stroke="{}" stroke-width="{}" stroke-dasharray="{}")", p.colour, p.thickness,

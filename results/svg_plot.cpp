@@ -16,7 +16,7 @@ namespace {
 /// To read others between them.
 constexpr std::size_t enough_marks = 3;
 
-constexpr double width = 860;
+constexpr double plot_width = 860;
 constexpr double left = 88;
 constexpr double right = 24;
 constexpr double foot = 52;  ///< below each panel: marks and label of its axis
@@ -25,7 +25,9 @@ constexpr double foot = 52;  ///< below each panel: marks and label of its axis
 struct Scale {
   double x0, x1, y0, y1, top, height;
   bool log_x, log_y;
-  [[nodiscard]] double x(double v) const { return left + (place(v, log_x) - x0) / (x1 - x0) * (width - left - right); }
+  [[nodiscard]] double x(double v) const {
+    return left + (place(v, log_x) - x0) / (x1 - x0) * (plot_width - left - right);
+  }
   [[nodiscard]] double y(double v) const { return top + (y1 - place(v, log_y)) / (y1 - y0) * height; }
   [[nodiscard]] std::vector<double> x_marks() const { return marks(x0, x1, log_x); }
   [[nodiscard]] std::vector<double> y_marks() const { return marks(y0, y1, log_y); }
@@ -58,13 +60,13 @@ Scale scale_of(const Panel& panel, double top) {
   s.y0 -= margin;
   s.y1 += margin;
   if (panel.equal) {
-    const double x_unit = (s.x1 - s.x0) * 1.08 / (width - left - right), y_unit = (s.y1 - s.y0) / s.height;
+    const double x_unit = (s.x1 - s.x0) * 1.08 / (plot_width - left - right), y_unit = (s.y1 - s.y0) / s.height;
     const auto stretch = [unit = std::max(x_unit, y_unit)](double& low, double& high, double pixels) {
       const double middle = (low + high) / 2;
       low = middle - unit * pixels / 2;
       high = middle + unit * pixels / 2;
     };
-    stretch(s.x0, s.x1, width - left - right);
+    stretch(s.x0, s.x1, plot_width - left - right);
     stretch(s.y0, s.y1, s.height);
   }
   return s;
@@ -76,7 +78,7 @@ void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
     fmt::format_to(std::back_inserter(out),
                    "<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#ddd\"/>\n"
                    "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:.6g}</text>\n",
-                   left, width - right, s.y(v), s.y(v), left - 7, s.y(v) + 4.5, v);
+                   left, plot_width - right, s.y(v), s.y(v), left - 7, s.y(v) + 4.5, v);
   }
   for (const double v : s.x_marks()) {
     fmt::format_to(std::back_inserter(out),
@@ -88,7 +90,7 @@ void draw_axes(std::string& out, const Panel& panel, const Scale& s) {
                  "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>\n"
                  "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n"
                  "<text transform=\"translate(20 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-                 left, s.top, width - left - right, s.height, (left + width - right) / 2, bottom + 38,
+                 left, s.top, plot_width - left - right, s.height, (left + plot_width - right) / 2, bottom + 38,
                  escaped(panel.x_label), s.top + s.height / 2, escaped(panel.y_label));
 }
 
@@ -146,11 +148,11 @@ std::vector<double> decade_marks(double low, double high) {
 
 std::string svg_plot(const std::string& title, const std::vector<std::string>& legend,
                      const std::vector<Panel>& panels) {
-  const SvgLegend entries = svg_legend(legend, left, width, 47);
+  const SvgLegend entries = svg_legend(legend, left, plot_width, 47);
   double top = entries.bottom + 25;
   double height = top + 8;
   for (const Panel& panel : panels) height += panel.height + foot;
-  std::string out = svg_begin(width, height, left, title);
+  std::string out = svg_begin(plot_width, height, left, title);
   out += entries.text;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Scale s = scale_of(panels[i], top);
@@ -158,7 +160,7 @@ std::string svg_plot(const std::string& title, const std::vector<std::string>& l
     fmt::format_to(std::back_inserter(out),
                    "<clipPath id=\"frame{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n"
                    "<g clip-path=\"url(#frame{})\">\n",
-                   i, left, top, width - left - right, panels[i].height, i);
+                   i, left, top, plot_width - left - right, panels[i].height, i);
     for (std::size_t c = 0; c < panels[i].curves.size(); ++c)
       draw_curve(out, panels[i].curves[c], s, pen(panels[i].curves[c].pen.value_or(c)));
     out += "</g>\n";

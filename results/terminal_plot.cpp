@@ -9,24 +9,25 @@
 namespace withy {
 namespace {
 
-constexpr int columns = 66, rows = 10;  ///< characters of a panel; each is two by four dots
+constexpr int panel_columns = 66, panel_rows = 10;  ///< characters of a panel; each is two by four dots
 
 /// Dots of one panel. A character with dots of one curve is a Braille pattern; with several curves all are letters.
 class Canvas {
  public:
-  explicit Canvas(bool letters) : letters_(letters), patterns_(columns * rows), owners_(columns * rows, ' ') {}
+  explicit Canvas(bool letters)
+      : letters_(letters), patterns_(panel_columns * panel_rows), owners_(panel_columns * panel_rows, ' ') {}
   /// \param x, y dots from the lower left corner
   void dot(int x, int y, char owner) {
-    if (x < 0 || x >= 2 * columns || y < 0 || y >= 4 * rows) return;
+    if (x < 0 || x >= 2 * panel_columns || y < 0 || y >= 4 * panel_rows) return;
     static constexpr unsigned bits[4][2] = {{0x40, 0x80}, {0x04, 0x20}, {0x02, 0x10}, {0x01, 0x08}};
-    const auto at = static_cast<std::size_t>((rows - 1 - y / 4) * columns + x / 2);
+    const auto at = static_cast<std::size_t>((panel_rows - 1 - y / 4) * panel_columns + x / 2);
     patterns_[at] |= bits[y % 4][x % 2];
     owners_[at] = owner;
   }
   [[nodiscard]] std::string line(int row) const {
     std::string text;
-    for (int c = 0; c < columns; ++c) {
-      const auto at = static_cast<std::size_t>(row * columns + c);
+    for (int c = 0; c < panel_columns; ++c) {
+      const auto at = static_cast<std::size_t>(row * panel_columns + c);
       const unsigned code = 0x2800 + patterns_[at];
       if (patterns_[at] == 0)
         text += ' ';
@@ -50,9 +51,10 @@ void draw(Canvas& canvas, const Curve& curve, char owner, double x0, double x1, 
     return high > low ? static_cast<int>(std::lround((v - low) / (high - low) * (dots - 1))) : dots / 2;
   };
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
-    const int x = place(curve.x[i], x0, x1, 2 * columns), y = place(curve.y[i], y0, y1, 4 * rows);
+    const int x = place(curve.x[i], x0, x1, 2 * panel_columns), y = place(curve.y[i], y0, y1, 4 * panel_rows);
     const std::size_t before = i > 0 ? i - 1 : 0;
-    const int px = place(curve.x[before], x0, x1, 2 * columns), py = place(curve.y[before], y0, y1, 4 * rows);
+    const int px = place(curve.x[before], x0, x1, 2 * panel_columns),
+              py = place(curve.y[before], y0, y1, 4 * panel_rows);
     const int steps = std::max({std::abs(x - px), std::abs(y - py), 1});
     for (int s = 0; s <= steps; ++s) canvas.dot(px + (x - px) * s / steps, py + (y - py) * s / steps, owner);
   }
@@ -72,14 +74,14 @@ std::string panel_text(const Panel& panel) {
   for (std::size_t c = 0; c < panel.curves.size(); ++c)
     draw(canvas, panel.curves[c], static_cast<char>('a' + c % 26), x0, x1, y0, y1);
   std::string out = panel.y_label + '\n';
-  for (int r = 0; r < rows; ++r) {
+  for (int r = 0; r < panel_rows; ++r) {
     const std::string mark =
-        r == 0 ? fmt::format("{:.4g}", y1) : (r == rows - 1 ? fmt::format("{:.4g}", y0) : std::string());
+        r == 0 ? fmt::format("{:.4g}", y1) : (r == panel_rows - 1 ? fmt::format("{:.4g}", y0) : std::string());
     out += fmt::format("{:>10} |{}\n", mark, canvas.line(r));
   }
   const std::string first = fmt::format("{:.4g}", x0), last = fmt::format("{:.4g} s", x1);
-  return out + fmt::format("{:>11}+{:-<{}}\n{:>12}{}{:>{}}\n", "", "", columns, "", first, last,
-                           columns - static_cast<int>(first.size()));
+  return out + fmt::format("{:>11}+{:-<{}}\n{:>12}{}{:>{}}\n", "", "", panel_columns, "", first, last,
+                           panel_columns - static_cast<int>(first.size()));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr const char* origin = "damping of the mounted tree";
+constexpr const char* damping_origin = "damping of the mounted tree";
 /// A ratio twice the common one costs as much as a mode that is 3 % off what is asked.
 constexpr double weight_of_spread = 1e-3;
 
@@ -62,10 +62,10 @@ Change ratios_of(const std::string& body, const std::vector<std::pair<Index, dou
 Prepared with_one_mode(const Prepared& prepared, Registry& registry, const std::vector<Damped>& bodies, Index mode) {
   SceneValues values = prepared.values;
   for (const Damped& d : bodies) {
-    values.set("bodies." + d.name + ".damping_ratio", Value(0.0), origin);
+    values.set("bodies." + d.name + ".damping_ratio", Value(0.0), damping_origin);
     const bool on = mode > 0 && mode <= d.modes;
     const Change change = ratios_of(d.name, {{on ? mode : 1, on ? 1.0 : 0.0}});
-    values.set(change.path, change.value, origin);
+    values.set(change.path, change.value, damping_origin);
   }
   return prepare(std::move(values), registry);
 }
@@ -148,7 +148,7 @@ Eigen::VectorXd own_ratios(Eigen::MatrixXd shares, Eigen::VectorXd missing, cons
 std::vector<double> reached_ratios(const Configuration& c, Registry& registry, const std::vector<Change>& changes,
                                    const Eigen::VectorXd& frequencies) {
   SceneValues values = c.prepared().values;
-  for (const Change& change : changes) values.set(change.path, change.value, origin);
+  for (const Change& change : changes) values.set(change.path, change.value, damping_origin);
   const Prepared damped = prepare(std::move(values), registry);
   const TangentDynamics dynamics(damped.scene.model, damped.scene.formulation->terms());
   const Tangents t = dynamics.tangents(c.state().time, c.state().y, accelerations(dynamics, c.state(), c.held()));

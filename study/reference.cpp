@@ -26,7 +26,7 @@ constexpr double next_level = 2;
 constexpr double little_of_all = 0.25;
 /// Of the time that is left: what the last level may have cost where levels begin anew in another family.
 constexpr double level_share = 0.1, longest_level = 0.2;
-constexpr double most = std::numeric_limits<double>::infinity();
+constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 class ReferenceSearch {
  public:
@@ -56,7 +56,7 @@ class ReferenceSearch {
     }
     if (found().reference || !before_ || found().interrupted || !lower_affordable(*coarse_, *before_)) return;
     const std::string trouble = found().trouble;
-    found().reference = add_to_lower(most);
+    found().reference = add_to_lower(no_limit);
     if (!found().reference && found().trouble.empty()) found().trouble = trouble;
   }
 
@@ -94,7 +94,7 @@ class ReferenceSearch {
   /// Levels anew in the family that is known better, with as many modes as the last; what a higher rung adds is left in
   /// the family so far where that costs much of the time that is left.
   void begin_in_family() {
-    const double left = goal_.left ? goal_.left() : most;
+    const double left = goal_.left ? goal_.left() : no_limit;
     if (coarse_->walk.seconds > level_share * left) return;
     Point there = coarse_->point;
     there.family = families_.family();

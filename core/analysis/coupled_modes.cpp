@@ -26,19 +26,19 @@ Solver decomposed(const Eigen::MatrixXd& A) {
 }
 
 /// An eigenvalue with its vectors.
-struct Root {
+struct CoupledRoot {
   Complex value;
   Eigen::VectorXcd right, left;
 };
 
 /// Roots of A but for so many at zero, in the order of |λ|.
-std::vector<Root> roots_beside_zeros(const Eigen::MatrixXd& A, std::size_t zeros) {
+std::vector<CoupledRoot> roots_beside_zeros(const Eigen::MatrixXd& A, std::size_t zeros) {
   const Solver solver = decomposed(A);
   const Eigen::MatrixXcd z = solver.eigenvectors(), w = left_vectors(A, solver.eigenvalues());
-  std::vector<Root> roots;
+  std::vector<CoupledRoot> roots;
   for (Eigen::Index i = 0; i < A.rows(); ++i) roots.push_back({solver.eigenvalues()[i], z.col(i), w.col(i)});
   std::stable_sort(roots.begin(), roots.end(),
-                   [](const Root& a, const Root& b) { return std::abs(a.value) < std::abs(b.value); });
+                   [](const CoupledRoot& a, const CoupledRoot& b) { return std::abs(a.value) < std::abs(b.value); });
   roots.erase(roots.begin(), roots.begin() + static_cast<std::ptrdiff_t>(zeros));
   return roots;
 }
@@ -111,7 +111,7 @@ class Naming {
         units_(std::move(units)) {}
 
   /// \param single a real eigenvalue
-  [[nodiscard]] Mode mode(const Root& root, bool single) const {
+  [[nodiscard]] Mode mode(const CoupledRoot& root, bool single) const {
     Mode mode = of(root.value, root.right, most_taking_part(root.left, root.right, m_));
     mode.single = single;
     mode.partner = mode.single ? root.value : std::conj(root.value);
@@ -221,7 +221,7 @@ std::vector<Mode> modes_with_states(const Tangents& tangents, const Held& held) 
   const Naming naming(held, units.cwiseInverse());
   Zeros zeros(balanced, naming);
   std::vector<Mode> modes = std::move(zeros.modes);
-  for (const Root& root : roots_beside_zeros(balanced, zeros.count))
+  for (const CoupledRoot& root : roots_beside_zeros(balanced, zeros.count))
     if (!(root.value.imag() < 0)) modes.push_back(naming.mode(root, root.value.imag() == 0));
   sort_modes(modes);
   return modes;
@@ -243,20 +243,21 @@ MapModes modes_of_map(const PeriodMap& of, const Held& held) {
   Zeros zeros(balanced, naming);
   MapModes found{std::move(zeros.modes), zeros_of(in_units(of.map))};
 
-  std::vector<Root> roots = roots_beside_zeros(balanced, zeros.count);
-  const auto multiplier = [&](const Root& r) { return 1.0 + of.period * r.value; };
-  std::stable_sort(roots.begin(), roots.end(),
-                   [&](const Root& a, const Root& b) { return std::abs(multiplier(a)) > std::abs(multiplier(b)); });
+  std::vector<CoupledRoot> roots = roots_beside_zeros(balanced, zeros.count);
+  const auto multiplier = [&](const CoupledRoot& r) { return 1.0 + of.period * r.value; };
+  std::stable_sort(roots.begin(), roots.end(), [&](const CoupledRoot& a, const CoupledRoot& b) {
+    return std::abs(multiplier(a)) > std::abs(multiplier(b));
+  });
   roots.resize(roots.size() - std::min(roots.size(), found.gone));
   const double least = least_multiplier * (roots.empty() ? 1.0 : std::max(1.0, std::abs(multiplier(roots.front()))));
-  found.gone += std::erase_if(roots, [&](const Root& r) { return std::abs(multiplier(r)) < least; });
-  std::erase_if(roots, [](const Root& r) { return r.value.imag() < 0; });
+  found.gone += std::erase_if(roots, [&](const CoupledRoot& r) { return std::abs(multiplier(r)) < least; });
+  std::erase_if(roots, [](const CoupledRoot& r) { return r.value.imag() < 0; });
   Eigen::MatrixXcd motions(n, static_cast<Eigen::Index>(roots.size()));
   for (std::size_t i = 0; i < roots.size(); ++i)
     motions.col(static_cast<Eigen::Index>(i)) = units.cwiseInverse().cast<Complex>().cwiseProduct(roots[i].right);
   const MotionOverPeriod between = of.between(motions);
   for (std::size_t i = 0; i < roots.size(); ++i) {
-    Root root = roots[i];
+    CoupledRoot root = roots[i];
     const bool single = root.value.imag() == 0;
     root.value = std::log(multiplier(root)) / of.period;
     root.value = with_most_energy(root.value, single, between, static_cast<Eigen::Index>(i), of);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <unsupported/Eigen/MatrixFunctions>
@@ -16,7 +15,6 @@ namespace withy {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double full_turn = 2 * std::numbers::pi;
 constexpr int fewest_steps = 64, most_steps = 1 << 17;
 /// Steps times the cube of rows: some ten seconds.
 constexpr double most_work = 1e9;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
@@ -15,7 +14,6 @@ namespace withy {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double full_turn = 2 * std::numbers::pi;
 constexpr std::size_t fewest_blades = 3, most_blades = 8;
 
 std::vector<int> children(const Model& model, int parent) {

@@ -16,7 +16,7 @@ constexpr double converged_step = 1e-11;
 /// Below this share of the largest singular value the stiffness counts as singular.
 constexpr double singular_share = 1e-12;
 
-using Solver = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
+using RankSolver = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
 
 double greatest(const Eigen::VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0; }
 
@@ -33,10 +33,10 @@ struct Change {
 };
 
 /// Units in which what is free and the states of loads are measured alike, and the linear problem in them.
-class Scaled {
+class ScaledProblem {
  public:
   /// \param mass M_ii of the free speeds
-  explicit Scaled(const Eigen::VectorXd& mass) : of_free_(mass.cwiseAbs().cwiseSqrt()) {
+  explicit ScaledProblem(const Eigen::VectorXd& mass) : of_free_(mass.cwiseAbs().cwiseSqrt()) {
     for (double& s : of_free_) s = s > 0 ? 1 / s : 1.0;
   }
 
@@ -221,9 +221,9 @@ class Newton {
   Eigen::Index n_;
   State state_;
   Eigen::VectorXd rest_;
-  Scaled scaled_;
+  ScaledProblem scaled_;
   Eigen::MatrixXd matrix_;
-  Solver solver_;
+  RankSolver solver_;
   bool singular_ = false;
 };
 

@@ -15,7 +15,6 @@
 namespace withy {
 namespace {
 
-constexpr double full_turn = 2 * std::numbers::pi;
 /// Prime, so that no harmonic below it hides.
 constexpr Eigen::Index compared_angles = 11;
 /// A share of terms that cancel which counts as rounding, and the least displacement [rad, m] it is taken of.

@@ -3,12 +3,15 @@
 /// them. What a frozen angle cannot tell is told by a whole turn.
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "withy/core/analysis/steady_state.hpp"
 
 namespace withy {
+
+inline constexpr double full_turn = 2 * std::numbers::pi;  ///< [rad]
 
 /// How the hinges of a model move about a state, and how long it takes them to come back.
 struct Turning {

@@ -61,7 +61,7 @@ constexpr std::size_t any_number = Formula::most_pending;
 
 bool less(const Series& a, const Series& b) { return a[0] < b[0]; }
 
-constexpr std::array functions = {
+constexpr std::array formula_functions = {
     Function{"sqrt", 1, 1, [](Numbers x) { return std::sqrt(x[0]); }, [](AllSeries x) { return root(x[0]); }},
     Function{"abs", 1, 1, [](Numbers x) { return std::abs(x[0]); },
              [](AllSeries x) { return chained(x[0], std::abs(x[0][0]), x[0][0] < 0 ? -1 : 1, 0); }},
@@ -214,11 +214,11 @@ class FormulaReader {
     put({.operation = Operation::name, .index = static_cast<std::size_t>(found - names.begin())}, 0);
   }
   void call(const std::string& name) {
-    const auto* function =
-        std::find_if(functions.begin(), functions.end(), [&](const Function& f) { return f.name == name; });
-    if (function == functions.end()) {
+    const auto* function = std::find_if(formula_functions.begin(), formula_functions.end(),
+                                        [&](const Function& f) { return f.name == name; });
+    if (function == formula_functions.end()) {
       std::string known;
-      for (const Function& f : functions) known += (known.empty() ? "" : ", ") + std::string(f.name);
+      for (const Function& f : formula_functions) known += (known.empty() ? "" : ", ") + std::string(f.name);
       fail("no function '" + name + "'; known: " + known);
     }
     take('(');
@@ -232,7 +232,7 @@ class FormulaReader {
       fail(name + " takes " + std::to_string(function->least) + (function->least == 1 ? " number" : " numbers") +
            ", got " + std::to_string(count));
     put({.operation = Operation::function,
-         .index = static_cast<std::size_t>(function - functions.begin()),
+         .index = static_cast<std::size_t>(function - formula_functions.begin()),
          .count = count},
         count);
   }
@@ -260,7 +260,7 @@ double Formula::operator()(std::span<const double> values) const noexcept {
         continue;
       case Operation::function:
         size -= step.count;
-        stack[size] = functions[step.index].of(Numbers(stack).subspan(size, step.count));
+        stack[size] = formula_functions[step.index].of(Numbers(stack).subspan(size, step.count));
         ++size;
         continue;
       default:
@@ -293,7 +293,7 @@ std::array<double, 3> Formula::with_derivatives(double x) const noexcept {
         continue;
       case Operation::function:
         size -= step.count;
-        stack[size] = functions[step.index].series(AllSeries(stack).subspan(size, step.count));
+        stack[size] = formula_functions[step.index].series(AllSeries(stack).subspan(size, step.count));
         ++size;
         continue;
       default:

@@ -22,12 +22,13 @@ using Json = nlohmann::ordered_json;
 
 std::string_view page() { return {withy_report_page, withy_report_page_end}; }
 
-constexpr std::string_view place = "/* data of withy */";
+constexpr std::string_view data_place = "/* data of withy */";
 // Each run stands on a line of its own between these.
-constexpr std::string_view before = R"(<script type="application/json" id="withy-data">{"format":"withy-report/1")";
+constexpr std::string_view data_before =
+    R"(<script type="application/json" id="withy-data">{"format":"withy-report/1")";
 constexpr std::string_view study_before =
     R"(<script type="application/json" id="withy-data">{"format":"withy-study/1",)";
-constexpr std::string_view first_run = ",\"runs\":[\n", between = ",\n", after = "\n]}</script>";
+constexpr std::string_view first_run = ",\"runs\":[\n", between = ",\n", data_after = "\n]}</script>";
 
 /// Writes JSON so that it cannot end the element it stands in.
 void write_guarded(std::string_view json, OutputFile& page) {
@@ -40,7 +41,7 @@ void write_guarded(std::string_view json, OutputFile& page) {
 }
 
 void write_head(const std::string& title, int reference, OutputFile& page) {
-  page.write(before);
+  page.write(data_before);
   write_guarded(",\"title\":" + page_json(title), page);
   page.write(",\"reference\":" + std::to_string(reference));
   page.write(first_run);
@@ -49,12 +50,12 @@ void write_head(const std::string& title, int reference, OutputFile& page) {
 /// The page with what `write_data` puts in the place of its data.
 void write_page(const std::filesystem::path& file, const std::function<void(OutputFile&)>& write_data) {
   const std::string_view empty = page();
-  const std::size_t at = empty.find(place);
+  const std::size_t at = empty.find(data_place);
   if (at == std::string_view::npos) throw std::logic_error("this build holds no page for reports");
   write_file(file, [&](OutputFile& page) {
     page.write(empty.substr(0, at));
     write_data(page);
-    page.write(empty.substr(at + place.size()));
+    page.write(empty.substr(at + data_place.size()));
   });
 }
 
@@ -75,7 +76,7 @@ void write_report(const std::filesystem::path& file, const ReportContent& conten
       if (i > 0) page.write(between);
       write_guarded(content.runs[i], page);
     }
-    page.write(after);
+    page.write(data_after);
   });
 }
 
@@ -84,7 +85,7 @@ void write_report(const std::filesystem::path& file, const std::string& title,
   write_page(file, [&](OutputFile& page) {
     write_head(title, -1, page);
     run([&](std::string_view piece) { write_guarded(piece, page); });
-    page.write(after);
+    page.write(data_after);
   });
 }
 
@@ -104,7 +105,8 @@ std::vector<std::string> read_report(const std::filesystem::path& file) {
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   if (text.find(study_before) != std::string::npos)
     throw ResultsError(file.string() + " shows a study, and holds no runs to put on a page; it is one already");
-  const std::size_t begin = text.find(before), first = text.find(first_run, begin), end = text.find(after, first);
+  const std::size_t begin = text.find(data_before), first = text.find(first_run, begin),
+                    end = text.find(data_after, first);
   if (begin == std::string::npos || first == std::string::npos || end == std::string::npos)
     throw ResultsError(file.string() + " is no report of this program");
   std::vector<std::string> runs;

@@ -43,15 +43,18 @@ inline Eigen::MatrixXd gram(const ShapeFunctions& f, double length,
   const auto n = static_cast<Eigen::Index>(f.count());
   const int panels = 1 + static_cast<int>(f.wave_number() * length / phase);
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd of_panel(n, 20);  // a product a panel, for many functions
   for (int p = 0; p < panels; ++p) {
+    Eigen::Index column = 0;
     for (std::size_t k = 0; k < 10; ++k) {
       for (const double sign : {-1.0, 1.0}) {
         const double x = length * (p + 0.5 * (1 + sign * Gauss::abscissa()[k])) / panels;
         const FunctionValues v(f, x);
         const Eigen::Map<const Eigen::VectorXd> a((v.*member).data(), n);
-        G += 0.5 * Gauss::weights()[k] / panels * a * a.transpose();
+        of_panel.col(column++) = std::sqrt(0.5 * Gauss::weights()[k] / panels) * a;
       }
     }
+    G += of_panel * of_panel.transpose();
   }
   return G;
 }
