@@ -78,11 +78,20 @@ Json equilibrium_json(const study::Configuration& c, const study::Equilibrium& f
   return j;
 }
 
+namespace {
+
+std::string along_forces(const SteadyState& s) {
+  return s.relaxations > 0 ? fmt::format("{} steps along the forces and ", s.relaxations) : "";
+}
+
+}  // namespace
+
 std::string equilibrium_text(const study::Configuration& c, const study::Equilibrium& found) {
   const Scene& scene = c.prepared().scene;
-  std::string text = fmt::format("{} in {}: {} after {} steps of Newton's method\n\n{}", scene.file,
-                                 scene.formulation_name, found.passing.empty() ? "steady" : "balanced at this instant",
-                                 found.steady.iterations, hinge_table(c, found.steady).str());
+  std::string text =
+      fmt::format("{} in {}: {} after {}{} steps of Newton's method\n\n{}", scene.file, scene.formulation_name,
+                  found.passing.empty() ? "steady" : "balanced at this instant", along_forces(found.steady),
+                  found.steady.iterations, hinge_table(c, found.steady).str());
   if (c.layout().continuous > 0 || c.sampled()) text += '\n' + state_table(c, found.steady).str();
   if (!found.deflections.empty()) text += '\n' + deflection_table(found).str();
   if (const std::string words = study::against_next_text(found.against, "deflections"); !words.empty())

@@ -80,6 +80,7 @@ Json steady_json(const Model& model, const SteadyState& steady, const Held& held
   Json j;
   j["converged"] = steady.converged;
   j["iterations"] = steady.iterations;
+  j["relaxations"] = steady.relaxations;
   j["residual"] = left;
   j["efforts"] = std::move(efforts);
   if (model.layout().continuous > 0) {

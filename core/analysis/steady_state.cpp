@@ -2,8 +2,11 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <stdexcept>
 
+#include "withy/core/analysis/relaxation.hpp"
 #include "withy/core/analysis/unreached.hpp"
 #include "withy/core/model/hinge_rates.hpp"
 
@@ -13,6 +16,8 @@ namespace {
 constexpr int most_iterations = 100;
 /// A step this small against the coordinates and what they have moved is rounding.
 constexpr double converged_step = 1e-11;
+/// Who starts as near as this [rad] to a balance means that one, though it may not last, as of an upright pendulum.
+constexpr double near = 0.5;
 /// Below this share of the largest singular value the stiffness counts as singular.
 constexpr double singular_share = 1e-12;
 
@@ -99,11 +104,12 @@ class ScaledProblem {
 
 class Newton {
  public:
+  /// From a state in which no mode moves.
   Newton(const TangentDynamics& dynamics, const State& start, const Held& held)
       : dynamics_(dynamics),
         free_(free_speeds(held)),
         n_(static_cast<Eigen::Index>(held.size())),
-        state_(at_rest(dynamics.model().layout(), start)),
+        state_(start),
         rest_(dynamics.steady_accelerations(start.time)),
         scaled_(dynamics.mass_diagonal(state_.time, state_.y)(free_)) {}
 
@@ -141,13 +147,6 @@ class Newton {
   }
 
  private:
-  /// No mode moves.
-  static State at_rest(const Layout& layout, State state) {
-    for (const Slot& slot : layout.bodies) {
-      for (std::size_t i = 0; i < slot.speeds; ++i) state.y[layout.positions + slot.speed + i] = 0;
-    }
-    return state;
-  }
   [[nodiscard]] Eigen::Map<const Eigen::VectorXd> states() const {
     const Layout& layout = dynamics_.model().layout();
     return {state_.y.data() + layout.positions + layout.speeds, static_cast<Eigen::Index>(layout.continuous)};
@@ -229,6 +228,29 @@ class Newton {
 
 }  // namespace
 
+namespace {
+
+/// No mode moves.
+State at_rest(const Layout& layout, State state) {
+  for (const Slot& slot : layout.bodies)
+    for (std::size_t i = 0; i < slot.speeds; ++i) state.y[layout.positions + slot.speed + i] = 0;
+  return state;
+}
+
+/// The greatest angle that a hinge has come by [rad], of coordinates that are one.
+double turned(const Model& model, const State& from, const State& to) {
+  double angle = 0;
+  for (std::size_t h = 0; h < model.hinges().size(); ++h)
+    for (const HingeRate& r : hinge_rates(*model.hinges()[h].hinge)) {
+      if (!r.angular || !r.coordinate) continue;
+      const std::size_t i = model.layout().hinges[h].position + *r.coordinate;
+      angle = std::max(angle, std::abs(to.y[i] - from.y[i]));
+    }
+  return angle;
+}
+
+}  // namespace
+
 std::vector<Eigen::Index> free_speeds(const Held& held) {
   std::vector<Eigen::Index> indices;
   for (std::size_t i = 0; i < held.size(); ++i) {
@@ -250,7 +272,18 @@ Eigen::VectorXd accelerations(const TangentDynamics& dynamics, const State& stat
 }
 
 SteadyState find_steady_state(const TangentDynamics& dynamics, const State& start, const Held& held) {
-  return Newton(dynamics, start, held).solve();
+  const State resting = at_rest(dynamics.model().layout(), start);
+  SteadyState found = Newton(dynamics, resting, held).solve();
+  if (found.converged) {
+    const double angle = turned(dynamics.model(), start, found.state);
+    if (angle < near || (angle < std::numbers::pi && lasts(dynamics, found.state, held))) return found;
+  }
+  const std::optional<Relaxation> relaxation = relaxed(dynamics, resting, held);
+  if (!relaxation) return found;
+  SteadyState settled = Newton(dynamics, relaxation->state, held).solve();
+  if (!settled.converged) return found;
+  settled.relaxations = relaxation->steps;
+  return settled;
 }
 
 namespace {

@@ -24,6 +24,7 @@ struct SteadyState {
   State state;  ///< the steady state, or the best found
   bool converged = false;
   int iterations = 0;       ///< of Newton's method
+  int relaxations = 0;      ///< steps along the forces before these
   Eigen::VectorXd efforts;  ///< [N m, N] that held speeds need beside the loads; of the free ones what is left over
   Eigen::VectorXd rates;    ///< of the continuous states of loads: what is left over
   Eigen::VectorXd renewed;  ///< of what sampled loads hold: what a sample still changes; empty where none are looked at
@@ -38,7 +39,9 @@ struct SteadyState {
 /// speeds constant: those of modes zero, those of hinges as `start` has them. Newton's method with exact derivatives,
 /// its steps shortened until the next simplified step is smaller (the affine-invariant test of Deuflhard 2004,
 /// section 3.3); where the stiffness is singular, the shortest step in the least-squares sense, so that neutral
-/// coordinates stay where they are.
+/// coordinates stay where they are. Where that leads nowhere, turns a hinge by half a turn or more, or by more than 0.5
+/// rad to a balance that does not last, the forces are followed first (`relaxed`): to where a damped mechanism would
+/// come to rest. Where that leads nowhere, what Newton's method found stands.
 SteadyState find_steady_state(const TangentDynamics& dynamics, const State& start, const Held& held);
 
 /// Whether what the free speeds feel begins to change as the hinges turn with the state's rates: it does where gravity

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -91,6 +93,46 @@ TEST(Balance, IsKeptByWeightOnAnUprightAxle) {
   for (const std::string by : {"0", "1e-10"})
     for (const std::string& said : problems(leaning(by))) EXPECT_EQ(said, "") << by;
   for (const std::string& said : problems(leaning("1e-7"))) EXPECT_THAT(said, HasSubstr("nothing holds axle"));
+}
+
+/// A chain of rods in the plane, the first turned so far from the horizontal; weight acts down.
+std::string chain(int rods, const std::string& angle) {
+  std::string bodies = "\ngravity: [0, -9.81, 0]\nbodies:\n", hinges = "hinges:\n", parent = "world";
+  for (int i = 1; i <= rods; ++i) {
+    const std::string n = std::to_string(i);
+    bodies += "  rod" + n +
+              ": {type: rigid, mass: 1, center_of_mass: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1, 0, 0, 0], " +
+              "frames: {end: {position: [1, 0, 0]}}}\n";
+    hinges += "  joint" + n + ": {type: revolute, axis: [0, 0, 1], parent: " + parent + ", child: rod" + n + "}\n";
+    parent = "rod" + n + ".end";
+  }
+  return bodies + hinges + "initial: {hinges: {joint1: {position: [" + angle + "]}}}\n";
+}
+
+// Where Newton's method ends depends on rounding: of 2ⁿ balances of n rods one lasts. From the horizontal it does not
+// move at all, for there K is zero.
+TEST(Balance, OfAChainThatIsFarFromItIsWhereItHangs) {
+  for (const int rods : {1, 2, 6, 30}) {
+    for (const std::string start : {"0", "0.3", "3"}) {
+      SCOPED_TRACE(std::to_string(rods) + " rods from " + start);
+      const Prepared prepared = scene_of(chain(rods, start));
+      const Equilibrium found = find_equilibrium(at_start(prepared), {}, plugins());
+      ASSERT_EQ(found.problem, "");
+      const std::vector<double>& y = found.steady.state.y;
+      double angle = 0;
+      for (int i = 0; i < rods; ++i) {
+        angle += y[static_cast<std::size_t>(i)];
+        EXPECT_NEAR(std::sin(angle), -1, 1e-12) << "rod " << i + 1;
+      }
+    }
+  }
+}
+
+TEST(Balance, NearAnUprightPendulumIsThatOne) {
+  const Equilibrium found = find_equilibrium(at_start(scene_of(chain(2, "1.4"))), {}, plugins());
+  ASSERT_EQ(found.problem, "");
+  EXPECT_EQ(found.steady.relaxations, 0);
+  EXPECT_NEAR(found.steady.state.y[0], 0.5 * std::numbers::pi, 1e-12);
 }
 
 /// An integral that nothing feeds back goes on, however slowly.
