@@ -9,6 +9,7 @@
 #include "withy/core/plugin/formulation.hpp"
 #include "withy/core/simulation/accuracy.hpp"
 #include "withy/study/candidates.hpp"
+#include "withy/study/common_velocity.hpp"
 
 namespace withy::study {
 namespace {
@@ -55,14 +56,24 @@ void add_plan(Certificate& c, const Prepared& prepared, RungPlan plan, double re
 }
 
 /// Among the indicators, in its place.
+void add(Certificate& c, const Indicator& indicator) {
+  const auto after = std::find_if(c.indicators.begin(), c.indicators.end(),
+                                  [&](const Indicator& i) { return i.use() < indicator.use(); });
+  c.indicators.insert(after, indicator);
+}
+
 void add_rounding(Certificate& c) {
   constexpr double limit = 1e-6;
   if (!c.rounding) return;
-  const Indicator rounding{"error that rounding leaves the accelerations", *c.rounding, limit,
-                           "accelerations have fewer than six digits"};
-  const auto after = std::find_if(c.indicators.begin(), c.indicators.end(),
-                                  [&](const Indicator& i) { return i.use() < rounding.use(); });
-  c.indicators.insert(after, rounding);
+  add(c,
+      {"error that rounding leaves the accelerations", *c.rounding, limit, "accelerations have fewer than six digits"});
+}
+
+void add_common_velocity(Certificate& c, std::optional<double> part) {
+  constexpr double limit = 0.01;
+  if (!part) return;
+  add(c, {"part of the accelerations that a velocity of the whole makes", *part, limit,
+          "the motion depends on the frame that it is described in, which no other formulation's does"});
 }
 
 /// Whether the equations keep energy and momenta in balance themselves: nothing is truncated.
@@ -143,6 +154,7 @@ Certificate certify(const Prepared& prepared, Evidence evidence, Registry& regis
   c.steps = step_limit(prepared, summary, registry);
   c.indicators = indicators(scene, summary, last != nullptr ? std::optional(last->terms) : std::nullopt);
   add_rounding(c);
+  add_common_velocity(c, part_of_common_velocity(prepared, evidence.beyond, summary));
   return c;
 }
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "withy/core/simulation/step_watch.hpp"
@@ -325,6 +327,29 @@ TEST(StudyRun, CertificatesHaveTheMomentaOfFreeTrees) {
   EXPECT_LT(sound.certificate.momentum.angular, 1e-5);
   EXPECT_GT(cut.certificate.momentum.angular, 0.01);
   EXPECT_FALSE(run_of("pendulum", {}, "quadratic").certificate.momentum.conserved) << "it hangs on the world";
+}
+
+/// Of a spacecraft that drifts: its momentum is of another order than its velocity's own. Nothing else feels a drift,
+/// and an arm on a foundation has none.
+TEST(StudyRun, CertificatesTellWhatTheSymmetricTruncationMakesOfAVelocityOfTheWhole) {
+  const auto told = [](const std::string& name, const std::string& formulation, double drift) {
+    const Value end(0.05), velocity(drift);
+    std::vector<std::pair<std::string, Value>> changes = {{"time.end", end}};
+    if (drift != 0) changes.emplace_back("initial.hinges.float.rate.4", velocity);
+    const std::vector<Indicator> all = run_of(name, changes, formulation).certificate.indicators;
+    const auto found = std::find_if(all.begin(), all.end(), [](const Indicator& i) {
+      return i.text.find("velocity of the whole") != std::string::npos;
+    });
+    return found == all.end() ? std::nullopt : std::optional(*found);
+  };
+  const auto slow = told("spacecraft", "symmetric", 10), fast = told("spacecraft", "symmetric", 1000);
+  ASSERT_TRUE(slow && fast);
+  EXPECT_GT(slow->use(), 1);
+  EXPECT_NEAR(fast->value, 1, 0.1) << "nearly all of the accelerations are made by it";
+  EXPECT_LT(told("spacecraft", "symmetric", 0)->value, 0.5 * slow->value);
+  EXPECT_FALSE(told("spacecraft", "quadratic", 1000));
+  EXPECT_FALSE(told("spacecraft", "linear", 1000));
+  EXPECT_FALSE(told("two-link-slew", "symmetric", 0));
 }
 
 TEST(StudyRun, TheSymmetricTruncationConservesItsOwnEnergy) {
