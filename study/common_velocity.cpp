@@ -45,11 +45,19 @@ class With {
     accelerations.assign(first, first + static_cast<std::ptrdiff_t>(layout.speeds));
     return true;
   }
-  double square(std::span<const double> y, std::span<const double> a) {
-    std::vector<double> product(a.size());
+  /// aᵀ M a less that of the acceleration that all have in common, which an orbit may have much of: speeds `common`
+  /// move the whole tree along three axes, so the block of M that is theirs is its mass.
+  double square(std::span<const double> y, std::span<const double> a, std::span<const std::size_t> common) {
+    std::vector<double> product(a.size()), along(a.size()), momentum(a.size());
     equations_.mass_times(y, a, product, work_);
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * product[i];
+    for (const std::size_t s : common) {
+      along[s] = 1;
+      equations_.mass_times(y, along, momentum, work_);
+      along[s] = 0;
+      sum -= product[s] * product[s] / momentum[s];
+    }
     return std::max(sum, 0.0);
   }
   std::vector<double> accelerations;
@@ -83,8 +91,8 @@ std::optional<double> part_of_common_velocity(const Prepared& prepared, const Be
     for (std::size_t i = 0; i < part.size(); ++i) part[i] = here[i] - up.accelerations[i];
     if (!used.look(resting.time, resting.y) || !up.look(resting.time, resting.y)) continue;
     for (std::size_t i = 0; i < part.size(); ++i) part[i] -= used.accelerations[i] - up.accelerations[i];
-    const double size = up.square(state->y, here);
-    if (size > 0) greatest = std::max(greatest.value_or(0), std::sqrt(up.square(state->y, part) / size));
+    const double size = up.square(state->y, here, common);
+    if (size > 0) greatest = std::max(greatest.value_or(0), std::sqrt(up.square(state->y, part, common) / size));
   }
   return greatest;
 }
